@@ -1,0 +1,22 @@
+"""Predict the next touchdown of a body that turns about one contact, and what the impact does to it."""
+
+from .errors import InputError
+from .mechanics.bodies import cylinder, plate, rod
+from .mechanics.impact import solve_impact
+from .mechanics.types import Alternative, Contact, Flag, Mode, Outcome, Twist, TwoPointBody
+
+__all__ = [
+    "Alternative",
+    "Contact",
+    "Flag",
+    "InputError",
+    "Mode",
+    "Outcome",
+    "Twist",
+    "TwoPointBody",
+    "cylinder",
+    "plate",
+    "rod",
+    "solve_impact",
+]
+__version__ = "0.1.0"

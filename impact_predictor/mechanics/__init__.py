@@ -1,0 +1,1 @@
+"""Impact mechanics of a rigid planar body: numbers in, numbers out."""

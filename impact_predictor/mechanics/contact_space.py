@@ -1,0 +1,88 @@
+"""Between a body with its contacts and the problem that the impact laws see."""
+
+from __future__ import annotations
+
+from math import inf, sqrt
+
+from .pair import Problem
+from .types import Contact, Twist, TwoPointBody
+
+SPEED_ROUNDING = 1e-14
+"""A contact speed below this part of the terms it is the sum of is rounding and counts as zero."""
+
+UNIT = 1e-6
+"""How far the square of a normal's length may be from 1."""
+
+Approach = tuple[float, float, float]
+"""Normal and tangential contact velocity, and the speed below which either is rounding."""
+
+Frame = tuple[float, float, float]
+"""Normal (x, y) of the old contact and the radius of gyration, in which a law gives the change of twist."""
+
+Sight = tuple[bool, float, float, float, float, float, float, float]
+"""Whether every number of a contact is in its range; its approach (three numbers); its normal; moments of its normal
+and its tangent about the mass centre."""
+
+
+NOT_VALID: Sight = (False, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+def see(contact: Contact, twist: Twist) -> Sight:
+    """A contact of a body that moves with `twist`."""
+    x, y, friction, (nx, ny), restitution, (ux, uy) = contact
+    vx, vy, omega = twist
+    excess = nx * nx + ny * ny - 1.0
+    if excess != 0.0:
+        if not -UNIT < excess < UNIT:
+            return NOT_VALID
+        length = sqrt(1.0 + excess)
+        nx, ny = nx / length, ny / length
+    px, py = omega * y, omega * x
+    cx, cy = vx - px - ux, vy + py - uy
+    normal = nx * cx + ny * cy
+    tangential = ny * cx - nx * cy
+    zero = SPEED_ROUNDING * (abs(vx) + abs(vy) + abs(px) + abs(py) + abs(ux) + abs(uy))
+    if -zero <= normal <= zero:
+        normal = 0.0
+    if -zero <= tangential <= zero:
+        tangential = 0.0
+    # Any number that is not finite makes `zero` so too.
+    valid = zero < inf and 0.0 <= friction < inf and 0.0 <= restitution <= 1.0
+    return valid, normal, tangential, zero, nx, ny, x * ny - y * nx, -(x * nx + y * ny)
+
+
+def approach(contact: Contact, twist: Twist) -> Approach:
+    """Velocity of the body at the contact, relative to the support, along the normal and the tangent (m/s)."""
+    return see(contact, twist)[1:4]
+
+
+def problem_of(body: TwoPointBody, twist: Twist) -> tuple[bool, Problem, Frame]:
+    """What an impact law is asked about a body that moves with `twist`, after whether its numbers are in their range.
+
+    A body without an old contact gets a frictionless one at its mass centre, which never closes.
+    """
+    mass, inertia, old, new = body
+    valid, cnb, ctb, zero_b, bx, by, nb, tb = see(new, twist)
+    if old is None:
+        cna, cta, zero_a, ax, ay, na, ta, fa, ea = inf, 0.0, 0.0, bx, by, 0.0, 0.0, 0.0, 0.0
+    else:
+        valid_a, cna, cta, zero_a, ax, ay, na, ta = see(old, twist)
+        valid = valid and valid_a
+        _, _, fa, _, ea, _ = old
+    square = inertia / mass if mass > 0.0 else 0.0
+    if not (valid and 0.0 < square < inf):
+        return False, NO_PROBLEM, (0.0, 1.0, 1.0)
+    rho = sqrt(square)
+    _, _, fb, _, eb, _ = new
+    pair = (ax * bx + ay * by, ax * by - ay * bx, na / rho, ta / rho, nb / rho, tb / rho, fa, fb)
+    return True, (pair, ea, eb, cna, cta, cnb, ctb, zero_a, zero_b), (ax, ay, rho)
+
+
+NO_PROBLEM: Problem = ((1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), 0.0, 0.0, inf, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+def twist_after(twist: Twist, frame: Frame, dx: float, dy: float, dq: float) -> Twist:
+    """The twist changed by (dx, dy, dq), along the frame's tangent and normal and times rho."""
+    nx, ny, rho = frame
+    vx, vy, omega = twist
+    return Twist(vx + ny * dx + nx * dy, vy + ny * dy - nx * dx, omega + dq / rho)

@@ -1,0 +1,280 @@
+"""Total-impulse law: Coulomb's and Newton's laws on the impulses of the whole impact, at both contacts at once.
+
+0 <= N _|_ (c'_n + e c_n) >= 0 and T in -f N Sgn(c'_t). It needs no order of events, so it also serves where both
+contacts are struck at once; it may have several solutions (a wedge), or none (supports that move apart).
+
+Either one contact takes the whole impulse and the other opens, or both hold; each of the two has few possible states.
+
+The solutions are written as cross products of the rows (see `pair`), the change of the twist before the impulses,
+because it keeps its digits.
+"""
+
+from __future__ import annotations
+
+from math import inf
+
+from .pair import (
+    MINUS,
+    NO_SOLUTION,
+    OPEN,
+    PLUS,
+    REVERSED,
+    ROUNDING,
+    SHARED_FRICTION,
+    STICK,
+    Impact,
+    Pair,
+    Problem,
+    below_rounding,
+    least_push,
+)
+
+SAME_SUPPORT = 100.0
+"""How many roundings apart the velocities of two contacts on one rigid support may come out."""
+
+SAME_TWIST = 1e-9
+"""Solutions that change the twist by less than this part differently are one solution."""
+
+Solution = tuple[bool, int, int, float, float, float, float, float, float, float]
+"""Whether Coulomb's law holds; states of A and B; N_A, T_A, N_B, T_B; change of the twist (x, y, rho omega)."""
+
+NOT_POSSIBLE: Solution = (False, OPEN, OPEN, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+def one_alone(pair: Pair, gna: float, gnb: float, ctb: float) -> Solution:
+    """B takes all of the impulse and A opens.
+
+    B has one answer: along the impulses that stop its approach the slip grows with T_B, so that it sticks, or slips
+    against the T_B that would make it stick.
+    """
+    cos, sin, qa, _, qb, sb, _, fb = pair
+    qb2, sb2 = 1.0 + qb * qb, 1.0 + sb * sb
+    size = qb2 + sb * sb
+    nb = (qb * sb * ctb - sb2 * gnb) / size
+    tb = (qb * sb * gnb - qb2 * ctb) / size
+    if abs(tb) <= fb * nb * (1.0 + ROUNDING):
+        b = STICK
+        dq = -(qb * gnb + sb * ctb) / size
+    else:
+        b = MINUS if tb > 0.0 else PLUS
+        ray = -fb if b == PLUS else fb
+        bq = qb + ray * sb
+        den = 1.0 + qb * bq
+        nb = -gnb / den if den > 0.0 else -1.0
+        if nb < 0.0:
+            return NOT_POSSIBLE
+        tb = ray * nb
+        dq = bq * nb
+    dx, dy = cos * tb - sin * nb, cos * nb + sin * tb
+    gap = gna + dy + qa * dq
+    opens = gap >= 0.0 or not below_rounding(gap, gna, dy, qa * dq)
+    return opens, OPEN, b, 0.0, 0.0, nb, tb, dx, dy, dq
+
+
+def both_slide(pair: Pair, a: int, b: int, gna: float, cta: float, gnb: float, ctb: float) -> Solution:
+    """Both contacts slip, in the directions of `a` and `b`."""
+    cos, sin, qa, sa, qb, sb, fa, fb = pair
+    ax = -fa if a == PLUS else fa
+    aq = qa + ax * sa
+    tb = -fb if b == PLUS else fb
+    bx, by, bq = tb * cos - sin, cos + tb * sin, qb + tb * sb
+    # plane: the cross product of the two rays of friction, which the change of the twist is normal to
+    px, py, pq = bq - aq * by, aq * bx - ax * bq, ax * by - bx
+    den = (qb - qa * cos) * px - sin * (qa * py - pq)
+    if den == 0.0:
+        return NOT_POSSIBLE
+    na = gnb * (by + qa * bq)
+    nb = -gnb * (1.0 + qa * aq)
+    if gna != 0.0:
+        na -= gna * (1.0 + qb * bq)
+        nb += gna * (cos - sin * ax + qb * aq)
+    na, nb = na / den, nb / den
+    if (na < 0.0 and below_rounding(na, nb)) or (nb < 0.0 and below_rounding(nb, na)):
+        return NOT_POSSIBLE
+    dx, dy, dq = gnb * (pq - py * qa), gnb * px * qa, -gnb * px
+    if gna != 0.0:
+        dx -= gna * (cos * pq - qb * py)
+        dy -= gna * (qb * px + sin * pq)
+        dq += gna * (sin * py + cos * px)
+    dx, dy, dq = dx / den, dy / den, dq / den
+    slip = cta + dx + sa * dq
+    if (slip < 0.0) == (a == PLUS) and below_rounding(-abs(slip), cta, dx, sa * dq):
+        return NOT_POSSIBLE
+    slip = ctb + cos * dx + sin * dy + sb * dq
+    if (slip < 0.0) == (b == PLUS) and below_rounding(-abs(slip), ctb, cos * dx, sin * dy, sb * dq):
+        return NOT_POSSIBLE
+    return True, a, b, na, ax * na, nb, tb * nb, dx, dy, dq
+
+
+def one_sticks(pair: Pair, gna: float, cta: float, gnb: float, ctb: float) -> Solution:
+    """A sticks and B slips: three contact velocities are given, so the twist is, and the impulses follow."""
+    cos, sin, qa, sa, qb, sb, fa, fb = pair
+    lever = qa * cos - sa * sin - qb
+    if lever == 0.0:
+        return NOT_POSSIBLE
+    # tA x nB, nB x nA and nA x tA
+    dx = (gna * sa * cos - cta * (cos * qa - qb) - gnb * sa) / lever
+    dy = (gna * (qb + sa * sin) - cta * sin * qa - gnb * qa) / lever
+    dq = (gnb - gna * cos + cta * sin) / lever
+    b = PLUS if ctb + cos * dx + sin * dy + sb * dq > 0.0 else MINUS
+    tb = -fb if b == PLUS else fb
+    bx, by, bq = tb * cos - sin, cos + tb * sin, qb + tb * sb
+    push = sa * bx + qa * by - bq
+    if push == 0.0:
+        return False, STICK, b, 0.0, 0.0, 0.0, 0.0, dx, dy, dq
+    nb = (sa * dx + qa * dy - dq) / push
+    na = (sa * (by * dx - bx * dy) + dy * bq - by * dq) / -push
+    ta = (qa * (bx * dy - by * dx) + dx * bq - bx * dq) / -push
+    room = fa * na - abs(ta)
+    held = not (
+        (na < 0.0 and below_rounding(na, nb))
+        or (nb < 0.0 and below_rounding(nb, na))
+        or (room < 0.0 and below_rounding(room, fa * na, ta, fa * nb))
+    )
+    return held, STICK, b, na, ta, nb, tb * nb, dx, dy, dq
+
+
+def both_stick(pair: Pair, gna: float, cta: float, gnb: float, ctb: float, zero: float) -> Solution:
+    """Both contacts stick: four velocities for three freedoms, so the supports must move as one body.
+
+    Where they do, the states are given even if friction cannot hold the contacts. `zero` is the speed below which
+    the contact velocities are rounding.
+    """
+    cos, sin, qa, sa, qb, sb, _, _ = pair
+    lever, arm = qa * cos - sa * sin - qb, sa * cos + qa * sin - sb
+    if lever == 0.0 and arm == 0.0:
+        return NOT_POSSIBLE
+    normal_leads = abs(lever) >= abs(arm)
+    # the row of B that fixes the twist with the two of A (x, y, q), its velocity, and the other row's
+    if normal_leads:
+        x, y, q, g, gap = -sin, cos, qb, gnb, ctb
+    else:
+        x, y, q, g, gap, lever = cos, sin, sb, ctb, gnb, arm
+    dx, dy, dq = -g * sa, -g * qa, g
+    if gna != 0.0 or cta != 0.0:
+        dx += gna * sa * y - cta * (y * qa - q)
+        dy += gna * (q - sa * x) + cta * x * qa
+        dq -= gna * y + cta * x
+    dx, dy, dq = dx / lever, dy / lever, dq / lever
+    u, v, w = (cos * dx, sin * dy, sb * dq) if normal_leads else (cos * dy, -sin * dx, qb * dq)
+    gap = abs(gap + u + v + w)
+    if gap > zero:
+        rounding = SAME_SUPPORT * ROUNDING + zero / (abs(gna) + abs(cta) + abs(gnb) + abs(ctb))
+        if gap > rounding * (abs(u) + abs(v) + abs(w)):
+            return NOT_POSSIBLE
+    along = (sa * dx + qa * dy - dq) / lever
+    na = -(sa * (y * dx - x * dy) + dy * q - y * dq) / lever
+    ta = -(qa * (x * dy - y * dx) + dx * q - x * dq) / lever
+    nb, tb = (along, 0.0) if normal_leads else (0.0, along)
+    held, na, ta, nb, tb = least_push(pair, na, ta, nb, tb)
+    return held, STICK, STICK, na, ta, nb, tb, dx, dy, dq
+
+
+def both_hold(
+    pair: Pair, gna: float, cta: float, gnb: float, ctb: float, zero: float
+) -> tuple[Solution, Solution, Solution, Solution]:
+    """The solutions that are possible while both contacts hold: A or both stick; B sticks; both slip, in two ways.
+
+    The twist is free along nA x nB. There a slip of A and one of B is zero, and between the two they have the signs
+    that they have at each other's zero. Beyond the two, where both slips grow, friction drives the twist back, towards
+    the one that it has without friction. So a solution lies on that side only.
+    """
+    cos, sin, qa, sa, qb, sb, _, _ = pair
+    x, y, q = qb - qa * cos, -qa * sin, sin
+    grows_a, grows_b = qb - qa * cos + sa * sin, qb * cos + sb * sin - qa
+    old = both_stick(pair, gna, cta, gnb, ctb, zero)
+    new = between = NOT_POSSIBLE
+    a = b = PLUS
+    if old[1] == STICK:
+        least = most = x * old[7] + y * old[8] + q * old[9]
+    else:
+        least, most = inf, -inf
+        if grows_a != 0.0:
+            old = one_sticks(pair, gna, cta, gnb, ctb)
+            b = old[2]
+            least = most = x * old[7] + y * old[8] + q * old[9]
+        if grows_b != 0.0:
+            new = exchange(pair, one_sticks(exchanged(pair), gnb, ctb, gna, cta))
+            a = new[1]
+            along = x * new[7] + y * new[8] + q * new[9]
+            least, most = min(least, along), max(most, along)
+            if grows_a != 0.0:
+                between = both_slide(pair, a, b, gna, cta, gnb, ctb)
+        if least <= 0.0 < most:
+            return old, new, between, NOT_POSSIBLE
+    if grows_a != 0.0:
+        a = PLUS if (grows_a > 0.0) == (most <= 0.0) else MINUS
+    if grows_b != 0.0:
+        b = PLUS if (grows_b > 0.0) == (most <= 0.0) else MINUS
+    if grows_a == 0.0 or grows_b == 0.0:  # one of the slips is the same in all of these twists
+        other_a, other_b = (PLUS + MINUS - a, b) if grows_a == 0.0 else (a, PLUS + MINUS - b)
+        between = both_slide(pair, other_a, other_b, gna, cta, gnb, ctb)
+    return old, new, between, both_slide(pair, a, b, gna, cta, gnb, ctb)
+
+
+def exchanged(pair: Pair) -> Pair:
+    """The pair with its contacts in the other order, in the frame of B."""
+    cos, sin, qa, sa, qb, sb, fa, fb = pair
+    return cos, -sin, qb, sb, qa, sa, fb, fa
+
+
+def exchange(pair: Pair, solution: Solution) -> Solution:
+    """A solution for the exchanged pair, brought back."""
+    cos, sin, _, _, _, _, _, _ = pair
+    held, b, a, nb, tb, na, ta, dx, dy, dq = solution
+    return held, a, b, na, ta, nb, tb, cos * dx - sin * dy, sin * dx + cos * dy, dq
+
+
+def add(found: int, first: Solution, best: Solution, other: Solution, choice: int) -> tuple[int, Solution, Solution]:
+    """Count a solution that holds if it differs from the first one, and keep the one of number `choice`."""
+    if not other[0] or (found and same(first, other)):
+        return found, first, best
+    return found + 1, first if found else other, other if found <= choice else best
+
+
+def same(one: Solution, other: Solution) -> bool:
+    """Whether two solutions change the twist in the same way, up to rounding."""
+    scale = abs(one[7]) + abs(one[8]) + abs(one[9]) + abs(other[7]) + abs(other[8]) + abs(other[9])
+    return abs(one[7] - other[7]) + abs(one[8] - other[8]) + abs(one[9] - other[9]) <= SAME_TWIST * scale
+
+
+def solve(problem: Problem, choice: int) -> Impact:
+    """Solve for the impulses of the whole impact; c_nA is inf where there is no A.
+
+    The restitutions are Newton's. The first solution of these answers: A opens, B opens, both stick, one sticks, both
+    slip; `choice` k > 0 takes the k-th that differs from it.
+    """
+    pair, restitution_old, restitution, cna, cta, cnb, ctb, zero_a, zero_b = problem
+    cos, sin, qa, sa, qb, sb, fa, fb = pair
+    gna = (1.0 + restitution_old) * cna if cna < 0.0 else cna
+    gnb = (1.0 + restitution) * cnb if cnb < 0.0 else cnb
+    first = best = one_alone(pair, gna, gnb, ctb) if gnb < 0.0 else NOT_POSSIBLE
+    found = 1 if best[0] else 0
+    if cna < inf:
+        # Where its own friction presses it down, A takes the impulse even if it is not struck.
+        if gna < 0.0 or (gna == 0.0 and cta != 0.0 and fa * abs(qa * sa) > 1.0 + qa * qa):
+            solution = exchange(pair, one_alone(exchanged(pair), gnb, gna, cta))
+            found, first, best = add(found, first, best, solution, choice)
+        for solution in both_hold(pair, gna, cta, gnb, ctb, zero_a + zero_b):
+            if solution[0]:
+                found, first, best = add(found, first, best, solution, choice)
+        if not found:
+            # A leaves, but friction can hold it; or a border is met up to rounding, and no state seemed possible.
+            solution = exchange(pair, one_alone(exchanged(pair), gnb, gna, cta))
+            found, first, best = add(found, first, best, solution, choice)
+            for a in (PLUS, MINUS):
+                for b in (PLUS, MINUS):
+                    solution = both_slide(pair, a, b, gna, cta, gnb, ctb)
+                    found, first, best = add(found, first, best, solution, choice)
+
+    _, a, b, na, ta, nb, tb, dx, dy, dq = best
+    vna = cna + dy + qa * dq if a == OPEN else cna - gna
+    vta = 0.0 if a == STICK else cta + dx + sa * dq
+    vnb = cnb - sin * dx + cos * dy + qb * dq if b == OPEN else cnb - gnb
+    vtb = 0.0 if b == STICK else ctb + cos * dx + sin * dy + sb * dq
+    notes = 0 if found else NO_SOLUTION
+    if (vta * cta < 0.0 and abs(vta) > zero_a) or (vtb * ctb < 0.0 and abs(vtb) > zero_b):
+        notes |= REVERSED
+    if a == STICK and b == STICK:
+        notes |= SHARED_FRICTION
+    return na, ta, nb, tb, vna, vta, vnb, vtb, dx, dy, dq, 4 * a + b, notes, found

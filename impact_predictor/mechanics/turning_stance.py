@@ -1,0 +1,153 @@
+"""A body that turns about a stance contact which sticks: one stretch of it.
+
+(rho^2 + R^2) phi'' = -g R cos(phi + beta), (R, beta) the polar place of the mass centre seen from the contact, as in
+eq. (2.1) and (2.5) of Polukoshko and Sokolova with the height of the mass centre. Energy gives the rate and the
+reaction at every angle, Carlson's integral R_F the time.
+"""
+
+from __future__ import annotations
+
+import math
+
+from .first_root import first_descent
+from .stretch import End, Stretch
+from .types import Vector
+
+_ROUNDING = 8.0 * 2.0**-52
+"""A few units in the last place of a value that is a sum of a few terms."""
+_FULL_TURN = 2.0 * math.pi
+
+
+def turn(arm: Vector, omega: float, travel: Vector, rho_squared: float, friction: float, gravity: Vector) -> Stretch:
+    """Follow a stance that sticks until its first event; arguments as those of `slide`."""
+    weight, radius = math.hypot(*gravity), math.hypot(*arm)
+    inertia = rho_squared + radius * radius
+    stiffness = radius * weight / inertia if radius > 0.0 else 0.0
+    slope = math.atan2(gravity[0], -gravity[1])  # of "up" against the support's normal, CCW
+    tilt = math.remainder(math.atan2(-arm[0], arm[1]) - slope, _FULL_TURN)  # from the balance, CCW
+    fall = omega or (tilt if stiffness > 0.0 else 0.0)
+    direction = (fall > 0.0) - (fall < 0.0)
+    reach = travel[direction > 0] if direction else math.inf
+    if reach <= 0.0:
+        return Stretch(End.TOUCHES if omega else End.NEVER, 0.0, 0.0, omega, direction=direction)
+    lean, rate = direction * tilt, abs(omega)
+    crest = _to_standstill(stiffness, lean, rate) if direction else 0.0
+    last = min(reach, crest, _FULL_TURN)
+
+    if friction < math.inf:
+        energy = omega * omega + 2.0 * stiffness * math.cos(tilt)
+        reaction = weight, radius * energy, radius * stiffness
+        edge = math.atan2(1.0, friction)
+        forward = _first_slip(reaction, tilt, direction, -edge - slope, last)
+        backward = _first_slip(reaction, tilt, direction, edge - slope, last)
+        slip_at, slip_direction = min((forward, 1), (backward, -1))
+        if forward == backward == 0.0:
+            # Sticking would take a pull, yet the contact is pressed down: only this slip leaves it on the support.
+            slip_direction = 1 if arm[0] * arm[1] > 0.0 else -1
+        if slip_at <= last:
+            end_rate = _rate(stiffness, lean, rate, slip_at)
+            time = _swing(stiffness, lean, rate, slip_at, end_rate)
+            return Stretch(End.SLIPS, time, direction * slip_at, direction * end_rate, direction=slip_direction)
+    if reach <= crest and reach < math.inf:
+        end_rate = _rate(stiffness, lean, rate, reach)
+        time = _swing(stiffness, lean, rate, reach, end_rate)
+        return Stretch(End.TOUCHES, time, direction * reach, direction * end_rate, direction=direction)
+    if rate > 0.0 and crest < math.inf:
+        time = _swing(stiffness, lean, rate, crest, 0.0)
+        return Stretch(End.TURNS, time, direction * crest, 0.0)
+    return Stretch(End.NEVER, 0.0, 0.0, omega)
+
+
+def _to_standstill(stiffness: float, lean: float, rate: float) -> float:
+    """How far in rad the body turns until it stands still: inf when it passes the balance.
+
+    `lean` is the angle from the balance (rad, positive when turning away from it), `rate` the angular speed.
+    """
+    height = math.sin(0.5 * lean) ** 2  # of the balance above the mass centre
+    if rate * rate > 4.0 * stiffness * height or stiffness <= 0.0:
+        return math.inf
+    climb = rate * rate / (4.0 * stiffness)
+    stop = 2.0 * math.asin(math.sqrt(height - climb)) if height > climb else 0.0
+    if lean >= 0.0:
+        return _FULL_TURN - stop - lean
+    # The difference stop + lean would lose a small climb.
+    return 2.0 * math.asin(min(1.0, climb / math.sin(0.5 * (stop - lean))))
+
+
+def _rate(stiffness: float, lean: float, rate: float, travel: float) -> float:
+    """The angular speed after some travel, from the energy."""
+    gain = 4.0 * stiffness * math.sin(0.5 * travel) * math.sin(lean + 0.5 * travel)
+    return math.sqrt(max(0.0, rate * rate + gain))
+
+
+def _swing(stiffness: float, lean: float, rate: float, travel: float, end_rate: float) -> float:
+    """Time in s that a swing takes, from the energy integral."""
+    half_turn = math.floor(lean / math.pi)
+    time, turned, part_rate = 0.0, 0.0, rate
+    while turned < travel:
+        half_turn += 1
+        border = half_turn * math.pi - lean  # next passage over the balance or under the contact
+        if border <= turned:
+            continue
+        part = min(border, travel) - turned
+        next_rate = end_rate if border >= travel else _rate(stiffness, lean, rate, border)
+        # Angles from the balance on the same side of it: the second half of a turn is the first one backwards.
+        if half_turn % 2:
+            low = lean + turned - (half_turn - 1) * math.pi
+            time += _half_swing(low, part_rate, low + part, next_rate, part)
+        else:
+            low = border - turned - part
+            time += _half_swing(low, next_rate, low + part, part_rate, part)
+        turned += part
+        part_rate = next_rate
+    return time
+
+
+def _half_swing(low: float, low_rate: float, high: float, high_rate: float, part: float) -> float:
+    """Time between two angles in 0..pi from the balance, `part` apart.
+
+    With u = tan^2(angle/2) the time is the integral of du / sqrt(u (1 + u) (a + b u)), an R_F of both ends (NIST
+    Digital Library of Mathematical Functions, 19.29.4) in which nothing cancels.
+    """
+    low_sine, low_cosine = math.sin(0.5 * low), math.cos(0.5 * low)
+    high_sine, high_cosine = math.sin(0.5 * high), math.cos(0.5 * high)
+    across, along = high_sine * low_cosine, low_sine * high_cosine
+    first = across * low_rate + along * high_rate
+    second = across * high_rate + along * low_rate
+    third = high_sine * high_cosine * low_rate + low_sine * low_cosine * high_rate
+    scale = 2.0 * math.sin(0.5 * part) * math.sin(0.5 * (low + high))
+    return scale * _carlson(first * first, second * second, third * third)
+
+
+def _carlson(x: float, y: float, z: float) -> float:
+    """Carlson's R_F(x, y, z) by duplication (Numer. Algorithms 10, 1995); inf when two arguments are zero."""
+    if (x <= 0.0) + (y <= 0.0) + (z <= 0.0) > 1:
+        return math.inf
+    mean = (x + y + z) / 3.0
+    # Where the arguments differ by less the series below is exact to rounding.
+    while max(abs(mean - x), abs(mean - y), abs(mean - z)) > 0.008 * mean:
+        root_x, root_y, root_z = math.sqrt(x), math.sqrt(y), math.sqrt(z)
+        shift = root_x * (root_y + root_z) + root_y * root_z
+        x, y, z, mean = 0.25 * (x + shift), 0.25 * (y + shift), 0.25 * (z + shift), 0.25 * (mean + shift)
+    x, y, z = (mean - x) / mean, (mean - y) / mean, (mean - z) / mean
+    second, third = x * y - z * z, x * y * z
+    series = second * (-1.0 / 10.0 + second / 24.0 - 3.0 * third / 44.0 - 5.0 * second * second / 208.0) + third * (
+        1.0 / 14.0 + 3.0 * third / 104.0
+    )
+    return (1.0 + series) / math.sqrt(mean)
+
+
+def _first_slip(reaction: tuple[float, float, float], tilt: float, direction: int, edge: float, last: float) -> float:
+    """How far in rad the body turns until the reaction leaves one edge of the friction cone.
+
+    The reaction of the support, for a mass of 1 and with r = (weight, R energy, R stiffness), has the part
+    (r0 + r2/2) cos(edge) - r1 cos(tilt - edge) + (3/2) r2 cos(2 tilt - edge) inside an edge, whose inward normal lies
+    `edge` rad from "up".
+    """
+    weight, spin, pull = reaction
+    level = (weight + 0.5 * pull) * math.cos(edge)
+    single = -spin * math.cos(tilt - edge), direction * spin * math.sin(tilt - edge), 1.0
+    double = 1.5 * pull * math.cos(2.0 * tilt - edge), -1.5 * direction * pull * math.sin(2.0 * tilt - edge), 2.0
+    if level + single[0] + double[0] < -_ROUNDING * (weight + abs(spin) + 2.0 * pull):
+        return 0.0
+    return first_descent(level, 0.0, 0.0, (single, double), last)

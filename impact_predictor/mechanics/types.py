@@ -1,0 +1,128 @@
+"""Values of planar impact mechanics: contacts, bodies, twists, modes and outcomes.
+
+Plane x (forward), y (up), rotation counter-clockwise positive, SI units (REP-103).
+"""
+
+from __future__ import annotations
+
+from enum import IntEnum, IntFlag
+from typing import NamedTuple
+
+Vector = tuple[float, float]
+
+
+class Mode(IntEnum):
+    """How a body goes on after it struck the new contact (the paper, sections 2 to 4).
+
+    The numbers are part of the ROS interface (`~/mode`) and never change.
+    """
+
+    NO_IMPACT = 0
+    """The new contact is not approached."""
+    STOP = 1
+    """Both contacts hold and neither slips."""
+    SLIDE = 2
+    """Both contacts hold and the body slides on them."""
+    PIVOT_SLIDE = 3
+    """The old contact lifts; the body turns about the new one, which slips."""
+    PIVOT = 4
+    """The old contact lifts; the body turns about the new one, which sticks."""
+    BACK_PIVOT = 5
+    """The new contact lifts again; the body turns back about the old one."""
+    FLIGHT = 6
+    """Both contacts lift."""
+
+
+class Flag(IntFlag):
+    """What a reader of an outcome should know besides its mode."""
+
+    NONE = 0
+    REVERSED_SLIP = 1
+    """A contact slips against the direction in which it slipped, or first began to slip."""
+    JAMMED = 2
+    """The impulse path had no consistent rates (Painleve); a tangential impact at the old contact resolved it."""
+    WORK_LIMITED = 4
+    """Restitution ended when the stored normal work was returned, before Poisson's impulse was reached."""
+    OLD_RESTITUTION_IGNORED = 8
+    """The old contact does not approach, so its restitution had no effect."""
+    ENERGY_GAINED = 16
+    """Newton's restitution of the total law raised the kinetic energy."""
+    SHARED_FRICTION = 32
+    """Both contacts stick: how they share the push along their line is a choice, not mechanics."""
+    BOTH_STRUCK = 64
+    """Both contacts approach, so the total law answered."""
+    LAST_RESORT = 128
+    """The impulse path could not be continued, so the total law answered."""
+    NO_SOLUTION = 256
+    """No law has a solution (supports that move apart); the twist is left as it was."""
+    INVALID_INPUT = 512
+    """A number is not finite, or mass, inertia, friction, restitution or a normal is out of range."""
+
+
+class Twist(NamedTuple):
+    """Velocity of the mass centre (m/s) and angular velocity (rad/s)."""
+
+    vx: float
+    vy: float
+    omega: float
+
+
+class Contact(NamedTuple):
+    """A contact point seen from the mass centre.
+
+    `x`, `y` in m; `normal` is the unit normal out of the support; `restitution` in 0..1; `velocity` is the
+    support's at the contact in m/s. The tangent is (normal_y, -normal_x).
+    """
+
+    x: float
+    y: float
+    friction: float
+    normal: Vector = (0.0, 1.0)
+    restitution: float = 0.0
+    velocity: Vector = (0.0, 0.0)
+
+
+class TwoPointBody(NamedTuple):
+    """A rigid body with the contact it stands on (`old`, or None) and the one that strikes (`new`).
+
+    `mass` in kg, `inertia` about the mass centre in kg m^2.
+    """
+
+    mass: float
+    inertia: float
+    old: Contact | None
+    new: Contact
+
+    def turning(self, omega: float) -> Twist:
+        """The twist of the body while it turns about the old contact, which moves with its support."""
+        if self.old is None:
+            raise ValueError("a body without an old contact turns about nothing; give the twist itself")
+        ux, uy = self.old.velocity
+        return Twist(omega * self.old.y + ux, -omega * self.old.x + uy, omega)
+
+
+class Alternative(NamedTuple):
+    """Another answer that the law allows as well."""
+
+    mode: Mode
+    twist: Twist
+    segments: tuple[str, ...]
+
+
+class Outcome(NamedTuple):
+    """What an impact does to a body.
+
+    `twist` right after it; `impulses` as ((N_old, T_old), (N_new, T_new)) in N s along normal and tangent;
+    `segments` the contact states along the impulse path (old contact first; O open, S stick, + or - slip);
+    `energy_lost` in J, relative to the supports; `unique` is False when `alternatives` exist.
+    """
+
+    mode: Mode
+    twist: Twist
+    impulses: tuple[Vector, Vector]
+    segments: tuple[str, ...]
+    flags: Flag
+    energy_lost: float
+    unique: bool
+    alternatives: tuple[Alternative, ...]
+    law: str

@@ -1,0 +1,17 @@
+"""What every test run shares: quick tests first, and ROS graphs that do not see each other."""
+
+import os
+
+import pytest
+
+
+def pytest_configure() -> None:
+    """Give each worker of a parallel run a ROS domain of its own, before anything imports rclpy."""
+    worker = int(os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw"))
+    # Domains up to 101 keep clear of the ports that Linux hands to ordinary sockets.
+    os.environ["ROS_DOMAIN_ID"] = str(1 + (os.getppid() + worker) % 101)
+    os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    items.sort(key=lambda item: item.get_closest_marker("slow") is not None)

@@ -1,0 +1,663 @@
+"""The next touchdown against 40-digit falls, an integration in the world frame, and its own symmetries.
+
+golden/motion.json: falls of a body that turns about a fixed point, and the rocking of the three rods of Fig. 2 of
+Polukoshko and Sokolova, both from the energy integral in 40-digit arithmetic.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import random
+from collections.abc import Callable
+from itertools import pairwise
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.special import ellipkinc
+
+from impact_predictor.mechanics.motion import Fall, Motion, PlanarState, next_touchdown
+from impact_predictor.mechanics.types import Vector
+
+GOLDEN = json.loads((Path(__file__).parent / "golden" / "motion.json").read_text())
+ROUNDING = 1e-13
+"""Some hundred roundings: what is exact but for the arithmetic."""
+SLIDING = 1e-9
+"""What the integration of a sliding stance is made for, in the time of the touchdown."""
+HELD = math.inf
+"""Friction of a stance that neither slips nor lifts."""
+Event = Callable[[float, Any], float]
+
+
+class Case(NamedTuple):
+    state: PlanarState
+    points: tuple[Vector, ...]
+    stance: int | None
+    rho_squared: float
+    friction: float
+    gravity: Vector = (0.0, -9.81)
+    horizon: float = 10.0
+
+    def fall(self) -> Fall:
+        return next_touchdown(*self)
+
+
+def from_centre(angle: float, point: Vector) -> Vector:
+    sine, cosine = math.sin(angle), math.cos(angle)
+    return cosine * point[0] - sine * point[1], sine * point[0] + cosine * point[1]
+
+
+def standing(point: Vector, angle: float, omega: float, slip: float = 0.0, x: float = 0.0) -> PlanarState:
+    """The state of a body that stands on a point and turns about it, the point slipping."""
+    rx, ry = from_centre(angle, point)
+    return PlanarState(x, -ry, angle, slip + omega * ry, -omega * rx, omega)
+
+
+def gap(state: PlanarState, point: Vector) -> float:
+    return state.y + from_centre(state.angle, point)[1]
+
+
+def velocity(state: PlanarState, point: Vector) -> Vector:
+    rx, ry = from_centre(state.angle, point)
+    return state.vx - state.omega * ry, state.vy + state.omega * rx
+
+
+def energy(state: PlanarState, rho_squared: float, gravity: Vector) -> float:
+    kinetic = 0.5 * (state.vx**2 + state.vy**2 + rho_squared * state.omega**2)
+    return kinetic - gravity[0] * state.x - gravity[1] * state.y
+
+
+PLATE = ((-0.5, -0.3), (0.5, -0.3), (0.5, 0.3), (-0.5, 0.3))
+RHO_SQUARED = (1.0**2 + 0.6**2) / 12.0
+
+
+class Reference:
+    """The same mechanics integrated in the world frame: Newton's law, contact forces from 2 x 2 systems.
+
+    Independent of the module: no angle or energy integral, no closed reaction, scipy's order 8 method and its events.
+    `trail` collects the motions it went through.
+    """
+
+    def __init__(self, case: Case, max_step: float) -> None:
+        self.case, self.max_step = case, max_step
+        self.motion, self.slip = Motion.FLIGHT, 0.0
+        self.trail: list[Motion] = []
+
+    def contact(self, y: Any) -> tuple[Vector, Any, Any]:
+        """Lever of the stance contact, compliance of its velocity, and the acceleration it has without a reaction."""
+        case = self.case
+        rx, ry = from_centre(y[2], case.points[case.stance or 0])
+        compliance = np.array([[1 + ry * ry / case.rho_squared, -rx * ry / case.rho_squared]] * 2)
+        compliance[1] = -rx * ry / case.rho_squared, 1 + rx * rx / case.rho_squared
+        return (rx, ry), compliance, np.array(case.gravity) - y[5] ** 2 * np.array([rx, ry])
+
+    def reaction(self, y: Any) -> tuple[float, float]:
+        """(T, N) for a mass of 1."""
+        if self.motion is Motion.FLIGHT:
+            return 0.0, 0.0
+        _, compliance, free = self.contact(y)
+        if self.motion is Motion.TURNING:
+            tangential, normal = np.linalg.solve(compliance, -free)
+            return float(tangential), float(normal)
+        drag = -self.slip * self.case.friction
+        normal = -free[1] / (compliance[1, 1] + drag * compliance[1, 0])
+        return float(drag * normal), float(normal)
+
+    def rate(self, _: float, y: Any) -> list[float]:
+        tangential, normal = self.reaction(y)
+        (rx, ry), _, _ = self.contact(y)
+        gx, gy = self.case.gravity
+        spin = (rx * normal - ry * tangential) / self.case.rho_squared
+        return [y[3], y[4], y[5], gx + tangential, gy + normal, spin]
+
+    def slip_of(self, y: Any) -> float:
+        (_, ry), _, _ = self.contact(y)
+        return float(y[3] - y[5] * ry)
+
+    def margin(self, y: Any, side: float) -> float:
+        tangential, normal = self.reaction(y)
+        return self.case.friction * normal - side * tangential
+
+    def slips(self, y: Any) -> bool:
+        """Whether a slip that starts with the present sign is pressed down and grows."""
+        tangential, normal = self.reaction(y)
+        _, compliance, free = self.contact(y)
+        return normal > 0.0 and self.slip * (free + compliance @ [tangential, normal])[0] > 0.0
+
+    def settle(self, y: Any) -> None:
+        """Go on to the motion that the state allows."""
+        if self.motion is Motion.TURNING and self.case.friction < HELD:
+            outside = [side for side in (1.0, -1.0) if self.margin(y, side) < -1e-12]
+            if outside:
+                self.motion, self.slip = Motion.SLIDING, -outside[0]
+                if len(outside) == 2 and not self.slips(y):
+                    self.slip = -self.slip
+        if self.motion is Motion.SLIDING and self.contact(y)[2][1] > 0.0:
+            self.motion = Motion.FLIGHT
+        self.trail.append(self.motion)
+
+    def watched(self, start: float) -> list[tuple[Event, Motion | int]]:
+        """What may end the present motion, each with the motion that follows or the point that touches."""
+        case = self.case
+
+        def touch(index: int) -> Event:
+            return lambda _, y: float(y[1] + from_centre(y[2], case.points[index])[1])
+
+        def edge(side: float) -> Event:
+            return lambda _, y: self.margin(y, side)
+
+        def stop(time: float, y: Any) -> float:
+            return self.slip * self.slip_of(y) if time > start + 1e-9 else 1.0
+
+        standing_on = None if self.motion is Motion.FLIGHT else case.stance
+        watched: list[tuple[Event, Motion | int]]
+        watched = [(touch(index), index) for index in range(len(case.points)) if index != standing_on]
+        if self.motion is Motion.TURNING and case.friction < HELD:
+            watched += [(edge(1.0), Motion.SLIDING), (edge(-1.0), Motion.SLIDING)]
+        if self.motion is Motion.SLIDING:
+            watched += [(stop, Motion.TURNING), (lambda _, y: self.reaction(y)[1], Motion.FLIGHT)]
+        for event, _ in watched:
+            event.terminal, event.direction = True, -1  # type: ignore[attr-defined]
+        return watched
+
+    def fall(self) -> tuple[float, int, Any]:
+        case = self.case
+        y, time = np.array(case.state), 0.0
+        if case.stance is not None:
+            slip = self.slip_of(y)
+            self.motion = Motion.SLIDING if abs(slip) > 1e-12 and case.friction < HELD else Motion.TURNING
+            self.slip = np.sign(slip)
+        for _ in range(20):
+            self.settle(y)
+            watched = self.watched(time)
+            run = solve_ivp(
+                self.rate,
+                (time, case.horizon),
+                y,
+                method="DOP853",
+                rtol=1e-12,
+                atol=1e-14,
+                max_step=self.max_step,
+                events=[event for event, _ in watched],
+            )
+            time, y = run.t[-1], run.y[:, -1]
+            if run.status == 0:
+                return math.inf, -1, y
+            what = next(what for (_, what), times in zip(watched, run.t_events, strict=True) if len(times))
+            if not isinstance(what, Motion):
+                return time, what, y
+            if what is Motion.SLIDING:
+                self.slip = 1.0 if self.margin(y, -1.0) < self.margin(y, 1.0) else -1.0
+            if what is Motion.TURNING:
+                y[3] -= self.slip_of(y)
+            self.motion = what
+        raise AssertionError("the reference changes its motion without end")
+
+
+def drawn(rng: random.Random, kind: Motion) -> Case:
+    """A body of two to five points and a stance on its lowest one, or thrown, over a support that slopes."""
+    points = tuple(
+        (radius * math.cos(bearing), radius * math.sin(bearing))
+        for radius, bearing in [(rng.uniform(0.2, 0.6), rng.uniform(0, 2 * math.pi)) for _ in range(rng.randint(2, 5))]
+    )
+    slope, angle = rng.uniform(-0.4, 0.4), rng.uniform(-4.0, 4.0)
+    gravity = 9.81 * math.sin(slope), -9.81 * math.cos(slope)
+    heights = [from_centre(angle, point)[1] for point in points]
+    lowest = heights.index(min(heights))
+    friction = rng.choice([0.1, 0.2, 0.4, 0.8, 1.2, HELD if kind is Motion.TURNING else 0.6])
+    rho_squared = rng.uniform(0.02, 0.2)
+    if kind is Motion.FLIGHT:
+        height = rng.uniform(0.0, 1.0) - heights[lowest]
+        thrown = PlanarState(0.0, height, angle, rng.uniform(-2, 2), rng.uniform(-3, 3), rng.uniform(-30, 30))
+        return Case(thrown, points, None, rho_squared, friction, gravity, 3.0)
+    slip = rng.uniform(-2.0, 2.0) * rng.choice([0.01, 1.0]) if kind is Motion.SLIDING else 0.0
+    omega = rng.uniform(-8.0, 8.0) * rng.choice([0.0, 0.1, 1.0, 1.0])
+    state = standing(points[lowest], angle, omega, slip, 0.3)
+    return Case(state, points, lowest, rho_squared, friction, gravity, 3.0)
+
+
+@pytest.mark.parametrize("fall", GOLDEN["falls"], ids=lambda fall: f"phi0={fall['phi0']} omega0={fall['omega0']}")
+def test_golden_falls_come_out_to_rounding(fall: dict[str, str]) -> None:
+    a, h, rho_squared, gravity, angle, omega, time, rate = (float(value) for value in fall.values())
+    points = ((-a, -h), (2.0 * a, -h))
+    found = Case(standing(points[0], angle, omega), points, 0, rho_squared, HELD, (0.0, -gravity)).fall()
+    assert found.time == pytest.approx(time, rel=ROUNDING)
+    assert found.state.omega == pytest.approx(rate, rel=ROUNDING)
+    assert (found.point, found.motion) == (1, Motion.TURNING)
+
+
+@pytest.mark.parametrize("rod", GOLDEN["rocking"], ids=lambda rod: f"a={rod['a']}")
+def test_the_rods_of_figure_2_rock_from_support_to_support_as_in_40_digits(rod: dict[str, Any]) -> None:
+    a, ratio = float(rod["a"]), float(rod["ratio"])
+    points = ((-a, 0.0), (a, 0.0))
+    angle, omega, time, stance = math.radians(float(rod["release_angle_deg"])), 0.0, 0.0, 0
+    for impact in rod["impacts"]:
+        state = standing(points[stance], angle, omega)
+        fall = Case(state, points, stance, float(rod["length"]) ** 2 / 12.0, HELD, (0.0, -float(rod["gravity"]))).fall()
+        time += fall.time
+        assert time == pytest.approx(float(impact["time"]), rel=ROUNDING)
+        assert abs(fall.state.omega) == pytest.approx(float(impact["omega_before"]), rel=ROUNDING)
+        # The rod goes on about the support it struck, turning the same way.
+        stance, angle, omega = fall.point, fall.state.angle, ratio * fall.state.omega
+
+
+def agrees(case: Case, max_step: float) -> list[Motion]:
+    """Compare with the reference; the motions it went through."""
+    reference = Reference(case, max_step)
+    time, point, state = reference.fall()
+    found = case.fall()
+    assert found.point == point
+    assert found.motion is reference.trail[-1]
+    if point >= 0:
+        assert found.time == pytest.approx(time, rel=SLIDING)
+        assert found.state == pytest.approx(tuple(state), rel=1e-8, abs=1e-8)  # a speed gains by the rates it has
+    return reference.trail
+
+
+@pytest.mark.parametrize("kind", Motion, ids=lambda kind: kind.name.lower())
+def test_drawn_bodies_touch_down_as_an_integration_in_the_world_frame_says(kind: Motion) -> None:
+    rng = random.Random(8)  # the bodies drawn go through every change of motion, and none jams
+    changes: set[tuple[Motion, Motion]] = set()
+    for _ in range(30):
+        # The reference sees an event only between two of its steps; spin makes them short.
+        changes.update(pairwise(agrees(drawn(rng, kind), 0.003 if kind is Motion.FLIGHT else 0.01)))
+    if kind is not Motion.FLIGHT:
+        slip_starts, slip_stops = (Motion.TURNING, Motion.SLIDING), (Motion.SLIDING, Motion.TURNING)
+        assert {slip_starts, slip_stops, (Motion.SLIDING, Motion.FLIGHT)} <= changes
+
+
+def test_a_slip_that_stops_for_an_instant_between_two_steps_is_seen() -> None:
+    points = ((-0.17213607098819128, -0.11331649207924821), (0.014220000073014482, -0.24738588785682125))
+    foot, angle = points[1], -1.9075677532500057
+    state = standing(foot, angle, 0.4236022204360406)._replace(vx=0.046468952726561076)
+    agrees(Case(state, points, 1, 0.04256341295719136, 0.6, (0.9898680859818764, -9.759931412277167)), 2e-4)
+
+
+def test_a_stance_that_can_neither_stick_nor_be_left_slips_the_one_way_that_keeps_it_down() -> None:
+    # Turning so fast that sticking would take a pull, but not so fast that the foot would rise by itself.
+    for omega, friction in ((-4.9, 1.0), (-4.9, 4.0), (-5.3, 4.0)):
+        for mirror in (1.0, -1.0):
+            points = ((-0.25 * mirror, -0.3), (0.5 * mirror, -0.2))
+            trail = agrees(Case(standing(points[0], 0.0, mirror * omega), points, 0, 0.02, friction), 1e-3)
+            assert trail == [Motion.SLIDING]
+
+
+@pytest.mark.parametrize("kind", Motion, ids=lambda kind: kind.name.lower())
+def test_a_mirrored_body_falls_the_mirrored_way(kind: Motion) -> None:
+    rng = random.Random(5)
+    for _ in range(50):
+        case = drawn(rng, kind)
+        x, y, angle, vx, vy, omega = case.state
+        mirrored = case._replace(
+            state=PlanarState(-x, y, -angle, -vx, vy, -omega),
+            points=tuple((-px, py) for px, py in case.points),
+            gravity=(-case.gravity[0], case.gravity[1]),
+        )
+        fall, other = case.fall(), mirrored.fall()
+        assert (other.point, other.motion) == (fall.point, fall.motion)
+        assert other.time == pytest.approx(fall.time, rel=ROUNDING)
+        x, y, angle, vx, vy, omega = other.state
+        assert (-x, y, -angle, -vx, vy, -omega) == pytest.approx(tuple(fall.state), rel=ROUNDING, abs=ROUNDING)
+
+
+@pytest.mark.parametrize("kind", Motion, ids=lambda kind: kind.name.lower())
+@pytest.mark.parametrize(("length", "second"), [(1e-3, 1.0), (1.0, 1e4), (250.0, 0.01)])
+def test_units_of_length_and_time_do_not_matter(kind: Motion, length: float, second: float) -> None:
+    rng = random.Random(7)
+    speed = length / second
+
+    def scaled(state: PlanarState) -> PlanarState:
+        x, y, angle, vx, vy, omega = state
+        return PlanarState(x * length, y * length, angle, vx * speed, vy * speed, omega / second)
+
+    for _ in range(20):
+        case = drawn(rng, kind)
+        other = case._replace(
+            state=scaled(case.state),
+            points=tuple((px * length, py * length) for px, py in case.points),
+            rho_squared=case.rho_squared * length**2,
+            gravity=(case.gravity[0] * speed / second, case.gravity[1] * speed / second),
+            horizon=case.horizon * second,
+        )
+        fall, found = case.fall(), other.fall()
+        assert (found.point, found.motion) == (fall.point, fall.motion)
+        assert found.time == pytest.approx(fall.time * second, rel=1e-11)  # near a balance roundings grow
+        if fall.point >= 0:
+            expected = tuple(scaled(fall.state))
+            assert found.state[2] == pytest.approx(expected[2], rel=1e-11)
+            assert found.state[3:5] == pytest.approx(expected[3:5], rel=1e-10, abs=1e-10 * speed)
+
+
+@pytest.mark.parametrize("kind", Motion, ids=lambda kind: kind.name.lower())
+def test_the_point_that_strikes_is_on_the_support_and_moves_down_while_the_stance_stays(kind: Motion) -> None:
+    rng = random.Random(11)
+    for _ in range(100):
+        case = drawn(rng, kind)
+        found = case.fall()
+        if found.point < 0:
+            continue
+        assert gap(found.state, case.points[found.point]) == pytest.approx(0.0, abs=ROUNDING)
+        assert velocity(found.state, case.points[found.point])[1] <= 0.0
+        for point in case.points:
+            assert gap(found.state, point) >= -ROUNDING
+        if found.motion is not Motion.FLIGHT:
+            assert case.stance is not None
+            tangential, normal = velocity(found.state, case.points[case.stance])
+            assert normal == pytest.approx(0.0, abs=4e-15)
+            if found.motion is Motion.TURNING:
+                assert tangential == pytest.approx(0.0, abs=4e-15)
+
+
+def test_turning_keeps_the_energy() -> None:
+    rng = random.Random(13)
+    turned = 0
+    for _ in range(100):
+        case = drawn(rng, Motion.TURNING)._replace(friction=HELD)
+        found = case.fall()
+        if found.point < 0:
+            continue
+        turned += 1
+        before, after = (energy(state, case.rho_squared, case.gravity) for state in (case.state, found.state))
+        assert after == pytest.approx(before, rel=ROUNDING, abs=ROUNDING)
+    assert turned > 80
+
+
+def test_a_body_that_rises_first_turns_back_and_falls() -> None:
+    angle, omega = 0.2, 0.7
+    points, height = PLATE[:2], math.hypot(0.5, 0.3)
+    rising = Case(standing(points[0], angle, omega), points, 0, RHO_SQUARED, HELD).fall()
+    thrown_down = Case(standing(points[0], angle, -omega), points, 0, RHO_SQUARED, HELD).fall()
+    climb = omega**2 * (RHO_SQUARED + height**2) / (2 * 9.81 * height)
+    bearing = math.atan2(0.3, 0.5)
+    top = math.asin(math.sin(angle + bearing) + climb) - bearing
+    from_top = Case(standing(points[0], top, 0.0), points, 0, RHO_SQUARED, HELD).fall()
+    assert rising.state == pytest.approx(tuple(thrown_down.state), rel=ROUNDING, abs=ROUNDING)
+    # Up and down again, and then as if thrown down: the way up takes as long as the way down.
+    assert rising.time - from_top.time == pytest.approx(from_top.time - thrown_down.time, rel=1e-12)
+
+
+def passing(excess: float) -> tuple[Case, float, float, float]:
+    """A plate on its corner, thrown up with this much more than the speed that brings it to its balance."""
+    height = math.hypot(0.5, 0.3)
+    stiffness = height * 9.81 / (RHO_SQUARED + height**2)
+    lean = math.pi / 2 - math.atan2(0.3, 0.5) - 0.2
+    omega = math.sqrt(4 * stiffness) * math.sin(lean / 2) * (1 + excess)
+    return Case(standing(PLATE[0], 0.2, omega), PLATE, 0, RHO_SQUARED, HELD), stiffness, lean, omega
+
+
+@pytest.mark.parametrize("excess", [1.0, 0.1, 1e-3, 1e-6, 1e-9])
+def test_a_body_that_passes_its_balance_falls_to_the_other_side(excess: float) -> None:
+    case, stiffness, lean, omega = passing(excess)
+    found = case.fall()
+    assert found.point == 3
+    assert found.state.angle == pytest.approx(math.pi / 2, rel=ROUNDING)
+    # The pendulum's time by scipy's elliptic integral, from the rate on top.
+    top_squared = omega**2 - 4 * stiffness * math.sin(lean / 2) ** 2
+    parameter, beyond = -4 * stiffness / top_squared, math.pi / 2 - 0.2 - lean
+    half = [ellipkinc(angle / 2, parameter) for angle in (lean, beyond)]
+    # The rate on top is a difference: it has the rounding of omega over the excess.
+    assert found.time == pytest.approx(2 / math.sqrt(top_squared) * sum(half), rel=1e-12 + 1e-16 / excess)
+
+
+@pytest.mark.parametrize("excess", [-1e-3, -1e-6, -1e-9, -1e-12])
+def test_a_body_that_fails_to_reach_its_balance_falls_back(excess: float) -> None:
+    case, stiffness, lean, omega = passing(excess)
+    found = case.fall()
+    assert found.point == 1
+    assert found.state.angle == pytest.approx(0.0, abs=ROUNDING)
+    assert found.state.omega == pytest.approx(
+        -math.sqrt(omega**2 + 4 * stiffness * math.sin(0.1) * math.sin(lean + 0.1)), rel=1e-12
+    )
+
+
+def test_the_exact_speed_of_the_balance_takes_long_or_for_ever_and_never_fails() -> None:
+    case, *_ = passing(0.0)
+    omega = case.state.omega
+    for _ in range(40):
+        omega = math.nextafter(omega, 0.0)
+    times = []
+    for _ in range(80):
+        omega = math.nextafter(omega, math.inf)
+        found = case._replace(state=standing(PLATE[0], 0.2, omega), horizon=math.inf).fall()
+        assert found.point in (1, 3, -1)
+        times.append(found.time)
+    assert min(times) > 3.0
+    assert max(times) > 7.0
+
+
+def test_a_balanced_body_stays_and_the_slightest_lean_makes_it_fall() -> None:
+    needle = ((0.0, -1.0), (0.0, 1.0))
+    for angle in (0.0, 1e-140, 1e-15, -1e-15, 1e-9):
+        found = Case(standing(needle[0], angle, 0.0), needle, 0, 1 / 3, HELD, horizon=math.inf).fall()
+        assert found.point == (1 if angle else -1)
+        if angle:
+            # From a small lean the angle grows as cosh of time, later by a time that the lean does not change.
+            assert found.time == pytest.approx(math.log(1 / abs(angle)) / math.sqrt(0.75 * 9.81), abs=1.0)
+            assert math.copysign(1.0, found.state.angle) == math.copysign(1.0, angle)
+
+
+@pytest.mark.parametrize("lean", [1e-3, 1e-6, 1e-9, 1e-12])
+def test_the_last_way_up_to_the_balance_takes_its_time_however_short_it_is(lean: float) -> None:
+    needle = ((0.0, -1.0), (0.0, 1.0))
+    growth = math.sqrt(0.75 * 9.81)
+    rate_on_top = growth * lean
+    rate = math.hypot(rate_on_top, 2 * growth * math.sin(lean / 2))
+    way_up = Case(standing(needle[0], -lean, rate), needle, 0, 1 / 3, HELD, horizon=100.0).fall()
+    from_top = Case(standing(needle[0], 0.0, rate_on_top), needle, 0, 1 / 3, HELD, horizon=100.0).fall()
+    # For small leans the way up is asinh(1) over the rate of growth; the next term is of the order of lean^2.
+    assert way_up.time - from_top.time == pytest.approx(math.asinh(1.0) / growth, rel=lean**2 + 1e-9)
+
+
+def test_the_first_of_several_points_strikes() -> None:
+    knee = (0.2, -0.36)
+    alone = [
+        Case(standing(PLATE[0], 0.4, 0.0), (PLATE[0], point), 0, RHO_SQUARED, 1.0).fall() for point in (knee, PLATE[1])
+    ]
+    both = Case(standing(PLATE[0], 0.4, 0.0), (PLATE[0], PLATE[1], knee), 0, RHO_SQUARED, 1.0).fall()
+    assert alone[0].time < alone[1].time
+    assert both == alone[0]._replace(point=2)
+
+
+def test_of_points_on_one_line_with_the_stance_the_farthest_strikes() -> None:
+    for points in ((PLATE[0], (0.1, -0.3), PLATE[1]), (PLATE[0], PLATE[1], (0.1, -0.3))):
+        found = Case(standing(PLATE[0], 0.4, 0.0), points, 0, RHO_SQUARED, HELD).fall()
+        assert points[found.point] == PLATE[1]
+
+
+def test_no_touchdown_is_told_beyond_the_horizon() -> None:
+    cases = [
+        Case(standing(PLATE[0], 0.4, 0.0), PLATE, 0, RHO_SQUARED, HELD),
+        Case(standing(PLATE[0], 0.4, 0.0, 0.5), PLATE, 0, RHO_SQUARED, 0.2),
+        Case(PlanarState(0.0, 2.0, 0.3, 1.0, 0.5, 4.0), PLATE, None, RHO_SQUARED, 0.2),
+    ]
+    hopper = ((0.0, -0.5), (0.2, 0.5))
+    lifts = Case(standing(hopper[0], 0.9, -4.9), hopper, 0, 0.05, 0.3)
+    motions = Motion.TURNING, Motion.SLIDING, Motion.FLIGHT, Motion.FLIGHT
+    for case, motion in zip([*cases, lifts], motions, strict=True):
+        time = case.fall().time
+        assert case._replace(horizon=1.000001 * time).fall().time == pytest.approx(time, rel=SLIDING)
+        assert case._replace(horizon=0.999999 * time).fall() == Fall(math.inf, -1, case.state, motion)
+
+
+def test_a_body_at_rest_on_two_points_has_no_touchdown_and_one_that_approaches_has_it_now() -> None:
+    for friction in (0.0, 0.5, HELD):
+        assert Case(standing(PLATE[0], 0.0, 0.0), PLATE, 0, RHO_SQUARED, friction).fall().point == -1
+        assert Case(standing(PLATE[1], 0.0, 0.0), PLATE, 1, RHO_SQUARED, friction).fall().point == -1
+        for slip in (0.0, 0.3):
+            found = Case(standing(PLATE[0], 0.0, -1e-3, slip), PLATE, 0, RHO_SQUARED, friction).fall()
+            assert (found.time, found.point) == (0.0, 1)
+    # It slides flat on both points until it stops.
+    assert Case(standing(PLATE[0], 0.0, 0.0, 0.3), PLATE, 0, RHO_SQUARED, 0.5).fall().point == -1
+
+
+def test_a_rounding_beside_the_support_is_no_touchdown_of_a_body_at_rest() -> None:
+    for angle in (2e-16, -2e-16, 6e-16):
+        assert Case(standing(PLATE[0], angle, 0.0), PLATE, 0, RHO_SQUARED, HELD).fall().point == -1
+    low = math.radians(720.0)
+    assert Case(standing(PLATE[0], low, 0.0), PLATE, 0, RHO_SQUARED, HELD).fall().point == -1
+
+
+def test_a_point_below_the_support_strikes_when_it_moves_down_and_not_before_it_has_risen() -> None:
+    sunk = standing(PLATE[0], -1e-3, -0.2)
+    assert Case(sunk, PLATE, 0, RHO_SQUARED, HELD).fall()[:2] == (0.0, 1)
+    rising = Case(standing(PLATE[0], -1e-3, 0.2), PLATE, 0, RHO_SQUARED, HELD).fall()
+    assert rising.point == 1
+    assert rising.state.angle == pytest.approx(0.0, abs=ROUNDING)
+    height, speed = 0.3 - 1e-3, 0.5
+    thrown = PlanarState(0.0, height, 0.0, 0.0, speed, 0.0)
+    flying = Case(thrown, PLATE, None, RHO_SQUARED, HELD).fall()
+    # It rises through the support and comes back to it.
+    assert flying.time == pytest.approx((speed + math.sqrt(speed**2 - 2 * 9.81 * 1e-3)) / 9.81, rel=1e-12)
+    falling = Case(thrown._replace(vy=-speed), PLATE, None, RHO_SQUARED, HELD).fall()
+    assert (falling.time, falling.point) == (0.0, 0)
+
+
+def test_flight_without_spin_is_free_fall() -> None:
+    angle = 0.3
+    lowest = from_centre(angle, PLATE[0])[1]
+    for vy, height in ((0.0, 1.0), (2.0, 0.0), (-1.0, 1e-6), (3.0, 1e5)):
+        found = Case(PlanarState(0.0, height - lowest, angle, 1.0, vy, 0.0), PLATE, None, 1.0, 0.0, horizon=1e4).fall()
+        assert found.point == 0
+        assert found.time == pytest.approx((vy + math.sqrt(vy**2 + 2 * 9.81 * height)) / 9.81, rel=1e-9)
+        assert found.state.x == pytest.approx(found.time, rel=ROUNDING)
+
+
+def test_a_fast_spinning_body_strikes_with_the_first_dip_however_short() -> None:
+    rng = random.Random(17)
+    for _ in range(10):
+        omega, rise, height = rng.uniform(100.0, 2000.0), rng.uniform(-0.3, 0.3), rng.uniform(0.5, 0.6)
+        rod = ((-0.5, 0.0), (0.5, 0.0))
+        state = PlanarState(0.0, height, rng.uniform(0.0, 3.0), 0.0, rise, omega)
+        found = Case(state, rod, None, 1 / 12, 0.0).fall()
+        times = np.linspace(0.0, 0.5, 1_000_001)
+        reach = 0.5 * np.abs(np.sin(state.angle + omega * times))
+        below = height + rise * times - 4.905 * times**2 < reach
+        first = times[np.argmax(below)] if below.any() else math.inf
+        assert found.time == pytest.approx(first, abs=times[1])
+
+
+def test_a_body_that_spins_fast_and_falls_far_strikes_within_half_a_turn_of_being_as_near_as_it_is_long() -> None:
+    rod = ((-0.5, 0.0), (0.5, 0.0))
+    for height, omega in ((10.0, 1e3), (1e4, 1e5), (1e6, 1e6)):
+        found = Case(PlanarState(0.0, height, 0.3, 0.0, 0.0, omega), rod, None, 1 / 12, 0.0, horizon=math.inf).fall()
+        near = math.sqrt((height - 0.5) / 4.905)
+        assert near * (1 - 1e-12) <= found.time <= (near + math.pi / omega) * (1 + 1e-12)
+    # Here the spin is too fast for the rounding of the time; it still comes down.
+    vy, omega, pull = 12708390.2454907, 10857.480090298392, 1.0598201754900908e-05
+    rod = ((4376.709455235796, -6795.448147405907), (-4376.709455235796, 6795.448147405907))
+    thrown = PlanarState(0.0, -rod[0][1], 0.0, 0.0, vy, omega)
+    found = Case(thrown, rod, None, 1.0, 0.0, (0.0, -pull), math.inf).fall()
+    assert found.time == pytest.approx(2 * vy / pull, rel=1e-6)
+
+
+def test_slip_starts_where_the_stance_would_leave_its_friction_cone() -> None:
+    state = standing(PLATE[0], 0.4, 0.0)
+    falls = [Case(state, PLATE, 0, RHO_SQUARED, friction).fall() for friction in (HELD, 0.8, 0.6, 0.4, 0.2, 0.0)]
+    assert [fall.motion for fall in falls] == [Motion.TURNING] * 3 + [Motion.SLIDING] * 3
+    assert falls[0] == falls[1] == falls[2]
+    # The less it is held, the further the foot slides back and the sooner the plate is down.
+    times, places = [fall.time for fall in falls[2:]], [fall.state.x for fall in falls[2:]]
+    assert times == sorted(times, reverse=True)
+    assert places == sorted(places, reverse=True)
+    # Without friction the mass centre falls straight.
+    assert falls[-1].state.x == pytest.approx(state.x, abs=ROUNDING)
+    assert falls[-1].state.vx == pytest.approx(0.0, abs=ROUNDING)
+
+
+def test_a_slip_of_one_rounding_is_none() -> None:
+    state = standing(PLATE[0], 0.4, -1.0)
+    sticking = Case(state, PLATE, 0, RHO_SQUARED, 1.5).fall()
+    assert sticking.motion is Motion.TURNING
+    nudged = Case(state._replace(vx=math.nextafter(state.vx, 1.0)), PLATE, 0, RHO_SQUARED, 1.5).fall()
+    assert nudged == sticking
+
+
+def test_a_slip_that_stops_on_the_way_sticks() -> None:
+    slipping = Case(standing(PLATE[0], 0.4, 0.0, 0.02), PLATE, 0, RHO_SQUARED, 1.5).fall()
+    sticking = Case(standing(PLATE[0], 0.4, 0.0), PLATE, 0, RHO_SQUARED, 1.5).fall()
+    assert slipping.motion is Motion.TURNING
+    assert slipping.time == pytest.approx(sticking.time, rel=0.02)
+    # It moved by half the slip over the time it took to stop.
+    assert 0.0 < slipping.state.x - sticking.state.x < 1e-4
+
+
+def test_a_foot_that_slips_while_nothing_turns_the_body_stops_after_the_time_of_a_block() -> None:
+    friction, slip = 0.5, -0.3
+    points = ((-0.25, -0.5), (2.0, -0.5 + 2**-40))  # the reaction of the slipping foot points at the mass centre
+    found = Case(standing(points[0], 0.0, 0.0, slip), points, 0, 0.1, friction).fall()
+    stopped = Case(standing(points[0], 0.0, 0.0), points, 0, 0.1, friction).fall()
+    assert found.point == stopped.point == 1
+    assert found.time - stopped.time == pytest.approx(0.3 / (friction * 9.81), rel=1e-9)
+    assert stopped.state.x - found.state.x == pytest.approx(0.3**2 / (2 * friction * 9.81), rel=1e-9)
+    assert Case(standing(points[0], 0.0, 0.0, slip), points, 0, 0.1, friction, horizon=0.01).fall().point == -1
+
+
+def test_gap_and_normal_velocity_of_the_stance_are_dropped() -> None:
+    exact = standing(PLATE[0], 0.4, -0.5)
+    measured = exact._replace(y=exact.y + 1e-3, vy=exact.vy + 0.02)
+    falls = [Case(state, PLATE, 0, RHO_SQUARED, 1.5).fall() for state in (exact, measured)]
+    assert falls[0] == falls[1]
+
+
+@pytest.mark.parametrize("slip", [0.0, 0.7])
+def test_a_stance_that_would_have_to_pull_is_left(slip: float) -> None:
+    state = standing(PLATE[0], 0.5, -30.0, slip)
+    found = Case(state, PLATE, 0, RHO_SQUARED, 0.5).fall()
+    flying = Case(state, PLATE, None, RHO_SQUARED, 0.5).fall()
+    assert found == flying
+    assert found.motion is Motion.FLIGHT
+    assert Case(state, PLATE, 0, RHO_SQUARED, HELD).fall().motion is Motion.TURNING
+
+
+def test_a_foot_that_lifts_is_not_struck_by_its_own_lift() -> None:
+    rng = random.Random(23)
+    hopper = ((0.0, -0.5), (0.1, 0.5))
+    lifted = 0
+    for _ in range(300):
+        state = standing(hopper[0], rng.uniform(0.5, 1.2), rng.uniform(-6.0, -3.0))
+        found = Case(state, hopper, 0, rng.uniform(0.03, 0.2), rng.uniform(0.05, 0.6)).fall()
+        if found.motion is Motion.FLIGHT:
+            lifted += 1
+            assert velocity(found.state, hopper[found.point])[1] < -0.01
+    assert lifted > 100
+
+
+def test_a_jammed_slip_stops_at_once_and_the_body_turns_on() -> None:
+    rod = ((-0.5, -0.5), (0.5, -0.5))
+    rho_squared, friction = 0.02, 3.0
+    # Painleve: the slip pushes the foot into the support, rho^2 + dx^2 < friction dx dy.
+    state = standing(rod[0], 0.1, 0.0, -2.0)
+    found = Case(state, rod, 0, rho_squared, friction).fall()
+    dx, dy = from_centre(0.1, (0.5, 0.5))
+    omega = 2.0 * dy / (rho_squared + dx * dx + dy * dy)
+    assert found == Case(standing(rod[0], 0.1, omega, x=state.x), rod, 0, rho_squared, friction).fall()
+    assert energy(found.state, rho_squared, (0.0, -9.81)) < energy(state, rho_squared, (0.0, -9.81))
+
+
+def test_extremes_give_numbers() -> None:
+    rng = random.Random(19)
+
+    def magnitude(low: float, high: float) -> float:
+        return float(rng.choice([-1, 1]) * 10 ** rng.uniform(low, high))
+
+    ends = set()
+    for _ in range(1500):
+        length = abs(magnitude(-6, 6))
+        points = tuple((rng.uniform(-length, length), rng.uniform(-length, length)) for _ in range(rng.randint(1, 4)))
+        angle = rng.choice([0.0, math.pi / 2, rng.uniform(-7.0, 7.0), magnitude(-18, 3)])
+        omega = rng.choice([0.0, magnitude(-9, 6)])
+        foot = rng.randrange(len(points))
+        state = standing(points[foot], angle, omega, rng.choice([0.0, magnitude(-9, 6)]))
+        gravity = rng.choice([(0.0, -9.81), (magnitude(-6, 1), -abs(magnitude(-6, 4))), (0.0, 0.0), (3.0, 5.0)])
+        stance = rng.choice([foot, None])
+        friction = rng.choice([0.0, abs(magnitude(-6, 6)), HELD])
+        horizon = rng.choice([10.0, 0.01, math.inf])
+        found = Case(state, points, stance, length**2 * abs(magnitude(-6, 2)), friction, gravity, horizon).fall()
+        assert found.time >= 0.0
+        assert all(map(math.isfinite, found.state))
+        assert (found.point >= 0) == (found.time <= horizon and found.time < math.inf)
+        ends.add((found.motion, found.point >= 0))
+    assert len(ends) == 6
