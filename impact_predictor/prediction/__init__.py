@@ -1,0 +1,1 @@
+"""A stream of samples becomes predictions and scores."""

@@ -1,0 +1,222 @@
+"""From three dimensions to the impact plane and back.
+
+The impact plane is spanned by the support normal n and d = axis x n, where `axis` is the direction in the support about
+which the body turns; it turns clockwise, towards +d, about -axis. Everything is computed in the body frame, where the
+contact points and the inertia do not move.
+"""
+
+from __future__ import annotations
+
+from math import copysign, hypot, sqrt
+from typing import NamedTuple
+
+from ..mechanics.motion import PlanarState
+from ..mechanics.types import Twist, Vector
+from .scene import Scene
+from .types import Quaternion, Sample, Vector3
+from .vectors import add, any_across, axes_of, combine, cross, dot, mean, times, to_body, to_world, turned
+
+STANDING = 0.2
+"""A point within the contact tolerance stands while it moves along the normal slower than this part of the fastest
+point: the stance of a body that turns about it, told from a body that only grazes the support."""
+
+ROUNDING = 1e-12
+"""The square of a direction this small, relative to the vector it is a part of, is none: points may be float32."""
+
+TINY = 1e-100
+"""Below it the square of a length or of a speed has lost its digits."""
+
+
+class Posture(NamedTuple):
+    """A sample over the support: its axes in the world frame; in the body frame the support normal, the velocity of
+    the mass centre; and of each point the gap (m) and its rate (m/s).
+    """
+
+    axes: tuple[Vector3, Vector3, Vector3]
+    normal: Vector3
+    velocity: Vector3
+    gaps: list[float]
+    rates: list[float]
+
+
+class Contacts(NamedTuple):
+    """The points that stand, those that strike next together, and the mean gap of the standing ones."""
+
+    old: tuple[int, ...]
+    new: tuple[int, ...]
+    base: float
+
+
+class Plane(NamedTuple):
+    """The impact plane, in the body frame, and the body in it.
+
+    `axis` and `ahead` (d) are unit vectors; `old` (None in flight) and `new` the contacts from the mass centre along
+    (d, n) in m; `twist` of the mass centre; `gravity` along (d, n, axis); `gap` of the new contact. Left over:
+    `off_axis` (0..1), `lateral` velocity (m/s) and `offset` of the contacts along the axis (m).
+    """
+
+    axis: Vector3
+    ahead: Vector3
+    old: Vector | None
+    new: Vector
+    twist: Twist
+    gravity: Vector3
+    gap: float
+    off_axis: float
+    lateral: float
+    offset: float
+
+
+def posture_of(scene: Scene, points: tuple[Vector3, ...], sample: Sample) -> Posture:
+    axes = axes_of(sample.orientation)
+    n = scene.normal
+    normal = dot(axes[0], n), dot(axes[1], n), dot(axes[2], n)
+    height = dot(n, sample.position) - scene.height
+    rate = dot(normal, sample.linear)
+    nx, ny, nz = normal
+    wx, wy, wz = cross(normal, sample.angular)
+    return Posture(
+        axes,
+        normal,
+        add(sample.linear, cross(sample.angular, scene.center_of_mass)),
+        [height + nx * x + ny * y + nz * z for x, y, z in points],
+        [rate + wx * x + wy * y + wz * z for x, y, z in points],
+    )
+
+
+def contacts_of(scene: Scene, posture: Posture) -> Contacts | None:
+    """Which points stand and which strike next; None where no point approaches.
+
+    A point approaches faster than gravity moves it within the contact time; points that close within the contact time
+    after the first one strike together with it.
+    """
+    gaps, rates = posture.gaps, posture.rates
+    slowest = -hardly(scene)
+    fastest = min(rates)
+    if fastest >= slowest:
+        return None
+    limit = STANDING * max(max(rates), -fastest)
+    old = [i for i, gap in enumerate(gaps) if gap <= scene.tolerance and -limit <= rates[i] <= limit]
+    base = sum([gaps[i] for i in old]) / len(old) if old else 0.0
+    closing = [(max(0.0, gaps[i] - base) / -rate, i) for i, rate in enumerate(rates) if rate < slowest and i not in old]
+    if not closing:
+        return None
+    last = min(closing)[0] + scene.contact_time
+    return Contacts(tuple(old), tuple([i for time, i in closing if time <= last]), base)
+
+
+def hardly(scene: Scene) -> float:
+    """The speed in m/s that gravity gives within a contact time: slower is hardly moving."""
+    return scene.contact_time * hypot(*scene.gravity)
+
+
+def plane_of(scene: Scene, points: tuple[Vector3, ...], sample: Sample, posture: Posture, contacts: Contacts) -> Plane:
+    """The impact plane of a posture's contacts."""
+    n, spin, velocity = posture.normal, sample.angular, posture.velocity
+    old, new = contacts.old, contacts.new
+    center = scene.center_of_mass
+    struck = add(mean([points[i] for i in new]), center, -1.0)
+    stood = add(mean([points[i] for i in old]), center, -1.0) if old else None
+    edge = edge_of([points[i] for i in old]) if len(old) > 1 else None
+    axis = axis_of(n, spin, velocity, edge, struck if stood is None else add(struck, stood, -1.0), hardly(scene))
+    ahead = cross(axis, n)
+
+    stance: Vector | None = None
+    offset = abs(dot(axis, struck))
+    lateral = dot(axis, velocity)
+    if stood is not None:
+        stance = dot(ahead, stood), dot(n, stood)
+        offset = max(offset, abs(dot(axis, stood)))
+        lateral += dot(axis, cross(spin, stood))
+    rate, turning = dot(axis, spin), dot(spin, spin)
+    across = add(spin, axis, -rate)
+    gravity = to_body(posture.axes, scene.gravity)
+    return Plane(
+        axis,
+        ahead,
+        stance,
+        (dot(ahead, struck), dot(n, struck)),
+        Twist(dot(ahead, velocity), dot(n, velocity), -rate),
+        (dot(ahead, gravity), dot(n, gravity), dot(axis, gravity)),
+        max(0.0, sum([posture.gaps[i] for i in new]) / len(new) - contacts.base),
+        sqrt(min(1.0, dot(across, across) / turning)) if turning > 0.0 else 0.0,
+        lateral,
+        offset,
+    )
+
+
+def axis_of(n: Vector3, spin: Vector3, velocity: Vector3, edge: Vector3 | None, arm: Vector3, slow: float) -> Vector3:
+    """The direction in the support about which the body turns, or will turn, towards its new contact.
+
+    It is the edge's on which it stands, else the spin's. A body that hardly turns, so that this moves the new contact
+    slower than `slow`, is turned by the impact itself: towards the new contact from the old one (in flight from the
+    mass centre; `arm` leads there), or against its sliding where it strikes right below.
+    """
+    if edge is not None:
+        along = add(edge, n, -dot(edge, n))
+        square = dot(along, along)
+        if square > ROUNDING * dot(edge, edge) + TINY:
+            return times(along, copysign(1.0 / sqrt(square), dot(along, spin)))
+    along = add(spin, n, -dot(spin, n))
+    square = dot(along, along)
+    if square * dot(arm, arm) > slow * slow + TINY:
+        return times(along, 1.0 / sqrt(square))
+    for way, least in ((arm, ROUNDING * dot(arm, arm)), (velocity, slow * slow), (any_across(n), 0.0)):
+        along = cross(n, way)
+        square = dot(along, along)
+        if square > least + TINY:
+            break
+    return times(along, 1.0 / sqrt(square))
+
+
+def edge_of(points: list[Vector3]) -> Vector3:
+    """The line between the two of the points that lie furthest apart."""
+    best, longest = (0.0, 0.0, 0.0), -1.0
+    for i, p in enumerate(points):
+        for q in points[:i]:
+            line = add(p, q, -1.0)
+            square = dot(line, line)
+            if square > longest:
+                best, longest = line, square
+    return best
+
+
+def inertia_about(scene: Scene, axis: Vector3, blocked: bool) -> float:
+    """Inertia about the axis: the tensor's own where the contacts block every other rotation, else the free body's."""
+    (xx, xy, xz), (_, yy, yz), (_, _, zz) = scene.inertia
+    x, y, z = axis
+    if blocked:
+        return xx * x * x + yy * y * y + zz * z * z + 2.0 * (xy * x * y + xz * x * z + yz * y * z)
+    # axis . adj(I) . axis / det(I) is the free body's mobility about the axis.
+    adjugate = (
+        (yy * zz - yz * yz) * x * x
+        + (xx * zz - xz * xz) * y * y
+        + (xx * yy - xy * xy) * z * z
+        + 2.0 * ((xz * yz - xy * zz) * x * y + (xy * yz - xz * yy) * x * z + (xy * xz - xx * yz) * y * z)
+    )
+    whole = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz)
+    return whole / adjugate
+
+
+def in_space(
+    scene: Scene, sample: Sample, posture: Posture, plane: Plane, moved: PlanarState, after: Twist, time: float
+) -> tuple[Vector3, Quaternion, Vector3, Vector3]:
+    """Position, orientation, linear and angular velocity of the body frame after an impact in the plane.
+
+    `moved` is the place of the mass centre from where it was at the sample, and the angle turned since, `time` ago;
+    what the plane leaves over goes on as it was.
+    """
+    axis, ahead, n = plane.axis, plane.ahead, posture.normal
+    axes, center, spin = posture.axes, scene.center_of_mass, sample.angular
+    spin_ahead, spin_n = dot(ahead, spin), dot(n, spin)
+    orientation = turned(sample.orientation, combine(-moved.angle, axis, spin_ahead * time, ahead, spin_n * time, n))
+    lateral = dot(axis, posture.velocity)
+    pull = plane.gravity[2] if plane.old is None else 0.0
+    path = combine(moved.x, ahead, moved.y, n, (lateral + 0.5 * pull * time) * time, axis)
+    velocity = combine(after.vx, ahead, after.vy, n, lateral + pull * time, axis)
+
+    now = axes_of(orientation)
+    angular = to_body(now, to_world(axes, combine(-after.omega, axis, spin_ahead, ahead, spin_n, n)))
+    linear = add(to_body(now, to_world(axes, velocity)), cross(angular, center), -1.0)
+    mass_center = add(sample.position, to_world(axes, add(path, center)))
+    return add(mass_center, to_world(now, center), -1.0), orientation, linear, angular

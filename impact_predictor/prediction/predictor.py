@@ -1,0 +1,284 @@
+"""The predictor: samples of one body in, a prediction for each out, scores once the touchdowns have happened."""
+
+from __future__ import annotations
+
+from collections import deque
+from math import cos, hypot, isfinite, sin
+
+from ..mechanics.impact import solve_impact
+from ..mechanics.motion import PlanarState, next_touchdown
+from ..mechanics.types import Contact, Twist, TwoPointBody
+from .planar import Plane, Posture, contacts_of, in_space, inertia_about, plane_of, posture_of
+from .scene import Scene
+from .score import NANOSECONDS, Pending, Track, leftover_of
+from .types import Geometry, Prediction, Sample, Score, Status, Touchdown, Vector3
+from .vectors import dot, to_world
+
+PAUSE = 250_000_000
+"""ns without a sample after which the record begins anew."""
+
+LARGEST = 1e24
+"""Sum of the squares of position, velocity and angular velocity beyond which no body is and products overflow."""
+
+UNIT = 1e-3
+"""How far the square of a quaternion's length may be from 1; float32 sources stay below 1e-6."""
+
+SETTLED = 0.5
+"""A touchdown has happened when less than this part of the approach is left, within the contact tolerance, that the
+predicting sample measured: the approach predicted for the touchdown has gravity's gain on the way added to it."""
+
+GRAZES = 1e-9
+"""m/s: what reaches the support slower only grazes it."""
+
+ACCURACY = 1e-6
+"""Of the motion before the touchdown, relative: a thousandth of what poses and twists are measured to."""
+
+COINCIDENT = 1e-9
+"""Points closer than this part of the largest coordinate are one."""
+
+
+class Predictor:
+    """Predicts the touchdowns of one body of a scene.
+
+    `update` answers each sample, in the order of their stamps; `set_geometry` tells the contact points when they are
+    not in the scene; `finish` ends the record.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
+        self._points = scene.points
+        self._geometry_frame = ""
+        self._last: int | None = None
+        self._track: Track | None = None
+        self._landed: Pending | None = None
+        self._pending: list[Pending] = []
+        self._scores: deque[Score] = deque()
+        self._recent: deque[tuple[Sample, Posture]] = deque(maxlen=4)
+
+    def set_geometry(self, geometry: Geometry) -> Status:
+        """Take the body's contact points, in its frame, from now on. A refused geometry leaves the last one."""
+        status = check_points(geometry.points)
+        if status is Status.ACCEPTED:
+            if geometry.points != self._points:
+                self._points = geometry.points
+                self._track = None
+            self._geometry_frame = geometry.frame_id
+        return status
+
+    def update(self, sample: Sample) -> Prediction:
+        """The prediction from a sample: its status, the touchdown ahead, and a score that the sample completed."""
+        status = self._check(sample)
+        if status is not Status.ACCEPTED:
+            return Prediction(status, sample)
+        if self._last is not None and sample.stamp - self._last > PAUSE:
+            self._forget()
+        self._last = sample.stamp
+        posture = posture_of(self.scene, self._points, sample)
+        self._measure(sample, posture)
+        touchdown = self._revise(sample, posture)
+        self._recent.append((sample, posture))
+        return Prediction(status, sample, touchdown, self._scores.popleft() if self._scores else None)
+
+    def finish(self) -> tuple[Score, ...]:
+        """End the record: the scores not yet handed out, those without enough samples after them included."""
+        self._forget()
+        scores = tuple(self._scores)
+        self._scores.clear()
+        self._last = None
+        return scores
+
+    def _check(self, sample: Sample) -> Status:
+        position, linear, angular = sample.position, sample.linear, sample.angular
+        size = dot(position, position) + dot(linear, linear) + dot(angular, angular)
+        # False for NaN as well. A sum of finite covariances may overflow: drivers fill in the largest double.
+        if not size < LARGEST or not (
+            isfinite(sum(sample.pose_covariance) + sum(sample.twist_covariance))
+            or all(map(isfinite, sample.pose_covariance + sample.twist_covariance))
+        ):
+            return Status.NOT_FINITE
+        x, y, z, w = sample.orientation
+        if not -UNIT < x * x + y * y + z * z + w * w - 1.0 < UNIT:
+            return Status.BAD_QUATERNION if all(map(isfinite, sample.orientation)) else Status.NOT_FINITE
+        if self.scene.frame and sample.frame_id != self.scene.frame:
+            return Status.WRONG_FRAME
+        if not self._points:
+            return Status.NO_GEOMETRY
+        if self._geometry_frame and sample.child_frame_id and sample.child_frame_id != self._geometry_frame:
+            return Status.WRONG_FRAME
+        if self._last is not None and sample.stamp <= self._last:
+            if sample.stamp == self._last:
+                return Status.STAMP_REPEATED
+            if self._last - sample.stamp > PAUSE:
+                self._forget()
+                self._last = None
+            return Status.STAMP_WENT_BACK
+        return Status.ACCEPTED
+
+    def _forget(self) -> None:
+        """Begin anew; what waits for its measurement will not get it."""
+        self._scores.extend(pending.unmeasured() for pending in self._pending)
+        self._pending.clear()
+        self._recent.clear()
+        self._track = self._landed = None
+
+    def _measure(self, sample: Sample, posture: Posture) -> None:
+        """Hand the sample to the touchdowns that wait for it, and settle the tracked one if it has happened."""
+        for pending in self._pending:
+            pending.add(sample, posture)
+        while self._pending and self._pending[0].complete:
+            self._scores.append(self._pending.pop(0).score(self.scene))
+        track = self._track
+        if track is not None and self._has_landed(track, posture):
+            self._track = None
+            pending = Pending(track, min(track.stamp, sample.stamp))
+            for earlier in self._recent:
+                if earlier[0].stamp > pending.stamp:
+                    pending.add(*earlier)
+            pending.add(sample, posture)
+            self._pending.append(pending)
+            self._landed = pending
+
+    def _has_landed(self, track: Track, posture: Posture) -> bool:
+        gaps, rates = posture.gaps, posture.rates
+        old, new = track.last.old, track.last.new
+        gap = sum([gaps[i] for i in new]) / len(new)
+        if old:
+            gap -= sum([gaps[i] for i in old]) / len(old)
+        approach = -sum([rates[i] for i in new]) / len(new)
+        return gap <= self.scene.tolerance and approach < SETTLED * track.approach
+
+    def _revise(self, sample: Sample, posture: Posture) -> Touchdown | None:
+        """The touchdown ahead as this sample shows it, and keep track of it."""
+        found = self._foresee(sample, posture)
+        track = self._track
+        if found is None or self._is_echo(found[0], sample):
+            self._track = None
+            return None
+        touchdown, approach = found
+        if track is not None and not set(touchdown.new) & set(track.last.new):
+            track = None
+        if track is None:
+            track = self._track = Track()
+        elif (
+            min(touchdown.lead_time, abs(track.lead_time(sample.stamp))) < self.scene.twist_window
+            or self._recent[-1][0].stamp <= track.stamp < sample.stamp
+        ):
+            # The impact itself may be in this twist, averaged or just begun: the last prediction stands.
+            return track.hold(sample.stamp)
+        track.add(sample.stamp, touchdown, approach)
+        return touchdown
+
+    def _is_echo(self, touchdown: Touchdown, sample: Sample) -> bool:
+        """Whether the approach is what an averaged twist still has of the approach before the last touchdown."""
+        landed = self._landed
+        return (
+            landed is not None
+            and sample.stamp - landed.stamp < self.scene.twist_window * NANOSECONDS
+            and not set(touchdown.new).isdisjoint(landed.track.last.new)
+        )
+
+    def _foresee(self, sample: Sample, posture: Posture) -> tuple[Touchdown, float] | None:
+        """The next touchdown with its impact, from one sample, and the approach that it measured."""
+        scene = self.scene
+        contacts = contacts_of(scene, posture)
+        if contacts is None:
+            return None
+        plane = plane_of(scene, self._points, sample, posture, contacts)
+        on_edge = len(contacts.old) > 1
+        inertia = inertia_about(scene, plane.axis, blocked=on_edge)
+        # An averaged twist is that of half its window ago: the motion is followed from there.
+        age = 0.5 * scene.twist_window
+        vx, vy, omega = plane.twist
+        height = -plane.old[1] if plane.old is not None else plane.gap - plane.new[1]
+        start = PlanarState(-vx * age, height - vy * age, -omega * age, vx, vy, omega)
+        points = (plane.new,) if plane.old is None else (plane.old, plane.new)
+        fall = next_touchdown(
+            start,
+            points,
+            None if plane.old is None else 0,
+            inertia / scene.mass,
+            scene.friction,
+            plane.gravity[:2],
+            scene.horizon + age,
+            ACCURACY,
+        )
+        if fall.point != len(points) - 1:
+            return None
+        after = fall.state
+        before = Twist(after.vx, after.vy, after.omega)
+        body = body_at(scene, plane, inertia, after.angle)
+        if on_edge and (body.old is None or len(contacts.new) == 1):
+            body = body._replace(inertia=inertia_about(scene, plane.axis, blocked=False))
+        if body.old is None:
+            contacts = contacts._replace(old=())
+        elif body.old.x >= body.new.x:
+            return None  # it falls back, and other points strike before
+        approach = -(before.vy + before.omega * body.new.x)
+        if approach < GRAZES:
+            return None
+        outcome = solve_impact(body, before, scene.law)
+        lead_time = max(0.0, fall.time - age)
+        moved = PlanarState(after.x, after.y - height, after.angle, *before)
+        position, orientation, linear, angular = in_space(
+            scene, sample, posture, plane, moved, outcome.twist, lead_time
+        )
+        rates = [posture.rates[i] for i in contacts.new]
+        gaps = [posture.gaps[i] for i in contacts.new]
+        spread = (max(gaps) - min(gaps)) / approach
+        half_distance = 0.0
+        if body.old is not None:
+            half_distance = 0.5 * hypot(body.new.x - body.old.x, body.new.y - body.old.y)
+        touchdown = Touchdown(
+            lead_time,
+            outcome.mode,
+            before,
+            outcome.twist,
+            outcome.impulses,
+            outcome.segments,
+            outcome.energy_lost,
+            outcome.flags,
+            outcome.unique,
+            outcome.law,
+            contacts.old,
+            contacts.new,
+            to_world(posture.axes, plane.axis),
+            position,
+            orientation,
+            linear,
+            angular,
+            half_distance,
+            plane.off_axis,
+            plane.lateral,
+            spread,
+            plane.offset,
+            leftover_of(scene, contacts, plane, body, approach, half_distance, spread),
+        )
+        return touchdown, -sum(rates) / len(rates)
+
+
+def check_points(points: tuple[Vector3, ...]) -> Status:
+    """Whether points can be contact points: at least two, finite, and no two of them one."""
+    if not sum([dot(point, point) for point in points]) < LARGEST:
+        return Status.NOT_FINITE
+    if len(points) < 2:
+        return Status.TOO_FEW_POINTS
+    least = COINCIDENT * max([max(abs(x), abs(y), abs(z)) for x, y, z in points])
+    for i, (x, y, z) in enumerate(points):
+        for u, v, w in points[:i]:
+            if abs(x - u) <= least and abs(y - v) <= least and abs(z - w) <= least:
+                return Status.COINCIDENT_POINTS
+    return Status.ACCEPTED
+
+
+def body_at(scene: Scene, plane: Plane, inertia: float, angle: float) -> TwoPointBody:
+    """The body when it has turned by `angle` in the impact plane and the new contact is on the support."""
+    c, s = cos(angle), sin(angle)
+    x, y = plane.new
+    new = Contact(c * x - s * y, s * x + c * y, scene.friction, restitution=scene.restitution)
+    if plane.old is None:
+        return TwoPointBody(scene.mass, inertia, None, new)
+    x, y = plane.old
+    if s * x + c * y - new.y > scene.tolerance:
+        return TwoPointBody(scene.mass, inertia, None, new)  # it has lifted on the way
+    # Where it stands both are on one level up to rounding; made exact, so that rounding does not make it a step.
+    return TwoPointBody(scene.mass, inertia, Contact(c * x - s * y, new.y, scene.friction), new)

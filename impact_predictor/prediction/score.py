@@ -1,0 +1,147 @@
+"""Predicted against happened: the predictions of one touchdown, and the velocities measured after it."""
+
+from __future__ import annotations
+
+from collections import deque
+from math import hypot
+from statistics import median
+
+from ..mechanics.types import Twist, TwoPointBody
+from .planar import Contacts, Plane, Posture, hardly
+from .scene import Scene
+from .types import Leftover, Sample, Score, Touchdown, Vector3
+from .vectors import cross, dot, to_world
+
+MEASURED = slice(1, 4)
+"""Samples 2 to 4 after a touchdown: the first may average the impact itself, later ones see friction and bounces."""
+
+OFF_AXIS = 0.3
+"""A touchdown is planar up to this part of the angular velocity off the axis: 9 % of the turning energy."""
+
+OFFSET = 0.2
+"""... and up to this part of the contacts' half distance between their plane and the mass centre (in flight of the
+distance between contact and mass centre)."""
+
+SLOWEST = 4.0
+"""An impact can be told from rest when it approaches this many times faster than gravity moves it in a contact time."""
+
+LONGEST = 1000
+"""How many predictions of one touchdown are remembered."""
+
+NANOSECONDS = 1e9
+
+ONE_POINT, OUT_OF_PLANE, ONE_CORNER_FIRST, TOO_SLOW = (
+    int(flag) for flag in (Leftover.ONE_POINT, Leftover.OUT_OF_PLANE, Leftover.ONE_CORNER_FIRST, Leftover.TOO_SLOW)
+)
+
+
+class Track:
+    """The predictions of one touchdown, from the first to the last."""
+
+    def __init__(self) -> None:
+        self.answers: deque[tuple[int, Touchdown]] = deque(maxlen=LONGEST)
+        """Stamp (ns) of each sample that announced the touchdown, and how it did."""
+        self.stamp = 0
+        """When the touchdown is predicted, in ns."""
+        self.seen = 0
+        """Stamp in ns of the sample that the prediction was made from."""
+        self.approach = 0.0
+        """How fast the new contact approached at that sample, in m/s."""
+
+    def add(self, stamp: int, touchdown: Touchdown, approach: float) -> None:
+        """A prediction made from the sample of `stamp`, which measured the approach."""
+        self.stamp = stamp + round(touchdown.lead_time * NANOSECONDS)
+        self.seen = stamp
+        self.approach = approach
+        self.answers.append((stamp, touchdown))
+
+    def hold(self, stamp: int) -> Touchdown:
+        """The last prediction as it reads at a later sample."""
+        touchdown = self.last._replace(lead_time=max(0.0, self.lead_time(stamp)))
+        self.answers.append((stamp, touchdown))
+        return touchdown
+
+    @property
+    def last(self) -> Touchdown:
+        return self.answers[-1][1]
+
+    def lead_time(self, stamp: int) -> float:
+        """Seconds from a stamp in ns to the predicted touchdown."""
+        return (self.stamp - stamp) / NANOSECONDS
+
+
+class Pending:
+    """A touchdown that has happened and waits for the samples that measure it; `stamp` in ns."""
+
+    def __init__(self, track: Track, stamp: int) -> None:
+        self.track = track
+        self.stamp = stamp
+        self._measured: list[tuple[Vector3, Vector3]] = []
+
+    def add(self, sample: Sample, posture: Posture) -> None:
+        """Take a sample after the touchdown."""
+        axes = posture.axes
+        self._measured.append((to_world(axes, posture.velocity), to_world(axes, sample.angular)))
+
+    @property
+    def complete(self) -> bool:
+        return len(self._measured) >= MEASURED.stop
+
+    def score(self, scene: Scene) -> Score:
+        """The score, once complete."""
+        last = self.track.last
+        measured = self._twist(scene, last)
+        scale = hypot(last.before.vx, last.before.omega * last.half_distance)
+        if not last.old or scale == 0.0:
+            return Score(self.stamp, last, measured, None, False, last.leftover, ())
+
+        def error(touchdown: Touchdown) -> float:
+            seen = measured if touchdown.axis == last.axis else self._twist(scene, touchdown)
+            return (
+                hypot(touchdown.after.vx - seen.vx, (touchdown.after.omega - seen.omega) * last.half_distance) / scale
+            )
+
+        history = tuple(
+            ((self.stamp - stamp) / NANOSECONDS, error(touchdown))
+            for stamp, touchdown in self.track.answers
+            if stamp <= self.stamp and touchdown.old == last.old and touchdown.new == last.new
+        )
+        return Score(self.stamp, last, measured, error(last), not last.leftover, last.leftover, history)
+
+    def unmeasured(self) -> Score:
+        """The score where the record ends before it is complete."""
+        last = self.track.last
+        return Score(self.stamp, last, None, None, False, last.leftover | Leftover.TOO_SHORT, ())
+
+    def _twist(self, scene: Scene, touchdown: Touchdown) -> Twist:
+        """The measured twist in the plane of a prediction."""
+        ahead = cross(touchdown.axis, scene.normal)
+        taken = self._measured[MEASURED]
+        return Twist(
+            median([dot(ahead, velocity) for velocity, _ in taken]),
+            median([dot(scene.normal, velocity) for velocity, _ in taken]),
+            -median([dot(touchdown.axis, spin) for _, spin in taken]),
+        )
+
+
+def leftover_of(
+    scene: Scene,
+    contacts: Contacts,
+    plane: Plane,
+    body: TwoPointBody,
+    approach: float,
+    half_distance: float,
+    spread: float,
+) -> Leftover:
+    """Why a touchdown is no planar two-point impact that can be scored, from the state before it alone."""
+    width = half_distance if body.old is not None else hypot(body.new.x, body.new.y)
+    leftover = 0
+    if body.old is None:
+        leftover |= ONE_POINT
+    if plane.off_axis > OFF_AXIS or plane.offset > OFFSET * width:
+        leftover |= OUT_OF_PLANE
+    if spread > scene.contact_time or (len(contacts.old) > 1 and len(contacts.new) == 1):
+        leftover |= ONE_CORNER_FIRST
+    if approach < SLOWEST * hardly(scene):
+        leftover |= TOO_SLOW
+    return Leftover(leftover)

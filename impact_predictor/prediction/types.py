@@ -1,0 +1,144 @@
+"""Values that flow through the predictor: samples in; predictions and scores out."""
+
+from __future__ import annotations
+
+from enum import IntEnum, IntFlag
+from typing import NamedTuple
+
+from ..mechanics.types import Flag, Mode, Twist, Vector
+
+Vector3 = tuple[float, float, float]
+Quaternion = tuple[float, float, float, float]
+
+
+class Status(IntEnum):
+    """What became of an input message. A refused message predicts nothing."""
+
+    ACCEPTED = 0
+    NOT_FINITE = 1
+    """A field is NaN or infinite."""
+    BAD_QUATERNION = 2
+    """The orientation is zero or not of unit length."""
+    STAMP_REPEATED = 3
+    STAMP_WENT_BACK = 4
+    """Older than the last one; when it is older by more than a pause the clock has started anew, and so does the
+    predictor with the next sample."""
+    WRONG_FRAME = 5
+    """The frame is not the one of the scene, or of the geometry."""
+    NO_GEOMETRY = 6
+    """No contact geometry is known yet."""
+    TOO_FEW_POINTS = 7
+    """The geometry has fewer than two points."""
+    COINCIDENT_POINTS = 8
+    """Two points of the geometry lie at the same place."""
+    MALFORMED = 9
+    """The bytes are not a message of the expected type."""
+
+
+class Leftover(IntFlag):
+    """Why a touchdown is not a planar two-point impact that a record can score, seen from the state before it."""
+
+    NONE = 0
+    ONE_POINT = 1
+    """Nothing stands before the touchdown."""
+    OUT_OF_PLANE = 2
+    """The body also turns off the impact plane, or its contacts do not lie in the plane of the mass centre."""
+    ONE_CORNER_FIRST = 4
+    """One corner of the striking edge closes earlier than the other, by more than the contact time."""
+    TOO_SHORT = 8
+    """The record ends, or pauses, before the velocities after the touchdown are known."""
+    TOO_SLOW = 16
+    """The approach is too slow against gravity for an impact to be told from rest."""
+
+
+class Sample(NamedTuple):
+    """The state of a body: pose in the world, twist in the body frame, at the body frame's origin.
+
+    `stamp` in ns; `position` in m; `orientation` as (x, y, z, w); `linear` in m/s; `angular` in rad/s;
+    the covariances as 36 row-major numbers, as in nav_msgs/Odometry.
+    """
+
+    stamp: int
+    frame_id: str
+    child_frame_id: str
+    position: Vector3
+    orientation: Quaternion
+    linear: Vector3
+    angular: Vector3
+    pose_covariance: tuple[float, ...]
+    twist_covariance: tuple[float, ...]
+
+
+class Geometry(NamedTuple):
+    """The points of a body that can touch the support, in m, in the body frame."""
+
+    stamp: int
+    frame_id: str
+    points: tuple[Vector3, ...]
+
+
+class Touchdown(NamedTuple):
+    """The touchdown that a sample announces, with the impact it makes.
+
+    `lead_time` in s from the sample's stamp; `old` and `new` the indices of the geometry's points that stand and
+    that strike; `axis` the unit vector about which the body turns, in the world frame (omega of the planar twists is
+    minus the angular velocity about it); twists of the mass centre relative to the support, in the impact plane;
+    `position` (m), `orientation`, `linear` (m/s) and `angular` (rad/s) right after the impact, as in `Sample`;
+    `half_distance` between the two contacts in m; `off_axis` the part of the angular velocity off the axis (0..1);
+    `lateral` the velocity along the axis in m/s; `closing_spread` the time in s between the closing of the two ends of
+    the striking edge.
+    """
+
+    lead_time: float
+    mode: Mode
+    before: Twist
+    after: Twist
+    impulses: tuple[Vector, Vector]
+    segments: tuple[str, ...]
+    energy_lost: float
+    flags: Flag
+    unique: bool
+    law: str
+    old: tuple[int, ...]
+    new: tuple[int, ...]
+    axis: Vector3
+    position: Vector3
+    orientation: Quaternion
+    linear: Vector3
+    angular: Vector3
+    half_distance: float
+    off_axis: float
+    lateral: float
+    closing_spread: float
+    offset: float
+    leftover: Leftover
+
+
+class Score(NamedTuple):
+    """A settled touchdown: the last prediction before it against what was measured after it.
+
+    `stamp` in ns, the predicted touchdown; `measured` None when the record ends too early; `relative_error` None
+    when there is nothing to compare; `history` the (lead time in s, relative error) of every prediction of it that had
+    the same contacts.
+    """
+
+    stamp: int
+    touchdown: Touchdown
+    measured: Twist | None
+    relative_error: float | None
+    scored: bool
+    leftover: Leftover
+    history: tuple[tuple[float, float], ...]
+
+
+class Prediction(NamedTuple):
+    """The answer to one sample.
+
+    `touchdown` is None when none lies within the horizon; `score` is the touchdown that this sample's measurement
+    completed, if any.
+    """
+
+    status: Status
+    sample: Sample
+    touchdown: Touchdown | None = None
+    score: Score | None = None

@@ -1,0 +1,95 @@
+"""Vectors of three floats, and rotations of them."""
+
+from __future__ import annotations
+
+from math import cos, sin, sqrt
+
+from .types import Quaternion, Vector3
+
+Axes = tuple[Vector3, Vector3, Vector3]
+"""A body's axes in the world frame."""
+
+
+def dot(u: Vector3, v: Vector3) -> float:
+    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
+
+
+def cross(u: Vector3, v: Vector3) -> Vector3:
+    return u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]
+
+
+def add(u: Vector3, v: Vector3, scale: float = 1.0) -> Vector3:
+    """u + scale v."""
+    return u[0] + scale * v[0], u[1] + scale * v[1], u[2] + scale * v[2]
+
+
+def combine(a: float, u: Vector3, b: float, v: Vector3, c: float, w: Vector3) -> Vector3:
+    """a u + b v + c w."""
+    return (
+        a * u[0] + b * v[0] + c * w[0],
+        a * u[1] + b * v[1] + c * w[1],
+        a * u[2] + b * v[2] + c * w[2],
+    )
+
+
+def mean(vectors: list[Vector3]) -> Vector3:
+    count = len(vectors)
+    if count == 1:
+        return vectors[0]
+    return (
+        sum([v[0] for v in vectors]) / count,
+        sum([v[1] for v in vectors]) / count,
+        sum([v[2] for v in vectors]) / count,
+    )
+
+
+def times(u: Vector3, scale: float) -> Vector3:
+    return u[0] * scale, u[1] * scale, u[2] * scale
+
+
+def any_across(u: Vector3) -> Vector3:
+    """The coordinate axis that lies most across u."""
+    x, y, z = abs(u[0]), abs(u[1]), abs(u[2])
+    if x <= y and x <= z:
+        return 1.0, 0.0, 0.0
+    return (0.0, 1.0, 0.0) if y <= z else (0.0, 0.0, 1.0)
+
+
+def axes_of(orientation: Quaternion) -> Axes:
+    """The body's axes in the world frame, from the quaternion (x, y, z, w)."""
+    x, y, z, w = orientation
+    double = 2.0 / (x * x + y * y + z * z + w * w)
+    dx, dy, dz = double * x, double * y, double * z
+    xx, yy, zz = dx * x, dy * y, dz * z
+    xy, xz, yz = dx * y, dx * z, dy * z
+    wx, wy, wz = dx * w, dy * w, dz * w
+    return (
+        (1.0 - yy - zz, xy + wz, xz - wy),
+        (xy - wz, 1.0 - xx - zz, yz + wx),
+        (xz + wy, yz - wx, 1.0 - xx - yy),
+    )
+
+
+def to_world(axes: Axes, vector: Vector3) -> Vector3:
+    """A vector of the body frame in the world frame."""
+    return combine(vector[0], axes[0], vector[1], axes[1], vector[2], axes[2])
+
+
+def to_body(axes: Axes, vector: Vector3) -> Vector3:
+    """A vector of the world frame in the body frame."""
+    return dot(axes[0], vector), dot(axes[1], vector), dot(axes[2], vector)
+
+
+def turned(orientation: Quaternion, rotation: Vector3) -> Quaternion:
+    """The unit quaternion after a rotation about a vector of the body frame, by its length in rad."""
+    angle = sqrt(dot(rotation, rotation))
+    scale = sin(0.5 * angle) / angle if angle > 0.0 else 0.5
+    qx, qy, qz = times(rotation, scale)
+    qw = cos(0.5 * angle)
+    px, py, pz, pw = orientation
+    x = pw * qx + px * qw + py * qz - pz * qy
+    y = pw * qy - px * qz + py * qw + pz * qx
+    z = pw * qz + px * qy - py * qx + pz * qw
+    w = pw * qw - px * qx - py * qy - pz * qz
+    unit = 1.0 / sqrt(x * x + y * y + z * z + w * w)
+    return x * unit, y * unit, z * unit, w * unit

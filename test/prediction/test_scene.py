@@ -1,0 +1,49 @@
+"""The scene that parameters describe."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from impact_predictor.parameters import validate
+from impact_predictor.prediction.scene import Scene, inertia_matrix
+
+BODY = {"body.mass": 2.0, "body.inertia": [0.1, 0.2, 0.3, 0.01, 0.02, 0.03], "contact.friction": 0.4}
+
+# Parameter, value, field of the scene, value there.
+FIELDS: list[tuple[str, Any, str, Any]] = [
+    ("body.mass", 3.0, "mass", 3.0),
+    ("body.inertia", [0.5], "inertia", ((0.5, 0.0, 0.0), (0.0, 0.5, 0.0), (0.0, 0.0, 0.5))),
+    ("body.center_of_mass", [0.1, 0.2, 0.3], "center_of_mass", (0.1, 0.2, 0.3)),
+    ("body.contact_points", [1.0, 2.0, 3.0, 4.0, 5.0, 6.0], "points", ((1.0, 2.0, 3.0), (4.0, 5.0, 6.0))),
+    ("contact.friction", 0.7, "friction", 0.7),
+    ("contact.restitution", 0.2, "restitution", 0.2),
+    ("contact.tolerance", 0.001, "tolerance", 0.001),
+    ("contact.time", 0.002, "contact_time", 0.002),
+    ("support.frame", "map", "frame", "map"),
+    ("support.normal", [0.0, 3.0, 4.0], "normal", (0.0, 0.6, 0.8)),
+    ("support.height", -0.5, "height", -0.5),
+    ("odom.twist_window", 0.01, "twist_window", 0.01),
+    ("gravity", [0.1, 0.0, -1.6], "gravity", (0.1, 0.0, -1.6)),
+    ("law", "total", "law", "total"),
+    ("horizon", 0.5, "horizon", 0.5),
+]
+
+
+@pytest.mark.parametrize(("name", "value", "field", "expected"), FIELDS, ids=[field[0] for field in FIELDS])
+def test_every_parameter_of_the_prediction_reaches_its_field(name: str, value: Any, field: str, expected: Any) -> None:
+    scene = Scene.from_parameters(validate({**BODY, name: value}))
+    assert getattr(scene, field) == expected
+
+
+def test_no_field_of_the_scene_is_left_to_chance() -> None:
+    assert {field for _, _, field, _ in FIELDS} == set(Scene._fields)
+
+
+def test_the_defaults_of_the_parameters_are_those_of_the_scene() -> None:
+    assert Scene.from_parameters(validate(BODY)) == Scene(2.0, inertia_matrix(BODY["body.inertia"]), 0.4)  # type: ignore[arg-type]
+
+
+def test_an_inertia_of_six_numbers_has_the_diagonal_before_xy_xz_and_yz() -> None:
+    assert inertia_matrix([1.0, 2.0, 3.0, 0.1, 0.2, 0.3]) == ((1.0, 0.1, 0.2), (0.1, 2.0, 0.3), (0.2, 0.3, 3.0))

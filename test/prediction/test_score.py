@@ -1,0 +1,408 @@
+"""The life of a touchdown: announced, revised, held, settled, measured, scored."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from itertools import product
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from impact_predictor.mechanics.impact import solve_impact
+from impact_predictor.mechanics.types import Contact, Twist, TwoPointBody
+from impact_predictor.prediction.predictor import PAUSE, Predictor
+from impact_predictor.prediction.scene import Scene
+from impact_predictor.prediction.score import LONGEST
+from impact_predictor.prediction.types import Geometry, Leftover, Prediction, Sample, Score, Status, Vector3
+
+PERIOD = 5_000_000
+"""ns between samples."""
+CLOSE = 1e-8
+"""The reference fall is integrated to 1e-12."""
+
+BACK, FRONT, LOW = -0.1, 0.1, -0.15
+BLOCK: tuple[Vector3, ...] = tuple((x, y, LOW) for x, y in product((BACK, FRONT), (-0.1, 0.1)))
+SCENE = Scene(1.0, ((0.006, 0, 0), (0, 0.006, 0), (0, 0, 0.006)), 1.2, points=BLOCK)
+"""A tall block that stands on its back edge and falls on its front edge, about which it goes on turning."""
+ARM = math.hypot(BACK, LOW)
+SQUARE = 0.006 + ARM * ARM
+
+
+Array = np.ndarray[tuple[int, ...], np.dtype[np.float64]]
+
+
+def fall(angle: float, omega: float) -> tuple[float, Callable[[float], Array]]:
+    """When the block touches that turns about its back edge, and its angle (rad) and rate (rad/s) until then."""
+
+    def rates(_: float, state: Array) -> list[float]:
+        bearing = state[0] + math.atan2(-LOW, -BACK)
+        return [state[1], -9.81 * ARM * math.cos(bearing) / SQUARE]
+
+    def level(_: float, state: Array) -> float:
+        return float(state[0])
+
+    level.terminal = True  # type: ignore[attr-defined]
+    found = solve_ivp(
+        rates, (0.0, 1.0), [angle, omega], "DOP853", events=level, rtol=1e-12, atol=1e-13, dense_output=True
+    )
+    return float(found.t_events[0][0]), found.sol
+
+
+END, STATE = fall(angle=0.1, omega=-1.0)
+TOUCH = round(END * 1e9)
+"""ns of the touchdown; it lies between two samples, 2 to 5 ms after the first."""
+BEFORE_SAMPLES = TOUCH // PERIOD + 1
+RATE = float(STATE(END)[1])
+BEFORE = Twist(RATE * LOW, RATE * -BACK, RATE)
+AFTER = solve_impact(TwoPointBody(1.0, 0.006, Contact(BACK, LOW, 1.2), Contact(FRONT, LOW, 1.2)), BEFORE).twist
+SCALE = math.hypot(BEFORE.vx, BEFORE.omega * 0.1)
+
+
+def block(stamp: int, angle: float, twist: Twist, height: float = 0.0) -> Sample:
+    """The block with its back edge at x = BACK on the floor, turned up by an angle (CCW, so about -y)."""
+    sine, cosine = math.sin(angle), math.cos(angle)
+    x, z = BACK - (BACK * cosine - LOW * sine), -(BACK * sine + LOW * cosine) + height
+    velocity = (twist.vx * cosine + twist.vy * sine, 0.0, twist.vy * cosine - twist.vx * sine)
+    orientation = 0.0, -math.sin(0.5 * angle), 0.0, math.cos(0.5 * angle)
+    return Sample(stamp, "map", "block", (x, 0.0, z), orientation, velocity, (0.0, -twist.omega, 0.0), (), ())
+
+
+def falling(stamp: int, spin: float = 1.0, height: float = 0.0, lag: float = 0.0) -> Sample:
+    """A sample of the fall, its rates multiplied by a factor, or those of some seconds before."""
+    angle, _ = (float(part) for part in STATE(stamp * 1e-9))
+    _, omega = (spin * float(part) for part in STATE(stamp * 1e-9 - lag))
+    bearing = angle + math.atan2(-LOW, -BACK)
+    twist = Twist(-omega * ARM * math.sin(bearing), omega * ARM * math.cos(bearing), omega)
+    return block(stamp, angle, twist, height)
+
+
+def landed(stamp: int, vx: float = AFTER.vx, omega: float = AFTER.omega, vy: float = AFTER.vy) -> Sample:
+    """A sample of the block lying flat, with any twist."""
+    return block(stamp, 0.0, Twist(vx, vy, omega))
+
+
+def before() -> list[Sample]:
+    return [falling(k * PERIOD) for k in range(BEFORE_SAMPLES)]
+
+
+def after(count: int, first: int = BEFORE_SAMPLES) -> list[Sample]:
+    return [landed(k * PERIOD) for k in range(first, first + count)]
+
+
+def run(predictor: Predictor, samples: list[Sample]) -> list[Prediction]:
+    answers = [predictor.update(sample) for sample in samples]
+    assert {answer.status for answer in answers} == {Status.ACCEPTED}
+    return answers
+
+
+def only_score(scene: Scene, samples: list[Sample]) -> Score:
+    scores = [answer.score for answer in run(Predictor(scene), samples) if answer.score is not None]
+    (score,) = scores
+    return score
+
+
+def test_a_prediction_is_revised_with_every_sample() -> None:
+    predictor = Predictor(SCENE)
+    samples = before()
+    samples[5] = falling(samples[5].stamp, spin=0.9)
+    answers = [answer.touchdown for answer in run(predictor, samples)]
+    for k, (sample, touchdown) in enumerate(zip(samples, answers, strict=True)):
+        assert touchdown is not None
+        revised = k == 5
+        assert (abs(touchdown.lead_time - (END - sample.stamp * 1e-9)) > 1e-4) is revised
+        assert (abs(touchdown.after.omega - AFTER.omega) > 1e-3) is revised
+
+
+def test_a_touchdown_is_scored_with_its_fourth_sample_and_only_once() -> None:
+    answers = run(Predictor(SCENE), before() + after(40))
+    scored = [k for k, answer in enumerate(answers) if answer.score is not None]
+    assert scored == [BEFORE_SAMPLES + 3]
+
+
+def test_a_touchdown_that_happened_as_predicted_has_no_error() -> None:
+    score = only_score(SCENE, before() + after(4))
+    assert score.scored
+    assert score.leftover is Leftover.NONE
+    assert score.stamp == pytest.approx(TOUCH, abs=10)  # ns: CLOSE of a second
+    assert score.touchdown.before == pytest.approx(BEFORE, abs=CLOSE)
+    assert score.measured == pytest.approx(AFTER, abs=CLOSE)
+    assert score.relative_error == pytest.approx(0.0, abs=CLOSE)
+
+
+def test_the_median_of_the_samples_two_to_four_after_the_touchdown_is_what_is_measured() -> None:
+    twists = [(0.9, 0.0, 0.9), (0.3, -0.1, 0.2), (0.1, -0.3, 0.0), (0.2, -0.2, -0.2), (0.8, 0.0, 0.8)]
+    stamps = [sample.stamp for sample in after(5)]
+    samples = [landed(stamp, vx, omega, vy) for stamp, (vx, omega, vy) in zip(stamps, twists, strict=True)]
+    score = only_score(SCENE, before() + samples)
+    assert score.measured == pytest.approx((0.2, 0.0, -0.2), abs=CLOSE)
+
+
+def test_the_error_is_that_of_the_velocities_relative_to_those_before() -> None:
+    vx, omega = AFTER.vx + 0.03, AFTER.omega - 0.4
+    samples = [landed(sample.stamp, vx, omega) for sample in after(4)]
+    score = only_score(SCENE, before() + samples)
+    assert score.relative_error == pytest.approx(math.hypot(0.03, 0.4 * 0.1) / SCALE, abs=CLOSE)
+
+
+def test_the_history_has_the_lead_time_and_the_error_of_every_prediction() -> None:
+    samples = before()
+    samples[5] = falling(samples[5].stamp, spin=0.9)
+    odd = Predictor(SCENE).update(samples[5]).touchdown
+    assert odd is not None
+    score = only_score(SCENE, samples + after(4))
+    leads = [lead for lead, _ in score.history]
+    assert leads == pytest.approx([END - sample.stamp * 1e-9 for sample in samples], abs=CLOSE)
+    errors = [error for _, error in score.history]
+    wrong = math.hypot(odd.after.vx - AFTER.vx, (odd.after.omega - AFTER.omega) * 0.1) / SCALE
+    assert wrong > 0.01
+    assert errors == pytest.approx([wrong if k == 5 else 0.0 for k in range(len(samples))], abs=CLOSE)
+
+
+def test_each_earlier_prediction_is_measured_in_its_own_plane() -> None:
+    """A sample that spins about the normal as well, and whose edge is turned: its plane is, and so is what it sees."""
+    samples = before()
+    yaw = 0.2
+    x, _, z = samples[4].position
+    _, y_part, _, w_part = samples[4].orientation
+    half = (math.sin(0.5 * yaw), math.cos(0.5 * yaw))
+    turned = samples[4]._replace(
+        position=(x * math.cos(yaw), x * math.sin(yaw), z),
+        orientation=(-half[0] * y_part, half[1] * y_part, half[0] * w_part, half[1] * w_part),
+    )
+    plain = only_score(SCENE, samples + after(4))
+    samples[4] = turned
+    score = only_score(SCENE, samples + after(4))
+    assert score.history[3] == plain.history[3]
+    seen = math.hypot(AFTER.vx * math.cos(yaw) - AFTER.vx, (AFTER.omega * math.cos(yaw) - AFTER.omega) * 0.1)
+    assert score.history[4][1] == pytest.approx(seen / SCALE, abs=CLOSE)
+
+
+def test_predictions_of_other_contacts_are_no_part_of_the_history() -> None:
+    samples = before()
+    x, y, z = samples[3].position
+    samples[3] = samples[3]._replace(position=(x, y, z + 0.02))  # for a moment nothing seems to stand
+    score = only_score(SCENE, samples + after(4))
+    assert len(score.history) == len(samples) - 1
+
+
+def test_within_the_twist_window_the_prediction_is_held() -> None:
+    window = 0.012
+    predictor = Predictor(SCENE._replace(twist_window=window))
+    samples = [falling(sample.stamp, lag=0.5 * window) for sample in before()[2:]]
+    # The twists of the last ones, as if they had averaged the impact.
+    for k in (-2, -1):
+        samples[k] = falling(samples[k].stamp, spin=0.7)
+    answers = [answer.touchdown for answer in run(predictor, samples)]
+    last = answers[-3]
+    assert last is not None
+    for touchdown, late in zip(answers[-2:], (1, 2), strict=True):
+        assert touchdown is not None
+        assert touchdown.lead_time == pytest.approx(last.lead_time - late * PERIOD * 1e-9, abs=CLOSE)
+        assert touchdown == last._replace(lead_time=touchdown.lead_time)
+
+
+@pytest.mark.parametrize(("window", "announced"), [(0.0, True), (0.012, False)])
+def test_what_an_averaged_twist_has_left_of_an_impact_is_no_new_touchdown(window: float, announced: bool) -> None:
+    predictor = Predictor(SCENE._replace(twist_window=window))
+    left = 0.4
+    blurred = landed(BEFORE_SAMPLES * PERIOD, left * BEFORE.vx, left * BEFORE.omega, left * BEFORE.vy)
+    answer = run(predictor, [*before(), blurred])[-1]
+    assert (answer.touchdown is not None) is announced
+
+
+def test_a_held_prediction_counts_down_to_zero_and_no_further() -> None:
+    predictor = Predictor(SCENE._replace(twist_window=0.012))
+    samples = before()
+    late = [falling(samples[-1].stamp, height=0.02)._replace(stamp=samples[-1].stamp + k * PERIOD) for k in (1, 2)]
+    answers = [answer.touchdown for answer in run(predictor, samples + late)]
+    assert answers[-1] is not None
+    assert answers[-1].lead_time == 0.0
+
+
+def test_a_touchdown_that_does_not_come_is_not_held_for_ever() -> None:
+    """The body hovers, still approaching, long after its touchdown was due: each sample counts again."""
+    predictor = Predictor(SCENE._replace(twist_window=0.012))
+    hover = [falling(30_000_000)._replace(stamp=k * PERIOD) for k in range(20)]
+    answers = [answer.touchdown for answer in run(predictor, hover)]
+    assert answers[0] is not None
+    assert answers[10:].count(answers[0]) >= 2
+
+
+def test_the_stamp_is_that_of_the_prediction_and_not_after_the_sample_that_settles() -> None:
+    assert only_score(SCENE, before() + after(4)).stamp == pytest.approx(TOUCH, abs=10)
+    # It lands before its time, on something that lies there.
+    early = [*before()[:-2], *after(4, BEFORE_SAMPLES - 2)]
+    assert only_score(SCENE, early).stamp == (BEFORE_SAMPLES - 2) * PERIOD
+
+
+def test_samples_between_touchdown_and_settling_count_as_after_it() -> None:
+    """Half the approach is left in the first sample after the touchdown, so that the second settles it."""
+    samples = [landed(TOUCH // PERIOD * PERIOD + (k + 1) * PERIOD) for k in range(4)]
+    samples[0] = landed(samples[0].stamp, 0.6 * BEFORE.vx, 0.6 * BEFORE.omega, 0.6 * BEFORE.vy)
+    answers = run(Predictor(SCENE._replace(twist_window=0.006)), before() + samples)
+    assert [k for k, answer in enumerate(answers) if answer.score is not None] == [BEFORE_SAMPLES + 3]
+
+
+@pytest.mark.parametrize("count", [1, 3])
+def test_a_record_that_ends_too_early_leaves_a_touchdown_without_measurement(count: int) -> None:
+    predictor = Predictor(SCENE)
+    assert not any(answer.score for answer in run(predictor, before() + after(count)))
+    (score,) = predictor.finish()
+    assert (score.measured, score.relative_error, score.scored, score.history) == (None, None, False, ())
+    assert score.leftover is Leftover.TOO_SHORT
+    assert score.stamp == pytest.approx(TOUCH, abs=10)
+    assert predictor.finish() == ()
+
+
+def test_a_pause_ends_what_waits_for_its_measurement() -> None:
+    predictor = Predictor(SCENE)
+    run(predictor, before() + after(2))
+    late = landed(2 * PERIOD * BEFORE_SAMPLES + PAUSE)
+    score = predictor.update(late).score
+    assert score is not None
+    assert score.leftover is Leftover.TOO_SHORT
+    assert predictor.finish() == ()
+
+
+def test_the_longest_gap_that_is_no_pause_keeps_the_touchdown() -> None:
+    predictor = Predictor(SCENE)
+    run(predictor, before() + after(2))
+    first = (BEFORE_SAMPLES + 1) * PERIOD + PAUSE
+    scores = [answer.score for answer in run(predictor, [landed(first), landed(first + PERIOD)])]
+    assert [score is not None and score.scored for score in scores] == [False, True]
+
+
+def test_a_clock_that_starts_anew_ends_what_waits_for_its_measurement() -> None:
+    predictor = Predictor(SCENE)
+    shift = 2 * PAUSE
+    run(predictor, [sample._replace(stamp=sample.stamp + shift) for sample in before() + after(2)])
+    assert predictor.update(before()[0]).status is Status.STAMP_WENT_BACK
+    score = predictor.update(before()[0]).score
+    assert score is not None
+    assert score.leftover is Leftover.TOO_SHORT
+
+
+def test_a_touchdown_that_is_only_announced_when_the_record_ends_is_no_score() -> None:
+    predictor = Predictor(SCENE)
+    run(predictor, before())
+    assert predictor.finish() == ()
+
+
+@pytest.mark.parametrize("window", [0.0, 0.002])
+def test_after_finish_the_stamps_may_begin_anew(window: float) -> None:
+    predictor = Predictor(SCENE._replace(twist_window=window))
+    for _ in range(2):
+        scores = [answer.score for answer in run(predictor, before() + after(4)) if answer.score]
+        assert len(scores) == 1
+        assert predictor.finish() == ()
+
+
+def test_a_geometry_that_changes_during_the_fall_ends_the_touchdown() -> None:
+    predictor = Predictor(SCENE)
+    run(predictor, before())
+    other = tuple((x, y, z + 0.001) for x, y, z in BLOCK)
+    assert predictor.set_geometry(Geometry(0, "block", other)) is Status.ACCEPTED
+    assert not any(answer.score for answer in run(predictor, after(6)))
+
+
+def test_a_geometry_that_comes_again_or_is_refused_changes_nothing() -> None:
+    predictor = Predictor(SCENE)
+    run(predictor, before())
+    assert predictor.set_geometry(Geometry(0, "block", BLOCK)) is Status.ACCEPTED
+    assert predictor.set_geometry(Geometry(0, "block", ())) is Status.TOO_FEW_POINTS
+    scores = [answer.score for answer in run(predictor, after(4)) if answer.score]
+    assert [score.scored for score in scores] == [True]
+
+
+def test_a_geometry_that_changes_after_the_touchdown_does_not_lose_it() -> None:
+    predictor = Predictor(SCENE)
+    run(predictor, before() + after(1))
+    predictor.set_geometry(Geometry(0, "block", tuple((x, y, z + 0.001) for x, y, z in BLOCK)))
+    scores = [answer.score for answer in run(predictor, after(3, BEFORE_SAMPLES + 1)) if answer.score]
+    assert [score.scored for score in scores] == [True]
+
+
+def test_whether_a_touchdown_is_scored_is_decided_before_it() -> None:
+    rng = np.random.default_rng(1)
+    for _ in range(20):
+        garbage = [landed(sample.stamp, *rng.normal(scale=5.0, size=3).tolist()) for sample in after(4)]
+        garbage[0] = after(1)[0]
+        score = run(Predictor(SCENE), before() + garbage)[-1].score
+        assert score is not None
+        assert (score.scored, score.leftover) == (True, Leftover.NONE)
+        assert score.relative_error is not None
+
+
+def test_a_touchdown_in_flight_has_a_measurement_but_no_error() -> None:
+    """The error is relative to the half distance of two contacts."""
+    drop = [block(k * PERIOD, 0.1, Twist(0.3, -1.0, -0.5), height=0.05 - 0.005 * k) for k in range(10)]
+    rest = [block(k * PERIOD, 0.1, Twist(0.1, 0.0, -0.2)) for k in range(10, 15)]
+    scores = [answer.score for answer in run(Predictor(SCENE), drop + rest) if answer.score]
+    assert scores
+    assert scores[0].touchdown.old == ()
+    assert scores[0].measured == pytest.approx((0.1, 0.0, -0.2), abs=CLOSE)
+    assert (scores[0].relative_error, scores[0].scored, scores[0].history) == (None, False, ())
+    assert scores[0].leftover & Leftover.ONE_POINT
+
+
+ROCKER: tuple[Vector3, ...] = tuple((x, y, z) for x, z in ((-0.1, 0.0), (0.0, -0.001), (0.1, 0.0)) for y in (-0.1, 0.1))
+"""Three edges on a bow: from each it falls on the next."""
+ROCKER_SCENE = SCENE._replace(points=ROCKER, tolerance=1e-4, contact_time=5e-4)
+
+
+def rocking(stamp: int, edge: int, angle: float, omega: float) -> Sample:
+    """The rocker, turned up by an angle, turning about one of its edges."""
+    x, _, z = ROCKER[2 * edge]
+    sine, cosine = math.sin(angle), math.cos(angle)
+    rx, rz = cosine * x - sine * z, sine * x + cosine * z
+    velocity = np.array([omega * rz, -omega * rx])
+    linear = (float(velocity @ (cosine, sine)), 0.0, float(velocity @ (-sine, cosine)))
+    orientation = 0.0, -math.sin(0.5 * angle), 0.0, math.cos(0.5 * angle)
+    return Sample(stamp, "map", "rocker", (-rx, 0.0, -rz), orientation, linear, (0.0, -omega, 0.0), (), ())
+
+
+def test_touchdowns_shortly_after_one_another_are_both_scored() -> None:
+    period, slope = 2_000_000, 0.01
+    predictor = Predictor(ROCKER_SCENE)
+    samples = []
+    for k in range(12):
+        time = (k - 5.5) * period * 1e-9  # the second edge touches at 0 with -2 rad/s, the third 10 ms later
+        edge, angle, omega = (0, slope - 2.0 * time, -2.0) if time < 0.0 else (1, slope - 2.0 * time, -2.0)
+        if angle < -slope:
+            edge, angle, omega = 2, -slope, 0.0
+        samples.append(rocking(k * period, edge, angle, omega))
+    answers = run(predictor, samples + [samples[-1]._replace(stamp=k * period) for k in range(12, 20)])
+    scores = {k: answer.score for k, answer in enumerate(answers) if answer.score is not None}
+    assert [score.touchdown.new for score in scores.values()] == [(2, 3), (4, 5)]
+    # The first after 0 is sample 6, the first after 10 ms sample 11; the fourth of each has the score.
+    assert list(scores) == [9, 14]
+    assert all(score.scored for score in scores.values())
+
+
+def test_what_waits_is_handed_out_one_score_for_each_sample_and_the_rest_at_the_end() -> None:
+    """Two touchdowns settle within four samples, then the record pauses."""
+    period, slope = 2_000_000, 0.01
+    predictor = Predictor(ROCKER_SCENE)
+    first = [rocking(k * period, 0, slope + 0.002 * (6 - k) * 2, -2.0) for k in range(6)]
+    second = [rocking((6 + k) * period, 1, slope - 0.004 * (k + 3), -2.0) for k in range(2)]
+    flat = [rocking(8 * period, 2, -slope, 0.0)]
+    run(predictor, first + second + flat)
+    late = flat[0]._replace(stamp=9 * period + PAUSE)
+    answer = predictor.update(late)
+    assert answer.score is not None
+    assert answer.score.touchdown.new == (2, 3)
+    rest = predictor.finish()
+    assert [score.touchdown.new for score in rest] == [(4, 5)]
+    assert predictor.finish() == ()
+
+
+def test_the_memory_of_a_touchdown_that_never_comes_is_bounded() -> None:
+    predictor = Predictor(SCENE)
+    hover = [falling(30_000_000)._replace(stamp=k * PERIOD) for k in range(LONGEST + 50)]
+    run(predictor, hover)
+    answers = run(predictor, after(4, LONGEST + 50))
+    score = answers[-1].score
+    assert score is not None
+    assert 0 < len(score.history) <= LONGEST
