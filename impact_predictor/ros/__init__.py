@@ -1,0 +1,1 @@
+"""What meets ROS 2: messages as bytes, and the node that passes them on."""

@@ -1,0 +1,196 @@
+"""Reading and writing of CDR, the bytes in which ROS 2 messages travel (OMG DDSI-RTPS 2.3, section 10; XCDR1).
+
+Four bytes say the byte order, then every number lies at a multiple of its own size, counted from behind them.
+A string is its length with the closing NUL as uint32, the UTF-8 text and the NUL.
+"""
+
+from __future__ import annotations
+
+import struct
+from functools import lru_cache
+from struct import Struct
+from typing import Final, NamedTuple
+
+HEADER_SIZE: Final = 4
+LITTLE_ENDIAN_HEADER: Final = b"\x00\x01\x00\x00"
+LARGEST_TRAILER: Final = 3
+"""Bytes that a middleware may leave behind a message, because it pads to a multiple of four."""
+
+NANOSECONDS: Final = 1_000_000_000
+OK, WARN, ERROR, STALE = range(4)
+"""The levels of a diagnostic_msgs/DiagnosticStatus."""
+_SECONDS_RANGE: Final = (-(2**31), 2**31 - 1)
+
+
+class MalformedMessage(ValueError):
+    """The bytes are not a message of the expected type."""
+
+
+class ByteOrder(NamedTuple):
+    """The structures of one byte order, prepared once."""
+
+    stamp: Struct
+    length: Struct
+    odometry_numbers: Struct
+    point32: Struct
+
+
+def _byte_order(mark: str) -> ByteOrder:
+    return ByteOrder(Struct(mark + "iI"), Struct(mark + "I"), Struct(mark + "85d"), Struct(mark + "3f"))
+
+
+LITTLE_ENDIAN: Final = _byte_order("<")
+BIG_ENDIAN: Final = _byte_order(">")
+_ORDERS: Final = {b"\x00\x01": LITTLE_ENDIAN, b"\x00\x00": BIG_ENDIAN}
+
+
+def byte_order(data: bytes) -> ByteOrder:
+    """The byte order that the first bytes of a message name.
+
+    Raises:
+        MalformedMessage: the message is not plain CDR.
+    """
+    order = _ORDERS.get(data[:2])
+    if order is None or len(data) < HEADER_SIZE:
+        raise MalformedMessage("the message does not begin with a CDR header")
+    return order
+
+
+def align4(offset: int) -> int:
+    """The next offset at which a 4-byte number may lie."""
+    return (offset + 3) & -4
+
+
+def align8(offset: int) -> int:
+    """The next offset at which an 8-byte number may lie."""
+    return ((offset + 3) & -8) + HEADER_SIZE
+
+
+def read_string(data: bytes, offset: int, order: ByteOrder) -> tuple[str, int]:
+    """The string at an offset, which is a multiple of four, and the offset behind it.
+
+    Raises:
+        MalformedMessage: the string does not end with NUL inside the message.
+        struct.error, UnicodeDecodeError: its length is cut off, or it is not UTF-8.
+    """
+    (size,) = order.length.unpack_from(data, offset)
+    start = offset + 4
+    end = start + size
+    if size == 0:
+        # CDR demands at least the NUL; some middlewares write an empty string without it.
+        return "", end
+    if end > len(data) or data[end - 1] != 0:
+        raise MalformedMessage(f"the string at byte {offset} does not end inside the message")
+    return str(data[start : end - 1], "utf-8"), end
+
+
+def check_end(data: bytes, end: int) -> None:
+    """Compare the end of the last field with the length of the message.
+
+    Raises:
+        MalformedMessage: something is missing or left over.
+    """
+    if not end <= len(data) <= end + LARGEST_TRAILER:
+        raise MalformedMessage(f"the message has {len(data)} bytes in the place of {end}")
+
+
+_PADDING: Final = (b"\0\0\0\0", b"\0\0\0", b"\0\0", b"\0")
+_pack_length = LITTLE_ENDIAN.length.pack
+_pack_stamp = LITTLE_ENDIAN.stamp.pack
+
+
+def string(text: str) -> bytes:
+    """A string, padded so that whatever follows is aligned to four bytes."""
+    raw = text.encode()
+    size = len(raw)
+    return _pack_length(size + 1) + raw + _PADDING[size & 3]
+
+
+def stamp(nanoseconds: int) -> bytes:
+    """A builtin_interfaces/Time; beyond the range of its int32 seconds (the year 2038) it stays at the end of it."""
+    seconds, rest = divmod(nanoseconds, NANOSECONDS)
+    lowest, highest = _SECONDS_RANGE
+    return _pack_stamp(min(max(seconds, lowest), highest), rest)
+
+
+_ONE_STATUS: Final = tuple(struct.pack("<IBxxx", 1, level) for level in (OK, WARN, ERROR, STALE))
+
+
+@lru_cache(maxsize=64)
+def _frame(name: str) -> bytes:
+    return string(name)
+
+
+class DiagnosticForm:
+    """A diagnostic_msgs/DiagnosticArray of one status whose name and keys are prepared once for many values."""
+
+    def __init__(self, name: str, *keys: str) -> None:
+        """Prepare the name and the keys, in the order of the values; at least one key."""
+        self._name = string(name)
+        self._keys = [string(key) for key in keys]
+        self._count = _pack_length(len(keys))
+
+    def fill(
+        self, nanoseconds: int, frame_id: str, level: int, message: str, hardware_id: str, values: list[str]
+    ) -> bytes:
+        """The message with one value for each key, stamped in ns; `level` as in DiagnosticStatus."""
+        parts = [
+            LITTLE_ENDIAN_HEADER,
+            stamp(nanoseconds),
+            _frame(frame_id),
+            _ONE_STATUS[level],
+            self._name,
+            string(message),
+            _frame(hardware_id),
+            self._count,
+        ]
+        append = parts.append
+        for key, value in zip(self._keys, values, strict=True):
+            raw = value.encode()
+            size = len(raw)
+            append(key)
+            append(_pack_length(size + 1))
+            append(raw)
+            append(_PADDING[size & 3])
+        # The padding of the last value pads the whole, as DDS does, so that a bag holds what a topic carried.
+        return b"".join(parts)
+
+
+class Diagnostic(NamedTuple):
+    """One diagnostic_msgs/DiagnosticStatus: its values by their keys."""
+
+    name: str
+    level: int
+    message: str
+    values: dict[str, str]
+
+
+def decode_diagnostic_array(data: bytes) -> list[Diagnostic]:
+    """The statuses in the bytes of a diagnostic_msgs/DiagnosticArray, of either byte order.
+
+    Raises:
+        MalformedMessage: the bytes are no such message.
+    """
+    order = byte_order(data)
+    length = order.length.unpack_from
+    found = []
+    try:
+        _, end = read_string(data, HEADER_SIZE + 8, order)
+        (count,) = length(data, align4(end))
+        end = align4(end) + 4
+        for _ in range(count):
+            level = data[end]
+            name, end = read_string(data, align4(end + 1), order)
+            message, end = read_string(data, align4(end), order)
+            _, end = read_string(data, align4(end), order)
+            (pairs,) = length(data, align4(end))
+            end = align4(end) + 4
+            values = {}
+            for _ in range(pairs):
+                key, end = read_string(data, align4(end), order)
+                values[key], end = read_string(data, align4(end), order)
+            found.append(Diagnostic(name, level, message, values))
+    except (struct.error, UnicodeDecodeError, IndexError) as error:
+        raise MalformedMessage(f"not a diagnostic_msgs/DiagnosticArray: {error}") from None
+    check_end(data, end)
+    return found

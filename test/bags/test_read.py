@@ -1,0 +1,233 @@
+"""Reading of bags in every format, and the sentences for those that cannot be read."""
+
+from __future__ import annotations
+
+import shutil
+import tracemalloc
+from pathlib import Path
+
+import pytest
+from rosbags.interfaces import Connection
+from rosbags.rosbag1 import Writer as Ros1Writer
+from rosbags.rosbag2 import StoragePlugin, Writer
+from rosbags.rosbag2.enums import CompressionFormat, CompressionMode
+from rosbags.typesys import Stores, get_typestore
+
+from impact_predictor.bags.read import BagMessage, read_messages, topics
+from impact_predictor.errors import InputError
+from impact_predictor.ros.messages import ODOMETRY, POLYGON, decode_odometry, decode_polygon
+
+RECORDED = Path(__file__).parents[2] / "examples/cube_tosses/cube_tosses.mcap"
+WANTED = {"/cube/odom": ODOMETRY, "/cube/contact_geometry": POLYGON}
+TYPESTORE = get_typestore(Stores.ROS2_JAZZY)
+NOETIC = get_typestore(Stores.ROS1_NOETIC)
+COUNT = 300
+
+
+@pytest.fixture(scope="module")
+def messages() -> list[BagMessage]:
+    stream = read_messages(RECORDED, WANTED)
+    return [next(stream) for _ in range(COUNT)]
+
+
+def write_ros2(
+    path: Path, messages: list[BagMessage], plugin: StoragePlugin, mode: CompressionMode = CompressionMode.NONE
+) -> Path:
+    writer = Writer(path, version=9, storage_plugin=plugin)
+    writer.set_compression(mode, CompressionFormat.ZSTD)
+    with writer:
+        connections: dict[str, Connection] = {}
+        for topic, log_time, data in messages:
+            if topic not in connections:
+                connections[topic] = writer.add_connection(topic, WANTED[topic], typestore=TYPESTORE)
+            writer.write(connections[topic], log_time, data)
+    return path
+
+
+def write_ros1(path: Path, messages: list[BagMessage]) -> Path:
+    with Ros1Writer(path) as writer:
+        connections: dict[str, Connection] = {}
+        for topic, log_time, data in messages:
+            if topic not in connections:
+                connections[topic] = writer.add_connection(topic, WANTED[topic], typestore=NOETIC)
+            writer.write(connections[topic], log_time, TYPESTORE.cdr_to_ros1(data, WANTED[topic]))
+    return path
+
+
+def test_the_recorded_tosses_are_read_in_order_of_time() -> None:
+    counts = dict.fromkeys(WANTED, 0)
+    last = 0
+    for topic, log_time, data in read_messages(RECORDED, WANTED):
+        counts[topic] += 1
+        assert log_time >= last
+        last = log_time
+        if topic == "/cube/odom":
+            assert decode_odometry(data).stamp == log_time
+        else:
+            assert len(decode_polygon(data).points) == 8
+    assert counts == {"/cube/odom": 29791, "/cube/contact_geometry": 285}
+
+
+def test_the_topics_of_a_bag_have_their_types() -> None:
+    assert topics(RECORDED) == topics(RECORDED.parent) == topics(str(RECORDED)) == WANTED
+
+
+def test_only_wanted_topics_are_read() -> None:
+    assert {topic for topic, _, _ in read_messages(RECORDED, {"/cube/contact_geometry": POLYGON})} == {
+        "/cube/contact_geometry"
+    }
+    assert list(read_messages(RECORDED, {})) == []
+
+
+@pytest.mark.parametrize("plugin", list(StoragePlugin))
+@pytest.mark.parametrize("mode", [CompressionMode.NONE, CompressionMode.MESSAGE, CompressionMode.FILE])
+def test_a_folder_gives_the_messages_that_were_written(
+    tmp_path: Path, messages: list[BagMessage], plugin: StoragePlugin, mode: CompressionMode
+) -> None:
+    bag = write_ros2(tmp_path / "bag", messages, plugin, mode)
+    assert list(read_messages(bag, WANTED)) == messages
+    assert topics(bag) == WANTED
+
+
+@pytest.mark.parametrize(("plugin", "file"), [(StoragePlugin.MCAP, "bag.mcap"), (StoragePlugin.SQLITE3, "bag.db3")])
+def test_the_file_of_a_folder_is_read_alone_and_without_its_metadata(
+    tmp_path: Path, messages: list[BagMessage], plugin: StoragePlugin, file: str
+) -> None:
+    bag = write_ros2(tmp_path / "bag", messages, plugin)
+    assert list(read_messages(bag / file, WANTED)) == messages
+    (bag / "metadata.yaml").unlink()
+    assert list(read_messages(bag, WANTED)) == messages
+
+
+def test_a_ros1_bag_gives_the_same_messages_in_cdr(tmp_path: Path, messages: list[BagMessage]) -> None:
+    bag = write_ros1(tmp_path / "tosses.bag", messages)
+    assert list(read_messages(bag, WANTED)) == messages
+    assert topics(bag) == WANTED
+
+
+def test_a_ros1_bag_keeps_the_order_of_its_topics_at_equal_times(tmp_path: Path, messages: list[BagMessage]) -> None:
+    # The geometry of a toss has the log time of its first sample, and must come first to be of use to it.
+    bag = write_ros1(tmp_path / "tosses.bag", messages)
+    first = next(read_messages(bag, dict(reversed(WANTED.items()))))
+    assert first == next(read_messages(bag, WANTED)) == messages[0]
+    assert first.topic == "/cube/contact_geometry"
+
+
+def test_a_bag_is_not_loaded_as_a_whole() -> None:
+    tracemalloc.start()
+    for _ in read_messages(RECORDED, WANTED):
+        pass
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    # The messages are 21 MB; one chunk of them 1 MB, which is held compressed, decompressed and cut into messages.
+    assert peak < 8e6
+
+
+def test_a_wanted_topic_may_be_empty(tmp_path: Path, messages: list[BagMessage]) -> None:
+    with Writer(tmp_path / "bag", version=9, storage_plugin=StoragePlugin.MCAP) as writer:
+        writer.add_connection("/cube/odom", ODOMETRY, typestore=TYPESTORE)
+    assert list(read_messages(tmp_path / "bag", {"/cube/odom": ODOMETRY})) == []
+
+
+def refusal(path: Path, wanted: dict[str, str] | None = None) -> str:
+    """What is said about a bag before its first message, one sentence in one line."""
+    with pytest.raises(InputError) as caught:
+        read_messages(path, WANTED if wanted is None else wanted)
+    sentence = str(caught.value)
+    assert "\n" not in sentence
+    assert str(path) in sentence
+    return sentence
+
+
+def test_a_bag_that_is_not_there_is_named(tmp_path: Path) -> None:
+    assert "does not exist" in refusal(tmp_path / "nothing.mcap")
+    with pytest.raises(InputError, match="does not exist"):
+        topics(tmp_path / "nothing.mcap")
+
+
+def test_a_file_that_is_no_bag_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "notes.txt").write_text("hello")
+    assert "is not a bag" in refusal(tmp_path / "notes.txt")
+    assert "is not a bag" in refusal(tmp_path)
+
+
+@pytest.mark.parametrize("name", ["a.mcap", "a.db3", "a.bag"])
+@pytest.mark.parametrize("content", [b"", b"hello, this is no bag at all, though it is longer than any header" * 9])
+def test_a_file_that_only_has_the_name_of_a_bag_is_damaged(tmp_path: Path, name: str, content: bytes) -> None:
+    (tmp_path / name).write_bytes(content)
+    assert "damaged or cut off" in refusal(tmp_path / name)
+
+
+def test_a_folder_of_several_files_without_metadata_asks_for_one(tmp_path: Path) -> None:
+    for k in range(2):
+        shutil.copy(RECORDED, tmp_path / f"a_{k}.mcap")
+    assert "ros2 bag reindex" in refusal(tmp_path)
+
+
+@pytest.mark.parametrize("text", ["", "rosbag2_bagfile_information:\n  version: 9\n", "a: [", "- 1\n"])
+def test_a_folder_with_broken_metadata_is_damaged(tmp_path: Path, messages: list[BagMessage], text: str) -> None:
+    bag = write_ros2(tmp_path / "bag", messages, StoragePlugin.MCAP)
+    (bag / "metadata.yaml").write_text(text)
+    assert "damaged or cut off" in refusal(bag)
+
+
+def test_metadata_that_name_nothing_are_damaged(tmp_path: Path, messages: list[BagMessage]) -> None:
+    bag = write_ros2(tmp_path / "bag", messages, StoragePlugin.MCAP)
+    text = (bag / "metadata.yaml").read_text()
+    (bag / "metadata.yaml").write_text(text.replace("name: /cube/odom", "name:"))
+    assert "damaged or cut off" in refusal(bag)
+
+
+def test_a_lacking_topic_is_named_with_those_there_are() -> None:
+    sentence = refusal(RECORDED, {"/odom": ODOMETRY})
+    assert "has no topic /odom of type nav_msgs/msg/Odometry" in sentence
+    # The topics of the right type come first: one of them is probably meant.
+    assert sentence.endswith(
+        "it has /cube/odom (nav_msgs/msg/Odometry), /cube/contact_geometry (geometry_msgs/msg/PolygonStamped)"
+    )
+
+
+def test_a_topic_of_another_type_is_refused() -> None:
+    sentence = refusal(RECORDED, {"/cube/odom": POLYGON})
+    assert "has the type nav_msgs/msg/Odometry, but geometry_msgs/msg/PolygonStamped is needed" in sentence
+
+
+@pytest.mark.parametrize("share", [0.02, 0.5, 0.99])
+@pytest.mark.parametrize("kind", ["mcap", "db3", "bag"])
+def test_a_bag_that_was_cut_off_is_damaged(tmp_path: Path, messages: list[BagMessage], kind: str, share: float) -> None:
+    if kind == "bag":
+        whole = write_ros1(tmp_path / "whole.bag", messages)
+    else:
+        plugin = StoragePlugin.MCAP if kind == "mcap" else StoragePlugin.SQLITE3
+        whole = write_ros2(tmp_path / "whole", messages, plugin) / f"whole.{kind}"
+    data = whole.read_bytes()
+    cut = tmp_path / f"cut.{kind}"
+    cut.write_bytes(data[: int(len(data) * share)])
+    with pytest.raises(InputError, match="damaged or cut off"):
+        list(read_messages(cut, WANTED))
+
+
+def test_messages_before_the_damage_are_given(tmp_path: Path) -> None:
+    data = bytearray(RECORDED.read_bytes())
+    middle = len(data) // 2
+    data[middle : middle + 64] = bytes(64)
+    damaged = tmp_path / "damaged.mcap"
+    damaged.write_bytes(data)
+    stream = read_messages(damaged, WANTED)
+    before = [next(stream) for _ in range(1000)]
+    whole = read_messages(RECORDED, WANTED)
+    assert before == [next(whole) for _ in range(1000)]
+    with pytest.raises(InputError, match=r"damaged or cut off after 1?[0-9]{4} messages"):
+        list(stream)
+
+
+def test_messages_that_the_index_announces_but_are_not_there_are_missed(
+    tmp_path: Path, messages: list[BagMessage]
+) -> None:
+    bag = write_ros2(tmp_path / "bag", messages, StoragePlugin.MCAP)
+    text = (bag / "metadata.yaml").read_text()
+    count = sum(message.topic == "/cube/odom" for message in messages)
+    assert f"message_count: {count}\n" in text
+    (bag / "metadata.yaml").write_text(text.replace(f"message_count: {count}\n", f"message_count: {count + 5}\n"))
+    with pytest.raises(InputError, match=f"only {COUNT} of {COUNT + 5} messages are there"):
+        list(read_messages(bag, WANTED))

@@ -1,0 +1,174 @@
+"""Writing of bags: what is read back, what is replaced, and what is never touched."""
+
+from __future__ import annotations
+
+import errno
+from pathlib import Path
+
+import pytest
+from rosbags.rosbag2 import StoragePlugin, Writer
+from rosbags.typesys import Stores, get_typestore
+
+from impact_predictor.bags.read import BagMessage, read_messages, topics
+from impact_predictor.bags.write import BagWriter
+from impact_predictor.errors import InputError
+from impact_predictor.ros.messages import UINT8
+
+TOPICS = {"/impact_predictor/mode": UINT8, "/other": UINT8}
+MESSAGES = [BagMessage(topic, k * 10**6, bytes([0, 1, 0, 0, k % 7])) for k in range(200) for topic in TOPICS]
+NAMES = pytest.mark.parametrize("name", ["out.mcap", "out", "out.v2"])
+
+
+def write(path: Path, messages: list[BagMessage] = MESSAGES) -> None:
+    with BagWriter(path) as writer:
+        for topic, log_time, data in messages:
+            writer.write(topic, TOPICS[topic], log_time, data)
+
+
+def write_and_stop(path: Path, stop: type[BaseException]) -> None:
+    with BagWriter(path) as writer:
+        for topic, log_time, data in MESSAGES[:50]:
+            writer.write(topic, TOPICS[topic], log_time, data)
+        raise stop
+
+
+def read(path: Path) -> list[BagMessage]:
+    return list(read_messages(path, topics(path)))
+
+
+def everything_in(folder: Path) -> dict[str, bytes]:
+    return {str(file.relative_to(folder)): file.read_bytes() for file in folder.rglob("*") if file.is_file()}
+
+
+@NAMES
+def test_what_was_written_is_read(tmp_path: Path, name: str) -> None:
+    write(tmp_path / name)
+    assert read(tmp_path / name) == MESSAGES
+    assert topics(tmp_path / name) == TOPICS
+    assert (tmp_path / name).is_file() == name.endswith(".mcap")
+    assert [entry.name for entry in tmp_path.iterdir()] == [name]
+
+
+def test_a_bag_without_messages_is_a_bag(tmp_path: Path) -> None:
+    for name in ("empty.mcap", "empty"):
+        write(tmp_path / name, [])
+        assert topics(tmp_path / name) == {}
+
+
+def test_folders_on_the_way_are_made(tmp_path: Path) -> None:
+    write(tmp_path / "a/b/out.mcap")
+    assert read(tmp_path / "a/b/out.mcap") == MESSAGES
+
+
+def test_a_relative_name_is_enough(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    write(Path("out.mcap"))
+    assert read(tmp_path / "out.mcap") == MESSAGES
+
+
+def test_the_same_messages_make_the_same_bytes_under_any_name(tmp_path: Path) -> None:
+    for name in ("first.mcap", "second.mcap", "first", "second"):
+        write(tmp_path / name)
+    file = (tmp_path / "first.mcap").read_bytes()
+    assert (tmp_path / "second.mcap").read_bytes() == file
+    assert everything_in(tmp_path / "first") == everything_in(tmp_path / "second")
+    assert everything_in(tmp_path / "first")["bag.mcap"] == file
+
+
+@NAMES
+def test_an_older_output_is_replaced(tmp_path: Path, name: str) -> None:
+    write(tmp_path / name)
+    write(tmp_path / name, MESSAGES[:10])
+    assert read(tmp_path / name) == MESSAGES[:10]
+    assert [entry.name for entry in tmp_path.iterdir()] == [name]
+
+
+@NAMES
+@pytest.mark.parametrize("stop", [RuntimeError, KeyboardInterrupt])
+def test_an_exception_leaves_what_was_written_and_the_older_output(
+    tmp_path: Path, name: str, stop: type[BaseException]
+) -> None:
+    write(tmp_path / name, MESSAGES[:10])
+    older = everything_in(tmp_path)
+    with pytest.raises(stop):
+        write_and_stop(tmp_path / name, stop)
+    assert read(tmp_path / f"{name}.partial/bag") == MESSAGES[:50]
+    left = everything_in(tmp_path)
+    assert {key: left[key] for key in older} == older
+    write(tmp_path / name)
+    assert read(tmp_path / name) == MESSAGES
+    assert [entry.name for entry in tmp_path.iterdir()] == [name]
+
+
+def test_until_the_end_there_is_only_the_partial_output(tmp_path: Path) -> None:
+    with BagWriter(tmp_path / "out.mcap") as writer:
+        writer.write("/other", UINT8, 1, MESSAGES[0].data)
+        assert [entry.name for entry in tmp_path.iterdir()] == ["out.mcap.partial"]
+
+
+def refused(path: Path) -> str:
+    with pytest.raises(InputError) as caught, BagWriter(path):
+        pytest.fail("the writer began")
+    assert "\n" not in str(caught.value)
+    return str(caught.value)
+
+
+def test_what_others_made_is_never_replaced(tmp_path: Path) -> None:
+    (tmp_path / "notes.mcap").write_text("my notes")
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "folder/notes.txt").write_text("my notes")
+    (tmp_path / "file").write_text("my notes")
+    (tmp_path / "folder.mcap").mkdir()
+    before = everything_in(tmp_path)
+    for name in ("notes.mcap", "folder", "file", "folder.mcap"):
+        assert "is not an output of impact_predictor" in refused(tmp_path / name)
+    assert everything_in(tmp_path) == before
+
+
+def test_a_recording_is_never_replaced(tmp_path: Path) -> None:
+    with Writer(tmp_path / "bag", version=9, storage_plugin=StoragePlugin.MCAP) as writer:
+        connection = writer.add_connection("/other", UINT8, typestore=get_typestore(Stores.ROS2_JAZZY))
+        writer.write(connection, 1, MESSAGES[0].data)
+    before = everything_in(tmp_path)
+    for name in ("bag", "bag/bag.mcap"):
+        assert "is not an output of impact_predictor" in refused(tmp_path / name)
+    assert everything_in(tmp_path) == before
+
+
+def test_an_output_with_a_file_of_the_user_in_it_is_not_replaced(tmp_path: Path) -> None:
+    write(tmp_path / "out")
+    (tmp_path / "out/notes.txt").write_text("my notes")
+    assert "is not an output of impact_predictor" in refused(tmp_path / "out")
+
+
+def test_a_partial_output_with_a_file_of_the_user_in_it_stays(tmp_path: Path) -> None:
+    (tmp_path / "out.mcap.partial").mkdir()
+    (tmp_path / "out.mcap.partial/notes.txt").write_text("my notes")
+    assert "move it away" in refused(tmp_path / "out.mcap")
+    assert (tmp_path / "out.mcap.partial/notes.txt").read_text() == "my notes"
+
+
+def test_an_empty_file_and_an_empty_folder_are_filled(tmp_path: Path) -> None:
+    (tmp_path / "out.mcap").touch()
+    (tmp_path / "out").mkdir()
+    for name in ("out.mcap", "out"):
+        write(tmp_path / name)
+        assert read(tmp_path / name) == MESSAGES
+
+
+def test_a_place_that_cannot_be_written_is_named(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    assert "cannot be written: Not a directory" in refused(tmp_path / "file/out.mcap")
+
+
+def test_a_full_disk_is_one_sentence_and_keeps_the_older_output(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    write(tmp_path / "out.mcap")
+    monkeypatch.setattr(Writer, "write", full)
+    with pytest.raises(InputError, match="No space left on device; what was written stays in"):
+        write(tmp_path / "out.mcap", MESSAGES[:5])
+    assert read(tmp_path / "out.mcap") == MESSAGES
