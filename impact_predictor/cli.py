@@ -1,0 +1,71 @@
+"""The command `impact-predictor`."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from typing import Any, Final
+
+import click
+
+from . import __version__
+from .commands.demo import demo
+from .commands.examples import examples
+from .commands.replay import replay
+from .commands.solve import solve
+from .errors import InputError
+
+WRONG_INPUT: Final = 2
+"""Exit status after a wrong option, file or parameter."""
+
+INTERRUPTED: Final = 130
+"""Exit status after Ctrl-C, as shells have it."""
+
+
+class Program(click.Group):
+    """A group of commands that says what went wrong in one line, whichever of its commands it was."""
+
+    def main(
+        self,
+        args: Sequence[str] | None = None,
+        prog_name: str | None = None,
+        complete_var: str | None = None,
+        standalone_mode: bool = True,
+        **extra: Any,
+    ) -> Any:
+        """Run a command and end the process with its exit status."""
+        try:
+            status = super().main(args, prog_name, complete_var, standalone_mode=False, **extra)
+        except InputError as error:
+            click.echo(f"error: {error}", err=True)
+            status = WRONG_INPUT
+        except click.ClickException as error:
+            click.echo(f"error: {_sentence(error)}", err=True)
+            status = error.exit_code
+        except click.Abort:
+            status = INTERRUPTED
+        sys.exit(status)
+
+
+def _sentence(error: click.ClickException) -> str:
+    said = error.format_message().rstrip(".")
+    context = error.ctx if isinstance(error, click.UsageError) else None
+    return said if context is None else f"{said}; see `{context.command_path} --help`"
+
+
+@click.group(
+    cls=Program,
+    no_args_is_help=False,
+    epilog=examples(
+        "impact-predictor demo",
+        "impact-predictor solve plate --length 1 --height 0.4 --mass 10 --friction 0.2 --omega -1",
+        "impact-predictor replay examples/cube_tosses --params config/cube_tosses.yaml -o predictions.mcap",
+    ),
+)
+@click.version_option(__version__, prog_name="impact-predictor", message="%(prog)s %(version)s")
+def main() -> None:
+    """Predict the next touchdown of a body that turns about one contact, and what the impact does to it."""
+
+
+for _command in (demo, solve, replay):
+    main.add_command(_command)

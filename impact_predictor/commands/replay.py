@@ -1,0 +1,201 @@
+"""`impact-predictor replay`: recorded bags through the predictor."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import click
+
+from ..errors import InputError
+from .examples import examples
+
+if TYPE_CHECKING:
+    from ..bags.replay import Result
+    from ..prediction.scene import Scene
+
+FAILED: Final = 2
+DAMAGED: Final = 3
+"""Exit status where the readable part of a bag was used."""
+
+
+@click.command(
+    short_help="Predict and score the touchdowns in recorded bags.",
+    epilog=examples(
+        "impact-predictor replay examples/cube_tosses --params config/cube_tosses.yaml",
+        "impact-predictor replay run.mcap --params scene.yaml --remap odom:=/cube/odom -o predictions.mcap --json",
+        "impact-predictor replay monday.mcap tuesday.mcap --params scene.yaml -o predictions --figure errors.png",
+    ),
+)
+@click.argument("bags", nargs=-1, required=True, metavar="BAG...")
+@click.option("--params", required=True, metavar="FILE", help="ROS 2 parameter file of the scene.")
+@click.option(
+    "-r",
+    "--remap",
+    multiple=True,
+    metavar="FROM:=TO",
+    help="Topic of an input, odom or contact_geometry; may be repeated.",
+)
+@click.option(
+    "-o",
+    "--output",
+    metavar="NAME",
+    help="Write the predictions: NAME.mcap is one file, any other name a rosbag2 folder; with several bags, "
+    "a folder with one file for each.",
+)
+@click.option("--figure", metavar="FILE", help="Draw errors and velocities into a .png or .svg file.")
+@click.option("--all", "every", is_flag=True, help="List every touchdown, not only the first scored ones.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON only: an object, or a list for several bags.")
+def replay(
+    bags: tuple[str, ...],
+    params: str,
+    remap: tuple[str, ...],
+    output: str | None,
+    figure: str | None,
+    every: bool,
+    as_json: bool,
+) -> int:
+    """Predict the touchdowns in recorded bags as the node would, and score them by what was recorded after them.
+
+    A BAG is an .mcap file, a rosbag2 folder or a ROS 1 .bag file. Where a bag has one topic of the right type, it is
+    taken; where it has several, --remap says which. The exit status is 3 where only a part of a bag could be read.
+    """
+    from ..bags.replay import remapping
+
+    scene = read_scene(params)
+    topics = remapping(remap)
+    outputs = outputs_of(bags, output)
+    if figure is not None:
+        from ..report.figure import check_figure
+
+        check_figure(figure)
+    results: list[Result] = []
+    answers: list[dict[str, Any]] = []
+    for bag, its_output in zip(bags, outputs, strict=True):
+        try:
+            result = replay_one(bag, scene, topics, its_output)
+        except InputError as error:
+            if len(bags) == 1:
+                raise
+            click.echo(f"error: {error}", err=True)
+            answers.append({"bag": bag, "error": str(error)})
+            continue
+        results.append(result)
+        if as_json:
+            from ..report.summary import as_json as fields_of
+
+            answers.append(fields_of(result))
+        else:
+            print_result(result, every, its_output)
+    if as_json:
+        click.echo(json.dumps(answers if len(bags) > 1 else answers[0], allow_nan=False))
+    elif len(results) > 1:
+        print_all_together(results)
+    if figure is not None and results:
+        draw(figure, results)
+        if not as_json:
+            click.echo(f"Picture: {figure}")
+    if len(results) < len(bags) or any(result.unpredictable for result in results):
+        return FAILED
+    return DAMAGED if any(result.damaged for result in results) else 0
+
+
+def read_scene(params: str) -> Scene:
+    """The scene of a parameter file.
+
+    Raises:
+        InputError: the file cannot be read, or a parameter is wrong.
+    """
+    from ..parameter_file import read_parameters
+    from ..parameters import validate
+    from ..prediction.scene import Scene
+
+    given = read_parameters(params)
+    try:
+        return Scene.from_parameters(validate(given))
+    except InputError as error:
+        raise InputError(f"the parameter file {params}: {error}") from error
+
+
+def outputs_of(bags: tuple[str, ...], output: str | None) -> list[Path | None]:
+    """Where the predictions of each bag go: one output, or a file for each of several bags in a folder.
+
+    Raises:
+        InputError: the files of two bags would have one name, or the folder cannot be made.
+    """
+    if output is None:
+        return [None for _ in bags]
+    if len(bags) == 1:
+        return [Path(output)]
+    folder = Path(output)
+    if folder.suffix == ".mcap":
+        raise InputError(f"{output} is one file, but {len(bags)} bags are given; give the name of a folder")
+    files = [folder / f"{_name_of(bag)}.mcap" for bag in bags]
+    twice = [file for file, count in Counter(files).items() if count > 1]
+    if twice:
+        raise InputError(f"{twice[0]} would be written for two bags; replay bags of one name one after the other")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"the folder {output} cannot be made: {error.strerror}") from error
+    return list(files)
+
+
+def _name_of(bag: str) -> str:
+    path = Path(bag).resolve()
+    return path.stem if path.suffix in (".mcap", ".db3", ".bag") else path.name
+
+
+def replay_one(bag: str, scene: Scene, topics: dict[str, str], output: Path | None) -> Result:
+    """Replay a bag, and say on standard error what was chosen or is wrong."""
+    from ..bags.replay import replay as replay_bag
+    from .progress import progress
+
+    with progress(Path(bag).name) as tell:
+        result = replay_bag(bag, scene, topics, output, tell)
+    for note in result.notes:
+        click.echo(f"note: {note}", err=True)
+    if result.unpredictable:
+        click.echo(f"error: {bag}: {result.unpredictable}", err=True)
+    if result.damaged:
+        click.echo(f"warning: {result.damaged}", err=True)
+    return result
+
+
+def print_result(result: Result, every: bool, output: Path | None) -> None:
+    """Print the tables of one bag."""
+    from rich.console import Console
+
+    from ..report.replay import print_replay
+
+    print_replay(Console(), result, every)
+    if output is not None:
+        click.echo(f"Predictions: {output}")
+
+
+def print_all_together(results: list[Result]) -> None:
+    """Print what several bags say together."""
+    from ..report.summary import row_of
+    from ..report.table import conclusions
+
+    click.echo(f"\n{len(results)} bags together")
+    for sentence in conclusions([row_of(*settled) for result in results for settled in result.settled]):
+        click.echo(sentence)
+
+
+def draw(path: str, results: list[Result]) -> None:
+    """Draw one picture of all bags.
+
+    Raises:
+        InputError: it cannot be written.
+    """
+    from ..report.figure import write_figure
+    from ..report.summary import error_by_lead_time, row_of
+    from ..report.table import conclusions
+
+    rows = [row_of(*settled) for result in results for settled in result.settled]
+    errors = error_by_lead_time(settled.score for result in results for settled in result.settled)
+    names = ", ".join(Path(result.bag).name for result in results[:3]) + (", ..." if len(results) > 3 else "")
+    write_figure(path, rows, errors, f"{names}: {conclusions(rows)[0].rstrip('.')}")

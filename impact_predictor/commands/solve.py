@@ -1,0 +1,283 @@
+"""`impact-predictor solve`: what a single impact does to a body."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from math import hypot, isfinite, radians
+from typing import Any, TypeVar
+
+import click
+
+from ..errors import InputError
+from ..mechanics.bodies import cylinder, fraction, not_negative, plate, positive, rod
+from ..mechanics.contact_space import approach
+from ..mechanics.impact import LAWS, solve_impact
+from ..mechanics.types import Contact, Flag, Mode, Outcome, Twist, TwoPointBody
+from .examples import examples
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+def number(name: str, help_text: str, **more: Any) -> Callable[[F], F]:
+    """An option that takes one number."""
+    return click.option(name, type=float, show_default=True, help=help_text, **more)
+
+
+def impact_options(command: F) -> F:
+    """The options that every body has: how it moves, by which law it is solved, how the answer looks."""
+    for decorate in reversed(
+        (
+            number("--restitution", "Restitution at the new contact, 0 (plastic) to 1.", default=0.0),
+            number("--omega", "Angular velocity about the old contact at rest, rad/s; clockwise is negative."),
+            click.option(
+                "--twist",
+                type=(float, float, float),
+                callback=lambda context, option, parts: None if parts is None else Twist(*parts),
+                metavar="VX VY OMEGA",
+                help="Velocity of the mass centre (m/s) and angular velocity (rad/s), in the place of --omega.",
+            ),
+            click.option(
+                "--law", type=click.Choice([*LAWS, "both"]), default="path", show_default=True, help="Impact law."
+            ),
+            click.option(
+                "--json", "as_json", is_flag=True, help="Print JSON: an object, or a list of two for both laws."
+            ),
+        )
+    ):
+        command = decorate(command)
+    return command
+
+
+@click.group(
+    short_help="Solve a single impact of one body.",
+    no_args_is_help=False,
+    epilog=examples(
+        "impact-predictor solve plate --length 1 --height 0.4 --mass 10 --friction 0.2 --omega -1",
+        "impact-predictor solve rod --length 0.4 --a 0.1 --b 0.1 --mass 0.3 --friction 0.4 --omega -2 --json",
+        "impact-predictor solve cylinder --radius 0.3 --gamma 50 --mass 2 --friction 0.5 --omega -1 --law both",
+    ),
+)
+def solve() -> None:
+    """What an impact at the new contact does to a body that turns about the old one.
+
+    The plane is x forward, y up; counter-clockwise is positive, so a body that falls forwards onto its new contact
+    turns with a negative omega. SI units; angles in degrees.
+    """
+
+
+@solve.command(
+    "plate",
+    epilog=examples(
+        "impact-predictor solve plate --length 1 --height 0.4 --mass 10 --friction 0.2 --omega -1",
+        "impact-predictor solve plate --length 1 --height 1.6 --mass 10 --friction 0.2 --restitution 0.3 --omega -1",
+        "impact-predictor solve plate --length 1 --height 0.4 --mass 10 --friction 0.2 --twist 0.3 -0.5 -1 --law both",
+    ),
+)
+@number("--length", "Length, m.", required=True)
+@number("--height", "Height, m.", required=True)
+@number("--mass", "Mass, kg.", required=True)
+@number("--friction", "Coulomb friction coefficient.", required=True)
+@number("--inertia", "Inertia about the mass centre, kg m^2 (a homogeneous rectangle's unless given).")
+@number("--a", "Distance of the old contact behind the mass centre, m (half the length unless given).")
+@number("--b", "Distance of the new contact ahead of the mass centre, m (half the length unless given).")
+@impact_options
+def solve_plate(omega: float | None, twist: Twist | None, law: str, as_json: bool, **shape: Any) -> int:
+    """A plate, crate or block on a flat floor."""
+    return answer(plate(**shape), omega, twist, law, as_json)
+
+
+@solve.command(
+    "rod",
+    epilog=examples(
+        "impact-predictor solve rod --length 0.4 --a 0.1 --b 0.1 --mass 0.3 --friction 0.4 --omega -2",
+        "impact-predictor solve rod --length 0.4 --thickness 0.01 --a 0.13 --b 0.1 --mass 1 --friction 0.4 --omega -2",
+    ),
+)
+@number("--length", "Length, m.", required=True)
+@number("--thickness", "Thickness, m.", default=0.0)
+@number("--a", "Distance of the old support behind the middle, m.", required=True)
+@number("--b", "Distance of the new support ahead of the middle, m.", required=True)
+@number("--mass", "Mass, kg.", required=True)
+@number("--friction", "Coulomb friction coefficient.", required=True)
+@number("--inertia", "Inertia about the mass centre, kg m^2 (a slender homogeneous rod's unless given).")
+@impact_options
+def solve_rod(omega: float | None, twist: Twist | None, law: str, as_json: bool, **shape: Any) -> int:
+    """A rod over two supports."""
+    return answer(rod(**shape), omega, twist, law, as_json)
+
+
+@solve.command(
+    "cylinder",
+    epilog=examples(
+        "impact-predictor solve cylinder --radius 0.3 --gamma 50 --mass 2 --friction 0.5 --omega -1",
+        "impact-predictor solve cylinder --radius 0.3 --gamma 70 --mass 2 --friction 0.9 --omega -1 --law both",
+    ),
+)
+@number("--radius", "Radius, m.", required=True)
+@number("--gamma", "Central angle of the old edge behind the vertical, degrees.", required=True)
+@number("--gamma-new", "Central angle of the new edge ahead of the vertical, degrees (--gamma unless given).")
+@number("--mass", "Mass, kg.", required=True)
+@number("--friction", "Coulomb friction coefficient.", required=True)
+@number("--inertia", "Inertia about the axis, kg m^2 (a homogeneous cylinder's unless given).")
+@impact_options
+def solve_cylinder(
+    omega: float | None,
+    twist: Twist | None,
+    law: str,
+    as_json: bool,
+    gamma: float,
+    gamma_new: float | None,
+    **shape: Any,
+) -> int:
+    """A cylinder that rolls from one edge onto another."""
+    ahead = None if gamma_new is None else radians(gamma_new)
+    return answer(cylinder(gamma=radians(gamma), gamma_new=ahead, **shape), omega, twist, law, as_json)
+
+
+POINT = (float, float, float)
+PAIR = (float, float)
+
+
+@solve.command(
+    "body",
+    short_help="Any body with two contacts, or with one that strikes.",
+    epilog=examples(
+        "impact-predictor solve body --mass 10 --inertia 1 --old -0.5 -0.2 0.3 --new 0.5 -0.2 0.3 --omega -1",
+        "impact-predictor solve body --mass 1 --inertia 0.1 --no-old --new 0.2 -0.5 0.3 --twist 1 -2 0 --json",
+    ),
+)
+@number("--mass", "Mass, kg.", required=True)
+@number("--inertia", "Inertia about the mass centre, kg m^2.", required=True)
+@click.option("--old", type=POINT, metavar="X Y FRICTION", help="Old contact, seen from the mass centre, m.")
+@click.option("--no-old", is_flag=True, help="No old contact: a one-point impact, with --twist.")
+@click.option(
+    "--new", type=POINT, metavar="X Y FRICTION", required=True, help="New contact, seen from the mass centre, m."
+)
+@click.option(
+    "--old-normal",
+    type=PAIR,
+    metavar="X Y",
+    default=(0.0, 1.0),
+    help="Direction out of the support, of any length. [default: 0 1]",
+)
+@click.option(
+    "--new-normal",
+    type=PAIR,
+    metavar="X Y",
+    default=(0.0, 1.0),
+    help="Direction out of the support, of any length. [default: 0 1]",
+)
+@click.option(
+    "--old-velocity", type=PAIR, metavar="X Y", default=(0.0, 0.0), help="Velocity of the support, m/s. [default: 0 0]"
+)
+@click.option(
+    "--new-velocity", type=PAIR, metavar="X Y", default=(0.0, 0.0), help="Velocity of the support, m/s. [default: 0 0]"
+)
+@impact_options
+def solve_body(
+    mass: float,
+    inertia: float,
+    old: tuple[float, float, float] | None,
+    no_old: bool,
+    new: tuple[float, float, float],
+    old_normal: tuple[float, float],
+    new_normal: tuple[float, float],
+    old_velocity: tuple[float, float],
+    new_velocity: tuple[float, float],
+    restitution: float,
+    omega: float | None,
+    twist: Twist | None,
+    law: str,
+    as_json: bool,
+) -> int:
+    """Any body with two contacts, or with one that strikes, on supports of any direction that may move."""
+    if (old is None) is not no_old:
+        raise click.UsageError("Give either --old X Y FRICTION or --no-old")
+    positive(mass=mass, inertia=inertia)
+    fraction(restitution=restitution)
+    struck = contact("new", new, new_normal, new_velocity)._replace(restitution=restitution)
+    standing = None if old is None else contact("old", old, old_normal, old_velocity)
+    return answer(TwoPointBody(mass, inertia, standing, struck), omega, twist, law, as_json)
+
+
+def contact(
+    which: str, place: tuple[float, float, float], normal: tuple[float, float], velocity: tuple[float, float]
+) -> Contact:
+    """A contact of checked numbers; its normal may have any length but zero."""
+    x, y, friction = place
+    length = hypot(*normal)
+    if not (length > 0.0 and isfinite(length)):
+        raise InputError(
+            f"--{which}-normal is {normal[0]:g} {normal[1]:g}, which has no direction; give for example 0 1"
+        )
+    not_negative(friction=friction)
+    return Contact(x, y, friction, (normal[0] / length, normal[1] / length), velocity=velocity)
+
+
+def answer(body: TwoPointBody, omega: float | None, twist: Twist | None, law: str, as_json: bool) -> int:
+    """Solve the impact and print the answer; the exit status."""
+    before = twist_before(body, omega, twist)
+    outcomes = [solve_impact(body, before, one) for one in (LAWS if law == "both" else [law])]
+    flags = Flag.NONE
+    for outcome in outcomes:
+        flags |= outcome.flags
+    if flags & Flag.INVALID_INPUT:
+        raise InputError("a number of the body or of its motion is infinite or not a number; give finite numbers")
+    if as_json:
+        answers = [fields_of(outcome, before) for outcome in outcomes]
+        click.echo(json.dumps(answers if len(answers) > 1 else answers[0], indent=2, allow_nan=False))
+    else:
+        from rich.console import Console
+
+        from ..report.outcome import print_outcomes
+
+        print_outcomes(Console(), body, before, outcomes)
+    if outcomes[0].mode is Mode.NO_IMPACT and not flags & Flag.NO_SOLUTION:
+        click.echo(f"hint: {why_no_impact(body, before)}", err=True)
+    return 1 if flags & Flag.NO_SOLUTION else 0
+
+
+def fields_of(outcome: Outcome, before: Twist) -> dict[str, Any]:
+    """An outcome with the names of its fields, in SI units: twists as [vx, vy, omega], impulses as [N, T] each."""
+    return {
+        "law": outcome.law,
+        "mode": outcome.mode.name,
+        "before": before,
+        "twist": outcome.twist,
+        "impulses": outcome.impulses,
+        "segments": outcome.segments,
+        "flags": [flag.name for flag in Flag if flag & outcome.flags],
+        "energy_lost": outcome.energy_lost,
+        "unique": outcome.unique,
+        "alternatives": [
+            {"mode": one.mode.name, "twist": one.twist, "segments": one.segments} for one in outcome.alternatives
+        ],
+    }
+
+
+def twist_before(body: TwoPointBody, omega: float | None, twist: Twist | None) -> Twist:
+    """The twist that the options tell: as given, or that of turning about the old contact.
+
+    Raises:
+        UsageError: the options tell none, or two.
+    """
+    if (omega is None) is (twist is None):
+        raise click.UsageError("Give either --omega OMEGA or --twist VX VY OMEGA")
+    if twist is not None:
+        return twist
+    assert omega is not None
+    if body.old is None:
+        raise click.UsageError("A body without an old contact turns about nothing: give --twist VX VY OMEGA")
+    return body.turning(omega)
+
+
+def why_no_impact(body: TwoPointBody, before: Twist) -> str:
+    """Why there is no impact, and which motion would make one."""
+    away = f"the new contact is not approached: its normal velocity is {approach(body.new, before)[0]:.4g} m/s"
+    if body.old is None or before.omega == 0.0 or before != body.turning(before.omega):
+        return f"{away}, and an impact needs a negative one"
+    if approach(body.new, body.turning(-before.omega))[0] >= 0.0:
+        return away
+    sense = "clockwise, negative" if before.omega > 0.0 else "counter-clockwise, positive"
+    return f"{away}; towards it the body turns {sense}: --omega {-before.omega:g}"

@@ -1,0 +1,161 @@
+"""Plays the inputs of a recorded bag onto topics, byte for byte and in recorded time, without the idle gaps.
+
+    python3 -m impact_predictor.ros.player examples/cube_tosses --runs 3 --ros-args -r /cube/odom:=/odom
+
+Stamps stay as they are. It waits for subscribers, and ends when they have received everything.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from collections.abc import Iterable, Iterator
+from typing import Any, Final, NamedTuple
+
+from ..bags.read import BagMessage, read_messages, topics
+from ..errors import InputError
+from .messages import ODOMETRY, POLYGON
+from .process import Stop, message_class, run
+
+NANOSECONDS: Final = 1e9
+
+LONGEST_GAP: Final = 0.5
+"""Seconds without a message after which nothing happens: a run of the recording ends, and the next may begin."""
+
+SHORTENED_GAP: Final = 0.1
+"""Seconds that are left of such a gap."""
+
+GEOMETRY_AHEAD: Final = 0.05
+"""Seconds that a message of contact points has before what follows it: topics are not ordered among themselves."""
+
+DISCOVERY: Final = 20.0
+"""Seconds within which subscribers must be found."""
+
+SETTLING: Final = 0.5
+"""Seconds that they get in turn, because each side finds the other by itself."""
+
+QUEUE: Final = 1000
+
+PLAYING: Final = "playing"
+"""What it prints when it has found its subscribers."""
+
+
+class Options(NamedTuple):
+    """What to play: the first `runs` of a bag (0: all), at `rate` times its speed."""
+
+    bag: str
+    runs: int
+    rate: float
+
+
+def main(args: list[str] | None = None) -> int:
+    """Play a bag as the arguments say; the exit status."""
+    args = sys.argv if args is None else args
+    return run(lambda stop: _play(_options(args), stop), args)
+
+
+def _options(args: list[str]) -> Options:
+    from rclpy.utilities import remove_ros_args
+
+    parser = argparse.ArgumentParser(prog="player", description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("bag")
+    parser.add_argument("--runs", type=int, default=0, help="how many runs between idle gaps; 0, the default, is all")
+    parser.add_argument("--rate", type=float, default=1.0, help="times the recorded speed; default 1")
+    given = parser.parse_args(remove_ros_args(args)[1:])
+    if given.runs < 0 or not 0.0 < given.rate < 1e6:
+        raise InputError("--runs must not be negative, and --rate must be positive")
+    return Options(given.bag, given.runs, given.rate)
+
+
+def timed(messages: Iterable[BagMessage], runs: int) -> Iterator[tuple[float, BagMessage]]:
+    """The messages of the first runs (0: all), each with the seconds since the one before, idle gaps shortened."""
+    last: int | None = None
+    run_number = 1
+    for message in messages:
+        pause = 0.0 if last is None else max(0.0, (message.log_time - last) / NANOSECONDS)
+        if pause > LONGEST_GAP:
+            run_number += 1
+            pause = SHORTENED_GAP
+        if runs and run_number > runs:
+            return
+        last = message.log_time
+        yield pause, message
+
+
+def _play(options: Options, stop: Stop) -> int:
+    types = {topic: kind for topic, kind in topics(options.bag).items() if kind in (ODOMETRY, POLYGON)}
+    if not types:
+        raise InputError(f"{options.bag} has no topic of type {ODOMETRY} or {POLYGON}, so there is nothing to play")
+    messages = timed(read_messages(options.bag, types), options.runs)
+    from rclpy.node import Node
+
+    node = Node("player")
+    try:
+        publishers = {topic: _publisher(node, topic, kind) for topic, kind in types.items()}
+        if _await_subscribers(list(publishers.values()), stop):
+            print(PLAYING, flush=True)
+            _publish_all(messages, types, publishers, options.rate, stop)
+            _await_receipt(list(publishers.values()))
+    finally:
+        node.destroy_node()
+    return 0
+
+
+def _publisher(node: Any, topic: str, kind: str) -> Any:
+    from rclpy.qos import DurabilityPolicy, QoSProfile
+    from rclpy.qos_overriding_options import QoSOverridingOptions, QoSPolicyKind
+
+    overridable = (QoSPolicyKind.DEPTH, QoSPolicyKind.DURABILITY, QoSPolicyKind.HISTORY, QoSPolicyKind.RELIABILITY)
+    qos = QoSProfile(depth=QUEUE)
+    if kind == POLYGON:
+        qos = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    return node.create_publisher(
+        message_class(kind), topic, qos, qos_overriding_options=QoSOverridingOptions(overridable)
+    )
+
+
+def _await_subscribers(publishers: list[Any], stop: Stop) -> bool:
+    """Wait until every topic has a subscriber; whether the stop left time for it.
+
+    Raises:
+        InputError: a topic has none.
+    """
+    patience = time.monotonic() + DISCOVERY
+    while lonely := [one.topic_name for one in publishers if not one.get_subscription_count()]:
+        if time.monotonic() > patience:
+            raise InputError(
+                f"nobody has subscribed to {' and '.join(lonely)} within {DISCOVERY:.0f} s; "
+                "start the subscriber, or remap: --ros-args -r /from:=/to"
+            )
+        if stop.wait(0.05):
+            return False
+    return not stop.wait(SETTLING)
+
+
+def _publish_all(
+    messages: Iterable[tuple[float, BagMessage]],
+    types: dict[str, str],
+    publishers: dict[str, Any],
+    rate: float,
+    stop: Stop,
+) -> None:
+    due = time.monotonic()
+    for pause, message in messages:
+        due += pause / rate
+        if stop.wait(max(0.0, due - time.monotonic())):
+            return
+        publishers[message.topic].publish(message.data)
+        if types[message.topic] == POLYGON:
+            due = time.monotonic() + GEOMETRY_AHEAD
+
+
+def _await_receipt(publishers: list[Any]) -> None:
+    from rclpy.duration import Duration
+
+    for publisher in publishers:
+        publisher.wait_for_all_acked(Duration(seconds=2))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,163 @@
+"""What the programs share that need ROS: a start that explains itself, a clean end at any moment, messages by name."""
+
+from __future__ import annotations
+
+import importlib
+import re
+import signal
+import sys
+import threading
+from collections.abc import Callable
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Final
+
+from ..errors import InputError
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+
+_SIGNALS: Final = (signal.SIGINT, signal.SIGTERM)
+_PLACE_IN_SOURCE: Final = re.compile(r", at \S+:\d+")
+
+
+class Stop:
+    """The wish of SIGINT or SIGTERM that the process ends; a context manager, for the main thread.
+
+    The signals are blocked, and a thread waits for the first of them: nothing is interrupted half-way, and ROS is
+    still there for the last messages. Threads started within inherit the block.
+    """
+
+    def __init__(self) -> None:
+        self._event = threading.Event()
+        self._wake: Callable[[], object] = bool
+
+    def __enter__(self) -> Stop:
+        self._mask = signal.pthread_sigmask(signal.SIG_BLOCK, _SIGNALS)
+        self._waiter = threading.Thread(target=self._await_signal, name="stop", daemon=True)
+        self._waiter.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        self._wake = bool
+        if self.requested:
+            # The process is about to end: a second signal shall not end it less cleanly.
+            return
+        assert self._waiter.ident is not None
+        signal.pthread_kill(self._waiter.ident, signal.SIGTERM)
+        self._waiter.join()
+        signal.pthread_sigmask(signal.SIG_SETMASK, self._mask)
+
+    def _await_signal(self) -> None:
+        signal.sigwait(_SIGNALS)
+        self.request()
+
+    def request(self) -> None:
+        """End, as if a signal had come."""
+        self._event.set()
+        self._wake()
+
+    @property
+    def requested(self) -> bool:
+        return self._event.is_set()
+
+    def wait(self, seconds: float) -> bool:
+        """Sleep, but not beyond the request; whether it has come."""
+        return self._event.wait(seconds)
+
+    def call(self, wake: Callable[[], object]) -> None:
+        """Call `wake`, from another thread, when the request comes; at once if it has come."""
+        self._wake = wake
+        if self.requested:
+            wake()
+
+
+def run(work: Callable[[Stop], int], args: list[str] | None) -> int:
+    """Do the work of a program with ROS and return its exit status; what the user did wrong is said in one sentence."""
+    with Stop() as stop:
+        try:
+            import rclpy
+        except ImportError as error:
+            return _refuse(
+                f"ROS 2 is needed here, but cannot be imported ({error}): source it, for example "
+                "`source /opt/ros/jazzy/setup.bash`, or `pip install 'impact_predictor[ros]' -c constraints/jazzy.txt`",
+                2,
+            )
+        from rclpy.signals import SignalHandlerOptions
+
+        try:
+            rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
+        except RuntimeError as error:
+            return _refuse(f"ROS refuses the arguments: {sentence(error)}")
+        try:
+            return work(stop)
+        except InputError as error:
+            return _refuse(str(error))
+        finally:
+            rclpy.try_shutdown()
+
+
+def _refuse(sentence: str, exit_status: int = 1) -> int:
+    print(f"impact_predictor: {sentence}", file=sys.stderr)
+    return exit_status
+
+
+def sentence(error: Exception) -> str:
+    """What rcl says over several lines, in one, without the places in its source."""
+    return " ".join(_PLACE_IN_SOURCE.sub("", str(error)).split()) or type(error).__name__
+
+
+def spin(node: Node, stop: Stop, served: Callable[[], int], executor: str = "single") -> None:
+    """Serve a node until the stop; what has arrived by then is served too.
+
+    `served` counts the messages served so far. `executor` is single, or events where this rclpy has it (else single,
+    with a warning).
+    """
+    runner, period = _executor(node, executor)
+    runner.add_node(node)
+    # A task ends a round that waits; the events executor has no guard conditions.
+    stop.call(lambda: runner.create_task(bool))
+    try:
+        while not stop.requested:
+            runner.spin_once(timeout_sec=period)
+        idle, before = 0, served()
+        while idle < _IDLE_ROUNDS:
+            runner.spin_once(timeout_sec=0.0)
+            now = served()
+            idle, before = 0 if now != before else idle + 1, now
+    finally:
+        stop.call(bool)
+        runner.remove_node(node)
+
+
+_IDLE_ROUNDS: Final = 20
+"""A round may go to a timer, a service or the wish to stop; after this many without a message there is none."""
+
+
+def _executor(node: Node, kind: str) -> tuple[Any, float | None]:
+    """An executor, and the timeout in s of its rounds."""
+    from rclpy.executors import SingleThreadedExecutor
+
+    if kind == "events":
+        try:
+            from rclpy.experimental import EventsExecutor
+        except ImportError:
+            node.get_logger().warning("this rclpy has no events executor, so the single-threaded one is used")
+        else:
+            # Without a timeout some versions neither serve nor return.
+            return EventsExecutor(), 1.0
+    return SingleThreadedExecutor(), None
+
+
+def message_class(type_name: str) -> Any:
+    """The class of a message, of a name like nav_msgs/msg/Odometry.
+
+    Raises:
+        InputError: it is not installed.
+    """
+    package, _, name = type_name.split("/")
+    try:
+        return getattr(importlib.import_module(f"{package}.msg"), name)
+    except (ImportError, AttributeError) as error:
+        raise InputError(f"the message type {type_name} is not installed; install the ROS package {package}") from error

@@ -1,0 +1,318 @@
+"""Replay of recorded bags: the same answers as from the predictor itself, and what becomes of odd messages and bags."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from pathlib import Path
+
+import pytest
+from rosbags.typesys import Stores, get_typestore
+
+from impact_predictor.bags.read import BagMessage, read_messages, topics
+from impact_predictor.bags.replay import Result, remapping, replay
+from impact_predictor.bags.write import BagWriter
+from impact_predictor.errors import InputError
+from impact_predictor.parameter_file import read_parameters
+from impact_predictor.parameters import validate
+from impact_predictor.prediction.predictor import Predictor
+from impact_predictor.prediction.scene import Scene
+from impact_predictor.prediction.types import Leftover, Prediction, Status
+from impact_predictor.ros.messages import (
+    DIAGNOSTIC_ARRAY,
+    ODOMETRY,
+    OUTPUTS,
+    POLYGON,
+    UINT8,
+    decode_odometry,
+    decode_polygon,
+)
+
+ROOT = Path(__file__).parents[2]
+RECORDED = ROOT / "examples/cube_tosses/cube_tosses.mcap"
+WANTED = {"/cube/odom": ODOMETRY, "/cube/contact_geometry": POLYGON}
+END = 75_000_000_000
+"""Log time in ns that ends the excerpt: four tosses."""
+TWIST_OFFSET = -8 * 36 - 8
+"""Place of the last number of the twist in the bytes of an Odometry: 36 covariances follow it."""
+
+Output = tuple[str, int, bytes]
+
+
+@pytest.fixture(scope="module")
+def scene() -> Scene:
+    return Scene.from_parameters(validate(read_parameters(ROOT / "config/cube_tosses.yaml")))
+
+
+@pytest.fixture(scope="module")
+def messages() -> list[BagMessage]:
+    excerpt = []
+    for message in read_messages(RECORDED, WANTED):
+        if message.log_time > END:
+            break
+        excerpt.append(message)
+    return excerpt
+
+
+@pytest.fixture(scope="module")
+def bag(tmp_path_factory: pytest.TempPathFactory, messages: list[BagMessage]) -> Path:
+    return write_bag(tmp_path_factory.mktemp("excerpt") / "tosses.mcap", messages)
+
+
+def write_bag(path: Path, messages: Iterable[BagMessage], types: dict[str, str] = WANTED) -> Path:
+    with BagWriter(path) as writer:
+        for topic, log_time, data in messages:
+            writer.write(topic, types[topic], log_time, data)
+    return path
+
+
+def read_outputs(path: Path) -> list[Output]:
+    return [tuple(message) for message in read_messages(path, topics(path))]
+
+
+def samples_of(messages: list[BagMessage]) -> list[BagMessage]:
+    return [message for message in messages if message.topic == "/cube/odom"]
+
+
+def scores_of(result: Result) -> list[tuple[int, float | None]]:
+    return [(settled.score.stamp, settled.score.relative_error) for settled in result.settled]
+
+
+def predicted_directly(scene: Scene, messages: list[BagMessage]) -> list[Output]:
+    """What the node would publish, from the predictor and the encoders alone."""
+    predictor = Predictor(scene)
+    outputs = []
+    for topic, log_time, data in messages:
+        if topic == "/cube/contact_geometry":
+            predictor.set_geometry(decode_polygon(data))
+            continue
+        last = predictor.update(decode_odometry(data))
+        for name, output in OUTPUTS.items():
+            encoded = output.encode(last)
+            if encoded is not None:
+                outputs.append((f"/impact_predictor/{name}", log_time, encoded))
+    for score in predictor.finish():
+        encoded = OUTPUTS["score"].encode(Prediction(Status.ACCEPTED, last.sample, None, score))
+        assert encoded is not None
+        outputs.append(("/impact_predictor/score", log_time, encoded))
+    return outputs
+
+
+def test_a_bag_gives_what_the_predictor_gives(
+    tmp_path: Path, bag: Path, scene: Scene, messages: list[BagMessage]
+) -> None:
+    replay(bag, scene, output=tmp_path / "out.mcap")
+    assert sorted(read_outputs(tmp_path / "out.mcap")) == sorted(predicted_directly(scene, messages))
+
+
+def test_recorded_tosses_give_scored_touchdowns(bag: Path, scene: Scene, messages: list[BagMessage]) -> None:
+    result = replay(bag, scene)
+    assert result.samples == len(samples_of(messages))
+    assert result.statuses == {Status.ACCEPTED: result.samples}
+    assert result.geometry_statuses == {Status.ACCEPTED: 4}
+    assert any(settled.score.scored for settled in result.settled)
+    assert {settled.body for settled in result.settled} == {"cube"}
+    assert (result.unpredictable, result.damaged) == ("", "")
+
+
+def test_two_runs_write_the_same_bytes(tmp_path: Path, bag: Path, scene: Scene) -> None:
+    for name in ("one.mcap", "other.mcap"):
+        replay(bag, scene, output=tmp_path / name)
+    assert (tmp_path / "one.mcap").read_bytes() == (tmp_path / "other.mcap").read_bytes()
+
+
+def test_the_output_has_the_topics_and_types_of_the_node_and_the_log_times_of_its_inputs(
+    tmp_path: Path, bag: Path, scene: Scene, messages: list[BagMessage]
+) -> None:
+    replay(bag, scene, output=tmp_path / "out")
+    assert topics(tmp_path / "out") == {
+        "/impact_predictor/mode": UINT8,
+        "/impact_predictor/post_impact": ODOMETRY,
+        "/impact_predictor/prediction": DIAGNOSTIC_ARRAY,
+        "/impact_predictor/score": DIAGNOSTIC_ARRAY,
+    }
+    outputs = read_outputs(tmp_path / "out")
+    inputs = [message.log_time for message in samples_of(messages)]
+    for name in ("mode", "prediction"):
+        assert [log_time for topic, log_time, _ in outputs if topic.endswith(name)] == inputs
+    typestore = get_typestore(Stores.ROS2_JAZZY)
+    types = topics(tmp_path / "out")
+    for topic, log_time, data in outputs:
+        message = typestore.deserialize_cdr(data, types[topic])
+        assert log_time in inputs
+        if topic.endswith("mode"):
+            assert 0 <= message.data <= 6
+
+
+def test_what_the_end_of_the_record_settles_is_written_with_the_time_of_the_last_sample(
+    tmp_path: Path, bag: Path, scene: Scene, messages: list[BagMessage]
+) -> None:
+    landed = replay(bag, scene).settled[0].score.stamp
+    after = [message for message in samples_of(messages) if decode_odometry(message.data).stamp > landed]
+    cut = write_bag(tmp_path / "cut.mcap", messages[: messages.index(after[2])])
+    result = replay(cut, scene, output=tmp_path / "out.mcap")
+    assert Leftover.TOO_SHORT in result.settled[-1].score.leftover
+    scores = [log_time for topic, log_time, _ in read_outputs(tmp_path / "out.mcap") if topic.endswith("score")]
+    assert scores == [after[1].log_time] * len(result.settled)
+
+
+def test_odd_messages_are_counted_and_leave_the_others_as_they_are(
+    tmp_path: Path, scene: Scene, messages: list[BagMessage]
+) -> None:
+    half = len(messages) // 2
+    good = messages[half]
+    nan = bytearray(good.data)
+    nan[TWIST_OFFSET : TWIST_OFFSET + 8] = b"\xff" * 8
+    assert math.isnan(decode_odometry(bytes(nan)).angular[2])
+    odd = [
+        good._replace(data=bytes(nan)),
+        good._replace(data=good.data[:100]),
+        good._replace(data=b""),
+        good,
+        messages[half - 1]._replace(log_time=good.log_time),
+        BagMessage("/cube/contact_geometry", good.log_time, messages[0].data[:20]),
+    ]
+    spoilt = write_bag(tmp_path / "odd.mcap", [*messages[: half + 1], *odd, *messages[half + 1 :]])
+    result = replay(spoilt, scene, output=tmp_path / "out.mcap")
+    assert result.samples == len(samples_of(messages)) + 5
+    assert result.statuses == {
+        Status.ACCEPTED: len(samples_of(messages)),
+        Status.NOT_FINITE: 1,
+        Status.STAMP_REPEATED: 1,
+        Status.STAMP_WENT_BACK: 1,
+        Status.MALFORMED: 2,
+    }
+    assert result.geometry_statuses == {Status.ACCEPTED: 4, Status.MALFORMED: 1}
+    assert sorted(read_outputs(tmp_path / "out.mcap")) == sorted(predicted_directly(scene, messages))
+
+
+def test_points_of_the_scene_need_no_geometry_in_the_bag(
+    tmp_path: Path, bag: Path, scene: Scene, messages: list[BagMessage]
+) -> None:
+    alone = write_bag(tmp_path / "alone.mcap", samples_of(messages))
+    points = decode_polygon(messages[0].data).points
+    result = replay(alone, scene._replace(points=points))
+    assert result.geometry_statuses == {}
+    assert scores_of(result) == scores_of(replay(bag, scene))
+
+
+def test_without_any_geometry_there_is_no_touchdown_and_a_sentence_says_why(
+    tmp_path: Path, scene: Scene, messages: list[BagMessage]
+) -> None:
+    alone = write_bag(tmp_path / "alone.mcap", samples_of(messages))
+    result = replay(alone, scene, output=tmp_path / "out.mcap")
+    assert result.settled == ()
+    assert result.statuses == {Status.NO_GEOMETRY: result.samples}
+    assert "give body.contact_points in the parameter file" in result.unpredictable
+
+
+def test_a_topic_without_messages_is_told_from_one_without_touchdowns(
+    tmp_path: Path, scene: Scene, messages: list[BagMessage]
+) -> None:
+    malformed = write_bag(tmp_path / "malformed.mcap", [messages[0], messages[1]._replace(data=b"x")])
+    assert "could be decoded" in replay(malformed, scene).unpredictable
+
+
+def test_the_only_topic_of_a_type_is_taken_and_named(bag: Path, scene: Scene) -> None:
+    (note,) = replay(bag, scene).notes
+    assert "/cube/odom as odom and /cube/contact_geometry as contact_geometry" in note
+    told = replay(bag, scene, {"odom": "/cube/odom", "contact_geometry": "cube/contact_geometry"})
+    assert told.notes == ()
+
+
+@pytest.fixture(scope="module")
+def two_bodies(tmp_path_factory: pytest.TempPathFactory, messages: list[BagMessage]) -> Path:
+    """The excerpt, and the beginning of it once more under other topics."""
+    types = {**WANTED, "/b/odom": ODOMETRY, "/odom": ODOMETRY}
+    more = [message._replace(topic="/b/odom") for message in samples_of(messages)[:50]]
+    path = tmp_path_factory.mktemp("two") / "two.mcap"
+    return write_bag(path, sorted([*messages, *more], key=lambda message: message.log_time), types)
+
+
+def test_of_several_topics_one_must_be_chosen(two_bodies: Path, scene: Scene) -> None:
+    with pytest.raises(InputError, match=r"/b/odom, /cube/odom; choose one: --remap odom:=/b/odom$"):
+        replay(two_bodies, scene)
+    assert replay(two_bodies, scene, {"odom": "/b/odom"}).samples == 50
+
+
+def test_a_topic_of_the_name_of_the_input_needs_no_choice(
+    tmp_path: Path, scene: Scene, messages: list[BagMessage]
+) -> None:
+    types = {**WANTED, "/odom": ODOMETRY}
+    other = messages[1]._replace(topic="/odom")
+    named = write_bag(tmp_path / "named.mcap", [*messages[:20], other._replace(log_time=messages[19].log_time)], types)
+    assert replay(named, scene).samples == 1
+
+
+@pytest.mark.parametrize(
+    ("remap", "sentence"),
+    [
+        ({"odom": "/nowhere"}, "has no topic /nowhere of type nav_msgs/msg/Odometry"),
+        ({"odom": "/cube/contact_geometry"}, "odom and contact_geometry cannot both be /cube/contact_geometry"),
+        ({"contact_geometry": "/nowhere"}, "has no topic /nowhere of type geometry_msgs/msg/PolygonStamped"),
+        ({"feet": "/cube/odom"}, "is of no input; the inputs are odom and contact_geometry"),
+    ],
+)
+def test_a_remapping_that_fits_nothing_is_refused(
+    bag: Path, scene: Scene, remap: dict[str, str], sentence: str
+) -> None:
+    with pytest.raises(InputError, match=sentence):
+        replay(bag, scene, remap)
+
+
+def test_the_bag_itself_is_no_output(tmp_path: Path, scene: Scene, messages: list[BagMessage]) -> None:
+    # Of this package's making, as the output of an earlier replay is, which may be replaced.
+    own = write_bag(tmp_path / "own.mcap", messages)
+    before = own.read_bytes()
+    with pytest.raises(InputError, match="is the bag itself; give the predictions another name"):
+        replay(own, scene, output=tmp_path / "." / "own.mcap")
+    assert own.read_bytes() == before
+
+
+def test_a_bag_without_a_state_is_refused(tmp_path: Path, scene: Scene, messages: list[BagMessage]) -> None:
+    points = write_bag(tmp_path / "points.mcap", messages[:1])
+    with pytest.raises(InputError, match="has no topic /odom of type nav_msgs/msg/Odometry; it has"):
+        replay(points, scene)
+
+
+def damage(folder: Path, place: int) -> Path:
+    """The recorded tosses with some kilobytes overwritten."""
+    data = bytearray(RECORDED.read_bytes())
+    data[place : place + 5000] = b"\xff" * 5000
+    path = folder / "damaged.mcap"
+    path.write_bytes(data)
+    return path
+
+
+def test_of_a_damaged_bag_the_readable_part_is_used(tmp_path: Path, scene: Scene) -> None:
+    damaged = damage(tmp_path, 400_000)
+    result = replay(damaged, scene, output=tmp_path / "out.mcap")
+    assert "is damaged" in result.damaged
+    assert 0 < result.samples < 6000
+    assert result.settled
+    assert sum(topic.endswith("mode") for topic, _, _ in read_outputs(tmp_path / "out.mcap")) == result.samples
+
+
+def test_of_a_bag_whose_very_beginning_is_damaged_nothing_is_used(tmp_path: Path, scene: Scene) -> None:
+    damaged = damage(tmp_path, 100)
+    with pytest.raises(InputError, match="is damaged"):
+        replay(damaged, scene, output=tmp_path / "out.mcap")
+    assert not (tmp_path / "out.mcap").exists()
+
+
+def test_progress_is_told(bag: Path, scene: Scene) -> None:
+    told: list[int] = []
+    result = replay(bag, scene, progress=told.append)
+    assert told
+    assert told == sorted(told)
+    assert told[-1] <= result.samples
+
+
+def test_rules_of_a_remapping_are_read_like_those_of_ros() -> None:
+    assert remapping(("odom:=/a/odom", "contact_geometry:=feet")) == {"odom": "/a/odom", "contact_geometry": "feet"}
+
+
+@pytest.mark.parametrize("rule", ["odom", "odom:=", ":=/odom", "odom=/a"])
+def test_a_rule_that_is_none_is_refused(rule: str) -> None:
+    with pytest.raises(InputError, match="is not of the form from:=to"):
+        remapping((rule,))

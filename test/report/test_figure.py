@@ -1,0 +1,84 @@
+"""The picture: written in both formats, for many touchdowns and for none."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+from impact_predictor.errors import InputError
+from impact_predictor.mechanics.types import Mode, Twist
+from impact_predictor.report.figure import write_figure
+from impact_predictor.report.summary import LEAD_TIME_EDGES, Errors, LeadTimeErrors, TouchdownRow
+
+ROWS = [
+    TouchdownRow(
+        "cube",
+        k * 10**9,
+        0.06,
+        0.003,
+        Mode(1 + k % 6),
+        Twist(1.0, -0.5, -10.0),
+        Twist(0.05 * k, 0.1, -0.4 * k),
+        Twist(0.05 * k + 0.02, 0.12, -0.39 * k),
+        0.05,
+        0.01 * k,
+        0.01,
+        True,
+        (),
+    )
+    for k in range(30)
+]
+OUTLIER = ROWS[0]._replace(relative_error=40.0)
+UNMEASURED = ROWS[0]._replace(measured=None, relative_error=None, scored=False)
+ERRORS = [
+    LeadTimeErrors(begin, begin + 0.01, Errors(5, 0.05, 0.1) if begin < 0.035 else Errors(0, None, None))
+    for begin in LEAD_TIME_EDGES[:-1]
+]
+NO_ERRORS = [one._replace(errors=Errors(0, None, None)) for one in ERRORS]
+
+
+@pytest.mark.parametrize("suffix", [".png", ".svg", ".PNG"])
+def test_it_is_written_in_the_format_of_its_name(tmp_path: Path, suffix: str) -> None:
+    path = tmp_path / f"picture{suffix}"
+    write_figure(path, [*ROWS, OUTLIER, UNMEASURED], ERRORS, "Thirty touchdowns")
+    data = path.read_bytes()
+    if suffix == ".svg":
+        root = ElementTree.fromstring(data)
+        assert root.tag.endswith("svg")
+        assert len(data) > 20_000
+    else:
+        assert data.startswith(b"\x89PNG")
+        assert len(data) > 20_000
+
+
+@pytest.mark.parametrize("rows", [[], [UNMEASURED], ROWS[:1], ROWS[1:3]])
+def test_few_touchdowns_or_none_make_a_picture_without_a_warning(
+    tmp_path: Path, rows: list[TouchdownRow], recwarn: pytest.WarningsRecorder
+) -> None:
+    write_figure(tmp_path / "few.png", rows, NO_ERRORS, "Few")
+    assert (tmp_path / "few.png").stat().st_size > 5_000
+    assert not recwarn.list
+
+
+def test_the_same_results_make_the_same_picture(tmp_path: Path) -> None:
+    for name in ("one.svg", "other.svg"):
+        write_figure(tmp_path / name, ROWS, ERRORS, "Twice")
+    assert (tmp_path / "one.svg").read_bytes() == (tmp_path / "other.svg").read_bytes()
+
+
+def test_another_format_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"give a name that ends in \.png or \.svg"):
+        write_figure(tmp_path / "picture.gif", ROWS, ERRORS, "")
+
+
+def test_a_missing_folder_is_said(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"the folder of .* does not exist"):
+        write_figure(tmp_path / "nowhere/picture.png", ROWS, ERRORS, "")
+
+
+def test_a_place_that_cannot_be_written_is_said(tmp_path: Path) -> None:
+    (tmp_path / "taken.png").mkdir()
+    with pytest.raises(InputError, match="cannot be written"):
+        write_figure(tmp_path / "taken.png", ROWS, ERRORS, "")

@@ -1,0 +1,156 @@
+"""Rows of touchdowns, what they say together, and the JSON of a replay."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from impact_predictor.bags.replay import Result, Settled
+from impact_predictor.mechanics.types import Flag, Mode, Twist
+from impact_predictor.prediction.types import Leftover, Prediction, Sample, Score, Status, Touchdown
+from impact_predictor.report.summary import (
+    Errors,
+    as_json,
+    error_by_lead_time,
+    errors_of,
+    quantile,
+    reasons,
+    row_of,
+    row_of_message,
+    summarize,
+)
+from impact_predictor.ros.messages import decode_diagnostic_array, encode_score
+
+SAMPLE = Sample(
+    10**9, "world", "cube", (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), (0.0,) * 3, (0.0,) * 3, (0.0,) * 36, (0.0,) * 36
+)
+TOUCHDOWN = Touchdown(
+    lead_time=0.004,
+    mode=Mode.PIVOT_SLIDE,
+    before=Twist(1.0, -0.5, -4.0),
+    after=Twist(0.75, 0.25, -3.0),
+    impulses=((0.0, 0.0), (0.5, -0.125)),
+    segments=("++", "O+"),
+    energy_lost=0.25,
+    flags=Flag.REVERSED_SLIP,
+    unique=True,
+    law="path",
+    old=(0, 1),
+    new=(2, 3),
+    axis=(0.0, 1.0, 0.0),
+    position=(0.0, 0.0, 0.0),
+    orientation=(0.0, 0.0, 0.0, 1.0),
+    linear=(0.0, 0.0, 0.0),
+    angular=(0.0, 0.0, 0.0),
+    half_distance=0.05,
+    off_axis=0.125,
+    lateral=0.0,
+    closing_spread=0.001,
+    offset=0.0,
+    leftover=Leftover.NONE,
+)
+SCORED = Score(
+    1_004_000_000,
+    TOUCHDOWN,
+    Twist(0.5, 0.125, -2.0),
+    0.25,
+    True,
+    Leftover.NONE,
+    ((0.055, 0.5), (0.01, 0.3), (0.004, 0.25)),
+)
+UNSCORED = SCORED._replace(scored=False, leftover=Leftover.OUT_OF_PLANE | Leftover.ONE_CORNER_FIRST)
+UNMEASURED = SCORED._replace(measured=None, relative_error=None, scored=False, leftover=Leftover.TOO_SHORT, history=())
+
+
+@pytest.mark.parametrize("score", [SCORED, UNSCORED, UNMEASURED])
+def test_a_row_of_the_message_is_the_row_of_the_score(score: Score) -> None:
+    data = encode_score(Prediction(Status.ACCEPTED, SAMPLE, None, score))
+    assert data is not None
+    (diagnostic,) = decode_diagnostic_array(data)
+    assert row_of_message("cube", diagnostic.values, 1e-4) == row_of("cube", score, 1e-4)
+
+
+def test_the_flags_of_a_row_say_first_why_it_is_not_scored() -> None:
+    assert row_of("cube", UNSCORED).flags == ("OUT_OF_PLANE", "ONE_CORNER_FIRST", "REVERSED_SLIP")
+
+
+def test_only_scored_rows_count() -> None:
+    scores = [SCORED, SCORED._replace(relative_error=0.75), UNSCORED, UNMEASURED]
+    assert errors_of(row_of("cube", score) for score in scores) == Errors(2, 0.5, pytest.approx(0.7))
+    assert errors_of([]) == Errors(0, None, None)
+
+
+def test_every_reason_of_an_unscored_row_is_counted() -> None:
+    rows = [row_of("cube", score) for score in (SCORED, UNSCORED, UNSCORED, UNMEASURED)]
+    assert reasons(rows) == {"OUT_OF_PLANE": 2, "ONE_CORNER_FIRST": 2, "TOO_SHORT": 1}
+
+
+def test_every_prediction_of_a_scored_touchdown_counts_at_its_lead_time() -> None:
+    late = SCORED._replace(history=((0.07, 9.0), (-0.001, 9.0), (0.0, 0.1)))
+    errors = error_by_lead_time([SCORED, UNSCORED, UNMEASURED, late])
+    assert [(one.begin, one.errors.number) for one in errors] == [
+        (0.0, 2),
+        (0.01, 1),
+        (0.02, 0),
+        (0.03, 0),
+        (0.04, 0),
+        (0.05, 1),
+    ]
+    assert errors[0].errors.median == pytest.approx(0.175)
+    assert errors[2].errors.median is None
+
+
+@pytest.mark.parametrize("size", [1, 2, 9, 10, 11])
+def test_quantiles_are_those_of_numpy(size: int) -> None:
+    values = [((7 * k) % size) ** 1.5 for k in range(size)]
+    for part in (0.0, 0.5, 0.9, 1.0):
+        # Both interpolate the same two numbers, by different roundings.
+        assert quantile(values, part) == pytest.approx(float(np.quantile(values, part)), rel=1e-14)
+    assert summarize(values).median == pytest.approx(float(np.median(values)))
+
+
+def test_the_json_of_a_replay_has_the_promised_keys_and_no_nan() -> None:
+    result = Result(
+        bag="a.mcap",
+        samples=4,
+        seconds=0.001,
+        settled=tuple(Settled("cube", score, 1e-4) for score in (SCORED, UNMEASURED)),
+        statuses={Status.ACCEPTED: 3, Status.NOT_FINITE: 1},
+        geometry_statuses={Status.ACCEPTED: 1},
+        notes=(),
+        unpredictable="",
+        damaged="",
+    )
+    answer = json.loads(json.dumps(as_json(result), allow_nan=False))
+    assert answer["bag"] == "a.mcap"
+    assert answer["samples"] == 4
+    assert answer["us_per_sample"] == pytest.approx(250.0)
+    assert answer["median_relative_error"] == 0.25
+    assert answer["statuses"] == {"ACCEPTED": 3, "NOT_FINITE": 1}
+    assert answer["error_by_lead_time"][0] == {"from": 0.0, "to": 0.01, "count": 1, "median": 0.25, "p90": 0.25}
+    assert answer["touchdowns"][0] == {
+        "body": "cube",
+        "stamp": 1_004_000_000,
+        "announced_lead_time": 0.055,
+        "lead_time": 0.004,
+        "mode": "PIVOT_SLIDE",
+        "predicted_twist": [0.75, 0.25, -3.0],
+        "measured_twist": [0.5, 0.125, -2.0],
+        "before_twist": [1.0, -0.5, -4.0],
+        "half_distance": 0.05,
+        "relative_error": 0.25,
+        "out_of_plane": 0.125,
+        "scored": True,
+        "flags": ["REVERSED_SLIP"],
+    }
+    unmeasured = answer["touchdowns"][1]
+    assert (unmeasured["measured_twist"], unmeasured["relative_error"], unmeasured["scored"]) == (None, None, False)
+    assert "damaged" not in answer
+    assert as_json(result._replace(damaged="the end"))["damaged"] == "the end"
+
+
+def test_the_json_of_an_empty_replay_has_nothing_to_divide() -> None:
+    answer = as_json(Result("a.mcap", 0, 0.001, (), {}, {}, (), "there is no message", ""))
+    assert (answer["us_per_sample"], answer["median_relative_error"], answer["touchdowns"]) == (None, None, [])

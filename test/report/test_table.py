@@ -1,0 +1,106 @@
+"""Tables: every number is whole, whatever the width of the terminal."""
+
+from __future__ import annotations
+
+import io
+import re
+
+import pytest
+from rich.console import Console
+from rich.table import Table
+
+from impact_predictor.mechanics.types import Mode, Twist
+from impact_predictor.report.summary import Errors, LeadTimeErrors, TouchdownRow
+from impact_predictor.report.table import conclusions, lead_time_table, show, touchdown_table
+
+ROW = TouchdownRow(
+    body="cube",
+    stamp=5_690_729_123_456,
+    announced=0.058,
+    lead_time=0.0123,
+    mode=Mode.PIVOT_SLIDE,
+    before=Twist(-1.3, -0.9, -15.0),
+    predicted=Twist(-1.234, 0.571, -11.52),
+    measured=Twist(-1.199, 0.512, -10.25),
+    half_distance=0.05,
+    relative_error=0.1234,
+    out_of_plane=0.01,
+    scored=True,
+    flags=("REVERSED_SLIP",),
+    cost=98e-6,
+)
+UNSCORED = ROW._replace(scored=False, flags=("OUT_OF_PLANE", "ONE_CORNER_FIRST"), cost=None)
+UNMEASURED = ROW._replace(measured=None, relative_error=None, scored=False, flags=("TOO_SHORT",))
+NUMBERS = {"-1.234", "0.571", "-11.52", "-1.199", "0.512", "-10.25", "12.3", "98"}
+
+
+def printed(table: Table, width: int) -> str:
+    text = io.StringIO()
+    show(Console(file=text, width=width), table)
+    return text.getvalue()
+
+
+@pytest.mark.parametrize("width", [40, 80, 100, 120])
+def test_no_number_is_cut_off_at_any_width(width: int) -> None:
+    text = printed(touchdown_table([ROW, UNSCORED, UNMEASURED], width), width)
+    assert set(text.split()) >= {*NUMBERS, "5690.729", "12.3", "PIVOT_SLIDE"}
+    assert "…" not in text
+
+
+@pytest.mark.parametrize("width", [80, 120])
+def test_the_lines_fit_the_terminal(width: int) -> None:
+    text = printed(touchdown_table([ROW, UNSCORED, UNMEASURED], width), width)
+    assert max(map(len, text.splitlines())) <= width
+
+
+def test_a_wide_terminal_has_predicted_beside_measured() -> None:
+    (line,) = [line for line in printed(touchdown_table([ROW], 120), 120).splitlines() if "PIVOT_SLIDE" in line]
+    assert set(line.split()) >= NUMBERS
+
+
+def test_very_large_numbers_are_whole_too() -> None:
+    row = ROW._replace(predicted=Twist(-123456.789, 0.0, -1234567.89))
+    assert set(printed(touchdown_table([row], 80), 80).split()) >= {"-123456.789", "-1234567.89"}
+
+
+def test_times_of_day_are_counted_from_the_first_touchdown() -> None:
+    first = ROW._replace(stamp=1_605_971_434_083_000_000)
+    text = printed(touchdown_table([first, first._replace(stamp=first.stamp + 1_500_000_000)], 120), 120)
+    assert "since" in text
+    assert {"0.000", "1.500"} <= set(text.split())
+
+
+def test_the_body_is_named_where_there_are_several() -> None:
+    other = ROW._replace(body="barrel")
+    assert "barrel" in printed(touchdown_table([ROW, other], 120), 120)
+    assert "cube" not in printed(touchdown_table([ROW, ROW], 120), 120)
+
+
+def test_why_a_touchdown_is_not_scored_stands_beside_it() -> None:
+    text = printed(touchdown_table([UNSCORED], 160), 160)
+    assert "not scored: out of plane, one corner first" in text
+
+
+def test_without_costs_and_notes_there_are_no_columns_for_them() -> None:
+    text = printed(touchdown_table([ROW._replace(cost=None, flags=())], 120), 120)
+    assert "cost" not in text
+    assert "notes" not in text
+
+
+def test_a_table_of_nothing_has_its_header() -> None:
+    assert "predicted" in printed(touchdown_table([], 80), 80)
+
+
+def test_lead_times_without_predictions_have_no_error() -> None:
+    errors = [LeadTimeErrors(0.0, 0.01, Errors(3, 0.0625, 0.125)), LeadTimeErrors(0.01, 0.02, Errors(0, None, None))]
+    lines = [re.split(r"\s{2,}", line.strip()) for line in printed(lead_time_table(errors), 80).splitlines()]
+    assert ["0 to 10", "3", "6.2", "12.5"] in lines
+    assert ["10 to 20", "0", "-", "-"] in lines
+
+
+def test_conclusions_count_the_scored_and_explain_the_others() -> None:
+    assert conclusions([ROW, UNSCORED, UNMEASURED]) == [
+        "1 of 3 touchdowns scored: relative error 12.3 % in the median, 90 % below 12.3 %.",
+        "2 not scored, for one or several reasons each: 1 out of plane, 1 one corner first, 1 too short.",
+    ]
+    assert conclusions([]) == ["0 of 0 touchdowns scored."]

@@ -1,0 +1,161 @@
+import pytest
+
+from impact_predictor.mechanics.types import Flag, Mode, Twist
+from impact_predictor.prediction.types import Leftover, Score, Status, Touchdown
+from impact_predictor.ros.cdr import ERROR, OK, WARN, decode_diagnostic_array
+from impact_predictor.ros.diagnostics import REMEDIES, STALE_AFTER, Diagnostics, Refused
+
+SECOND = 1_000_000_000
+BAD = Refused("odom", Status.NOT_FINITE)
+
+
+@pytest.fixture
+def diagnostics():
+    return Diagnostics("impact_predictor", 0.0)
+
+
+def accept(diagnostics, now, stamp=None, latency=0, update=50e-6, total=80e-6):
+    return diagnostics.accepted(now, round(now * SECOND) if stamp is None else stamp, latency, update, total)
+
+
+def report(diagnostics, now=0.0):
+    (status,) = decode_diagnostic_array(diagnostics.report(now, round(now * SECOND)))
+    return status
+
+
+def scored(error, is_scored=True):
+    twist = Twist(0.0, 0.0, 0.0)
+    zero = (0.0, 0.0, 0.0)
+    touchdown = Touchdown(
+        *(0.0, Mode.STOP, twist, twist, ((0.0, 0.0), (0.0, 0.0)), (), 0.0, Flag.NONE, True, "path", (), (0,)),
+        *(zero, zero, (0.0, 0.0, 0.0, 1.0), zero, zero, 0.0, 0.0, 0.0, 0.0, 0.0, Leftover.NONE),
+    )
+    return Score(0, touchdown, twist, error, is_scored, Leftover.NONE, ())
+
+
+def test_before_the_first_sample_it_warns_and_says_whether_anybody_publishes(diagnostics):
+    diagnostics.second_over(1.0)
+    assert report(diagnostics).level == WARN
+    assert report(diagnostics).message == "no sample yet: nobody publishes on odom"
+    diagnostics.publishers = 1
+    diagnostics.second_over(2.0)
+    assert report(diagnostics).message == "no sample yet"
+
+
+def test_the_first_sample_makes_it_ok_at_once_and_later_ones_are_no_change(diagnostics):
+    assert accept(diagnostics, 0.1)
+    assert report(diagnostics).level == OK
+    assert not accept(diagnostics, 0.2)
+
+
+def test_the_first_refused_message_is_a_warning_at_once_and_the_next_is_no_change(diagnostics):
+    accept(diagnostics, 0.1)
+    assert diagnostics.refused(0.2, BAD)
+    assert diagnostics.level == WARN
+    assert not diagnostics.refused(0.3, BAD)
+
+
+def test_a_warning_stays_until_a_whole_second_went_without_a_refused_message(diagnostics):
+    accept(diagnostics, 0.1)
+    diagnostics.refused(0.9, BAD)
+    assert not diagnostics.second_over(1.0)
+    assert not accept(diagnostics, 1.1)
+    assert diagnostics.level == WARN
+    assert diagnostics.second_over(2.0)
+    assert diagnostics.level == OK
+
+
+def test_a_second_of_nothing_but_refused_messages_is_an_error_until_a_sample_is_accepted(diagnostics):
+    accept(diagnostics, 0.1)
+    diagnostics.second_over(1.0)
+    diagnostics.refused(1.5, BAD)
+    assert diagnostics.level == WARN
+    assert diagnostics.second_over(2.0)
+    assert diagnostics.level == ERROR
+    assert "NOT_FINITE: a field is NaN" in report(diagnostics).message
+    assert accept(diagnostics, 2.1)
+    assert diagnostics.level == WARN
+
+
+def test_samples_that_wait_for_the_geometry_are_a_warning_however_long_it_takes(diagnostics):
+    for second in range(3):
+        diagnostics.refused(second + 0.5, Refused("odom", Status.NO_GEOMETRY))
+        diagnostics.second_over(second + 1.0)
+        assert diagnostics.level == WARN
+    assert "publish them on contact_geometry or give body.contact_points" in report(diagnostics).message
+
+
+def test_an_input_that_stops_is_a_warning_that_says_since_when(diagnostics):
+    accept(diagnostics, 0.5)
+    assert not diagnostics.second_over(0.5 + STALE_AFTER)
+    assert diagnostics.second_over(2.0)
+    assert report(diagnostics).message == "no sample for 1.5 s"
+    assert accept(diagnostics, 2.1)
+    assert diagnostics.level == OK
+
+
+def test_an_endpoint_that_qos_keeps_away_is_a_warning_that_names_it(diagnostics):
+    diagnostics.misfits = ["/odom from driver: best effort"]
+    accept(diagnostics, 0.1)
+    diagnostics.second_over(1.0)
+    assert diagnostics.level == WARN
+    assert "/odom from driver: best effort" in report(diagnostics).message
+
+
+def test_every_status_that_occurred_has_a_counter_for_its_input(diagnostics):
+    for _ in range(3):
+        diagnostics.refused(0.1, BAD)
+    diagnostics.refused(0.2, Refused("contact_geometry", Status.TOO_FEW_POINTS))
+    diagnostics.second_over(1.0)
+    diagnostics.refused(1.1, BAD)
+    values = report(diagnostics).values
+    counters = {key: value for key, value in values.items() if key.startswith("refused.")}
+    assert counters == {"refused.contact_geometry.TOO_FEW_POINTS": "1", "refused.odom.NOT_FINITE": "4"}
+
+
+def test_only_the_first_message_refused_for_a_reason_in_a_second_is_news(diagnostics):
+    news = []
+    for now in (0.1, 0.2, 1.1):
+        if now > 1.0:
+            diagnostics.second_over(1.0)
+        diagnostics.refused(now, BAD)
+        news.append(diagnostics.is_news(BAD))
+    assert news == [True, False, True]
+
+
+def test_every_status_but_accepted_says_where_to_look():
+    assert REMEDIES.keys() == set(Status) - {Status.ACCEPTED}
+
+
+def test_rate_gap_and_cost_are_those_of_the_second_that_is_over(diagnostics):
+    for now, update in ((0.1, 40e-6), (0.2, 50e-6), (0.5, 900e-6), (0.6, 45e-6)):
+        accept(diagnostics, now, update=update, total=2.0 * update)
+    diagnostics.second_over(2.0)
+    values = report(diagnostics, 2.0).values
+    assert values["samples.accepted"] == "4"
+    assert values["samples.rate"] == "2.0"
+    assert values["samples.largest_gap"] == "0.3000"
+    assert values["samples.seconds_since_last"] == "1.400"
+    assert values["cost_us.update.median"] == "47.5"
+    assert values["cost_us.update.max"] == "900.0"
+    assert values["cost_us.total.median"] == "95.0"
+    diagnostics.second_over(3.0)
+    assert "cost_us.update.median" not in report(diagnostics).values
+
+
+def test_latency_is_told_only_where_stamps_come_from_the_same_clock(diagnostics):
+    accept(diagnostics, 0.1, latency=2_000_000)
+    diagnostics.second_over(1.0)
+    assert report(diagnostics).values["samples.latency"] == "0.002000"
+    accept(diagnostics, 1.1, latency=1_700_000_000 * SECOND)
+    diagnostics.second_over(2.0)
+    assert "samples.latency" not in report(diagnostics).values
+
+
+def test_touchdowns_are_counted_and_the_error_is_the_median_of_the_scored(diagnostics):
+    for error, is_scored in ((0.05, True), (0.5, False), (0.07, True), (0.09, True)):
+        diagnostics.settled("cube", scored(error, is_scored))
+    values = report(diagnostics).values
+    assert values["touchdowns"] == "4"
+    assert values["touchdowns.scored"] == "3"
+    assert values["touchdowns.median_relative_error"] == "0.0700"

@@ -1,0 +1,92 @@
+"""The promise that a bag gives what the topics gave."""
+
+import importlib.util
+import os
+import time
+from pathlib import Path
+
+import pytest
+
+from impact_predictor.bags.read import read_messages, topics
+from impact_predictor.bags.replay import replay
+from impact_predictor.bags.write import BagWriter
+from impact_predictor.parameter_file import read_parameters
+from impact_predictor.parameters import validate
+from impact_predictor.prediction.predictor import Predictor
+from impact_predictor.prediction.scene import Scene
+from impact_predictor.prediction.types import Leftover
+from impact_predictor.ros.messages import OUTPUTS, POLYGON, decode_odometry, decode_polygon
+from impact_predictor.ros.player import timed
+from impact_predictor.ros.processes import Child
+from impact_predictor.ros.recorder import LISTENING
+
+ROOT = Path(__file__).parents[2]
+SCENE = ROOT / "config/cube_tosses.yaml"
+BAG = ROOT / "examples/cube_tosses"
+LOSSLESS = ("-p", "qos_overrides./odom.subscription.reliability:=reliable")
+PATIENCE = 40.0
+
+needs_ros = pytest.mark.skipif(
+    importlib.util.find_spec("rclpy") is None,
+    reason="live topics need ROS 2: source it, or install the extra `ros`",
+)
+
+
+def program(name, *arguments):
+    return Child(name, dict(os.environ), "-m", f"impact_predictor.ros.{name}", *arguments)
+
+
+def wait(until, *running):
+    patience = time.monotonic() + PATIENCE
+    while not until():
+        for child in running:
+            child.check()
+        assert time.monotonic() < patience, [child.complained() for child in running]
+        time.sleep(0.05)
+
+
+def excerpt(path):
+    """Three tosses, cut off right after a touchdown, so that its score comes from the end of the record."""
+    types = topics(BAG)
+    messages = [message for _, message in timed(read_messages(BAG, types), 3)]
+    predictor = Predictor(scene())
+    last_score = 0
+    for k, message in enumerate(messages):
+        if types[message.topic] == POLYGON:
+            predictor.set_geometry(decode_polygon(message.data))
+        elif predictor.update(decode_odometry(message.data)).score is not None:
+            last_score = k
+    with BagWriter(path) as writer:
+        for message in messages[: last_score - 1]:
+            writer.write(message.topic, types[message.topic], message.log_time, message.data)
+
+
+def scene():
+    return Scene.from_parameters(validate(read_parameters(SCENE)))
+
+
+@needs_ros
+@pytest.mark.slow
+@pytest.mark.parametrize("executor", ["single", "events"])
+def test_live_topics_give_what_the_replay_of_the_bag_gives_byte_for_byte(tmp_path, executor):
+    excerpt(tmp_path / "excerpt.mcap")
+    replayed = replay(tmp_path / "excerpt.mcap", scene(), output=tmp_path / "replayed.mcap")
+    assert Leftover.TOO_SHORT in replayed.settled[-1].score.leftover
+    remapping = ("--ros-args", "-r", "/cube/odom:=/odom", "-r", "/cube/contact_geometry:=/contact_geometry")
+    arguments = ("--ros-args", "--params-file", str(SCENE), "-p", f"executor:={executor}", *LOSSLESS)
+    with program("recorder", str(tmp_path / "live.mcap")) as recorder, program("node", *arguments) as node:
+        wait(lambda: LISTENING in recorder.said(), recorder, node)
+        with program("player", str(tmp_path / "excerpt.mcap"), *remapping) as player:
+            wait(lambda: player.ended, recorder, node)
+            player.end()
+        time.sleep(0.5)
+        node.end()
+        recorder.end()
+    for name, output in OUTPUTS.items():
+        topic = f"/impact_predictor/{name}"
+        live, offline = (
+            [message.data for message in read_messages(tmp_path / file, {topic: output.type_name})]
+            for file in ("live.mcap", "replayed.mcap")
+        )
+        assert len(live) == len(offline) > 0
+        assert live == offline

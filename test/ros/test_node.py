@@ -1,0 +1,270 @@
+"""The node as a process of its own, over real DDS."""
+
+import math
+import os
+import time
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from impact_predictor.ros.messages import OUTPUTS, decode_diagnostic_array
+from impact_predictor.ros.processes import Child
+
+pytest.importorskip("rclpy", reason="the node needs ROS 2: source it, or install the extra `ros`")
+
+import rclpy
+from geometry_msgs.msg import Point32, PolygonStamped
+from nav_msgs.msg import Odometry
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.serialization import serialize_message
+from std_msgs.msg import UInt8
+
+from impact_predictor.ros.process import message_class
+
+SCENE = Path(__file__).parents[2] / "config/cube_tosses.yaml"
+HALF = 0.05
+
+RELIABLE = QoSProfile(depth=100)
+BEST_EFFORT = QoSProfile(depth=100, reliability=ReliabilityPolicy.BEST_EFFORT)
+LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+POINTS = [[x, y, z] for x in (-HALF, HALF) for y in (-HALF, HALF) for z in (-HALF, HALF)]
+FIXED_POINTS = ("-p", f"body.contact_points:={[number for point in POINTS for number in point]}")
+
+# A busy machine starts a process within a second or two; a test that waits longer has failed.
+PATIENCE = 20.0
+
+
+class Peer:
+    """The rest of the ROS graph: what publishes to the node and hears it."""
+
+    def __init__(self, context):
+        self.node = rclpy.create_node("peer", context=context)
+        self.executor = SingleThreadedExecutor(context=context)
+        self.executor.add_node(self.node)
+        self.heard = {name: [] for name in (*OUTPUTS, "diagnostics")}
+        for name in OUTPUTS:
+            self.hear(f"/impact_predictor/{name}", OUTPUTS[name].type_name, self.heard[name])
+        self.hear("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray", self.heard["diagnostics"])
+
+    def hear(self, topic, type_name, heard):
+        self.node.create_subscription(message_class(type_name), topic, heard.append, QoSProfile(depth=1000), raw=True)
+
+    def until(self, condition):
+        """Serve the topics until something is so."""
+        patience = time.monotonic() + PATIENCE
+        while not condition():
+            assert time.monotonic() < patience, f"not within {PATIENCE:.0f} s; reported: {self.report()}"
+            self.executor.spin_once(timeout_sec=0.02)
+
+    def publisher(self, message_type, topic, qos):
+        return self.node.create_publisher(message_type, topic, qos)
+
+    def connected(self, publisher):
+        """A publisher that the node has found, and whose subscription has found it."""
+        self.until(publisher.get_subscription_count)
+        end = time.monotonic() + 0.3
+        self.until(lambda: time.monotonic() > end)
+        return publisher
+
+    def report(self):
+        """The latest of the node's reports on itself."""
+        return decode_diagnostic_array(self.heard["diagnostics"][-1])[0] if self.heard["diagnostics"] else None
+
+    def reported(self, key):
+        return None if self.report() is None else self.report().values.get(key)
+
+
+@pytest.fixture
+def peer():
+    context = rclpy.Context()
+    context.init()
+    peer = Peer(context)
+    yield peer
+    peer.executor.shutdown()
+    peer.node.destroy_node()
+    context.shutdown()
+
+
+@contextmanager
+def running(*arguments):
+    """The node as a process; it must end in order when asked to."""
+    ros = ("--ros-args", "--params-file", str(SCENE), *arguments)
+    with Child("node", dict(os.environ), "-m", "impact_predictor.ros.node", *ros) as child:
+        yield child
+        child.end()
+
+
+def odometry(k, frame="world", **changes):
+    """A cube that falls, tilted; sample k of 100 a second."""
+    message = Odometry()
+    message.header.stamp.sec, hundredths = divmod(k, 100)
+    message.header.stamp.nanosec = hundredths * 10_000_000
+    message.header.frame_id, message.child_frame_id = frame, "cube"
+    message.pose.pose.position.z = 0.5
+    message.pose.pose.orientation.y, message.pose.pose.orientation.w = math.sin(0.2), math.cos(0.2)
+    message.twist.twist.linear.z = changes.get("vz", -1.0)
+    if "quaternion" in changes:
+        message.pose.pose.orientation.y = message.pose.pose.orientation.w = changes["quaternion"]
+    return message
+
+
+def polygon(points=POINTS):
+    message = PolygonStamped()
+    message.header.frame_id = "cube"
+    message.polygon.points = [Point32(x=x, y=y, z=z) for x, y, z in points]
+    return message
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("qos", [RELIABLE, BEST_EFFORT], ids=["reliable", "best_effort"])
+@pytest.mark.parametrize("executor", ["single", "events"])
+def test_every_accepted_sample_is_answered_with_one_mode_and_one_prediction(peer, executor, qos):
+    with running(*FIXED_POINTS, "-p", f"executor:={executor}"):
+        samples = peer.connected(peer.publisher(Odometry, "odom", qos))
+        for k in range(30):
+            samples.publish(odometry(k))
+            peer.executor.spin_once(timeout_sec=0.01)
+        peer.until(lambda: len(peer.heard["mode"]) >= 30 and len(peer.heard["prediction"]) >= 30)
+        stamps = [decode_diagnostic_array(data)[0].values["stamp"] for data in peer.heard["prediction"]]
+        assert stamps == [str(k * 10_000_000) for k in range(30)]
+        assert len(peer.heard["mode"]) == 30
+        peer.until(lambda: peer.reported("samples.accepted") == "30" and peer.reported("cost_us.update.median"))
+
+
+@pytest.mark.slow
+def test_fixed_points_leave_no_subscription_to_contact_geometry(peer):
+    with running(*FIXED_POINTS):
+        peer.until(lambda: peer.node.count_subscribers("/odom"))
+        assert not peer.node.count_subscribers("/contact_geometry")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("executor", ["single", "events"])
+def test_samples_before_the_geometry_are_refused_by_name_and_those_after_it_answered(peer, executor):
+    with running("-p", f"executor:={executor}"):
+        samples = peer.connected(peer.publisher(Odometry, "odom", RELIABLE))
+        samples.publish(odometry(0))
+        peer.until(lambda: peer.reported("refused.odom.NO_GEOMETRY") == "1")
+        peer.connected(peer.publisher(PolygonStamped, "contact_geometry", RELIABLE)).publish(polygon())
+        samples.publish(odometry(50))
+        peer.until(lambda: peer.heard["mode"])
+        assert peer.reported("samples.accepted") is not None
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("executor", ["single", "events"])
+def test_geometry_that_was_latched_before_the_node_started_is_found(peer, executor):
+    peer.publisher(PolygonStamped, "contact_geometry", LATCHED).publish(polygon())
+    with running("-p", f"executor:={executor}"):
+        samples = peer.connected(peer.publisher(Odometry, "odom", RELIABLE))
+        count = iter(range(10_000))
+
+        def answered():
+            samples.publish(odometry(next(count)))
+            return peer.heard["mode"]
+
+        peer.until(answered)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("qos", [RELIABLE, BEST_EFFORT, LATCHED], ids=["reliable", "best_effort", "latched"])
+def test_geometry_that_changes_while_the_node_runs_is_taken_from_every_kind_of_publisher(peer, qos):
+    with running():
+        geometry = peer.connected(peer.publisher(PolygonStamped, "contact_geometry", qos))
+        # Two points that a falling body meets later than eight.
+        for points in (POINTS[:1], POINTS, POINTS[:2]):
+            geometry.publish(polygon(points))
+        peer.until(lambda: peer.reported("refused.contact_geometry.TOO_FEW_POINTS") == "1")
+        samples = peer.connected(peer.publisher(Odometry, "odom", RELIABLE))
+        samples.publish(odometry(0))
+        peer.until(lambda: peer.heard["mode"])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("executor", ["single", "events"])
+def test_bad_messages_are_counted_by_name_and_the_node_goes_on(peer, executor):
+    with running("-p", f"executor:={executor}") as node:
+        peer.connected(peer.publisher(PolygonStamped, "contact_geometry", RELIABLE)).publish(polygon())
+        samples = peer.connected(peer.publisher(Odometry, "odom", RELIABLE))
+        samples.publish(odometry(10))
+        peer.until(lambda: peer.heard["mode"])
+        whole = serialize_message(odometry(11))
+        for bad in (
+            odometry(11, vz=math.nan),
+            odometry(11, vz=math.inf),
+            odometry(11, quaternion=0.0),
+            odometry(11, quaternion=2.0),
+            odometry(10),
+            odometry(9),
+            odometry(11, frame="elsewhere"),
+            whole[:100],
+            whole[:2],
+            b"",
+        ):
+            samples.publish(bad)
+        samples.publish(odometry(12))
+        counts = {
+            "refused.odom.NOT_FINITE": "2",
+            "refused.odom.BAD_QUATERNION": "2",
+            "refused.odom.STAMP_REPEATED": "1",
+            "refused.odom.STAMP_WENT_BACK": "1",
+            "refused.odom.WRONG_FRAME": "1",
+        }
+        peer.until(lambda: len(peer.heard["mode"]) == 2)
+        peer.until(lambda: counts.items() <= peer.report().values.items())
+        # DDS itself may drop a message without any bytes.
+        assert int(peer.reported("refused.odom.MALFORMED")) in (2, 3)
+        assert peer.report().level > 0
+        good = iter(range(13, 10_000))
+
+        def recovered():
+            samples.publish(odometry(next(good)))
+            return peer.report().level == 0
+
+        peer.until(recovered)
+        assert "refused a message on odom NOT_FINITE: a field is NaN" in node.complained()
+        assert "Traceback" not in node.complained()
+
+
+@pytest.mark.slow
+def test_publishers_and_subscribers_that_qos_keeps_apart_from_the_node_are_named(peer):
+    with running(*FIXED_POINTS, "-p", "qos_overrides./odom.subscription.reliability:=reliable"):
+        peer.until(lambda: peer.reported("incompatible_qos") == "0")
+        peer.publisher(Odometry, "odom", BEST_EFFORT)
+        peer.until(lambda: peer.reported("incompatible_qos") == "1")
+        assert "the publisher on /odom from peer is best effort, but" in peer.report().message
+        peer.node.create_subscription(UInt8, "/impact_predictor/mode", print, LATCHED)
+        peer.until(lambda: peer.reported("incompatible_qos") == "2")
+
+
+@pytest.fixture
+def node_without_peers(monkeypatch):
+    """The node in this process, and the names of what it encodes."""
+    from impact_predictor.ros import predictor_node
+
+    encoded = []
+
+    def counting(name, output):
+        return output._replace(encode=lambda prediction: encoded.append(name) or output.encode(prediction))
+
+    monkeypatch.setattr(predictor_node, "OUTPUTS", {name: counting(name, output) for name, output in OUTPUTS.items()})
+    rclpy.init(args=["--ros-args", "--params-file", str(SCENE), *FIXED_POINTS])
+    node = predictor_node.PredictorNode()
+    yield node, encoded
+    node.destroy_node()
+    rclpy.shutdown()
+
+
+def test_nothing_is_encoded_for_a_topic_without_subscribers(node_without_peers):
+    node, encoded = node_without_peers
+    node._on_odometry(serialize_message(odometry(0)))
+    assert encoded == []
+    heard = node.create_subscription(message_class(OUTPUTS["mode"].type_name), "~/mode", print, 10)
+    patience = time.monotonic() + PATIENCE
+    while not node.count_subscribers(heard.topic_name) and time.monotonic() < patience:
+        time.sleep(0.01)
+    time.sleep(0.1)
+    node._on_odometry(serialize_message(odometry(1)))
+    assert encoded == ["mode"]

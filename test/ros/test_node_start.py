@@ -1,0 +1,110 @@
+"""How the node starts, refuses to start, and ends."""
+
+import importlib.util
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+needs_ros = pytest.mark.skipif(
+    importlib.util.find_spec("rclpy") is None,
+    reason="the node needs ROS 2: source it, or install the extra `ros`",
+)
+NODE = [sys.executable, "-m", "impact_predictor.ros.node"]
+SCENE = Path(__file__).parents[2] / "config/cube_tosses.yaml"
+PATIENCE = 20.0
+
+
+@needs_ros
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("executor", ["single", "events"])
+def test_a_signal_ends_the_node_with_status_0_whenever_it_comes(number, executor):
+    for moment in (0.0, 0.05, 0.1, 0.2, 0.4, 0.8, 1.6):
+        arguments = ("--ros-args", "--params-file", SCENE, "-p", f"executor:={executor}")
+        node = subprocess.Popen([*NODE, *arguments], stderr=subprocess.PIPE, text=True)
+        send(node, number, moment)
+        _, complaint = node.communicate(timeout=PATIENCE)
+        assert (node.returncode, complaint) == (0, "")
+
+
+def send(node, number, moment):
+    """Send a signal some time after the program has begun: before its first line, a signal is for the interpreter."""
+    patience = time.monotonic() + PATIENCE
+    while not blocks(node.pid, number):
+        assert time.monotonic() < patience
+        time.sleep(0.005)
+    time.sleep(moment)
+    node.send_signal(number)
+
+
+def blocks(process, number):
+    """Whether a process takes a signal in its own time."""
+    status = Path(f"/proc/{process}/status").read_text()
+    (mask,) = [line.split()[1] for line in status.splitlines() if line.startswith("SigBlk:")]
+    return bool(int(mask, 16) >> (number - 1) & 1)
+
+
+def run_node(*arguments, code=None):
+    program = [sys.executable, "-c", code] if code else NODE
+    return subprocess.run([*program, *arguments], capture_output=True, text=True, timeout=PATIENCE)
+
+
+def sentence_of(finished):
+    """What the node says itself; rcl may log on its own before that."""
+    (sentence,) = [line for line in finished.stderr.splitlines() if line.startswith("impact_predictor: ")]
+    assert "Traceback" not in finished.stderr
+    return sentence
+
+
+@needs_ros
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ((), "the parameter body.mass is missing"),
+        (("--params-file", SCENE, "-p", "body.mas:=1.0"), "no parameter body.mas, did you mean body.mass"),
+        (("--params-file", SCENE, "-p", "body.mass:=0.0"), "body.mass is 0.0, but"),
+        (("--params-file", SCENE, "-p", "body.mass:=1"), "write 1.0 for 1"),
+        (("--params-file", SCENE, "-p", "contact.friction:=.nan"), "contact.friction is nan, but"),
+        (("--params-file", SCENE, "-p", "body.contact_points:=[]"), "leave it out"),
+        (("--params-file", SCENE, "-p", "executor:=fast"), "'single' or 'events'"),
+        (("--params-file", SCENE, "-p", "qos_overrides./odom.subscription.reliability:=maybe"), "maybe"),
+        (("--params-file", SCENE, "-p", "qos_overrides./odom.subscription.depth:=many"), "whole number of messages"),
+        (("--params-file", SCENE, "-p", "qos_overrides./odm.subscription.depth:=9"), "is of no topic of this node"),
+        (("--params-file", "nowhere.yaml"), "nowhere.yaml"),
+        (("--params-file", __file__), "Couldn't parse params file"),
+    ],
+)
+def test_a_bad_parameter_is_one_sentence_and_a_status_that_is_not_0(arguments, said):
+    finished = run_node("--ros-args", *map(str, arguments))
+    assert finished.returncode == 1
+    assert said in sentence_of(finished)
+
+
+def test_without_rclpy_the_node_says_in_one_sentence_what_to_do():
+    code = "import sys; sys.modules['rclpy'] = None\nfrom impact_predictor.ros.node import main; sys.exit(main())"
+    finished = run_node(code=code)
+    assert finished.returncode == 2
+    assert len(finished.stderr.splitlines()) == 1
+    assert "source /opt/ros/jazzy/setup.bash" in finished.stderr
+    assert "pip install 'impact_predictor[ros]'" in finished.stderr
+
+
+@needs_ros
+@pytest.mark.slow
+def test_the_node_imports_nothing_that_only_the_offline_commands_need():
+    heavy = {"click", "matplotlib", "numba", "rich", "rosbags", "ruamel", "scipy"}
+    code = (
+        "import sys\n"
+        "from impact_predictor.ros.node import main\n"
+        f"main(['', '--ros-args', '--params-file', {str(SCENE)!r}])\n"
+        f"print(*({heavy} & sys.modules.keys()), 'impact_predictor.ros.predictor_node' in sys.modules)"
+    )
+    node = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True)
+    send(node, signal.SIGINT, 1.0)
+    printed, _ = node.communicate(timeout=PATIENCE)
+    assert (node.returncode, printed) == (0, "True\n")

@@ -1,0 +1,59 @@
+import os
+import socket
+import time
+
+import pytest
+
+from impact_predictor.errors import InputError
+from impact_predictor.ros import processes
+from impact_predictor.ros.processes import Child, ros_environment
+
+
+def python(code):
+    return Child("test", dict(os.environ), "-c", code)
+
+
+def wait(child):
+    while not child.ended:
+        time.sleep(0.01)
+    return child
+
+
+def test_a_process_that_ends_in_order_is_no_error():
+    with python("print('done', flush=True)") as child:
+        wait(child).end()
+        assert child.said() == "done\n"
+
+
+@pytest.mark.slow
+def test_a_process_that_runs_is_asked_to_end_with_sigint():
+    code = "import time\ntry:\n  print('up', flush=True); time.sleep(60)\nexcept KeyboardInterrupt: print('asked')"
+    with python(code) as child:
+        while "up" not in child.said():
+            child.check()
+        child.end()
+        assert child.said() == "up\nasked\n"
+
+
+def test_a_process_that_fails_is_quoted_in_one_sentence():
+    with python("import sys; sys.exit('no such scene\\nat all')") as child, pytest.raises(InputError) as error:
+        wait(child).end()
+    assert str(error.value) == "the process of the test ended with status 1: no such scene / at all"
+
+
+@pytest.mark.slow
+def test_a_process_that_does_not_listen_is_not_left_running(monkeypatch):
+    monkeypatch.setattr(processes, "PATIENCE", 0.2)
+    deaf = "import signal, time; signal.signal(signal.SIGINT, signal.SIG_IGN); print('up', flush=True); time.sleep(60)"
+    child = python(deaf)
+    with child:
+        while "up" not in child.said():
+            child.check()
+    assert child.ended
+
+
+def test_processes_get_a_ros_domain_that_nobody_uses():
+    domain = int(ros_environment()["ROS_DOMAIN_ID"])
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
+        taken.bind(("", 7400 + 250 * domain))
+        assert not processes._is_free(domain)

@@ -1,0 +1,127 @@
+import importlib.util
+from pathlib import Path
+
+import pytest
+
+from impact_predictor.bags.read import topics
+from impact_predictor.bags.write import BagWriter
+from impact_predictor.demo import play, read_recording, run_demo
+from impact_predictor.errors import InputError
+from impact_predictor.resources import find
+from impact_predictor.ros.cdr import OK, DiagnosticForm
+from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY
+from impact_predictor.ros.recorder import NODE, TOPICS
+
+needs_ros = pytest.mark.skipif(
+    importlib.util.find_spec("rclpy") is None,
+    reason="the demonstration needs ROS 2: source it, or install the extra `ros`",
+)
+SECOND = 1_000_000_000
+BEFORE = {"before.vx": "1.0", "before.vy": "-0.5", "before.omega": "-8.0"}
+SCORE = {
+    **BEFORE,
+    "stamp": str(SECOND),
+    "mode": "PIVOT",
+    "scored": "true",
+    "leftover": "NONE",
+    "flags": "NONE",
+    "announced": "0.058",
+    "lead_time": "0.005",
+    "half_distance": "0.05",
+    "off_axis": "0.1",
+    "predicted.vx": "0.8",
+    "predicted.vy": "0.0",
+    "predicted.omega": "-2.0",
+    "measured.vx": "0.7",
+    "measured.vy": "0.0",
+    "measured.omega": "-2.0",
+    "relative_error": "0.0928",
+}
+
+
+def message(values):
+    return DiagnosticForm("impact_predictor/test", *values).fill(0, "", OK, "", "", list(values.values()))
+
+
+def predicted(milliseconds_before, vx, new="2 3"):
+    stamp = str(SECOND - milliseconds_before * 1_000_000)
+    return message({"stamp": stamp, "old": "0 1", "new": new, "after.vx": str(vx), "after.omega": "-2.0"})
+
+
+@pytest.fixture
+def recording(tmp_path):
+    """Writes a recording of messages given as topics and bytes, and reads it."""
+
+    def read(*messages):
+        with BagWriter(tmp_path / "recorded.mcap") as writer:
+            for topic in (f"{NODE}/prediction", f"{NODE}/score", "/diagnostics"):
+                writer.write(topic, DIAGNOSTIC_ARRAY, 0, message({"stamp": "0"}) if "score" not in topic else OTHER)
+            for k, (topic, data) in enumerate(messages):
+                writer.write(topic, DIAGNOSTIC_ARRAY, k + 1, data)
+        return read_recording(tmp_path / "recorded.mcap")
+
+    return read
+
+
+OTHER = message({**SCORE, "scored": "false"})
+
+
+def test_a_touchdown_costs_what_the_node_reports_next(recording):
+    result = recording(
+        ("/diagnostics", message({"cost_us.update.median": "50.0"})),
+        (f"{NODE}/score", message(SCORE)),
+        (f"{NODE}/score", message(SCORE)),
+        ("/diagnostics", message({"cost_us.update.median": "70.0"})),
+        (f"{NODE}/score", message(SCORE)),
+    )
+    costs = [row.cost and round(row.cost * 1e6) for row in result.rows]
+    assert costs == [50, 70, 70, None]
+
+
+def test_the_errors_of_earlier_predictions_are_those_with_the_contacts_of_the_last(recording):
+    result = recording(
+        (f"{NODE}/prediction", predicted(100, vx=5.0)),
+        (f"{NODE}/prediction", predicted(35, vx=0.9)),
+        (f"{NODE}/prediction", predicted(25, vx=5.0, new="4")),
+        (f"{NODE}/prediction", predicted(5, vx=0.8)),
+        (f"{NODE}/score", message(SCORE)),
+    )
+    medians = [one.errors.median for one in result.lead_time_errors]
+    # The velocity scale is hypot(1.0, 8.0 * 0.05).
+    assert medians == [
+        pytest.approx(0.1 / 1.0770, rel=1e-3),
+        None,
+        None,
+        pytest.approx(0.2 / 1.0770, rel=1e-3),
+        None,
+        None,
+    ]
+
+
+@needs_ros
+@pytest.mark.slow
+def test_the_demonstration_writes_predictions_and_a_picture_and_prints_what_was_scored(tmp_path, capsys):
+    assert run_demo(tmp_path / "demo", tosses=3) == 0
+    printed = capsys.readouterr().out
+    assert "touchdowns scored" in printed
+    assert "BACK_PIVOT" in printed
+    assert topics(tmp_path / "demo/predictions.mcap") == TOPICS
+    assert (tmp_path / "demo/touchdowns.png").read_bytes().startswith(b"\x89PNG")
+
+
+@needs_ros
+@pytest.mark.slow
+def test_a_process_that_dies_ends_the_demonstration_with_its_own_sentence(tmp_path):
+    scene = tmp_path / "scene.yaml"
+    scene.write_text("/**:\n  ros__parameters:\n    body:\n      mass: -1.0\n")
+    with pytest.raises(
+        InputError, match=r"the process of the node ended with status 1: .*body.mass is -1.0, but"
+    ) as error:
+        play(find("examples/cube_tosses"), scene, 1, tmp_path / "predictions.mcap")
+    assert "\n" not in str(error.value)
+
+
+def test_an_output_folder_that_cannot_be_made_is_one_sentence(tmp_path):
+    Path(tmp_path / "file").write_text("")
+    with pytest.raises(InputError, match="cannot be made"):
+        run_demo(tmp_path / "file" / "demo")
