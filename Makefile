@@ -1,0 +1,81 @@
+# `make demo` and `make test` do everything on a machine with Python and make; `make help` lists the rest.
+
+PYTHON ?= python3
+ARGS ?=
+BIN := .venv/bin
+
+export ROS_AUTOMATIC_DISCOVERY_RANGE := LOCALHOST
+export ROS_LOG_DIR ?= $(CURDIR)/log
+
+# A sourced ROS is used as it is; everywhere else ROS comes from PyPI into .venv. The two are never mixed.
+# An rclpy of wheels in another environment, active now, is not a sourced one.
+ROS := wheels
+SOURCED := import sys, rclpy; print(sys.prefix == sys.base_prefix or not rclpy.__file__.startswith(sys.prefix))
+ifdef ROS_DISTRO
+ifeq ($(shell $(PYTHON) -c '$(SOURCED)' 2>/dev/null),True)
+ROS := $(ROS_DISTRO)
+else ifdef AMENT_PREFIX_PATH
+ROS := unusable
+endif
+endif
+
+ifeq ($(ROS),wheels)
+EXTRAS := [ros,fast,test]
+CONSTRAINTS := constraints/jazzy.txt
+# The wheels do not say where their ament index is.
+export AMENT_PREFIX_PATH := $(CURDIR)/.venv
+# Left behind by the Python of another environment with ROS wheels, and wrong in this one.
+ifdef _ROS_WHEELS_BOOTSTRAP_COMPLETE
+unexport _ROS_WHEELS_BOOTSTRAP_COMPLETE LD_LIBRARY_PATH
+endif
+else
+EXTRAS := [fast,test]
+CONSTRAINTS := .venv/constraints.txt
+SYSTEM_SITE := --system-site-packages
+endif
+
+# One stamp for each Python and each source of ROS, so that another choice makes the environment anew.
+READY := .venv/.ready-$(ROS)-$(subst /,_,$(PYTHON))
+
+.PHONY: all test demo lint types check test-install clean help
+
+all: $(READY) ## the environment in .venv (the default)
+
+$(READY): setup.py constraints/jazzy.txt tools/requirements.txt
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 10))' || { \
+	  echo "make: $(PYTHON) is not Python 3.10 or newer; give one that is: make PYTHON=python3.12" >&2; exit 1; }
+	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || { \
+	  echo "make: $(PYTHON) cannot make virtual environments; install python3-venv (Debian, Ubuntu), or give another Python: make PYTHON=python3.12" >&2; exit 1; }
+	@[ "$(ROS)" != unusable ] || { \
+	  echo "make: ROS $(ROS_DISTRO) is sourced, but $(PYTHON) cannot import its rclpy; give the Python it was built for: make PYTHON=/usr/bin/python3" >&2; exit 1; }
+	@echo "Installing impact_predictor and what it needs into .venv (ROS: $(ROS)): about a minute."
+	@$(PYTHON) -m venv --clear $(SYSTEM_SITE) .venv
+	@# The messages of a sourced ROS are compiled against the numpy of the system.
+	@[ "$(ROS)" = wheels ] || $(BIN)/python -c 'import numpy; print("numpy==" + numpy.__version__)' > $(CONSTRAINTS)
+	@$(BIN)/python -m pip install --quiet --quiet --disable-pip-version-check --editable '.$(EXTRAS)' \
+	  --constraint $(CONSTRAINTS) --requirement tools/requirements.txt
+	@touch '$@'
+
+test: $(READY) ## all tests, the quick ones first; ARGS="-k rod" runs some
+	@$(BIN)/python -m pytest --numprocesses 2 $(ARGS)
+
+demo: $(READY) ## plays recorded tosses of a cube through ROS topics, and shows what was predicted
+	@$(BIN)/impact-predictor demo $(ARGS)
+
+lint: $(READY) ## ruff: rules and format
+	@$(BIN)/ruff check .
+	@$(BIN)/ruff format --check .
+
+types: $(READY) ## mypy, strict
+	@$(BIN)/mypy
+
+check: lint types test ## lint, types and tests
+
+test-install: ## installs with pip and with colcon into empty environments, and uses what was installed
+	@$(PYTHON) tools/test_install.py $(ARGS)
+
+clean: ## removes what make, pip and colcon made
+	rm -rf .venv build install log dist out ./*.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
+
+help: ## this list
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "make %-13s %s\n", $$1, $$2}' Makefile

@@ -1,0 +1,66 @@
+"""Build and install of impact_predictor, for pip and for colcon."""
+
+from pathlib import Path
+
+from setuptools import find_packages, setup
+
+NAME = "impact_predictor"
+SHARE = f"share/{NAME}"
+
+
+def files_of(folder: str) -> list[tuple[str, list[str]]]:
+    """Every file below a folder, with the place under share/ where it is installed."""
+    folders = [Path(folder), *sorted(path for path in Path(folder).rglob("*") if path.is_dir())]
+    return [
+        (f"{SHARE}/{place.as_posix()}", [path.as_posix() for path in sorted(place.iterdir()) if path.is_file()])
+        for place in folders
+        if place.name != "__pycache__"
+    ]
+
+
+setup(
+    name=NAME,
+    version="0.1.0",
+    description="Predicts the next touchdown of a rigid body: when, in which contact mode, with which velocities",
+    maintainer="impact_predictor maintainers",
+    maintainer_email="maintainers@users.noreply.github.com",
+    license="Apache-2.0",
+    classifiers=[
+        "Intended Audience :: Science/Research",
+        "Operating System :: POSIX :: Linux",
+        "Programming Language :: Python :: 3",
+        "Topic :: Scientific/Engineering :: Physics",
+        "Typing :: Typed",
+    ],
+    python_requires=">=3.10",
+    packages=find_packages(include=[NAME, f"{NAME}.*"]),
+    package_data={NAME: ["py.typed"]},
+    data_files=[
+        ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
+        (SHARE, ["package.xml"]),
+        *files_of("config"),
+        *files_of("examples"),
+        *files_of("launch"),
+    ],
+    install_requires=[
+        "click>=8.1",
+        "matplotlib>=3.6",
+        "numpy>=1.26",
+        "rich>=13",
+        # Brings ruamel.yaml too, the reader of the parameter files.
+        "rosbags>=0.11,<0.12",
+        "scipy>=1.11",
+    ],
+    extras_require={
+        "ros": ["ros-jazzy-common-interfaces", "ros-jazzy-rclpy[fastrtps]"],
+        "fast": ["numba"],
+        "test": ["hypothesis", "pytest", "pytest-xdist"],
+    },
+    entry_points={
+        "console_scripts": [
+            "impact-predictor = impact_predictor.cli:main",
+            "predictor = impact_predictor.ros.node:main",
+        ],
+    },
+    zip_safe=False,
+)

@@ -1,0 +1,105 @@
+import re
+import runpy
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+from xml.etree import ElementTree
+
+import pytest
+
+import impact_predictor
+
+ROOT = Path(__file__).parents[1]
+
+
+@pytest.fixture
+def setup_arguments(monkeypatch):
+    """What setup.py hands to setuptools, which need not be installed for that."""
+    arguments = {}
+    fake = SimpleNamespace(find_packages=lambda **_: [], setup=lambda **given: arguments.update(given))
+    monkeypatch.setitem(sys.modules, "setuptools", fake)
+    monkeypatch.chdir(ROOT)
+    runpy.run_path(str(ROOT / "setup.py"))
+    return arguments
+
+
+@pytest.fixture
+def manifest():
+    return ElementTree.parse(ROOT / "package.xml").getroot()
+
+
+def test_package_xml_setup_py_changelog_and_the_library_name_one_version(setup_arguments, manifest):
+    version = manifest.findtext("version")
+    assert setup_arguments["version"] == version
+    assert impact_predictor.__version__ == version
+    newest = re.search(r"^(\S+) \(.+\)\n-+$", (ROOT / "CHANGELOG.rst").read_text(), re.MULTILINE)
+    assert newest is not None
+    assert newest[1] == version
+
+
+def test_package_xml_and_setup_py_name_one_maintainer_and_licence(setup_arguments, manifest):
+    maintainer = manifest.find("maintainer")
+    assert setup_arguments["maintainer"] == maintainer.text
+    assert setup_arguments["maintainer_email"] == maintainer.get("email")
+    assert setup_arguments["license"] == manifest.findtext("license")
+    assert (ROOT / manifest.find("license").get("file")).is_file()
+
+
+def test_colcon_builds_it_as_an_ament_python_package(manifest):
+    assert manifest.get("format") == "3"
+    assert manifest.findtext("export/build_type") == "ament_python"
+
+
+def test_the_marker_of_the_ament_index_has_the_name_of_the_package(setup_arguments, manifest):
+    marker = f"resource/{manifest.findtext('name')}"
+    assert ("share/ament_index/resource_index/packages", [marker]) in setup_arguments["data_files"]
+    assert (ROOT / marker).is_file()
+
+
+def test_every_folder_of_modules_is_a_package_so_that_setup_py_finds_it():
+    folders = {path.parent for path in (ROOT / "impact_predictor").rglob("*.py")}
+    assert not {folder.name for folder in folders if not (folder / "__init__.py").is_file()}
+
+
+def test_the_marker_of_typed_packages_is_shipped(setup_arguments):
+    [marker] = setup_arguments["package_data"]["impact_predictor"]
+    assert marker == "py.typed"
+    assert (ROOT / "impact_predictor" / marker).is_file()
+
+
+def test_every_file_of_config_examples_and_launch_is_installed_under_share(setup_arguments):
+    installed = {file: place for place, files in setup_arguments["data_files"] for file in files}
+    shipped = [
+        path.relative_to(ROOT)
+        for folder in ("config", "examples", "launch")
+        for path in (ROOT / folder).rglob("*")
+        if path.is_file() and "__pycache__" not in path.parts
+    ]
+    assert {path.as_posix(): f"share/impact_predictor/{path.parent.as_posix()}" for path in shipped}.items() <= (
+        installed.items()
+    )
+    assert Path("examples/cube_tosses/cube_tosses.mcap") in shipped
+
+
+def test_the_scene_that_the_launch_file_starts_with_is_shipped():
+    default = re.search(r'"config", "(.+?)"', (ROOT / "launch/predictor.launch.py").read_text())
+    assert default is not None
+    assert (ROOT / "config" / default[1]).is_file()
+
+
+def test_ros_from_pypi_is_pinned_wherever_setup_py_asks_for_it(setup_arguments):
+    pinned = {line.partition("==")[0] for line in (ROOT / "constraints/jazzy.txt").read_text().split()}
+    assert {re.match(r"[\w-]+", requirement)[0] for requirement in setup_arguments["extras_require"]["ros"]} <= pinned
+
+
+def test_package_xml_asks_for_no_package_that_only_pip_has(manifest):
+    dependencies = {element.text for element in manifest if element.tag.endswith("depend")}
+    assert not {name for name in dependencies if name.endswith("-pip") or "rosbags" in name}
+
+
+def test_every_ros_package_that_the_code_imports_is_in_package_xml(manifest):
+    code = "\n".join(path.read_text() for path in (ROOT / "impact_predictor").rglob("*.py"))
+    ros = r"(rclpy|ament_index_python|\w+_msgs|\w+_interfaces)"
+    imported = set(re.findall(rf"^\s*(?:from|import) {ros}\b", code, re.MULTILINE))
+    imported |= set(re.findall(rf'"{ros}/msg/', code))
+    assert imported <= {element.text for element in manifest.findall("exec_depend")}
