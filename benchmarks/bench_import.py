@@ -1,0 +1,54 @@
+"""How long imports take, each in a fresh process.
+
+    python benchmarks/bench_import.py
+
+Prints a row for each: median, spread and worst of the runs in ms, Python's own start not included.
+"""
+
+from __future__ import annotations
+
+import statistics
+import subprocess
+import sys
+from typing import Final
+
+from rich.console import Console
+from rich.table import Table
+
+RUNS: Final = 15
+LIMIT: Final = 150.0
+"""ms that the library may take."""
+
+IMPORTS: Final = {
+    "the library": "impact_predictor",
+    "what the node needs besides ROS": "impact_predictor.prediction.predictor, impact_predictor.ros.messages",
+    "impact-predictor --help": "impact_predictor.cli",
+    "impact-predictor solve": "impact_predictor.cli, impact_predictor.report.outcome",
+    "impact-predictor replay": "impact_predictor.cli, impact_predictor.bags.replay, impact_predictor.report.replay",
+    "... --figure": "impact_predictor.cli, impact_predictor.report.figure",
+}
+TIMED: Final = "import time; begin = time.perf_counter(); import {}; print(1e3 * (time.perf_counter() - begin))"
+
+
+def milliseconds(modules: str) -> list[float]:
+    """How long an import takes, one number for each run; the first, which fills the caches, is left out."""
+    command = [sys.executable, "-c", TIMED.format(modules)]
+    runs = [subprocess.run(command, check=True, capture_output=True, text=True) for _ in range(RUNS + 1)]
+    return [float(run.stdout) for run in runs[1:]]
+
+
+def main() -> int:
+    """Print the table; the exit status says whether the library is fast enough."""
+    table = Table("import of", "median", "5 to 95 %", "worst", title=f"Import times in ms, {RUNS} runs each")
+    medians = {}
+    for name, modules in IMPORTS.items():
+        times = milliseconds(modules)
+        low, *_, high = statistics.quantiles(times, n=20)
+        medians[name] = statistics.median(times)
+        table.add_row(name, f"{medians[name]:.0f}", f"{low:.0f} to {high:.0f}", f"{max(times):.0f}")
+    Console().print(table)
+    return 0 if medians["the library"] <= LIMIT else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
