@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import cos, isfinite, sin
+from math import cos, isfinite, pi, sin
 
 from ..errors import InputError
 from .types import Contact, TwoPointBody
@@ -80,6 +80,8 @@ def cylinder(
     not_negative(friction=friction)
     fraction(restitution=restitution)
     ahead = gamma if gamma_new is None else gamma_new
+    if not 0.0 < gamma + ahead < pi:
+        raise InputError(f"gamma is {gamma} and gamma_new {ahead}; give angles in rad with a sum between 0 and pi")
     old = Contact(-radius * sin(gamma), -radius * cos(gamma), friction, (sin(gamma), cos(gamma)))
     new = Contact(radius * sin(ahead), -radius * cos(ahead), friction, (-sin(ahead), cos(ahead)), restitution)
     return TwoPointBody(mass, inertia, old, new)
@@ -92,6 +94,9 @@ def flat(
     positive(inertia=inertia)
     not_negative(friction=friction)
     fraction(restitution=restitution)
+    for name, value in {"a": a, "b": b}.items():
+        if not isfinite(value):
+            raise InputError(f"{name} is {value}; give a finite number")
     if not a + b > 0.0:
         raise InputError(f"the contacts are {a} m behind and {b} m ahead of the mass centre; give a + b > 0")
     return TwoPointBody(

@@ -31,7 +31,7 @@ def solve_impact(body: TwoPointBody, twist: Twist, law: str = "path") -> Outcome
     `body` is a TwoPointBody in SI units; without an old contact the impact is a one-point impact. `twist` is
     (vx, vy, omega) of the mass centre right before. `law` is "path" (Routh's impulse path, Poisson restitution at the
     new contact) or "total" (the paper's impulses of the whole impact, Newton restitution). Where both contacts are
-    struck the total law answers.
+    struck the total law answers; without restitution it is the last resort where a law has no answer.
 
     Input that no body can have gives Flag.INVALID_INPUT, never an exception; an unknown law raises ValueError.
     Source: the paper, sections 2 to 4, generalised.
@@ -47,23 +47,23 @@ def solve_impact(body: TwoPointBody, twist: Twist, law: str = "path") -> Outcome
 
     mass, _, old, _ = body
     notes = OLD_RESTITUTION_IGNORED if restitution_old > 0.0 and cna >= 0.0 else 0
-    if law == "path":
-        if cna < 0.0:
-            law, notes = "total", notes | BOTH_STRUCK
-        else:
-            impact = path_law.solve(problem, 0)
-            if impact[12] & NO_SOLUTION:
-                law, notes = "total", notes | LAST_RESORT
-    if law == "total":
+    if law == "path" and cna < 0.0:
+        law, notes = "total", notes | BOTH_STRUCK
+    impact = LAWS[law](problem, 0)
+    if impact[12] & NO_SOLUTION:
+        law, problem = "total", without_restitution(problem)
         impact = total_law.solve(problem, 0)
+        if impact[12] & NO_SOLUTION:
+            return unchanged(twist, law, flags_of(notes | NO_SOLUTION))
+        notes |= LAST_RESORT
     others: list[Impact] = []
     if impact[13] > 1:
         impact, others = all_answers(problem, law, impact)
 
     na, ta, nb, tb, vna, vta, vnb, vtb, dx, dy, dq, segments, flags, _ = impact
     after = twist_after(twist, frame, dx, dy, dq)
-    if flags & NO_SOLUTION or not isfinite(after[0] + after[1] + after[2]):
-        return unchanged(twist, law, flags_of(flags | notes | NO_SOLUTION))
+    if not isfinite(after[0] + after[1] + after[2]):
+        return unchanged(twist, law, flags_of(notes | NO_SOLUTION))
     speed = abs(cnb) + abs(ctb)
     work = nb * (cnb + vnb) + tb * (ctb + vtb)
     if old is not None:
@@ -82,6 +82,11 @@ def solve_impact(body: TwoPointBody, twist: Twist, law: str = "path") -> Outcome
         tuple([alternative(other, twist, frame, STAYS * speed) for other in others]) if others else (),
         law,
     )
+
+
+def without_restitution(problem: Problem) -> Problem:
+    pair, _, _, cna, cta, cnb, ctb, zero_a, zero_b = problem
+    return pair, 0.0, 0.0, cna, cta, cnb, ctb, zero_a, zero_b
 
 
 def alternative(impact: Impact, twist: Twist, frame: Frame, zero: float) -> Alternative:

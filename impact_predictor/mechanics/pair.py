@@ -73,7 +73,7 @@ def open_rates(pair: Pair, b: int, cna: float) -> Rates:
         bq = qb + tb * sb
     bx, by = tb * cos - sin, tb * sin + cos
     rna = by + qa * bq
-    if rna < 0.0 and cna <= 0.0 and below_rounding(rna, by, qa * bq):
+    if rna < 0.0 and cna <= 0.0 and rna < -ROUNDING * (abs(by) + abs(qa * bq)):
         return NOT_CONSISTENT
     rtb = 0.0 if b == STICK else tb + sb * bq
     return True, 0.0, 0.0, tb, rna, bx + sa * bq, 1.0 + qb * bq, rtb, bx, by, bq
@@ -142,8 +142,7 @@ def slide_stick_rates(pair: Pair, a: int, cta: float) -> Rates:
         return NOT_CONSISTENT
     na = -lift / den
     tb = -(qb * sb + na * (cos * ax + sin + sb * (qa + ax * sa))) / (1.0 + sb * sb)
-    room = fb - abs(tb)
-    if room < 0.0 and below_rounding(room, fb):
+    if abs(tb) > fb * (1.0 + ROUNDING):
         return NOT_CONSISTENT
     turn = (cos * ey - sin * ex + qb * eq) / den
     dx, dq = turn * qx, -turn * cos

@@ -174,7 +174,7 @@ def solve(problem: Problem, choice: int) -> Impact:
             if restitution == 0.0:
                 break
             compressing, target = False, (1.0 + restitution) * nb
-            decided = (a == STICK or cta != 0.0 or a == OPEN) and (b == STICK or ctb != 0.0)
+            decided = (cna > 0.0 if a == OPEN else a == STICK or cta != 0.0) and (b == STICK or ctb != 0.0)
         elif event == EXPANDED or event == WORK_RETURNED:
             if event == WORK_RETURNED:
                 notes |= WORK_LIMITED

@@ -50,7 +50,8 @@ def choose(pair: Pair, cna: float, cta: float, ctb: float, compressing: bool, ch
         a = PLUS if cta > 0.0 else MINUS
     if a != STICK:
         best = slide_rates(pair, a, b, cta, ctb)
-    return 1 if best[0] and goes_on(best, a, b, cta, ctb, compressing) else 0, a, b, best
+    found = best[0] and (best[6] > 0.0 or goes_on(best, a, b, cta, ctb, compressing))
+    return 1 if found else 0, a, b, best
 
 
 def at_rest(pair: Pair, b: int, best: Rates, compressing: bool, choice: int) -> States:
@@ -94,7 +95,7 @@ def while_old_slides(pair: Pair, b: int, best: Rates, cta: float, compressing: b
         if one_answer and found:
             break
         candidate = slide_stick_rates(pair, a, cta) if b == STICK else slide_rates(pair, a, b, cta, 0.0)
-        if candidate[0] and goes_on(candidate, a, b, cta, 0.0, compressing):
+        if candidate[0] and (candidate[6] > 0.0 or goes_on(candidate, a, b, cta, 0.0, compressing)):
             if found <= choice:
                 best_a, best_b, best = a, b, candidate
             found += 1
@@ -123,7 +124,7 @@ def try_all(
                 candidate = slide_stick_rates(pair, a, cta)
             else:
                 candidate = rolling_rates(pair) if tied else wedged_rates(pair)
-            if candidate[0] and goes_on(candidate, a, b, cta, ctb, compressing):
+            if candidate[0] and (candidate[6] > 0.0 or goes_on(candidate, a, b, cta, ctb, compressing)):
                 if found <= choice:
                     best_a, best_b, best = a, b, candidate
                 found += 1
@@ -131,7 +132,8 @@ def try_all(
 
 
 def goes_on(rate: Rates, a: int, b: int, cta: float, ctb: float, compressing: bool) -> bool:
-    """Whether these rates of closed contacts end: with the compression of B, or when a slip comes to zero."""
-    return (
-        not compressing or rate[6] > 0.0 or (a >= PLUS and cta * rate[5] < 0.0) or (b >= PLUS and ctb * rate[7] < 0.0)
-    )
+    """Whether rates of closed contacts that do not slow down the approach of B end: when a slip comes to zero.
+
+    While B expands they always do, with its impulse.
+    """
+    return not compressing or (a >= PLUS and cta * rate[5] < 0.0) or (b >= PLUS and ctb * rate[7] < 0.0)

@@ -67,7 +67,7 @@ def one_alone(pair: Pair, gna: float, gnb: float, ctb: float) -> Solution:
         dq = bq * nb
     dx, dy = cos * tb - sin * nb, cos * nb + sin * tb
     gap = gna + dy + qa * dq
-    opens = gap >= 0.0 or not below_rounding(gap, gna, dy, qa * dq)
+    opens = gap >= 0.0 or gap >= -ROUNDING * (abs(gna) + abs(dy) + abs(qa * dq))
     return opens, OPEN, b, 0.0, 0.0, nb, tb, dx, dy, dq
 
 
@@ -89,7 +89,7 @@ def both_slide(pair: Pair, a: int, b: int, gna: float, cta: float, gnb: float, c
         na -= gna * (1.0 + qb * bq)
         nb += gna * (cos - sin * ax + qb * aq)
     na, nb = na / den, nb / den
-    if (na < 0.0 and below_rounding(na, nb)) or (nb < 0.0 and below_rounding(nb, na)):
+    if na < -ROUNDING * abs(nb) or nb < -ROUNDING * abs(na):
         return NOT_POSSIBLE
     dx, dy, dq = gnb * (pq - py * qa), gnb * px * qa, -gnb * px
     if gna != 0.0:
@@ -127,8 +127,8 @@ def one_sticks(pair: Pair, gna: float, cta: float, gnb: float, ctb: float) -> So
     ta = (qa * (bx * dy - by * dx) + dx * bq - bx * dq) / -push
     room = fa * na - abs(ta)
     held = not (
-        (na < 0.0 and below_rounding(na, nb))
-        or (nb < 0.0 and below_rounding(nb, na))
+        na < -ROUNDING * abs(nb)
+        or nb < -ROUNDING * abs(na)
         or (room < 0.0 and below_rounding(room, fa * na, ta, fa * nb))
     )
     return held, STICK, b, na, ta, nb, tb * nb, dx, dy, dq

@@ -96,13 +96,19 @@ def contacts_of(scene: Scene, posture: Posture) -> Contacts | None:
     if fastest >= slowest:
         return None
     limit = STANDING * max(max(rates), -fastest)
-    old = [i for i, gap in enumerate(gaps) if gap <= scene.tolerance and -limit <= rates[i] <= limit]
-    base = sum([gaps[i] for i in old]) / len(old) if old else 0.0
-    closing = [(max(0.0, gaps[i] - base) / -rate, i) for i, rate in enumerate(rates) if rate < slowest and i not in old]
+    old: list[int] = []
+    closing: list[int] = []
+    for i, rate in enumerate(rates):
+        if -limit <= rate <= limit and gaps[i] <= scene.tolerance:
+            old.append(i)
+        elif rate < slowest:
+            closing.append(i)
     if not closing:
         return None
-    last = min(closing)[0] + scene.contact_time
-    return Contacts(tuple(old), tuple([i for time, i in closing if time <= last]), base)
+    base = sum([gaps[i] for i in old]) / len(old) if old else 0.0
+    due = [(max(0.0, gaps[i] - base) / -rates[i], i) for i in closing]
+    last = min(due)[0] + scene.contact_time
+    return Contacts(tuple(old), tuple([i for time, i in due if time <= last]), base)
 
 
 def hardly(scene: Scene) -> float:

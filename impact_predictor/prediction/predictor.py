@@ -209,9 +209,7 @@ class Predictor:
         body = body_at(scene, plane, inertia, after.angle)
         if on_edge and (body.old is None or len(contacts.new) == 1):
             body = body._replace(inertia=inertia_about(scene, plane.axis, blocked=False))
-        if body.old is None:
-            contacts = contacts._replace(old=())
-        elif body.old.x >= body.new.x:
+        if body.old is not None and body.old.x >= body.new.x:
             return None  # it falls back, and other points strike before
         approach = -(before.vy + before.omega * body.new.x)
         if approach < GRAZES:
@@ -239,7 +237,7 @@ class Predictor:
             outcome.flags,
             outcome.unique,
             outcome.law,
-            contacts.old,
+            contacts.old if body.old is not None else (),
             contacts.new,
             to_world(posture.axes, plane.axis),
             position,

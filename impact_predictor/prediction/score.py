@@ -140,7 +140,7 @@ def leftover_of(
         leftover |= ONE_POINT
     if plane.off_axis > OFF_AXIS or plane.offset > OFFSET * width:
         leftover |= OUT_OF_PLANE
-    if spread > scene.contact_time or (len(contacts.old) > 1 and len(contacts.new) == 1):
+    if spread > scene.contact_time or (body.old is not None and len(contacts.old) > 1 and len(contacts.new) == 1):
         leftover |= ONE_CORNER_FIRST
     if approach < SLOWEST * hardly(scene):
         leftover |= TOO_SLOW

@@ -265,7 +265,7 @@ def test_inertia_about_any_axis_is_that_of_the_whole_tensor(seed: int) -> None:
     tensor = half @ half.T + 0.1 * np.eye(3)
     axis = rng.normal(size=3)
     axis /= np.linalg.norm(axis)
-    scene = FLOOR._replace(inertia=tuple(triple(row) for row in tensor))
+    scene = FLOOR._replace(inertia=(triple(tensor[0]), triple(tensor[1]), triple(tensor[2])))
     assert inertia_about(scene, triple(axis), blocked=True) == pytest.approx(axis @ tensor @ axis, rel=1e-12)
     free = 1.0 / (axis @ np.linalg.inv(tensor) @ axis)
     assert inertia_about(scene, triple(axis), blocked=False) == pytest.approx(free, rel=1e-10)

@@ -12,9 +12,10 @@ from scipy.integrate import solve_ivp
 
 from impact_predictor.mechanics.impact import solve_impact
 from impact_predictor.mechanics.types import Contact, Twist, TwoPointBody
+from impact_predictor.prediction.planar import Contacts, Plane
 from impact_predictor.prediction.predictor import PAUSE, Predictor
 from impact_predictor.prediction.scene import Scene
-from impact_predictor.prediction.score import LONGEST
+from impact_predictor.prediction.score import LONGEST, leftover_of
 from impact_predictor.prediction.types import Geometry, Leftover, Prediction, Sample, Score, Status, Vector3
 
 PERIOD = 5_000_000
@@ -222,12 +223,14 @@ def test_a_held_prediction_counts_down_to_zero_and_no_further() -> None:
 
 
 def test_a_touchdown_that_does_not_come_is_not_held_for_ever() -> None:
-    """The body hovers, still approaching, long after its touchdown was due: each sample counts again."""
+    """The body springs back and hovers, still approaching: when the touchdown is overdue each sample counts again."""
     predictor = Predictor(SCENE._replace(twist_window=0.012))
-    hover = [falling(30_000_000)._replace(stamp=k * PERIOD) for k in range(20)]
-    answers = [answer.touchdown for answer in run(predictor, hover)]
-    assert answers[0] is not None
-    assert answers[10:].count(answers[0]) >= 2
+    hover = falling(30_000_000)
+    late = [hover._replace(stamp=k * PERIOD) for k in range(BEFORE_SAMPLES, BEFORE_SAMPLES + 10)]
+    answers = [answer.touchdown for answer in run(predictor, before() + late)]
+    fresh = Predictor(SCENE._replace(twist_window=0.012)).update(hover).touchdown
+    assert answers[BEFORE_SAMPLES] != fresh
+    assert answers[-6:] == 6 * [fresh]
 
 
 def test_the_stamp_is_that_of_the_prediction_and_not_after_the_sample_that_settles() -> None:
@@ -242,7 +245,38 @@ def test_samples_between_touchdown_and_settling_count_as_after_it() -> None:
     samples = [landed(TOUCH // PERIOD * PERIOD + (k + 1) * PERIOD) for k in range(4)]
     samples[0] = landed(samples[0].stamp, 0.6 * BEFORE.vx, 0.6 * BEFORE.omega, 0.6 * BEFORE.vy)
     answers = run(Predictor(SCENE._replace(twist_window=0.006)), before() + samples)
-    assert [k for k, answer in enumerate(answers) if answer.score is not None] == [BEFORE_SAMPLES + 3]
+    (score,) = [answer.score for answer in answers if answer.score is not None]
+    assert answers[BEFORE_SAMPLES + 3].score is score
+    assert [lead for lead, _ in score.history] == sorted([lead for lead, _ in score.history], reverse=True)
+    assert score.history[-1][0] > 0.0  # what was still announced after the touchdown foretold nothing
+
+
+def test_a_body_that_is_caught_in_the_air_has_not_landed() -> None:
+    caught = [falling(30_000_000, spin=0.0)._replace(stamp=k * PERIOD) for k in range(7, 20)]
+    predictor = Predictor(SCENE)
+    assert not any(answer.score for answer in run(predictor, before()[:7] + caught))
+    assert predictor.finish() == ()
+
+
+def test_a_second_touchdown_of_the_same_points_has_a_history_of_its_own() -> None:
+    """What is left of the approach after the first, seen by an exact twist, is an approach."""
+    stamp = BEFORE_SAMPLES * PERIOD
+    left = [
+        landed(stamp + k * PERIOD, *(0.4 * part for part in (BEFORE.vx, BEFORE.omega, BEFORE.vy))) for k in range(2)
+    ]
+    rest = [landed(stamp + k * PERIOD, 0.0, 0.0, 0.0) for k in range(2, 8)]
+    scores = [answer.score for answer in run(Predictor(SCENE), before() + left + rest) if answer.score is not None]
+    assert [len(score.history) for score in scores] == [BEFORE_SAMPLES, 1]
+
+
+def test_another_touchdown_is_announced_though_the_last_one_was_held() -> None:
+    predictor = Predictor(SCENE._replace(twist_window=0.012))
+
+    def tilted(stamp: int, angle: float) -> Sample:
+        return block(stamp, angle, Twist(0.0, -1.0, 0.0), height=0.01 + max(0.0, -0.2 * math.sin(angle)))
+
+    answers = [answer.touchdown for answer in run(predictor, [tilted(0, 0.1), tilted(PERIOD, -0.1)])]
+    assert [touchdown.new for touchdown in answers if touchdown is not None] == [(0, 1), (2, 3)]
 
 
 @pytest.mark.parametrize("count", [1, 3])
@@ -396,6 +430,15 @@ def test_what_waits_is_handed_out_one_score_for_each_sample_and_the_rest_at_the_
     rest = predictor.finish()
     assert [score.touchdown.new for score in rest] == [(4, 5)]
     assert predictor.finish() == ()
+
+
+def test_an_edge_whose_ends_close_one_after_the_other_is_not_scored() -> None:
+    """They would close together at their present speeds, but at the speed of the impact they are further apart."""
+    contacts = Contacts((0, 1), (2, 3), 0.0)
+    plane = Plane((0, 1, 0), (1, 0, 0), (BACK, LOW), (FRONT, LOW), BEFORE, (0, -9.81, 0), 0.0, 0.0, 0.0, 0.0)
+    body = TwoPointBody(1.0, 0.006, Contact(BACK, LOW, 1.2), Contact(FRONT, LOW, 1.2))
+    for spread, leftover in ((0.0049, Leftover.NONE), (0.0051, Leftover.ONE_CORNER_FIRST)):
+        assert leftover_of(SCENE, contacts, plane, body, 1.0, 0.1, spread) is leftover
 
 
 def test_the_memory_of_a_touchdown_that_never_comes_is_bounded() -> None:

@@ -61,8 +61,8 @@ def test_vectors_go_between_body_and_world_as_the_orientation_says(seed: int) ->
 
 @pytest.mark.parametrize("length", [0.9995, 1.0005])
 def test_axes_of_a_quaternion_that_is_not_quite_unit_are_orthonormal(length: float) -> None:
-    orientation = tuple(length * part for part in quaternion(random.Random(1)))
-    axes = np.array(axes_of(orientation))  # type: ignore[arg-type]
+    x, y, z, w = quaternion(random.Random(1))
+    axes = np.array(axes_of((length * x, length * y, length * z, length * w)))
     np.testing.assert_allclose(axes @ axes.T, np.eye(3), atol=ROUNDING)
 
 

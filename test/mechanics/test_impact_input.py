@@ -1,0 +1,60 @@
+"""Input that no body can have: a flag, never an exception or a number that is not finite."""
+
+import math
+
+import pytest
+
+from impact_predictor import Flag, Mode, plate, solve_impact
+
+GOOD = plate(1.0, 0.4, 10.0, 0.3)
+BAD_CONTACTS = [
+    {"x": math.nan},
+    {"y": math.inf},
+    {"friction": -0.1},
+    {"friction": math.inf},
+    {"friction": math.nan},
+    {"normal": (0.0, 2.0)},
+    {"normal": (0.0, 0.0)},
+    {"normal": (math.nan, 1.0)},
+    {"restitution": 2.0},
+    {"restitution": -0.1},
+    {"restitution": math.nan},
+    {"velocity": (0.0, math.inf)},
+    {"velocity": (math.nan, 0.0)},
+]
+
+
+def assert_invalid(body, twist):
+    for law in ("path", "total"):
+        outcome = solve_impact(body, twist, law)
+        assert outcome.flags is Flag.INVALID_INPUT
+        assert outcome.mode is Mode.NO_IMPACT
+        assert all(math.isfinite(part) for part in outcome.twist)
+        assert outcome.impulses == ((0.0, 0.0), (0.0, 0.0))
+
+
+@pytest.mark.parametrize("change", BAD_CONTACTS, ids=str)
+def test_a_contact_that_cannot_be_is_answered_with_a_flag(change):
+    twist = GOOD.turning(-1.0)
+    assert_invalid(GOOD._replace(new=GOOD.new._replace(**change)), twist)
+    assert_invalid(GOOD._replace(old=GOOD.old._replace(**change)), twist)
+    assert_invalid(GOOD._replace(old=None, new=GOOD.new._replace(**change)), twist)
+
+
+@pytest.mark.parametrize("name", ["mass", "inertia"])
+@pytest.mark.parametrize("value", [0.0, -1.0, math.nan, math.inf, -math.inf])
+def test_a_body_that_cannot_be_is_answered_with_a_flag(name, value):
+    assert_invalid(GOOD._replace(**{name: value}), GOOD.turning(-1.0))
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
+@pytest.mark.parametrize("name", ["vx", "vy", "omega"])
+def test_a_twist_that_cannot_be_is_answered_with_a_flag_and_rest(name, value):
+    twist = GOOD.turning(-1.0)._replace(**{name: value})
+    assert_invalid(GOOD, twist)
+    assert solve_impact(GOOD, twist).twist == (0.0, 0.0, 0.0)
+
+
+def test_an_unknown_law_is_refused_with_one_sentence():
+    with pytest.raises(ValueError, match=r"^law is 'newton'; use 'path' or 'total'$"):
+        solve_impact(GOOD, GOOD.turning(-1.0), "newton")
