@@ -245,6 +245,14 @@ def _root(condition: Callable[[float], Event], high: float, guess: float) -> flo
 
 
 def _step(acceleration: Acceleration, now: _Instant, step: float, tolerance: float) -> tuple[_Instant, int]:
+    """One step and in how many rows of extrapolation it settled: 0 where it did not, or where it overflowed."""
+    try:
+        return _extrapolate(acceleration, now, step, tolerance)
+    except ValueError:  # the sine of an angle that is infinite: near a jam the acceleration has a pole
+        return now, 0
+
+
+def _extrapolate(acceleration: Acceleration, now: _Instant, step: float, tolerance: float) -> tuple[_Instant, int]:
     """One step of the midpoint rule in more and more substeps, extrapolated until it settles; and in how many rows."""
     time, angle, omega, alpha = now
     allowed = tolerance * abs(step) * (abs(omega) + abs(step * alpha))

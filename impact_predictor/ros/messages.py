@@ -281,7 +281,7 @@ def encode_score(prediction: Prediction) -> bytes | None:
 
 def _score_message(score: Score) -> str:
     announced = f"{_MODE_NAMES[score.touchdown.mode]} predicted {score.touchdown.lead_time * 1e3:.1f} ms ahead"
-    error = "nothing measured" if score.relative_error is None else f"error {score.relative_error:.3f}"
+    error = "nothing to compare" if score.relative_error is None else f"error {score.relative_error:.3f}"
     return f"{announced}, {error}" + ("" if score.scored else f", not scored: {_names(score.leftover)}")
 
 

@@ -661,3 +661,20 @@ def test_extremes_give_numbers() -> None:
         assert (found.point >= 0) == (found.time <= horizon and found.time < math.inf)
         ends.add((found.motion, found.point >= 0))
     assert len(ends) == 6
+
+
+def test_a_stance_that_slips_towards_a_pole_of_its_acceleration_has_an_answer():
+    # Found by drawing at random: the midpoint rule's substeps overflow on the way to a jam.
+    state = PlanarState(
+        -0.13584663077251424,
+        0.3634949098923138,
+        1.0020691939681101,
+        0.2716932615450285,
+        -0.0890451346299408,
+        -2.0041383879362202,
+    )
+    points = (-0.005943468502318652, -0.3189723425773434), (0.1370640837641705, -0.41914710518108506)
+    gravity = (-6.123233995736766e-16, -9.809999999999999)
+    fall = next_touchdown(state, points, 0, 1.1948580678431976e-05, 0.2, gravity, 0.75, 1e-6)
+    assert fall.time >= 0.0
+    assert all(map(math.isfinite, fall.state))
