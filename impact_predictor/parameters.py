@@ -172,7 +172,7 @@ PARAMETERS: Final[dict[str, Parameter]] = {
             "single",
             "",
             "How the node waits for messages: single is rclpy's single-threaded executor, events its experimental one, "
-            "which costs about half per message.",
+            "which costs less per message.",
             choices=("single", "events"),
         ),
     )

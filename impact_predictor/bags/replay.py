@@ -14,6 +14,7 @@ from ..errors import InputError
 from ..prediction.predictor import Predictor
 from ..prediction.scene import Scene
 from ..prediction.types import Prediction, Sample, Score, Status
+from ..ros.diagnostics import REMEDIES
 from ..ros.messages import ODOMETRY, OUTPUTS, POLYGON, MalformedMessage, decode_odometry, decode_polygon
 from .read import BagMessage, read_messages, topics
 from .write import BagWriter
@@ -222,10 +223,12 @@ class _Run:
         """Why no sample could be answered with a touchdown, in one sentence, or ""."""
         if not self.samples:
             return f"there is no message on {self._names['odom']}, so nothing was predicted"
-        if self.statuses[Status.NO_GEOMETRY] + self.statuses[Status.MALFORMED] < self.samples:
+        if self.statuses[Status.ACCEPTED]:
             return ""
-        if not self.statuses[Status.NO_GEOMETRY]:
-            return f"no message on {self._names['odom']} could be decoded, so nothing was predicted"
+        status = max(Status, key=lambda status: self.statuses[status])
+        if status is not Status.NO_GEOMETRY:
+            refused = f"{self.statuses[status]} of {self.samples} messages on {self._names['odom']}"
+            return f"no sample was accepted, so nothing was predicted: {refused} are {status.name}: {REMEDIES[status]}"
         topic = self._names.get("contact_geometry")
         where = f"there is no {POLYGON} in the bag" if topic is None else f"{topic} told none that can be used"
         return (

@@ -29,9 +29,6 @@ from .pair import (
     least_push,
 )
 
-SAME_SUPPORT = 100.0
-"""How many roundings apart the velocities of two contacts on one rigid support may come out."""
-
 SAME_TWIST = 1e-9
 """Solutions that change the twist by less than this part differently are one solution."""
 
@@ -158,10 +155,8 @@ def both_stick(pair: Pair, gna: float, cta: float, gnb: float, ctb: float, zero:
     dx, dy, dq = dx / lever, dy / lever, dq / lever
     u, v, w = (cos * dx, sin * dy, sb * dq) if normal_leads else (cos * dy, -sin * dx, qb * dq)
     gap = abs(gap + u + v + w)
-    if gap > zero:
-        rounding = SAME_SUPPORT * ROUNDING + zero / (abs(gna) + abs(cta) + abs(gnb) + abs(ctb))
-        if gap > rounding * (abs(u) + abs(v) + abs(w)):
-            return NOT_POSSIBLE
+    if gap > zero and gap > zero * (abs(u) + abs(v) + abs(w)) / (abs(gna) + abs(cta) + abs(gnb) + abs(ctb)):
+        return NOT_POSSIBLE
     along = (sa * dx + qa * dy - dq) / lever
     na = -(sa * (y * dx - x * dy) + dy * q - y * dq) / lever
     ta = -(qa * (x * dy - y * dx) + dx * q - x * dq) / lever

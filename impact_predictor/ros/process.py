@@ -8,6 +8,7 @@ import signal
 import sys
 import threading
 from collections.abc import Callable
+from itertools import pairwise
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Final
 
@@ -81,7 +82,7 @@ def run(work: Callable[[Stop], int], args: list[str] | None) -> int:
         except ImportError as error:
             return _refuse(
                 f"ROS 2 is needed here, but cannot be imported ({error}): source it, for example "
-                "`source /opt/ros/jazzy/setup.bash`, or `pip install 'impact_predictor[ros]' -c constraints/jazzy.txt`",
+                "`source /opt/ros/jazzy/setup.bash`, or in a clone `pip install '.[ros]' -c constraints/jazzy.txt`",
                 2,
             )
         from rclpy.signals import SignalHandlerOptions
@@ -89,13 +90,27 @@ def run(work: Callable[[Stop], int], args: list[str] | None) -> int:
         try:
             rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
         except RuntimeError as error:
-            return _refuse(f"ROS refuses the arguments: {sentence(error)}")
+            return _refuse(_flaw_of_file(args) or f"ROS refuses the arguments: {sentence(error)}")
         try:
             return work(stop)
         except InputError as error:
             return _refuse(str(error))
         finally:
             rclpy.try_shutdown()
+
+
+def _flaw_of_file(args: list[str] | None) -> str:
+    """What is wrong with the parameter file of the arguments, said as offline, or "": rcl says it less clearly."""
+    words = sys.argv if args is None else args
+    for option, path in pairwise(words):
+        if option == "--params-file":
+            from ..parameter_file import read_parameters
+
+            try:
+                read_parameters(path)
+            except InputError as flaw:
+                return str(flaw)
+    return ""
 
 
 def _refuse(sentence: str, exit_status: int = 1) -> int:

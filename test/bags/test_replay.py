@@ -210,7 +210,7 @@ def test_a_topic_without_messages_is_told_from_one_without_touchdowns(
     tmp_path: Path, scene: Scene, messages: list[BagMessage]
 ) -> None:
     malformed = write_bag(tmp_path / "malformed.mcap", [messages[0], messages[1]._replace(data=b"x")])
-    assert "could be decoded" in replay(malformed, scene).unpredictable
+    assert "MALFORMED" in replay(malformed, scene).unpredictable
 
 
 def test_the_only_topic_of_a_type_is_taken_and_named(bag: Path, scene: Scene) -> None:
@@ -316,3 +316,10 @@ def test_rules_of_a_remapping_are_read_like_those_of_ros() -> None:
 def test_a_rule_that_is_none_is_refused(rule: str) -> None:
     with pytest.raises(InputError, match="is not of the form from:=to"):
         remapping((rule,))
+
+
+def test_a_bag_of_which_every_sample_is_refused_says_why(bag: Path, scene: Scene) -> None:
+    result = replay(bag, scene._replace(frame="map"))
+    assert result.statuses == {Status.WRONG_FRAME: result.samples}
+    assert "WRONG_FRAME" in result.unpredictable
+    assert "support.frame" in result.unpredictable

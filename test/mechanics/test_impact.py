@@ -139,8 +139,16 @@ def test_an_old_contact_that_already_leaves_is_out_of_the_impact():
     body = plate(1.0, 0.4, 10.0, 0.3)
     leaving = Twist(0.3, 0.6, -2.0)
     assert contact_velocity(body.old, leaving)[0] > 0.0
-    alone = solve_impact(body._replace(old=None), leaving)
-    assert solve_impact(body, leaving).twist == pytest.approx(alone.twist, abs=CLOSE)
+    bouncy = body._replace(old=body.old._replace(restitution=0.5))
+    for law in ("path", "total"):
+        alone = solve_impact(body._replace(old=None), leaving, law)
+        for each in (body, bouncy):
+            assert solve_impact(each, leaving, law).twist == pytest.approx(alone.twist, abs=CLOSE)
+    pressed = Twist(0.3, -0.4, -1.0)
+    # Slower, it is closed again by the impulse at the new contact, and stays.
+    for law in ("path", "total"):
+        after = solve_impact(bouncy, pressed, law).twist
+        assert contact_velocity(body.old, after)[0] == pytest.approx(0.0, abs=CLOSE)
 
 
 def test_a_supports_motion_is_shared_by_everything_on_it():
@@ -154,6 +162,42 @@ def test_a_supports_motion_is_shared_by_everything_on_it():
         still.twist, abs=CLOSE
     )
     assert outcome.energy_lost == pytest.approx(still.energy_lost, rel=CLOSE)
+
+
+def test_two_sticking_contacts_share_friction_with_the_least_push_between_them():
+    shares = {}
+    for friction in (0.9, 0.45):
+        body = plate(1.0, 0.4, 10.0, friction)
+        outcome = solve_impact(body, body.turning(-1.0))
+        assert outcome.mode is Mode.STOP
+        assert outcome.flags & Flag.SHARED_FRICTION
+        shares[friction] = outcome.impulses
+    (_, t_old), (_, t_new) = shares[0.9]
+    assert t_old == pytest.approx(t_new) == pytest.approx(-1.0)
+    # With less friction the old contact, which is pressed less, gives all that it has.
+    (n_old, t_old), (_, t_new) = shares[0.45]
+    assert t_old == pytest.approx(-0.45 * n_old)
+    assert t_old + t_new == pytest.approx(-2.0)
+
+
+def test_slip_that_ends_on_a_floor_ends_at_both_contacts_at_once():
+    source, stopped = random.Random(9), 0
+    for _ in range(500):
+        body = plate(1.0, source.uniform(0.1, 0.5), 10.0, friction=0.8)
+        twist = body.turning(-1.0)._replace(vx=-source.uniform(0.01, 0.2))
+        outcome = solve_impact(body, twist)
+        if outcome.mode is Mode.STOP:
+            stopped += 1
+            assert outcome.segments == ("--", "SS") or outcome.segments == ("++", "SS")
+    assert stopped > 100
+
+
+def test_an_old_contact_that_closes_just_as_the_compression_ends_is_held():
+    old = Contact(-1.0, -1.0, 0.0, (-math.sin(1.0), math.cos(1.0)))
+    body = TwoPointBody(1.0, 1.0, old, Contact(1.0, 0.0, 2.0, restitution=1.0))
+    outcome = solve_impact(body, body.turning(-1.0))
+    assert outcome.segments[:2] == ("O+", "OS")
+    assert contact_velocity(old, outcome.twist)[0] >= -CLOSE
 
 
 def sliding_on_the_floor(a, b, height, rho_squared, friction_old, friction_new, slip):

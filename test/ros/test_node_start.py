@@ -76,7 +76,7 @@ def sentence_of(finished):
         (("--params-file", SCENE, "-p", "qos_overrides./odom.subscription.depth:=many"), "whole number of messages"),
         (("--params-file", SCENE, "-p", "qos_overrides./odm.subscription.depth:=9"), "is of no topic of this node"),
         (("--params-file", "nowhere.yaml"), "nowhere.yaml"),
-        (("--params-file", __file__), "Couldn't parse params file"),
+        (("--params-file", __file__), "test_node_start.py"),
     ],
 )
 def test_a_bad_parameter_is_one_sentence_and_a_status_that_is_not_0(arguments, said):
@@ -91,7 +91,7 @@ def test_without_rclpy_the_node_says_in_one_sentence_what_to_do():
     assert finished.returncode == 2
     assert len(finished.stderr.splitlines()) == 1
     assert "source /opt/ros/jazzy/setup.bash" in finished.stderr
-    assert "pip install 'impact_predictor[ros]'" in finished.stderr
+    assert "pip install '.[ros]'" in finished.stderr
 
 
 @needs_ros
