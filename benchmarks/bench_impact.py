@@ -37,7 +37,7 @@ CASES = {
         Twist(-0.3, -0.5, -10.0),
     ),
     "cylinder, rolls over the edge": turning(cylinder(radius=1.0, gamma=0.9, mass=2.0, friction=0.5)),
-    "cylinder, slides": turning(cylinder(radius=1.0, gamma=1.3, mass=2.0, friction=0.2)),
+    "cylinder, slides": turning(cylinder(radius=1.0, gamma=1.3, mass=2.0, friction=0.1)),
     "cylinder, locks in the wedge": turning(cylinder(radius=1.0, gamma=1.2, mass=2.0, friction=1.0)),
 }
 

@@ -153,9 +153,8 @@ def both_stick(pair: Pair, gna: float, cta: float, gnb: float, ctb: float, zero:
         dy += gna * (q - sa * x) + cta * x * qa
         dq -= gna * y + cta * x
     dx, dy, dq = dx / lever, dy / lever, dq / lever
-    u, v, w = (cos * dx, sin * dy, sb * dq) if normal_leads else (cos * dy, -sin * dx, qb * dq)
-    gap = abs(gap + u + v + w)
-    if gap > zero and gap > zero * (abs(u) + abs(v) + abs(w)) / (abs(gna) + abs(cta) + abs(gnb) + abs(ctb)):
+    gap += cos * dx + sin * dy + sb * dq if normal_leads else cos * dy - sin * dx + qb * dq
+    if abs(gap) > zero:
         return NOT_POSSIBLE
     along = (sa * dx + qa * dy - dq) / lever
     na = -(sa * (y * dx - x * dy) + dy * q - y * dq) / lever
