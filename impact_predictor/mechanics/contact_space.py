@@ -13,6 +13,9 @@ SPEED_ROUNDING = 1e-14
 UNIT = 1e-6
 """How far the square of a normal's length may be from 1."""
 
+new_tuple = tuple.__new__
+"""Makes a NamedTuple in half the time of its own constructor, which is a Python function that calls this."""
+
 Approach = tuple[float, float, float]
 """Normal and tangential contact velocity, and the speed below which either is rounding."""
 
@@ -85,4 +88,4 @@ def twist_after(twist: Twist, frame: Frame, dx: float, dy: float, dq: float) -> 
     """The twist changed by (dx, dy, dq), along the frame's tangent and normal and times rho."""
     nx, ny, rho = frame
     vx, vy, omega = twist
-    return Twist(vx + ny * dx + nx * dy, vy + ny * dy - nx * dx, omega + dq / rho)
+    return new_tuple(Twist, (vx + ny * dx + nx * dy, vy + ny * dy - nx * dx, omega + dq / rho))

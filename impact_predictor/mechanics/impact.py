@@ -6,7 +6,7 @@ from functools import cache
 from math import isfinite
 
 from . import path_law, total_law
-from .contact_space import Frame, problem_of, twist_after
+from .contact_space import Frame, new_tuple, problem_of, twist_after
 from .pair import NO_SOLUTION, Impact, Problem
 from .types import Alternative, Flag, Mode, Outcome, Twist, TwoPointBody
 
@@ -21,6 +21,8 @@ LAWS = {"path": path_law.solve, "total": total_law.solve}
 OLD_RESTITUTION_IGNORED, BOTH_STRUCK, LAST_RESORT, ENERGY_GAINED = (
     int(flag) for flag in (Flag.OLD_RESTITUTION_IGNORED, Flag.BOTH_STRUCK, Flag.LAST_RESORT, Flag.ENERGY_GAINED)
 )
+
+NO_IMPACT, STOP, SLIDE, PIVOT_SLIDE, PIVOT, BACK_PIVOT, FLIGHT = Mode
 
 NO_IMPULSE = ((0.0, 0.0), (0.0, 0.0))
 
@@ -71,7 +73,7 @@ def solve_impact(body: TwoPointBody, twist: Twist, law: str = "path") -> Outcome
         work += na * (cna + vna) + ta * (cta + vta)
     if work > ENERGY_ROUNDING * speed * speed:
         notes |= ENERGY_GAINED
-    return Outcome(
+    outcome = (
         mode_of(STAYS * speed, vna, vta, vnb, vtb),
         after,
         ((mass * na, mass * ta), (mass * nb, mass * tb)),
@@ -82,6 +84,7 @@ def solve_impact(body: TwoPointBody, twist: Twist, law: str = "path") -> Outcome
         tuple([alternative(other, twist, frame, STAYS * speed) for other in others]) if others else (),
         law,
     )
+    return new_tuple(Outcome, outcome)
 
 
 def without_restitution(problem: Problem) -> Problem:
@@ -122,18 +125,18 @@ def unchanged(twist: Twist, law: str, flags: Flag) -> Outcome:
     """The outcome of a twist that no impact changes; a twist that is no number becomes rest."""
     vx, vy, omega = twist
     kept = Twist(vx, vy, omega) if isfinite(vx + vy + omega) else Twist(0.0, 0.0, 0.0)
-    return Outcome(Mode.NO_IMPACT, kept, NO_IMPULSE, (), flags, 0.0, True, (), law)
+    return Outcome(NO_IMPACT, kept, NO_IMPULSE, (), flags, 0.0, True, (), law)
 
 
 def mode_of(zero: float, vna: float, vta: float, vnb: float, vtb: float) -> Mode:
     """The mode from the contact velocities after the impact, which are zero up to `zero`."""
     if vna <= zero:
         if vnb > zero:
-            return Mode.BACK_PIVOT
-        return Mode.STOP if abs(vta) <= zero and abs(vtb) <= zero else Mode.SLIDE
+            return BACK_PIVOT
+        return STOP if abs(vta) <= zero and abs(vtb) <= zero else SLIDE
     if vnb > zero:
-        return Mode.FLIGHT
-    return Mode.PIVOT if abs(vtb) <= zero else Mode.PIVOT_SLIDE
+        return FLIGHT
+    return PIVOT if abs(vtb) <= zero else PIVOT_SLIDE
 
 
 @cache

@@ -132,16 +132,17 @@ def slide_stick_rates(pair: Pair, a: int, cta: float) -> Rates:
     """Rates while A slips and B sticks."""
     cos, sin, qa, sa, qb, sb, fa, fb = pair
     ax = -fa if a == PLUS else fa
+    aq = qa + ax * sa
     # The twist keeps c_nA and c_tB: it is a multiple of nA x tB = (qx, qy, -cos).
     qx, qy = sb - qa * sin, qa * cos
-    ex, ey, eq = sb - (qa + ax * sa) * sin, (qa + ax * sa) * cos - ax * sb, ax * sin - cos
+    ex, ey, eq = sb - aq * sin, aq * cos - ax * sb, ax * sin - cos
     den = qx * ex + qy * ey - cos * eq
     lift_x, lift_y = qx * (cos * sb - sin * qb), qy * (cos * qb + sin * sb)
     lift = lift_x + lift_y + cos
     if den == 0.0 or (lift * den > 0.0 and below_rounding(-abs(lift), lift_x, lift_y, cos)):
         return NOT_CONSISTENT
     na = -lift / den
-    tb = -(qb * sb + na * (cos * ax + sin + sb * (qa + ax * sa))) / (1.0 + sb * sb)
+    tb = -(qb * sb + na * (cos * ax + sin + sb * aq)) / (1.0 + sb * sb)
     if abs(tb) > fb * (1.0 + ROUNDING):
         return NOT_CONSISTENT
     turn = (cos * ey - sin * ex + qb * eq) / den

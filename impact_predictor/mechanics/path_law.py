@@ -135,12 +135,18 @@ def solve(problem: Problem, choice: int) -> Impact:
                 if speed > 0.0 and 2.0 * work < span * speed * (1.0 - ROUNDING):
                     span, event = 2.0 * work / speed, WORK_RETURNED
         if a == OPEN:
-            if cna > 0.0 and rna < 0.0 and -cna / rna < span:
-                span, event = -cna / rna, OLD_CLOSES
-        elif a != STICK and cta * rta < 0.0 and -cta / rta < span:
-            span, event = -cta / rta, OLD_SLIP_ENDS
-        if b != STICK and ctb * rtb < 0.0 and -ctb / rtb < span:
-            span, event = -ctb / rtb, NEW_SLIP_ENDS
+            if cna > 0.0 and rna < 0.0:
+                wait = -cna / rna
+                if wait < span:
+                    span, event = wait, OLD_CLOSES
+        elif cta * rta < 0.0:
+            wait = -cta / rta
+            if wait < span:
+                span, event = wait, OLD_SLIP_ENDS
+        if ctb * rtb < 0.0:
+            wait = -ctb / rtb
+            if wait < span:
+                span, event = wait, NEW_SLIP_ENDS
         if event == ENDLESS:
             notes |= NO_SOLUTION
             break
