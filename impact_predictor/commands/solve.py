@@ -11,8 +11,8 @@ import click
 
 from ..errors import InputError
 from ..mechanics.bodies import cylinder, fraction, not_negative, plate, positive, rod
-from ..mechanics.contact_space import approach
 from ..mechanics.impact import LAWS, solve_impact
+from ..mechanics.problem import approach
 from ..mechanics.types import Contact, Flag, Mode, Outcome, Twist, TwoPointBody
 from .examples import examples
 

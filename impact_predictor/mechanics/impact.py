@@ -6,8 +6,8 @@ from functools import cache
 from math import isfinite
 
 from . import path_law, total_law
-from .contact_space import Frame, new_tuple, problem_of, twist_after
 from .pair import NO_SOLUTION, Impact, Problem
+from .problem import Frame, new_tuple, problem_of, twist_after
 from .types import Alternative, Flag, Mode, Outcome, Twist, TwoPointBody
 
 STAYS = 1e-10
