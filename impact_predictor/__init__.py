@@ -20,3 +20,12 @@ __all__ = [
     "solve_impact",
 ]
 __version__ = "0.1.0"
+
+
+def __getattr__(name: str) -> object:
+    """`solve_impacts` and `Outcomes`, loaded when they are asked for: they need numpy, one impact does not."""
+    if name in ("Outcomes", "solve_impacts"):
+        from .mechanics import batch
+
+        return getattr(batch, name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

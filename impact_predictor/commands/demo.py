@@ -25,7 +25,9 @@ from .examples import examples
     help="Folder in which predictions and a picture are written.",
 )
 @click.option(
-    "--tosses", type=click.IntRange(min=1), help="Tosses to play, as many as take about half a minute unless given."
+    "--tosses",
+    type=click.IntRange(min=1, max=285),
+    help="Tosses to play of the 285 recorded, as many as take about half a minute unless given.",
 )
 def demo(output: Path, tosses: int | None) -> int:
     """Play recorded tosses of a cube through ROS topics, and show what was predicted and what happened.

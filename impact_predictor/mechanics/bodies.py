@@ -1,22 +1,34 @@
-"""The paper's bodies: rod, plate and cylinder."""
+"""The paper's bodies: rod, plate and cylinder.
+
+Every argument may be an array; the fields of the body are then arrays that broadcast together (see `solve_impacts`).
+"""
 
 from __future__ import annotations
 
-from math import cos, isfinite, pi, sin
+import math
+from collections.abc import Callable
+from math import inf, pi
+from typing import TYPE_CHECKING, Any, Union
 
 from ..errors import InputError
 from .types import Contact, TwoPointBody
 
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+Number = Union[float, "NDArray[np.float64]"]
+
 
 def plate(
-    length: float,
-    height: float,
-    mass: float,
-    friction: float,
-    inertia: float | None = None,
-    a: float | None = None,
-    b: float | None = None,
-    restitution: float = 0.0,
+    length: Number,
+    height: Number,
+    mass: Number,
+    friction: Number,
+    inertia: Number | None = None,
+    a: Number | None = None,
+    b: Number | None = None,
+    restitution: Number = 0.0,
 ) -> TwoPointBody:
     """A plate (crate, block) of `length` and `height` in m on a flat floor (the paper, section 3, Fig. 4).
 
@@ -38,35 +50,34 @@ def plate(
 
 
 def rod(
-    length: float,
-    thickness: float,
-    a: float,
-    b: float,
-    mass: float,
-    friction: float,
-    inertia: float | None = None,
-    restitution: float = 0.0,
+    length: Number,
+    thickness: Number,
+    a: Number,
+    b: Number,
+    mass: Number,
+    friction: Number,
+    inertia: Number | None = None,
+    restitution: Number = 0.0,
 ) -> TwoPointBody:
     """A rod of `length` and `thickness` in m on two supports `a` behind and `b` ahead of its middle (Fig. 1).
 
     `inertia` in kg m^2 is that of a slender homogeneous rod, mass length^2 / 12, unless given.
     """
     positive(length=length, mass=mass)
-    if thickness != 0.0:
-        positive(thickness=thickness)
+    not_negative(thickness=thickness)
     if inertia is None:
         inertia = mass * length * length / 12.0
     return flat(mass, inertia, a, b, 0.5 * thickness, friction, restitution)
 
 
 def cylinder(
-    radius: float,
-    gamma: float,
-    mass: float,
-    friction: float,
-    gamma_new: float | None = None,
-    inertia: float | None = None,
-    restitution: float = 0.0,
+    radius: Number,
+    gamma: Number,
+    mass: Number,
+    friction: Number,
+    gamma_new: Number | None = None,
+    inertia: Number | None = None,
+    restitution: Number = 0.0,
 ) -> TwoPointBody:
     """A cylinder of `radius` in m between two edges (the paper, section 4, Fig. 6).
 
@@ -80,43 +91,65 @@ def cylinder(
     not_negative(friction=friction)
     fraction(restitution=restitution)
     ahead = gamma if gamma_new is None else gamma_new
-    if not 0.0 < gamma + ahead < pi:
-        raise InputError(f"gamma is {gamma} and gamma_new {ahead}; give angles in rad with a sum between 0 and pi")
-    old = Contact(-radius * sin(gamma), -radius * cos(gamma), friction, (sin(gamma), cos(gamma)))
-    new = Contact(radius * sin(ahead), -radius * cos(ahead), friction, (-sin(ahead), cos(ahead)), restitution)
-    return TwoPointBody(mass, inertia, old, new)
+    refuse(
+        {"the angle gamma + gamma_new between the edges": gamma + ahead},
+        lambda value: (value > 0.0) & (value < pi),
+        "angles in rad with a sum between 0 and pi",
+    )
+    return wedged(mass, inertia, radius, gamma, ahead, friction, restitution)
 
 
-def flat(
-    mass: float, inertia: float, a: float, b: float, height: float, friction: float, restitution: float
-) -> TwoPointBody:
+def flat(mass: Any, inertia: Any, a: Any, b: Any, height: Any, friction: Any, restitution: Any) -> TwoPointBody:
     """A body on a flat floor, its contacts `a` behind, `b` ahead of and `height` below the mass centre."""
     positive(inertia=inertia)
     not_negative(friction=friction)
     fraction(restitution=restitution)
-    for name, value in {"a": a, "b": b}.items():
-        if not isfinite(value):
-            raise InputError(f"{name} is {value}; give a finite number")
-    if not a + b > 0.0:
-        raise InputError(f"the contacts are {a} m behind and {b} m ahead of the mass centre; give a + b > 0")
+    refuse({"a": a, "b": b}, lambda value: abs(value) < inf, "a finite number")
+    refuse({"the distance a + b of the contacts": a + b}, lambda value: value > 0.0, "a + b > 0")
     return TwoPointBody(
         mass, inertia, Contact(-a, -height, friction), Contact(b, -height, friction, restitution=restitution)
     )
 
 
-def positive(**values: float) -> None:
+def wedged(
+    mass: Any, inertia: Any, radius: Any, gamma: Any, gamma_new: Any, friction: Any, restitution: Any
+) -> TwoPointBody:
+    """A body whose contact normals point to its mass centre, from the distance `radius`."""
+    sin_old, cos_old = sine_and_cosine(gamma)
+    sin_new, cos_new = sine_and_cosine(gamma_new)
+    old = Contact(-radius * sin_old, -radius * cos_old, friction, (sin_old, cos_old))
+    new = Contact(radius * sin_new, -radius * cos_new, friction, (-sin_new, cos_new), restitution)
+    return TwoPointBody(mass, inertia, old, new)
+
+
+def positive(**values: Number) -> None:
+    refuse(values, lambda value: (value > 0.0) & (value < inf), "a finite number above 0")
+
+
+def not_negative(**values: Number) -> None:
+    refuse(values, lambda value: (value >= 0.0) & (value < inf), "a finite number, 0 or above")
+
+
+def fraction(**values: Number) -> None:
+    refuse(values, lambda value: (value >= 0.0) & (value <= 1.0), "a number from 0 to 1")
+
+
+def refuse(values: dict[str, Number], allowed: Callable[[Any], Any], wanted: str) -> None:
+    """Raise InputError where a value, or an element of an array, is not allowed."""
     for name, value in values.items():
-        if not (value > 0.0 and isfinite(value)):
-            raise InputError(f"{name} is {value}; give a finite number above 0")
+        good = allowed(value)
+        if good is not True and not (good is not False and good.all()):
+            raise InputError(f"{name} is {first_bad(value, good)}; give {wanted}")
 
 
-def not_negative(**values: float) -> None:
-    for name, value in values.items():
-        if not (value >= 0.0 and isfinite(value)):
-            raise InputError(f"{name} is {value}; give a finite number, 0 or above")
+def first_bad(value: Any, good: Any) -> Any:
+    """The value, or the first element of it that is not good."""
+    return value if good is False else value[~good].flat[0]
 
 
-def fraction(**values: float) -> None:
-    for name, value in values.items():
-        if not 0.0 <= value <= 1.0:
-            raise InputError(f"{name} is {value}; give a number from 0 to 1")
+def sine_and_cosine(angle: Any) -> tuple[Any, Any]:
+    if isinstance(angle, (float, int)):
+        return math.sin(angle), math.cos(angle)
+    import numpy as np  # a single body does without
+
+    return np.sin(angle), np.cos(angle)

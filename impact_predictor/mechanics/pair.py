@@ -39,6 +39,9 @@ Impact = tuple[float, float, float, float, float, float, float, float, float, fl
 the twist (x, y, rho omega); the contact states along it (a hexadecimal digit 4 a + b each, the last one lowest);
 notes; and how many answers the law allows."""
 
+Push = tuple[bool, float, float, float, float]
+"""Whether the cones of friction allow a push; N_A, T_A, N_B, T_B with it."""
+
 REVERSED, JAMMED, WORK_LIMITED, SHARED_FRICTION, NO_SOLUTION = (
     int(flag) for flag in (Flag.REVERSED_SLIP, Flag.JAMMED, Flag.WORK_LIMITED, Flag.SHARED_FRICTION, Flag.NO_SOLUTION)
 )
@@ -224,24 +227,30 @@ def push_interval(n: float, t: float, zn: float, zt: float, f: float) -> tuple[f
     return low, high
 
 
-def least_push(pair: Pair, na: float, ta: float, nb: float, tb: float) -> tuple[bool, float, float, float, float]:
-    """Share the impulses of two sticking contacts with the least push along their line that both cones allow.
+def least_push(pair: Pair, na: float, ta: float, nb: float, tb: float) -> Push:
+    """Share the impulses of two sticking contacts with the least push along their line that both cones allow."""
+    return push_along(line_of_contacts(pair), pair[6], pair[7], na, ta, nb, tb)
 
-    The push is the only freedom; it is measured from the impulses without any component along it. Returns whether
-    the cones allow one, and N_A, T_A, N_B, T_B.
+
+def push_along(
+    line: tuple[float, float, float, float], fa: float, fb: float, na: float, ta: float, nb: float, tb: float
+) -> Push:
+    """Add to the impulses those of a push along `line` that puts them in both cones and leaves least of the push.
+
+    The push is the only freedom; it is measured from the impulses without any component along it.
     """
-    zna, zta, znb, ztb = line_of_contacts(pair)
-    low, high = push_interval(na, ta, zna, zta, pair[6])
+    zna, zta, znb, ztb = line
+    low, high = push_interval(na, ta, zna, zta, fa)
     if low <= high:
-        low_b, high_b = push_interval(nb, tb, znb, ztb, pair[7])
+        low_b, high_b = push_interval(nb, tb, znb, ztb, fb)
         if low_b > low:
             low = low_b
         if high_b < high:
             high = high_b
-    square = zna * zna + zta * zta
+    square = zna * zna + zta * zta + znb * znb + ztb * ztb
     if square == 0.0 or (low > high and below_rounding((high - low) * sqrt(square), na, ta, nb, tb)):
         return False, na, ta, nb, tb
-    push = -0.5 * (na * zna + ta * zta + nb * znb + tb * ztb) / square
+    push = -(na * zna + ta * zta + nb * znb + tb * ztb) / square
     if push < low:
         push = low
     elif push > high:

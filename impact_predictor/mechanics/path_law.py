@@ -7,7 +7,9 @@ gap's velocity reaches zero, or with the compression of B.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import inf, sqrt
+from typing import TypeVar
 
 from .pair import (
     JAMMED,
@@ -24,12 +26,31 @@ from .pair import (
     Impact,
     Pair,
     Problem,
+    Push,
     least_push,
 )
-from .path_states import choose
+from .path_states import States, choose
+
+Mechanism = TypeVar("Mechanism")
+"""What the rates of the contact velocities follow from."""
+
+OldImpact = tuple[bool, float, float, float, float, float, float, float, float, int]
+"""Whether a tangential impact at A is possible; N_A, T_A; c_tA afterwards; the changes of c_nB and c_tB and of the
+twist; the segments."""
+
+Jam = tuple[float, float, float, float, float, float, float, float, float, float]
+"""c_nB, c_tB, the impulses N_A, T_A, N_B, T_B, the change of the twist and the stored work after a jam."""
+
+NO_JAM: Jam = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+LEFT = 1e-9
+"""A part of the speeds that can be rounding: an approach of B so slow, where both contacts rest otherwise, is none."""
+
+SLOWEST = 1e-6
+"""Jams whose slips become smaller by no more than this part are not followed to their limit."""
 
 MAX_SEGMENTS = 600
-"""Jams can follow each other without end while the velocities shrink by a factor each time; nothing else needs ten."""
+"""Jams after which A slips can be many, while the slips shrink by a factor each time; nothing else needs ten."""
 
 ROOM = 1 << 52
 """A code of segments below this has room for two more in 64 bits; later segments are not told."""
@@ -38,11 +59,10 @@ ENDLESS, COMPRESSED, EXPANDED, WORK_RETURNED, OLD_CLOSES, OLD_SLIP_ENDS, NEW_SLI
 """What ends a segment."""
 
 
-def strike_old(pair: Pair, cta: float) -> tuple[bool, float, float, float, float, float, float, float, float, int]:
+def strike_old(pair: Pair, cta: float) -> OldImpact:
     """Tangential impact at A that ends a jam: B is held and A follows its own one-contact path.
 
-    N_A grows while A slips to rest, which presses it into the support, and on until it leaves it. Returns whether A
-    can do so, N_A, T_A, c_tA afterwards, the changes of c_nB and c_tB and of the twist, and the segments.
+    N_A grows while A slips to rest, which presses it into the support, and on until it leaves it.
     """
     cos, sin, qa, sa, qb, sb, fa, fb = pair
     a = PLUS if cta > 0.0 else MINUS
@@ -51,30 +71,64 @@ def strike_old(pair: Pair, cta: float) -> tuple[bool, float, float, float, float
     normal, tangential = 1.0 + qa * aq, ax + sa * aq
     if normal >= 0.0 or tangential * cta >= 0.0:
         return False, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0
-    na = -cta / tangential
-    ta = ax * na
-    depth = normal * na
-
-    hold_x = -qa * sa / (1.0 + sa * sa)
-    if abs(hold_x) <= fa:
-        state, ax, slip_rate = STICK, hold_x, 0.0
-        normal = 1.0 + qa * qa / (1.0 + sa * sa)
+    hold = 1.0 + sa * sa
+    if abs(qa * sa) <= fa * hold:
+        state, after = STICK, 0.0
     else:
         state = MINUS if a == PLUS else PLUS
-        ax = -ax
-        normal = 1.0 + qa * (qa + ax * sa)
-        slip_rate = ax + sa * (qa + ax * sa)
-    rise = -depth / normal
-    na += rise
-    ta += ax * rise
-    dx, dy, dq = ta, na, qa * na + sa * ta
-    dnb = cos * dy - sin * dx + qb * dq
-    dtb = cos * dx + sin * dy + sb * dq
-    return True, na, ta, slip_rate * rise, dnb, dtb, dx, dy, dq, 64 * a + 4 * state
+        back = qa - ax * sa
+        after = cta * (normal / (1.0 + qa * back)) * ((sa * back - ax) / tangential)
+    # All in all c_nA is unchanged, and c_tA goes from `cta` to `after`: the twist changes along nA x (nA x tA).
+    square = 1.0 + qa * qa
+    size = square + sa * sa
+    change = (cta - after) / size
+    lever, arm = qa * cos - sa * sin - qb, sa * cos + qa * sin - sb
+    dnb, dtb = sin * (cta - after) + sa * lever * change, sa * arm * change - cos * (cta - after)
+    dx, dy, dq = -square * change, qa * sa * change, -sa * change
+    return True, dy, dx, after, dnb, dtb, dx, dy, dq, 64 * a + 4 * state
+
+
+def rest_of_jams(before: Jam, after: Jam) -> tuple[float, float, float]:
+    """What is still to come of jams that follow each other without end, after the two last ones that A sticks after.
+
+    With A at rest all depends on c_tB, which is a factor smaller after each: a geometric series. Returns how many times
+    the changes from one jam to the other are still to come (0 if the series diverges, or compression ends before it
+    does; inf if they become so little smaller that rounding hides it), c_nB after all of them, and their work.
+    """
+    cnb, ctb = after[0], after[1]
+    fall = before[1] - ctb
+    if ctb != 0.0 and abs(fall) <= SLOWEST * abs(ctb):
+        return inf, 0.0, 0.0
+    if ctb * fall <= 0.0:
+        return 0.0, 0.0, 0.0
+    part = ctb / fall
+    change = cnb - before[0]
+    left = cnb + part * change
+    if abs(left) <= LEFT * (abs(cnb) + abs(before[0])):
+        left = 0.0
+    if left > 0.0:
+        return 0.0, 0.0, 0.0
+    push = after[4] - before[4]
+    steady = -left * push
+    returned = part * steady + (after[9] - before[9] - steady) * (part * ctb / (before[1] + ctb))
+    return part, left, returned
 
 
 def solve(problem: Problem, choice: int) -> Impact:
+    """Follow the impulse path of a planar body."""
+    return follow(choose, strike_old, least_push, problem, choice)
+
+
+def follow(
+    choose: Callable[[Mechanism, float, float, float, bool, int], States],
+    strike_old: Callable[[Mechanism, float], OldImpact],
+    least_push: Callable[[Mechanism, float, float, float, float], Push],
+    problem: tuple[Mechanism, float, float, float, float, float, float, float, float],
+    choice: int,
+) -> Impact:
     """Follow the impulse path from contact velocities with c_nB < 0 and c_nA >= 0.
+
+    The mechanism on the two contacts, a planar body's `Pair` or any other, speaks through the three functions.
 
     The restitution at B is Poisson's; A does not approach, so that its own has no effect. `choice` picks among the
     consistent states at the first instant that has several.
@@ -87,25 +141,48 @@ def solve(problem: Problem, choice: int) -> Impact:
     a = b = OPEN
     slip_a, slip_b = cta, ctb
     rate = NOT_CONSISTENT
+    jam = NO_JAM
     for _ in range(MAX_SEGMENTS):
         if not decided:
             found, a, b, rate = choose(pair, cna, cta, ctb, compressing, choice)
             if found > 1 and choices == 1:
                 choices, choice = found, 0
             if found == 0:
-                freed, n, t, cta, dnb, dtb, ex, ey, eq, code = strike_old(pair, cta)
+                freed, n, t, after, dnb, dtb, ex, ey, eq, code = strike_old(pair, cta)
                 if not freed:
-                    notes |= NO_SOLUTION
+                    # Where both contacts rest up to rounding nothing moves any more.
+                    speed = abs(problem[4]) + abs(problem[5]) + abs(problem[6])
+                    if cta != 0.0 or ctb != 0.0 or cnb < -LEFT * speed:
+                        notes |= NO_SOLUTION
+                    elif cnb < 0.0:
+                        cnb = 0.0
                     break
                 notes |= JAMMED
                 if segments < ROOM:
                     segments = 256 * segments + code
-                na, ta, cnb, ctb = na + n, ta + t, cnb + dnb, ctb + dtb
+                na, ta, cta, cnb, ctb = na + n, ta + t, after, cnb + dnb, ctb + dtb
                 dx, dy, dq = dx + ex, dy + ey, dq + eq
                 if abs(ctb) <= zero_b:
                     ctb = 0.0
                 if compressing and cnb >= 0.0:
                     break
+                if cta == 0.0:
+                    before, jam = jam, (cnb, ctb, na, ta, nb, tb, dx, dy, dq, work)
+                    part, left, returned = rest_of_jams(before, jam)
+                    if part == inf:
+                        notes |= NO_SOLUTION
+                        break
+                    push = part * (nb - before[4])
+                    if part > 0.0 and (compressing or (nb + push <= target and work + returned >= 0.0)):
+                        na, ta = na + part * (na - before[2]), ta + part * (ta - before[3])
+                        nb, tb = nb + push, tb + part * (tb - before[5])
+                        dx, dy = dx + part * (dx - before[6]), dy + part * (dy - before[7])
+                        dq += part * (dq - before[8])
+                        cnb, ctb, work = left, 0.0, work + returned
+                        if compressing and cnb == 0.0:
+                            if restitution == 0.0:
+                                break
+                            compressing, target, jam = False, (1.0 + restitution) * nb, NO_JAM
                 continue
             if a >= PLUS:
                 if slip_a == 0.0:
@@ -157,6 +234,7 @@ def solve(problem: Problem, choice: int) -> Impact:
         tb += ptb * span
         if restitution > 0.0:
             work -= span * (cnb + 0.5 * rnb * span)
+        was_a, was_b = cta, ctb
         cna += rna * span
         cta += rta * span
         cnb += rnb * span
@@ -169,9 +247,12 @@ def solve(problem: Problem, choice: int) -> Impact:
             break
         if cna <= zero_a or event == OLD_CLOSES:
             cna = 0.0
-        if -zero_a <= cta <= zero_a or event == OLD_SLIP_ENDS:
+        # A slip that all but ends, or goes past its end by a rounding, is one that ends.
+        rest = ROUNDING * abs(was_a)
+        if event == OLD_SLIP_ENDS or abs(cta) <= zero_a or abs(cta) <= rest or (a >= PLUS and cta * was_a < 0.0):
             cta = 0.0
-        if -zero_b <= ctb <= zero_b or event == NEW_SLIP_ENDS:
+        rest = ROUNDING * abs(was_b)
+        if event == NEW_SLIP_ENDS or abs(ctb) <= zero_b or abs(ctb) <= rest or ctb * was_b < 0.0:
             ctb = 0.0
 
         decided = False
@@ -179,7 +260,7 @@ def solve(problem: Problem, choice: int) -> Impact:
             cnb = 0.0
             if restitution == 0.0:
                 break
-            compressing, target = False, (1.0 + restitution) * nb
+            compressing, target, jam = False, (1.0 + restitution) * nb, NO_JAM
             decided = (cna > 0.0 if a == OPEN else a == STICK or cta != 0.0) and (b == STICK or ctb != 0.0)
         elif event == EXPANDED or event == WORK_RETURNED:
             if event == WORK_RETURNED:
@@ -187,7 +268,7 @@ def solve(problem: Problem, choice: int) -> Impact:
             if cnb >= -zero_b:
                 break
             # B was pressed again while it expanded: a plastic compression ends that.
-            compressing, restitution = True, 0.0
+            compressing, restitution, jam = True, 0.0, NO_JAM
     else:
         notes |= NO_SOLUTION
     if notes & SHARED_FRICTION:

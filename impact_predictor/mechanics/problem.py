@@ -1,20 +1,17 @@
-"""Between a body with its contacts and the problem that the impact laws see."""
+"""Between a body with its contacts and the problem that the impact laws see, in law code (see `pair`)."""
 
 from __future__ import annotations
 
 from math import inf, sqrt
 
 from .pair import Problem
-from .types import Contact, Twist, TwoPointBody
+from .types import Contact, Twist
 
 SPEED_ROUNDING = 1e-14
 """A contact speed below this part of the terms it is the sum of is rounding and counts as zero."""
 
 UNIT = 1e-6
 """How far the square of a normal's length may be from 1."""
-
-new_tuple = tuple.__new__
-"""Makes a NamedTuple in half the time of its own constructor, which is a Python function that calls this."""
 
 Approach = tuple[float, float, float]
 """Normal and tangential contact velocity, and the speed below which either is rounding."""
@@ -59,24 +56,25 @@ def approach(contact: Contact, twist: Twist) -> Approach:
     return see(contact, twist)[1:4]
 
 
-def problem_of(body: TwoPointBody, twist: Twist) -> tuple[bool, Problem, Frame]:
+def problem_of(
+    mass: float, inertia: float, stands: bool, old: Contact, new: Contact, twist: Twist
+) -> tuple[bool, Problem, Frame]:
     """What an impact law is asked about a body that moves with `twist`, after whether its numbers are in their range.
 
-    A body without an old contact gets a frictionless one at its mass centre, which never closes.
+    A body that does not stand on `old` gets a frictionless contact at its mass centre, which never closes.
     """
-    mass, inertia, old, new = body
     valid, cnb, ctb, zero_b, bx, by, nb, tb = see(new, twist)
-    if old is None:
-        cna, cta, zero_a, ax, ay, na, ta, fa, ea = inf, 0.0, 0.0, bx, by, 0.0, 0.0, 0.0, 0.0
-    else:
+    _, _, fb, _, eb, _ = new
+    if stands:
         valid_a, cna, cta, zero_a, ax, ay, na, ta = see(old, twist)
         valid = valid and valid_a
         _, _, fa, _, ea, _ = old
+    else:
+        cna, cta, zero_a, ax, ay, na, ta, fa, ea = inf, 0.0, 0.0, bx, by, 0.0, 0.0, 0.0, 0.0
     square = inertia / mass if mass > 0.0 else 0.0
     if not (valid and 0.0 < square < inf):
         return False, NO_PROBLEM, (0.0, 1.0, 1.0)
     rho = sqrt(square)
-    _, _, fb, _, eb, _ = new
     pair = (ax * bx + ay * by, ax * by - ay * bx, na / rho, ta / rho, nb / rho, tb / rho, fa, fb)
     return True, (pair, ea, eb, cna, cta, cnb, ctb, zero_a, zero_b), (ax, ay, rho)
 
@@ -84,8 +82,8 @@ def problem_of(body: TwoPointBody, twist: Twist) -> tuple[bool, Problem, Frame]:
 NO_PROBLEM: Problem = ((1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), 0.0, 0.0, inf, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
-def twist_after(twist: Twist, frame: Frame, dx: float, dy: float, dq: float) -> Twist:
+def twist_after(twist: Twist, frame: Frame, dx: float, dy: float, dq: float) -> tuple[float, float, float]:
     """The twist changed by (dx, dy, dq), along the frame's tangent and normal and times rho."""
     nx, ny, rho = frame
     vx, vy, omega = twist
-    return new_tuple(Twist, (vx + ny * dx + nx * dy, vy + ny * dy - nx * dx, omega + dq / rho))
+    return vx + ny * dx + nx * dy, vy + ny * dy - nx * dx, omega + dq / rho

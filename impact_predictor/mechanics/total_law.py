@@ -32,6 +32,9 @@ from .pair import (
 SAME_TWIST = 1e-9
 """Solutions that change the twist by less than this part differently are one solution."""
 
+LINE_ROUNDING = 2e-15
+"""The line from A to B, as the moments of the contacts give it, is known up to this part of their sizes."""
+
 Solution = tuple[bool, int, int, float, float, float, float, float, float, float]
 """Whether Coulomb's law holds; states of A and B; N_A, T_A, N_B, T_B; change of the twist (x, y, rho omega)."""
 
@@ -45,23 +48,22 @@ def one_alone(pair: Pair, gna: float, gnb: float, ctb: float) -> Solution:
     against the T_B that would make it stick.
     """
     cos, sin, qa, _, qb, sb, _, fb = pair
-    qb2, sb2 = 1.0 + qb * qb, 1.0 + sb * sb
-    size = qb2 + sb * sb
-    nb = (qb * sb * ctb - sb2 * gnb) / size
-    tb = (qb * sb * gnb - qb2 * ctb) / size
-    if abs(tb) <= fb * nb * (1.0 + ROUNDING):
-        b = STICK
-        dq = -(qb * gnb + sb * ctb) / size
-    else:
-        b = MINUS if tb > 0.0 else PLUS
-        ray = -fb if b == PLUS else fb
+    size = 1.0 + qb * qb + sb * sb
+    off = qb * ctb - sb * gnb
+    nb = (sb * off - gnb) / size
+    tb = -(qb * off + ctb) / size
+    b, dq = STICK, -(qb * gnb + sb * ctb) / size
+    if abs(tb) > fb * nb * (1.0 + ROUNDING):
+        state = MINUS if tb > 0.0 else PLUS
+        ray = -fb if state == PLUS else fb
         bq = qb + ray * sb
         den = 1.0 + qb * bq
-        nb = -gnb / den if den > 0.0 else -1.0
-        if nb < 0.0:
+        if den > 0.0 and gnb <= 0.0:
+            nb = -gnb / den
+            b, tb, dq = state, ray * nb, bq * nb
+        elif gnb >= 0.0:
             return NOT_POSSIBLE
-        tb = ray * nb
-        dq = bq * nb
+        # Else it sticks, after all: only rounding said that it does not.
     dx, dy = cos * tb - sin * nb, cos * nb + sin * tb
     gap = gna + dy + qa * dq
     opens = gap >= 0.0 or gap >= -ROUNDING * (abs(gna) + abs(dy) + abs(qa * dq))
@@ -88,12 +90,12 @@ def both_slide(pair: Pair, a: int, b: int, gna: float, cta: float, gnb: float, c
     na, nb = na / den, nb / den
     if na < -ROUNDING * abs(nb) or nb < -ROUNDING * abs(na):
         return NOT_POSSIBLE
-    dx, dy, dq = gnb * (pq - py * qa), gnb * px * qa, -gnb * px
+    dx, dq = gnb * (pq - py * qa), -gnb * px
     if gna != 0.0:
         dx -= gna * (cos * pq - qb * py)
-        dy -= gna * (qb * px + sin * pq)
         dq += gna * (sin * py + cos * px)
-    dx, dy, dq = dx / den, dy / den, dq / den
+    dx, dq = dx / den, dq / den
+    dy = -gna - qa * dq
     slip = cta + dx + sa * dq
     if (slip < 0.0) == (a == PLUS) and below_rounding(-abs(slip), cta, dx, sa * dq):
         return NOT_POSSIBLE
@@ -109,10 +111,8 @@ def one_sticks(pair: Pair, gna: float, cta: float, gnb: float, ctb: float) -> So
     lever = qa * cos - sa * sin - qb
     if lever == 0.0:
         return NOT_POSSIBLE
-    # tA x nB, nB x nA and nA x tA
-    dx = (gna * sa * cos - cta * (cos * qa - qb) - gnb * sa) / lever
-    dy = (gna * (qb + sa * sin) - cta * sin * qa - gnb * qa) / lever
     dq = (gnb - gna * cos + cta * sin) / lever
+    dx, dy = -cta - sa * dq, -gna - qa * dq
     b = PLUS if ctb + cos * dx + sin * dy + sb * dq > 0.0 else MINUS
     tb = -fb if b == PLUS else fb
     bx, by, bq = tb * cos - sin, cos + tb * sin, qb + tb * sb
@@ -134,28 +134,29 @@ def one_sticks(pair: Pair, gna: float, cta: float, gnb: float, ctb: float) -> So
 def both_stick(pair: Pair, gna: float, cta: float, gnb: float, ctb: float, zero: float) -> Solution:
     """Both contacts stick: four velocities for three freedoms, so the supports must move as one body.
 
-    Where they do, the states are given even if friction cannot hold the contacts. `zero` is the speed below which
-    the contact velocities are rounding.
+    Along the line of contacts they then move alike. Where they do, the states are given even if friction cannot hold
+    the contacts. `zero` is the speed below which the contact velocities are rounding.
     """
     cos, sin, qa, sa, qb, sb, _, _ = pair
     lever, arm = qa * cos - sa * sin - qb, sa * cos + qa * sin - sb
     if lever == 0.0 and arm == 0.0:
         return NOT_POSSIBLE
-    normal_leads = abs(lever) >= abs(arm)
-    # the row of B that fixes the twist with the two of A (x, y, q), its velocity, and the other row's
-    if normal_leads:
-        x, y, q, g, gap = -sin, cos, qb, gnb, ctb
-    else:
-        x, y, q, g, gap, lever = cos, sin, sb, ctb, gnb, arm
-    dx, dy, dq = -g * sa, -g * qa, g
+    # The impulses of a push along the line of contacts are proportional to lever and arm at B.
+    gap = ctb * lever - gnb * arm
     if gna != 0.0 or cta != 0.0:
-        dx += gna * sa * y - cta * (y * qa - q)
-        dy += gna * (q - sa * x) + cta * x * qa
-        dq -= gna * y + cta * x
-    dx, dy, dq = dx / lever, dy / lever, dq / lever
-    gap += cos * dx + sin * dy + sb * dq if normal_leads else cos * dy - sin * dx + qb * dq
-    if abs(gap) > zero:
-        return NOT_POSSIBLE
+        gap += gna * (sin * qb - cos * sb + sa) + cta * (cos * qb + sin * sb - qa)
+    if abs(gap) > zero * (abs(lever) + abs(arm)):
+        speeds = abs(gna) + abs(cta) + abs(gnb) + abs(ctb)
+        if abs(gap) > LINE_ROUNDING * speeds * (abs(qa) + abs(sa) + abs(qb) + abs(sb)):
+            return NOT_POSSIBLE
+    normal_leads = abs(lever) >= abs(arm)
+    # the row of B that fixes the twist with the two of A (x, y, q), and its velocity
+    if normal_leads:
+        x, y, q, g = -sin, cos, qb, gnb
+    else:
+        x, y, q, g, lever = cos, sin, sb, ctb, arm
+    dq = (g - gna * y - cta * x) / lever
+    dx, dy = -cta - sa * dq, -gna - qa * dq
     along = (sa * dx + qa * dy - dq) / lever
     na = -(sa * (y * dx - x * dy) + dy * q - y * dq) / lever
     ta = -(qa * (x * dy - y * dx) + dx * q - x * dq) / lever
@@ -253,7 +254,8 @@ def solve(problem: Problem, choice: int) -> Impact:
             if solution[0]:
                 found, first, best = add(found, first, best, solution, choice)
         if not found:
-            # A leaves, but friction can hold it; or a border is met up to rounding, and no state seemed possible.
+            # A contact leaves, but friction can hold it; or a border is met up to rounding: no state seemed possible.
+            found, first, best = add(found, first, best, one_alone(pair, gna, gnb, ctb), choice)
             solution = exchange(pair, one_alone(exchanged(pair), gnb, gna, cta))
             found, first, best = add(found, first, best, solution, choice)
             for a in (PLUS, MINUS):

@@ -6,7 +6,10 @@ Plane x (forward), y (up), rotation counter-clockwise positive, SI units (REP-10
 from __future__ import annotations
 
 from enum import IntEnum, IntFlag
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from .margins import Margins
 
 Vector = tuple[float, float]
 
@@ -52,7 +55,7 @@ class Flag(IntFlag):
     BOTH_STRUCK = 64
     """Both contacts approach, so the total law answered."""
     LAST_RESORT = 128
-    """The impulse path could not be continued, so the total law answered."""
+    """The law had no answer, so the total law without restitution gave one."""
     NO_SOLUTION = 256
     """No law has a solution (supports that move apart); the twist is left as it was."""
     INVALID_INPUT = 512
@@ -114,7 +117,8 @@ class Outcome(NamedTuple):
 
     `twist` right after it; `impulses` as ((N_old, T_old), (N_new, T_new)) in N s along normal and tangent;
     `segments` the contact states along the impulse path (old contact first; O open, S stick, + or - slip);
-    `energy_lost` in J, relative to the supports; `unique` is False when `alternatives` exist.
+    `energy_lost` in J, relative to the supports; `unique` is False when `alternatives` exist. `body` and `before` are
+    what it was asked about, None where the body also moved across the impact plane.
     """
 
     mode: Mode
@@ -126,3 +130,12 @@ class Outcome(NamedTuple):
     unique: bool
     alternatives: tuple[Alternative, ...]
     law: str
+    body: TwoPointBody | None = None
+    before: Twist | None = None
+
+    @property
+    def margins(self) -> Margins:
+        """How far the impact is from another mode, computed when it is asked for."""
+        from .margins import margins_of
+
+        return margins_of(self)

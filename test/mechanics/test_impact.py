@@ -131,7 +131,7 @@ def test_the_restitution_of_an_old_contact_at_rest_is_ignored_and_said_so():
     for law in ("path", "total"):
         plain, flagged = (solve_impact(each, body.turning(-1.0), law) for each in (body, bouncy))
         assert not plain.flags & Flag.OLD_RESTITUTION_IGNORED
-        assert flagged == plain._replace(flags=plain.flags | Flag.OLD_RESTITUTION_IGNORED)
+        assert flagged == plain._replace(flags=plain.flags | Flag.OLD_RESTITUTION_IGNORED, body=bouncy)
 
 
 def test_an_old_contact_that_already_leaves_is_out_of_the_impact():

@@ -1,0 +1,101 @@
+"""What one impact of many costs, for both laws, on a shuffled mixture of kinds.
+
+    python benchmarks/bench_batch.py
+
+Prints nanoseconds per impact (median of the turns) for the kinds in turn and for their mixture, the memory that is
+needed beyond inputs and outputs, and how long a map of 1000 x 1000 takes.
+"""
+
+from __future__ import annotations
+
+import statistics
+import sys
+import tracemalloc
+from collections.abc import Callable
+from time import perf_counter
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from impact_predictor import Twist, TwoPointBody, plate, solve_impacts
+from impact_predictor.mechanics.batch import numbers_of
+from impact_predictor.mechanics.random_problems import problems_of
+
+COUNT = 1_000_000
+TURNS = 5
+LAWS = ("total", "path")
+MIXTURE = ("plate", "rod", "cylinder", "floor", "step", "wedge", "tilted", "deck", "both")
+
+
+def mixture(count: int) -> tuple[TwoPointBody, Twist]:
+    """Impacts of all kinds in random order."""
+    source = np.random.default_rng(1)
+    parts = [problems_of(kind, source, count // len(MIXTURE) + 1) for kind in MIXTURE]
+    order = source.permutation(count)
+
+    def mixed(fields: list[np.ndarray]) -> np.ndarray:
+        return np.concatenate(fields)[order]
+
+    mass, inertia, vx, vy, omega, *numbers = (
+        mixed(list(column))
+        for column in zip(
+            *(
+                (body.mass, body.inertia, *twist, *numbers_of(body.old), *numbers_of(body.new))
+                for _, body, twist in parts
+            ),
+            strict=True,
+        )
+    )
+    old, new = (
+        parts[0].body.new._replace(
+            x=x, y=y, friction=friction, normal=(nx, ny), restitution=restitution, velocity=(ux, uy)
+        )
+        for x, y, friction, nx, ny, restitution, ux, uy in (numbers[:8], numbers[8:])
+    )
+    return TwoPointBody(mass, inertia, old, new), Twist(vx, vy, omega)
+
+
+def median_seconds(function: Callable[[], object]) -> float:
+    function()
+    times = []
+    for _ in range(TURNS):
+        start = perf_counter()
+        function()
+        times.append(perf_counter() - start)
+    return statistics.median(times)
+
+
+def beyond_outputs(body: TwoPointBody, twist: Twist, law: str) -> float:
+    """Bytes per impact at the peak, less those of the outcomes."""
+    tracemalloc.start()
+    outcomes = solve_impacts(body, twist, law)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    return (peak - sum(field.nbytes for field in outcomes)) / outcomes.mode.size
+
+
+def main() -> None:
+    """Time the kinds and their mixture, and print the tables."""
+    if "numba" not in sys.modules:
+        solve_impacts(*problems_of("plate", np.random.default_rng(0), 1)[1:])
+    print("compiled with numba" if "numba" in sys.modules else "plain Python: install the extra `fast` for numba")
+    count = COUNT if "numba" in sys.modules else COUNT // 100
+    cases = {kind: problems_of(kind, np.random.default_rng(1), count // 10)[1:] for kind in MIXTURE}
+    cases[f"all of them, shuffled, {count:,}"] = mixture(count)
+    table = Table("kind", *(f"{law}: ns" for law in LAWS), title="One impact of many, median")
+    for name, case in cases.items():
+        nanoseconds = (median_seconds(lambda law=law, case=case: solve_impacts(*case, law)) for law in LAWS)
+        size = np.broadcast(case[0].mass, case[1].omega).size
+        table.add_row(name, *(f"{1e9 * seconds / size:.0f}" for seconds in nanoseconds))
+    Console().print(table)
+    print(f"memory beyond inputs and outputs: {beyond_outputs(*mixture(count), 'path'):.2f} bytes per impact")
+    heights, frictions = np.linspace(0.01, 2.0, 1000)[:, None], np.linspace(0.0, 1.5, 1000)
+    body = plate(length=1.0, height=heights, mass=1.0, friction=frictions)
+    for law in LAWS:
+        seconds = median_seconds(lambda law=law: solve_impacts(body, body.turning(omega=-1.0), law))
+        print(f"map of 1000 x 1000, {law} law: {seconds:.2f} s")
+
+
+if __name__ == "__main__":
+    main()

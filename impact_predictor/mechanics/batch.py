@@ -1,0 +1,137 @@
+"""Many impacts at once: `solve_impacts`, the law code of `solve_impact` over arrays.
+
+It is compiled where numba is installed and runs as plain Python where it is not; the answers are the same to the last
+bit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from hashlib import sha256
+from inspect import getmembers, getsource, isfunction
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import answer, pair, path_law, path_states, problem, total_law
+from .impact import NOWHERE, number_of
+from .types import Contact, Twist, TwoPointBody
+
+CHUNK = 1024
+"""Impacts that are handed over at a time, so that the copies of broadcast fields stay small."""
+
+LAW_CODE = (pair, path_states, path_law, total_law, problem, answer)
+
+
+class Outcomes(NamedTuple):
+    """What many impacts do, in the shape (...) that the fields of the bodies and of the twist broadcast to.
+
+    `mode` (...) uint8, the numbers of `Mode`; `twist` (..., 3) as vx, vy in m/s and omega in rad/s right after;
+    `impulses` (..., 2, 2) as ((N_old, T_old), (N_new, T_new)) in N s; `segments` (...) int64, the contact states along
+    the impulse path as `states_of` reads them; `flags` (...) uint16, the bits of `Flag`; `energy_lost` (...) in J,
+    relative to the supports; `unique` (...) bool, False where the law allows other answers, which `solve_impact` tells.
+    """
+
+    mode: NDArray[np.uint8]
+    twist: NDArray[np.float64]
+    impulses: NDArray[np.float64]
+    segments: NDArray[np.int64]
+    flags: NDArray[np.uint16]
+    energy_lost: NDArray[np.float64]
+    unique: NDArray[np.bool_]
+
+
+def solve_impacts(bodies: TwoPointBody, twist: Twist | NDArray[np.float64], law: str = "path") -> Outcomes:
+    """What many impacts do: `solve_impact` for each element of arrays that broadcast together.
+
+    Any field of `bodies`, of its contacts (each part of a normal or a velocity on its own) and of `twist` may be an
+    array; `twist` may also be one array (..., 3). `old` is None for all or for none. Bad numbers give
+    Flag.INVALID_INPUT in their own element; an unknown law or shapes that do not broadcast raise ValueError.
+    """
+    number = number_of(law)
+    mass, inertia, old, new = bodies
+    vx, vy, omega = np.moveaxis(twist, -1, 0) if isinstance(twist, np.ndarray) else twist
+    fields: Any = (mass, inertia, *numbers_of(old or NOWHERE), *numbers_of(new), vx, vy, omega)
+    each: Any = ["readonly", "contig"]
+    chunks = np.nditer(
+        fields,
+        flags=["buffered", "external_loop", "zerosize_ok"],
+        op_flags=[each] * len(fields),
+        op_dtypes=[np.float64] * len(fields),
+        order="C",
+        buffersize=CHUNK,
+    )
+    shape, count = np.broadcast_shapes(*(np.shape(field) for field in fields)), chunks.itersize
+    outcomes = Outcomes(
+        np.empty(count, np.uint8),
+        np.empty((count, 3)),
+        np.empty((count, 2, 2)),
+        np.empty(count, np.int64),
+        np.empty(count, np.uint16),
+        np.empty(count),
+        np.empty(count, np.bool_),
+    )
+    fill, start = filler(), 0
+    if count:
+        for columns in chunks:
+            fill(columns, old is not None, number, start, outcomes)
+            start += len(columns[0])
+    return Outcomes._make(field.reshape(shape + field.shape[1:]) for field in outcomes)
+
+
+def numbers_of(contact: Contact) -> tuple[Any, ...]:
+    """The eight numbers of a contact, or arrays of them."""
+    x, y, friction, (nx, ny), restitution, (ux, uy) = contact
+    return x, y, friction, nx, ny, restitution, ux, uy
+
+
+@cache
+def filler() -> Callable[[Any, bool, int, int, Outcomes], None]:
+    """The function that solves a chunk, compiled if that can be."""
+    try:
+        from numba import njit
+        from numba.extending import register_jitable
+    except ImportError:
+        plain = make_fill("")
+        return lambda columns, *rest: plain(tuple(column.tolist() for column in columns), *rest)
+
+    for module in LAW_CODE:
+        for _, function in getmembers(module, isfunction):
+            if function.__module__ == module.__name__:
+                register_jitable(forceinline=True)(function)  # half the time of calls with so many numbers
+    fill = make_fill(sha256("".join(map(getsource, LAW_CODE)).encode()).hexdigest())
+    # Divisions are as in C: law code never divides by zero.
+    try:
+        return njit(fill, cache=True, error_model="numpy")  # type: ignore[no-any-return]
+    except RuntimeError:  # no folder to keep the compiled code in
+        return njit(fill, error_model="numpy")  # type: ignore[no-any-return]
+
+
+def make_fill(law_code: str) -> Callable[[Any, bool, int, int, Outcomes], None]:
+    """The function that solves a chunk; numba keeps what it compiled under the value of `law_code`."""
+
+    def fill(columns: Any, stands: bool, law: int, start: int, outcomes: Outcomes) -> None:
+        law_code  # noqa: B018
+        m, j, ox, oy, of, onx, ony, oe, oux, ouy, nx, ny, nf, nnx, nny, ne, nux, nuy, vx, vy, omega = columns
+        mode, twist, impulses, segments, flags, energy_lost, unique = outcomes
+        for i in range(len(m)):
+            old = ox[i], oy[i], of[i], (onx[i], ony[i]), oe[i], (oux[i], ouy[i])
+            new = nx[i], ny[i], nf[i], (nnx[i], nny[i]), ne[i], (nux[i], nuy[i])
+            k = start + i
+            (
+                mode[k],
+                (twist[k, 0], twist[k, 1], twist[k, 2]),
+                impulses[k, 0, 0],
+                impulses[k, 0, 1],
+                impulses[k, 1, 0],
+                impulses[k, 1, 1],
+                segments[k],
+                flags[k],
+                energy_lost[k],
+                unique[k],
+                _,
+            ) = answer.answer(m[i], j[i], stands, old, new, (vx[i], vy[i], omega[i]), law)  # type: ignore[arg-type]
+
+    return fill

@@ -1,0 +1,297 @@
+"""How far an impact is from another mode: in friction, in geometry and in speed.
+
+Along each way the nearest border is looked for outwards on both sides at the STEPS, and between two of them where the
+contact states differ. So a mode is found that holds over a thirty-second of the way's unit and over half of its
+distance; a narrower one if the contact states beyond it differ too. The border itself is then that of the law, up to
+rounding: what comes to zero at it (a slip, the speed of a contact that lifts) is followed to zero.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import copysign, hypot, inf
+from typing import NamedTuple
+
+from .answer import answer
+from .impact import MODES, NOWHERE, new_tuple, number_of
+from .problem import see
+from .types import Contact, Flag, Mode, Outcome, Twist, TwoPointBody, Vector
+
+STEPS = tuple([k / 32.0 for k in (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64)])
+"""How far is looked, in the unit of a way."""
+
+PROBES = 5
+"""How often an interval is halved in which the contact states change but the mode does not."""
+
+ACCURACY = 1e-12
+"""Error of a border, in the unit of its way."""
+
+NEARLY = 0.95
+"""How far a velocity is followed to the place where it seems to vanish."""
+
+BEYOND = 1e-6
+"""How far from a border the modes on its sides are asked for, in the unit of its way."""
+
+ATTEMPTS = 100
+"""More than halving to rounding takes."""
+
+UNSOLVED = int(Flag.INVALID_INPUT | Flag.NO_SOLUTION)
+
+NO_IMPACT = int(Mode.NO_IMPACT)
+OLD_LIFTS = frozenset(map(int, (Mode.PIVOT_SLIDE, Mode.PIVOT, Mode.FLIGHT)))
+NEW_LIFTS = frozenset(map(int, (Mode.BACK_PIVOT, Mode.FLIGHT)))
+SLIPS = frozenset(map(int, (Mode.SLIDE, Mode.PIVOT_SLIDE)))
+
+
+class Margin(NamedTuple):
+    """The smallest change that changes the mode, up or down, and the mode beyond; inf and None where none was found."""
+
+    change: float
+    mode: Mode | None
+
+
+class Margins(NamedTuple):
+    """How far an impact is from the nearest border of its mode, by one change at a time.
+
+    `friction`: the same change of the friction of both contacts (1), not below zero; `center`: a shift of the mass
+    centre along the line from the old to the new contact (m); `height`: its shift across that line, out of the support
+    (m), and not through the line; `reach`: a shift of the new contact along its tangent (m); `slip`: a change of the
+    velocity of the old contact along its tangent (m/s), with the angular velocity as it is. Mass and inertia stay, and
+    the body moves as before where its mass centre or its new contact shifts. It is looked up to a change of friction of
+    2, twice the distance of the contacts and twice the sum of the contact speeds.
+
+    Of a body without an old contact, the new contact and its tangent stand for the old contact and the line, and its
+    distance from the mass centre for that of the contacts.
+    """
+
+    friction: Margin
+    center: Margin
+    height: Margin
+    reach: Margin
+    slip: Margin
+
+
+NO_MARGIN = Margin(inf, None)
+NO_MARGINS = Margins(NO_MARGIN, NO_MARGIN, NO_MARGIN, NO_MARGIN, NO_MARGIN)
+
+Case = tuple[Contact, Contact, Twist]
+"""Old contact, new contact and twist before the impact."""
+
+
+class Trial(NamedTuple):
+    """An impact after a change: its mode, contact states and flags, what it started from and the twist after."""
+
+    change: float
+    mode: int
+    states: int
+    flags: int
+    case: Case
+    after: Twist
+
+
+class Way(NamedTuple):
+    """A way to change an impact: the impact after a change, the unit of changes, and the least one."""
+
+    at: Callable[[float], Trial]
+    unit: float
+    least: float = -inf
+
+
+def margins(body: TwoPointBody, twist: Twist, law: str = "path") -> Margins:
+    """How far the impact of `solve_impact` with the same arguments is from another mode.
+
+    Where there is no impact, or none can be solved, there are no margins. An unknown law raises ValueError.
+    """
+    number = number_of(law)
+    mass, inertia, stands = body.mass, body.inertia, body.old is not None
+    old, new = body.old or NOWHERE, body.new
+
+    def at(change: float, case: Case) -> Trial:
+        mode, after, _, _, _, _, states, flags, _, _, _ = answer(mass, inertia, stands, *case, number)
+        return new_tuple(Trial, (change, mode, states, flags, case, new_tuple(Twist, after)))
+
+    here = at(0.0, (old, new, twist))
+    if here.mode == NO_IMPACT or here.flags & UNSOLVED:
+        return NO_MARGINS
+
+    stood = old if stands else new
+    along, across, distance, height = frame_of(stood, new, stands)
+    tangent = stood.normal[1], -stood.normal[0]
+    speed = speed_of(old, twist) + speed_of(new, twist) if stands else speed_of(new, twist)
+    ways = (
+        Way(lambda s: at(s, rubbed(old, new, twist, s)), 1.0, -max(old.friction, new.friction)),
+        Way(lambda s: at(s, centered(old, new, twist, along, s)), distance),
+        Way(lambda s: at(s, centered(old, new, twist, across, s)), distance, -height if height >= 0.0 else -inf),
+        Way(lambda s: at(s, (old, reaching(old, new, s), twist)), distance),
+        Way(lambda s: at(s, (old, new, slipping(twist, tangent, s))), speed),
+    )
+    return Margins(*[nearest_border(way, here) for way in ways])
+
+
+def margins_of(outcome: Outcome) -> Margins:
+    """The margins of an impact that was solved; none where the body also moved across the impact plane."""
+    if outcome.body is None or outcome.before is None:
+        return NO_MARGINS
+    # Where the total law answered for the path law, it was the path law that was asked.
+    asked = "path" if outcome.flags & (Flag.BOTH_STRUCK | Flag.LAST_RESORT) else outcome.law
+    return margins(outcome.body, outcome.before, asked)
+
+
+def frame_of(stood: Contact, new: Contact, stands: bool) -> tuple[Vector, Vector, float, float]:
+    """Unit vectors along the line of the contacts and across it, their distance, and the height of the mass centre."""
+    nx, ny = stood.normal
+    dx, dy = new.x - stood.x, new.y - stood.y
+    distance = hypot(dx, dy)
+    if distance > 0.0:
+        dx, dy = dx / distance, dy / distance
+    else:
+        dx, dy = ny, -nx
+    up = 1.0 if dx * (ny + new.normal[1]) >= dy * (nx + new.normal[0]) else -1.0
+    x, y = -up * dy, up * dx
+    height = -x * stood.x - y * stood.y
+    return (dx, dy), (x, y), distance if stands else hypot(new.x, new.y), height
+
+
+def speed_of(contact: Contact, twist: Twist) -> float:
+    _, normal, tangential, *_ = see(contact, twist)
+    return abs(normal) + abs(tangential)
+
+
+def rubbed(old: Contact, new: Contact, twist: Twist, change: float) -> Case:
+    """The impact with more friction at both contacts."""
+    return (
+        old._replace(friction=max(0.0, old.friction + change)),
+        new._replace(friction=max(0.0, new.friction + change)),
+        twist,
+    )
+
+
+def placed(contact: Contact, direction: Vector, shift: float) -> Contact:
+    """The contact shifted in the body."""
+    x, y = contact.x + shift * direction[0], contact.y + shift * direction[1]
+    return new_tuple(Contact, (x, y, *contact[2:]))
+
+
+def centered(old: Contact, new: Contact, twist: Twist, direction: Vector, shift: float) -> Case:
+    """The impact with the mass centre shifted in a body that moves as before."""
+    vx, vy, omega = twist
+    x, y = direction
+    moved = Twist(vx - omega * shift * y, vy + omega * shift * x, omega)
+    return placed(old, direction, -shift), placed(new, direction, -shift), moved
+
+
+def reaching(old: Contact, new: Contact, shift: float) -> Contact:
+    """The new contact shifted along its tangent, on a support that turns with that of the old contact."""
+    nx, ny = new.normal
+    x, y = new.x - old.x, new.y - old.y
+    (ux, uy), (vx, vy), square = old.velocity, new.velocity, x * x + y * y
+    turn = (x * (vy - uy) - y * (vx - ux)) / square if square > 0.0 else 0.0
+    there = placed(new, (ny, -nx), shift)
+    return there._replace(velocity=(vx + turn * shift * nx, vy + turn * shift * ny))
+
+
+def slipping(twist: Twist, direction: Vector, change: float) -> Twist:
+    return Twist(twist.vx + change * direction[0], twist.vy + change * direction[1], twist.omega)
+
+
+def nearest_border(way: Way, here: Trial) -> Margin:
+    """The nearest change of the mode along a way."""
+    if not 0.0 < way.unit < inf:
+        return NO_MARGIN
+    last = {1.0: here, -1.0: here}
+    for step in STEPS:
+        found = []
+        for side in tuple(last):
+            change = max(side * step * way.unit, way.least)
+            trial = way.at(change)
+            if trial.flags & UNSOLVED:
+                del last[side]
+                continue
+            border = border_between(way, last[side], trial)
+            if border is not None:
+                found.append(border)
+            if trial.mode == here.mode:
+                last[side] = trial
+            if change == way.least:
+                del last[side]
+        if found:
+            return min(found, key=lambda margin: abs(margin.change))
+    return NO_MARGIN
+
+
+def border_between(way: Way, near: Trial, far: Trial) -> Margin | None:
+    """The border between two changes, if there is one; `near` has the mode of the unchanged impact."""
+    if near.mode != far.mode:
+        return border_in(way, near, far)
+    if near.states != far.states:
+        first = near
+        for _ in range(PROBES):
+            middle = way.at(0.5 * (near.change + far.change))
+            if middle.mode != first.mode and not middle.flags & UNSOLVED:
+                return border_in(way, near, middle)
+            near, far = (middle, far) if middle.states == first.states else (near, middle)
+    return None
+
+
+def border_in(way: Way, near: Trial, far: Trial) -> Margin | None:
+    """The border between two changes with different modes; None where the other mode is that of a single point.
+
+    On one side of it a contact moves that does not move on the other. Where the secant through two changes on that side
+    says that its velocity vanishes, there is the border; halving finds it where the velocities jump.
+    """
+    outwards = copysign(BEYOND * way.unit, far.change - near.change)
+    second: Trial | None = None  # on the side that moves, further from the border
+    estimate = inf
+    for _ in range(ATTEMPTS):
+        near_moves = moves(near.mode, far.mode)
+        moving, still = (near, far) if near_moves else (far, near)
+        guess = inf if second is None or second.mode != moving.mode else zero_by_secant(second, moving, still.mode)
+        span = still.change - moving.change + (outwards if near_moves else -outwards)
+        if not 0.0 < (guess - moving.change) / span <= 1.0:
+            trial = way.at(0.5 * (near.change + far.change))
+        elif abs(guess - estimate) > ACCURACY * way.unit:
+            trial = way.at(moving.change + NEARLY * (guess - moving.change))
+        else:
+            inside, outside = way.at(guess - outwards), way.at(guess + outwards)
+            if abs(guess - near.change) <= abs(outwards):
+                inside = near
+            if inside.mode == near.mode != outside.mode:
+                return Margin(guess, MODES[outside.mode])
+            trial = outside if near_moves else inside
+        second, estimate = (moving, guess) if trial.mode == moving.mode else (None, inf)
+        if trial.mode == near.mode:
+            near = trial
+        else:
+            far = trial
+        if abs(far.change - near.change) <= ACCURACY * way.unit or (far.change > near.change) != (outwards > 0.0):
+            break
+    beyond = way.at(far.change + outwards).mode
+    return None if beyond == near.mode else Margin(far.change, MODES[beyond])
+
+
+def moves(mode: int, other: int) -> bool:
+    """Whether at the border of two modes it is in the first one that a contact moves."""
+    if other == NO_IMPACT:
+        return True
+    for moving in (OLD_LIFTS, NEW_LIFTS):
+        if (mode in moving) != (other in moving):
+            return mode in moving
+    return mode in SLIPS
+
+
+def velocity(trial: Trial, still: int) -> float:
+    """The velocity (m/s) that vanishes at the border to the mode `still`, in which it is zero."""
+    old, new, twist = trial.case
+    if still == NO_IMPACT:
+        return -see(new, twist)[1]
+    _, lifts_old, slips_old, *_ = see(old, trial.after)
+    _, lifts_new, slips_new, *_ = see(new, trial.after)
+    if trial.mode in OLD_LIFTS:
+        return abs(slips_new) if still in OLD_LIFTS else lifts_old
+    return lifts_new if trial.mode in NEW_LIFTS else abs(slips_old) + abs(slips_new)
+
+
+def zero_by_secant(second: Trial, first: Trial, still: int) -> float:
+    """The change at which the velocity of two trials with the same mode vanishes; inf where it does not fall."""
+    speed, fall = velocity(first, still), velocity(second, still) - velocity(first, still)
+    return first.change + (first.change - second.change) * speed / fall if fall > 0.0 else inf

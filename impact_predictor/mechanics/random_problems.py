@@ -1,0 +1,214 @@
+"""Random impacts of many kinds, as arrays: what the laws are soaked with."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .types import Contact, Twist, TwoPointBody
+
+Numbers = Any
+"""An array (count,) in the place of a number."""
+
+CHUNK = 100_000
+"""Problems that are made at a time."""
+
+
+class Problems(NamedTuple):
+    """Problems of one kind: a body and a twist in SI units whose fields are arrays (count,)."""
+
+    kind: str
+    body: TwoPointBody
+    twist: Twist
+
+
+class Geometry(NamedTuple):
+    """Square of the radius of gyration; places of A and B from the mass centre; angles of their normals from y."""
+
+    square: Numbers
+    old: tuple[Numbers, Numbers]
+    new: tuple[Numbers, Numbers]
+    old_angle: Numbers
+    new_angle: Numbers
+
+
+class Draw:
+    """Draws arrays of `count` numbers from a source."""
+
+    def __init__(self, source: np.random.Generator, count: int) -> None:
+        self.source, self.count = source, count
+
+    def uniform(self, low: float, high: float) -> Numbers:
+        return self.source.uniform(low, high, self.count)
+
+    def decades(self, low: float, high: float) -> Numbers:
+        """Numbers between 10**low and 10**high, whose logarithms are uniform."""
+        return np.asarray(10.0 ** self.uniform(low, high))
+
+    def chance(self, part: float) -> Numbers:
+        """1 in this part of the cases, else 0."""
+        return np.asarray(self.source.random(self.count) < part, np.float64)
+
+    def sign(self) -> Numbers:
+        return 2.0 * self.chance(0.5) - 1.0
+
+    def pick(self, *values: float) -> Numbers:
+        return self.source.choice(values, self.count)
+
+    def speed(self) -> Numbers:
+        return self.uniform(-2.0, 2.0)
+
+    def wild(self) -> Numbers:
+        """Numbers of both signs over twelve decades, and zeros."""
+        return self.decades(-6.0, 6.0) * self.sign() * self.chance(0.9)
+
+
+def plate(draw: Draw) -> Geometry:
+    """A rectangle on a floor."""
+    a = draw.decades(-1.0, 1.0)
+    height = a * draw.decades(-2.0, 1.0)
+    return Geometry((a * a + height * height) / 3.0, (-a, -height), (a, -height), 0.0 * a, 0.0 * a)
+
+
+def rod(draw: Draw) -> Geometry:
+    """A rod on two supports."""
+    length = draw.decades(-1.0, 1.0)
+    a, b, height = (0.5 * length * draw.decades(low, 0.0) for low in (-2.0, -2.0, -4.0))
+    return Geometry(length * length / 12.0, (-a, -height), (b, -height), 0.0 * a, 0.0 * a)
+
+
+def cylinder(draw: Draw) -> Geometry:
+    """A cylinder between two edges."""
+    radius, old, new = draw.decades(-1.0, 1.0), -draw.uniform(0.01, 1.56), draw.uniform(0.01, 1.56)
+    old_at, new_at = ((radius * np.sin(angle), -radius * np.cos(angle)) for angle in (old, new))
+    return Geometry(radius * radius * draw.uniform(0.1, 1.0), old_at, new_at, old, new)
+
+
+def floor(draw: Draw) -> Geometry:
+    """Any body on a floor."""
+    a, b, height = (draw.uniform(0.02, 2.0) for _ in range(3))
+    return Geometry(draw.uniform(0.01, 2.0), (-a, -height), (b, -height), 0.0 * a, 0.0 * a)
+
+
+def step(draw: Draw) -> Geometry:
+    """B higher or lower than A, its tangent through A."""
+    square, old, (b, height), angle, _ = floor(draw)
+    rise = draw.uniform(-1.0, 1.0)
+    return Geometry(square, old, (b, height + rise), angle, np.arctan2(rise, b - old[0]))
+
+
+def wedge(draw: Draw) -> Geometry:
+    """A on a floor, B anywhere ahead on a slope."""
+    square, old, (b, _), angle, _ = floor(draw)
+    return Geometry(square, old, (b, draw.uniform(-2.0, 0.5)), angle, draw.uniform(-1.5, 1.5))
+
+
+def tilted(draw: Draw) -> Geometry:
+    """Two contacts anywhere, with any normals."""
+    return wedge(draw)._replace(old_angle=draw.uniform(-np.pi, np.pi), new_angle=draw.uniform(-np.pi, np.pi))
+
+
+def slender(draw: Draw) -> Geometry:
+    """On a floor or a slope, lengths over eight decades."""
+    square, a, b, height, drop = (draw.decades(-4.0, 4.0) for _ in range(5))
+    sloped = draw.chance(0.5)
+    drop = np.where(sloped > 0.0, drop, height)
+    return Geometry(square, (-a, -height), (b, -drop), 0.0 * a, sloped * draw.uniform(-1.5, 1.5))
+
+
+def close(draw: Draw) -> Geometry:
+    """Contacts nearly at one place."""
+    tilt = tilted(draw)
+    gap, (x, y) = draw.decades(-9.0, -1.0), tilt.old
+    return tilt._replace(new=(x + gap * draw.uniform(-1.0, 1.0), y + gap * draw.uniform(-1.0, 1.0)))
+
+
+def parallel(draw: Draw) -> Geometry:
+    """Normals nearly parallel, or nearly opposed."""
+    tilt = tilted(draw)
+    turn = draw.decades(-12.0, -1.0) * draw.sign() * draw.chance(0.8)
+    return tilt._replace(new_angle=tilt.old_angle + turn + np.pi * draw.chance(0.5))
+
+
+def extreme(draw: Draw) -> Geometry:
+    """Every length over twelve decades."""
+    ax, ay, bx, by = (draw.wild() for _ in range(4))
+    old, new = (draw.pick(0.0, 0.0, 1e-9, 0.5, -1.2, np.pi / 2, np.pi) for _ in range(2))
+    return Geometry(draw.decades(-12.0, 12.0), (ax, ay), (bx, by), old, new)
+
+
+KINDS: dict[str, tuple[Callable[[Draw], Geometry], str]] = {
+    "plate": (plate, "turns"),
+    "rod": (rod, "turns"),
+    "cylinder": (cylinder, "turns"),
+    "floor": (floor, "slips"),
+    "step": (step, "slips"),
+    "wedge": (wedge, "slips"),
+    "tilted": (tilted, "slips"),
+    "deck": (tilted, "deck"),
+    "apart": (tilted, "apart"),
+    "both": (floor, "falls"),
+    "both-tilted": (tilted, "falls"),
+    "one-point": (tilted, "alone"),
+    "slender": (slender, "slips"),
+    "close": (close, "slips"),
+    "parallel": (parallel, "slips"),
+    "extreme": (extreme, "slips"),
+    "extreme-apart": (extreme, "apart"),
+}
+"""Kinds of problems: a geometry, and how the body moves. It turns about A; or it may slip on A or leave it, on supports
+at rest, on a deck, whose points move as one body, or on supports that move apart; it falls on A; or there is no A."""
+
+STIFF = ("slender", "close", "extreme", "extreme-apart")
+"""The kinds in which one rounding of the input can be much in the outcome."""
+
+
+def random_problems(seed: int, count: int, chunk: int = CHUNK) -> Iterator[Problems]:
+    """`count` problems in all, in chunks of which each is of one kind; the `KINDS` take turns."""
+    source, kinds = np.random.default_rng(seed), list(KINDS)
+    for number, start in enumerate(range(0, count, chunk)):
+        yield problems_of(kinds[number % len(kinds)], source, min(chunk, count - start))
+
+
+def problems_of(kind: str, source: np.random.Generator, count: int) -> Problems:
+    """`count` problems of one of the `KINDS`: B is approached in nearly all, restitution is zero in half of them."""
+    draw = Draw(source, count)
+    shape, motion = KINDS[kind]
+    geometry = shape(draw)
+    (ax, ay), (bx, by) = geometry.old, geometry.new
+    old_normal, new_normal = ((-np.sin(angle), np.cos(angle)) for angle in (geometry.old_angle, geometry.new_angle))
+    wide = shape is extreme
+    mass, number = (draw.decades(-6.0, 6.0), draw.wild) if wide else (draw.decades(-1.0, 1.0), draw.speed)
+
+    # It turns about A and slips on it, in the sense in which it approaches B.
+    omega, slip = number(), number() * draw.chance(0.0 if motion == "turns" else 0.6)
+    vx, vy = omega * ay + slip * old_normal[1], -omega * ax - slip * old_normal[0]
+    approach = new_normal[0] * (vx - omega * by) + new_normal[1] * (vy + omega * bx)
+    sense = np.where(approach > 0.0, -1.0, 1.0)
+    lift = -np.abs(number()) if motion == "falls" else np.abs(number()) * draw.chance(0.0 if motion == "turns" else 0.1)
+    vx, vy, omega = sense * vx + lift * old_normal[0], sense * vy + lift * old_normal[1], sense * omega
+
+    old_support = new_support = (0.0 * vx, 0.0 * vx)
+    ux, uy, turning = number(), number(), number()
+    if motion == "apart":
+        old_support, new_support = (ux, uy), (turning, number())
+        vx, vy = vx + ux, vy + uy
+    elif motion == "deck":
+        old_support, new_support = ((ux - turning * y, uy + turning * x) for x, y in ((ax, ay), (bx, by)))
+        vx, vy, omega = vx + ux, vy + uy, omega + turning
+    friction_old, friction_new = frictions(draw, shape)
+    old = Contact(ax, ay, friction_old, old_normal, draw.chance(0.1) * 0.5, old_support)
+    new = Contact(bx, by, friction_new, new_normal, draw.chance(0.5) * draw.pick(0.125, 0.5, 1.0), new_support)
+    body = TwoPointBody(mass, mass * geometry.square, None if motion == "alone" else old, new)
+    return Problems(kind, body, Twist(vx, vy, omega))
+
+
+def frictions(draw: Draw, shape: Callable[[Draw], Geometry]) -> tuple[Numbers, Numbers]:
+    """Friction at A and B, none in some cases and often the same at both: up to 4, or over decades."""
+    if shape in (slender, extreme):
+        old, new = (draw.decades(-4.0, 4.0) * draw.chance(0.9) for _ in range(2))
+    else:
+        old, new = (draw.uniform(0.0, 1.0) * draw.pick(0.0, 0.5, 1.0, 1.0, 2.0, 4.0) for _ in range(2))
+    return old, np.where(draw.chance(0.5), old, new)

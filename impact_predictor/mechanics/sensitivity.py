@@ -1,0 +1,150 @@
+"""How the twist after an impact answers small changes of what it follows from: exact derivatives."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from .answer import answer
+from .dual import Dual, dual_answer
+from .impact import NOWHERE, number_of
+from .problem import see
+from .types import Contact, Flag, Twist, TwoPointBody
+
+Triple = tuple[float, float, float]
+Matrix3 = tuple[Triple, Triple, Triple]
+
+STEP = 1e-9
+"""Part of an input, or of the contact speeds, within which a change of the contact states counts as a border."""
+
+INPUTS = ("friction_old", "friction_new", "restitution", "vx", "vy", "omega")
+
+Inputs = tuple[Any, ...]
+"""Values of the INPUTS, or Duals of them."""
+
+NO_CHANGE: Triple = (0.0, 0.0, 0.0)
+
+FREE: Matrix3 = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+INVALID_INPUT, NO_SOLUTION = int(Flag.INVALID_INPUT), int(Flag.NO_SOLUTION)
+
+
+class Sensitivity(NamedTuple):
+    """Derivatives of the twist (vx, vy, omega) after an impact.
+
+    By the friction of the old and of the new contact and by the restitution of the new one, each (3,) in m/s, m/s and
+    rad/s per 1; by the twist before as a 3 x 3 matrix with a row for each part of the twist after. `one_sided` names
+    the INPUTS at a border, where the contact states change: there the derivative is that towards greater values, or
+    towards smaller ones where there are no greater ones.
+    """
+
+    friction_old: Triple
+    friction_new: Triple
+    restitution: Triple
+    twist: Matrix3
+    one_sided: tuple[str, ...]
+
+
+def sensitivity(body: TwoPointBody, twist: Twist, law: str = "path") -> Sensitivity:
+    """Derivatives of the twist after `solve_impact`, exact up to rounding; the arguments are the same.
+
+    A change of the twist before counts as far as `allowed_changes` lets it. Where no impact happens, or none can be
+    solved, the twist after is the one before. An unknown law raises ValueError.
+
+    The law code is differentiated as it runs (see `dual`). The outcome is a piecewise rational function, with
+    one-sided derivatives at its borders, which are taken a STEP away from them.
+    """
+    number = number_of(law)
+    old, new = body.old or NOWHERE, body.new
+    inputs = (old.friction, new.friction, new.restitution, *twist)
+    states, flags = states_at(body, inputs, number)
+    if flags & (INVALID_INPUT | NO_SOLUTION) or not states:
+        return Sensitivity(NO_CHANGE, NO_CHANGE, NO_CHANGE, FREE, ())
+    directions = directions_of(allowed_changes(body, twist))
+    columns = derivatives(body, inputs, directions, number)
+    one_sided = []
+    for i, (direction, step) in enumerate(zip(directions, steps_of(body, inputs), strict=True)):
+        if not any(direction) or (i == 0 and body.old is None):
+            continue
+        more, less = moved(inputs, direction, step), moved(inputs, direction, -step)
+        (above, flags_above), (below, flags_below) = states_at(body, more, number), states_at(body, less, number)
+        if not states == above == below or (flags_above | flags_below) & INVALID_INPUT:
+            one_sided.append(INPUTS[i])
+        side, there = (less, below) if flags_above & INVALID_INPUT else (more, above)
+        # A contact velocity of zero would count as zero whatever the change.
+        if there != states or rests(body, side) != rests(body, inputs):
+            columns[i] = derivatives(body, side, directions, number)[i]
+    friction_old, friction_new, restitution, vx, vy, omega = columns
+    by_twist = (vx[0], vy[0], omega[0]), (vx[1], vy[1], omega[1]), (vx[2], vy[2], omega[2])
+    return Sensitivity(friction_old, friction_new, restitution, by_twist, tuple(one_sided))
+
+
+def allowed_changes(body: TwoPointBody, twist: Twist) -> Matrix3:
+    """The part of any change of a twist that leaves a resting old contact at rest, as the matrix that gives it.
+
+    A closed contact has no normal velocity, and one that does not slip no velocity at all; what a change would give it
+    is taken back by a translation, so that the omega of the change stays.
+    """
+    if body.old is None:
+        return FREE
+    _, normal, tangential, _, nx, ny, _, _ = see(body.old, twist)
+    if normal != 0.0:
+        return FREE
+    x, y = body.old.x, body.old.y
+    if tangential == 0.0:
+        return (0.0, 0.0, y), (0.0, 0.0, -x), (0.0, 0.0, 1.0)
+    lever = nx * y - ny * x  # the normal velocity at the contact is nx vx + ny vy - lever omega
+    return (1.0 - nx * nx, -nx * ny, nx * lever), (-nx * ny, 1.0 - ny * ny, ny * lever), (0.0, 0.0, 1.0)
+
+
+def directions_of(allowed: Matrix3) -> tuple[tuple[float, ...], ...]:
+    """How all inputs change with each of them."""
+    coefficients = (1.0, 0.0, 0.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
+    return (*coefficients, *((0.0, 0.0, 0.0, *column) for column in zip(*allowed, strict=True)))
+
+
+def steps_of(body: TwoPointBody, inputs: Inputs) -> tuple[float, ...]:
+    """How far each input is moved to look for a border."""
+    friction_old, friction_new, _, vx, vy, omega = inputs
+    speed = reach = 0.0
+    for contact in (body.old, body.new):
+        if contact is not None:
+            _, normal, tangential, *_ = see(contact, Twist(vx, vy, omega))
+            speed += abs(normal) + abs(tangential)
+            reach += abs(contact.x) + abs(contact.y)
+    turn = speed / reach if reach > 0.0 else abs(omega) + speed
+    sizes = (1.0 + friction_old, 1.0 + friction_new, 1.0, speed, speed, turn)
+    return tuple([STEP * size for size in sizes])
+
+
+def moved(inputs: Inputs, direction: tuple[float, ...], step: float) -> Inputs:
+    return tuple([value + step * part for value, part in zip(inputs, direction, strict=True)])
+
+
+def rests(body: TwoPointBody, inputs: Inputs) -> list[tuple[bool, bool]]:
+    """Whether each contact has no normal and no tangential velocity before the impact."""
+    seen = [see(contact, Twist(*inputs[3:])) for contact in (body.old or NOWHERE, body.new)]
+    return [(normal == 0.0, tangential == 0.0) for _, normal, tangential, *_ in seen]
+
+
+def problem_at(body: TwoPointBody, inputs: Inputs, law: int) -> tuple[float, float, bool, Contact, Contact, Twist, int]:
+    """What `answer` is asked about a body with other INPUTS."""
+    friction_old, friction_new, restitution, vx, vy, omega = inputs
+    old = (body.old or NOWHERE)._replace(friction=friction_old)
+    new = body.new._replace(friction=friction_new, restitution=restitution)
+    return body.mass, body.inertia, body.old is not None, old, new, Twist(vx, vy, omega), law
+
+
+def states_at(body: TwoPointBody, inputs: Inputs, law: int) -> tuple[int, int]:
+    """The contact states along the impact, none without one, and the bits of `Flag`."""
+    outcome = answer(*problem_at(body, inputs, law))
+    return outcome[6], outcome[7]
+
+
+def derivatives(
+    body: TwoPointBody, inputs: Inputs, directions: tuple[tuple[float, ...], ...], law: int
+) -> list[Triple]:
+    """Derivatives of the twist after the impact along each of the directions."""
+    duals = [Dual(value, parts) for value, parts in zip(inputs, zip(*directions, strict=True), strict=True)]
+    after = dual_answer()(*problem_at(body, tuple(duals), law))[1]
+    vx, vy, omega = (part.parts for part in after)
+    return list(zip(vx, vy, omega, strict=True))

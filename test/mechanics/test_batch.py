@@ -1,0 +1,239 @@
+"""Many impacts at once: the same answers as one by one, to the last bit, in the shape that the fields broadcast to."""
+
+import math
+import os
+import shutil
+import subprocess
+import sys
+import tracemalloc
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import impact_predictor
+from impact_predictor import (
+    Contact,
+    Flag,
+    InputError,
+    Mode,
+    Twist,
+    TwoPointBody,
+    cylinder,
+    plate,
+    rod,
+    solve_impact,
+    solve_impacts,
+)
+from impact_predictor.mechanics import batch
+from impact_predictor.mechanics.impact import states_of
+from impact_predictor.mechanics.random_problems import KINDS, problems_of
+
+EACH = 100_000 // len(KINDS) + 1
+"""Random problems of each kind, 1e5 in all."""
+
+LAWS = ("path", "total")
+
+
+def element(values, i):
+    """The i-th of values that are arrays, in tuples."""
+    if isinstance(values, tuple):
+        parts = [element(value, i) for value in values]
+        return type(values)(*parts) if hasattr(values, "_fields") else tuple(parts)
+    return None if values is None else float(values[i])
+
+
+def row(outcome, law):
+    """The numbers of one outcome as `Outcomes` has them."""
+    numbers = (*outcome.twist, *outcome.impulses[0], *outcome.impulses[1], outcome.energy_lost)
+    return (np.array(numbers).tobytes(), outcome.mode, outcome.segments, outcome.flags, outcome.unique)
+
+
+def row_of(outcomes, i):
+    numbers = (*outcomes.twist[i], *outcomes.impulses[i].ravel(), outcomes.energy_lost[i])
+    segments = states_of(int(outcomes.segments[i]))
+    return (np.array(numbers).tobytes(), outcomes.mode[i], segments, outcomes.flags[i], outcomes.unique[i])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("kind", KINDS)
+def test_many_impacts_have_the_answers_of_each_alone_to_the_last_bit(kind, law):
+    _, body, twist = problems_of(kind, np.random.default_rng(7), EACH)
+    outcomes = solve_impacts(body, twist, law)
+    wrong = [
+        i
+        for i in range(EACH)
+        if row(solve_impact(element(body, i), element(twist, i), law), law) != row_of(outcomes, i)
+    ]
+    assert not wrong
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("kind", KINDS)
+def test_without_numba_the_same_code_gives_the_same_bits(kind, law, monkeypatch):
+    _, body, twist = problems_of(kind, np.random.default_rng(8), 50)
+    compiled = solve_impacts(body, twist, law)
+    monkeypatch.setitem(sys.modules, "numba", None)  # an import of it fails
+    batch.filler.cache_clear()
+    try:
+        plain = solve_impacts(body, twist, law)
+    finally:
+        batch.filler.cache_clear()
+    assert [field.tobytes() for field in plain] == [field.tobytes() for field in compiled]
+
+
+def test_fields_of_any_shape_broadcast_together():
+    heights, frictions = np.linspace(0.1, 3.0, 7)[:, None], np.linspace(0.0, 1.2, 5)
+    bodies = plate(length=1.0, height=heights, mass=10.0, friction=frictions)
+    outcomes = solve_impacts(bodies, bodies.turning(omega=-1.0))
+    assert outcomes.mode.shape == (7, 5)
+    assert outcomes.twist.shape == (7, 5, 3)
+    assert outcomes.impulses.shape == (7, 5, 2, 2)
+    for i in range(7):
+        for j in range(5):
+            body = plate(length=1.0, height=float(heights[i, 0]), mass=10.0, friction=float(frictions[j]))
+            alone = solve_impact(body, body.turning(omega=-1.0))
+            assert row_of(outcomes, (i, j)) == row(alone, "path")
+
+
+def test_the_outcome_has_the_dtypes_that_are_promised():
+    body = plate(length=1.0, height=np.ones(3), mass=1.0, friction=0.3)
+    outcomes = solve_impacts(body, body.turning(omega=-1.0))
+    dtypes = {name: str(field.dtype) for name, field in outcomes._asdict().items()}
+    assert dtypes == {
+        "mode": "uint8",
+        "twist": "float64",
+        "impulses": "float64",
+        "segments": "int64",
+        "flags": "uint16",
+        "energy_lost": "float64",
+        "unique": "bool",
+    }
+
+
+def test_numbers_alone_give_an_outcome_without_dimensions():
+    body = plate(length=1.0, height=0.4, mass=10.0, friction=0.2)
+    outcomes = solve_impacts(body, body.turning(omega=-1.0))
+    assert outcomes.mode.shape == ()
+    assert outcomes.twist.shape == (3,)
+    assert outcomes.mode == Mode.SLIDE
+
+
+def test_no_impacts_give_empty_arrays():
+    body = plate(length=1.0, height=np.empty((0, 4)), mass=1.0, friction=0.3)
+    outcomes = solve_impacts(body, body.turning(omega=-1.0))
+    assert outcomes.mode.shape == (0, 4)
+    assert outcomes.twist.shape == (0, 4, 3)
+
+
+def test_more_impacts_than_a_chunk_all_get_their_answer():
+    frictions = np.linspace(0.0, 1.5, 3 * batch.CHUNK + 1)
+    body = plate(length=1.0, height=1.0, mass=1.0, friction=frictions)
+    outcomes = solve_impacts(body, body.turning(omega=-1.0))
+    middle = plate(length=1.0, height=1.0, mass=1.0, friction=float(frictions[2 * batch.CHUNK]))
+    assert row_of(outcomes, 2 * batch.CHUNK) == row(solve_impact(middle, middle.turning(omega=-1.0)), "path")
+    assert set(outcomes.mode) == {Mode.SLIDE, Mode.PIVOT_SLIDE, Mode.PIVOT}
+
+
+def test_the_twist_of_outcomes_is_a_twist_to_begin_with():
+    body = plate(length=1.0, height=np.linspace(0.1, 3.0, 4), mass=1.0, friction=0.3, restitution=0.5)
+    first = solve_impacts(body, body.turning(omega=-1.0))
+    again = solve_impacts(body, first.twist)
+    assert again.mode.shape == (4,)
+    assert row_of(again, 2) == row(solve_impact(element_of_body(body, 2), Twist(*map(float, first.twist[2]))), "path")
+
+
+def element_of_body(body, i):
+    """The i-th body, where only some fields are arrays."""
+    if isinstance(body, tuple):
+        parts = [element_of_body(part, i) for part in body]
+        return type(body)(*parts) if hasattr(body, "_fields") else tuple(parts)
+    return float(body[i]) if isinstance(body, np.ndarray) else body
+
+
+def test_normals_and_velocities_of_supports_may_be_arrays_part_by_part():
+    speeds = np.array([0.0, 0.5, 1.0])
+    old, new = Contact(-0.5, -0.2, 0.3), Contact(0.5, -0.2, 0.3, normal=(0.0, np.ones(3)), velocity=(speeds, 0.0))
+    outcomes = solve_impacts(TwoPointBody(1.0, 0.1, old, new), Twist(0.0, -0.5, -1.0))
+    for i, speed in enumerate(speeds):
+        body = TwoPointBody(1.0, 0.1, old, new._replace(normal=(0.0, 1.0), velocity=(float(speed), 0.0)))
+        assert row_of(outcomes, i) == row(solve_impact(body, Twist(0.0, -0.5, -1.0)), "path")
+
+
+def test_whole_numbers_and_single_precision_are_taken_as_they_are():
+    body = TwoPointBody(np.int32(2), np.float32(0.5), Contact(-1, -1, 0), Contact(1, -1, np.array([0, 1])))
+    outcomes = solve_impacts(body, Twist(0, -1, -1))
+    alone = solve_impact(TwoPointBody(2.0, 0.5, Contact(-1, -1, 0), Contact(1, -1, 1)), Twist(0, -1, -1))
+    assert row_of(outcomes, 1) == row(alone, "path")
+
+
+def test_a_bad_number_spoils_its_own_element_alone():
+    masses = np.array([1.0, math.nan, -1.0, 2.0])
+    body = TwoPointBody(masses, 0.1, Contact(-0.5, -0.2, 0.3), Contact(0.5, -0.2, 0.3))
+    outcomes = solve_impacts(body, Twist(0.0, -0.5, -1.0))
+    assert list(outcomes.flags & Flag.INVALID_INPUT > 0) == [False, True, True, False]
+    assert np.isfinite(outcomes.twist).all()
+
+
+def test_shapes_that_do_not_fit_and_unknown_laws_are_refused():
+    body = TwoPointBody(np.ones(3), np.ones(4), Contact(-0.5, -0.2, 0.3), Contact(0.5, -0.2, 0.3))
+    with pytest.raises(ValueError, match="broadcast"):
+        solve_impacts(body, Twist(0.0, -0.5, -1.0))
+    with pytest.raises(ValueError, match="law is 'newton'"):
+        solve_impacts(body, Twist(0.0, -0.5, -1.0), law="newton")
+
+
+def test_bodies_are_made_from_arrays_like_from_numbers():
+    many = np.array([0.3, 0.9])
+    for make, name, fixed in (
+        (plate, "height", {"length": 1.0, "mass": 2.0, "friction": 0.3}),
+        (rod, "a", {"length": 1.0, "thickness": 0.1, "b": 0.2, "mass": 2.0, "friction": 0.3}),
+        (cylinder, "radius", {"gamma": 0.5, "mass": 2.0, "friction": 0.3}),
+    ):
+        bodies = make(**{name: many}, **fixed)
+        for i, value in enumerate(many):
+            assert element_of_body(bodies, i) == make(**{name: float(value)}, **fixed)
+
+
+def test_an_array_with_a_number_that_no_body_can_have_is_refused_with_that_number():
+    with pytest.raises(InputError, match=r"friction is -0\.1"):
+        plate(length=1.0, height=1.0, mass=1.0, friction=np.array([0.3, -0.1]))
+    with pytest.raises(InputError, match="gamma"):
+        cylinder(radius=1.0, gamma=np.array([0.5, 2.0]), mass=1.0, friction=0.3)
+
+
+def test_many_impacts_need_hardly_more_memory_than_their_outcomes():
+    friction = np.linspace(0.0, 1.0, 200_000)
+    body = plate(length=1.0, height=1.0, mass=1.0, friction=friction)
+    solve_impacts(body, body.turning(omega=-1.0))
+    tracemalloc.start()
+    outcomes = solve_impacts(body, body.turning(omega=-1.0))
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak - sum(field.nbytes for field in outcomes) < 200 * friction.size
+
+
+READ_ONLY = """
+import sys
+from impact_predictor import plate, solve_impacts
+body = plate(length=1.0, height=0.4, mass=10.0, friction=0.2)
+print(int(solve_impacts(body, body.turning(omega=-1.0)).mode), "numba" in sys.modules)
+"""
+
+
+@pytest.mark.slow
+def test_an_installation_in_which_nothing_can_be_written_works_too(tmp_path):
+    pytest.importorskip("numba")
+    package = Path(impact_predictor.__file__).parent
+    copy = tmp_path / "impact_predictor"
+    shutil.copytree(package, copy, ignore=shutil.ignore_patterns("__pycache__"))
+    nowhere = tmp_path / "nowhere"
+    nowhere.write_text("a file, in which no folder can be made")
+    # A file where numba would make its folder beside the code: that holds for root too.
+    (copy / "mechanics" / "__pycache__").write_text("")
+    environment = {**os.environ, "PYTHONPATH": str(tmp_path), "HOME": str(nowhere), "XDG_CACHE_HOME": str(nowhere)}
+    environment.pop("NUMBA_CACHE_DIR", None)
+    command = [sys.executable, "-c", READ_ONLY]
+    ran = subprocess.run(command, env=environment, cwd=tmp_path, capture_output=True, text=True, check=True)
+    assert ran.stdout.split() == [str(int(Mode.SLIDE)), "True"]
