@@ -1,0 +1,496 @@
+"""Impacts known by W and c: planar bodies, exact arithmetic, two links with a hinge, singular W, bad numbers."""
+
+import json
+import math
+import random
+from fractions import Fraction
+from pathlib import Path
+
+import exact
+import numpy as np
+import pytest
+from exact_algebra import dot
+
+from impact_predictor import Contact, Flag, Mode, Twist, TwoPointBody, plate, solve_impact
+from impact_predictor.mechanics.contact_space import solve
+from impact_predictor.mechanics.random_problems import KINDS, problems_of
+
+LAWS = ("path", "total")
+CLOSE = 1e-11
+"""Largest error of a contact velocity, as a part of the largest one, where W is well conditioned."""
+ERROR = 5e-15
+"""The same for each unit of W's condition number: a few dozen roundings. A path adds some for each segment."""
+
+
+def rows_of(body):
+    """Contact velocities as products with the twist (vx, vy, omega); without an old contact its rows are no numbers."""
+    rows = []
+    for contact in (body.old, body.new):
+        if contact is None:
+            rows += [[math.nan] * 3] * 2
+            continue
+        nx, ny = contact.normal
+        rows += [(ux, uy, contact.x * uy - contact.y * ux) for ux, uy in ((nx, ny), (ny, -nx))]
+    return np.array(rows)
+
+
+def velocities(body, twist):
+    """Contact velocities relative to the supports, and the sizes of the terms that they are the sums of."""
+    speeds, sizes = [], []
+    for contact in (body.old, body.new):
+        if contact is None:
+            speeds, sizes = [math.inf, math.nan], [0.0, 0.0]
+            continue
+        (nx, ny), (ux, uy) = contact.normal, contact.velocity
+        terms = ((twist[0], -twist[2] * contact.y, -ux), (twist[1], twist[2] * contact.x, -uy))
+        cx, cy = map(sum, terms)
+        speeds += [nx * cx + ny * cy, ny * cx - nx * cy]
+        sizes += [sum(abs(term) for part in terms for term in part)] * 2
+    return speeds, sizes
+
+
+def seen_by_contacts(body, twist):
+    """W and c of a planar body, and its frictions and restitutions; a contact that rests up to rounding rests."""
+    rows = rows_of(body)
+    w = rows / (body.mass, body.mass, body.inertia) @ rows.T
+    speeds, sizes = velocities(body, twist)
+    c = [0.0 if abs(speed) <= 1e-14 * size else speed for speed, size in zip(speeds, sizes, strict=True)]
+    contacts = (body.old or Contact(0.0, 0.0, math.nan, restitution=math.nan), body.new)
+    return w, c, tuple(one.friction for one in contacts), tuple(one.restitution for one in contacts)
+
+
+def condition(w):
+    """Condition number of W on its range, its diagonal scaled to 1."""
+    if math.isnan(w[0, 0]):
+        w = w[2:, 2:]
+    scale = np.sqrt(np.diag(w))
+    sizes = np.linalg.eigvalsh(w / scale / scale[:, None])
+    return sizes[-1] / min(size for size in sizes if size > 1e-12)
+
+
+def largest_difference(one, other):
+    return max(abs(u - v) for u, v in zip(one, other, strict=True) if u < math.inf)
+
+
+def finite(speeds):
+    return max(abs(speed) for speed in speeds if abs(speed) < math.inf)
+
+
+def element(values, i):
+    """The i-th of values that are arrays, in tuples."""
+    if isinstance(values, tuple):
+        parts = [element(value, i) for value in values]
+        return type(values)(*parts) if hasattr(values, "_fields") else tuple(parts)
+    return None if values is None else float(values[i])
+
+
+PLANAR = [kind for kind in KINDS if kind not in ("slender", "close", "extreme", "extreme-apart")]
+EACH = 250
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("kind", PLANAR)
+def test_a_planar_body_known_by_w_has_the_impact_of_the_body(kind, law):
+    _, bodies, twists = problems_of(kind, np.random.default_rng(3), EACH)
+    others = 0
+    for i in range(EACH):
+        body, twist = element(bodies, i), element(twists, i)
+        w, c, friction, restitution = seen_by_contacts(body, twist)
+        outcome, expected = solve(w, c, friction, restitution, law), solve_impact(body, twist, law)
+        close = finite(c) * max(CLOSE, ERROR * condition(w))
+        speeds = velocities(body, expected.twist)[0]
+        if largest_difference(speeds, outcome.velocities) > close:
+            # Of several solutions the nearest to the path's end answers, but what is near the two measure differently.
+            assert len(outcome.alternatives) == len(expected.alternatives) > 0
+            assert min(largest_difference(speeds, other.velocities) for other in outcome.alternatives) <= close
+            others += 1
+            continue
+        size = max(abs(part) for pair in expected.impulses for part in pair)
+        for ours, theirs in zip(outcome.impulses, expected.impulses, strict=True):
+            assert ours == pytest.approx(theirs, abs=size * max(CLOSE, 10.0 * ERROR * condition(w)))
+        assert (outcome.mode, outcome.law) == (expected.mode, expected.law)
+        # What ends at the same time on paper is apart by a rounding here or there.
+        others += (outcome.segments, outcome.flags) != (expected.segments, expected.flags)
+    assert others <= EACH // 50
+
+
+def test_random_planar_bodies_meet_what_can_happen():
+    flags, modes = Flag.NONE, set()
+    for kind in PLANAR:
+        _, bodies, twists = problems_of(kind, np.random.default_rng(3), EACH)
+        for i in range(EACH):
+            outcome = solve(*seen_by_contacts(element(bodies, i), element(twists, i)))
+            flags |= outcome.flags
+            modes.add(outcome.mode)
+    assert modes == set(Mode)
+    expected = (
+        Flag.REVERSED_SLIP
+        | Flag.JAMMED
+        | Flag.WORK_LIMITED
+        | Flag.SHARED_FRICTION
+        | Flag.BOTH_STRUCK
+        | Flag.NO_SOLUTION
+    )
+    assert expected in flags
+
+
+def test_golden_impacts_known_by_w_end_where_exact_arithmetic_ends():
+    cases = json.loads((Path(__file__).parent / "golden" / "impacts.json").read_text())["cases"]
+    compared = 0
+    for case in cases:
+        for answer, law, restitution in (("routh", "path", 0.0), ("routh_e0.5", "path", 0.5), ("total", "total", 0.0)):
+            references = case["total"] if law == "total" else [case.get(answer)]
+            if references[0] is None:
+                continue
+            old, new = (
+                Contact(one["x"], one["y"], one["friction"], tuple(one["normal"]), 0.0, tuple(one["velocity"]))
+                for one in case["contacts"]
+            )
+            body = TwoPointBody(case["mass"], case["inertia"], old, new._replace(restitution=restitution))
+            w, c, *contacts = seen_by_contacts(body, case["twist"])
+            if condition(w) > 1e6:
+                continue  # W has lost the digits
+            outcome = solve(w, c, *contacts, law)
+            size = max(velocities(body, case["twist"])[1])
+            close = max(finite(c) * max(CLOSE, ERROR * condition(w)), 1e-15 * size)
+            ours = [outcome.velocities, *(other.velocities for other in outcome.alternatives)]
+            theirs = [velocities(body, reference["twist"])[0] for reference in references]
+            assert any(largest_difference(ours[0], speeds) <= close for speeds in theirs), case
+            for speeds in theirs:
+                assert any(largest_difference(one, speeds) <= close for one in ours), case
+            compared += 1
+    assert compared > 800
+
+
+def random_mechanism(source, freedoms, decades=0):
+    """An exact problem with a W of rank `freedoms`, or 4: the old contact rests, slips or leaves, the new is struck."""
+
+    def some(low, high):
+        return Fraction(source.randint(64 * low, 64 * high), 64)
+
+    rows = [[some(-2, 2) for _ in range(freedoms)] for _ in range(4)]
+    if freedoms > 2 and source.random() < 0.3:  # B's tangent moves only with A
+        u, v = some(-2, 2), some(-2, 2)
+        rows[3] = [u * x + v * y for x, y in zip(rows[0], rows[1], strict=True)]
+    inverse = [Fraction(10) ** source.randint(-decades, decades) for _ in range(freedoms)]
+    w = [[dot(u, [x * m for x, m in zip(v, inverse, strict=True)]) for v in rows] for u in rows]
+    motion = [some(-2, 2) for _ in range(freedoms)]
+    if freedoms > 1 and source.random() < 0.6:  # A rests on its support
+        share = dot(rows[0], motion) / (dot(rows[0], rows[0]) or 1)
+        motion = [x - share * y for x, y in zip(motion, rows[0], strict=True)]
+    c = [dot(row, motion) for row in rows]
+    if freedoms > 3 and source.random() < 0.5:  # velocities that depend on nothing
+        c = [Fraction(0), source.choice([Fraction(0), some(-2, 2)]), c[2], source.choice([Fraction(0), some(-2, 2)])]
+    if c[2] > 0:
+        c = [-speed for speed in c]
+    friction = tuple(some(0, 1) * source.choice([0, 1, 2, 4, 8]) for _ in range(2))
+    restitution = (Fraction(0), source.choice([Fraction(0), Fraction(1, 8), Fraction(1, 2)]))
+    return exact.Problem(rows, w, (Fraction(1),) * 2, c, friction, restitution, tuple(inverse))
+
+
+def as_floats(problem):
+    w = np.array([[float(number) for number in row] for row in problem.w])
+    return w, *(tuple(map(float, part)) for part in (problem.velocities, problem.frictions, problem.restitutions))
+
+
+@pytest.mark.parametrize(("freedoms", "decades"), [(6, 0), (4, 0), (3, 0), (2, 0), (1, 0), (5, 2), (5, 4), (3, 2)])
+def test_impacts_of_any_w_end_where_exact_arithmetic_ends(freedoms, decades):
+    source = random.Random(freedoms)
+    compared = {"path": 0, "jams": 0, "total": 0, "several": 0, "none": 0}
+    for _ in range(150):
+        problem = random_mechanism(source, freedoms, decades)
+        w, c, friction, restitution = as_floats(problem)
+        if c[2] == 0.0 or min(np.diag(w)) == 0.0:
+            continue
+        close = max(map(abs, c)) * max(CLOSE, ERROR * condition(w))
+        if c[0] >= 0.0:
+            outcome = solve(w, c, friction, restitution)
+            try:
+                answer = exact.path(problem)
+            except exact.Undecided:
+                assert outcome.flags & (Flag.JAMMED | Flag.LAST_RESORT | Flag.NO_SOLUTION)
+            else:
+                assert outcome.law == "path"
+                assert largest_difference(map(float, answer.history[-1]), outcome.velocities) <= close
+                assert bool(outcome.flags & Flag.JAMMED) is answer.jammed
+                assert outcome.unique or answer.choices > 1
+                compared["path"] += 1
+                compared["jams"] += answer.jammed
+        outcome = solve(w, c, friction, restitution, "total")
+        answers = exact.total(problem)
+        if not answers:
+            assert outcome.flags & (Flag.NO_SOLUTION | Flag.LAST_RESORT)
+            compared["none"] += 1
+            continue
+        ours = [outcome.velocities, *(other.velocities for other in outcome.alternatives)]
+        theirs = [[float(speed) for speed in answer.history[-1]] for answer in answers]
+        assert all(min(largest_difference(one, other) for other in theirs) <= close for one in ours)
+        if c[0] <= 0.0:  # else friction could hold an A that leaves, which is an answer only where it is the only one
+            assert all(min(largest_difference(one, other) for other in ours) <= close for one in theirs)
+        compared["total"] += 1
+        compared["several"] += len(ours) > 1
+    assert min(compared["path"], compared["total"]) > 50
+    if freedoms > 2:
+        assert compared["jams"] + compared["several"] > 3
+    if freedoms < 3:  # contacts whose velocities are not those of a motion cannot both be held
+        assert compared["none"] > 10
+
+
+def random_machine(source):
+    """Floats W (full rank), c, frictions: A rests, slips, leaves or is struck too."""
+    rows = source.normal(size=(4, 6))
+    c = (
+        source.choice([0.0, 0.0, 1.0, -0.3]) * abs(source.normal()),
+        *source.choice([0.0, 1.0], 3) * source.normal(size=3),
+    )
+    c = (c[0], c[1], -abs(source.normal()), c[3])
+    return rows @ rows.T, c, tuple(source.uniform(0.0, 2.0, 2))
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_the_answer_for_a_full_w_obeys_coulomb_and_loses_energy(law):
+    source = np.random.default_rng(9)
+    for _ in range(1000):
+        w, c, friction = random_machine(source)
+        outcome = solve(w, c, friction, law=law)
+        assert not outcome.flags & (Flag.SHARED_FRICTION | Flag.NO_SOLUTION)
+        impulses = np.array(outcome.impulses).ravel()
+        close = 1e-13 * condition(w)
+        assert outcome.velocities == pytest.approx(c + w @ impulses, abs=close)
+        work = impulses @ (np.array(c) + outcome.velocities)
+        assert work <= close
+        assert outcome.energy_lost == pytest.approx(-0.5 * work, abs=close)
+        for k, f in enumerate(friction):
+            (normal, tangential), (leaves, slip) = outcome.impulses[k], outcome.velocities[2 * k : 2 * k + 2]
+            assert normal >= 0.0
+            assert leaves >= 0.0
+            assert abs(tangential) <= f * normal * (1.0 + 1e-11)
+            if outcome.law == "total":
+                assert normal == 0.0 or leaves == 0.0
+                assert slip == 0.0 or tangential == pytest.approx(-math.copysign(f * normal, slip), abs=close)
+
+
+def small_steps(w, c, friction, steps):
+    """Contact velocities when B's approach ends, its normal impulse applied in steps.
+
+    In each of them friction and the old contact react by Coulomb's law on velocities, found by Gauss and Seidel.
+    """
+    (fa, fb), w = friction, w.tolist()
+    v, push = list(c), -c[2] / w[2][2] / steps
+    while v[2] < 0.0:
+        v = [speed + push * row[2] for speed, row in zip(v, w, strict=True)]
+        na = ta = tb = 0.0
+        for _ in range(100):
+            before = (na, ta, tb)
+            for k in (3, 0, 1):
+                old = (na, ta, 0.0, tb)[k]
+                new = old - v[k] / w[k][k]
+                if k == 0:
+                    na = new = max(new, 0.0)
+                elif k == 1:
+                    ta = new = max(-fa * na, min(fa * na, new))
+                else:
+                    tb = new = max(-fb * push, min(fb * push, new))
+                v = [speed + (new - old) * row[k] for speed, row in zip(v, w, strict=True)]
+            if max(abs(x - y) for x, y in zip(before, (na, ta, tb), strict=True)) < 1e-9 * push:
+                break
+    return v
+
+
+def test_the_path_ends_where_small_steps_of_impulse_end():
+    source = np.random.default_rng(4)
+    segments = set()
+    for _ in range(30):
+        w, c, friction = random_machine(source)
+        c, friction = (0.0, *c[1:]), (0.25 * friction[0], 0.25 * friction[1])
+        outcome = solve(w, c, friction)
+        assert outcome.unique
+        # The error is in proportion to the step, and was at most one.
+        steps = 500
+        assert outcome.velocities == pytest.approx(small_steps(w, c, friction, steps), abs=3.0 / steps * finite(c))
+        segments.update(outcome.segments)
+    assert len(segments) > 7
+
+
+def seen_plate(friction):
+    """W and c of a plate that tips over onto its front edge."""
+    body = plate(length=1.0, height=0.4, mass=2.0, friction=friction)
+    return seen_by_contacts(body, body.turning(-1.0))
+
+
+@pytest.mark.parametrize("friction", [0.2, 0.9])
+@pytest.mark.parametrize("law", LAWS)
+def test_a_machine_that_is_almost_a_rigid_body_has_almost_its_impact(law, friction):
+    w, c, frictions, _ = seen_plate(friction)
+    expected = solve(w, c, frictions, law=law)
+    given = np.array([0.3, -0.5, 0.2, 0.7])
+    for size in (1e-3, 1e-6, 1e-9, 1e-11, 1e-13, 1e-15):
+        outcome = solve(w + size * np.outer(given, given), c, frictions, law=law)
+        # 30: how much softer W makes the contacts, against the least that it was; below its rounding it is singular.
+        assert outcome.velocities == pytest.approx(expected.velocities, abs=30.0 * size + 1e-15)
+        assert outcome.impulses[0][0] == pytest.approx(expected.impulses[0][0], rel=1e-2)
+
+
+def test_two_sticking_contacts_share_by_the_least_push_only_where_w_leaves_it_open():
+    w, c, frictions, _ = seen_plate(0.9)
+    rigid, soft = solve(w, c, frictions), solve(w + 0.01 * np.eye(4), c, frictions)
+    assert rigid.flags == Flag.SHARED_FRICTION
+    assert soft.flags == Flag.NONE
+    assert rigid.segments == soft.segments == ("SS",)
+    line = np.array([0.0, 1.0, 0.0, -1.0])  # a push along the floor
+    assert np.array(rigid.impulses).ravel() @ line == pytest.approx(0.0, abs=1e-14)
+    assert soft.velocities == (0.0, 0.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_a_point_mass_that_slides_down_one_wall_of_a_wedge_meets_the_other(law):
+    # Walls at 45 degrees, so that the second one stops it, and friction there may hold it: W has rank 2.
+    half, mass = math.sqrt(0.5), 2.0
+    rows = np.array([(half, half), (half, -half), (-half, half), (half, half)])
+    outcome = solve(rows @ rows.T / mass, (0.0, 1.0, -1.0, 0.0), (0.3, 0.3), law=law)
+    assert outcome.mode is Mode.STOP
+    assert outcome.velocities == pytest.approx((0.0, 0.0, 0.0, 0.0), abs=1e-15)
+    assert outcome.impulses[1] == pytest.approx((mass, 0.0), abs=1e-14)
+    assert outcome.energy_lost == pytest.approx(0.5 * mass)
+    # With a rebound it slides back up.
+    outcome = solve(rows @ rows.T / mass, (0.0, 1.0, -1.0, 0.0), (0.3, 0.3), (0.0, 0.5), law)
+    assert outcome.velocities == pytest.approx((0.0, -0.5, 0.5, 0.0), abs=1e-15)
+    assert outcome.mode is Mode.BACK_PIVOT
+
+
+def test_a_lever_with_one_freedom_stops_and_without_a_way_to_stop_says_so():
+    lever = np.array([0.0, 0.3, 0.8, 0.1])  # contact velocities for a unit of turning; A only slips
+    w, c = np.outer(lever, lever) / 0.5, -lever
+    for law in LAWS:
+        outcome = solve(w, c, (0.4, 0.4), law=law)
+        assert outcome.mode is Mode.STOP
+        assert outcome.velocities == pytest.approx((0.0, 0.0, 0.0, 0.0), abs=1e-15)
+        assert outcome.energy_lost == pytest.approx(0.25, rel=1e-14)
+        stuck = solve(np.zeros((4, 4)), c, (0.4, 0.4), law=law)
+        assert stuck.flags == Flag.NO_SOLUTION
+        assert stuck.velocities == tuple(c)
+
+
+def test_without_an_old_contact_what_belongs_to_it_is_not_read():
+    source = random.Random(3)
+    for _ in range(50):
+        new = Contact(source.uniform(-1, 1), source.uniform(-1, 0), source.uniform(0, 1), restitution=0.3)
+        body, twist = TwoPointBody(1.5, 0.2, None, new), Twist(source.uniform(-1, 1), -2.0, source.uniform(-1, 1))
+        w, c, friction, restitution = seen_by_contacts(body, twist)
+        assert math.isnan(w[0, 0])
+        assert math.isnan(friction[0])
+        for law in LAWS:
+            outcome, expected = solve(w, c, friction, restitution, law), solve_impact(body, twist, law)
+            speeds = velocities(body, expected.twist)[0]
+            assert outcome.velocities[0] == math.inf
+            assert outcome.velocities[2:] == pytest.approx(speeds[2:], abs=CLOSE)
+            assert (outcome.mode, outcome.flags, outcome.segments) == (expected.mode, expected.flags, expected.segments)
+
+
+def test_a_rounding_of_rest_is_rest():
+    w, c, frictions, _ = seen_plate(0.2)
+    expected = solve(w, c, frictions)
+    for rounding in (1e-13, -1e-13):
+        outcome = solve(w, (rounding * c[2], -rounding * c[2], c[2], rounding), frictions)
+        assert outcome == expected
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_units_of_mass_and_speed_do_not_matter(law):
+    source = np.random.default_rng(6)
+    for _ in range(100):
+        w, c, friction = random_machine(source)
+        # Powers of two change no digit, so that the answers agree in every bit.
+        mass, speed = (2.0 ** int(power) for power in source.integers(-300, 300, 2))
+        speed = speed if abs(math.log2(mass)) + 2.0 * abs(math.log2(speed)) < 1000 else 1.0
+        outcome = solve(w, c, friction, (0.0, 0.5), law)
+        scaled = solve(w / mass, np.array(c) * speed, friction, (0.0, 0.5), law)
+        assert scaled.velocities == tuple(part * speed for part in outcome.velocities)
+        assert scaled.impulses == tuple((n * mass * speed, t * mass * speed) for n, t in outcome.impulses)
+        assert scaled.energy_lost == outcome.energy_lost * mass * speed**2
+        assert (scaled.mode, scaled.flags, scaled.segments) == (outcome.mode, outcome.flags, outcome.segments)
+
+
+GOOD = np.diag([1.0, 2.0, 3.0, 4.0]) + 0.1
+AT = (0.0, 0.0, -1.0, 0.5)
+
+
+def changed(matrix, i, j, value):
+    matrix = matrix.copy()
+    matrix[i, j] = value
+    return matrix
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"W": changed(GOOD, 0, 1, math.nan)},
+        {"W": changed(GOOD, 2, 2, math.inf)},
+        {"W": changed(GOOD, 0, 1, 0.2)},  # not symmetric
+        {"W": changed(changed(GOOD, 0, 1, 2.0), 1, 0, 2.0)},  # a negative eigenvalue
+        {"W": changed(GOOD, 3, 3, -1.0)},
+        {"W": -GOOD},
+        {"c": (math.nan, 0.0, -1.0, 0.0)},
+        {"c": (-math.inf, 0.0, -1.0, 0.0)},
+        {"c": (0.0, 0.0, -math.inf, 0.0)},
+        {"c": (0.0, math.inf, -1.0, 0.0)},
+        {"friction": (-0.1, 0.5)},
+        {"friction": (0.1, math.nan)},
+        {"friction": (0.1, math.inf)},
+        {"restitution": (0.0, 1.1)},
+        {"restitution": (-0.1, 0.5)},
+        {"restitution": (math.nan, 0.5)},
+    ],
+)
+@pytest.mark.parametrize("law", LAWS)
+def test_numbers_that_no_mechanism_has_give_a_flag(given, law):
+    outcome = solve(**{"W": GOOD, "c": AT, "friction": (0.3, 0.3), "restitution": (0.0, 0.0), "law": law, **given})
+    assert outcome.flags == Flag.INVALID_INPUT
+    assert outcome.mode is Mode.NO_IMPACT
+    assert outcome.impulses == ((0.0, 0.0), (0.0, 0.0))
+    assert all(math.isfinite(speed) for speed in outcome.velocities)
+
+
+def test_w_may_be_unsymmetric_and_indefinite_by_roundings():
+    w, c, frictions, _ = seen_plate(0.2)
+    noise = np.random.default_rng(0).normal(size=(4, 4)) * 1e-13
+    outcome, expected = solve(w + noise, c, frictions), solve(w, c, frictions)
+    assert outcome.mode is expected.mode
+    assert outcome.velocities == pytest.approx(expected.velocities, abs=1e-11)
+
+
+def test_a_contact_that_is_not_approached_has_no_impact():
+    outcome = solve(GOOD, (0.0, 1.0, 0.5, 1.0), (0.3, 0.3))
+    assert (outcome.mode, outcome.flags, outcome.velocities) == (Mode.NO_IMPACT, Flag.NONE, (0.0, 1.0, 0.5, 1.0))
+
+
+def test_an_unknown_law_or_another_shape_raises():
+    with pytest.raises(ValueError, match="law is 'newton'; use 'path' or 'total'"):
+        solve(GOOD, AT, (0.3, 0.3), law="newton")
+    with pytest.raises(ValueError, match=r"W has the shape \(3, 3\); give \(4, 4\)"):
+        solve(GOOD[:3, :3], AT, (0.3, 0.3))
+
+
+@pytest.mark.parametrize("decades", [3.0, 12.0, 150.0])
+def test_no_number_raises_or_gives_one_that_is_not_finite(decades):
+    source = random.Random(7)
+
+    def wild():
+        return source.choice([-1.0, 0.0, 1.0, 1.0]) * 10.0 ** source.uniform(-decades, decades)
+
+    odd = [math.nan, math.inf, -math.inf, 1e308, -1.0, 5e-324]
+    for _ in range(300):
+        rows = np.array([[wild() for _ in range(4)] for _ in range(4)])
+        rows[:, source.randint(1, 4) :] = 0.0
+        with np.errstate(all="ignore"):
+            w = rows @ rows.T
+        c = [source.choice([0.0, math.inf, wild()]), wild(), -abs(wild()), wild()]
+        if source.random() < 0.1:
+            w[source.randrange(4), source.randrange(4)] = source.choice(odd)
+            c[source.randrange(4)] = source.choice(odd)
+        for law in LAWS:
+            outcome = solve(w, c, (abs(wild()), abs(wild())), (0.5, source.choice([0.0, 0.5, 1.0])), law)
+            numbers = [outcome.energy_lost, *outcome.impulses[0], *outcome.impulses[1]]
+            for one in (outcome, *outcome.alternatives):
+                numbers += one.velocities[1:]
+            assert all(math.isfinite(number) for number in numbers)
