@@ -9,8 +9,10 @@ from typing import Any, Final
 import click
 
 from . import __version__
+from .commands.bench import bench
 from .commands.demo import demo
 from .commands.examples import examples
+from .commands.map import map_
 from .commands.replay import replay
 from .commands.solve import solve
 from .errors import InputError
@@ -59,6 +61,7 @@ def _sentence(error: click.ClickException) -> str:
     epilog=examples(
         "impact-predictor demo",
         "impact-predictor solve plate --length 1 --height 0.4 --mass 10 --friction 0.2 --omega -1",
+        "impact-predictor map plate",
         "impact-predictor replay examples/cube_tosses --params config/cube_tosses.yaml -o predictions.mcap",
     ),
 )
@@ -67,5 +70,5 @@ def main() -> None:
     """Predict the next touchdown of a body that turns about one contact, and what the impact does to it."""
 
 
-for _command in (demo, solve, replay):
+for _command in (demo, solve, map_, replay, bench):
     main.add_command(_command)

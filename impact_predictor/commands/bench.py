@@ -1,0 +1,149 @@
+"""`impact-predictor bench`: what the laws hold under load."""
+
+from __future__ import annotations
+
+import json
+from time import perf_counter
+from typing import TYPE_CHECKING, Any, Final
+
+import click
+
+from ..mechanics.impact import LAWS
+from .examples import examples
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from ..mechanics.soak import Soak, Worst
+
+BROKEN: Final = 1
+"""Exit status where an invariant is violated by more than rounding explains."""
+
+INTERRUPTED: Final = 130
+
+
+def whole(context: click.Context, option: click.Parameter, number: float) -> int:
+    """A number that may be written as 1e8, as a whole one."""
+    if not (number >= 1.0 and number.is_integer()):
+        raise click.BadParameter(f"{number:g} is not a whole number above 0, such as 1000000 or 1e6")
+    return int(number)
+
+
+@click.group(
+    short_help="Solve random impacts and check what must hold for each.",
+    no_args_is_help=False,
+    epilog=examples("impact-predictor bench invariants --count 1e6"),
+)
+def bench() -> None:
+    """What the laws hold under load."""
+
+
+@bench.command(
+    epilog=examples(
+        "impact-predictor bench invariants",
+        "impact-predictor bench invariants --count 1e8 --seed 7",
+        "impact-predictor bench invariants --law path --json",
+    )
+)
+@click.option(
+    "--count", type=float, callback=whole, default=1e6, show_default="1e6", metavar="N", help="Problems to solve."
+)
+@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Which random problems.")
+@click.option(
+    "--law", type=click.Choice([*LAWS, "both"]), default="both", show_default=True, help="Impact law to be checked."
+)
+@click.option("--json", "as_json", is_flag=True, help="Print JSON only.")
+def invariants(count: int, seed: int, law: str, as_json: bool) -> int:
+    """Solve random impacts of every kind and tell the worst violation of each invariant.
+
+    Impulses in their friction cones, momentum, no approach left, no work and no energy gained, and an answer that does
+    not depend on units, a mirror or the last digits. Beside each violation stands the problem that made it, in Python,
+    to be solved again. The exit status is 1 if one is more than rounding explains. Ctrl-C tells what was found so far.
+    """
+    from ..mechanics.soak import Soak
+    from .compiling import compiling_is_said
+    from .progress import progress
+
+    soak = Soak(count, seed, LAWS if law == "both" else (law,))
+    began, interrupted = perf_counter(), False
+    with compiling_is_said(), progress("invariants", "problems", count) as tell:
+        try:
+            soak.run(tell)
+        except KeyboardInterrupt:
+            interrupted = True
+    seconds = perf_counter() - began
+    if as_json:
+        click.echo(json.dumps(fields_of(soak, seconds, interrupted), indent=2))
+    else:
+        say(soak, seconds, interrupted)
+    if soak.broken:
+        return BROKEN
+    return INTERRUPTED if interrupted else 0
+
+
+def fields_of(soak: Soak, seconds: float, interrupted: bool) -> dict[str, Any]:
+    """What a soak found; a violation that is no number is null."""
+    return {
+        "problems": soak.done,
+        "seed": soak.seed,
+        "laws": soak.laws,
+        "interrupted": interrupted,
+        "seconds": seconds,
+        "problems_per_second": soak.done / seconds,
+        "invariants": [
+            {
+                "invariant": worst.invariant,
+                "law": worst.law,
+                "worst": worst.violation if worst.violation < float("inf") else None,
+                "limit": worst.limit,
+                "kind": worst.kind or None,
+                "broken_by": worst.broken_by,
+                "replay": worst.replay if worst.body else None,
+            }
+            for worst in soak.worst.values()
+        ],
+    }
+
+
+def say(soak: Soak, seconds: float, interrupted: bool) -> None:
+    """Print what a soak found."""
+    from rich.console import Console
+
+    from ..report.table import show
+
+    show(Console(), table_of(list(soak.worst.values())))
+    made = [worst for worst in soak.worst.values() if worst.body is not None]
+    if made:
+        click.echo("\nfrom impact_predictor import Contact, Twist, TwoPointBody")
+        click.echo("from impact_predictor.mechanics.invariants import violations")
+    for worst in made:
+        click.echo(f"{worst.replay}  # {worst.violation:.3g}")
+    speed = f"{soak.done:,} problems in {seconds:.0f} s, {soak.done / seconds:,.0f} a second"
+    click.echo(f"\n{'Interrupted: ' if interrupted else ''}{speed}.")
+    if soak.broken:
+        click.echo("Violated by more than rounding explains, with the kinds of problems:")
+    for worst in soak.broken:
+        click.echo(f"  {worst.invariant}, {worst.law} law: {', '.join(worst.broken_by)}")
+
+
+def table_of(found: list[Worst]) -> Table:
+    """The worst violations, one line each."""
+    from ..report.table import plain_table
+
+    table = plain_table()
+    for header in ("law", "invariant"):
+        table.add_column(header, no_wrap=True)
+    for header in ("worst violation", "limit"):
+        table.add_column(header, justify="right", no_wrap=True)
+    table.add_column("by a problem of kind", no_wrap=True)
+    for worst, following in zip(found, [*found[1:], None], strict=True):
+        table.add_row(
+            worst.law,
+            worst.invariant,
+            f"{worst.violation:.2g}",
+            f"{worst.limit:.2g}",
+            worst.kind,
+            style="bold red" if worst.broken_by else "",
+            end_section=following is not None and following.law != worst.law,
+        )
+    return table

@@ -1,0 +1,204 @@
+"""`impact-predictor map`: which mode follows an impact, over any two parameters of a body."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import click
+
+from ..errors import InputError
+from ..mechanics.impact import LAWS
+from ..report.map_parameters import SUBJECTS, Axis, Parameter, fixed_values, option_of
+from .examples import examples
+
+if TYPE_CHECKING:
+    from ..report.map import ModeMap
+
+PICTURES: Final = (".png", ".svg")
+SUFFIXES: Final = (*PICTURES, ".csv")
+MOST_CELLS: Final = 5000
+
+EXAMPLES: Final = {
+    "plate": (
+        "impact-predictor map plate",
+        "impact-predictor map plate --a 0.3 --b 0.7 -o plate.svg -o plate.csv",
+        "impact-predictor map plate --slip -1 --x delta 0.1 6 --y friction 0 4",
+    ),
+    "rod": (
+        "impact-predictor map rod",
+        "impact-predictor map rod --friction 0.3 --x a 0 0.2 --y b 0 0.2 -o rod.svg",
+    ),
+    "cylinder": (
+        "impact-predictor map cylinder",
+        "impact-predictor map cylinder --friction 0.4 --x gamma 0 90 --y gamma-new 0 90 --law total",
+        "impact-predictor map cylinder --gamma 50 --x inertia 0.1 1 --y friction 0 1 --json",
+    ),
+}
+WHAT: Final = {
+    "plate": ("A plate, crate or block on a flat floor", "Fig. 5 of the paper, friction over height by length"),
+    "rod": ("A rod over two supports", "friction over the distance of both from the middle"),
+    "cylinder": ("A cylinder that rolls from one edge onto another", "Fig. 7 of the paper, friction over angle"),
+}
+"""Each body, and what its map shows unless something else is asked for."""
+
+
+@click.group(
+    "map",
+    short_help="Draw which mode follows an impact, over two parameters.",
+    no_args_is_help=False,
+    epilog=examples(*(lines[0] for lines in EXAMPLES.values()), EXAMPLES["plate"][2]),
+)
+def map_() -> None:
+    """Draw which mode follows an impact, over two parameters of a body.
+
+    The regions are what the impact law says, cell by cell; the curves are the paper's formulas, drawn where they hold.
+    Any parameter can be an axis, the others are numbers. SI units; angles in degrees.
+    """
+
+
+def command_of(name: str) -> click.Command:
+    """The command that draws maps of one body: its parameters are options."""
+    subject = SUBJECTS[name]
+
+    def draw(
+        x: tuple[str, float, float] | None,
+        y: tuple[str, float, float] | None,
+        law: str,
+        resolution: int,
+        output: tuple[Path, ...],
+        as_json: bool,
+        **parameters: float | None,
+    ) -> None:
+        axes = axis_of(x, subject.x), axis_of(y, subject.y)
+        given = {name: value for name, value in parameters.items() if value is not None}
+        answer(name, axes, fixed_values(subject, axes, given), law, resolution, output, as_json)
+
+    decorators: list[Callable[[Any], Any]] = [
+        click.option(f"--{option_of(parameter)}", parameter, type=float, help=help_of(says))
+        for parameter, says in subject.parameters.items()
+    ]
+    for option, axis, where in (("--x", subject.x, "along"), ("--y", subject.y, "upwards")):
+        default = f"{option_of(axis.name)} {axis.low:g} {axis.high:g}"
+        decorators.append(
+            click.option(
+                option,
+                type=(str, float, float),
+                metavar="NAME LOW HIGH",
+                help=f"Parameter that grows {where}, by its name above. [default: {default}]",
+            )
+        )
+    decorators += [
+        click.option("--law", type=click.Choice(LAWS), default="path", show_default=True, help="Impact law."),
+        click.option(
+            "--resolution",
+            type=click.IntRange(2, MOST_CELLS),
+            default=1000,
+            show_default=True,
+            metavar="N",
+            help="Cells along each axis.",
+        ),
+        click.option(
+            "-o",
+            "--output",
+            type=click.Path(path_type=Path),
+            multiple=True,
+            metavar="FILE",
+            help="Picture (.png, .svg) or data (.csv); may be repeated. "
+            f"[default: map_{name}.png, with --json no file]",
+        ),
+        click.option("--json", "as_json", is_flag=True, help="Print the shares of the modes as JSON."),
+    ]
+    for decorate in reversed(decorators):
+        draw = decorate(draw)
+    body, shown = WHAT[name]
+    return click.command(
+        name,
+        short_help=f"{body}.",
+        help=f"{body}: {shown}, or what else you ask for.",
+        epilog=examples(*EXAMPLES[name]),
+    )(draw)
+
+
+def help_of(parameter: Parameter) -> str:
+    """The help of an option: meaning, unit and what it is unless given."""
+    unit = f", {parameter.unit}" if parameter.unit else ""
+    default = f"{parameter.default:g}" if parameter.default is not None else parameter.otherwise
+    meaning = parameter.meaning[0].upper() + parameter.meaning[1:]
+    return f"{meaning}{unit}." + (f" [default: {default}]" if default else "")
+
+
+def axis_of(given: tuple[str, float, float] | None, default: Axis) -> Axis:
+    return default if given is None else Axis(given[0].replace("-", "_"), *given[1:])
+
+
+def answer(
+    name: str,
+    axes: tuple[Axis, Axis],
+    fixed: dict[str, float],
+    law: str,
+    resolution: int,
+    output: tuple[Path, ...],
+    as_json: bool,
+) -> None:
+    """Compute a map, write its files and say what it shows."""
+    files = output or (() if as_json else (Path(f"map_{name}.png"),))
+    for file in files:
+        check_output(file)
+
+    from ..report.map import map_modes
+    from .compiling import compiling_is_said
+    from .progress import progress
+
+    with compiling_is_said(), progress(name, "cells", resolution * resolution) as tell:
+        modes = map_modes(name, *axes, fixed, law, resolution, tell)
+    for file in files:
+        write(file, modes)
+    if as_json:
+        from ..report.map_data import summary_of
+
+        click.echo(json.dumps(summary_of(modes), indent=2, allow_nan=False))
+        return
+
+    from rich.console import Console
+
+    from ..report.map_data import table_of
+    from ..report.table import show
+
+    show(Console(), table_of(modes))
+    for file in files:
+        click.echo(f"{'Picture' if file.suffix.lower() in PICTURES else 'Data'}: {file}")
+
+
+def check_output(file: Path) -> None:
+    """Refuse a file that no map can be written into.
+
+    Raises:
+        InputError: its suffix names no known format, or there is no such folder.
+    """
+    if file.suffix.lower() not in SUFFIXES:
+        raise InputError(f"{file} is neither picture nor data; give a name that ends in .png, .svg or .csv")
+    if not file.parent.is_dir():
+        raise InputError(f"the folder of {file} does not exist; make it, or give another name")
+
+
+def write(file: Path, modes: ModeMap) -> None:
+    """Write a map in the format of the file's name.
+
+    Raises:
+        InputError: the file cannot be written.
+    """
+    if file.suffix.lower() == ".csv":
+        from ..report.map_data import write_csv
+
+        write_csv(file, modes)
+    else:
+        from ..report.map_figure import write_figure
+
+        write_figure(file, modes)
+
+
+for _name in SUBJECTS:
+    map_.add_command(command_of(_name))

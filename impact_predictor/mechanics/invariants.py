@@ -1,0 +1,231 @@
+"""What holds for every impact, as numbers that rounding alone keeps from being zero.
+
+Each is computed for arrays of problems and their outcomes from the statements of mechanics, without the laws' code. A
+violation is relative to the terms that it is the sum of; where an invariant does not apply it is zero.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .batch import Outcomes, solve_impacts
+from .types import Contact, Flag, Twist, TwoPointBody
+
+Numbers = NDArray[np.float64]
+Solve = Callable[[TwoPointBody, Twist, str], Outcomes]
+
+LIMITS = {
+    "finite": 0.0,
+    "cone": 1e-12,
+    "momentum": 1e-12,
+    "approach": 1e-12,
+    "work": 1e-12,
+    "energy": 1e-11,
+    "units": 0.0,
+    "mirror": 1e-12,
+    "continuity": 1e-6,
+}
+"""The invariants, and how large a violation rounding explains where the problem is not stiff (`random_problems`)."""
+
+UNITS = 2.0**20, 2.0**-13, 2.0**7
+"""Units of mass, length and time: powers of two, which change no digit."""
+
+STEP = 2.0**-40
+"""Part by which friction and places change, to see that the outcome does not jump."""
+
+UNANSWERED = int(Flag.NO_SOLUTION | Flag.INVALID_INPUT)
+
+
+def violations(
+    body: TwoPointBody, twist: Twist, law: str, solve: Solve = solve_impacts
+) -> tuple[Outcomes, dict[str, Numbers]]:
+    """The outcomes of problems and, for each of the `LIMITS`, how much they violate it.
+
+    The fields of `body` and `twist` may be arrays (...), as for `solve_impacts`; so are the violations.
+    """
+    outcomes = solve(body, twist, law)
+    answered = (outcomes.flags & UNANSWERED) == 0
+    found = {
+        "finite": not_finite(outcomes),
+        "cone": outside_cones(body, outcomes),
+        "momentum": momentum_gained(body, twist, outcomes),
+        "approach": approach_left(body, twist, outcomes),
+        "work": work_gained(body, twist, outcomes, law),
+        "energy": energy_unexplained(body, twist, outcomes),
+        "units": changed_by_units(body, twist, outcomes, law, solve),
+        "mirror": changed_by_mirror(body, twist, outcomes, law, solve),
+        "continuity": jump(body, twist, outcomes, law, solve),
+    }
+    return outcomes, {name: np.where(answered | (name == "finite"), value, 0.0) for name, value in found.items()}
+
+
+def contacts_of(body: TwoPointBody) -> list[tuple[int, Contact]]:
+    """The contacts, with their place in the impulses of an outcome."""
+    return [(i, contact) for i, contact in enumerate((body.old, body.new)) if contact is not None]
+
+
+def parts(twist: Any) -> tuple[Any, Any, Any]:
+    """vx, vy and omega of a twist, or of an array (..., 3) of them."""
+    return tuple(np.moveaxis(twist, -1, 0)) if isinstance(twist, np.ndarray) else twist
+
+
+def velocity(contact: Contact, twist: Any) -> tuple[Any, Any, Any]:
+    """Normal and tangential velocity of a contact relative to its support, and the size of their terms (m/s)."""
+    vx, vy, omega = parts(twist)
+    (nx, ny), (ux, uy) = contact.normal, contact.velocity
+    px, py = omega * contact.y, omega * contact.x
+    cx, cy = vx - px - ux, vy + py - uy
+    terms = abs(vx) + abs(vy) + abs(px) + abs(py) + abs(ux) + abs(uy)
+    return nx * cx + ny * cy, ny * cx - nx * cy, terms
+
+
+def relative(value: Any, size: Any) -> Numbers:
+    """A value as a part of a size; where both are zero it is zero."""
+    value, size = np.broadcast_arrays(value, size)
+    return np.asarray(np.divide(value, size, out=np.zeros(value.shape), where=size > 0.0))
+
+
+def largest(values: list[Any]) -> Numbers:
+    return np.asarray(np.maximum.reduce(np.broadcast_arrays(*values)))
+
+
+def not_finite(outcomes: Outcomes) -> Numbers:
+    """1 where a number of an outcome is not finite."""
+    numbers = (*parts(outcomes.twist), *np.moveaxis(outcomes.impulses.reshape(*outcomes.mode.shape, 4), -1, 0))
+    return np.asarray(~np.isfinite(sum(numbers, start=outcomes.energy_lost)), np.float64)
+
+
+def outside_cones(body: TwoPointBody, outcomes: Outcomes) -> Numbers:
+    """How far impulses lie outside of their friction cones (Coulomb): a part of all impulses."""
+    size = np.abs(outcomes.impulses).sum((-1, -2))
+    found = []
+    for i, contact in contacts_of(body):
+        n, t = outcomes.impulses[..., i, 0], outcomes.impulses[..., i, 1]
+        found.append(relative(np.maximum(-n, (abs(t) - contact.friction * n) / (1.0 + contact.friction)), size))
+    return np.maximum(largest(found), 0.0)
+
+
+def momentum_gained(body: TwoPointBody, twist: Twist, outcomes: Outcomes) -> Numbers:
+    """Change of linear and angular momentum that the impulses do not explain: a part of the terms of the balance."""
+    (vx, vy, omega), (wx, wy, after) = twist, parts(outcomes.twist)
+    gains = [body.mass * (wx - vx), body.mass * (wy - vy), body.inertia * (after - omega)]
+    sizes = [body.mass * (abs(vx) + abs(wx)), body.mass * (abs(vy) + abs(wy)), body.inertia * (abs(omega) + abs(after))]
+    for i, contact in contacts_of(body):
+        (nx, ny), n, t = contact.normal, outcomes.impulses[..., i, 0], outcomes.impulses[..., i, 1]
+        px, py, push = nx * n + ny * t, ny * n - nx * t, abs(n) + abs(t)
+        turn, turn_size = contact.x * py - contact.y * px, (abs(contact.x) + abs(contact.y)) * push
+        gains = [gain - part for gain, part in zip(gains, (px, py, turn), strict=True)]
+        sizes = [size + part for size, part in zip(sizes, (push, push, turn_size), strict=True)]
+    linear = relative(np.hypot(gains[0], gains[1]), sizes[0] + sizes[1])
+    return np.maximum(linear, relative(abs(gains[2]), sizes[2]))
+
+
+def approach_left(body: TwoPointBody, twist: Twist, outcomes: Outcomes) -> Numbers:
+    """Approach that an impact leaves at a contact: a part of the terms of the contact's velocity."""
+    found = []
+    for _, contact in contacts_of(body):
+        normal, _, terms = velocity(contact, outcomes.twist)
+        found.append(relative(-normal, terms + velocity(contact, twist)[2]))
+    return np.maximum(largest(found), 0.0)
+
+
+def work_gained(body: TwoPointBody, twist: Twist, outcomes: Outcomes, law: str) -> Numbers:
+    """Work of the impulses on the body relative to its supports, P . (c + c') / 2: a part of the terms of the sum.
+
+    It is never positive on the impulse path; in the total law where there is no restitution (Newton's can gain energy).
+    """
+    work = size = np.zeros(outcomes.mode.shape)
+    plastic = (outcomes.flags & int(Flag.LAST_RESORT)) > 0
+    bounces = np.zeros(outcomes.mode.shape, np.bool_)
+    for i, contact in contacts_of(body):
+        before, after = velocity(contact, twist), velocity(contact, outcomes.twist)
+        for k in (0, 1):
+            impulse = outcomes.impulses[..., i, k]
+            work = work + impulse * (before[k] + after[k])
+            size = size + abs(impulse) * (before[2] + after[2])
+        bounces = bounces | (np.asarray(contact.restitution) > 0.0)
+    total = (outcomes.flags & int(Flag.BOTH_STRUCK)) > 0 if law == "path" else True
+    return np.where(bounces & total & ~plastic, 0.0, np.maximum(relative(work, size), 0.0))
+
+
+def energy_unexplained(body: TwoPointBody, twist: Twist, outcomes: Outcomes) -> Numbers:
+    """Difference between the energy lost and the loss of kinetic energy, where supports rest: a part of their terms."""
+    before, after = (
+        0.5 * (body.mass * (vx * vx + vy * vy) + body.inertia * omega * omega)
+        for vx, vy, omega in (twist, parts(outcomes.twist))
+    )
+    size = before + after
+    for i, contact in contacts_of(body):
+        speeds = velocity(contact, twist)[2] + velocity(contact, outcomes.twist)[2]
+        size = size + speeds * np.abs(outcomes.impulses[..., i, :]).sum(-1)
+    return np.where(supports_move(body), 0.0, relative(abs(before - after - outcomes.energy_lost), size))
+
+
+def supports_move(body: TwoPointBody) -> NDArray[np.bool_]:
+    """Whether a contact's support moves."""
+    speeds = [abs(part) for _, contact in contacts_of(body) for part in contact.velocity]
+    return np.asarray(largest(speeds) > 0.0)
+
+
+def apart(body: TwoPointBody, twist: Twist, one: Any, other: Any) -> Numbers:
+    """How far two twists after the impact are apart at the contacts: a part of the terms of the contact velocities."""
+    found = []
+    for _, contact in contacts_of(body):
+        first, second, size = velocity(contact, one), velocity(contact, other), velocity(contact, twist)[2]
+        found += [relative(abs(first[k] - second[k]), size + first[2] + second[2]) for k in (0, 1)]
+    return largest(found)
+
+
+def changed_by_units(body: TwoPointBody, twist: Twist, outcomes: Outcomes, law: str, solve: Solve) -> Numbers:
+    """What other units of mass, length and time change in the outcome."""
+    mass, length, time = UNITS
+    speed = length / time
+
+    def scaled(contact: Contact) -> Contact:
+        (ux, uy), x, y = contact.velocity, contact.x * length, contact.y * length
+        return contact._replace(x=x, y=y, velocity=(ux * speed, uy * speed))
+
+    vx, vy, omega = twist
+    old = body.old and scaled(body.old)
+    other = TwoPointBody(body.mass * mass, body.inertia * mass * length * length, old, scaled(body.new))
+    vx, vy, omega = parts(solve(other, Twist(vx * speed, vy * speed, omega / time), law).twist)
+    return apart(body, twist, outcomes.twist, (vx / speed, vy / speed, omega * time))
+
+
+def changed_by_mirror(body: TwoPointBody, twist: Twist, outcomes: Outcomes, law: str, solve: Solve) -> Numbers:
+    """What a mirror (x to -x) changes in the outcome, where it is unique: of several the laws take + before -."""
+
+    def mirrored(contact: Contact) -> Contact:
+        (nx, ny), (ux, uy) = contact.normal, contact.velocity
+        return contact._replace(x=-contact.x, normal=(-nx, ny), velocity=(-ux, uy))
+
+    vx, vy, omega = twist
+    image = body._replace(old=body.old and mirrored(body.old), new=mirrored(body.new))
+    reflected = solve(image, Twist(-vx, vy, -omega), law)
+    vx, vy, omega = parts(reflected.twist)
+    unique = outcomes.unique & reflected.unique
+    return np.where(unique, apart(body, twist, outcomes.twist, (-vx, vy, -omega)), 0.0)
+
+
+def jump(body: TwoPointBody, twist: Twist, outcomes: Outcomes, law: str, solve: Solve) -> Numbers:
+    """How far the outcome moves when friction, inertia and, where the supports rest, the place of B change by a `STEP`.
+
+    It may jump where it is not unique or a law has no answer, and where the path jams, which sets in suddenly.
+    """
+
+    def rougher(contact: Contact) -> Contact:
+        return contact._replace(friction=contact.friction * (1.0 + STEP) + STEP)
+
+    x, y = body.new.x, body.new.y
+    dx, dy = (x - body.old.x, y - body.old.y) if body.old else (x, y)
+    step: Any = STEP * ~supports_move(body)
+    new = rougher(body.new)._replace(x=x + step * (dx - dy), y=y + step * (dy + dx))
+    near = TwoPointBody(body.mass, body.inertia * (1.0 + STEP), body.old and rougher(body.old), new)
+    others = solve(near, twist, law)
+    sudden = int(Flag.JAMMED | Flag.LAST_RESORT | Flag.NO_SOLUTION | Flag.INVALID_INPUT)
+    steady = outcomes.unique & others.unique & (((outcomes.flags | others.flags) & sudden) == 0)
+    return np.where(steady, apart(body, twist, outcomes.twist, others.twist), 0.0)

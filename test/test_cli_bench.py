@@ -1,0 +1,177 @@
+"""`impact-predictor bench invariants`: what it reports, and that a law that is wrong does not pass."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import numpy as np
+import pytest
+from click.testing import CliRunner, Result
+
+from impact_predictor import Contact, Outcomes, Twist, TwoPointBody, solve_impacts
+from impact_predictor.cli import main
+from impact_predictor.mechanics import invariants, soak
+from impact_predictor.mechanics.invariants import LIMITS, violations
+from impact_predictor.mechanics.random_problems import KINDS, random_problems
+from impact_predictor.mechanics.soak import Soak, problem_at
+
+BROKEN = 1
+NAMES = {"Contact": Contact, "Twist": Twist, "TwoPointBody": TwoPointBody, "violations": violations}
+"""What a line that computes a violation again uses."""
+
+
+def run(*arguments: str) -> Result:
+    return CliRunner().invoke(main, ("bench", "invariants", *arguments), terminal_width=100)
+
+
+@pytest.fixture
+def loose(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Limits that nothing exceeds, for tests that are about the report."""
+    monkeypatch.setattr(soak, "LIMITS", dict.fromkeys(LIMITS, np.inf))
+
+
+def wrong(change: dict[str, Any]) -> Any:
+    """A law whose outcomes are changed: field -> what is done to it."""
+
+    def solve(body: TwoPointBody, twist: Twist, law: str) -> Outcomes:
+        outcomes = solve_impacts(body, twist, law)
+        return outcomes._replace(**{name: how(getattr(outcomes, name)) for name, how in change.items()})
+
+    return solve
+
+
+def slipping_out(impulses: Any) -> Any:
+    """Friction half as great again."""
+    return impulses * (1.0, 1.5)
+
+
+@pytest.mark.parametrize(
+    ("change", "name"),
+    [
+        ({"impulses": slipping_out}, "cone"),
+        ({"impulses": slipping_out}, "momentum"),
+        ({"twist": lambda twist: twist + 1e-3}, "momentum"),
+        ({"twist": lambda twist: -twist}, "approach"),
+        ({"twist": lambda twist: 3.0 * twist}, "energy"),
+        ({"twist": lambda twist: np.where(twist > 1.0, np.nan, twist)}, "finite"),
+    ],
+)
+def test_a_law_that_is_wrong_is_caught(monkeypatch: pytest.MonkeyPatch, change: dict[str, Any], name: str) -> None:
+    monkeypatch.setattr(soak, "violations", lambda body, twist, law: violations(body, twist, law, wrong(change)))
+    result = run("--count", "1700", "--json")
+    assert result.exit_code == BROKEN
+    assert name in {one["invariant"] for one in json.loads(result.stdout)["invariants"] if one["broken_by"]}
+
+
+def test_the_report_is_json_alone_if_asked_for(loose: None) -> None:
+    result = run("--count", "2e3", "--seed", "5", "--law", "total", "--json")
+    assert result.exit_code == 0
+    report = json.loads(result.stdout)
+    assert (report["problems"], report["seed"], report["laws"]) == (2000, 5, ["total"])
+    assert not report["interrupted"]
+    assert report["problems_per_second"] == pytest.approx(2000 / report["seconds"])
+    assert [one["invariant"] for one in report["invariants"]] == list(LIMITS)
+    assert all(one["law"] == "total" and not one["broken_by"] for one in report["invariants"])
+
+
+def test_each_violation_has_the_problem_that_makes_it_again_to_the_last_bit(loose: None) -> None:
+    report = json.loads(run("--count", "3400", "--json").stdout)
+    made = [one for one in report["invariants"] if one["replay"] is not None]
+    assert len(made) >= 8
+    for one in made:
+        with np.errstate(all="ignore"):
+            assert float(eval(one["replay"], NAMES)) == one["worst"]
+        assert one["kind"] in KINDS
+
+
+def test_the_table_names_both_laws_and_the_worst_kind(loose: None) -> None:
+    result = run("--count", "1e3")
+    assert result.exit_code == 0
+    assert "1,000 problems in " in result.stdout
+    assert all(result.stdout.count(f"  {name}  ") == 2 for name in LIMITS)
+    assert "from impact_predictor.mechanics.invariants import violations\nviolations(TwoPointBody(" in result.stdout
+
+
+def test_what_exceeds_its_limit_is_said_in_words(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(soak, "LIMITS", {**dict.fromkeys(LIMITS, np.inf), "momentum": 0.0})
+    result = run("--count", "500", "--law", "path")
+    assert result.exit_code == BROKEN
+    *_, title, line = result.stdout.splitlines()
+    assert title.startswith("Violated by more than rounding explains")
+    law, _, kinds = line.partition(": ")
+    assert law == "  momentum, path law"
+    assert set(kinds.split(", ")) <= set(KINDS)
+    assert len(kinds.split(", ")) > 10
+
+
+def test_ctrl_c_tells_what_was_found_so_far(loose: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(seed: int, count: int, chunk: int) -> Any:
+        problems = random_problems(seed, count, chunk)
+        yield next(problems)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(soak, "random_problems", interrupted)
+    result = run("--count", "1700")
+    assert result.exit_code == 130
+    assert "\nInterrupted: 100 problems in " in result.stdout
+
+
+def test_a_short_soak_has_problems_of_every_kind(monkeypatch: pytest.MonkeyPatch) -> None:
+    seen = []
+    monkeypatch.setattr(soak, "violations", lambda body, twist, law: (None, {}))
+    monkeypatch.setattr(
+        soak, "random_problems", lambda *how: (seen.append(one.kind) or one for one in random_problems(*how))
+    )
+    short = Soak(len(KINDS), 0, ["path"])
+    short.run()
+    assert (seen, short.done) == (list(KINDS), len(KINDS))
+
+
+def test_a_violation_that_is_no_number_counts_as_endless(monkeypatch: pytest.MonkeyPatch) -> None:
+    def all_nan(body: TwoPointBody, twist: Twist, law: str) -> tuple[None, dict[str, Any]]:
+        return None, {"work": np.full(np.shape(body.mass), np.nan)}
+
+    monkeypatch.setattr(soak, "violations", all_nan)
+    result = run("--count", "50", "--json")
+    assert result.exit_code == BROKEN
+    work = next(one for one in json.loads(result.stdout)["invariants"] if one["invariant"] == "work")
+    assert (work["worst"], work["broken_by"]) == (None, list(KINDS))
+
+
+def test_one_of_many_problems_is_solved_as_it_was_among_them() -> None:
+    for _, body, twist in random_problems(3, 17 * 20, 20):
+        outcomes = solve_impacts(body, twist)
+        one_body, one_twist = problem_at(body, twist, 7)
+        assert np.array_equal(solve_impacts(one_body, one_twist).twist, outcomes.twist[7])
+        assert type(one_body.new.normal[0]) is float
+
+
+@pytest.mark.parametrize("count", ["0", "-1", "1.5", "nan", "inf"])
+def test_a_count_that_is_none_is_refused_in_one_sentence(count: str) -> None:
+    result = run("--count", count)
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert "is not a whole number above 0, such as 1000000 or 1e6" in result.stderr
+    assert len(result.stderr.splitlines()) == 1
+
+
+@pytest.mark.parametrize("command", [["bench"], ["bench", "invariants"]])
+def test_it_has_help_with_examples(command: list[str]) -> None:
+    assert "Examples:\n    impact-predictor bench " in CliRunner().invoke(main, [*command, "--help"]).stdout
+
+
+def test_the_invariants_solve_a_second_time_by_the_same_law() -> None:
+    """Mirror, units and continuity need it; a law that forgets its mirror must fail there."""
+    asked = []
+
+    def lopsided(body: TwoPointBody, twist: Twist, law: str) -> Outcomes:
+        asked.append(law)
+        outcomes = solve_impacts(body, twist, law)
+        right = np.broadcast_to(np.asarray(twist.vx) > 0.0, outcomes.mode.shape)[..., None]
+        return outcomes._replace(twist=np.where(right, 1.01 * outcomes.twist, outcomes.twist))
+
+    _, body, twist = next(random_problems(1, 100, 100))
+    _, found = invariants.violations(body, twist, "total", lopsided)
+    assert set(asked) == {"total"}
+    assert len(asked) > 3
+    assert np.max(found["mirror"]) > 1e-3

@@ -1,0 +1,144 @@
+"""`impact-predictor map`: what it writes and prints, and one sentence for each mistake."""
+
+from __future__ import annotations
+
+import json
+import shlex
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from impact_predictor.cli import main
+from impact_predictor.commands.compiling import NOTE, compiling_is_said
+
+BODIES = ["plate", "rod", "cylinder"]
+DOCS = Path(__file__).parents[1] / "docs"
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def run(*arguments: str) -> Result:
+    return CliRunner().invoke(main, ("map", *arguments), terminal_width=100)
+
+
+def examples() -> list[str]:
+    return [
+        line.strip()
+        for body in [[], *([body] for body in BODIES)]
+        for line in run(*body, "--help").stdout.splitlines()
+        if line.startswith("    impact-predictor map ")
+    ]
+
+
+@pytest.mark.parametrize("command", [[], *([body] for body in BODIES)], ids=" ".join)
+def test_every_map_has_help_with_examples(command: list[str]) -> None:
+    assert "Examples:\n    impact-predictor map " in run(*command, "--help").stdout
+
+
+@pytest.mark.parametrize("example", sorted(set(examples())))
+def test_every_example_draws_a_map(folder: Path, example: str) -> None:
+    arguments = shlex.split(example)[2:]
+    result = run(*arguments, "--resolution", "40")
+    assert result.exit_code == 0, result.stderr
+    assert len(list(folder.iterdir())) == (0 if "--json" in arguments else max(1, arguments.count("-o")))
+
+
+def quoted(command: str) -> list[str]:
+    """The lines of docs/mechanics.md that call a command."""
+    lines = (DOCS / "mechanics.md").read_text(encoding="utf-8").splitlines()
+    return [line.strip() for line in lines if line.startswith(f"    impact-predictor {command} ")]
+
+
+@pytest.mark.parametrize("line", quoted("map"))
+def test_the_pictures_of_the_documentation_are_made_by_the_lines_beside_them(folder: Path, line: str) -> None:
+    assert run(*shlex.split(line)[2:], "--resolution", "30").exit_code == 0
+    (picture,) = folder.iterdir()
+    assert f"]({picture.name})" in (DOCS / "mechanics.md").read_text(encoding="utf-8")
+    assert (DOCS / picture.name).is_file()
+
+
+def test_the_impacts_of_the_documentation_end_as_it_says() -> None:
+    slips, jams = (
+        json.loads(CliRunner().invoke(main, [*shlex.split(line)[1:], "--json"]).stdout) for line in quoted("solve")
+    )
+    assert (slips["mode"], slips["segments"]) == ("STOP", ["--", "SS"])
+    assert (jams["mode"], jams["flags"]) == ("BACK_PIVOT", ["JAMMED"])
+
+
+@pytest.mark.parametrize("body", BODIES)
+def test_without_a_name_the_picture_is_named_after_the_body(folder: Path, body: str) -> None:
+    result = run(body, "--resolution", "30")
+    assert result.stdout.splitlines()[-1] == f"Picture: map_{body}.png"
+    assert [file.name for file in folder.iterdir()] == [f"map_{body}.png"]
+    for mode in ("STOP", "SLIDE", "PIVOT_SLIDE", "PIVOT"):
+        assert mode in result.stdout
+
+
+def test_several_files_are_written_in_the_formats_of_their_names(folder: Path) -> None:
+    result = run("plate", "--resolution", "20", "-o", "a.svg", "-o", "b.PNG", "-o", "c.csv")
+    assert result.stdout.splitlines()[-3:] == ["Picture: a.svg", "Picture: b.PNG", "Data: c.csv"]
+    assert (folder / "a.svg").read_text().startswith("<?xml")
+    assert (folder / "b.PNG").read_bytes().startswith(b"\x89PNG")
+    assert len((folder / "c.csv").read_text().splitlines()) == 401
+
+
+def test_json_is_all_that_is_printed_and_the_options_reach_the_law(folder: Path) -> None:
+    options = ["--x", "friction-old", "0", "3", "--y", "inertia", "0.1", "2", "--friction-new", "0.2", "--height", "4"]
+    answer = json.loads(run("plate", *options, "--slip", "-1", "--law", "total", "--json", "--resolution", "50").stdout)
+    assert answer["x"] == {"name": "friction_old", "low": 0.0, "high": 3.0}
+    assert answer["y"] == {"name": "inertia", "low": 0.1, "high": 2.0}
+    assert answer["law"] == "total"
+    # Both frictions are told, so that the friction of both contacts is none of them.
+    assert answer["fixed"] == {"length": 1.0, "height": 4.0, "friction_new": 0.2, "restitution": 0.0, "slip": -1.0}
+    assert answer["resolution"] == 50
+    assert answer["jammed"] > 0.05
+    assert answer["path_not_unique"] > 0.3
+    assert sum(answer["shares"].values()) == pytest.approx(1.0)
+    assert list(folder.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (["plate", "--x", "warp", "0", "1"], "there is no parameter 'warp' for an axis; give one of delta, length"),
+        (["plate", "--friction", "0.3"], "friction is an axis of the map and --friction a number"),
+        (["rod", "--x", "a", "0.2", "0"], "the axis a goes from 0.2 to 0; give a lower number first"),
+        (["rod", "--x", "friction", "0", "1"], "both axes, --x and --y, are friction; give two parameters"),
+        (["plate", "--restitution", "3"], "restitution is 3.0; give a number from 0 to 1"),
+        (["cylinder", "--x", "gamma", "0", "100"], "the angle gamma + gamma_new between the edges is"),
+        (
+            ["plate", "-o", "map.pdf"],
+            "map.pdf is neither picture nor data; give a name that ends in .png, .svg or .csv",
+        ),
+        (["plate", "-o", "no/map.png"], "the folder of no/map.png does not exist"),
+        (["plate", "--resolution", "1"], "'--resolution': 1 is not in the range 2<=x<=5000"),
+        (["plate", "--x", "delta", "0"], "'--x' requires 3 arguments"),
+        (["plate", "--gamma", "3"], "No such option"),
+    ],
+)
+def test_a_mistake_is_said_in_one_sentence_and_nothing_is_written(
+    folder: Path, arguments: list[str], sentence: str
+) -> None:
+    result = run(*arguments)
+    assert result.exit_code == 2
+    assert result.stdout == ""
+    (line,) = result.stderr.splitlines()
+    assert line.startswith("error: ")
+    assert sentence in line
+    assert list(folder.iterdir()) == []
+
+
+def test_the_first_compilation_is_said_once(capsys: pytest.CaptureFixture[str]) -> None:
+    numba = pytest.importorskip("numba")
+    twice = numba.njit(lambda value: 2.0 * value)
+    with compiling_is_said():
+        assert twice(1.0) + twice(1) == 4.0
+    assert capsys.readouterr().err == f"{NOTE}\n"
+    with compiling_is_said():
+        assert twice(2.0) == 4.0
+    assert capsys.readouterr().err == ""
