@@ -78,8 +78,9 @@ def solve(
 
     A contact velocity below 1e-12 of the largest counts as zero: make one zero yourself that is the sum of far larger
     terms. The velocities after keep the digits that W has: their error is about 1e-15 of the largest velocity, times
-    the condition number of W on its range, its diagonal scaled to 1. Where W leaves open how two sticking contacts
-    share their impulses, they have the least of them (Flag.SHARED_FRICTION).
+    the condition number of W on its range, its diagonal scaled to 1; and 1e-15 of the terms of W P, which are large
+    where friction all but jams. Where W leaves open how two sticking contacts share their impulses, they have the
+    least of them (Flag.SHARED_FRICTION).
 
     Numbers that no mechanism can have give Flag.INVALID_INPUT, never an exception; an unknown law and a W of another
     shape raise ValueError. Source: the paper, sections 2 to 4, generalised.

@@ -2,8 +2,8 @@
 
 Along each way the nearest border is looked for outwards on both sides at the STEPS, and between two of them where the
 contact states differ. So a mode is found that holds over a thirty-second of the way's unit and over half of its
-distance; a narrower one if the contact states beyond it differ too. The border itself is then that of the law, up to
-rounding: what comes to zero at it (a slip, the speed of a contact that lifts) is followed to zero.
+distance; a narrower one if the contact states beyond it differ too. What comes to zero at the border (a slip, the
+speed of a contact that lifts) is followed to zero, which gives it to 1e-9 of the unit or better.
 """
 
 from __future__ import annotations
@@ -24,10 +24,13 @@ PROBES = 5
 """How often an interval is halved in which the contact states change but the mode does not."""
 
 ACCURACY = 1e-12
-"""Error of a border, in the unit of its way."""
+"""Where velocities jump, a border is halved down to this, in the unit of its way."""
 
 NEARLY = 0.95
 """How far a velocity is followed to the place where it seems to vanish."""
+
+CLOSE = 1e-7
+"""From here the secant gives a border up to rounding, in the unit of its way; nearer the velocity counts as zero."""
 
 BEYOND = 1e-6
 """How far from a border the modes on its sides are asked for, in the unit of its way."""
@@ -249,7 +252,7 @@ def border_in(way: Way, near: Trial, far: Trial) -> Margin | None:
         span = still.change - moving.change + (outwards if near_moves else -outwards)
         if not 0.0 < (guess - moving.change) / span <= 1.0:
             trial = way.at(0.5 * (near.change + far.change))
-        elif abs(guess - estimate) > ACCURACY * way.unit:
+        elif max(abs(guess - estimate), abs(guess - moving.change)) > CLOSE * way.unit:
             trial = way.at(moving.change + NEARLY * (guess - moving.change))
         else:
             inside, outside = way.at(guess - outwards), way.at(guess + outwards)

@@ -113,13 +113,14 @@ def tries_alone(mobility: Mobility, c: Velocities, leaving: bool = False) -> Ite
 
 def tries_together(mobility: Mobility, c: Velocities, zero: float) -> Iterator[Try]:
     """Both contacts hold; `zero` is the speed below which contact velocities are rounding."""
-    old, new, (xnn, xnt, xtn, xtt), (fa, fb), _, _ = mobility
+    old, new, (xnn, xnt, xtn, xtt), (fa, fb), steps, _ = mobility
     cna, cta, cnb, ctb = c
     yield from both_stick(mobility, c, zero)
-    for b, na, ta, nb, tb in one_sticks(old, new, (xnn, xnt, xtn, xtt), fa, fb, c):
-        yield STICK, b, na, ta, nb, tb
-    for a, nb, tb, na, ta in one_sticks(new, old, (xnn, xtn, xnt, xtt), fb, fa, (cnb, ctb, cna, cta)):
-        yield a, STICK, na, ta, nb, tb
+    if len(steps) > 2:  # else a contact that sticks leaves the other no mobility but rounding
+        for b, na, ta, nb, tb in one_sticks(old, new, (xnn, xnt, xtn, xtt), fa, fb, c):
+            yield STICK, b, na, ta, nb, tb
+        for a, nb, tb, na, ta in one_sticks(new, old, (xnn, xtn, xnt, xtt), fb, fa, (cnb, ctb, cna, cta)):
+            yield a, STICK, na, ta, nb, tb
     yield from both_slide(mobility, cna, cnb)
 
 
