@@ -9,30 +9,46 @@ from .mechanics.types import Alternative, Contact, Flag, Mode, Outcome, Twist, T
 
 if TYPE_CHECKING:
     from .mechanics.batch import Outcomes, solve_impacts
+    from .mechanics.margins import Margin, Margins
+    from .mechanics.sensitivity import Sensitivity, sensitivity
 
 __all__ = [
     "Alternative",
     "Contact",
     "Flag",
     "InputError",
+    "Margin",
+    "Margins",
     "Mode",
     "Outcome",
     "Outcomes",
+    "Sensitivity",
     "Twist",
     "TwoPointBody",
     "cylinder",
     "plate",
     "rod",
+    "sensitivity",
     "solve_impact",
     "solve_impacts",
 ]
 __version__ = "0.1.0"
 
 
-def __getattr__(name: str) -> object:
-    """`solve_impacts` and `Outcomes`, loaded when they are asked for: they need numpy, one impact does not."""
-    if name in ("Outcomes", "solve_impacts"):
-        from .mechanics import batch
+LATER = {
+    "Margin": "margins",
+    "Margins": "margins",
+    "Outcomes": "batch",
+    "Sensitivity": "sensitivity",
+    "sensitivity": "sensitivity",
+    "solve_impacts": "batch",
+}
+"""Names that are loaded when they are asked for, and their modules: some need numpy, a single impact needs nothing."""
 
-        return getattr(batch, name)
+
+def __getattr__(name: str) -> object:
+    if name in LATER:
+        from importlib import import_module
+
+        return getattr(import_module(f".mechanics.{LATER[name]}", __name__), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

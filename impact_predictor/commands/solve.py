@@ -253,6 +253,10 @@ def fields_of(outcome: Outcome, before: Twist) -> dict[str, Any]:
         "alternatives": [
             {"mode": one.mode.name, "twist": one.twist, "segments": one.segments} for one in outcome.alternatives
         ],
+        "margins": {
+            name: None if mode is None else {"change": change, "mode": mode.name}
+            for name, (change, mode) in outcome.margins._asdict().items()
+        },
     }
 
 

@@ -35,13 +35,27 @@ FLAGS: Final = {
     Flag.ENERGY_GAINED: "Newton's restitution raised the kinetic energy: do not trust this answer",
     Flag.SHARED_FRICTION: "both contacts stick: how they share the push along their line is a choice, not mechanics",
     Flag.BOTH_STRUCK: "both contacts approach, so the total law answered",
-    Flag.LAST_RESORT: "the impulse path could not be continued, so the total law answered",
+    Flag.LAST_RESORT: "the law had no answer, so the total law without restitution gave one",
     Flag.NO_SOLUTION: "no law has a solution (supports that move apart); the velocities are left as they were",
     Flag.INVALID_INPUT: "a number is out of range",
 }
 LAWS: Final = {
     "path": "growing impulse, Poisson restitution",
     "total": "whole impulse at once, Newton restitution",
+}
+MARGINS: Final = {
+    "friction": "friction of the contacts by {}",
+    "center": "mass centre towards the new contact by {} m",
+    "height": "mass centre up from the line of the contacts by {} m",
+    "reach": "new contact along its tangent by {} m",
+    "slip": "slip of the old contact by {} m/s",
+}
+ONE_POINT_MARGINS: Final = {
+    "friction": "friction by {}",
+    "center": "mass centre along the tangent by {} m",
+    "height": "mass centre along the normal by {} m",
+    "reach": "contact along its tangent by {} m",
+    "slip": "slip by {} m/s",
 }
 _ROUNDING: Final = 1e-12
 _STATES: Final = {"O": "is open", "S": "sticks", "+": "slides forwards", "-": "slides backwards"}
@@ -108,6 +122,12 @@ def _words(body: TwoPointBody, outcome: Outcome) -> Iterator[str]:
         for other in outcome.alternatives:
             twist = ", ".join(_number(part) for part in other.twist)
             yield f"    {other.mode.name} with (vx, vy, omega) = ({twist}): {meanings[other.mode]}"
+    margins = [(name, change, mode) for name, (change, mode) in outcome.margins._asdict().items() if mode is not None]
+    if margins:
+        yield "  The nearest other modes, by one change at a time:"
+    for name, change, mode in margins:
+        what = (MARGINS if body.old is not None else ONE_POINT_MARGINS)[name]
+        yield f"    {mode.name}: {what.format(f'{change:+.4g}')}"
     for flag in Flag:
         if flag & outcome.flags:
             yield f"  {flag.name}:"

@@ -7,9 +7,9 @@ import io
 import pytest
 from rich.console import Console
 
-from impact_predictor import Contact, Flag, Mode, Outcome, Twist, TwoPointBody, cylinder, plate, solve_impact
+from impact_predictor import Contact, Flag, Margins, Mode, Outcome, Twist, TwoPointBody, cylinder, plate, solve_impact
 from impact_predictor.mechanics.types import Alternative
-from impact_predictor.report.outcome import FLAGS, MODES, ONE_POINT_MODES, print_outcomes
+from impact_predictor.report.outcome import FLAGS, MARGINS, MODES, ONE_POINT_MARGINS, ONE_POINT_MODES, print_outcomes
 
 PLATE = plate(length=1.0, height=0.4, mass=10.0, friction=0.2)
 BEFORE = PLATE.turning(-1.0)
@@ -30,6 +30,7 @@ def row(text: str, label: str) -> list[str]:
 def test_every_mode_and_flag_has_words() -> None:
     assert MODES.keys() == set(Mode)
     assert FLAGS.keys() == set(Flag)
+    assert list(MARGINS) == list(ONE_POINT_MARGINS) == list(Margins._fields)
 
 
 def test_the_table_has_velocities_impulses_and_energy() -> None:
@@ -42,6 +43,15 @@ def test_the_table_has_velocities_impulses_and_energy() -> None:
     assert row(text, "energy lost, %") == ["97.4"]
     assert "both contacts hold and the body slides on them" in text
     assert "++  the old contact slides forwards, the new one slides forwards" in text
+
+
+def test_the_nearest_other_modes_are_told() -> None:
+    text = printed(PLATE, BEFORE, solve_impact(PLATE, BEFORE))
+    assert "STOP: friction of the contacts by +0.2" in text
+    assert "STOP: mass centre up from the line of the contacts by -0.1 m" in text
+    assert "slip of the old contact by" not in text  # at no other slip there is another mode
+    alone = TwoPointBody(1.0, 0.1, None, Contact(0.1, -0.5, 0.3))
+    assert "friction by" in printed(alone, Twist(1.0, -1.0, 0.0), solve_impact(alone, Twist(1.0, -1.0, 0.0)))
 
 
 def test_both_laws_stand_side_by_side_in_80_columns() -> None:
