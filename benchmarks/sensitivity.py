@@ -21,7 +21,7 @@ from rich.table import Table
 from impact_predictor.bags.read import read_messages
 from impact_predictor.parameter_file import read_parameters
 from impact_predictor.parameters import validate
-from impact_predictor.prediction import planar, predictor, score
+from impact_predictor.prediction import planar, predictor, score, transverse
 from impact_predictor.prediction.scene import Scene, inertia_matrix
 from impact_predictor.prediction.types import Geometry, Sample
 from impact_predictor.ros.messages import ODOMETRY, POLYGON, decode_odometry, decode_polygon
@@ -40,6 +40,7 @@ CONSTANTS: tuple[tuple[ModuleType, str], ...] = (
     (score, "OFF_AXIS"),
     (score, "OFFSET"),
     (score, "SLOWEST"),
+    (transverse, "SLIPS"),
 )
 
 
@@ -94,6 +95,7 @@ def variations(scene: Scene) -> list[Variation]:
     changed.append(Variation("restitution (plastic)", 0.0, scene._replace(restitution=0.0)))
     changed.append(Variation("friction (no slip)", 1e3, scene._replace(friction=1e3)))
     changed.append(Variation("twist_window (none)", 0.0, scene._replace(twist_window=0.0)))
+    changed.append(Variation("transverse_slip (off)", 0.0, scene._replace(transverse_slip=False)))
     changed.append(Variation("law (total)", 0.0, scene._replace(law="total")))
     return changed
 

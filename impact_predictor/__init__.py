@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from .mechanics.batch import Outcomes, solve_impacts
     from .mechanics.margins import Margin, Margins
     from .mechanics.sensitivity import Sensitivity, sensitivity
+    from .mechanics.transverse import Transverse, TransverseOutcome, solve_transverse_impact
 
 __all__ = [
     "Alternative",
@@ -23,6 +24,8 @@ __all__ = [
     "Outcome",
     "Outcomes",
     "Sensitivity",
+    "Transverse",
+    "TransverseOutcome",
     "Twist",
     "TwoPointBody",
     "cylinder",
@@ -31,6 +34,7 @@ __all__ = [
     "sensitivity",
     "solve_impact",
     "solve_impacts",
+    "solve_transverse_impact",
 ]
 __version__ = "0.1.0"
 
@@ -40,8 +44,11 @@ LATER = {
     "Margins": "margins",
     "Outcomes": "batch",
     "Sensitivity": "sensitivity",
+    "Transverse": "transverse",
+    "TransverseOutcome": "transverse",
     "sensitivity": "sensitivity",
     "solve_impacts": "batch",
+    "solve_transverse_impact": "transverse",
 }
 """Names that are loaded when they are asked for, and their modules: some need numpy, a single impact needs nothing."""
 

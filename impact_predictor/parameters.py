@@ -15,9 +15,9 @@ Value = bool | int | float | str | tuple[float, ...]
 class Parameter(NamedTuple):
     """A parameter of the node.
 
-    `kind` is the name of the type in rclpy.parameter.Parameter.Type, in small letters: double, double_array or string;
-    `default` is None where nobody but the user can know the value. `low` and `high` bound every number, ends included.
-    `flaw` looks at a value of the right type and range and says what is wrong with it, or "".
+    `kind` is the name of the type in rclpy.parameter.Parameter.Type, in small letters: bool, integer, double,
+    double_array or string; `default` is None where nobody but the user can know the value. `low` and `high` bound every
+    number, ends included. `flaw` looks at a value of the right type and range and says what is wrong with it, or "".
     """
 
     name: str
@@ -164,6 +164,48 @@ PARAMETERS: Final[dict[str, Parameter]] = {
             choices=("path", "total"),
         ),
         Parameter(
+            "transverse_slip",
+            "bool",
+            True,
+            "",
+            "Whether friction also opposes slip across the impact plane, so that a body that slips there too has less "
+            "friction left in the plane. Only the law path knows it.",
+        ),
+        Parameter(
+            "uncertainty.samples",
+            "integer",
+            0,
+            "1",
+            "How many points carry the uncertainty of a sample through its impact, 16 or more and even; 0 for none.",
+            low=0,
+            high=4096,
+        ),
+        Parameter(
+            "uncertainty.friction",
+            "double",
+            0.0,
+            "1",
+            "Standard deviation of contact.friction.",
+            low=0.0,
+            high=100.0,
+        ),
+        Parameter(
+            "uncertainty.restitution",
+            "double",
+            0.0,
+            "1",
+            "Standard deviation of contact.restitution.",
+            low=0.0,
+            high=1.0,
+        ),
+        Parameter(
+            "margins",
+            "bool",
+            False,
+            "",
+            "Whether a prediction tells how far its impact is from another mode, in friction, geometry and slip.",
+        ),
+        Parameter(
             "horizon", "double", 0.25, "s", "How far ahead of a sample a touchdown is looked for.", low=0.0, high=60.0
         ),
         Parameter(
@@ -217,6 +259,14 @@ def _hint(name: str) -> str:
 
 
 def _check(parameter: Parameter, value: object) -> Value:
+    if parameter.kind == "bool":
+        if not isinstance(value, bool):
+            raise _refusal(parameter, value)
+        return value
+    if parameter.kind == "integer":
+        if not isinstance(value, int) or isinstance(value, bool) or not parameter.low <= value <= parameter.high:
+            raise _refusal(parameter, value)
+        return value
     if parameter.kind == "string":
         if not isinstance(value, str) or (parameter.choices and value not in parameter.choices):
             raise _refusal(parameter, value)
@@ -256,6 +306,8 @@ def _allowed(parameter: Parameter) -> str:
     """What a value may be, as the end of a sentence."""
     if parameter.choices:
         return " or ".join(repr(choice) for choice in parameter.choices)
+    if parameter.kind == "bool":
+        return "true or false"
     if parameter.kind == "string":
         return "a text"
     unit = "" if parameter.unit == "1" else f" {parameter.unit}"
@@ -265,6 +317,8 @@ def _allowed(parameter: Parameter) -> str:
     if math.isfinite(parameter.high):
         bounds.append(f"to {parameter.high:g}")
     limits = " ".join(["", *bounds])
+    if parameter.kind == "integer":
+        return f"a whole number{limits}"
     if parameter.kind == "double":
         return f"a finite double{limits}{unit}"
     count = f"{' or '.join(map(str, parameter.lengths))} " if parameter.lengths else ""

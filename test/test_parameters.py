@@ -34,10 +34,10 @@ def test_what_is_not_given_has_its_default() -> None:
 def test_every_parameter_is_declared_so_that_a_node_can_declare_it() -> None:
     for name, parameter in PARAMETERS.items():
         assert parameter.name == name
-        assert parameter.kind in ("double", "double_array", "string")
+        assert parameter.kind in ("bool", "integer", "double", "double_array", "string")
         assert parameter.description.endswith(".")
         assert parameter.low < parameter.high
-        assert bool(parameter.unit) == (parameter.kind != "string")
+        assert bool(parameter.unit) == (parameter.kind not in ("bool", "string"))
 
 
 def test_every_default_is_allowed() -> None:
@@ -123,6 +123,20 @@ def test_a_text_is_one_of_its_choices() -> None:
     assert refusal(law=1) == "the parameter law is 1, but it must be 'path' or 'total'"
     assert refusal(executor="multi").endswith("it must be 'single' or 'events'")
     assert refusal(support__frame=5).endswith("but it must be a text")
+
+
+@pytest.mark.parametrize("value", [1, 0.0, "true", [True], None])
+def test_a_switch_is_true_or_false(value: object) -> None:
+    assert refusal(transverse_slip=value) == f"the parameter transverse_slip is {value!r}, but it must be true or false"
+    assert validate({**REQUIRED, "transverse_slip": False})["transverse_slip"] is False
+
+
+@pytest.mark.parametrize("value", [-1, 4097, 64.0, True, "64", [64], None])
+def test_a_count_is_a_whole_number(value: object) -> None:
+    assert refusal(uncertainty__samples=value) == (
+        f"the parameter uncertainty.samples is {value!r}, but it must be a whole number from 0 to 4096"
+    )
+    assert validate({**REQUIRED, "uncertainty.samples": 64})["uncertainty.samples"] == 64
 
 
 def test_an_unknown_name_is_answered_with_the_nearest_one() -> None:

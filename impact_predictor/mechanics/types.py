@@ -55,7 +55,8 @@ class Flag(IntFlag):
     BOTH_STRUCK = 64
     """Both contacts approach, so the total law answered."""
     LAST_RESORT = 128
-    """The law had no answer, so the total law without restitution gave one."""
+    """The law had no answer, so a simpler one gave it: the total law without restitution, or, where the body slips
+    across its plane, the planar law."""
     NO_SOLUTION = 256
     """No law has a solution (supports that move apart); the twist is left as it was."""
     INVALID_INPUT = 512

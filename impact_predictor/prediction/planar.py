@@ -67,6 +67,16 @@ class Plane(NamedTuple):
     offset: float
 
 
+class Across(NamedTuple):
+    """Motion across the impact plane: velocity of the mass centre along the axis (m/s), angular velocities about d
+    (roll) and about the support normal (yaw) in rad/s.
+    """
+
+    velocity: float
+    roll: float
+    yaw: float
+
+
 def posture_of(scene: Scene, points: tuple[Vector3, ...], sample: Sample) -> Posture:
     axes = axes_of(sample.orientation)
     n = scene.normal
@@ -204,25 +214,41 @@ def inertia_about(scene: Scene, axis: Vector3, blocked: bool) -> float:
     return whole / adjugate
 
 
+def across_of(sample: Sample, posture: Posture, plane: Plane, time: float) -> Across:
+    """The motion across the plane at a touchdown `time` after the sample: what the contacts leave as it is, and in
+    flight gravity.
+    """
+    pull = plane.gravity[2] if plane.old is None else 0.0
+    spin = sample.angular
+    return Across(dot(plane.axis, posture.velocity) + pull * time, dot(plane.ahead, spin), dot(posture.normal, spin))
+
+
 def in_space(
-    scene: Scene, sample: Sample, posture: Posture, plane: Plane, moved: PlanarState, after: Twist, time: float
+    scene: Scene,
+    sample: Sample,
+    posture: Posture,
+    plane: Plane,
+    moved: PlanarState,
+    after: Twist,
+    across: Across,
+    time: float,
 ) -> tuple[Vector3, Quaternion, Vector3, Vector3]:
     """Position, orientation, linear and angular velocity of the body frame after an impact in the plane.
 
     `moved` is the place of the mass centre from where it was at the sample, and the angle turned since, `time` ago;
-    what the plane leaves over goes on as it was.
+    `after` and `across` are the motion in the plane and across it after the impact.
     """
     axis, ahead, n = plane.axis, plane.ahead, posture.normal
-    axes, center, spin = posture.axes, scene.center_of_mass, sample.angular
-    spin_ahead, spin_n = dot(ahead, spin), dot(n, spin)
-    orientation = turned(sample.orientation, combine(-moved.angle, axis, spin_ahead * time, ahead, spin_n * time, n))
-    lateral = dot(axis, posture.velocity)
+    axes, center = posture.axes, scene.center_of_mass
+    before = across_of(sample, posture, plane, 0.0)
+    rotation = combine(-moved.angle, axis, before.roll * time, ahead, before.yaw * time, n)
+    orientation = turned(sample.orientation, rotation)
     pull = plane.gravity[2] if plane.old is None else 0.0
-    path = combine(moved.x, ahead, moved.y, n, (lateral + 0.5 * pull * time) * time, axis)
-    velocity = combine(after.vx, ahead, after.vy, n, lateral + pull * time, axis)
+    path = combine(moved.x, ahead, moved.y, n, (before.velocity + 0.5 * pull * time) * time, axis)
+    velocity = combine(after.vx, ahead, after.vy, n, across.velocity, axis)
 
     now = axes_of(orientation)
-    angular = to_body(now, to_world(axes, combine(-after.omega, axis, spin_ahead, ahead, spin_n, n)))
+    angular = to_body(now, to_world(axes, combine(-after.omega, axis, across.roll, ahead, across.yaw, n)))
     linear = add(to_body(now, to_world(axes, velocity)), cross(angular, center), -1.0)
     mass_center = add(sample.position, to_world(axes, add(path, center)))
     return add(mass_center, to_world(now, center), -1.0), orientation, linear, angular

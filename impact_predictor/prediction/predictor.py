@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Callable
 from math import cos, hypot, isfinite, sin
+from typing import TYPE_CHECKING
 
 from ..mechanics.impact import solve_impact
 from ..mechanics.motion import PlanarState, next_touchdown
-from ..mechanics.types import Contact, Twist, TwoPointBody
-from .planar import Plane, Posture, contacts_of, in_space, inertia_about, plane_of, posture_of
+from ..mechanics.types import Contact, Outcome, Twist, TwoPointBody
+from .planar import Across, Plane, Posture, across_of, contacts_of, in_space, inertia_about, plane_of, posture_of
 from .scene import Scene
 from .score import NANOSECONDS, Pending, Track, leftover_of
 from .types import Geometry, Prediction, Sample, Score, Status, Touchdown, Vector3
 from .vectors import dot, to_world
+
+if TYPE_CHECKING:
+    from .uncertainty import Sampler
 
 PAUSE = 250_000_000
 """ns without a sample after which the record begins anew."""
@@ -46,6 +51,16 @@ class Predictor:
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
+        self._impact_across: Callable[..., tuple[Outcome, Across] | None] | None = None
+        if scene.transverse_slip and scene.law == "path":
+            from .transverse import impact_across
+
+            self._impact_across = impact_across
+        self._sampler: Sampler | None = None
+        if scene.samples:
+            from .uncertainty import Sampler
+
+            self._sampler = Sampler(scene)
         self._points = scene.points
         self._geometry_frame = ""
         self._last: int | None = None
@@ -207,18 +222,23 @@ class Predictor:
         after = fall.state
         before = Twist(after.vx, after.vy, after.omega)
         body = body_at(scene, plane, inertia, after.angle)
-        if on_edge and (body.old is None or len(contacts.new) == 1):
+        blocked = on_edge and body.old is not None and len(contacts.new) > 1
+        if on_edge and not blocked:
             body = body._replace(inertia=inertia_about(scene, plane.axis, blocked=False))
         if body.old is not None and body.old.x >= body.new.x:
             return None  # it falls back, and other points strike before
         approach = -(before.vy + before.omega * body.new.x)
         if approach < GRAZES:
             return None
-        outcome = solve_impact(body, before, scene.law)
         lead_time = max(0.0, fall.time - age)
+        across = across_of(sample, posture, plane, lead_time)
+        slipped = None
+        if self._impact_across is not None:
+            slipped = self._impact_across(scene, plane, posture.normal, body, before, across, after.angle, blocked)
+        outcome, across = slipped or (solve_impact(body, before, scene.law), across)
         moved = PlanarState(after.x, after.y - height, after.angle, *before)
         position, orientation, linear, angular = in_space(
-            scene, sample, posture, plane, moved, outcome.twist, lead_time
+            scene, sample, posture, plane, moved, outcome.twist, across, lead_time
         )
         rates = [posture.rates[i] for i in contacts.new]
         gaps = [posture.gaps[i] for i in contacts.new]
@@ -251,6 +271,11 @@ class Predictor:
             plane.offset,
             leftover_of(scene, contacts, plane, body, approach, half_distance, spread),
         )
+        if self._sampler is not None:
+            uncertainty = self._sampler.uncertainty(sample, posture, plane, body, before, orientation)
+            touchdown = touchdown._replace(uncertainty=uncertainty)
+        if scene.margins:
+            touchdown = touchdown._replace(planar=solve_impact(body, before, scene.law))
         return touchdown, -sum(rates) / len(rates)
 
 

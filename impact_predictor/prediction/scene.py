@@ -18,7 +18,10 @@ class Scene(NamedTuple):
     `normal` is the support's unit normal and `height` its distance from the origin along it, in the frame of the
     samples; `tolerance` the gap in m below which a point touches; `contact_time` in s how long a contact lasts;
     `twist_window` in s the time over which the source averages its twist, 0 for a twist of the very instant;
-    `horizon` in s how far ahead a touchdown is announced.
+    `horizon` in s how far ahead a touchdown is announced; `transverse_slip` whether friction also opposes slip across
+    the impact plane, which only the path law knows; `samples` how many points carry uncertainty through an impact, 0
+    for none, with the standard deviations of friction and restitution; `margins` whether a touchdown keeps the impact
+    whose margins can be read.
     """
 
     mass: float
@@ -36,6 +39,11 @@ class Scene(NamedTuple):
     twist_window: float = 0.0
     horizon: float = 0.25
     law: str = "path"
+    transverse_slip: bool = True
+    samples: int = 0
+    friction_deviation: float = 0.0
+    restitution_deviation: float = 0.0
+    margins: bool = False
 
     @classmethod
     def from_parameters(cls, values: Mapping[str, Any]) -> Scene:
@@ -59,6 +67,11 @@ class Scene(NamedTuple):
             twist_window=values["odom.twist_window"],
             horizon=values["horizon"],
             law=values["law"],
+            transverse_slip=values["transverse_slip"],
+            samples=values["uncertainty.samples"],
+            friction_deviation=values["uncertainty.friction"],
+            restitution_deviation=values["uncertainty.restitution"],
+            margins=values["margins"],
         )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from enum import IntEnum, IntFlag
 from typing import NamedTuple
 
-from ..mechanics.types import Flag, Mode, Twist, Vector
+from ..mechanics.types import Flag, Mode, Outcome, Twist, Vector
 
 Vector3 = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
@@ -51,6 +51,14 @@ class Leftover(IntFlag):
     """The approach is too slow against gravity for an impact to be told from rest."""
 
 
+class Covariance(IntEnum):
+    """What became of the covariance of a twist."""
+
+    USED = 0
+    REFUSED = 1
+    """It is not finite, not symmetric or not positive semidefinite, or too large: the twist counted as exact."""
+
+
 class Sample(NamedTuple):
     """The state of a body: pose in the world, twist in the body frame, at the body frame's origin.
 
@@ -77,6 +85,21 @@ class Geometry(NamedTuple):
     points: tuple[Vector3, ...]
 
 
+class Uncertainty(NamedTuple):
+    """How sure the impact of a touchdown is, under the planar law.
+
+    `given` says what became of the covariance of the sample's twist; `probabilities` of the modes, by their numbers;
+    `mean` and standard `deviation` of the twist after the impact, in the impact plane; `twist_covariance` of the body's
+    twist after it, as in `Sample`: the sample's own where that was refused.
+    """
+
+    given: Covariance
+    probabilities: tuple[float, ...]
+    mean: Twist
+    deviation: Twist
+    twist_covariance: tuple[float, ...]
+
+
 class Touchdown(NamedTuple):
     """The touchdown that a sample announces, with the impact it makes.
 
@@ -86,7 +109,8 @@ class Touchdown(NamedTuple):
     `position` (m), `orientation`, `linear` (m/s) and `angular` (rad/s) right after the impact, as in `Sample`;
     `half_distance` between the two contacts in m; `off_axis` the part of the angular velocity off the axis (0..1);
     `lateral` the velocity along the axis in m/s; `closing_spread` the time in s between the closing of the two ends of
-    the striking edge.
+    the striking edge; `uncertainty` and `planar` where the scene asks for them, `planar` being the impact in the plane
+    whose margins can be read.
     """
 
     lead_time: float
@@ -112,6 +136,8 @@ class Touchdown(NamedTuple):
     closing_spread: float
     offset: float
     leftover: Leftover
+    uncertainty: Uncertainty | None = None
+    planar: Outcome | None = None
 
 
 class Score(NamedTuple):

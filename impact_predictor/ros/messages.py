@@ -32,6 +32,7 @@ from .cdr import (
 from .cdr import Diagnostic as Diagnostic
 from .cdr import MalformedMessage as MalformedMessage
 from .cdr import decode_diagnostic_array as decode_diagnostic_array
+from .confidence import MARGIN_KEYS, UNCERTAINTY_KEYS, margin_values, uncertainty_values
 
 ODOMETRY: Final = "nav_msgs/msg/Odometry"
 POLYGON: Final = "geometry_msgs/msg/PolygonStamped"
@@ -105,12 +106,13 @@ _pack_numbers = LITTLE_ENDIAN.odometry_numbers.pack
 def encode_post_impact(prediction: Prediction) -> bytes | None:
     """A nav_msgs/Odometry of the body right after the predicted touchdown, or None where there is none.
 
-    Stamped with the touchdown; frames and covariances are those of the sample.
+    Stamped with the touchdown; frames and covariances are those of the sample, but that of the twist is carried through
+    the impact where the scene asks for it.
     """
     touchdown = prediction.touchdown
     if touchdown is None:
         return None
-    sample = prediction.sample
+    sample, uncertainty = prediction.sample, touchdown.uncertainty
     return b"".join(
         (
             LITTLE_ENDIAN_HEADER,
@@ -122,7 +124,7 @@ def encode_post_impact(prediction: Prediction) -> bytes | None:
                 *sample.pose_covariance,
                 *touchdown.linear,
                 *touchdown.angular,
-                *sample.twist_covariance,
+                *(sample.twist_covariance if uncertainty is None else uncertainty.twist_covariance),
             ),
         )
     )
@@ -153,21 +155,31 @@ def _names(flags: Flag | Leftover) -> str:
 
 
 _NO_TOUCHDOWN: Final = DiagnosticForm("impact_predictor/prediction", "status", "stamp", "mode")
-_TOUCHDOWN: Final = DiagnosticForm(
-    "impact_predictor/prediction",
+_TOUCHDOWN_KEYS: Final = (
     *("status", "stamp", "mode", "law", "unique", "flags", "leftover", "segments", "old", "new", "lead_time"),
     *("before.vx", "before.vy", "before.omega", "after.vx", "after.vy", "after.omega", "energy_lost"),
     *("impulse.old.normal", "impulse.old.tangent", "impulse.new.normal", "impulse.new.tangent"),
     *("axis.x", "axis.y", "axis.z", "half_distance", "off_axis", "lateral", "closing_spread", "offset"),
 )
+_TOUCHDOWNS: Final = {
+    (uncertainty, margins): DiagnosticForm(
+        "impact_predictor/prediction",
+        *_TOUCHDOWN_KEYS,
+        *(UNCERTAINTY_KEYS if uncertainty else ()),
+        *(MARGIN_KEYS if margins else ()),
+    )
+    for uncertainty in (False, True)
+    for margins in (False, True)
+}
 
 
 def encode_prediction(prediction: Prediction) -> bytes:
     """A diagnostic_msgs/DiagnosticArray with everything about the answer to one sample, stamped like the sample.
 
     Its keys are the fields of `Touchdown` and have their units; `stamp` is the sample's in ns; contact indices are
-    separated by spaces, flags by "|", segments by spaces; every number reads back as the same double. Without a
-    touchdown only `status`, `stamp` and `mode` are there. The level is WARN where the answer deserves less trust.
+    separated by spaces, flags by "|", segments by spaces; every number reads back as the same double. Where the scene
+    asks for them, keys of `confidence` follow. Without a touchdown only `status`, `stamp` and `mode` are there. The
+    level is WARN where the answer deserves less trust.
     """
     sample = prediction.sample
     touchdown = prediction.touchdown
@@ -179,10 +191,11 @@ def encode_prediction(prediction: Prediction) -> bytes:
         message = "no touchdown within the horizon" if accepted else f"sample refused: {status}"
         values = [status, str(sample.stamp), Mode.NO_IMPACT.name]
     else:
-        form = _TOUCHDOWN
+        form = _TOUCHDOWNS[touchdown.uncertainty is not None, touchdown.planar is not None]
         level = WARN if _is_doubtful(touchdown) else OK
         message = f"{_MODE_NAMES[touchdown.mode]} in {touchdown.lead_time * 1e3:.1f} ms"
         values = [status, str(sample.stamp), *_touchdown_values(touchdown)]
+        values += uncertainty_values(touchdown) + margin_values(touchdown)
     return form.fill(sample.stamp, sample.frame_id, level, message, sample.child_frame_id, values)
 
 

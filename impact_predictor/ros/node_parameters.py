@@ -7,7 +7,7 @@ from array import array
 from collections.abc import Mapping
 from typing import Any, Final
 
-from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
+from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.node import Node
 from rclpy.parameter import Parameter as NodeParameter
 
@@ -74,6 +74,9 @@ def _descriptor(parameter: Parameter) -> ParameterDescriptor:
     ranges = []
     if parameter.kind == "double" and (parameter.low > -largest or parameter.high < largest):
         ranges = [FloatingPointRange(from_value=max(parameter.low, -largest), to_value=min(parameter.high, largest))]
+    whole_ranges = []
+    if parameter.kind == "integer":
+        whole_ranges = [IntegerRange(from_value=int(parameter.low), to_value=int(parameter.high))]
     unit = f" [{parameter.unit}]" if parameter.unit else ""
     return ParameterDescriptor(
         type=NodeParameter.Type[parameter.kind.upper()].value,
@@ -82,4 +85,5 @@ def _descriptor(parameter: Parameter) -> ParameterDescriptor:
         # The scene is made once.
         read_only=True,
         floating_point_range=ranges,
+        integer_range=whole_ranges,
     )

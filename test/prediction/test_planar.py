@@ -14,6 +14,7 @@ from impact_predictor.mechanics.types import Twist
 from impact_predictor.prediction.planar import (
     Contacts,
     Posture,
+    across_of,
     contacts_of,
     edge_of,
     in_space,
@@ -277,7 +278,11 @@ def test_what_the_plane_leaves_over_goes_on_as_it_was() -> None:
     scene, sample, posture = on_back_edge(spin, velocity, center=(0.1, 0.0, -0.1))
     plane = plane_of(scene, BOX, sample, posture, Contacts(BACK, FRONT, 0.0))
     moved = PlanarState(0.01, -0.02, -1.0 * time, 0.2, -0.4, -1.0)
-    position, orientation, linear, angular = in_space(scene, sample, posture, plane, moved, Twist(0.3, 0.1, -0.5), time)
+    across = across_of(sample, posture, plane, time)
+    assert across == pytest.approx((0.7, 0.0, 0.3), abs=ROUNDING)
+    position, orientation, linear, angular = in_space(
+        scene, sample, posture, plane, moved, Twist(0.3, 0.1, -0.5), across, time
+    )
     turned = Rotation.from_rotvec(spin * time)
     center = np.array([0.1 + 0.01, 0.7 * time, 0.2 - 0.02])
     arm = turned.apply(scene.center_of_mass)

@@ -61,19 +61,27 @@ def excerpt(path):
             writer.write(message.topic, types[message.topic], message.log_time, message.data)
 
 
-def scene():
-    return Scene.from_parameters(validate(read_parameters(SCENE)))
+def scene(**more):
+    return Scene.from_parameters(validate({**read_parameters(SCENE), **more}))
 
 
 @needs_ros
 @pytest.mark.slow
-@pytest.mark.parametrize("executor", ["single", "events"])
-def test_live_topics_give_what_the_replay_of_the_bag_gives_byte_for_byte(tmp_path, executor):
+@pytest.mark.parametrize(
+    ("executor", "more"),
+    [
+        ("single", {}),
+        ("events", {}),
+        ("single", {"uncertainty.samples": 32, "uncertainty.friction": 0.02, "margins": True}),
+    ],
+)
+def test_live_topics_give_what_the_replay_of_the_bag_gives_byte_for_byte(tmp_path, executor, more):
     excerpt(tmp_path / "excerpt.mcap")
-    replayed = replay(tmp_path / "excerpt.mcap", scene(), output=tmp_path / "replayed.mcap")
+    replayed = replay(tmp_path / "excerpt.mcap", scene(**more), output=tmp_path / "replayed.mcap")
     assert Leftover.TOO_SHORT in replayed.settled[-1].score.leftover
     remapping = ("--ros-args", "-r", "/cube/odom:=/odom", "-r", "/cube/contact_geometry:=/contact_geometry")
-    arguments = ("--ros-args", "--params-file", str(SCENE), "-p", f"executor:={executor}", *LOSSLESS)
+    asked = [part for name, value in {"executor": executor, **more}.items() for part in ("-p", f"{name}:={value}")]
+    arguments = ("--ros-args", "--params-file", str(SCENE), *asked, *LOSSLESS)
     with program("recorder", str(tmp_path / "live.mcap")) as recorder, program("node", *arguments) as node:
         wait(lambda: LISTENING in recorder.said(), recorder, node)
         with program("player", str(tmp_path / "excerpt.mcap"), *remapping) as player:

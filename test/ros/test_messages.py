@@ -15,8 +15,20 @@ from hypothesis import given
 from hypothesis import strategies as st
 from rosbags.typesys import Stores, get_typestore
 
+from impact_predictor.mechanics.bodies import plate
+from impact_predictor.mechanics.impact import solve_impact
 from impact_predictor.mechanics.types import Flag, Mode, Twist
-from impact_predictor.prediction.types import Geometry, Leftover, Prediction, Sample, Score, Status, Touchdown
+from impact_predictor.prediction.types import (
+    Covariance,
+    Geometry,
+    Leftover,
+    Prediction,
+    Sample,
+    Score,
+    Status,
+    Touchdown,
+    Uncertainty,
+)
 from impact_predictor.ros.messages import (
     DIAGNOSTIC_ARRAY,
     ODOMETRY,
@@ -314,7 +326,44 @@ def test_a_prediction_names_every_field_of_its_touchdown_that_no_other_output_ha
     (status,) = decode_diagnostic_array(encode_prediction(a_prediction()))
     named = {key.partition(".")[0] for key in status.values}
     in_post_impact = {"position", "orientation", "linear", "angular"}
-    assert {field.rstrip("s") for field in Touchdown._fields} - in_post_impact <= {name.rstrip("s") for name in named}
+    when_asked_for = {"uncertainty", "planar"}
+    fields = {field.rstrip("s") for field in set(Touchdown._fields) - in_post_impact - when_asked_for}
+    assert fields <= {name.rstrip("s") for name in named}
+
+
+def test_a_prediction_tells_its_uncertainty_and_its_margins_where_they_are_asked_for() -> None:
+    body = plate(length=1.0, height=0.4, mass=10.0, friction=0.2)
+    outcome = solve_impact(body, body.turning(-1.0))
+    probabilities = (0.0, 0.25, 0.5, 0.125, 0.125, 0.0, 0.0)
+    covariance = tuple(0.1 * k for k in range(36))
+    mean, deviation = Twist(0.1, 0.2, 0.3), Twist(0.01, 0.02, 0.03)
+    uncertainty = Uncertainty(Covariance.USED, probabilities, mean, deviation, covariance)
+    plain = decode_diagnostic_array(encode_prediction(a_prediction()))[0].values
+    (status,) = decode_diagnostic_array(encode_prediction(a_prediction(uncertainty=uncertainty, planar=outcome)))
+    added = {key: value for key, value in status.values.items() if key not in plain}
+    assert {key: value for key, value in status.values.items() if key in plain} == plain
+    assert added["covariance"] == "USED"
+    assert [float(added[f"probability.{mode.name}"]) for mode in Mode] == list(probabilities)
+    for name, twist in (("mean", mean), ("deviation", deviation)):
+        assert tuple(float(added[f"{name}.{part}"]) for part in ("vx", "vy", "omega")) == twist
+    for name, margin in outcome.margins._asdict().items():
+        assert float(added[f"margin.{name}"]) == margin.change
+        assert added[f"margin.{name}.mode"] == ("NONE" if margin.mode is None else margin.mode.name)
+    assert len(added) == 1 + len(Mode) + 3 + 3 + 2 * len(outcome.margins)
+    for changes in ({"uncertainty": uncertainty}, {"planar": outcome}):
+        (status,) = decode_diagnostic_array(encode_prediction(a_prediction(**changes)))
+        assert {key: added[key] for key in status.values if key not in plain}.items() <= added.items()
+
+
+def test_a_post_impact_state_has_the_covariance_that_was_carried_through_the_impact() -> None:
+    covariance = tuple(0.1 * k for k in range(36))
+    uncertainty = Uncertainty(Covariance.USED, (0.0,) * 7, Twist(0.0, 0.0, 0.0), Twist(0.0, 0.0, 0.0), covariance)
+    prediction = a_prediction(uncertainty=uncertainty)
+    data = encode_post_impact(prediction)
+    assert data is not None
+    message = decode_odometry(data)
+    assert message.twist_covariance == covariance
+    assert message.pose_covariance == prediction.sample.pose_covariance
 
 
 def is_number(text: str) -> bool:

@@ -1,0 +1,74 @@
+"""Random problems: of every kind, the same for the same seed, and of the kind that their name says."""
+
+import numpy as np
+import pytest
+
+from impact_predictor.mechanics.random_problems import KINDS, STIFF, problems_of, random_problems
+
+COUNT = 2000
+
+
+def numbers(value):
+    """All arrays in tuples of tuples."""
+    return [part for each in value for part in numbers(each)] if isinstance(value, tuple) else [value]
+
+
+def arrays(problem):
+    return [part for part in numbers((problem.body, problem.twist)) if part is not None]
+
+
+def normal_velocity(contact, twist):
+    vx, vy, omega = twist
+    (nx, ny), (ux, uy) = contact.normal, contact.velocity
+    return nx * (vx - omega * contact.y - ux) + ny * (vy + omega * contact.x - uy)
+
+
+def test_chunks_add_up_to_the_count_and_the_kinds_take_turns():
+    chunks = list(random_problems(seed=1, count=len(KINDS) * 10 + 3, chunk=10))
+    assert [each.kind for each in chunks] == [*KINDS, next(iter(KINDS))]
+    assert [len(each.twist.vx) for each in chunks] == [10] * len(KINDS) + [3]
+
+
+def test_a_seed_gives_the_same_problems_again():
+    first, again, other = (list(random_problems(seed, 100, 10)) for seed in (5, 5, 6))
+    for one, two in zip(first, again, strict=True):
+        assert all(np.array_equal(a, b) for a, b in zip(arrays(one), arrays(two), strict=True))
+    assert not np.array_equal(first[0].twist.vx, other[0].twist.vx)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_problem_is_arrays_of_finite_numbers_and_mostly_an_impact(kind):
+    problem = problems_of(kind, np.random.default_rng(1), COUNT)
+    assert all(each.shape == (COUNT,) and np.isfinite(each).all() for each in arrays(problem))
+    assert (problem.body.mass > 0.0).all()
+    assert (problem.body.inertia > 0.0).all()
+    struck = normal_velocity(problem.body.new, problem.twist) < 0.0
+    assert struck.mean() > (0.6 if "apart" in kind else 0.8)
+    assert 0.3 < (problem.body.new.restitution == 0.0).mean() < 0.7
+
+
+def test_kinds_are_what_they_are_called():
+    made = {kind: problems_of(kind, np.random.default_rng(1), COUNT) for kind in KINDS}
+    assert [kind for kind, each in made.items() if each.body.old is None] == ["one-point"]
+    for kind in ("both", "both-tilted"):
+        assert (normal_velocity(made[kind].body.old, made[kind].twist) < 0.0).all()
+    step = made["step"].body
+    tangent = step.new.normal[1] * (step.new.y - step.old.y) + step.new.normal[0] * (step.new.x - step.old.x)
+    assert abs(tangent).max() < 1e-14
+    deck = made["deck"].body
+    rise, run = deck.new.y - deck.old.y, deck.new.x - deck.old.x
+    stretch = run * (deck.new.velocity[0] - deck.old.velocity[0]) + rise * (deck.new.velocity[1] - deck.old.velocity[1])
+    assert abs(stretch).max() < 1e-13
+    apart = made["apart"].body
+    assert np.ptp(apart.new.velocity[0] - apart.old.velocity[0]) > 3.0
+    close = made["close"].body
+    assert np.hypot(close.new.x - close.old.x, close.new.y - close.old.y).min() < 1e-8
+    cross = [each.normal[0] for each in (made["parallel"].body.old, made["parallel"].body.new)]
+    assert np.median(abs(abs(cross[0]) - abs(cross[1]))) < 1e-5
+    wide = made["extreme"].body
+    for number in (wide.mass, abs(wide.old.x), abs(made["extreme"].twist.omega)):
+        number = number[number > 0.0]
+        assert np.log10(number.max() / number.min()) > 11.0
+    slender = made["slender"].body
+    assert slender.new.friction.max() > 5e3
+    assert set(STIFF) < set(KINDS)
