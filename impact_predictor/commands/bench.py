@@ -58,7 +58,9 @@ def invariants(count: int, seed: int, law: str, as_json: bool) -> int:
 
     Impulses in their friction cones, momentum, no approach left, no work and no energy gained, and an answer that does
     not depend on units, a mirror or the last digits. Beside each violation stands the problem that made it, in Python,
-    to be solved again. The exit status is 1 if one is more than rounding explains. Ctrl-C tells what was found so far.
+    to be solved again. The exit status is 1 if one is more than rounding explains. Stiff problems (slender bodies,
+    close contacts, sizes over twelve decades) multiply rounding, so that most of theirs have no limit. Ctrl-C tells
+    what was found so far.
     """
     from ..mechanics.soak import Soak
     from .compiling import compiling_is_said
@@ -82,7 +84,7 @@ def invariants(count: int, seed: int, law: str, as_json: bool) -> int:
 
 
 def fields_of(soak: Soak, seconds: float, interrupted: bool) -> dict[str, Any]:
-    """What a soak found; a violation that is no number is null."""
+    """What a soak found; null stands for a violation that is no number, and for no limit."""
     return {
         "problems": soak.done,
         "seed": soak.seed,
@@ -95,7 +97,8 @@ def fields_of(soak: Soak, seconds: float, interrupted: bool) -> dict[str, Any]:
                 "invariant": worst.invariant,
                 "law": worst.law,
                 "worst": worst.violation if worst.violation < float("inf") else None,
-                "limit": worst.limit,
+                "stiff": worst.stiff,
+                "limit": worst.limit if worst.limit < float("inf") else None,
                 "kind": worst.kind or None,
                 "broken_by": worst.broken_by,
                 "replay": worst.replay if worst.body else None,
@@ -131,7 +134,7 @@ def table_of(found: list[Worst]) -> Table:
     from ..report.table import plain_table
 
     table = plain_table()
-    for header in ("law", "invariant"):
+    for header in ("law", "problems", "invariant"):
         table.add_column(header, no_wrap=True)
     for header in ("worst violation", "limit"):
         table.add_column(header, justify="right", no_wrap=True)
@@ -139,11 +142,12 @@ def table_of(found: list[Worst]) -> Table:
     for worst, following in zip(found, [*found[1:], None], strict=True):
         table.add_row(
             worst.law,
+            "stiff" if worst.stiff else "ordinary",
             worst.invariant,
             f"{worst.violation:.2g}",
-            f"{worst.limit:.2g}",
+            f"{worst.limit:.2g}" if worst.limit < float("inf") else "-",
             worst.kind,
             style="bold red" if worst.broken_by else "",
-            end_section=following is not None and following.law != worst.law,
+            end_section=following is not None and (following.law, following.stiff) != (worst.law, worst.stiff),
         )
     return table

@@ -103,20 +103,19 @@ def nearest(problem: Problem, law: int, first: Impact) -> tuple[Impact, bool]:
     Of several total solutions it is the one nearest to the end of the impulse path, which an impact reaches from its
     beginning; of several paths the first.
     """
-    count, best = first[13], first
+    best, end, unique = first, first, True
     if law == TOTAL and problem[3] >= 0.0:
         path = path_law.solve(problem, 0)
         if not path[12] & NO_SOLUTION:
-            least = distance(first, path)
-            for choice in range(1, count):
-                other = total_law.solve(problem, choice)
-                if distance(other, path) < least:
-                    least, best = distance(other, path), other
-    for choice in range(count):
+            end = path
+    least = distance(first, end)
+    for choice in range(1, first[13]):
         other = path_law.solve(problem, choice) if law == PATH else total_law.solve(problem, choice)
-        if not other[12] & NO_SOLUTION and differ(other, best):
-            return best, False
-    return best, True
+        if not other[12] & NO_SOLUTION and differ(other, first):
+            unique = False
+            if distance(other, end) < least:
+                least, best = distance(other, end), other
+    return best, unique
 
 
 def distance(one: Impact, other: Impact) -> float:

@@ -15,14 +15,18 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from . import answer, pair, path_law, path_states, problem, total_law
+from . import answer, one_answer, pair, path_law, path_states, problem, total_law
 from .impact import NOWHERE, number_of
 from .types import Contact, Twist, TwoPointBody
 
-CHUNK = 1024
+CHUNK = 2048
 """Impacts that are handed over at a time, so that the copies of broadcast fields stay small."""
 
-LAW_CODE = (pair, path_states, path_law, total_law, problem, answer)
+LAW_CODE = (pair, path_states, path_law, one_answer, total_law, problem, answer)
+
+CALLED = (path_law.solve, total_law.solve, total_law.any_that_holds)
+"""Law functions that are compiled on their own. All others become a part of those that call them, which halves the
+time: calls with so many numbers are slow."""
 
 
 class Outcomes(NamedTuple):
@@ -100,7 +104,7 @@ def filler() -> Callable[[Any, bool, int, int, Outcomes], None]:
     for module in LAW_CODE:
         for _, function in getmembers(module, isfunction):
             if function.__module__ == module.__name__:
-                register_jitable(forceinline=True)(function)  # half the time of calls with so many numbers
+                register_jitable(forceinline=function not in CALLED)(function)
     fill = make_fill(sha256("".join(map(getsource, LAW_CODE)).encode()).hexdigest())
     # Divisions are as in C: law code never divides by zero.
     try:

@@ -241,7 +241,7 @@ def push_along(
     """
     zna, zta, znb, ztb = line
     low, high = push_interval(na, ta, zna, zta, fa)
-    if low <= high:
+    if low < inf:
         low_b, high_b = push_interval(nb, tb, znb, ztb, fb)
         if low_b > low:
             low = low_b

@@ -43,8 +43,11 @@ Jam = tuple[float, float, float, float, float, float, float, float, float, float
 
 NO_JAM: Jam = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
+REST = 1e-10
+"""Below this part of the speeds before the impact an approach of B is none, where both contacts rest otherwise."""
+
 LEFT = 1e-9
-"""A part of the speeds that can be rounding: an approach of B so slow, where both contacts rest otherwise, is none."""
+"""Below this part of its own size an approach that is left after endless jams is none."""
 
 SLOWEST = 1e-6
 """Jams whose slips become smaller by no more than this part are not followed to their limit."""
@@ -92,8 +95,8 @@ def rest_of_jams(before: Jam, after: Jam) -> tuple[float, float, float]:
     """What is still to come of jams that follow each other without end, after the two last ones that A sticks after.
 
     With A at rest all depends on c_tB, which is a factor smaller after each: a geometric series. Returns how many times
-    the changes from one jam to the other are still to come (0 if the series diverges, or compression ends before it
-    does; inf if they become so little smaller that rounding hides it), c_nB after all of them, and their work.
+    the changes from one jam to the other are still to come (0 if the series diverges; inf if they become so little
+    smaller that rounding hides it), c_nB after all of them, and their work.
     """
     cnb, ctb = after[0], after[1]
     fall = before[1] - ctb
@@ -106,8 +109,6 @@ def rest_of_jams(before: Jam, after: Jam) -> tuple[float, float, float]:
     left = cnb + part * change
     if abs(left) <= LEFT * (abs(cnb) + abs(before[0])):
         left = 0.0
-    if left > 0.0:
-        return 0.0, 0.0, 0.0
     push = after[4] - before[4]
     steady = -left * push
     returned = part * steady + (after[9] - before[9] - steady) * (part * ctb / (before[1] + ctb))
@@ -152,7 +153,7 @@ def follow(
                 if not freed:
                     # Where both contacts rest up to rounding nothing moves any more.
                     speed = abs(problem[4]) + abs(problem[5]) + abs(problem[6])
-                    if cta != 0.0 or ctb != 0.0 or cnb < -LEFT * speed:
+                    if cta != 0.0 or ctb != 0.0 or cnb < -REST * speed:
                         notes |= NO_SOLUTION
                     elif cnb < 0.0:
                         cnb = 0.0
@@ -164,25 +165,28 @@ def follow(
                 dx, dy, dq = dx + ex, dy + ey, dq + eq
                 if abs(ctb) <= zero_b:
                     ctb = 0.0
-                if compressing and cnb >= 0.0:
+                if compressing and cnb > zero_b:
                     break
-                if cta == 0.0:
+                if cta == 0.0 and not (compressing and cnb >= -zero_b):
                     before, jam = jam, (cnb, ctb, na, ta, nb, tb, dx, dy, dq, work)
                     part, left, returned = rest_of_jams(before, jam)
                     if part == inf:
                         notes |= NO_SOLUTION
                         break
                     push = part * (nb - before[4])
-                    if part > 0.0 and (compressing or (nb + push <= target and work + returned >= 0.0)):
+                    # The impact may end before the series does.
+                    within = left <= 0.0 if compressing else nb + push <= target and work + returned >= 0.0
+                    if part > 0.0 and within:
                         na, ta = na + part * (na - before[2]), ta + part * (ta - before[3])
                         nb, tb = nb + push, tb + part * (tb - before[5])
                         dx, dy = dx + part * (dx - before[6]), dy + part * (dy - before[7])
                         dq += part * (dq - before[8])
                         cnb, ctb, work = left, 0.0, work + returned
-                        if compressing and cnb == 0.0:
-                            if restitution == 0.0:
-                                break
-                            compressing, target, jam = False, (1.0 + restitution) * nb, NO_JAM
+                if compressing and cnb >= -zero_b:
+                    cnb = 0.0
+                    if restitution == 0.0:
+                        break
+                    compressing, target, jam = False, (1.0 + restitution) * nb, NO_JAM
                 continue
             if a >= PLUS:
                 if slip_a == 0.0:

@@ -35,8 +35,8 @@ def see(contact: Contact, twist: Twist) -> Sight:
     if excess != 0.0:
         if not -UNIT < excess < UNIT:
             return NOT_VALID
-        length = sqrt(1.0 + excess)
-        nx, ny = nx / length, ny / length
+        scale = 1.0 - (0.5 - 0.375 * excess) * excess  # 1 / sqrt(1 + excess), to rounding
+        nx, ny = scale * nx, scale * ny
     px, py = omega * y, omega * x
     cx, cy = vx - px - ux, vy + py - uy
     normal = nx * cx + ny * cy
@@ -75,7 +75,8 @@ def problem_of(
     if not (valid and 0.0 < square < inf):
         return False, NO_PROBLEM, (0.0, 1.0, 1.0)
     rho = sqrt(square)
-    pair = (ax * bx + ay * by, ax * by - ay * bx, na / rho, ta / rho, nb / rho, tb / rho, fa, fb)
+    unit = 1.0 / rho
+    pair = (ax * bx + ay * by, ax * by - ay * bx, na * unit, ta * unit, nb * unit, tb * unit, fa, fb)
     return True, (pair, ea, eb, cna, cta, cnb, ctb, zero_a, zero_b), (ax, ay, rho)
 
 

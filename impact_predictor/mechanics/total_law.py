@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from math import inf
 
+from .one_answer import one_answer
 from .pair import (
     MINUS,
     NO_SOLUTION,
@@ -38,6 +39,9 @@ LINE_ROUNDING = 2e-15
 Solution = tuple[bool, int, int, float, float, float, float, float, float, float]
 """Whether Coulomb's law holds; states of A and B; N_A, T_A, N_B, T_B; change of the twist (x, y, rho omega)."""
 
+Found = tuple[int, Solution, Solution]
+"""How many different solutions are found; the first of them; the one that is asked for."""
+
 NOT_POSSIBLE: Solution = (False, OPEN, OPEN, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
@@ -50,24 +54,24 @@ def one_alone(pair: Pair, gna: float, gnb: float, ctb: float) -> Solution:
     cos, sin, qa, _, qb, sb, _, fb = pair
     size = 1.0 + qb * qb + sb * sb
     off = qb * ctb - sb * gnb
-    nb = (sb * off - gnb) / size
-    tb = -(qb * off + ctb) / size
-    b, dq = STICK, -(qb * gnb + sb * ctb) / size
+    # All is multiplied by `size` until B's state and whether A opens are known: a division would delay that.
+    nb, tb, dq = sb * off - gnb, -(qb * off + ctb), -(qb * gnb + sb * ctb)
+    b = STICK
     if abs(tb) > fb * nb * (1.0 + ROUNDING):
         state = MINUS if tb > 0.0 else PLUS
         ray = -fb if state == PLUS else fb
         bq = qb + ray * sb
         den = 1.0 + qb * bq
         if den > 0.0 and gnb <= 0.0:
-            nb = -gnb / den
-            b, tb, dq = state, ray * nb, bq * nb
+            size, b, nb, tb, dq = den, state, -gnb, -ray * gnb, -bq * gnb
         elif gnb >= 0.0:
             return NOT_POSSIBLE
         # Else it sticks, after all: only rounding said that it does not.
-    dx, dy = cos * tb - sin * nb, cos * nb + sin * tb
-    gap = gna + dy + qa * dq
-    opens = gap >= 0.0 or gap >= -ROUNDING * (abs(gna) + abs(dy) + abs(qa * dq))
-    return opens, OPEN, b, 0.0, 0.0, nb, tb, dx, dy, dq
+    dx, dy, far = cos * tb - sin * nb, cos * nb + sin * tb, gna * size
+    gap = far + dy + qa * dq
+    if not (gap >= 0.0 or gap >= -ROUNDING * (abs(far) + abs(dy) + abs(qa * dq))):
+        return NOT_POSSIBLE
+    return True, OPEN, b, 0.0, 0.0, nb / size, tb / size, dx / size, dy / size, dq / size
 
 
 def both_slide(pair: Pair, a: int, b: int, gna: float, cta: float, gnb: float, ctb: float) -> Solution:
@@ -166,9 +170,9 @@ def both_stick(pair: Pair, gna: float, cta: float, gnb: float, ctb: float, zero:
 
 
 def both_hold(
-    pair: Pair, gna: float, cta: float, gnb: float, ctb: float, zero: float
-) -> tuple[Solution, Solution, Solution, Solution]:
-    """The solutions that are possible while both contacts hold: A or both stick; B sticks; both slip, in two ways.
+    pair: Pair, gna: float, cta: float, gnb: float, ctb: float, zero: float, found: Found, choice: int
+) -> Found:
+    """Add the solutions while both contacts hold: A or both stick; B sticks; both slip, in two ways.
 
     The twist is free along nA x nB. There a slip of A and one of B is zero, and between the two they have the signs
     that they have at each other's zero. Beyond the two, where both slips grow, friction drives the twist back, towards
@@ -177,34 +181,59 @@ def both_hold(
     cos, sin, qa, sa, qb, sb, _, _ = pair
     x, y, q = qb - qa * cos, -qa * sin, sin
     grows_a, grows_b = qb - qa * cos + sa * sin, qb * cos + sb * sin - qa
-    old = both_stick(pair, gna, cta, gnb, ctb, zero)
-    new = between = NOT_POSSIBLE
+    solution = both_stick(pair, gna, cta, gnb, ctb, zero)
+    several = found[0] > 0
+    if solution[0]:
+        found = add(found, solution, choice)
+        if not several and one_answer(pair, cta, ctb):
+            return found
     a = b = PLUS
-    if old[1] == STICK:
-        least = most = x * old[7] + y * old[8] + q * old[9]
+    if solution[1] == STICK:
+        least = most = x * solution[7] + y * solution[8] + q * solution[9]
     else:
         least, most = inf, -inf
         if grows_a != 0.0:
-            old = one_sticks(pair, gna, cta, gnb, ctb)
-            b = old[2]
-            least = most = x * old[7] + y * old[8] + q * old[9]
+            solution = one_sticks(pair, gna, cta, gnb, ctb)
+            if solution[0]:
+                found = add(found, solution, choice)
+                if not several and one_answer(pair, cta, ctb):
+                    return found
+            b = solution[2]
+            least = most = x * solution[7] + y * solution[8] + q * solution[9]
         if grows_b != 0.0:
-            new = exchange(pair, one_sticks(exchanged(pair), gnb, ctb, gna, cta))
-            a = new[1]
-            along = x * new[7] + y * new[8] + q * new[9]
+            solution = exchange(pair, one_sticks(exchanged(pair), gnb, ctb, gna, cta))
+            if solution[0]:
+                found = add(found, solution, choice)
+                if not several and one_answer(pair, cta, ctb):
+                    return found
+            a = solution[1]
+            along = x * solution[7] + y * solution[8] + q * solution[9]
             least, most = min(least, along), max(most, along)
             if grows_a != 0.0:
-                between = both_slide(pair, a, b, gna, cta, gnb, ctb)
+                found = add(found, both_slide(pair, a, b, gna, cta, gnb, ctb), choice)
         if least <= 0.0 < most:
-            return old, new, between, NOT_POSSIBLE
+            return found
     if grows_a != 0.0:
         a = PLUS if (grows_a > 0.0) == (most <= 0.0) else MINUS
     if grows_b != 0.0:
         b = PLUS if (grows_b > 0.0) == (most <= 0.0) else MINUS
     if grows_a == 0.0 or grows_b == 0.0:  # one of the slips is the same in all of these twists
         other_a, other_b = (PLUS + MINUS - a, b) if grows_a == 0.0 else (a, PLUS + MINUS - b)
-        between = both_slide(pair, other_a, other_b, gna, cta, gnb, ctb)
-    return old, new, between, both_slide(pair, a, b, gna, cta, gnb, ctb)
+        found = add(found, both_slide(pair, other_a, other_b, gna, cta, gnb, ctb), choice)
+    return add(found, both_slide(pair, a, b, gna, cta, gnb, ctb), choice)
+
+
+def any_that_holds(pair: Pair, gna: float, cta: float, gnb: float, ctb: float, found: Found, choice: int) -> Found:
+    """Add what holds where none of the states that seemed possible does.
+
+    A contact leaves, but friction can hold it; or a border is met up to rounding.
+    """
+    found = add(found, one_alone(pair, gna, gnb, ctb), choice)
+    found = add(found, exchange(pair, one_alone(exchanged(pair), gnb, gna, cta)), choice)
+    for a in (PLUS, MINUS):
+        for b in (PLUS, MINUS):
+            found = add(found, both_slide(pair, a, b, gna, cta, gnb, ctb), choice)
+    return found
 
 
 def exchanged(pair: Pair) -> Pair:
@@ -220,11 +249,12 @@ def exchange(pair: Pair, solution: Solution) -> Solution:
     return held, a, b, na, ta, nb, tb, cos * dx - sin * dy, sin * dx + cos * dy, dq
 
 
-def add(found: int, first: Solution, best: Solution, other: Solution, choice: int) -> tuple[int, Solution, Solution]:
+def add(found: Found, other: Solution, choice: int) -> Found:
     """Count a solution that holds if it differs from the first one, and keep the one of number `choice`."""
-    if not other[0] or (found and same(first, other)):
-        return found, first, best
-    return found + 1, first if found else other, other if found <= choice else best
+    count, first, chosen = found
+    if not other[0] or (count and same(first, other)):
+        return found
+    return count + 1, first if count else other, other if count <= choice else chosen
 
 
 def same(one: Solution, other: Solution) -> bool:
@@ -243,34 +273,24 @@ def solve(problem: Problem, choice: int) -> Impact:
     cos, sin, qa, sa, qb, sb, fa, fb = pair
     gna = (1.0 + restitution_old) * cna if cna < 0.0 else cna
     gnb = (1.0 + restitution) * cnb if cnb < 0.0 else cnb
-    first = best = one_alone(pair, gna, gnb, ctb) if gnb < 0.0 else NOT_POSSIBLE
-    found = 1 if best[0] else 0
-    if cna < inf:
+    solution = one_alone(pair, gna, gnb, ctb) if gnb < 0.0 else NOT_POSSIBLE
+    found = (1 if solution[0] else 0), solution, solution
+    if cna < inf and not (solution[0] and one_answer(pair, cta, ctb)):
         # Where its own friction presses it down, A takes the impulse even if it is not struck.
         if gna < 0.0 or (gna == 0.0 and cta != 0.0 and fa * abs(qa * sa) > 1.0 + qa * qa):
-            solution = exchange(pair, one_alone(exchanged(pair), gnb, gna, cta))
-            found, first, best = add(found, first, best, solution, choice)
-        for solution in both_hold(pair, gna, cta, gnb, ctb, zero_a + zero_b):
-            if solution[0]:
-                found, first, best = add(found, first, best, solution, choice)
-        if not found:
-            # A contact leaves, but friction can hold it; or a border is met up to rounding: no state seemed possible.
-            found, first, best = add(found, first, best, one_alone(pair, gna, gnb, ctb), choice)
-            solution = exchange(pair, one_alone(exchanged(pair), gnb, gna, cta))
-            found, first, best = add(found, first, best, solution, choice)
-            for a in (PLUS, MINUS):
-                for b in (PLUS, MINUS):
-                    solution = both_slide(pair, a, b, gna, cta, gnb, ctb)
-                    found, first, best = add(found, first, best, solution, choice)
+            found = add(found, exchange(pair, one_alone(exchanged(pair), gnb, gna, cta)), choice)
+        found = both_hold(pair, gna, cta, gnb, ctb, zero_a + zero_b, found, choice)
+        if not found[0]:
+            found = any_that_holds(pair, gna, cta, gnb, ctb, found, choice)
 
-    _, a, b, na, ta, nb, tb, dx, dy, dq = best
+    count, _, (_, a, b, na, ta, nb, tb, dx, dy, dq) = found
     vna = cna + dy + qa * dq if a == OPEN else cna - gna
     vta = 0.0 if a == STICK else cta + dx + sa * dq
     vnb = cnb - sin * dx + cos * dy + qb * dq if b == OPEN else cnb - gnb
     vtb = 0.0 if b == STICK else ctb + cos * dx + sin * dy + sb * dq
-    notes = 0 if found else NO_SOLUTION
+    notes = 0 if count else NO_SOLUTION
     if (vta * cta < 0.0 and abs(vta) > zero_a) or (vtb * ctb < 0.0 and abs(vtb) > zero_b):
         notes |= REVERSED
     if a == STICK and b == STICK:
         notes |= SHARED_FRICTION
-    return na, ta, nb, tb, vna, vta, vnb, vtb, dx, dy, dq, 4 * a + b, notes, found
+    return na, ta, nb, tb, vna, vta, vnb, vtb, dx, dy, dq, 4 * a + b, notes, count

@@ -226,12 +226,14 @@ def rest_of_jams(before, after, target):
     # The work of a steady approach of B goes with the impulses, the remainder with their squares.
     steady = -approach * (next_p[NB] - p[NB])
     left = next_work + times * steady + times_squares * (next_work - work - steady)
-    ends = approach > 0 or (target and (next_p[NB] + rest[NB] > target or left < 0))
+    ends = next_p[NB] + rest[NB] > target or left < 0 if target else approach > 0
     return None if ends else (rest, left)
 
 
 def path(problem, longest=60):
     """The impulse-path law: Routh's hypothesis with Poisson's restitution at B, limited by the stored work."""
+    if (problem.velocities[NA] or 0) < 0 or problem.velocities[NB] >= 0:
+        raise Undecided("the path begins where the new contact is approached and the old one is not")
     history, spent, segments, jams = [problem.velocities], [ZERO] * 4, (), []
     restitution, work, target = problem.restitutions[1], ZERO, None
     choices, jammed, work_limited = 1, False, False

@@ -10,7 +10,7 @@ import pytest
 from exact import NB
 from exact_algebra import dot
 
-from impact_predictor import Contact, Twist, TwoPointBody
+from impact_predictor import Contact, TwoPointBody
 
 CASES = json.loads((Path(__file__).parent / "golden" / "impacts.json").read_text())["cases"]
 KINDS = sorted({case["kind"] for case in CASES})
@@ -65,8 +65,8 @@ def test_jams_without_end_have_the_limit_that_more_and_more_of_them_come_near(mo
     # Found by chance among wedges: A slips and jams again and again, and the body is 0.146 times as fast each time.
     old = Contact(-1.6581, -1.4522, 1.8782)
     new = Contact(1.2691, -0.7467, 1.8782, (0.1611439001926167, 0.9869309213064064))
-    body, twist = TwoPointBody(0.104, 0.0818, old, new), Twist(0.6923, -0.7905, -0.4767)
-    problem = exact.problem_of(body, twist)
+    body = TwoPointBody(0.104, 0.0818, old, new)
+    problem = exact.problem_of(body, body.turning(-0.4767))
     limit = exact.path(problem)
     assert limit.segments == ("O+", "OS", "-O", "SO") * 2
     assert limit.history[-1] == [0, 0, 0, 0]
@@ -82,11 +82,11 @@ def test_jams_without_end_have_the_limit_that_more_and_more_of_them_come_near(mo
 
 def test_restitution_goes_on_after_jams_without_end():
     old = Contact(-1.6581, -1.4522, 1.8782)
-    normal = (0.1611439001926167, 0.9869309213064064)
-    body, twist = TwoPointBody(0.104, 0.0818, old, None), Twist(0.6923, -0.7905, -0.4767)
+    new = Contact(1.2691, -0.7467, 1.8782, (0.1611439001926167, 0.9869309213064064))
+    body = TwoPointBody(0.104, 0.0818, old, new)
     plastic, elastic = (
-        exact.path(exact.problem_of(body._replace(new=Contact(1.2691, -0.7467, 1.8782, normal, restitution)), twist))
-        for restitution in (0.0, 0.5)
+        exact.path(exact.problem_of(body._replace(new=new._replace(restitution=each)), body.turning(-0.4767)))
+        for each in (0.0, 0.5)
     )
     assert elastic.segments[: len(plastic.segments)] == plastic.segments
     assert elastic.impulses[NB] == Fraction(3, 2) * plastic.impulses[NB]

@@ -1,0 +1,62 @@
+"""Where the total law is known to have one answer, trying all contact states finds no other."""
+
+from itertools import product
+
+import numpy as np
+import pytest
+from test_batch import element
+
+from impact_predictor import solve_impact
+from impact_predictor.mechanics import total_law
+from impact_predictor.mechanics.one_answer import one_answer
+from impact_predictor.mechanics.random_problems import KINDS, problems_of
+
+
+def least_determinant(pair):
+    """The least of the determinants of the pieces of the law's map, written out."""
+    cos, sin, qa, sa, qb, sb, fa, fb = pair
+    normal_a, tangent_a = np.array([0.0, 1.0, qa]), np.array([1.0, 0.0, sa])
+    normal_b, tangent_b = np.array([-sin, cos, qb]), np.array([cos, sin, sb])
+
+    def det(*rows):
+        return np.linalg.det(np.array(rows))
+
+    determinants = []
+    for sign_a, sign_b in product((-1.0, 1.0), repeat=2):
+        ray_a, ray_b = normal_a + sign_a * fa * tangent_a, normal_b + sign_b * fb * tangent_b
+        normals = np.cross(normal_a, normal_b)
+        determinants += [
+            normal_a @ ray_a,
+            normal_b @ ray_b,
+            det(normal_a, tangent_a, normal_b) * det(normal_a, tangent_a, ray_b),
+            det(normal_b, tangent_b, normal_a) * det(normal_b, tangent_b, ray_a),
+            det(normals, ray_a, ray_b),
+        ]
+    return min(determinants)
+
+
+def test_one_answer_is_known_exactly_where_all_determinants_are_positive():
+    source, known = np.random.default_rng(3), 0
+    for _ in range(2000):
+        angle, *moments = source.uniform(-3.0, 3.0), *source.uniform(-2.0, 2.0, 4)
+        pair = (np.cos(angle), np.sin(angle), *moments, *source.uniform(0.0, 1.0, 2))
+        assert one_answer(pair, 0.0, 0.0) == (least_determinant(pair) > 0.0)
+        known += one_answer(pair, 0.0, 0.0)
+    assert 500 < known < 1500
+
+
+@pytest.mark.parametrize(("fa", "fb", "known"), [(2.0, 2.0, True), (0.2, 0.9, True), (0.0, 3.0, False)])
+def test_on_a_flat_floor_the_two_frictions_may_be_any_that_differ_little(fa, fb, known):
+    # both contacts 1 from the middle of the body and 0.7 below: their slips are one
+    pair = (1.0, 0.0, -1.0, 0.7, 1.0, 0.7, fa, fb)
+    assert one_answer(pair, 0.3, 0.3) == known
+    assert one_answer(pair, 0.3, -0.3) == (least_determinant(pair) > 0.0)
+
+
+@pytest.mark.parametrize("kind", [kind for kind in KINDS if not kind.startswith("extreme")])
+def test_trying_all_states_gives_the_same_outcome(kind, monkeypatch):
+    _, bodies, twists = problems_of(kind, np.random.default_rng(11), 200)
+    problems = [(element(bodies, i), element(twists, i)) for i in range(200)]
+    outcomes = [solve_impact(*problem, "total") for problem in problems]
+    monkeypatch.setattr(total_law, "one_answer", lambda *_: False)
+    assert outcomes == [solve_impact(*problem, "total") for problem in problems]
