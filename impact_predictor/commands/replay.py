@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections import Counter
+from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -151,9 +152,10 @@ def _name_of(bag: str) -> str:
 def replay_one(bag: str, scene: Scene, topics: dict[str, str], output: Path | None) -> Result:
     """Replay a bag, and say on standard error what was chosen or is wrong."""
     from ..bags.replay import replay as replay_bag
+    from .compiling import compiling_is_said
     from .progress import progress
 
-    with progress(Path(bag).name) as tell:
+    with progress(Path(bag).name) as tell, compiling_is_said() if scene.samples else nullcontext():
         result = replay_bag(bag, scene, topics, output, tell)
     for note in result.notes:
         click.echo(f"note: {note}", err=True)

@@ -70,6 +70,8 @@ class PredictorNode(Node):
             raise
 
     def _connect(self, scene: Scene) -> None:
+        if scene.samples:
+            self.get_logger().info("preparing the uncertainty samples; numba compiles once for a machine, about 15 s")
         self._predictor = Predictor(scene)
         self._diagnostics = Diagnostics(self.get_fully_qualified_name().lstrip("/"), perf_counter())
         self._last_sample: Sample | None = None
