@@ -206,7 +206,8 @@ def install_with_colcon(base: Path, python: str) -> str:
     workspace = base / "workspace"
     source = copy_source(base / "source")
     # What the package needs, without the package: colcon is to build that.
-    environment.pip("install", *COLCON, f"{source}[ros,fast,test]", "--constraint", str(source / "constraints/jazzy.txt"))
+    constraints = str(source / "constraints/jazzy.txt")
+    environment.pip("install", *COLCON, f"{source}[ros,fast,test]", "--constraint", constraints)
     environment.pip("uninstall", "--yes", NAME)
     copy_source(workspace / "src" / NAME)
     environment.variables["AMENT_PREFIX_PATH"] = str(environment.prefix)
