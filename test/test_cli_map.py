@@ -107,10 +107,14 @@ def test_json_is_all_that_is_printed_and_the_options_reach_the_law(folder: Path)
     [
         (["plate", "--x", "warp", "0", "1"], "there is no parameter 'warp' for an axis; give one of delta, length"),
         (["plate", "--friction", "0.3"], "friction is an axis of the map and --friction a number"),
-        (["rod", "--x", "a", "0.2", "0"], "the axis a goes from 0.2 to 0; give a lower number first"),
+        (
+            ["rod", "--x", "a", "0.2", "0"],
+            "the axis a goes from 0.2 to 0; give two finite numbers, the lower one first",
+        ),
+        (["cylinder", "--x", "gamma", "0", "180"], "give angles in degrees with a sum between 0 and 180"),
         (["rod", "--x", "friction", "0", "1"], "both axes, --x and --y, are friction; give two parameters"),
         (["plate", "--restitution", "3"], "restitution is 3.0; give a number from 0 to 1"),
-        (["cylinder", "--x", "gamma", "0", "100"], "the angle gamma + gamma_new between the edges is"),
+        (["cylinder", "--x", "gamma", "0", "100"], "gamma + gamma-new is"),
         (
             ["plate", "-o", "map.pdf"],
             "map.pdf is neither picture nor data; give a name that ends in .png, .svg or .csv",

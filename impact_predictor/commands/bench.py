@@ -115,6 +115,8 @@ def say(soak: Soak, seconds: float, interrupted: bool) -> None:
     from ..report.table import show
 
     show(Console(), table_of(list(soak.worst.values())))
+    if any(worst.stiff and worst.violation > 0.0 for worst in soak.worst.values()):
+        click.echo("\nA stiff problem multiplies rounding by its condition number, without limit: - is no failure.")
     made = [worst for worst in soak.worst.values() if worst.body is not None]
     if made:
         click.echo("\nfrom impact_predictor import Contact, Twist, TwoPointBody")

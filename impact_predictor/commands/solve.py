@@ -131,8 +131,10 @@ def solve_cylinder(
     **shape: Any,
 ) -> int:
     """A cylinder that rolls from one edge onto another."""
-    ahead = None if gamma_new is None else radians(gamma_new)
-    return answer(cylinder(gamma=radians(gamma), gamma_new=ahead, **shape), omega, twist, law, as_json)
+    ahead = gamma if gamma_new is None else gamma_new
+    if not 0.0 < gamma + ahead < 180.0:
+        raise InputError(f"--gamma and --gamma-new have the sum {gamma + ahead:g}; give degrees between 0 and 180")
+    return answer(cylinder(gamma=radians(gamma), gamma_new=radians(ahead), **shape), omega, twist, law, as_json)
 
 
 POINT = (float, float, float)

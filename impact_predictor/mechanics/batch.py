@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from . import answer, one_answer, pair, path_law, path_states, problem, total_law
+from . import answer, one_answer, pair, path_law, path_states, problem, total_law, types
 from .impact import NOWHERE, number_of
 from .types import Contact, Twist, TwoPointBody
 
@@ -56,18 +56,23 @@ def solve_impacts(bodies: TwoPointBody, twist: Twist | NDArray[np.float64], law:
     """
     number = number_of(law)
     mass, inertia, old, new = bodies
-    vx, vy, omega = np.moveaxis(twist, -1, 0) if isinstance(twist, np.ndarray) else twist
-    fields: Any = (mass, inertia, *numbers_of(old or NOWHERE), *numbers_of(new), vx, vy, omega)
+    if isinstance(twist, np.ndarray):
+        if twist.shape[-1:] != (3,):
+            raise ValueError(f"the twist has the shape {twist.shape}; give (..., 3), or a Twist of three arrays")
+        twist = Twist(*np.moveaxis(twist, -1, 0))
+    vx, vy, omega = twist
+    given = mass, inertia, *numbers_of(old or NOWHERE), *numbers_of(new), vx, vy, omega
+    # Converted here, because nditer of numpy 1.26 leaves its buffers unset where a single number is of another type.
+    fields: Any = [np.asarray(field, np.float64) for field in given]
     each: Any = ["readonly", "contig"]
     chunks = np.nditer(
         fields,
         flags=["buffered", "external_loop", "zerosize_ok"],
         op_flags=[each] * len(fields),
-        op_dtypes=[np.float64] * len(fields),
         order="C",
         buffersize=CHUNK,
     )
-    shape, count = np.broadcast_shapes(*(np.shape(field) for field in fields)), chunks.itersize
+    shape, count = np.broadcast_shapes(*(field.shape for field in fields)), chunks.itersize
     outcomes = Outcomes(
         np.empty(count, np.uint8),
         np.empty((count, 3)),
@@ -105,7 +110,7 @@ def filler() -> Callable[[Any, bool, int, int, Outcomes], None]:
         for _, function in getmembers(module, isfunction):
             if function.__module__ == module.__name__:
                 register_jitable(forceinline=function not in CALLED)(function)
-    fill = make_fill(sha256("".join(map(getsource, LAW_CODE)).encode()).hexdigest())
+    fill = make_fill(sha256("".join(map(getsource, (types, *LAW_CODE))).encode()).hexdigest())
     # Divisions are as in C: law code never divides by zero.
     try:
         return njit(fill, cache=True, error_model="numpy")  # type: ignore[no-any-return]

@@ -105,7 +105,7 @@ def margins(body: TwoPointBody, twist: Twist, law: str = "path") -> Margins:
 
     Where there is no impact, or none can be solved, there are no margins. An unknown law raises ValueError.
     """
-    number = number_of(law)
+    number, twist = number_of(law), Twist(*twist)
     mass, inertia, stands = body.mass, body.inertia, body.old is not None
     old, new = body.old or NOWHERE, body.new
 
@@ -132,9 +132,9 @@ def margins(body: TwoPointBody, twist: Twist, law: str = "path") -> Margins:
 
 
 def margins_of(outcome: Outcome) -> Margins:
-    """The margins of an impact that was solved; none where the body also moved across the impact plane."""
+    """The margins of an impact that was solved. ValueError where the body also moved across the impact plane."""
     if outcome.body is None or outcome.before is None:
-        return NO_MARGINS
+        raise ValueError("an impact with slip across the plane has no margins; ask solve_impact for those of the plane")
     # Where the total law answered for the path law, it was the path law that was asked.
     asked = "path" if outcome.flags & (Flag.BOTH_STRUCK | Flag.LAST_RESORT) else outcome.law
     return margins(outcome.body, outcome.before, asked)

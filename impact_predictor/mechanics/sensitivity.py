@@ -47,8 +47,9 @@ class Sensitivity(NamedTuple):
 def sensitivity(body: TwoPointBody, twist: Twist, law: str = "path") -> Sensitivity:
     """Derivatives of the twist after `solve_impact`, exact up to rounding; the arguments are the same.
 
-    A change of the twist before counts as far as `allowed_changes` lets it. Where no impact happens, or none can be
-    solved, the twist after is the one before. An unknown law raises ValueError.
+    The old contact stays as it is, at rest or slipping along its support: of a change of the twist before only the part
+    counts that leaves it so (`allowed_changes`). A body that turns about A at rest has one such freedom, omega. Where
+    no impact happens, or none can be solved, the twist after is the one before. An unknown law raises ValueError.
 
     The law code is differentiated as it runs (see `dual`). The outcome is a piecewise rational function, with
     one-sided derivatives at its borders, which are taken a STEP away from them.
@@ -67,6 +68,8 @@ def sensitivity(body: TwoPointBody, twist: Twist, law: str = "path") -> Sensitiv
             continue
         more, less = moved(inputs, direction, step), moved(inputs, direction, -step)
         (above, flags_above), (below, flags_below) = states_at(body, more, number), states_at(body, less, number)
+        if flags_above & flags_below & INVALID_INPUT:
+            continue  # so near to the mass centre is the contact that no finite turn moves it
         if not states == above == below or (flags_above | flags_below) & INVALID_INPUT:
             one_sided.append(INPUTS[i])
         side, there = (less, below) if flags_above & INVALID_INPUT else (more, above)

@@ -198,7 +198,7 @@ def descent(value: Callable[[float], float], first: float, last: float) -> float
     """Where in 0..1 a value falls to zero, on the far side, from its values at both ends (regula falsi, Illinois)."""
     low, high, side = 0.0, 1.0, 0
     for _ in range(60):
-        if high - low < SLACK:
+        if high - low < SLACK or first == last:  # both are zero where halves of the least number were
             break
         middle = high - last * (high - low) / (last - first)
         middle = min(max(middle, low + 0.25 * SLACK), high - 0.25 * SLACK)

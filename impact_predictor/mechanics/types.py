@@ -136,7 +136,11 @@ class Outcome(NamedTuple):
 
     @property
     def margins(self) -> Margins:
-        """How far the impact is from another mode, computed when it is asked for."""
+        """How far the impact is from another mode, computed when it is asked for.
+
+        Raises:
+            ValueError: the body also moved across the impact plane; only the plane has margins.
+        """
         from .margins import margins_of
 
         return margins_of(self)

@@ -61,6 +61,8 @@ class Predictor:
             from .uncertainty import Sampler
 
             self._sampler = Sampler(scene)
+        if scene.margins:
+            from ..mechanics import margins  # noqa: F401  # loaded now, not with the first sample
         self._points = scene.points
         self._geometry_frame = ""
         self._last: int | None = None

@@ -71,9 +71,21 @@ def rod_of(values: Values) -> TwoPointBody:
 
 
 def cylinder_of(values: Values) -> TwoPointBody:
-    radius, gamma, inertia = values["radius"], values["gamma"] * (pi / 180.0), values.get("inertia")
-    ahead = values["gamma_new"] * (pi / 180.0) if "gamma_new" in values else None
-    return cylinder(radius, gamma, 1.0, values.get("friction", 0.0), ahead, inertia, values["restitution"])
+    ahead = values.get("gamma_new", values["gamma"])
+    refuse(
+        {"gamma + gamma-new": values["gamma"] + ahead},
+        lambda value: (value > 0.0) & (value < 180.0),
+        "angles in degrees with a sum between 0 and 180",
+    )
+    return cylinder(
+        values["radius"],
+        values["gamma"] * (pi / 180.0),
+        1.0,
+        values.get("friction", 0.0),
+        ahead * (pi / 180.0),
+        values.get("inertia"),
+        values["restitution"],
+    )
 
 
 def inertia_of(otherwise: str) -> Parameter:
@@ -151,7 +163,8 @@ def fixed_values(subject: Subject, axes: tuple[Axis, Axis], given: Mapping[str, 
             raise InputError(f"{name} is an axis of the map and --{name} a number; leave one of them out")
         if not -inf < axis.low < axis.high < inf:
             raise InputError(
-                f"the axis {option_of(axis.name)} goes from {axis.low:g} to {axis.high:g}; give a lower number first"
+                f"the axis {option_of(axis.name)} goes from {axis.low:g} to {axis.high:g}; "
+                "give two finite numbers, the lower one first"
             )
     if names[0] == names[1]:
         raise InputError(f"both axes, --x and --y, are {option_of(names[0])}; give two parameters")
@@ -185,7 +198,7 @@ def problem_at(subject: Subject, values: Values) -> tuple[TwoPointBody, Twist]:
         new=new._replace(friction=values.get("friction_new", new.friction)),
     )
     (nx, ny), slip, turning = old.normal, values["slip"], body.turning(OMEGA)
-    refuse({"slip": slip}, lambda value: abs(value) < inf, "a finite number")
+    refuse({"slip": slip}, lambda value: abs(value) <= 1e6, "a number of at most 1e6")
     return body, Twist(turning.vx + slip * ny, turning.vy - slip * nx, turning.omega)
 
 

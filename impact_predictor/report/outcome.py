@@ -44,19 +44,21 @@ LAWS: Final = {
     "total": "whole impulse at once, Newton restitution",
 }
 MARGINS: Final = {
-    "friction": "friction of the contacts by {}",
-    "center": "mass centre towards the new contact by {} m",
-    "height": "mass centre up from the line of the contacts by {} m",
-    "reach": "new contact along its tangent by {} m",
-    "slip": "slip of the old contact by {} m/s",
+    "friction": ("friction of the contacts", ""),
+    "center": ("mass centre towards the new contact", " m"),
+    "height": ("mass centre up from the line of the contacts", " m"),
+    "reach": ("new contact along its tangent", " m"),
+    "slip": ("slip of the old contact", " m/s"),
 }
 ONE_POINT_MARGINS: Final = {
-    "friction": "friction by {}",
-    "center": "mass centre along the tangent by {} m",
-    "height": "mass centre along the normal by {} m",
-    "reach": "contact along its tangent by {} m",
-    "slip": "slip by {} m/s",
+    "friction": ("friction", ""),
+    "center": ("mass centre along the tangent", " m"),
+    "height": ("mass centre along the normal", " m"),
+    "reach": ("contact along its tangent", " m"),
+    "slip": ("slip", " m/s"),
 }
+_BORDER: Final = 1e-9
+"""A margin below this is rounding: the impact lies on the border."""
 _ROUNDING: Final = 1e-12
 _STATES: Final = {"O": "is open", "S": "sticks", "+": "slides forwards", "-": "slides backwards"}
 
@@ -115,6 +117,8 @@ def _words(body: TwoPointBody, outcome: Outcome) -> Iterator[str]:
     meanings = MODES if body.old is not None else ONE_POINT_MODES
     yield f"{outcome.mode.name} by the {outcome.law} law ({LAWS[outcome.law]}):"
     yield f"  {meanings[outcome.mode]}."
+    if outcome.segments:
+        yield "  While the impulse grows:" if outcome.law == "path" else "  In all:"
     for segment in outcome.segments:
         yield f"  {segment}  {_segment(segment, body)}"
     if not outcome.unique:
@@ -126,8 +130,9 @@ def _words(body: TwoPointBody, outcome: Outcome) -> Iterator[str]:
     if margins:
         yield "  The nearest other modes, by one change at a time:"
     for name, change, mode in margins:
-        what = (MARGINS if body.old is not None else ONE_POINT_MARGINS)[name]
-        yield f"    {mode.name}: {what.format(f'{change:+.4g}')}"
+        what, unit = (MARGINS if body.old is not None else ONE_POINT_MARGINS)[name]
+        far = f" by {change:+.4g}{unit}" if abs(change) > _BORDER else ", on the border"
+        yield f"    {mode.name}: {what}{far}"
     for flag in Flag:
         if flag & outcome.flags:
             yield f"  {flag.name}:"

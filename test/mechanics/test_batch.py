@@ -182,6 +182,8 @@ def test_shapes_that_do_not_fit_and_unknown_laws_are_refused():
         solve_impacts(body, Twist(0.0, -0.5, -1.0))
     with pytest.raises(ValueError, match="law is 'newton'"):
         solve_impacts(body, Twist(0.0, -0.5, -1.0), law="newton")
+    with pytest.raises(ValueError, match=r"the twist has the shape \(3, 2\)"):
+        solve_impacts(body, np.zeros((3, 2)))
 
 
 def test_bodies_are_made_from_arrays_like_from_numbers():

@@ -422,3 +422,14 @@ def test_any_magnitude_has_an_answer_that_gains_no_energy() -> None:
         elif answer.outcome.mode is not Mode.NO_IMPACT and not answer.outcome.flags & Flag.BOTH_STRUCK:
             assert answer.outcome.energy_lost >= -1e-4 * body.mass * Body(body, twist, across).speed ** 2
     assert lost < 30
+
+
+def test_a_motion_of_the_least_number_is_no_division_by_zero():
+    old = Contact(5e-324, 1.9445664225274308, 1.3, (-1.0, 6.123233995736766e-17), velocity=(0.4, -0.5))
+    new = Contact(
+        2.0, -0.2, 1.5457746530755716, (0.944756277222261, 0.3277736668024665), 1e-8, (1.278155162288905, -1.3)
+    )
+    body = TwoPointBody(1.1, 4.411711866015143e-97, old, new)
+    across = Transverse(-0.29304327883637216, -0.8874921986639221, -1.3)
+    found = solve(body, Twist(0.4, -0.5, 5e-324), across)
+    assert all(map(math.isfinite, (*found.outcome.twist, *found.transverse[:3], *found.impulses)))
