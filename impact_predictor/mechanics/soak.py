@@ -13,7 +13,7 @@ from .invariants import LIMITS, violations
 from .random_problems import CHUNK, KINDS, STIFF, random_problems
 from .types import Contact, Twist, TwoPointBody
 
-EXACT = ("finite", "cone", "units", "mirror")
+EXACT = ("finite", "units")
 """The invariants that no condition number excuses."""
 
 
