@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
-from math import cos, hypot, isfinite, sin
+from math import hypot, isfinite
 from typing import TYPE_CHECKING
 
 from ..mechanics.impact import solve_impact
-from ..mechanics.motion import PlanarState, next_touchdown
-from ..mechanics.types import Contact, Outcome, Twist, TwoPointBody
-from .planar import Across, Plane, Posture, across_of, contacts_of, in_space, inertia_about, plane_of, posture_of
+from ..mechanics.types import Outcome
+from .approach import Approach, approach_of
+from .planar import Across, Posture, across_of, in_space, posture_of
 from .scene import Scene
 from .score import NANOSECONDS, Pending, Track, leftover_of
 from .types import Geometry, Prediction, Sample, Score, Status, Touchdown, Vector3
@@ -31,12 +31,6 @@ UNIT = 1e-3
 SETTLED = 0.5
 """A touchdown has happened when less than this part of the approach is left, within the contact tolerance, that the
 predicting sample measured: the approach predicted for the touchdown has gravity's gain on the way added to it."""
-
-GRAZES = 1e-9
-"""m/s: what reaches the support slower only grazes it."""
-
-ACCURACY = 1e-6
-"""Of the motion before the touchdown, relative: a thousandth of what poses and twists are measured to."""
 
 COINCIDENT = 1e-9
 """Points closer than this part of the largest coordinate are one."""
@@ -166,85 +160,48 @@ class Predictor:
 
     def _revise(self, sample: Sample, posture: Posture) -> Touchdown | None:
         """The touchdown ahead as this sample shows it, and keep track of it."""
-        found = self._foresee(sample, posture)
+        approach = approach_of(self.scene, self._points, sample, posture)
         track = self._track
-        if found is None or self._is_echo(found[0], sample):
+        if approach is None or self._is_echo(approach, sample):
             self._track = None
             return None
-        touchdown, approach = found
-        if track is not None and not set(touchdown.new) & set(track.last.new):
+        if track is not None and not set(approach.contacts.new) & set(track.last.new):
             track = None
         if track is None:
             track = self._track = Track()
         elif (
-            min(touchdown.lead_time, abs(track.lead_time(sample.stamp))) < self.scene.twist_window
+            min(approach.lead_time, abs(track.lead_time(sample.stamp))) < self.scene.twist_window
             or self._recent[-1][0].stamp <= track.stamp < sample.stamp
         ):
             # The impact itself may be in this twist, averaged or just begun: the last prediction stands.
             return track.hold(sample.stamp)
-        track.add(sample.stamp, touchdown, approach)
+        touchdown = self._touchdown(sample, posture, approach)
+        track.add(sample.stamp, touchdown, approach.measured)
         return touchdown
 
-    def _is_echo(self, touchdown: Touchdown, sample: Sample) -> bool:
+    def _is_echo(self, approach: Approach, sample: Sample) -> bool:
         """Whether the approach is what an averaged twist still has of the approach before the last touchdown."""
         landed = self._landed
         return (
             landed is not None
             and sample.stamp - landed.stamp < self.scene.twist_window * NANOSECONDS
-            and not set(touchdown.new).isdisjoint(landed.track.last.new)
+            and not set(approach.contacts.new).isdisjoint(landed.track.last.new)
         )
 
-    def _foresee(self, sample: Sample, posture: Posture) -> tuple[Touchdown, float] | None:
-        """The next touchdown with its impact, from one sample, and the approach that it measured."""
+    def _touchdown(self, sample: Sample, posture: Posture, approach: Approach) -> Touchdown:
+        """The touchdown at the end of an approach, with its impact."""
         scene = self.scene
-        contacts = contacts_of(scene, posture)
-        if contacts is None:
-            return None
-        plane = plane_of(scene, self._points, sample, posture, contacts)
-        on_edge = len(contacts.old) > 1
-        inertia = inertia_about(scene, plane.axis, blocked=on_edge)
-        # An averaged twist is that of half its window ago: the motion is followed from there.
-        age = 0.5 * scene.twist_window
-        vx, vy, omega = plane.twist
-        height = -plane.old[1] if plane.old is not None else plane.gap - plane.new[1]
-        start = PlanarState(-vx * age, height - vy * age, -omega * age, vx, vy, omega)
-        points = (plane.new,) if plane.old is None else (plane.old, plane.new)
-        fall = next_touchdown(
-            start,
-            points,
-            None if plane.old is None else 0,
-            inertia / scene.mass,
-            scene.friction,
-            plane.gravity[:2],
-            scene.horizon + age,
-            ACCURACY,
-        )
-        if fall.point != len(points) - 1:
-            return None
-        after = fall.state
-        before = Twist(after.vx, after.vy, after.omega)
-        body = body_at(scene, plane, inertia, after.angle)
-        blocked = on_edge and body.old is not None and len(contacts.new) > 1
-        if on_edge and not blocked:
-            body = body._replace(inertia=inertia_about(scene, plane.axis, blocked=False))
-        if body.old is not None and body.old.x >= body.new.x:
-            return None  # it falls back, and other points strike before
-        approach = -(before.vy + before.omega * body.new.x)
-        if approach < GRAZES:
-            return None
-        lead_time = max(0.0, fall.time - age)
+        contacts, plane, body, before, moved, lead_time, blocked, _, speed = approach
         across = across_of(sample, posture, plane, lead_time)
         slipped = None
         if self._impact_across is not None:
-            slipped = self._impact_across(scene, plane, posture.normal, body, before, across, after.angle, blocked)
+            slipped = self._impact_across(scene, plane, posture.normal, body, before, across, moved.angle, blocked)
         outcome, across = slipped or (solve_impact(body, before, scene.law), across)
-        moved = PlanarState(after.x, after.y - height, after.angle, *before)
         position, orientation, linear, angular = in_space(
             scene, sample, posture, plane, moved, outcome.twist, across, lead_time
         )
-        rates = [posture.rates[i] for i in contacts.new]
         gaps = [posture.gaps[i] for i in contacts.new]
-        spread = (max(gaps) - min(gaps)) / approach
+        spread = (max(gaps) - min(gaps)) / speed
         half_distance = 0.0
         if body.old is not None:
             half_distance = 0.5 * hypot(body.new.x - body.old.x, body.new.y - body.old.y)
@@ -271,14 +228,14 @@ class Predictor:
             plane.lateral,
             spread,
             plane.offset,
-            leftover_of(scene, contacts, plane, body, approach, half_distance, spread),
+            leftover_of(scene, contacts, plane, body, speed, half_distance, spread),
         )
         if self._sampler is not None:
             uncertainty = self._sampler.uncertainty(sample, posture, plane, body, before, orientation)
             touchdown = touchdown._replace(uncertainty=uncertainty)
         if scene.margins:
-            touchdown = touchdown._replace(planar=solve_impact(body, before, scene.law))
-        return touchdown, -sum(rates) / len(rates)
+            touchdown = touchdown._replace(planar=solve_impact(body, before, scene.law) if slipped else outcome)
+        return touchdown
 
 
 def check_points(points: tuple[Vector3, ...]) -> Status:
@@ -293,17 +250,3 @@ def check_points(points: tuple[Vector3, ...]) -> Status:
             if abs(x - u) <= least and abs(y - v) <= least and abs(z - w) <= least:
                 return Status.COINCIDENT_POINTS
     return Status.ACCEPTED
-
-
-def body_at(scene: Scene, plane: Plane, inertia: float, angle: float) -> TwoPointBody:
-    """The body when it has turned by `angle` in the impact plane and the new contact is on the support."""
-    c, s = cos(angle), sin(angle)
-    x, y = plane.new
-    new = Contact(c * x - s * y, s * x + c * y, scene.friction, restitution=scene.restitution)
-    if plane.old is None:
-        return TwoPointBody(scene.mass, inertia, None, new)
-    x, y = plane.old
-    if s * x + c * y - new.y > scene.tolerance:
-        return TwoPointBody(scene.mass, inertia, None, new)  # it has lifted on the way
-    # Where it stands both are on one level up to rounding; made exact, so that rounding does not make it a step.
-    return TwoPointBody(scene.mass, inertia, Contact(c * x - s * y, new.y, scene.friction), new)

@@ -1,0 +1,103 @@
+"""The approach to the next touchdown, from one sample: which points strike, when, and how the body moves then."""
+
+from __future__ import annotations
+
+from math import cos, sin
+from typing import NamedTuple
+
+from ..mechanics.motion import PlanarState, next_touchdown
+from ..mechanics.types import Contact, Twist, TwoPointBody
+from .planar import Contacts, Plane, Posture, contacts_of, inertia_about, plane_of
+from .scene import Scene
+from .types import Sample, Vector3
+
+GRAZES = 1e-9
+"""m/s: what reaches the support slower only grazes it."""
+
+ACCURACY = 1e-6
+"""Of the motion before the touchdown, relative: a thousandth of what poses and twists are measured to."""
+
+
+class Approach(NamedTuple):
+    """A touchdown ahead, before its impact.
+
+    `body` and its twist `before` are those of the impact, in the impact plane; `moved` how the body moves there until
+    then, from the sample's pose; `lead_time` in s; `blocked` whether its contacts are edges, off whose line it cannot
+    turn. `measured` is the speed in m/s at which the sample shows the new points to approach, `speed` that of the
+    touchdown.
+    """
+
+    contacts: Contacts
+    plane: Plane
+    body: TwoPointBody
+    before: Twist
+    moved: PlanarState
+    lead_time: float
+    blocked: bool
+    measured: float
+    speed: float
+
+
+def approach_of(scene: Scene, points: tuple[Vector3, ...], sample: Sample, posture: Posture) -> Approach | None:
+    """The touchdown that a sample shows to be ahead; None where there is none within the horizon."""
+    contacts = contacts_of(scene, posture)
+    if contacts is None:
+        return None
+    plane = plane_of(scene, points, sample, posture, contacts)
+    on_edge = len(contacts.old) > 1
+    inertia = inertia_about(scene, plane.axis, blocked=on_edge)
+    # An averaged twist is that of half its window ago: the motion is followed from there.
+    age = 0.5 * scene.twist_window
+    vx, vy, omega = plane.twist
+    height = -plane.old[1] if plane.old is not None else plane.gap - plane.new[1]
+    start = PlanarState(-vx * age, height - vy * age, -omega * age, vx, vy, omega)
+    striking = (plane.new,) if plane.old is None else (plane.old, plane.new)
+    fall = next_touchdown(
+        start,
+        striking,
+        None if plane.old is None else 0,
+        inertia / scene.mass,
+        scene.friction,
+        plane.gravity[:2],
+        scene.horizon + age,
+        ACCURACY,
+    )
+    if fall.point != len(striking) - 1:
+        return None
+    after = fall.state
+    before = Twist(after.vx, after.vy, after.omega)
+    body = body_at(scene, plane, inertia, after.angle)
+    blocked = on_edge and body.old is not None and len(contacts.new) > 1
+    if on_edge and not blocked:
+        body = body._replace(inertia=inertia_about(scene, plane.axis, blocked=False))
+    if body.old is not None and body.old.x >= body.new.x:
+        return None  # it falls back, and other points strike before
+    speed = -(before.vy + before.omega * body.new.x)
+    if speed < GRAZES:
+        return None
+    rates = [posture.rates[i] for i in contacts.new]
+    return Approach(
+        contacts,
+        plane,
+        body,
+        before,
+        PlanarState(after.x, after.y - height, after.angle, *before),
+        max(0.0, fall.time - age),
+        blocked,
+        -sum(rates) / len(rates),
+        speed,
+    )
+
+
+def body_at(scene: Scene, plane: Plane, inertia: float, angle: float) -> TwoPointBody:
+    """The body when it has turned by `angle` in the impact plane and the new contact is on the support."""
+    c, s = cos(angle), sin(angle)
+    x, y = plane.new
+    new = Contact(c * x - s * y, s * x + c * y, scene.friction, restitution=scene.restitution)
+    if plane.old is None:
+        return TwoPointBody(scene.mass, inertia, None, new)
+    x, y = plane.old
+    if s * x + c * y - new.y > scene.tolerance:
+        return TwoPointBody(scene.mass, inertia, None, new)  # it has lifted on the way
+    # Where it stands both are on one level up to rounding; made exact, so that rounding does not make it a step.
+    return TwoPointBody(scene.mass, inertia, Contact(c * x - s * y, new.y, scene.friction), new)
