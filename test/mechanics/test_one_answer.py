@@ -45,6 +45,19 @@ def test_one_answer_is_known_exactly_where_all_determinants_are_positive():
     assert 500 < known < 1500
 
 
+@pytest.mark.parametrize(
+    ("angle", "numbers"),
+    [
+        (-1.9, (0.1, -1.2, 1.7, 1.9, 0.7, 1.1)),  # slips of opposite directions alone can have another answer
+        (-0.4, (0.0, -1.1, -1.1, -1.1, 0.9, 0.6)),  # slips of the same direction alone
+    ],
+)
+def test_slips_of_both_relative_directions_count(angle, numbers):
+    pair = (np.cos(angle), np.sin(angle), *numbers)
+    assert least_determinant(pair) < 0.0
+    assert not one_answer(pair, 0.1, 0.3)
+
+
 @pytest.mark.parametrize(("fa", "fb", "known"), [(2.0, 2.0, True), (0.2, 0.9, True), (0.0, 3.0, False)])
 def test_on_a_flat_floor_the_two_frictions_may_be_any_that_differ_little(fa, fb, known):
     # both contacts 1 from the middle of the body and 0.7 below: their slips are one
