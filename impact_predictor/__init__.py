@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from .errors import InputError
 from .mechanics.bodies import cylinder, plate, rod
 from .mechanics.impact import solve_impact
-from .mechanics.types import Alternative, Contact, Flag, Mode, Outcome, Twist, TwoPointBody
+from .mechanics.types import Alternative, Contact, Flag, Mode, Outcome, Twist, TwoPointBody, Validity
 
 if TYPE_CHECKING:
     from .mechanics.batch import Outcomes, solve_impacts
@@ -28,6 +28,7 @@ __all__ = [
     "TransverseOutcome",
     "Twist",
     "TwoPointBody",
+    "Validity",
     "cylinder",
     "plate",
     "rod",

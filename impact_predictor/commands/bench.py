@@ -1,4 +1,4 @@
-"""`impact-predictor bench`: what the laws hold under load."""
+"""`impact-predictor bench`: the laws put to the test."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import click
 
 from ..mechanics.impact import LAWS
 from .examples import examples
+from .experiment import experiment
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -30,12 +31,15 @@ def whole(context: click.Context, option: click.Parameter, number: float) -> int
 
 
 @click.group(
-    short_help="Solve random impacts and check what must hold for each.",
+    short_help="Put the laws to the test: invariants of random impacts, the paper's experiment.",
     no_args_is_help=False,
-    epilog=examples("impact-predictor bench invariants --count 1e6"),
+    epilog=examples("impact-predictor bench invariants --count 1e6", "impact-predictor bench experiment"),
 )
 def bench() -> None:
-    """What the laws hold under load."""
+    """Put the laws to the test."""
+
+
+bench.add_command(experiment)
 
 
 @bench.command(

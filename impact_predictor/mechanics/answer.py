@@ -5,12 +5,12 @@ It is law code (see `pair`), so that `solve_impact` and the compiled `solve_impa
 
 from __future__ import annotations
 
-from math import inf
+from math import inf, sqrt
 
 from . import path_law, total_law
-from .pair import NO_SOLUTION, Impact, Problem
+from .pair import NO_SOLUTION, Impact, Pair, Problem
 from .problem import problem_of, twist_after
-from .types import Contact, Flag, Mode, Twist
+from .types import Contact, Flag, Mode, Twist, Validity
 
 PATH, TOTAL = 0, 1
 """The laws."""
@@ -23,7 +23,7 @@ ENERGY_ROUNDING = 1e-12
 
 NO_IMPACT, STOP, SLIDE, PIVOT_SLIDE, PIVOT, BACK_PIVOT, FLIGHT = (int(mode) for mode in Mode)
 
-OLD_RESTITUTION_IGNORED, BOTH_STRUCK, LAST_RESORT, ENERGY_GAINED, INVALID_INPUT = (
+OLD_RESTITUTION_IGNORED, BOTH_STRUCK, LAST_RESORT, ENERGY_GAINED, INVALID_INPUT, THIN_BODY, SLOW_IMPACT = (
     int(flag)
     for flag in (
         Flag.OLD_RESTITUTION_IGNORED,
@@ -31,15 +31,29 @@ OLD_RESTITUTION_IGNORED, BOTH_STRUCK, LAST_RESORT, ENERGY_GAINED, INVALID_INPUT 
         Flag.LAST_RESORT,
         Flag.ENERGY_GAINED,
         Flag.INVALID_INPUT,
+        Flag.THIN_BODY,
+        Flag.SLOW_IMPACT,
     )
 )
+
+VALIDITY = Validity()
+SQRT_3 = sqrt(3.0)
 
 Answer = tuple[int, tuple[float, float, float], float, float, float, float, int, int, float, bool, int]
 """Mode; twist after; N_A, T_A, N_B, T_B in N s; the contact states as a law codes them; the bits of `Flag`; energy
 lost; whether the law allows no other answer; the law that answered."""
 
 
-def answer(mass: float, inertia: float, stands: bool, old: Contact, new: Contact, twist: Twist, law: int) -> Answer:
+def answer(
+    mass: float,
+    inertia: float,
+    stands: bool,
+    old: Contact,
+    new: Contact,
+    twist: Twist,
+    law: int,
+    validity: Validity = VALIDITY,
+) -> Answer:
     """What the impact at `new` does to a body that stands on `old`, or on nothing."""
     valid, problem, frame = problem_of(mass, inertia, stands, old, new, twist)
     if not valid:
@@ -70,12 +84,26 @@ def answer(mass: float, inertia: float, stands: bool, old: Contact, new: Contact
     if work > ENERGY_ROUNDING * speed * speed:
         notes |= ENERGY_GAINED
     energy_lost = -0.5 * mass * work
+    notes |= doubts(problem[0], stands, nb, validity)
     na, ta, nb, tb = mass * na, mass * ta, mass * nb, mass * tb
     # Numbers too large make one of these not finite, and with it their sum.
     if (after[0] + after[1] + after[2] + na + ta + nb + tb + energy_lost) * 0.0 != 0.0:
         return unchanged(twist, notes | NO_SOLUTION, law)
     mode = mode_of(STAYS * speed, vna, vta, vnb, vtb)
     return mode, after, na, ta, nb, tb, segments, flags | notes, energy_lost, unique, law
+
+
+def doubts(pair: Pair, stands: bool, nb: float, validity: Validity) -> int:
+    """The notes on an impact of `nb` N s per kg at the new contact for which rigid theory is too simple."""
+    slenderness, gravity, contact_time, gravity_share = validity
+    _, _, _, depth_old, _, depth_new, _, _ = pair  # of the contacts below the mass centre, over rho
+    thin = SQRT_3 * slenderness
+    notes = 0
+    if stands and -thin < depth_old < thin and -thin < depth_new < thin:
+        notes |= THIN_BODY
+    if gravity_share * nb < gravity * contact_time:
+        notes |= SLOW_IMPACT
+    return notes
 
 
 def unchanged(twist: Twist, notes: int, law: int) -> Answer:

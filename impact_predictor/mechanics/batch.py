@@ -10,14 +10,14 @@ from collections.abc import Callable
 from functools import cache
 from hashlib import sha256
 from inspect import getmembers, getsource, isfunction
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import answer, one_answer, pair, path_law, path_states, problem, total_law, types
 from .impact import NOWHERE, number_of
-from .types import Contact, Twist, TwoPointBody
+from .types import Contact, Twist, TwoPointBody, Validity
 
 CHUNK = 2048
 """Impacts that are handed over at a time, so that the copies of broadcast fields stay small."""
@@ -27,6 +27,10 @@ LAW_CODE = (pair, path_states, path_law, one_answer, total_law, problem, answer)
 CALLED = (path_law.solve, total_law.solve, total_law.any_that_holds)
 """Law functions that are compiled on their own. All others become a part of those that call them, which halves the
 time: calls with so many numbers are slow."""
+
+
+Fill = Callable[[Any, bool, int, Validity, int, "Outcomes"], None]
+"""Solves a chunk: columns of the fields, whether a body stands, the law, validity, the index of the first, outcomes."""
 
 
 class Outcomes(NamedTuple):
@@ -47,14 +51,18 @@ class Outcomes(NamedTuple):
     unique: NDArray[np.bool_]
 
 
-def solve_impacts(bodies: TwoPointBody, twist: Twist | NDArray[np.float64], law: str = "path") -> Outcomes:
+def solve_impacts(
+    bodies: TwoPointBody, twist: Twist | NDArray[np.float64], law: str = "path", validity: Validity = answer.VALIDITY
+) -> Outcomes:
     """What many impacts do: `solve_impact` for each element of arrays that broadcast together.
 
     Any field of `bodies`, of its contacts (each part of a normal or a velocity on its own) and of `twist` may be an
-    array; `twist` may also be one array (..., 3). `old` is None for all or for none. Bad numbers give
-    Flag.INVALID_INPUT in their own element; an unknown law or shapes that do not broadcast raise ValueError.
+    array; `twist` may also be one array (..., 3). `old` is None for all or for none, and `validity` is one for all. Bad
+    numbers give Flag.INVALID_INPUT in their own element; an unknown law or shapes that do not broadcast raise
+    ValueError.
     """
     number = number_of(law)
+    limits = Validity(*map(float, validity))
     mass, inertia, old, new = bodies
     if isinstance(twist, np.ndarray):
         if twist.shape[-1:] != (3,):
@@ -85,7 +93,7 @@ def solve_impacts(bodies: TwoPointBody, twist: Twist | NDArray[np.float64], law:
     fill, start = filler(), 0
     if count:
         for columns in chunks:
-            fill(columns, old is not None, number, start, outcomes)
+            fill(columns, old is not None, number, limits, start, outcomes)
             start += len(columns[0])
     return Outcomes._make(field.reshape(shape + field.shape[1:]) for field in outcomes)
 
@@ -97,7 +105,7 @@ def numbers_of(contact: Contact) -> tuple[Any, ...]:
 
 
 @cache
-def filler() -> Callable[[Any, bool, int, int, Outcomes], None]:
+def filler() -> Fill:
     """The function that solves a chunk, compiled if that can be."""
     try:
         from numba import njit
@@ -113,15 +121,15 @@ def filler() -> Callable[[Any, bool, int, int, Outcomes], None]:
     fill = make_fill(sha256("".join(map(getsource, (types, *LAW_CODE))).encode()).hexdigest())
     # Divisions are as in C: law code never divides by zero.
     try:
-        return njit(fill, cache=True, error_model="numpy")  # type: ignore[no-any-return]
+        return cast(Fill, njit(fill, cache=True, error_model="numpy"))
     except RuntimeError:  # no folder to keep the compiled code in
-        return njit(fill, error_model="numpy")  # type: ignore[no-any-return]
+        return cast(Fill, njit(fill, error_model="numpy"))
 
 
-def make_fill(law_code: str) -> Callable[[Any, bool, int, int, Outcomes], None]:
+def make_fill(law_code: str) -> Fill:
     """The function that solves a chunk; numba keeps what it compiled under the value of `law_code`."""
 
-    def fill(columns: Any, stands: bool, law: int, start: int, outcomes: Outcomes) -> None:
+    def fill(columns: Any, stands: bool, law: int, validity: Validity, start: int, outcomes: Outcomes) -> None:
         law_code  # noqa: B018
         m, j, ox, oy, of, onx, ony, oe, oux, ouy, nx, ny, nf, nnx, nny, ne, nux, nuy, vx, vy, omega = columns
         mode, twist, impulses, segments, flags, energy_lost, unique = outcomes
@@ -141,6 +149,6 @@ def make_fill(law_code: str) -> Callable[[Any, bool, int, int, Outcomes], None]:
                 energy_lost[k],
                 unique[k],
                 _,
-            ) = answer.answer(m[i], j[i], stands, old, new, (vx[i], vy[i], omega[i]), law)  # type: ignore[arg-type]
+            ) = answer.answer(m[i], j[i], stands, old, new, (vx[i], vy[i], omega[i]), law, validity)  # type: ignore[arg-type]
 
     return fill

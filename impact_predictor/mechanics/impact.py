@@ -6,10 +6,21 @@ from functools import cache
 from math import isfinite
 
 from . import path_law, total_law
-from .answer import LAST_RESORT, PATH, STAYS, answer, differ, mode_of, nearest, speed_of, without_restitution
+from .answer import (
+    LAST_RESORT,
+    PATH,
+    STAYS,
+    VALIDITY,
+    answer,
+    differ,
+    mode_of,
+    nearest,
+    speed_of,
+    without_restitution,
+)
 from .pair import NO_SOLUTION
 from .problem import problem_of, twist_after
-from .types import Alternative, Contact, Flag, Mode, Outcome, Twist, TwoPointBody
+from .types import Alternative, Contact, Flag, Mode, Outcome, Twist, TwoPointBody, Validity
 
 LAWS = ("path", "total")
 """The names of the laws, at their numbers."""
@@ -23,13 +34,14 @@ new_tuple = tuple.__new__
 """Makes a NamedTuple in half the time of its own constructor, which is a Python function that calls this."""
 
 
-def solve_impact(body: TwoPointBody, twist: Twist, law: str = "path") -> Outcome:
+def solve_impact(body: TwoPointBody, twist: Twist, law: str = "path", validity: Validity = VALIDITY) -> Outcome:
     """What the impact at the new contact does to a body that stands on the old one.
 
     `body` is a TwoPointBody in SI units; without an old contact the impact is a one-point impact. `twist` is
     (vx, vy, omega) of the mass centre right before. `law` is "path" (Routh's impulse path, Poisson restitution at the
     new contact) or "total" (the paper's impulses of the whole impact, Newton restitution). Where both contacts are
-    struck the total law answers; without restitution it is the last resort where a law has no answer.
+    struck the total law answers; without restitution it is the last resort where a law has no answer. `validity` says
+    from where on an outcome is flagged because rigid theory is too simple for it.
 
     Input that no body can have gives Flag.INVALID_INPUT, never an exception; an unknown law raises ValueError.
     Source: the paper, sections 2 to 4, generalised.
@@ -37,7 +49,7 @@ def solve_impact(body: TwoPointBody, twist: Twist, law: str = "path") -> Outcome
     number = number_of(law)
     mass, inertia, old, new = body
     mode, after, na, ta, nb, tb, segments, flags, energy_lost, unique, used = answer(
-        mass, inertia, old is not None, old or NOWHERE, new, twist, number
+        mass, inertia, old is not None, old or NOWHERE, new, twist, number, validity
     )
     outcome = (
         MODES[mode],

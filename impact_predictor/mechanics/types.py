@@ -61,6 +61,28 @@ class Flag(IntFlag):
     """No law has a solution (supports that move apart); the twist is left as it was."""
     INVALID_INPUT = 512
     """A number is not finite, or mass, inertia, friction, restitution or a normal is out of range."""
+    THIN_BODY = 1024
+    """The body is so thin that it bends while it strikes: rigid theory says too little (`Validity.slenderness`)."""
+    SLOW_IMPACT = 2048
+    """The impact is so weak that gravity matters while it lasts (`Validity.gravity_share`)."""
+
+
+class Validity(NamedTuple):
+    """Where the theory of rigid impact stops (the paper, section 2.2): beyond these an outcome is flagged.
+
+    A body that stands on its old contact is thin (Flag.THIN_BODY) when the mass centre is nearer to the supports'
+    tangents at both contacts than `slenderness` times half the length of the uniform rod of its inertia, sqrt(3) rho.
+    For a rod on its long side `slenderness` is thickness over length; of the paper's rods that of 0.005 rebounded at
+    both supports and that of 0.0125 did not.
+
+    An impact is slow (Flag.SLOW_IMPACT) when the impulse of `gravity` (m/s^2) during `contact_time` (s), the longest
+    that the contact may last, is more than `gravity_share` of the normal impulse at the new contact.
+    """
+
+    slenderness: float = 0.01
+    gravity: float = 9.81
+    contact_time: float = 5e-3
+    gravity_share: float = 0.25
 
 
 class Twist(NamedTuple):

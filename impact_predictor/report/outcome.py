@@ -38,6 +38,8 @@ FLAGS: Final = {
     Flag.LAST_RESORT: "the law had no answer, so the total law without restitution gave one",
     Flag.NO_SOLUTION: "no law has a solution (supports that move apart); the velocities are left as they were",
     Flag.INVALID_INPUT: "a number is out of range",
+    Flag.THIN_BODY: "so thin a body bends while it strikes and rebounds; rigid theory does not know that",
+    Flag.SLOW_IMPACT: "so weak an impact that gravity matters while it lasts; rigid theory leaves gravity out",
 }
 LAWS: Final = {
     "path": "growing impulse, Poisson restitution",

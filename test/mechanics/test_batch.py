@@ -19,6 +19,7 @@ from impact_predictor import (
     Mode,
     Twist,
     TwoPointBody,
+    Validity,
     cylinder,
     plate,
     rod,
@@ -67,6 +68,15 @@ def test_many_impacts_have_the_answers_of_each_alone_to_the_last_bit(kind, law):
         if row(solve_impact(element(body, i), element(twist, i), law), law) != row_of(outcomes, i)
     ]
     assert not wrong
+
+
+def test_many_impacts_have_one_validity_of_rigid_theory():
+    bodies = rod(length=0.4, thickness=np.array([0.002, 0.02]), a=0.1, b=0.1, mass=0.3, friction=0.4)
+    usual = solve_impacts(bodies, bodies.turning(omega=-3.0)).flags
+    strict = solve_impacts(bodies, bodies.turning(omega=-3.0), validity=Validity(slenderness=1, contact_time=1)).flags
+    both = Flag.THIN_BODY | Flag.SLOW_IMPACT
+    assert list(usual & both) == [Flag.THIN_BODY, 0]
+    assert list(strict & both) == [both, both]
 
 
 @pytest.mark.parametrize("law", LAWS)

@@ -20,6 +20,8 @@ CLOSE = 1e-11
 """Largest error of a contact velocity, as a part of the largest one, where W is well conditioned."""
 ERROR = 5e-15
 """The same for each unit of W's condition number, and part of the terms of W P: a few dozen roundings."""
+OF_A_BODY = Flag.THIN_BODY | Flag.SLOW_IMPACT
+"""What W and c cannot tell: they know neither shape nor weight."""
 
 
 def rows_of(body):
@@ -110,7 +112,7 @@ def test_a_planar_body_known_by_w_has_the_impact_of_the_body(kind, law):
             assert ours == pytest.approx(theirs, abs=size * max(CLOSE, 10.0 * ERROR * condition(w)))
         assert (outcome.mode, outcome.law) == (expected.mode, expected.law)
         # What ends at the same time on paper is apart by a rounding here or there.
-        others += (outcome.segments, outcome.flags) != (expected.segments, expected.flags)
+        others += (outcome.segments, outcome.flags) != (expected.segments, expected.flags & ~OF_A_BODY)
     assert others <= EACH // 50
 
 

@@ -5,7 +5,7 @@ import random
 
 import pytest
 
-from impact_predictor import Contact, Flag, Mode, Twist, TwoPointBody, cylinder, plate, solve_impact
+from impact_predictor import Contact, Flag, Mode, Twist, TwoPointBody, Validity, cylinder, plate, rod, solve_impact
 
 CLOSE = 1e-11
 """Of the largest contact speed: conditioning of up to 1e4 times a few dozen roundings."""
@@ -266,3 +266,53 @@ def test_contacts_at_one_place_have_an_answer():
         outcome = solve_impact(body, Twist(1.0, 0.0, 0.0), law)
         assert all(math.isfinite(part) for part in outcome.twist)
         assert contact_velocity(body.new, outcome.twist)[0] >= -CLOSE
+
+
+def falling_block(speed):
+    """A block that turns about its old edge and strikes with this speed (m/s) at the new one, a metre away."""
+    body = plate(length=1.0, height=0.4, mass=10.0, friction=0.2)
+    return body, body.turning(omega=-speed)
+
+
+def test_an_impact_that_gravity_outweighs_while_it_lasts_is_flagged_as_slow():
+    body, twist = falling_block(1.0)
+    normal = solve_impact(body, twist).impulses[1][0]
+    # The impulse is proportional to the speed: this speed makes gravity's a quarter of it.
+    border = body.mass * 9.81 * 5e-3 / (0.25 * normal)
+    assert solve_impact(*falling_block(0.999 * border)).flags & Flag.SLOW_IMPACT
+    assert not solve_impact(*falling_block(1.001 * border)).flags & Flag.SLOW_IMPACT
+
+
+@pytest.mark.parametrize("law", ["path", "total"])
+def test_where_an_impact_is_slow_is_the_users_choice(law):
+    body, twist = falling_block(1.0)
+    assert not solve_impact(body, twist, law).flags & Flag.SLOW_IMPACT
+    for validity in (Validity(contact_time=1.0), Validity(gravity=2000.0), Validity(gravity_share=1e-3)):
+        assert solve_impact(body, twist, law, validity).flags & Flag.SLOW_IMPACT
+    assert not solve_impact(*falling_block(1e-6), law, Validity(gravity_share=1e6)).flags & Flag.SLOW_IMPACT
+
+
+def test_an_impact_that_does_not_happen_is_not_slow():
+    body, _ = falling_block(1.0)
+    assert solve_impact(body, body.turning(omega=1.0)).flags is Flag.NONE
+
+
+def test_a_one_point_impact_can_be_slow_but_a_body_that_stands_on_nothing_is_not_thin():
+    body = TwoPointBody(1.0, 1.0, None, Contact(0.3, 0.0, 0.5))
+    outcome = solve_impact(body, Twist(0.0, -1e-3, 0.0))
+    assert outcome.flags & Flag.SLOW_IMPACT
+    assert not outcome.flags & Flag.THIN_BODY
+
+
+@pytest.mark.parametrize("scale", [1e-3, 1.0, 1e3])
+def test_thickness_over_length_decides_whether_a_rod_is_thin(scale):
+    for thickness, thin in ((0.0099, True), (0.0101, False)):
+        body = rod(length=scale, thickness=thickness * scale, a=0.2 * scale, b=0.3 * scale, mass=2.0, friction=0.4)
+        assert bool(solve_impact(body, body.turning(omega=-1.0)).flags & Flag.THIN_BODY) is thin
+        everyone = solve_impact(body, body.turning(omega=-1.0), validity=Validity(slenderness=0.02))
+        assert everyone.flags & Flag.THIN_BODY
+
+
+def test_a_cylinder_on_edges_beside_its_axis_is_not_thin():
+    body = cylinder(radius=0.3, gamma=1.5, mass=2.0, friction=0.5)  # 1.5 rad: nearly level with the axis
+    assert not solve_impact(body, body.turning(omega=-1.0)).flags & Flag.THIN_BODY

@@ -1,0 +1,94 @@
+"""The paper's falling rods: what is predicted of them, what was seen, and which predictions are flagged."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import pytest
+from click.testing import CliRunner
+
+from impact_predictor import Flag, Mode, rod
+from impact_predictor.cli import main
+from impact_predictor.commands.experiment import MILLIMETRES, SYMMETRIC, VERY_CLOSE
+from impact_predictor.report.experiment import ANGLES, LENGTH, THICKNESSES, border, falling, trial
+
+FRICTION = 0.4
+DOUBTS = Flag.THIN_BODY | Flag.SLOW_IMPACT
+
+
+def trials(angle):
+    places = [(a, a) for a in SYMMETRIC] + list(VERY_CLOSE)
+    return [trial(h, a / MILLIMETRES, b / MILLIMETRES, FRICTION, angle) for a, b in places for h in THICKNESSES]
+
+
+@pytest.mark.parametrize("angle", ANGLES)
+def test_whatever_was_seen_to_be_otherwise_than_predicted_is_flagged(angle):
+    assert all(trial.agrees or trial.doubted for trial in trials(angle))
+
+
+@pytest.mark.parametrize("angle", ANGLES)
+def test_thick_rods_on_supports_not_too_close_are_predicted_as_seen_and_not_flagged(angle):
+    chosen = [trial for trial in trials(angle) if trial.thickness > 0.002 and trial.a >= 0.05]
+    assert len(chosen) > 30
+    assert all(trial.agrees and not trial.outcome.flags & DOUBTS for trial in chosen)
+    assert {trial.outcome.mode for trial in chosen} == {Mode.STOP, Mode.PIVOT}
+
+
+def test_the_rod_of_2_mm_is_thin_and_that_of_5_mm_is_not():
+    flagged = {h: bool(trial(h, 0.1, 0.1, FRICTION, 30.0).outcome.flags & Flag.THIN_BODY) for h in THICKNESSES}
+    assert flagged == {0.020: False, 0.010: False, 0.005: False, 0.002: True}
+
+
+@pytest.mark.parametrize("angle", ANGLES)
+def test_the_rod_that_turned_back_about_a_support_close_to_its_middle_struck_slowly(angle):
+    for b in (0.1, 0.2):
+        found = trial(0.01, 0.01, b, FRICTION, angle)
+        assert found.observed is Mode.BACK_PIVOT
+        assert found.outcome.flags & Flag.SLOW_IMPACT
+
+
+def test_a_thin_rod_stops_from_115_5_mm_on():
+    # 12 a^2 = l^2: a = l / sqrt 12 = 115.47 mm.
+    assert border(0.0, FRICTION) == pytest.approx(LENGTH / math.sqrt(12.0), abs=1e-8)
+
+
+@pytest.mark.parametrize("thickness", THICKNESSES)
+def test_a_thick_rod_stops_where_12_ab_is_l_squared_and_3_h_squared(thickness):
+    expected = math.sqrt((LENGTH**2 + 3.0 * thickness**2) / 12.0)
+    assert border(thickness, FRICTION) == pytest.approx(expected, abs=1e-8)
+
+
+def test_a_thin_rod_strikes_with_the_angular_velocity_of_2_1():
+    for angle in (15.0, 30.0):
+        body = rod(length=0.4, thickness=0.0, a=0.075, b=0.05, mass=1.0, friction=0.0)
+        expected = math.sqrt(24.0 * 9.81 * 0.075 / (0.4**2 + 12.0 * 0.075**2) * math.sin(math.radians(angle)))
+        assert falling(body, math.radians(angle)).omega == pytest.approx(-expected, rel=1e-12)
+
+
+def run(*arguments: str):
+    return CliRunner().invoke(main, ("bench", "experiment", *arguments), terminal_width=100)
+
+
+def test_the_command_tells_the_border_and_how_many_are_as_seen():
+    result = run()
+    assert result.exit_code == 0
+    assert "stops from a = 115.9 mm (20 mm thick), 115.6 mm (10 mm thick), 115.5 mm (5 mm thick), 115.5 mm (2 mm" in (
+        result.output
+    )
+    assert "As seen: 45 of 68; of the 23 others 23 are flagged." in result.output
+
+
+def test_as_json_it_has_every_trial_with_what_was_predicted_and_seen():
+    answer = json.loads(run("--json").stdout)
+    assert [round(1e3 * entry["a"], 1) for entry in answer["borders"]] == [115.9, 115.6, 115.5, 115.5]
+    assert len(answer["trials"]) == (len(SYMMETRIC) + len(VERY_CLOSE)) * len(THICKNESSES)
+    thin = [entry for entry in answer["trials"] if entry["thickness"] == 0.002]
+    assert all(entry["observed"] == "FLIGHT" and "THIN_BODY" in entry["flags"] for entry in thin)
+
+
+def test_a_friction_that_no_support_has_is_refused_in_a_sentence():
+    result = run("--friction", "-1")
+    assert result.exit_code == 2
+    assert result.stderr.startswith("error: ")
+    assert result.stderr.count("\n") == 1
