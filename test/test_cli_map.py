@@ -67,7 +67,8 @@ def test_the_impacts_of_the_documentation_end_as_it_says() -> None:
         json.loads(CliRunner().invoke(main, [*shlex.split(line)[1:], "--json"]).stdout) for line in quoted("solve")
     )
     assert (slips["mode"], slips["segments"]) == ("STOP", ["--", "SS"])
-    assert (jams["mode"], jams["flags"]) == ("BACK_PIVOT", ["JAMMED"])
+    assert jams["mode"] == "BACK_PIVOT"
+    assert "JAMMED" in jams["flags"]
 
 
 @pytest.mark.parametrize("body", BODIES)

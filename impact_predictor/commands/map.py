@@ -11,11 +11,11 @@ import click
 
 from ..errors import InputError
 from ..mechanics.impact import LAWS
-from ..report.map_parameters import SUBJECTS, Axis, Parameter, fixed_values, option_of
+from ..report.maps.parameters import SUBJECTS, Axis, Parameter, fixed_values, option_of
 from .examples import examples
 
 if TYPE_CHECKING:
-    from ..report.map import ModeMap
+    from ..report.maps.modes import ModeMap
 
 PICTURES: Final = (".png", ".svg")
 SUFFIXES: Final = (*PICTURES, ".csv")
@@ -148,7 +148,7 @@ def answer(
     for file in files:
         check_output(file)
 
-    from ..report.map import map_modes
+    from ..report.maps.modes import map_modes
     from .compiling import compiling_is_said
     from .progress import progress
 
@@ -157,14 +157,14 @@ def answer(
     for file in files:
         write(file, modes)
     if as_json:
-        from ..report.map_data import summary_of
+        from ..report.maps.data import summary_of
 
         click.echo(json.dumps(summary_of(modes), indent=2, allow_nan=False))
         return
 
     from rich.console import Console
 
-    from ..report.map_data import table_of
+    from ..report.maps.data import table_of
     from ..report.table import show
 
     show(Console(), table_of(modes))
@@ -191,11 +191,11 @@ def write(file: Path, modes: ModeMap) -> None:
         InputError: the file cannot be written.
     """
     if file.suffix.lower() == ".csv":
-        from ..report.map_data import write_csv
+        from ..report.maps.data import write_csv
 
         write_csv(file, modes)
     else:
-        from ..report.map_figure import write_figure
+        from ..report.maps.figure import write_figure
 
         write_figure(file, modes)
 

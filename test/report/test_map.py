@@ -14,12 +14,12 @@ from numpy.typing import NDArray
 from impact_predictor import Flag, Mode, TwoPointBody, solve_impact, solve_impacts
 from impact_predictor.errors import InputError
 from impact_predictor.mechanics.closed_forms import cylindrical
-from impact_predictor.report.map import ModeMap, map_modes, middles, shares
-from impact_predictor.report.map_borders import borders_of
-from impact_predictor.report.map_data import summary_of, write_csv
-from impact_predictor.report.map_figure import COLOURS, write_figure
-from impact_predictor.report.map_parameters import SUBJECTS, Axis, fixed_values, problem_at
-from impact_predictor.report.map_words import axis_label, conditions
+from impact_predictor.report.maps.borders import borders_of
+from impact_predictor.report.maps.data import summary_of, write_csv
+from impact_predictor.report.maps.figure import COLOURS, write_figure
+from impact_predictor.report.maps.modes import ModeMap, map_modes, middles, shares
+from impact_predictor.report.maps.parameters import SUBJECTS, Axis, fixed_values, problem_at
+from impact_predictor.report.maps.words import axis_label, conditions
 
 CELLS = 120
 

@@ -7,9 +7,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from ..mechanics.types import Mode
-from .map import ModeMap
-from .map_parameters import SUBJECTS, Axis
+from ...mechanics.types import Mode
+from .modes import ModeMap
+from .parameters import SUBJECTS, Axis
 
 MEANINGS: Final = {
     Mode.NO_IMPACT: "B is not approached",

@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..mechanics.batch import Outcomes, solve_impacts
-from ..mechanics.types import Flag, Mode, Twist, TwoPointBody
-from .map_parameters import OMEGA, SUBJECTS, Axis, problem_at
+from ...mechanics.batch import Outcomes, solve_impacts
+from ...mechanics.types import Flag, Mode, Twist, TwoPointBody
+from .parameters import OMEGA, SUBJECTS, Axis, problem_at
 
 CELLS_AT_ONCE = 100_000
 """Cells that are solved between two calls of the progress bar; both laws keep their outcomes of that many."""

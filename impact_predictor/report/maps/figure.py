@@ -20,12 +20,12 @@ from matplotlib.path import Path
 from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt
 
-from ..errors import InputError
-from ..mechanics.types import Mode
-from .map import ModeMap, middles, shares
-from .map_borders import Border, borders_of
-from .map_sketch import draw_sketch
-from .map_words import MEANINGS, PAPER_NUMBERS, TITLES, axis_label, conditions, formula_note, hatched
+from ...errors import InputError
+from ...mechanics.types import Mode
+from .borders import Border, borders_of
+from .modes import ModeMap, middles, shares
+from .sketch import draw_sketch
+from .words import MEANINGS, PAPER_NUMBERS, TITLES, axis_label, conditions, formula_note, hatched
 
 COLOURS: Final = {
     Mode.NO_IMPACT: "#ffffff",

@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 from rich.table import Table
 
-from ..errors import InputError
-from ..mechanics.impact import states_of
-from ..mechanics.types import Mode
-from .map import ModeMap, middles, shares
-from .map_words import MEANINGS, hatched
-from .table import plain_table
+from ...errors import InputError
+from ...mechanics.impact import states_of
+from ...mechanics.types import Mode
+from ..table import plain_table
+from .modes import ModeMap, middles, shares
+from .words import MEANINGS, hatched
 
 
 def write_csv(path: Path, modes: ModeMap) -> None:

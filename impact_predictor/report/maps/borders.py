@@ -10,9 +10,9 @@ import contourpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ..mechanics.closed_forms import cylindrical, flat
-from .map import ModeMap
-from .map_parameters import SUBJECTS, Axis, Values, problem_at
+from ...mechanics.closed_forms import cylindrical, flat
+from .modes import ModeMap
+from .parameters import SUBJECTS, Axis, Values, problem_at
 
 NODES: Final = 401
 """Points along each axis between which a border is interpolated."""

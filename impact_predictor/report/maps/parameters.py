@@ -6,9 +6,9 @@ from collections.abc import Callable, Mapping
 from math import inf, pi
 from typing import Any, Final, NamedTuple
 
-from ..errors import InputError
-from ..mechanics.bodies import cylinder, plate, refuse, rod
-from ..mechanics.types import Twist, TwoPointBody
+from ...errors import InputError
+from ...mechanics.bodies import cylinder, plate, refuse, rod
+from ...mechanics.types import Twist, TwoPointBody
 
 OMEGA: Final = -1.0
 """Angular velocity before the impact (rad/s); without a slip the mode does not depend on it."""

@@ -1,0 +1,1 @@
+"""Maps of the modes: which one follows an impact, over any two parameters of a body."""
