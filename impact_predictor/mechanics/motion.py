@@ -67,13 +67,9 @@ class Fall(NamedTuple):
     motion: Motion
 
 
-class _Arm(NamedTuple):
-    """A point seen from the stance contact at angle 0: its direction in rad from +x and (clockwise) from -x."""
-
-    bearing: float
-    bearing_back: float
-    length: float
-    point: int
+_Arm = tuple[float, float, float, int]
+"""A point seen from the stance contact at angle 0: its direction in rad from +x and (clockwise) from -x, its distance
+in m, and its index."""
 
 
 def next_touchdown(
@@ -91,7 +87,7 @@ def next_touchdown(
     `points` are the contact points (x, y) in m relative to the mass centre at angle 0; `stance` is the index of the
     one that stands on the support, None in flight; `rho_squared` = inertia / mass in m^2; `friction` is the stance's
     coefficient: 0 slips freely, inf holds the stance like a hinge, which neither slips nor lifts; `gravity` in m/s^2;
-    `horizon` in s; `tolerance` the error allowed to each step of a stance that slips, relative to the turning in it
+    `horizon` in s; `tolerance` the error aimed at where a stance slips, relative to the time and the angular velocity
     (all else is exact). Numbers must be finite (but friction and horizon) and friction not negative.
 
     A stance point is taken to stand: its gap and its normal velocity count as rounding and are dropped, and so is a
@@ -101,27 +97,34 @@ def next_touchdown(
     """
     if stance is None:
         return _fly(state, points, gravity, horizon)
-    foot = points[stance]
-    arms = tuple(
-        _Arm(math.atan2(y, x), math.atan2(y, -x), math.hypot(x, y), index)
-        for index, (x, y) in enumerate((x - foot[0], y - foot[1]) for x, y in points)
-        if x or y
-    )
+    foot_x, foot_y = points[stance]
+    arms: list[_Arm] = []
+    for index, (x, y) in enumerate(points):
+        if x != foot_x or y != foot_y:
+            x, y = x - foot_x, y - foot_y
+            arms.append((math.atan2(y, x), math.atan2(y, -x), math.hypot(x, y), index))
     start, turned, angle, omega, time = state.angle, 0.0, state.angle, state.omega, 0.0
-    arm_x, arm_y = _from_contact(foot, angle)
+    arm_x, arm_y = _from_contact(foot_x, foot_y, angle)
     contact_x = state.x - arm_x
     slip = state.vx + omega * arm_y
-    if friction == math.inf or abs(slip) <= _SLIP_ROUNDING * (abs(state.vx) + abs(omega) * math.hypot(*foot)):
+    if friction == math.inf or abs(slip) <= _SLIP_ROUNDING * (abs(state.vx) + abs(omega) * (abs(foot_x) + abs(foot_y))):
         slip = 0.0
     direction = (slip > 0.0) - (slip < 0.0)
 
     for _ in range(_MAX_STRETCHES):
-        next_points = _ahead(arms, start, turned, -1.0), _ahead(arms, start, turned, 1.0)
-        travel = next_points[0][0], next_points[1][0]
+        travel, next_points = _ahead(arms, start, turned)
         if direction:
-            drag = direction * friction
-            left = horizon - time
-            stretch = slide((arm_x, arm_y), omega, slip, drag, travel, rho_squared, gravity, left, tolerance)
+            stretch = slide(
+                (arm_x, arm_y),
+                omega,
+                slip,
+                direction * friction,
+                travel,
+                rho_squared,
+                gravity,
+                horizon - time,
+                tolerance,
+            )
         else:
             stretch = turn((arm_x, arm_y), omega, travel, rho_squared, friction, gravity)
         time += stretch.time
@@ -129,11 +132,11 @@ def next_touchdown(
             break
         turned += stretch.turned
         angle, omega, slip, contact_x = start + turned, stretch.omega, stretch.slip, contact_x + stretch.moved
-        arm_x, arm_y = _from_contact(foot, angle)
+        arm_x, arm_y = _from_contact(foot_x, foot_y, angle)
         now = PlanarState(contact_x + arm_x, arm_y, angle, slip - omega * arm_y, omega * arm_x, omega)
         motion = Motion.SLIDING if direction else Motion.TURNING
         if stretch.end is End.TOUCHES:
-            return Fall(time, next_points[stretch.direction > 0][1], now, motion)
+            return Fall(time, next_points[stretch.direction > 0], now, motion)
         if stretch.end is End.LIFTS:
             fall = _fly(now, points, gravity, horizon - time, stance)
             return fall._replace(time=time + fall.time, state=state if fall.point < 0 else fall.state)
@@ -147,31 +150,40 @@ def next_touchdown(
     return Fall(math.inf, -1, state, Motion.SLIDING if direction else Motion.TURNING)
 
 
-def _from_contact(foot: Vector, angle: float) -> Vector:
+def _from_contact(foot_x: float, foot_y: float, angle: float) -> Vector:
     """The mass centre seen from the stance contact, in the world's axes."""
     sine, cosine = math.sin(angle), math.cos(angle)
-    return foot[1] * sine - foot[0] * cosine, -foot[0] * sine - foot[1] * cosine
+    return foot_y * sine - foot_x * cosine, -foot_x * sine - foot_y * cosine
 
 
-def _ahead(arms: tuple[_Arm, ...], start: float, turned: float, direction: float) -> tuple[float, int]:
-    """How far in rad the body turns until the next point touches, and which; 0 for one that touches already.
+def _ahead(arms: list[_Arm], start: float, turned: float) -> tuple[Vector, tuple[int, int]]:
+    """How far in rad the body turns clockwise and counter-clockwise until the next point touches, and which points.
 
-    A point touches when the line from the contact to it lies along the support. Of points on one such line the farthest
-    strikes. The body's angle is start + turned, in two parts because a body that rises from the support and falls back
-    may turn by less than the rounding of its angle.
+    A point touches when the line from the contact to it lies along the support; one that touches already is 0 away. Of
+    points on one such line the farthest strikes. The body's angle is start + turned, in two parts because a body that
+    rises from the support and falls back may turn by less than the rounding of its angle.
     """
     rounding = _ROUNDING * (abs(start) + math.pi)
-    nearest, length, struck = math.inf, 0.0, -1
-    for arm in arms:
-        travel = (arm.bearing + start if direction < 0.0 else arm.bearing_back - start) % _FULL_TURN
-        if travel > 1.5 * math.pi:
-            travel -= _FULL_TURN  # below the support and moving down
-        if abs(travel) <= rounding:
-            travel = 0.0
-        travel = max(0.0, travel - direction * turned)
-        if travel < nearest - rounding or (travel <= nearest + rounding and arm.length > length):
-            nearest, length, struck = travel, arm.length, arm.point
-    return nearest, struck
+    back, forth, back_length, forth_length, back_point, forth_point = math.inf, math.inf, 0.0, 0.0, -1, -1
+    for bearing, bearing_back, length, point in arms:
+        travel = _away(bearing + start, turned, rounding)
+        if travel < back - rounding or (travel <= back + rounding and length > back_length):
+            back, back_length, back_point = travel, length, point
+        travel = _away(bearing_back - start, -turned, rounding)
+        if travel < forth - rounding or (travel <= forth + rounding and length > forth_length):
+            forth, forth_length, forth_point = travel, length, point
+    return (back, forth), (back_point, forth_point)
+
+
+def _away(travel: float, turned: float, rounding: float) -> float:
+    """The turn until a point touches, less what is turned already."""
+    travel %= _FULL_TURN
+    if travel > 1.5 * math.pi:
+        travel -= _FULL_TURN  # below the support and moving down
+    if -rounding <= travel <= rounding:
+        travel = 0.0
+    travel += turned
+    return travel if travel > 0.0 else 0.0
 
 
 def _fly(

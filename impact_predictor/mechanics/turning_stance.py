@@ -146,8 +146,15 @@ def _first_slip(reaction: tuple[float, float, float], tilt: float, direction: in
     """
     weight, spin, pull = reaction
     level = (weight + 0.5 * pull) * math.cos(edge)
-    single = -spin * math.cos(tilt - edge), direction * spin * math.sin(tilt - edge), 1.0
-    double = 1.5 * pull * math.cos(2.0 * tilt - edge), -1.5 * direction * pull * math.sin(2.0 * tilt - edge), 2.0
-    if level + single[0] + double[0] < -_ROUNDING * (weight + abs(spin) + 2.0 * pull):
+    single = -spin * math.cos(tilt - edge), direction * spin * math.sin(tilt - edge)
+    double = 1.5 * pull * math.cos(2.0 * tilt - edge), -1.5 * direction * pull * math.sin(2.0 * tilt - edge)
+    inside = level + single[0] + double[0]
+    if inside < -_ROUNDING * (weight + abs(spin) + 2.0 * pull):
         return 0.0
-    return first_descent(level, 0.0, 0.0, (single, double), last)
+    cosine, sine = math.cos(last), math.sin(last)
+    inside_last = level + single[0] * cosine + single[1] * sine
+    inside_last += double[0] * (1.0 - 2.0 * sine * sine) + double[1] * 2.0 * sine * cosine
+    # A function that bends no more than this keeps above its chord less an eighth of it.
+    if min(inside, inside_last) > 0.125 * (abs(spin) + 6.0 * pull) * last * last:
+        return math.inf
+    return first_descent(level, 0.0, 0.0, ((*single, 1.0), (*double, 2.0)), last)
