@@ -3,21 +3,30 @@
     python benchmarks/bench_predictor.py [RUNS]
 
 Each run goes over the whole record; of each sample the fastest run counts, so that other programs disturb little. The
-messages are decoded as they come, as in the node, but only the predictor is timed.
+messages are decoded as they come, as in the node, but only the predictor is timed. What a part of it costs is what is
+saved where a recording of its answers answers in its place.
 """
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+from contextlib import ExitStack
 from pathlib import Path
 from time import perf_counter_ns
+from types import ModuleType
+from typing import Any, NamedTuple
+from unittest.mock import patch
 
 import numpy as np
+from numpy.typing import NDArray
+from rich.console import Console
+from rich.table import Table
 
 from impact_predictor.bags.read import BagMessage, read_messages
 from impact_predictor.parameter_file import read_parameters
 from impact_predictor.parameters import validate
+from impact_predictor.prediction import approach, predictor, transverse
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.ros.messages import ODOMETRY, POLYGON, decode_odometry, decode_polygon
@@ -29,34 +38,88 @@ PARAMETERS = ROOT / "config/cube_tosses.yaml"
 KINDS = ("no touchdown ahead", "in flight", "standing")
 
 
+class Part(NamedTuple):
+    """A part of the predictor: a function, and the module that calls it."""
+
+    name: str
+    module: ModuleType
+    function: str
+
+
+PARTS = (
+    Part("the motion until the touchdown", approach, "next_touchdown"),
+    Part("impacts with slip across the plane", transverse, "solve_transverse_impact"),
+    Part("impacts in the plane", predictor, "solve_impact"),
+)
+
+
 def run(scene: Scene, record: Sequence[BagMessage]) -> tuple[list[float], list[int]]:
     """Microseconds of each sample, and the index of its kind."""
-    predictor = Predictor(scene)
+    body = Predictor(scene)
     costs, kinds = [], []
     for topic, _, data in record:
         if topic == "/cube/contact_geometry":
-            predictor.set_geometry(decode_polygon(data))
+            body.set_geometry(decode_polygon(data))
             continue
         sample = decode_odometry(data)
         started = perf_counter_ns()
-        touchdown = predictor.update(sample).touchdown
+        touchdown = body.update(sample).touchdown
         costs.append((perf_counter_ns() - started) * 1e-3)
         kinds.append(0 if touchdown is None else 2 if touchdown.old else 1)
     return costs, kinds
 
 
+def fastest(scene: Scene, record: Sequence[BagMessage], runs: int, *known: Part) -> NDArray[np.float64]:
+    """Microseconds of each sample in its fastest run, with the answers of `known` parts taken from a recording."""
+    answers: dict[str, list[Any]] = {part.name: [] for part in known}
+
+    def recording(part: Part) -> Any:
+        work = getattr(part.module, part.function)
+
+        def recorded(*arguments: Any) -> Any:
+            answers[part.name].append(work(*arguments))
+            return answers[part.name][-1]
+
+        return recorded
+
+    def replaying(part: Part) -> Any:
+        following = iter(answers[part.name])
+        return lambda *_: next(following)
+
+    costs = []
+    for number in range(-1 if known else 0, runs):
+        with ExitStack() as stack:
+            for part in known:
+                stand_in = recording(part) if number < 0 else replaying(part)
+                stack.enter_context(patch.object(part.module, part.function, stand_in))
+            costs.append(run(scene, record)[0])
+    return np.asarray(np.min(costs[1 if known else 0 :], axis=0))
+
+
+def by_kind(title: str, costs: NDArray[np.float64], kinds: list[int]) -> Table:
+    """The costs by what the body does."""
+    table = Table(f"us per sample: {title}", "samples", "median", "mean", "99 %")
+    for name, chosen in [("all", costs), *((kind, costs[np.equal(kinds, k)]) for k, kind in enumerate(KINDS))]:
+        numbers = np.median(chosen), np.mean(chosen), np.percentile(chosen, 99)
+        table.add_row(name, str(len(chosen)), *(f"{number:.1f}" for number in numbers))
+    return table
+
+
 def main() -> int:
-    """Print the cost of a sample in all, and by what the body does."""
+    """Print what a sample costs in all, by what the body does, and by part."""
     runs = int(sys.argv[1]) if len(sys.argv) > 1 else 3
     scene = Scene.from_parameters(validate(read_parameters(PARAMETERS)))
     record = list(read_messages(TOSSES, {"/cube/odom": ODOMETRY, "/cube/contact_geometry": POLYGON}))
-    results = [run(scene, record) for _ in range(runs)]
-    costs = np.min([costs for costs, _ in results], axis=0)
-    kinds = np.array(results[0][1])
-    print(f"{'us per sample':20}{'samples':>9}{'median':>9}{'mean':>9}{'99 %':>9}")
-    for name, chosen in [("all", costs), *((kind, costs[kinds == k]) for k, kind in enumerate(KINDS))]:
-        row = (np.median(chosen), np.mean(chosen), np.percentile(chosen, 99))
-        print(f"{name:20}{len(chosen):9}" + "".join(f"{value:9.1f}" for value in row))
+    kinds = run(scene, record)[1]
+    whole = fastest(scene, record, runs)
+    in_plane = fastest(scene._replace(transverse_slip=False), record, runs)
+    parts = Table("part, as shipped", "us per sample")
+    for part in PARTS:
+        parts.add_row(part.name, f"{np.mean(whole - fastest(scene, record, runs, part)):.1f}")
+    parts.add_row("all else", f"{np.mean(fastest(scene, record, runs, *PARTS)):.1f}")
+    Console(width=120).print(
+        by_kind("as shipped", whole, kinds), by_kind("transverse_slip off", in_plane, kinds), parts
+    )
     return 0
 
 

@@ -41,6 +41,7 @@ CONSTANTS: tuple[tuple[ModuleType, str], ...] = (
     (score, "OFFSET"),
     (score, "SLOWEST"),
     (transverse, "SLIPS"),
+    (transverse, "TOLERANCE"),
 )
 
 

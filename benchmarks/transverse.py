@@ -16,7 +16,7 @@ from bisect import bisect_left
 from itertools import product
 from math import hypot
 from statistics import median
-from typing import NamedTuple
+from typing import Any, NamedTuple
 from unittest.mock import patch
 
 import numpy as np
@@ -28,7 +28,7 @@ from sensitivity import PARAMETERS, load
 
 from impact_predictor.mechanics.impact import solve_impact
 from impact_predictor.mechanics.transverse import Transverse, TransverseOutcome, solve_transverse_impact
-from impact_predictor.mechanics.types import Twist, TwoPointBody
+from impact_predictor.mechanics.types import Outcome, Twist, TwoPointBody
 from impact_predictor.parameter_file import read_parameters
 from impact_predictor.parameters import validate
 from impact_predictor.prediction import transverse
@@ -108,13 +108,13 @@ def landings_of(scene: Scene, record: list[Sample | Geometry]) -> list[Landing]:
     """The scored touchdowns with the impacts that the predictor solved for them."""
     motions: dict[Twist, tuple[TwoPointBody, Transverse | None]] = {}
 
-    def spatial(body: TwoPointBody, before: Twist, motion: Transverse, tolerance: float) -> TransverseOutcome:
+    def spatial(body: TwoPointBody, before: Twist, motion: Transverse, *choices: Any) -> TransverseOutcome:
         motions[before] = body, motion
-        return solve_transverse_impact(body, before, motion, tolerance)
+        return solve_transverse_impact(body, before, motion, *choices)
 
-    def planar(body: TwoPointBody, before: Twist, law: str) -> object:
+    def planar(body: TwoPointBody, before: Twist, *choices: Any) -> Outcome:
         motions[before] = body, None
-        return solve_impact(body, before, law)
+        return solve_impact(body, before, *choices)
 
     with (
         patch.object(transverse, "solve_transverse_impact", spatial),

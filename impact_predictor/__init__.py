@@ -3,12 +3,12 @@
 from typing import TYPE_CHECKING
 
 from .errors import InputError
-from .mechanics.bodies import cylinder, plate, rod
 from .mechanics.impact import solve_impact
 from .mechanics.types import Alternative, Contact, Flag, Mode, Outcome, Twist, TwoPointBody, Validity
 
 if TYPE_CHECKING:
     from .mechanics.batch import Outcomes, solve_impacts
+    from .mechanics.bodies import cylinder, plate, rod
     from .mechanics.margins import Margin, Margins
     from .mechanics.sensitivity import Sensitivity, sensitivity
     from .mechanics.transverse import Transverse, TransverseOutcome, solve_transverse_impact
@@ -47,11 +47,14 @@ LATER = {
     "Sensitivity": "sensitivity",
     "Transverse": "transverse",
     "TransverseOutcome": "transverse",
+    "cylinder": "bodies",
+    "plate": "bodies",
+    "rod": "bodies",
     "sensitivity": "sensitivity",
     "solve_impacts": "batch",
     "solve_transverse_impact": "transverse",
 }
-"""Names that are loaded when they are asked for, and their modules: some need numpy, a single impact needs nothing."""
+"""Names that are loaded when they are asked for, and their modules: the node needs none, and some need numpy."""
 
 
 def __getattr__(name: str) -> object:

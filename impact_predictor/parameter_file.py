@@ -29,6 +29,7 @@ from ruamel.yaml.events import (
 )
 
 from .errors import InputError
+from .parameters import Value, validate
 
 Scalar = bool | int | float | str
 FileValue = Scalar | list[Scalar]
@@ -117,6 +118,19 @@ def read_parameters(path: str | os.PathLike[str], node: str = "impact_predictor"
         raise InputError(f"the parameter file {path} is nested too deeply") from error
     except InputError as error:
         raise InputError(f"the parameter file {path}: {error}") from None
+
+
+def read_values(path: str | os.PathLike[str]) -> dict[str, Value]:
+    """The values of all parameters with a file: those that it sets, and the defaults of the others.
+
+    Raises:
+        InputError: as in `read_parameters`, or a parameter is wrong.
+    """
+    given = read_parameters(path)
+    try:
+        return validate(given)
+    except InputError as error:
+        raise InputError(f"the parameter file {os.fspath(path)}: {error}") from error
 
 
 def _parse(text: str) -> _Mapping | None:

@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Final, NamedTuple
 
 from .errors import InputError
+from .parameter_flaws import inertia_flaw, normal_flaw, points_flaw
 
 Value = bool | int | float | str | tuple[float, ...]
 
@@ -32,35 +33,6 @@ class Parameter(NamedTuple):
     flaw: Callable[[tuple[float, ...]], str] | None = None
 
 
-def _inertia_flaw(inertia: tuple[float, ...]) -> str:
-    if len(inertia) == 1:
-        return "" if inertia[0] > 0.0 else "it must be positive"
-    xx, yy, zz, xy, xz, yz = inertia
-    # Sylvester's criterion: the leading minors of a positive definite matrix are positive.
-    minors = (
-        xx,
-        xx * yy - xy * xy,
-        xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz),
-    )
-    return "" if min(minors) > 0.0 else "its matrix must be positive definite"
-
-
-def _points_flaw(numbers: tuple[float, ...]) -> str:
-    if len(numbers) % 3:
-        return f"it must have three numbers for each point, not {len(numbers)} in all"
-    points = [numbers[k : k + 3] for k in range(0, len(numbers), 3)]
-    if len(points) == 1:
-        return "a body needs at least two contact points"
-    for k, point in enumerate(points):
-        if point in points[:k]:
-            return f"the points {points.index(point)} and {k} coincide"
-    return ""
-
-
-def _normal_flaw(normal: tuple[float, ...]) -> str:
-    return "" if math.hypot(*normal) > 0.0 else "it must have a direction"
-
-
 PARAMETERS: Final[dict[str, Parameter]] = {
     parameter.name: parameter
     for parameter in (
@@ -73,7 +45,7 @@ PARAMETERS: Final[dict[str, Parameter]] = {
             "Inertia about the mass centre, in the axes of the body frame: ixx iyy izz ixy ixz iyz, the last "
             "three as elements of the matrix (URDF); or one number if it is the same about every axis (sphere, cube).",
             lengths=(1, 6),
-            flaw=_inertia_flaw,
+            flaw=inertia_flaw,
         ),
         Parameter(
             "body.center_of_mass", "double_array", (0.0, 0.0, 0.0), "m", "Mass centre in the body frame.", lengths=(3,)
@@ -85,7 +57,7 @@ PARAMETERS: Final[dict[str, Parameter]] = {
             "m",
             "Points that can touch the support, in the body frame: x y z of each, one after the other. Left out, they "
             "come from the topic contact_geometry; given, there is no such subscription.",
-            flaw=_points_flaw,
+            flaw=points_flaw,
         ),
         Parameter(
             "contact.friction",
@@ -131,7 +103,7 @@ PARAMETERS: Final[dict[str, Parameter]] = {
             "1",
             "Direction out of the support, in the frame of odom; of any length but zero.",
             lengths=(3,),
-            flaw=_normal_flaw,
+            flaw=normal_flaw,
         ),
         Parameter(
             "support.height", "double", 0.0, "m", "Distance of the support's plane from the origin, along its normal."
@@ -206,7 +178,25 @@ PARAMETERS: Final[dict[str, Parameter]] = {
             "Whether a prediction tells how far its impact is from another mode, in friction, geometry and slip.",
         ),
         Parameter(
-            "horizon", "double", 0.25, "s", "How far ahead of a sample a touchdown is looked for.", low=0.0, high=60.0
+            "validity.slenderness",
+            "double",
+            0.01,
+            "1",
+            "Thickness over length below which a body is flagged THIN_BODY: it bends while it strikes.",
+            low=0.0,
+            high=1.0,
+        ),
+        Parameter(
+            "validity.gravity_share",
+            "double",
+            0.25,
+            "1",
+            "Part of the new contact's impulse above which gravity's during contact.time gives the flag SLOW_IMPACT.",
+            low=1e-6,
+            high=1e6,
+        ),
+        Parameter(
+            "horizon", "double", 0.25, "s", "How far ahead of a sample a touchdown is looked for.", low=1e-3, high=60.0
         ),
         Parameter(
             "executor",

@@ -11,6 +11,7 @@ import pytest
 from impact_predictor.errors import InputError
 from impact_predictor.parameters import PARAMETERS, is_of_every_node, validate
 
+NO_BODY = "no body has it: about each axis, inertia is at most the sum of that about the two axes across it"
 REQUIRED: dict[str, Any] = {"body.mass": 0.37, "body.inertia": [8.1e-4], "contact.friction": 0.18}
 
 
@@ -85,6 +86,10 @@ def test_a_friction_is_not_negative_and_a_restitution_at_most_one() -> None:
         ([1.0, 1.0, -1.0, 0.0, 0.0, 0.0], "its matrix must be positive definite"),
         ([1.0, 1.0, 1.0, 1.0, 0.0, 0.0], "its matrix must be positive definite"),
         ([1.0, 1.0, 1.0, 0.7, 0.7, -0.7], "its matrix must be positive definite"),
+        ([1.0, 1.0, 3.0, 0.0, 0.0, 0.0], NO_BODY),
+        ([3.0, 1.0, 1.0, 0.0, 0.0, 0.0], NO_BODY),
+        ([1.0, 1.0, 1.0, 0.6, 0.0, 0.0], NO_BODY),  # its principal moments are 0.4, 1.0 and 1.6
+        ([1.0, 1.0, 1.0, 0.4, 0.4, 0.4], NO_BODY),  # 0.6, 0.6 and 1.8
         ([1.0, 1.0, 1.0], "it must be a list of 1 or 6 finite doubles kg m^2"),
         ([], "it must be a list of 1 or 6 finite doubles kg m^2"),
         ([math.nan], "it must be a list of 1 or 6 finite doubles kg m^2"),
@@ -96,9 +101,21 @@ def test_an_inertia_is_that_of_a_body(value: object, why: str) -> None:
     assert refusal(body__inertia=value) == f"the parameter body.inertia is {value!r}, but {why}"
 
 
-def test_an_inertia_with_products_is_allowed() -> None:
-    inertia = [1.0, 1.1, 1.2, 0.3, -0.2, 0.1]
+@pytest.mark.parametrize(
+    "inertia",
+    [
+        [1.0, 1.1, 1.2, 0.3, -0.2, 0.1],
+        [1.0, 1.0, 1.0, 0.4, 0.4, -0.4],  # its principal moments are 0.2, 1.4 and 1.4
+        [1.0, 1.0, 2.0, 0.0, 0.0, 0.0],  # a thin plate
+        [0.0833, 0.0833, 0.167, 0.0, 0.0, 0.0],  # a thin plate, rounded
+    ],
+)
+def test_an_inertia_of_a_body_is_allowed_with_products_and_rounded(inertia: list[float]) -> None:
     assert validate({**REQUIRED, "body.inertia": inertia})["body.inertia"] == tuple(inertia)
+
+
+def test_a_horizon_reaches_ahead() -> None:
+    assert refusal(horizon=0.0).endswith("but it must be a finite double from 0.001 to 60 s")
 
 
 @pytest.mark.parametrize(

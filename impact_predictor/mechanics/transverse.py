@@ -26,12 +26,12 @@ from __future__ import annotations
 from math import inf, isfinite, sqrt
 from typing import NamedTuple
 
-from .answer import OLD_RESTITUTION_IGNORED, PATH, mode_of, unchanged
-from .impact import MODES, NOWHERE, flags_of, solve_impact, states_of
+from .answer import OLD_RESTITUTION_IGNORED, PATH, VALIDITY, doubts, mode_of, unchanged
+from .impact import MODES, NOWHERE, flags_of, new_tuple, solve_impact, states_of
 from .pair import NO_SOLUTION
 from .problem import SPEED_ROUNDING, problem_of, twist_after
-from .transverse_law import FAR, Path
-from .types import Contact, Flag, Mode, Outcome, Twist, TwoPointBody
+from .transverse_law import FAR, follow
+from .types import Contact, Flag, Mode, Outcome, Twist, TwoPointBody, Validity
 
 GAIN = 10.0
 """Energy may rise by this many times the tolerance, of mass times these speeds squared: more is no error of the
@@ -68,13 +68,17 @@ class TransverseOutcome(NamedTuple):
 
 
 def solve_transverse_impact(
-    body: TwoPointBody, twist: Twist, transverse: Transverse, tolerance: float = 1e-4
+    body: TwoPointBody,
+    twist: Twist,
+    transverse: Transverse,
+    tolerance: float = 1e-4,
+    validity: Validity = VALIDITY,
 ) -> TransverseOutcome:
     """What the impact at the new contact does to a body that also moves across the impact plane.
 
     As `solve_impact` by its path law, with friction against the whole slip. `tolerance`, part of the sum of the contact
-    speeds in the plane and 1e-7 at the finest, bounds the error of a velocity in each step along the impulse; slower
-    slips end.
+    speeds in the plane and 1e-7 at the finest, bounds the error of a slip in each step along the impulse; slower slips
+    end.
 
     Without slip across the plane the answer is that of `solve_impact`, to the last bit, and where both contacts are
     struck it answers for the plane alone. Where the path is lost it does so too, with Flag.LAST_RESORT. Input that no
@@ -90,7 +94,7 @@ def solve_transverse_impact(
     if not (isfinite(velocity + roll + yaw + cza + czb) and roll_inertia > 0.0 and yaw_inertia > 0.0):
         return invalid(twist, transverse)
     if (cza == 0.0 and czb == 0.0) or not valid or cna < 0.0 or cnb >= 0.0:
-        return TransverseOutcome(solve_impact(body, twist), transverse, (0.0, 0.0))
+        return TransverseOutcome(solve_impact(body, twist, "path", validity), transverse, (0.0, 0.0))
 
     speed = abs(cta) + abs(cnb) + abs(ctb)
     waa, wab, wbb = 1.0, 0.0, mass * mobility(new, new, mass, transverse)
@@ -99,35 +103,44 @@ def solve_transverse_impact(
     else:
         speed += cna
         waa, wab = mass * mobility(old, old, mass, transverse), mass * mobility(old, new, mass, transverse)
-    path = Path((pair, waa, wab, wbb), (cna, cta, cza, cnb, ctb, czb), tolerance * speed)
-    path.follow(restitution)
-    na, ta, za, tb, zb, vna, vta, vza, vnb, vtb, vzb = path.state
-    nb = path.nb
+    (na, ta, za, nb, tb, zb, vna, vta, vza, vnb, vtb, vzb), segments, notes = follow(
+        (pair, waa, wab, wbb), (cna, cta, cza, cnb, ctb, czb), tolerance * speed, restitution
+    )
     cos, sin, qa, sa, qb, sb, _, _ = pair
     dx, dy = ta + tb * cos - nb * sin, na + tb * sin + nb * cos
     after = twist_after(twist, frame, dx, dy, qa * na + sa * ta + qb * nb + sb * tb)
-    across_after = pushed(transverse, mass, (old or NOWHERE, mass * za), (new, mass * zb))
+    foot = old or NOWHERE
+    across_after = Transverse(
+        velocity + za + zb,
+        roll + mass * (foot.y * za + new.y * zb) / roll_inertia,
+        yaw - mass * (foot.x * za + new.x * zb) / yaw_inertia,
+        roll_inertia,
+        yaw_inertia,
+    )
     work = nb * (cnb + vnb) + tb * (ctb + vtb) + zb * (czb + vzb)
     if old is not None:
         work += na * (cna + vna) + ta * (cta + vta) + za * (cza + vza)
-    lost = path.notes & NO_SOLUTION or work > GAIN * tolerance * speed * speed
+    lost = notes & NO_SOLUTION or work > GAIN * tolerance * speed * speed
     if lost or not isfinite(sum(after) + sum(across_after[:3]) + mass * work):
-        outcome = solve_impact(body, twist)
+        outcome = solve_impact(body, twist, "path", validity)
         return TransverseOutcome(outcome._replace(flags=outcome.flags | Flag.LAST_RESORT), transverse, (0.0, 0.0))
 
     slips = sqrt(vta * vta + vza * vza), sqrt(vtb * vtb + vzb * vzb)
-    outcome = Outcome(
+    notes |= doubts(pair, old is not None, nb, validity)
+    planar = (
         MODES[mode_of(tolerance * speed, vna, slips[0], vnb, slips[1])],
-        Twist(*after),
+        new_tuple(Twist, after),
         ((mass * na, mass * ta), (mass * nb, mass * tb)),
-        states_of(path.segments),
-        flags_of(path.notes | (OLD_RESTITUTION_IGNORED if restitution_old > 0.0 else 0)),
+        states_of(segments),
+        flags_of(notes | (OLD_RESTITUTION_IGNORED if restitution_old > 0.0 else 0)),
         -0.5 * mass * work,
         True,
         (),
         "path",
+        None,
+        None,
     )
-    return TransverseOutcome(outcome, across_after, (mass * za, mass * zb))
+    return TransverseOutcome(new_tuple(Outcome, planar), across_after, (mass * za, mass * zb))
 
 
 def slip_across(contact: Contact, transverse: Transverse) -> float:
@@ -141,16 +154,6 @@ def slip_across(contact: Contact, transverse: Transverse) -> float:
 def mobility(one: Contact, other: Contact, mass: float, transverse: Transverse) -> float:
     """How an impulse across the plane at one contact moves the other across it (1 / kg)."""
     return 1.0 / mass + one.y * other.y / transverse.roll_inertia + one.x * other.x / transverse.yaw_inertia
-
-
-def pushed(transverse: Transverse, mass: float, *pushes: tuple[Contact, float]) -> Transverse:
-    """The motion across the plane after impulses (N s) along z at contacts."""
-    velocity, roll, yaw, roll_inertia, yaw_inertia = transverse
-    for contact, impulse in pushes:
-        velocity += impulse / mass
-        roll += contact.y * impulse / roll_inertia
-        yaw -= contact.x * impulse / yaw_inertia
-    return Transverse(velocity, roll, yaw, roll_inertia, yaw_inertia)
 
 
 def invalid(twist: Twist, transverse: Transverse) -> TransverseOutcome:

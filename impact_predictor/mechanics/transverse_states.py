@@ -21,17 +21,14 @@ SLIP = PLUS
 SLACK = 1e-12
 """A cone of friction left by less than this impulse, per unit of N_B, still holds: less is rounding."""
 
-TURNED = 1e-7
-"""rad. How far a slip is turned to see how the rates depend on its direction: half the digits of a double."""
-
 Across = tuple[Pair, float, float, float]
 """The pair of contacts, and the transverse mobilities waa, wab, wbb in units of 1 / mass."""
 
 Way = tuple[float, float, float, float]
 """Unit vectors (t, z) of the slip at A and at B; of no meaning where a contact does not slip."""
 
-Rates = tuple[float, float, float, float, float, float, float, float, float, float, float]
-"""Per unit N_B: N_A, T_A, Z_A, T_B, Z_B and the rates of c_nA, c_tA, c_zA, c_nB, c_tB, c_zB."""
+Rates = tuple[float, float, float, float, float, float, float, float, float, float, float, float]
+"""Per unit N_B: N_A, T_A, Z_A, N_B (1), T_B, Z_B and the rates of c_nA, c_tA, c_zA, c_nB, c_tB, c_zB."""
 
 States = tuple[int, int, Way, Rates, bool]
 """States of A and B, the directions in which they slip, the rates, and whether these stay as they are."""
@@ -87,20 +84,12 @@ def rates(across: Across, a: int, b: int, way: Way) -> Rates | None:
     rna = y + qa * q if a == OPEN else 0.0
     rta, rza = (0.0, 0.0) if a == STICK else (x + sa * q, waa * za + wab * zb)
     rtb, rzb = (0.0, 0.0) if b == STICK else (cos * x + sin * y + sb * q, wab * za + wbb * zb)
-    return na, ta, za, tb, zb, rna, rta, rza, cos * y - sin * x + qb * q, rtb, rzb
-
-
-def turned(way: Way, contact: int) -> Way:
-    """The way with the slip at A (0) or at B (1) turned a little."""
-    ut, uz, wt, wz = way
-    if contact == 0:
-        return ut - TURNED * uz, uz + TURNED * ut, wt, wz
-    return ut, uz, wt - TURNED * wz, wz + TURNED * wt
+    return na, ta, za, 1.0, tb, zb, rna, rta, rza, cos * y - sin * x + qb * q, rtb, rzb
 
 
 def margin(across: Across, a: int, b: int, rate: Rates) -> float:
     """How far the impulses of closed contacts are within their cones of friction, per unit N_B."""
-    na, ta, za, tb, zb = rate[:5]
+    na, ta, za, _, tb, zb = rate[:6]
     pair = across[0]
     least = 1.0 if a == OPEN else na
     if a == STICK:
@@ -110,9 +99,8 @@ def margin(across: Across, a: int, b: int, rate: Rates) -> float:
     return least + SLACK
 
 
-def way_of(velocities: tuple[float, ...], way: Way, small: float) -> Way:
-    """Directions of the slips (c_nA, c_tA, c_zA, c_nB, c_tB, c_zB); a slip of at most `small` keeps its direction."""
-    _, cta, cza, _, ctb, czb = velocities
+def way_of(cta: float, cza: float, ctb: float, czb: float, way: Way, small: float) -> Way:
+    """Directions of the slips; one of at most `small` keeps its direction."""
     ut, uz, wt, wz = way
     slip = sqrt(cta * cta + cza * cza)
     if slip > small:
@@ -128,7 +116,7 @@ def spatial_states(across: Across, velocities: tuple[float, ...], compressing: b
     pair, _, _, _ = across
     cos, sin, qa, _, qb, sb, _, fb = pair
     cna, cta, cza, _, ctb, czb = velocities
-    way = way_of(velocities, (1.0, 0.0, 1.0, 0.0), 0.0)
+    way = way_of(cta, cza, ctb, czb, (1.0, 0.0, 1.0, 0.0), 0.0)
     if czb == 0.0 and (cna > 0.0 or cza == 0.0):
         found, a, b, rate = choose(pair, cna, cta, ctb, compressing, 0)
         return (a, b, way, from_plane(rate), True) if found else None
@@ -163,7 +151,7 @@ def set_off(across: Across, contact: int, way: Way) -> States | None:
     The direction is one that the slip keeps, and to which it returns when it is turned. Of several the slip that
     grows most is taken.
     """
-    t, z = (6, 7) if contact == 0 else (9, 10)
+    t, z = (7, 8) if contact == 0 else (10, 11)
 
     def towards(x: float, y: float) -> tuple[Way, Rates | None]:
         size = sqrt(x * x + y * y)
@@ -219,4 +207,4 @@ def descent(value: Callable[[float], float], first: float, last: float) -> float
 def from_plane(rate: PlanarRates) -> Rates:
     """Rates of a body that no friction pushes across the plane."""
     _, na, ta, tb, rna, rta, rnb, rtb, _, _, _ = rate
-    return na, ta, 0.0, tb, 0.0, rna, rta, 0.0, rnb, rtb, 0.0
+    return na, ta, 0.0, 1.0, tb, 0.0, rna, rta, 0.0, rnb, rtb, 0.0

@@ -1,10 +1,11 @@
-"""One step along the impulse while slips turn: linearly implicit, with an error that is kept below a bound.
+"""One step along the impulse while slips turn, with an error that is kept below a bound.
 
-A slip that is about to vanish, or has just begun, turns faster than anything else moves: its direction follows within
-an impulse r / m, r being the slip and m of the size of friction times mobility. Hence an implicit method, ROS3 of order
-3 and L-stable: A. Sandu, J. G. Verwer, J. G. Blom, E. J. Spee, G. R. Carmichael, F. A. Potra, Benchmarking stiff ODE
-solvers for atmospheric chemistry problems II, Atmospheric Environment 31 (1997). The rates depend on no more than the
-directions of two slips, so that its linear systems are two by two.
+Most steps are explicit, of order 3, and their last rates are the next step's first: P. Bogacki, L. F. Shampine, A 3(2)
+pair of Runge-Kutta formulas, Applied Mathematics Letters 2 (1989). A path that needs many of them is stiff, and the
+others are implicit.
+
+A step that ends the compression of B is one along c_nB, whose end is known, and not along N_B: each of its rates counts
+for as much of N_B as stops c_nB.
 """
 
 from __future__ import annotations
@@ -12,164 +13,170 @@ from __future__ import annotations
 from math import sqrt
 from typing import NamedTuple
 
-from .transverse_states import SLIP, TURNED, Across, Rates, Way, rates, turned, way_of
+from .impact import new_tuple
+from .transverse_implicit import implicit_step
+from .transverse_states import Across, Rates, Way, rates, way_of
 
-GAMMA = 0.43586652150845900
-C21, C31, C32 = -1.0156171083877702, 4.0759956452537700, 9.2076794298330791
-M2, M3 = 6.1697947043828246, -0.42772256543218573
-E1, E2, E3 = 0.5, -2.9079558716805470, 0.22354069897811570
-"""Coefficients of ROS3 (the cited paper's table 2); those left out are 1."""
-
-STRAIGHT = 0.9
-"""Cosine of the largest angle by which a slip may turn in one step."""
+EXPLICIT = 24
+"""Attempts at explicit steps before a path counts as stiff: one to a tolerance of 1e-3 needs two to eight."""
 
 ATTEMPTS = 40
-"""How often a step is shortened before the path counts as lost: by a factor of four at least each time."""
+"""How often a step is shortened before the path counts as lost: by a factor of two at least each time."""
+
+SURE = 0.1
+"""What the second difference of the rates counts as the error of an explicit step. 1 / 24 would make it that of a step
+of order 2, which is too little where a slip turns by much."""
 
 State = Rates
-"""N_A, T_A, Z_A, T_B, Z_B so far, and c_nA, c_tA, c_zA, c_nB, c_tB, c_zB."""
-
-Stage = tuple[float, float, float, float]
-"""A stage of a step: its parts of the rates at the beginning, those in the middle, and the derivatives of the former by
-the angles of the slips at A and at B."""
-
-NO_CHANGE: Rates = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+"""N_A, T_A, Z_A, N_B, T_B, Z_B so far, and c_nA, c_tA, c_zA, c_nB, c_tB, c_zB."""
 
 
 class Arc(NamedTuple):
-    """A stretch of the path: the states at its ends, the rates there, and how far N_B grows."""
+    """A stretch of the path.
+
+    The states at its ends; the rates there, and the N_B in which each of them would make the whole stretch; `work` of
+    the normal impulse at B on the body; the ways of the slips at its end.
+    """
 
     begin: State
     end: State
-    rate: Rates
+    first: Rates
     last: Rates
-    span: float
+    first_span: float
+    last_span: float
+    work: float
+    way: Way
 
     def at(self, part: float) -> State:
         """The state at a part (0..1) of the stretch, by the cubic through both ends."""
-        to_end, to_rate, to_last = (
-            part * part * (3.0 - 2.0 * part),
-            part * (1.0 - part) ** 2,
-            part * part * (part - 1.0),
-        )
-        p, q = self.span * to_rate, self.span * to_last
-        return tuple([y + to_end * (z - y) + p * u + q * v for y, z, u, v in zip(*self[:4], strict=True)])  # type: ignore[return-value]
+        return tuple([self.component(index, part) for index in range(12)])  # type: ignore[return-value]
 
-    def velocity(self, index: int, part: float) -> float:
+    def component(self, index: int, part: float) -> float:
         """A component of `at`."""
-        y, z = self.begin[index], self.end[index]
-        slopes = (1.0 - part) * self.rate[index] - part * self.last[index]
-        return y + part * part * (3.0 - 2.0 * part) * (z - y) + self.span * part * (1.0 - part) * slopes
+        first, last = self.first_span * self.first[index], self.last_span * self.last[index]
+        return cubic(self.begin[index], self.end[index], first, last, part)
 
-    def pressed(self, part: float) -> float:
-        """Work of the normal impulse at B on the body, over a part of the stretch."""
-        y, square = self.begin[8], part * part
-        bend = self.rate[8] * (0.5 - part * (2.0 / 3.0 - 0.25 * part)) - self.last[8] * part * (1.0 / 3.0 - 0.25 * part)
-        rise = (self.end[8] - y) * part * (1.0 - 0.5 * part)
-        return self.span * (y * part + square * (rise + self.span * bend))
+    def worked(self, part: float) -> float:
+        """The work until a part of the stretch."""
+        return cubic(0.0, self.work, self.first_span * self.begin[9], self.last_span * self.end[9], part)
 
 
-def straight_arc(y: State, rate: Rates, span: float) -> Arc:
-    """A stretch in which the rates do not change."""
-    return Arc(y, tuple([p + span * q for p, q in zip(y, rate, strict=True)]), rate, rate, span)  # type: ignore[arg-type]
+def cubic(begin: float, end: float, first: float, last: float, part: float) -> float:
+    """A part (0..1) of the way from `begin` to `end`, with the slopes `first` and `last` there."""
+    slopes = (1.0 - part) * first - part * last
+    return begin + part * part * (3.0 - 2.0 * part) * (end - begin) + part * (1.0 - part) * slopes
+
+
+def straight_arc(y: State, rate: Rates, span: float, way: Way) -> Arc:
+    """A stretch in which N_B grows by `span` and the rates do not change."""
+    end: State = tuple([p + span * q for p, q in zip(y, rate, strict=True)])  # type: ignore[assignment]
+    return Arc(y, end, rate, rate, span, span, 0.5 * span * (y[9] + end[9]), way)
 
 
 def advance(
-    across: Across, a: int, b: int, way: Way, y: State, rate: Rates, span: float, small: float
-) -> tuple[Arc, Way, float] | None:
-    """A step of at most `span` with an error below `small` in every contact velocity; None where none is found.
+    across: Across, a: int, b: int, way: Way, y: State, rate: Rates, span: float, ends: bool, small: float, tries: int
+) -> tuple[Arc, float, int] | None:
+    """A step in which N_B grows by `span` or less, with an error below `small` in every slip; None where none is found.
 
-    A and B are in the states `a` and `b`; `rate` are the rates at y, where the slips go along `way`. Returns also the
-    directions of the slips at the end, and how long the next step may be.
+    A and B are in the states `a` and `b`; `rate` are the rates at y, where the slips go along `way`. With `ends` the
+    compression would end with the step, were the rates to stay. Returns also how many times as long the next step may
+    be, and the number of attempts on this path, `tries` before the step.
     """
-    turn_a = derivative(across, a, b, way, rate, 0) if a == SLIP and across[0][6] > 0.0 else NO_CHANGE
-    turn_b = derivative(across, a, b, way, rate, 1) if b == SLIP and across[0][7] > 0.0 else NO_CHANGE
-    for _ in range(ATTEMPTS):
-        if not span > 0.0:
-            break
-        tried = implicit_step(across, a, b, way, y, rate, turn_a, turn_b, span)
+    for attempt in range(tries, tries + ATTEMPTS):
+        step = explicit_step if attempt < EXPLICIT else stiff_step
+        tried = step(across, a, b, way, y, rate, span, ends, small)
         if tried is None:
             span *= 0.25
-            continue
-        after, error = tried
-        factor = 0.8 * sqrt(sqrt(small / error)) if error > 0.0 else 4.0
-        if error <= small:
-            there = way_of(after[5:], way, small)
-            last = rates(across, a, b, there)
-            if last is not None and turns_little(a, b, way, there):
-                return Arc(y, after, rate, last, span), there, span * min(max(factor, 0.5), 4.0)
-            factor = 0.3
-        span *= min(max(factor, 0.1), 0.5)
+        else:
+            arc, error = tried
+            factor = 0.8 * sqrt(sqrt(small / error)) if error > 0.0 else 4.0
+            if error <= small:
+                return arc, min(factor, 4.0), attempt + 1
+            span *= min(max(factor, 0.1), 0.5)
+        ends = False
     return None
 
 
-def turns_little(a: int, b: int, way: Way, there: Way) -> bool:
-    """Whether a step turns the slips little enough for a cubic through its ends."""
-    ut, uz, wt, wz = way
-    return (a != SLIP or ut * there[0] + uz * there[1] >= STRAIGHT) and (
-        b != SLIP or wt * there[2] + wz * there[3] >= STRAIGHT
-    )
+def explicit_step(
+    across: Across, a: int, b: int, way: Way, y: State, rate: Rates, span: float, ends: bool, small: float
+) -> tuple[Arc, float] | None:
+    """The stretch that a step makes, and the largest error of a slip in it.
 
-
-def derivative(across: Across, a: int, b: int, way: Way, rate: Rates, contact: int) -> Rates:
-    """Derivative of the rates by the angle of the slip at A (0) or at B (1)."""
-    there = rates(across, a, b, turned(way, contact))
-    return NO_CHANGE if there is None else tuple([(p - q) / TURNED for p, q in zip(there, rate, strict=True)])  # type: ignore[return-value]
-
-
-def implicit_step(
-    across: Across, a: int, b: int, way: Way, y: State, rate: Rates, turn_a: Rates, turn_b: Rates, span: float
-) -> tuple[State, float] | None:
-    """The state after a step of ROS3, and the largest error of a contact velocity in it.
-
-    None where the step is too long: a slip turns away further than it can be followed, or jams.
+    None where the rates end on the way: a slip jams, or B is not slowed down by all of them.
     """
-    ut, uz, wt, wz = way
-    aa, ba = ut * turn_a[7] - uz * turn_a[6], wt * turn_a[10] - wz * turn_a[9]
-    ab, bb = ut * turn_b[7] - uz * turn_b[6], wt * turn_b[10] - wz * turn_b[9]
-    # A contact that does not slip, or without friction, has no angle that matters.
-    ra = 1.0 if turn_a is NO_CHANGE else sqrt(y[6] * y[6] + y[7] * y[7])
-    rb = 1.0 if turn_b is NO_CHANGE else sqrt(y[9] * y[9] + y[10] * y[10])
-    h = GAMMA * span
-    left_a, left_b = ra - h * aa, rb - h * bb
-    det = left_a * left_b - h * h * ab * ba
-    if not (left_a >= 0.5 * ra and left_b >= 0.5 * rb and det > 0.0):
+    na, ta, za, nb, tb, zb, cna, cta, cza, cnb, ctb, czb = y
+    na1, ta1, za1, _, tb1, zb1, rna1, rta1, rza1, rnb1, rtb1, rzb1 = rate
+    h = 0.5 * span
+    second = rates(across, a, b, way_of(cta + h * rta1, cza + h * rza1, ctb + h * rtb1, czb + h * rzb1, way, 0.0))
+    if second is None:
         return None
-
-    def stage(rated: float, middled: float, turned_a: float, turned_b: float) -> Stage:
-        """The stage of a force that is these parts of rate, middle, turn_a and turn_b, as such parts itself."""
-        # Forces across the slips turn them.
-        fa = h * (rated * rate_a + middled * middle_a + turned_a * aa + turned_b * ab)
-        fb = h * (rated * rate_b + middled * middle_b + turned_a * ba + turned_b * bb)
-        ya, yb = (left_b * fa + h * ab * fb) / det, (left_a * fb + h * ba * fa) / det
-        return h * rated, h * middled, h * (turned_a + ya), h * (turned_b + yb)
-
-    rate_a, rate_b = ut * rate[7] - uz * rate[6], wt * rate[10] - wz * rate[9]
-    middle_a = middle_b = 0.0
-    a1, _, c1, d1 = stage(1.0, 0.0, 0.0, 0.0)
-    moved = [v + a1 * p + c1 * q + d1 * r for v, p, q, r in zip(y[5:], rate[5:], turn_a[5:], turn_b[5:], strict=True)]
-    middle = rates(across, a, b, way_of(tuple(moved), way, 0.0))
-    if middle is None:
+    na2, ta2, za2, _, tb2, zb2, rna2, rta2, rza2, rnb2, rtb2, rzb2 = second
+    span2 = span3 = span4 = span
+    if ends:
+        if not rnb2 > 0.0:
+            return None
+        span2 = span * rnb1 / rnb2
+    h = 0.75 * span2
+    third = rates(across, a, b, way_of(cta + h * rta2, cza + h * rza2, ctb + h * rtb2, czb + h * rzb2, way, 0.0))
+    if third is None:
         return None
-    middle_a, middle_b = ut * middle[7] - uz * middle[6], wt * middle[10] - wz * middle[9]
-    c = C21 / span
-    a2, b2, c2, d2 = stage(c * a1, 1.0, c * c1, c * d1)
-    c, d = C31 / span, C32 / span
-    a3, b3, c3, d3 = stage(c * a1 + d * a2, 1.0 + d * b2, c * c1 + d * c2, c * d1 + d * d2)
+    na3, ta3, za3, _, tb3, zb3, rna3, rta3, rza3, rnb3, rtb3, rzb3 = third
+    if ends:
+        if not rnb3 > 0.0:
+            return None
+        span3 = span * rnb1 / rnb3
 
-    to_rate, to_middle = a1 + M2 * a2 + M3 * a3, M2 * b2 + M3 * b3
-    to_a, to_b = c1 + M2 * c2 + M3 * c3, d1 + M2 * d2 + M3 * d3
-    after = tuple(
-        [
-            v + to_rate * p + to_middle * q + to_a * r + to_b * s
-            for v, p, q, r, s in zip(y, rate, middle, turn_a, turn_b, strict=True)
-        ]
+    p, q, r = 2.0 / 9.0 * span, 1.0 / 3.0 * span2, 4.0 / 9.0 * span3
+    slips = (
+        cta + p * rta1 + q * rta2 + r * rta3,
+        cza + p * rza1 + q * rza2 + r * rza3,
+        ctb + p * rtb1 + q * rtb2 + r * rtb3,
+        czb + p * rzb1 + q * rzb2 + r * rzb3,
     )
-    to_rate, to_middle = E1 * a1 + E2 * a2 + E3 * a3, E2 * b2 + E3 * b3
-    to_a, to_b = E1 * c1 + E2 * c2 + E3 * c3, E1 * d1 + E2 * d2 + E3 * d3
-    error = 0.0
-    for p, q, r, s in zip(rate[5:], middle[5:], turn_a[5:], turn_b[5:], strict=True):
-        size = abs(to_rate * p + to_middle * q + to_a * r + to_b * s)
-        if size > error:
-            error = size
-    return after, error  # type: ignore[return-value]
+    there = way_of(*slips, way, small)
+    last = rates(across, a, b, there)
+    if last is None:
+        return None
+    _, _, _, _, _, _, _, rta4, rza4, rnb4, rtb4, rzb4 = last
+    if ends:
+        if not rnb4 > 0.0:
+            return None
+        span4 = span * rnb1 / rnb4
+    error = SURE * max(
+        abs(span * rta1 - 2.0 * span2 * rta2 + span4 * rta4),
+        abs(span * rza1 - 2.0 * span2 * rza2 + span4 * rza4),
+        abs(span * rtb1 - 2.0 * span2 * rtb2 + span4 * rtb4),
+        abs(span * rzb1 - 2.0 * span2 * rzb2 + span4 * rzb4),
+    )
+    end = (
+        na + p * na1 + q * na2 + r * na3,
+        ta + p * ta1 + q * ta2 + r * ta3,
+        za + p * za1 + q * za2 + r * za3,
+        nb + p + q + r,
+        tb + p * tb1 + q * tb2 + r * tb3,
+        zb + p * zb1 + q * zb2 + r * zb3,
+        cna + p * rna1 + q * rna2 + r * rna3,
+        slips[0],
+        slips[1],
+        cnb + p * rnb1 + q * rnb2 + r * rnb3,
+        slips[2],
+        slips[3],
+    )
+    work = p * cnb + q * (cnb + 0.5 * span * rnb1) + r * (cnb + 0.75 * span2 * rnb2)
+    return new_tuple(Arc, (y, end, rate, last, span, span4, work, there)), error
+
+
+def stiff_step(
+    across: Across, a: int, b: int, way: Way, y: State, rate: Rates, span: float, _: bool, small: float
+) -> tuple[Arc, float] | None:
+    """As `explicit_step`, by an implicit one along N_B."""
+    step = implicit_step(across, a, b, way, y, rate, span)
+    if step is None:
+        return None
+    end, error = step
+    there = way_of(end[7], end[8], end[10], end[11], way, small)
+    last = rates(across, a, b, there)
+    if last is None:
+        return None
+    work = span * (0.5 * (y[9] + end[9]) + span * (rate[9] - last[9]) / 12.0)
+    return Arc(y, end, rate, last, span, span, work, there), error

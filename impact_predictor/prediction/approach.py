@@ -5,8 +5,9 @@ from __future__ import annotations
 from math import cos, sin
 from typing import NamedTuple
 
+from ..mechanics.impact import new_tuple
 from ..mechanics.motion import PlanarState, next_touchdown
-from ..mechanics.types import Contact, Twist, TwoPointBody
+from ..mechanics.types import Contact, Twist, TwoPointBody, Vector
 from .planar import Contacts, Plane, Posture, contacts_of, inertia_about, plane_of
 from .scene import Scene
 from .types import Sample, Vector3
@@ -49,13 +50,17 @@ def approach_of(scene: Scene, points: tuple[Vector3, ...], sample: Sample, postu
     # An averaged twist is that of half its window ago: the motion is followed from there.
     age = 0.5 * scene.twist_window
     vx, vy, omega = plane.twist
-    height = -plane.old[1] if plane.old is not None else plane.gap - plane.new[1]
-    start = PlanarState(-vx * age, height - vy * age, -omega * age, vx, vy, omega)
-    striking = (plane.new,) if plane.old is None else (plane.old, plane.new)
+    old, new = plane.old, plane.new
+    if old is None:
+        striking: tuple[Vector, ...] = (new,)
+        height = plane.gap - new[1]
+    else:
+        striking = (old, new)
+        height = -old[1]
     fall = next_touchdown(
-        start,
+        new_tuple(PlanarState, (-vx * age, height - vy * age, -omega * age, vx, vy, omega)),
         striking,
-        None if plane.old is None else 0,
+        None if old is None else 0,
         inertia / scene.mass,
         scene.friction,
         plane.gravity[:2],
@@ -64,29 +69,29 @@ def approach_of(scene: Scene, points: tuple[Vector3, ...], sample: Sample, postu
     )
     if fall.point != len(striking) - 1:
         return None
-    after = fall.state
-    before = Twist(after.vx, after.vy, after.omega)
-    body = body_at(scene, plane, inertia, after.angle)
+    x, y, angle, vx, vy, omega = fall.state
+    body = body_at(scene, plane, inertia, angle)
     blocked = on_edge and body.old is not None and len(contacts.new) > 1
     if on_edge and not blocked:
         body = body._replace(inertia=inertia_about(scene, plane.axis, blocked=False))
     if body.old is not None and body.old.x >= body.new.x:
         return None  # it falls back, and other points strike before
-    speed = -(before.vy + before.omega * body.new.x)
+    speed = -(vy + omega * body.new.x)
     if speed < GRAZES:
         return None
-    rates = [posture.rates[i] for i in contacts.new]
-    return Approach(
+    measured = -sum([posture.rates[i] for i in contacts.new]) / len(contacts.new)
+    approach = (
         contacts,
         plane,
         body,
-        before,
-        PlanarState(after.x, after.y - height, after.angle, *before),
+        new_tuple(Twist, (vx, vy, omega)),
+        new_tuple(PlanarState, (x, y - height, angle, vx, vy, omega)),
         max(0.0, fall.time - age),
         blocked,
-        -sum(rates) / len(rates),
+        measured,
         speed,
     )
+    return new_tuple(Approach, approach)
 
 
 def body_at(scene: Scene, plane: Plane, inertia: float, angle: float) -> TwoPointBody:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from math import copysign, hypot, sqrt
 from typing import NamedTuple
 
+from ..mechanics.impact import new_tuple
 from ..mechanics.motion import PlanarState
 from ..mechanics.types import Twist, Vector
 from .scene import Scene
@@ -22,6 +23,9 @@ point: the stance of a body that turns about it, told from a body that only graz
 
 ROUNDING = 1e-12
 """The square of a direction this small, relative to the vector it is a part of, is none: points may be float32."""
+
+ORIGIN = (0.0, 0.0, 0.0)
+"""Of the body frame, where the mass centre often lies."""
 
 TINY = 1e-100
 """Below it the square of a length or of a speed has lost its digits."""
@@ -79,19 +83,15 @@ class Across(NamedTuple):
 
 def posture_of(scene: Scene, points: tuple[Vector3, ...], sample: Sample) -> Posture:
     axes = axes_of(sample.orientation)
-    n = scene.normal
-    normal = dot(axes[0], n), dot(axes[1], n), dot(axes[2], n)
-    height = dot(n, sample.position) - scene.height
-    rate = dot(normal, sample.linear)
-    nx, ny, nz = normal
-    wx, wy, wz = cross(normal, sample.angular)
-    return Posture(
-        axes,
-        normal,
-        add(sample.linear, cross(sample.angular, scene.center_of_mass)),
-        [height + nx * x + ny * y + nz * z for x, y, z in points],
-        [rate + wx * x + wy * y + wz * z for x, y, z in points],
-    )
+    normal = nx, ny, nz = to_body(axes, scene.normal)
+    linear, spin, center = sample.linear, sample.angular, scene.center_of_mass
+    height = dot(scene.normal, sample.position) - scene.height
+    rate = dot(normal, linear)
+    wx, wy, wz = cross(normal, spin)
+    velocity = linear if center == ORIGIN else add(linear, cross(spin, center))
+    gaps = [height + nx * x + ny * y + nz * z for x, y, z in points]
+    rates = [rate + wx * x + wy * y + wz * z for x, y, z in points]
+    return new_tuple(Posture, (axes, normal, velocity, gaps, rates))
 
 
 def contacts_of(scene: Scene, posture: Posture) -> Contacts | None:
@@ -101,24 +101,20 @@ def contacts_of(scene: Scene, posture: Posture) -> Contacts | None:
     after the first one strike together with it.
     """
     gaps, rates = posture.gaps, posture.rates
-    slowest = -hardly(scene)
+    slowest, tolerance = -hardly(scene), scene.tolerance
     fastest = min(rates)
     if fastest >= slowest:
         return None
     limit = STANDING * max(max(rates), -fastest)
-    old: list[int] = []
-    closing: list[int] = []
-    for i, rate in enumerate(rates):
-        if -limit <= rate <= limit and gaps[i] <= scene.tolerance:
-            old.append(i)
-        elif rate < slowest:
-            closing.append(i)
+    old = [i for i, gap in enumerate(gaps) if gap <= tolerance and -limit <= rates[i] <= limit]
+    closing = [i for i, rate in enumerate(rates) if rate < slowest and i not in old]
     if not closing:
         return None
     base = sum([gaps[i] for i in old]) / len(old) if old else 0.0
-    due = [(max(0.0, gaps[i] - base) / -rates[i], i) for i in closing]
-    last = min(due)[0] + scene.contact_time
-    return Contacts(tuple(old), tuple([i for time, i in due if time <= last]), base)
+    due = [(base - gaps[i]) / rates[i] for i in closing]
+    last = max(0.0, min(due)) + scene.contact_time
+    new = [i for i, time in zip(closing, due, strict=True) if time <= last]
+    return new_tuple(Contacts, (tuple(old), tuple(new), base))
 
 
 def hardly(scene: Scene) -> float:
@@ -129,36 +125,40 @@ def hardly(scene: Scene) -> float:
 def plane_of(scene: Scene, points: tuple[Vector3, ...], sample: Sample, posture: Posture, contacts: Contacts) -> Plane:
     """The impact plane of a posture's contacts."""
     n, spin, velocity = posture.normal, sample.angular, posture.velocity
-    old, new = contacts.old, contacts.new
+    old, new, base = contacts
     center = scene.center_of_mass
     struck = add(mean([points[i] for i in new]), center, -1.0)
-    stood = add(mean([points[i] for i in old]), center, -1.0) if old else None
-    edge = edge_of([points[i] for i in old]) if len(old) > 1 else None
-    axis = axis_of(n, spin, velocity, edge, struck if stood is None else add(struck, stood, -1.0), hardly(scene))
+    if old:
+        stood = add(mean([points[i] for i in old]), center, -1.0)
+        edge = edge_of([points[i] for i in old]) if len(old) > 1 else None
+        axis = axis_of(n, spin, velocity, edge, add(struck, stood, -1.0), hardly(scene))
+    else:
+        axis = axis_of(n, spin, velocity, None, struck, hardly(scene))
     ahead = cross(axis, n)
 
     stance: Vector | None = None
     offset = abs(dot(axis, struck))
     lateral = dot(axis, velocity)
-    if stood is not None:
+    if old:
         stance = dot(ahead, stood), dot(n, stood)
         offset = max(offset, abs(dot(axis, stood)))
         lateral += dot(axis, cross(spin, stood))
     rate, turning = dot(axis, spin), dot(spin, spin)
     across = add(spin, axis, -rate)
     gravity = to_body(posture.axes, scene.gravity)
-    return Plane(
+    plane = (
         axis,
         ahead,
         stance,
         (dot(ahead, struck), dot(n, struck)),
-        Twist(dot(ahead, velocity), dot(n, velocity), -rate),
+        new_tuple(Twist, (dot(ahead, velocity), dot(n, velocity), -rate)),
         (dot(ahead, gravity), dot(n, gravity), dot(axis, gravity)),
-        max(0.0, sum([posture.gaps[i] for i in new]) / len(new) - contacts.base),
+        max(0.0, sum([posture.gaps[i] for i in new]) / len(new) - base),
         sqrt(min(1.0, dot(across, across) / turning)) if turning > 0.0 else 0.0,
         lateral,
         offset,
     )
+    return new_tuple(Plane, plane)
 
 
 def axis_of(n: Vector3, spin: Vector3, velocity: Vector3, edge: Vector3 | None, arm: Vector3, slow: float) -> Vector3:
@@ -238,17 +238,20 @@ def in_space(
     `moved` is the place of the mass centre from where it was at the sample, and the angle turned since, `time` ago;
     `after` and `across` are the motion in the plane and across it after the impact.
     """
-    axis, ahead, n = plane.axis, plane.ahead, posture.normal
-    axes, center = posture.axes, scene.center_of_mass
-    before = across_of(sample, posture, plane, 0.0)
-    rotation = combine(-moved.angle, axis, before.roll * time, ahead, before.yaw * time, n)
+    axes, n, center = posture.axes, scene.normal, scene.center_of_mass
+    axis, roll, yaw = plane.axis, dot(plane.ahead, sample.angular), dot(posture.normal, sample.angular)
+    rotation = combine(-moved.angle, axis, roll * time, plane.ahead, yaw * time, posture.normal)
     orientation = turned(sample.orientation, rotation)
-    pull = plane.gravity[2] if plane.old is None else 0.0
-    path = combine(moved.x, ahead, moved.y, n, (before.velocity + 0.5 * pull * time) * time, axis)
-    velocity = combine(after.vx, ahead, after.vy, n, across.velocity, axis)
-
     now = axes_of(orientation)
-    angular = to_body(now, to_world(axes, combine(-after.omega, axis, across.roll, ahead, across.yaw, n)))
-    linear = add(to_body(now, to_world(axes, velocity)), cross(angular, center), -1.0)
-    mass_center = add(sample.position, to_world(axes, add(path, center)))
-    return add(mass_center, to_world(now, center), -1.0), orientation, linear, angular
+
+    along = to_world(axes, axis)
+    ahead = cross(along, n)
+    angular = to_body(now, combine(-after.omega, along, across.roll, ahead, across.yaw, n))
+    linear = to_body(now, combine(after.vx, ahead, after.vy, n, across.velocity, along))
+    pull = plane.gravity[2] if plane.old is None else 0.0
+    glide = (dot(axis, posture.velocity) + 0.5 * pull * time) * time
+    position = add(sample.position, combine(moved.x, ahead, moved.y, n, glide, along))
+    if center != ORIGIN:
+        linear = add(linear, cross(angular, center), -1.0)
+        position = add(add(position, to_world(axes, center)), to_world(now, center), -1.0)
+    return position, orientation, linear, angular

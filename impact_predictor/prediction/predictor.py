@@ -7,7 +7,7 @@ from collections.abc import Callable
 from math import hypot, isfinite
 from typing import TYPE_CHECKING
 
-from ..mechanics.impact import solve_impact
+from ..mechanics.impact import new_tuple, solve_impact
 from ..mechanics.types import Outcome
 from .approach import Approach, approach_of
 from .planar import Across, Posture, across_of, in_space, posture_of
@@ -46,7 +46,7 @@ class Predictor:
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
         self._impact_across: Callable[..., tuple[Outcome, Across] | None] | None = None
-        if scene.transverse_slip and scene.law == "path":
+        if scene.transverse_slip and scene.law == "path" and scene.friction > 0.0:
             from .transverse import impact_across
 
             self._impact_across = impact_across
@@ -165,7 +165,7 @@ class Predictor:
         if approach is None or self._is_echo(approach, sample):
             self._track = None
             return None
-        if track is not None and not set(approach.contacts.new) & set(track.last.new):
+        if track is not None and set(approach.contacts.new).isdisjoint(track.last.new):
             track = None
         if track is None:
             track = self._track = Track()
@@ -196,7 +196,7 @@ class Predictor:
         slipped = None
         if self._impact_across is not None:
             slipped = self._impact_across(scene, plane, posture.normal, body, before, across, moved.angle, blocked)
-        outcome, across = slipped or (solve_impact(body, before, scene.law), across)
+        outcome, across = slipped or (solve_impact(body, before, scene.law, scene.validity), across)
         position, orientation, linear, angular = in_space(
             scene, sample, posture, plane, moved, outcome.twist, across, lead_time
         )
@@ -205,7 +205,12 @@ class Predictor:
         half_distance = 0.0
         if body.old is not None:
             half_distance = 0.5 * hypot(body.new.x - body.old.x, body.new.y - body.old.y)
-        touchdown = Touchdown(
+        uncertainty = planar = None
+        if self._sampler is not None:
+            uncertainty = self._sampler.uncertainty(sample, posture, plane, body, before, orientation)
+        if scene.margins:
+            planar = solve_impact(body, before, scene.law, scene.validity) if slipped else outcome
+        touchdown = (
             lead_time,
             outcome.mode,
             before,
@@ -229,13 +234,10 @@ class Predictor:
             spread,
             plane.offset,
             leftover_of(scene, contacts, plane, body, speed, half_distance, spread),
+            uncertainty,
+            planar,
         )
-        if self._sampler is not None:
-            uncertainty = self._sampler.uncertainty(sample, posture, plane, body, before, orientation)
-            touchdown = touchdown._replace(uncertainty=uncertainty)
-        if scene.margins:
-            touchdown = touchdown._replace(planar=solve_impact(body, before, scene.law) if slipped else outcome)
-        return touchdown
+        return new_tuple(Touchdown, touchdown)
 
 
 def check_points(points: tuple[Vector3, ...]) -> Status:

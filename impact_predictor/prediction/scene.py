@@ -6,6 +6,8 @@ from collections.abc import Mapping, Sequence
 from math import hypot
 from typing import Any, NamedTuple
 
+from ..mechanics.answer import VALIDITY
+from ..mechanics.types import Validity
 from .types import Vector3
 
 Matrix3 = tuple[Vector3, Vector3, Vector3]
@@ -21,7 +23,7 @@ class Scene(NamedTuple):
     `horizon` in s how far ahead a touchdown is announced; `transverse_slip` whether friction also opposes slip across
     the impact plane, which only the path law knows; `samples` how many points carry uncertainty through an impact, 0
     for none, with the standard deviations of friction and restitution; `margins` whether a touchdown keeps the impact
-    whose margins can be read.
+    whose margins can be read; `validity` from where on rigid theory is too simple.
     """
 
     mass: float
@@ -44,6 +46,7 @@ class Scene(NamedTuple):
     friction_deviation: float = 0.0
     restitution_deviation: float = 0.0
     margins: bool = False
+    validity: Validity = VALIDITY
 
     @classmethod
     def from_parameters(cls, values: Mapping[str, Any]) -> Scene:
@@ -72,6 +75,12 @@ class Scene(NamedTuple):
             friction_deviation=values["uncertainty.friction"],
             restitution_deviation=values["uncertainty.restitution"],
             margins=values["margins"],
+            validity=Validity(
+                slenderness=values["validity.slenderness"],
+                gravity=hypot(*values["gravity"]),
+                contact_time=values["contact.time"],
+                gravity_share=values["validity.gravity_share"],
+            ),
         )
 
 

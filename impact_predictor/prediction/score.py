@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Iterable
 from math import hypot
-from statistics import median
 
 from ..mechanics.types import Twist, TwoPointBody
 from .planar import Contacts, Plane, Posture, hardly
@@ -33,6 +33,9 @@ NANOSECONDS = 1e9
 ONE_POINT, OUT_OF_PLANE, ONE_CORNER_FIRST, TOO_SLOW = (
     int(flag) for flag in (Leftover.ONE_POINT, Leftover.OUT_OF_PLANE, Leftover.ONE_CORNER_FIRST, Leftover.TOO_SLOW)
 )
+
+LEFTOVERS = tuple(map(Leftover, range(1 + sum(Leftover))))
+"""By their bits, because making a flag is slow."""
 
 
 class Track:
@@ -97,9 +100,8 @@ class Pending:
 
         def error(touchdown: Touchdown) -> float:
             seen = measured if touchdown.axis == last.axis else self._twist(scene, touchdown)
-            return (
-                hypot(touchdown.after.vx - seen.vx, (touchdown.after.omega - seen.omega) * last.half_distance) / scale
-            )
+            after = touchdown.after
+            return hypot(after.vx - seen.vx, (after.omega - seen.omega) * last.half_distance) / scale
 
         history = tuple(
             ((self.stamp - stamp) / NANOSECONDS, error(touchdown))
@@ -144,4 +146,11 @@ def leftover_of(
         leftover |= ONE_CORNER_FIRST
     if approach < SLOWEST * hardly(scene):
         leftover |= TOO_SLOW
-    return Leftover(leftover)
+    return LEFTOVERS[leftover]
+
+
+def median(numbers: Iterable[float]) -> float:
+    """The middle one of some numbers, or halfway between the two; that of `statistics` takes a tenth of the start."""
+    ordered = sorted(numbers)
+    half = len(ordered) // 2
+    return 0.5 * (ordered[half] + ordered[~half])

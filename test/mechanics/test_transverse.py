@@ -12,8 +12,10 @@ import pytest
 
 from impact_predictor import Contact, Flag, Mode, Twist, TwoPointBody, solve_impact
 from impact_predictor.mechanics import transverse as module
+from impact_predictor.mechanics import transverse_step
 from impact_predictor.mechanics.transverse import Transverse, TransverseOutcome
 from impact_predictor.mechanics.transverse import solve_transverse_impact as solve
+from impact_predictor.mechanics.types import Validity
 
 FINE = 1e-6
 """Tolerance of a step."""
@@ -265,6 +267,28 @@ def test_the_answer_converges_with_the_tolerance() -> None:
         assert np.median(errors) < 0.5 * tolerance
 
 
+def test_implicit_steps_follow_the_same_path(monkeypatch: pytest.MonkeyPatch) -> None:
+    """All steps of a path, not only those after its first explicit ones."""
+    explicit = [velocities(solve_transverse_impact(*case, tolerance=1e-5)) for case in cases(40, seed=9)]
+    monkeypatch.setattr(transverse_step, "EXPLICIT", 0)
+    for case, expected in zip(cases(40, seed=9), explicit, strict=True):
+        space = Body(*case)
+        implicit = velocities(solve_transverse_impact(*case, tolerance=1e-5))
+        assert np.abs(space.rows @ (implicit - expected)).max() < 2e-4 * space.speed
+
+
+def test_a_body_that_yaws_far_more_easily_than_it_moves_needs_no_more_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A million times as easily; explicit steps alone would be lost after hundreds of them."""
+    body = TwoPointBody(1.0, 0.1, Contact(-0.5, -0.3, 0.2), Contact(0.5, -0.3, 0.2))
+    twist = body.turning(-1.0)
+    case = body, twist._replace(vx=twist.vx + 2.0), Transverse(1.0, yaw_inertia=1e-6)
+    answer = solve(*case)
+    assert not answer.outcome.flags & Flag.LAST_RESORT
+    assert answer.outcome.twist == pytest.approx(solve_transverse_impact(*case).outcome.twist, abs=1e-4)
+    monkeypatch.setattr(transverse_step, "EXPLICIT", 10**6)
+    assert solve(*case).outcome.flags & Flag.LAST_RESORT
+
+
 def test_momentum_energy_and_friction_are_kept() -> None:
     for body, twist, across in cases(300, seed=4):
         space = Body(body, twist, across)
@@ -347,6 +371,19 @@ def test_a_contact_at_rest_slips_when_the_other_pulls_it_across() -> None:
     assert (space.rows @ space.velocities)[2] == pytest.approx(0.0)
     assert abs((space.rows @ velocities(answer))[2]) > 0.01
     assert velocities(answer) == pytest.approx(space.stepped(2000), abs=5e-3)
+
+
+def test_where_rigid_theory_is_too_simple_the_outcome_says_so() -> None:
+    """Also where the planar law answers; the limits are those that are given."""
+    flat = Contact(-0.5, -0.004, 0.3), Contact(0.5, -0.004, 0.3)
+    rod = TwoPointBody(1.0, 1.0 / 12.0, *flat)
+    for across in (Transverse(0.5), Transverse(0.0)):
+        for omega, slow in ((-1.0, False), (-1e-3, True)):
+            flags = solve(rod, rod.turning(omega), across).outcome.flags
+            assert bool(flags & Flag.THIN_BODY)
+            assert bool(flags & Flag.SLOW_IMPACT) is slow
+        thick = solve(rod, rod.turning(-1e-3), across, FINE, Validity(slenderness=0.007, gravity=0.0)).outcome.flags
+        assert not thick & (Flag.THIN_BODY | Flag.SLOW_IMPACT)
 
 
 def test_where_both_contacts_are_struck_the_planar_law_answers_for_the_plane() -> None:

@@ -6,10 +6,11 @@ from typing import Any
 
 import pytest
 
+from impact_predictor.mechanics.types import Validity
 from impact_predictor.parameters import validate
 from impact_predictor.prediction.scene import Scene, inertia_matrix
 
-BODY = {"body.mass": 2.0, "body.inertia": [0.1, 0.2, 0.3, 0.01, 0.02, 0.03], "contact.friction": 0.4}
+BODY = {"body.mass": 2.0, "body.inertia": [0.1, 0.2, 0.25, 0.01, 0.02, 0.03], "contact.friction": 0.4}
 
 # Parameter, value, field of the scene, value there.
 FIELDS: list[tuple[str, Any, str, Any]] = [
@@ -33,6 +34,7 @@ FIELDS: list[tuple[str, Any, str, Any]] = [
     ("uncertainty.restitution", 0.05, "restitution_deviation", 0.05),
     ("margins", True, "margins", True),
     ("horizon", 0.5, "horizon", 0.5),
+    ("validity.gravity_share", 0.1, "validity", Validity(gravity_share=0.1)),
 ]
 
 
@@ -40,6 +42,12 @@ FIELDS: list[tuple[str, Any, str, Any]] = [
 def test_every_parameter_of_the_prediction_reaches_its_field(name: str, value: Any, field: str, expected: Any) -> None:
     scene = Scene.from_parameters(validate({**BODY, name: value}))
     assert getattr(scene, field) == expected
+
+
+def test_the_validity_of_rigid_theory_has_the_contact_time_and_the_gravity_of_the_scene() -> None:
+    values = {"validity.slenderness": 0.02, "contact.time": 0.002, "gravity": [0.0, 3.0, -4.0]}
+    scene = Scene.from_parameters(validate({**BODY, **values}))
+    assert scene.validity == Validity(slenderness=0.02, gravity=5.0, contact_time=0.002, gravity_share=0.25)
 
 
 def test_no_field_of_the_scene_is_left_to_chance() -> None:

@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from impact_predictor.mechanics.impact import solve_impact
 from impact_predictor.mechanics.transverse import Transverse, solve_transverse_impact
-from impact_predictor.mechanics.types import Contact, Twist, TwoPointBody
+from impact_predictor.mechanics.types import Contact, Flag, Twist, TwoPointBody, Validity
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.prediction.transverse import SLIPS, TOLERANCE
@@ -128,6 +128,14 @@ def test_a_body_on_an_edge_cannot_roll_and_one_that_lands_on_a_point_can() -> No
     assert roll < -0.1
     foot = np.array(landing.linear) + np.cross(landing.angular, (0.1, 0.0, -HEIGHT / 2))
     assert 0.0 <= foot[1] < 0.95
+
+
+@pytest.mark.parametrize("lateral", [0.0, 1.0])
+def test_an_impact_beyond_the_validity_of_a_scene_is_flagged(lateral: float) -> None:
+    sample = turning(-4.0, 0.5, lateral)
+    assert not announced(sample).flags & Flag.SLOW_IMPACT
+    slow = SCENE._replace(validity=Validity(gravity_share=1e-3))
+    assert announced(sample, slow).flags & Flag.SLOW_IMPACT
 
 
 def test_no_landing_gains_energy() -> None:

@@ -1,0 +1,59 @@
+"""What is wrong with a list of numbers as the parameter of a body or a support: a part of a sentence, or ""."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+ROUNDED: Final = 0.01
+"""By this part of its trace an inertia may miss the triangle inequality: thin plates are given with few digits."""
+
+
+def inertia_flaw(inertia: tuple[float, ...]) -> str:
+    """Of one number, or of ixx, iyy, izz, ixy, ixz, iyz (kg m^2)."""
+    if len(inertia) == 1:
+        return "" if inertia[0] > 0.0 else "it must be positive"
+    xx, yy, zz, xy, xz, yz = inertia
+    # Sylvester's criterion: the leading minors of a positive definite matrix are positive.
+    minors = (
+        xx,
+        xx * yy - xy * xy,
+        xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz),
+    )
+    if min(minors) <= 0.0:
+        return "its matrix must be positive definite"
+    if not _is_of_masses(inertia):
+        return "no body has it: about each axis, inertia is at most the sum of that about the two axes across it"
+    return ""
+
+
+def _is_of_masses(inertia: tuple[float, ...]) -> bool:
+    """Whether the principal moments keep the triangle inequality: the second moments of the mass are not negative.
+
+    Those are the matrix trace / 2 - inertia. It is positive semidefinite when the coefficients of its characteristic
+    polynomial alternate in sign; that of its trace does.
+    """
+    xx, yy, zz, xy, xz, yz = inertia
+    half = (0.5 + ROUNDED) * (xx + yy + zz)
+    x, y, z = half - xx, half - yy, half - zz
+    minors = x * y + y * z + z * x - xy * xy - xz * xz - yz * yz
+    # The products of inertia are the second moments with the other sign.
+    return minors >= 0.0 and x * (y * z - yz * yz) - xy * (xy * z + xz * yz) - xz * (xy * yz + y * xz) >= 0.0
+
+
+def points_flaw(numbers: tuple[float, ...]) -> str:
+    """Of contact points, x y z of each (m)."""
+    if len(numbers) % 3:
+        return f"it must have three numbers for each point, not {len(numbers)} in all"
+    points = [numbers[k : k + 3] for k in range(0, len(numbers), 3)]
+    if len(points) == 1:
+        return "a body needs at least two contact points"
+    for k, point in enumerate(points):
+        if point in points[:k]:
+            return f"the points {points.index(point)} and {k} coincide"
+    return ""
+
+
+def normal_flaw(normal: tuple[float, ...]) -> str:
+    """Of a direction."""
+    return "" if math.hypot(*normal) > 0.0 else "it must have a direction"
