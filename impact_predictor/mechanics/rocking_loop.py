@@ -1,0 +1,278 @@
+"""From event to event: what a body on two contacts does next, and what comes of its impacts."""
+
+from __future__ import annotations
+
+import math
+
+from .answer import STAYS
+from .impact import solve_impact
+from .motion import PlanarState
+from .pair import MINUS, OPEN, PLUS, STICK
+from .rocking_arcs import Arc, Happening
+from .rocking_course import Course
+from .rocking_flight import Flight, Landing
+from .rocking_follow import follow
+from .rocking_run import STATES, Accumulation, End, Run, Stretch, Strike
+from .rocking_step import Instant
+from .rocking_tail import Limit
+from .rocking_turn import turn_about
+from .rocking_wait import wait
+from .support import Support
+from .types import Flag, Twist, TwoPointBody
+
+_SPEED_ROUNDING = 1e-15
+"""Part of a body's speeds that is rounding in the normal velocity at a contact."""
+_BOUNCE = 1e-12
+"""A body thrown up more slowly than this part of its natural speed has stopped bouncing."""
+_QUIET = 1e-9
+"""So has one whose contacts both move more slowly than this part of it and are as near: bouncing on one inside the
+bouncing on the other."""
+_STUCK = 1000
+"""Events without any time between them; more come only from rounding."""
+_BOTH = (0, 1)
+
+
+class Rocking(Course):
+    """One run, while it is followed."""
+
+    def __init__(
+        self,
+        body: TwoPointBody,
+        support: Support,
+        law: str,
+        time: float,
+        until: float,
+        limit: float,
+        max_events: int,
+        tolerance: float,
+    ) -> None:
+        super().__init__(body, support, time, until, limit, tolerance)
+        self.law, self.max_events = law, max_events
+        self.stretches: list[Stretch] = []
+        self.impacts: list[Strike] = []
+        self.accumulations: list[Accumulation] = []
+        contact = self.shape.contact
+        self.pairs = tuple(
+            TwoPointBody(body.mass, body.inertia, contact(old, 0.0), contact(1 - old, 0.0)) for old in _BOTH
+        )
+        """The body as an impact law sees it when it stands on one contact and the other strikes."""
+
+    def run(self, start: PlanarState) -> Run:
+        """Follow the motion to its end."""
+        shape = self.shape
+        angle = start.angle
+        if not shape.rolls:
+            angle = math.remainder(start.angle + shape.lean, 2.0 * math.pi)
+        shift = start.angle - angle
+        self._begin(start._replace(angle=angle))
+        still, last, events = 0, self.time, 0
+        while self.end is None:
+            if events >= self.max_events:
+                self.end = End.TOO_MANY_EVENTS
+                break
+            self._go_on()
+            still = still + 1 if self.time <= last else 0
+            if still > _STUCK:
+                self.end = End.NO_SOLUTION
+            events, last = events + 1, self.time
+        impacts = [
+            strike._replace(
+                before=strike.before._replace(angle=strike.before.angle + shift),
+                after=strike.after._replace(angle=strike.after.angle + shift),
+            )
+            for strike in self.impacts
+        ]
+        return Run(
+            self.body,
+            self.support,
+            self.law,
+            self.stretches,
+            shift,
+            self.end,
+            self.time,
+            start,
+            impacts,
+            self.accumulations,
+            self.jams,
+        )
+
+    def _go_on(self) -> None:
+        """Follow the next stretch to its event, and find out what comes after it."""
+        one = self.next
+        assert one is not None
+        self.stretches.append(one)
+        if isinstance(one, Flight):
+            landing = one.follow(self.until - self.time, self.max_events)
+            self._pass(landing.time)
+            if landing.happening is Happening.TOUCHES:
+                self._land(landing)
+            else:
+                self.end = _ENDS[landing.happening]
+            return
+        if one.a == STICK and one.b == STICK:
+            if self.fixed:
+                self.end = End.RESTS
+                return
+            happening, contact, at = wait(one, self.wait_from, self.until - self.time, self.max_events)
+        elif self.fixed and STICK in (one.a, one.b):
+            happening, contact, at = turn_about(one, self.until - self.time, self.limit)
+        else:
+            happening, contact, at = follow(one, self.until - self.time, self.limit, self.max_events)
+        self._pass(at.time)
+        if happening in _ENDS:
+            self.end = _ENDS[happening]
+        else:
+            self._change(one, happening, contact, at)
+
+    def _pass(self, span: float) -> None:
+        """Time passes; the short spans between accumulating impacts are kept apart from it, with all their digits."""
+        self.since += span
+        self.time += span
+
+    def _change(self, arc: Arc, happening: Happening, contact: int, at: Instant) -> None:
+        """An event of closed contacts."""
+        _, u, w, z, s, _, _ = at
+        both = arc.a != OPEN and arc.b != OPEN
+        if happening is Happening.TOUCHES:
+            self._strike_other(1 - contact, w, z, s)
+        elif happening is Happening.YIELDS or (happening is Happening.STOPS and both):
+            self._hold(z, 0.0)
+        elif happening is Happening.STOPS:
+            self._stand(arc.contact, u, w, z, 0.0)
+        elif happening is Happening.LIFTS and both:
+            self._arc(1 - contact, arc.a, u, w, z, s)
+        elif happening is Happening.LIFTS:
+            self._fly(self.shape.state(arc.contact, u, w, z, s), self._gaps(arc.contact, u))
+        elif happening is Happening.JAMS:
+            self._jam(arc.contact, u, w, z, s)
+        else:
+            self._slip(contact, PLUS if happening is Happening.SLIPS else MINUS, u, w, z)
+
+    def _land(self, landing: Landing) -> None:
+        """A contact strikes out of flight, perhaps both at once."""
+        shape, new, state = self.shape, landing.contact, landing.state
+        u, gap = shape.seen_from(new, state)[0], landing.gaps[1 - new]
+        if abs(u) >= self.limit:
+            self.end = End.OVERTURNED
+            return
+        if landing.together:
+            both = [1 - new, new] if shape.gap_rate(1 - new, state) <= 0.0 else [new]
+            self._strike(both, state, 0.0)
+            return
+        for _ in range(2):  # the gap tells a small angle to its last digit
+            here, slope = shape.gap_of_other(new, u)
+            if abs(slope) > 0.1 * shape.length:
+                u -= (here - gap) / slope
+        self._strike([new], state, u)
+
+    def _strike(self, touching: list[int], state: PlanarState, u: float) -> None:
+        """The last of the contacts that touch strikes, and perhaps the other one with it."""
+        new = touching[-1]
+        z = self.shape.seen_from(new, state)[2]
+        if len(touching) == 2:
+            self._impact(self.pairs[1 - new], 1 - new, new, state, 0.0, z)
+        else:
+            alone = TwoPointBody(self.body.mass, self.body.inertia, None, self.shape.contact(new, u))
+            self._impact(alone, None, new, state, u, z)
+
+    def _strike_other(self, old: int, w: float, z: float, s: float) -> None:
+        """The body stands on one contact, with both closed, and the other one strikes."""
+        self._impact(self.pairs[old], old, 1 - old, self.shape.state(old, 0.0, w, z, s), 0.0, z)
+
+    def _impact(self, body: TwoPointBody, old: int | None, new: int, before: PlanarState, u: float, z: float) -> None:
+        outcome = solve_impact(body, Twist(before.vx, before.vy, before.omega), self.law)
+        if outcome.flags & (Flag.NO_SOLUTION | Flag.INVALID_INPUT):
+            self.end = End.NO_SOLUTION
+            return
+        vx, vy, omega = outcome.twist
+        after = before._replace(vx=vx, vy=vy, omega=omega)
+        self.impacts.append(Strike(self.time, old, new, before, after, outcome))
+        since, self.since = self.since, 0.0
+        # Normal velocities against the approach alone: beside a fast slip the mode counts slow hops as none.
+        shape = self.shape
+        touching = (new,) if old is None else (old, new)
+        approach = max(-shape.gap_rate(i, before) for i in touching)
+        size = abs(before.vx) + abs(before.vy) + abs(before.omega) * shape.length
+        least = STAYS * approach + (_SPEED_ROUNDING * size if shape.rolls else 0.0)
+        rates = {i: shape.gap_rate(i, after) for i in touching}
+        leaving = [i for i in touching if rates[i] > least]
+        closed = [i for i in touching if i not in leaving]
+        if self._is_quiet(after, new, u):
+            self._quieten(_BOTH, _QUIET, z, shape.seen_from(new, after))
+            return
+        if not closed and max(rates.values()) <= _BOUNCE * self.speed:
+            self._quieten(touching, _BOUNCE, z, shape.seen_from(new, after))
+            return
+        if leaving:
+            i = closed[0] if closed else new
+            _, w, _, s = shape.seen_from(i, after)
+            key = -1 if old is None else old, new, sum(1 << i for i in leaving)
+            limit = self.tail.add(key, since, (u, w, z, s))
+            if limit is not None:
+                self._accumulate(limit, new)
+                return
+        if not closed:
+            self._fly(after, self._gaps(new, u))
+            return
+        _, w, _, s = shape.seen_from(closed[-1], after)
+        s = 0.0 if abs(s) <= STAYS * (size + approach) else s
+        if len(closed) == 2:
+            self._hold(z, s)
+        else:
+            self._stand(closed[0], u, w, z, s)
+
+    def _is_quiet(self, after: PlanarState, new: int, u: float) -> bool:
+        """Whether both contacts bounce less than can matter: their hops may have no pattern that could be summed."""
+        shape = self.shape
+        if not any(shape.restitution) or abs(shape.gap_of_other(new, u)[0]) > _QUIET * _QUIET * shape.length:
+            return False
+        return max(abs(shape.gap_rate(i, after)) for i in _BOTH) <= _QUIET * self.speed
+
+    def _quieten(
+        self, contacts: tuple[int, ...], part: float, z: float, seen: tuple[float, float, float, float]
+    ) -> None:
+        """Contacts that hardly bounce any more are closed from now on."""
+        u, w, _, s = seen
+        s = 0.0 if abs(s) <= part * self.speed else s
+        impacts, self.since = self.tail.impacts, 0.0
+        if len(contacts) == 2:
+            self._hold(z, s)
+        else:
+            self._stand(contacts[0], u, w, z, s)
+        one = self.next
+        assert one is not None
+        error = 2.0 * part * self.swing / max(0.01, 1.0 - max(self.shape.restitution))
+        self.accumulations.append(
+            Accumulation(self.time, error, tuple(sorted(contacts)), STATES[one.a] + STATES[one.b], impacts)
+        )
+        self.tail.forget()
+
+    def _accumulate(self, limit: Limit, new: int) -> None:
+        """Pass from an impact to the end of all that follow it."""
+        u, w, z, s = limit.values
+        last = self.impacts[-1]
+        now, start = self.time, Instant(0.0, *self.shape.seen_from(new, last.after), 0.0, 0.0)
+        self.time = min(self.time + limit.after, self.until)
+        if len(limit.contacts) == 2:
+            u = w = 0.0
+            start = start._replace(u=0.0, w=0.0)
+            self._hold(z, s)
+        else:
+            self._stand(new, u, w, z, s)
+        one = self.next
+        assert one is not None
+        rest = Arc(self.shape, self.support, one.a, one.b, now, start, self.tolerance, True)
+        rest.close(Instant(self.time - now, u, w, z, s, 0.0, 0.0))
+        self.stretches.append(rest)
+        states = STATES[one.a] + STATES[one.b]
+        self.accumulations.append(Accumulation(self.time, limit.error, limit.contacts, states, limit.impacts))
+        self.since = 0.0
+        self.tail.forget()
+
+
+_ENDS = {
+    Happening.TIME_IS_UP: End.TIME_UP,
+    Happening.OVERTURNS: End.OVERTURNED,
+    Happening.BALANCES: End.BALANCED,
+    Happening.TAKES_TOO_LONG: End.TOO_MANY_EVENTS,
+}

@@ -1,0 +1,101 @@
+"""Impacts that accumulate: infinitely many in finite time, of which the rest is summed.
+
+Once the hops are small, what happens in a cycle of impacts is what happened in the one before times a factor, in time
+and in every velocity, but for terms that vanish with the hops. So the limit of the times (and of slip and place) is had
+by Aitken's extrapolation; the rest is summed when two cycles in a row extrapolate to the same limit.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+_LONGEST_CYCLE = 4
+"""Impacts in a cycle: one where both contacts are alike, two otherwise; more where both bounce."""
+_KEPT = 3 * _LONGEST_CYCLE + 1
+_FOLLOWED = 8
+"""Impacts of a sequence that are followed one by one, however soon the rest could be summed."""
+_SLOWEST = 0.9999
+"""A factor nearer to 1 is not told from 1."""
+
+Values = tuple[float, float, float, float]
+"""u (rad), w (rad/s), z (m) and s (m/s) after an impact."""
+
+
+Key = tuple[int, int, int]
+"""Old contact (-1: none), new contact and mode of an impact."""
+
+
+class _Row(NamedTuple):
+    key: Key
+    since: float
+    values: Values
+
+
+class Limit(NamedTuple):
+    """Where impacts accumulate.
+
+    Time `after` the last one and a bound on its `error` (s); the values there; the contacts that are closed then; how
+    many impacts were seen.
+    """
+
+    after: float
+    error: float
+    values: Values
+    contacts: tuple[int, ...]
+    impacts: int
+
+
+class Tail:
+    """Watches the impacts of a body for an accumulation."""
+
+    def __init__(self, time: float, speed: float, length: float, tolerance: float) -> None:
+        """Scales of the body: `time` s, `speed` m/s, `length` m; `tolerance` relative to them."""
+        self.time, self.speed, self.length, self.tolerance = time, speed, length, tolerance
+        self.forget()
+
+    def forget(self) -> None:
+        """Begin a new sequence."""
+        self.rows: list[_Row] = []
+        self.impacts = 0
+
+    def add(self, key: Key, since: float, values: Values) -> Limit | None:
+        """One more impact, `since` s after the one before; the limit when the rest can be summed."""
+        rows = self.rows
+        rows.append(_Row(key, since, values))
+        self.impacts += 1
+        if len(rows) > _KEPT:
+            del rows[0]
+        if self.impacts < _FOLLOWED:
+            return None
+        for period in range(1, _LONGEST_CYCLE + 1):
+            if len(rows) > 3 * period and all(rows[-k].key == rows[-k - period].key for k in range(1, 2 * period + 1)):
+                return self._limit(period)
+        return None
+
+    def _limit(self, period: int) -> Limit | None:
+        rows = self.rows
+        cycles = [
+            sum(row.since for row in rows[len(rows) - (k + 1) * period : len(rows) - k * period]) for k in range(3)
+        ]
+        last, before, first = cycles
+        if not 0.0 < last < _SLOWEST * before or not before < _SLOWEST * first:
+            return None
+        part, part_before = last / (before - last), before / (first - before)
+        after = last * part
+        error = abs(after + last - before * part_before) * max(1.0, part)
+        now, once, twice = (rows[-1 - k * period].values for k in range(3))
+        limits = [a + (a - b) * part for a, b in zip(now, once, strict=True)]
+        earlier = [b + (b - c) * part_before for b, c in zip(once, twice, strict=True)]
+        off = [abs(a - b) * max(1.0, part) for a, b in zip(limits, earlier, strict=True)]
+        allowed = self.tolerance
+        if error > allowed * self.time or max(off[0], off[2] / self.length) > allowed:
+            return None
+        if max(off[1] * self.time, off[3] / self.speed) > allowed:
+            return None
+        u, w, z, s = limits
+        if abs(s) <= allowed * self.speed:
+            s = 0.0
+        elif s * now[3] < 0.0 or abs(s) < 0.5 * abs(now[3]):
+            return None  # the slip ends before the impacts do
+        contacts = {contact for row in rows[-period:] for contact in row.key[:2] if contact >= 0}
+        return Limit(after, error, (u, w, z, s), tuple(sorted(contacts)), self.impacts)

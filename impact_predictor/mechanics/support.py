@@ -1,0 +1,249 @@
+"""Planar supports that bodies stand on: a fixed floor or slope, or a moving one such as a ship's deck.
+
+In the support's frame a body feels, at r from the frame's origin and moving with r' there, the acceleration
+R^T (g - A) - dW/dt z x r + W^2 r - 2 W z x r' and the angular acceleration -dW/dt: R the rotation, W its rate, A the
+acceleration of the origin.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+from ..errors import InputError
+from .bodies import sine_and_cosine
+from .types import Vector
+
+Felt = tuple[float, float, float, float]
+"""Acceleration felt at rest at the origin, along the support's axes (m/s^2); rate (rad/s); angular acceleration."""
+
+Part = tuple[tuple[float, ...], ...]
+"""Coefficients of the polynomials of the four numbers felt, the highest power first; empty where they do not fit."""
+
+_NODES = 12
+"""Values that the polynomials of a moving support go through: with `_PART` they are exact to rounding."""
+_PART = 0.0625
+"""Length of one polynomial, in shortest periods."""
+_MAX_PARTS = 4096
+"""Polynomials that are kept."""
+_FIT = 1e-12
+"""Where the last two terms of a polynomial are above this part of the first ones the motion is evaluated itself."""
+
+
+class SupportMotion(NamedTuple):
+    """Motion of a support's frame in the world.
+
+    Angle (rad, CCW), its rate and acceleration; place, velocity and acceleration of the origin (SI). The fields may be
+    arrays over time.
+    """
+
+    angle: Any
+    rate: Any
+    acceleration: Any
+    x: Any
+    y: Any
+    vx: Any
+    vy: Any
+    ax: Any
+    ay: Any
+
+
+@dataclass(frozen=True)
+class FixedSupport:
+    """A straight support at rest; `slope` in rad, CCW (its x axis rises), `gravity` in m/s^2 downwards."""
+
+    slope: float = 0.0
+    gravity: float = 9.81
+
+    @property
+    def period(self) -> float:
+        return math.inf
+
+    def felt(self, time: float) -> Felt:
+        """What a body feels at rest: gravity in the support's axes."""
+        return -self.gravity * math.sin(self.slope), -self.gravity * math.cos(self.slope), 0.0, 0.0
+
+    def motion(self, time: Any) -> SupportMotion:
+        """Motion of the frame: none, for a time or an array of times."""
+        rest = 0.0 * time
+        return SupportMotion(self.slope + rest, rest, rest, rest, rest, rest, rest, rest, rest)
+
+
+@dataclass(frozen=True)
+class MovingSupport:
+    """A straight support that moves as `function` of time tells, about the point of it where its frame has its origin.
+
+    `function(time)` gives a SupportMotion with derivatives that belong together, for a time in s or, if it can, an
+    array. `period` is the shortest time in s in which the motion swings to and fro: no shorter swing may be in it.
+    `gravity` in m/s^2 downwards; `origin` (x, y) in m is where the frame's origin lies in the frame of `function`.
+    """
+
+    function: Callable[[Any], SupportMotion]
+    period: float
+    gravity: float = 9.81
+    origin: Vector = (0.0, 0.0)
+    _parts: dict[int, Part] = field(default_factory=dict, init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.period < math.inf:
+            raise InputError(f"period of the moving support is {self.period}; give a finite number of seconds above 0")
+
+    def at(self, x: float, y: float) -> MovingSupport:
+        """The same support, its frame's origin moved by (x, y) in m along its axes: to where a body stands."""
+        return MovingSupport(self.function, self.period, self.gravity, (self.origin[0] + x, self.origin[1] + y))
+
+    def motion(self, time: Any) -> SupportMotion:
+        """Motion of the frame at a time, or at an array of times."""
+        angle, rate, acceleration, x, y, vx, vy, ax, ay = self.function(time)
+        if self.origin != (0.0, 0.0):
+            sine, cosine = sine_and_cosine(angle)
+            px, py = self.origin
+            arm_x, arm_y = cosine * px - sine * py, sine * px + cosine * py
+            square = rate * rate
+            x, y, vx, vy = x + arm_x, y + arm_y, vx - rate * arm_y, vy + rate * arm_x
+            ax = ax - acceleration * arm_y - square * arm_x
+            ay = ay + acceleration * arm_x - square * arm_y
+        return SupportMotion(angle, rate, acceleration, x, y, vx, vy, ax, ay)
+
+    def felt_exactly(self, time: Any) -> tuple[Any, Any, Any, Any]:
+        """As `felt`, from the motion itself, for a time or an array of times."""
+        angle, rate, acceleration, _, _, _, _, ax, ay = self.motion(time)
+        sine, cosine = sine_and_cosine(angle)
+        down = self.gravity + ay
+        return -cosine * ax - sine * down, sine * ax - cosine * down, rate, acceleration
+
+    def felt(self, time: float) -> Felt:
+        """What a body feels at rest at the origin, from polynomials in time: a sum of many waves costs no more."""
+        width = _PART * self.period
+        number = math.floor(time / width)
+        part = self._parts.get(number)
+        if part is None:
+            part = self._fit(number, width)
+        if not part:
+            return self.felt_exactly(time)
+        s = (time / width - number) * 2.0 - 1.0
+        x = y = w = a = 0.0
+        for cx, cy, cw, ca in part:
+            x = x * s + cx
+            y = y * s + cy
+            w = w * s + cw
+            a = a * s + ca
+        return x, y, w, a
+
+    def _fit(self, number: int, width: float) -> Part:
+        """Coefficients of the four polynomials, the highest power first; none where they do not fit."""
+        samples = [self.felt_exactly((number + 0.5 + 0.5 * node) * width) for node in _CHEBYSHEV_NODES]
+        columns = list(zip(*samples, strict=True))
+        push = max(map(abs, columns[0] + columns[1]))
+        rate = max(map(abs, columns[2]))
+        rows: list[list[float]] = []
+        for values, size in zip(columns, (push, push, rate, rate / width), strict=True):
+            waves = [sum(w * v for w, v in zip(weights, values, strict=True)) for weights in _TO_WAVES]
+            if abs(waves[-1]) + abs(waves[-2]) > _FIT * (size + sum(map(abs, waves))):
+                rows = []
+                break
+            rows.append([sum(w * v for w, v in zip(weights, waves, strict=True)) for weights in _TO_POWERS])
+        if len(self._parts) >= _MAX_PARTS:
+            self._parts.clear()
+        part = tuple(zip(*rows, strict=True))[::-1] if rows else ()
+        self._parts[number] = part
+        return part
+
+
+Support = FixedSupport | MovingSupport
+
+
+class Wave(NamedTuple):
+    """amplitude * sin(frequency * time + phase); `frequency` in rad/s, `phase` in rad."""
+
+    amplitude: float
+    frequency: float
+    phase: float = 0.0
+
+
+def harmonic_support(
+    angle: Sequence[Wave] = (),
+    x: Sequence[Wave] = (),
+    y: Sequence[Wave] = (),
+    mean_angle: float = 0.0,
+    gravity: float = 9.81,
+) -> MovingSupport:
+    """A support whose angle (rad) and origin (m, in the world's axes) are sums of waves: a deck in a sea.
+
+    Raises:
+        InputError: no wave has a frequency above 0.
+    """
+    frequencies = [abs(wave.frequency) for wave in (*angle, *x, *y)]
+    if not frequencies or not 0.0 < max(frequencies) < math.inf:
+        raise InputError("the waves of the support have no frequency above 0; give one, or use FixedSupport")
+    sums = tuple(angle), tuple(x), tuple(y)
+
+    def motion(time: Any) -> SupportMotion:
+        (a, da, dda), (px, vx, ax), (py, vy, ay) = (_sum_of(waves, time) for waves in sums)
+        return SupportMotion(mean_angle + a, da, dda, px, py, vx, vy, ax, ay)
+
+    return MovingSupport(motion, 2.0 * math.pi / max(frequencies), gravity)
+
+
+def sampled_support(times: Any, angle: Any, x: Any, y: Any, gravity: float = 9.81) -> MovingSupport:
+    """A support measured at `times` (n,) in s: angle (n,) in rad, CCW, and origin x, y (n,) in m.
+
+    Splines of degree 5 go through the samples, so that the accelerations are smooth; before the first sample and
+    after the last one the support rests.
+
+    Raises:
+        InputError: fewer than 6 samples, or times that do not increase.
+    """
+    import numpy as np
+    from scipy.interpolate import make_interp_spline
+
+    times = np.asarray(times, dtype=float)
+    values = np.column_stack([np.asarray(part, dtype=float) for part in (angle, x, y)])
+    if len(times) < 6 or not (np.diff(times) > 0.0).all() or not np.isfinite(values).all():
+        raise InputError("the samples of the support are too few or out of order; give 6 or more at increasing times")
+    first = make_interp_spline(times, values, k=5)
+    splines = first, first.derivative(), first.derivative(2)
+
+    def motion(time: Any) -> SupportMotion:
+        inside = np.clip(time, times[0], times[-1])
+        moves = np.asarray(inside == time)[..., None]
+        (a, px, py), (da, vx, vy), (dda, ax, ay) = (
+            np.moveaxis(np.where(moves | (degree == 0), spline(inside), 0.0), -1, 0)
+            for degree, spline in enumerate(splines)
+        )
+        return SupportMotion(a, da, dda, px, py, vx, vy, ax, ay)
+
+    return MovingSupport(motion, 4.0 * float(np.diff(times).min()), gravity)
+
+
+def _sum_of(waves: tuple[Wave, ...], time: Any) -> tuple[Any, Any, Any]:
+    """A sum of waves and its two derivatives."""
+    value = rate = acceleration = 0.0 * time
+    for amplitude, frequency, phase in waves:
+        sine, cosine = sine_and_cosine(frequency * time + phase)
+        value = value + amplitude * sine
+        rate = rate + amplitude * frequency * cosine
+        acceleration = acceleration - amplitude * frequency * frequency * sine
+    return value, rate, acceleration
+
+
+_CHEBYSHEV_NODES = tuple(math.cos(math.pi * (k + 0.5) / _NODES) for k in range(_NODES))
+_TO_WAVES = tuple(
+    tuple((2.0 if j else 1.0) / _NODES * math.cos(math.pi * j * (k + 0.5) / _NODES) for k in range(_NODES))
+    for j in range(_NODES)
+)
+"""Coefficients of Chebyshev's polynomials from values at their nodes."""
+
+
+def _powers() -> tuple[tuple[float, ...], ...]:
+    """Coefficients of powers from those of Chebyshev's polynomials."""
+    columns = [[1.0] + [0.0] * (_NODES - 1), [0.0, 1.0] + [0.0] * (_NODES - 2)]
+    while len(columns) < _NODES:
+        last, before = columns[-1], columns[-2]
+        columns.append([2.0 * a - b for a, b in zip([0.0, *last[:-1]], before, strict=True)])
+    return tuple(zip(*columns, strict=True))
+
+
+_TO_POWERS = _powers()

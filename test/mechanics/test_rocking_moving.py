@@ -1,0 +1,333 @@
+"""Rocking on a moving support, against Newton's law in the world's axes and against cases known in closed form.
+
+The reference knows nothing of the support's frame: it integrates the mass centre and the angle in the world, and finds
+the contact forces from what the contacts' accelerations there must be.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+from impact_predictor import Contact, InputError, TwoPointBody, cylinder, plate
+from impact_predictor.mechanics.motion import PlanarState
+from impact_predictor.mechanics.rocking import End, Run, rock, standing
+from impact_predictor.mechanics.support import (
+    FixedSupport,
+    MovingSupport,
+    SupportMotion,
+    Wave,
+    harmonic_support,
+    sampled_support,
+)
+
+G = 9.81
+AGREES = 1e-9
+"""What the motion on a moving support is made for: each step's error is below 1e-11 of what happens in it."""
+
+CRATE = plate(length=0.8, height=1.0, mass=50.0, friction=0.4)
+SMOOTH = TwoPointBody(50.0, 7.0, Contact(-0.4, -0.5, 0.1), Contact(0.4, -0.5, 0.15))
+DRUM = cylinder(radius=0.3, gamma=0.5, gamma_new=0.7, mass=40.0, friction=0.3)
+TALL = plate(length=0.4, height=1.2, mass=20.0, friction=0.8)
+DECK = harmonic_support(
+    angle=(Wave(0.25, 1.1, 0.3), Wave(0.08, 2.3, 1.0)),
+    x=(Wave(0.9, 0.9, 2.0),),
+    y=(Wave(1.1, 1.3, 0.5), Wave(0.2, 3.1)),
+).at(4.0, 2.5)
+
+
+def cross(a: Any, b: Any) -> float:
+    return float(a[0] * b[1] - a[1] * b[0])
+
+
+def left_of(a: Any) -> Any:
+    return np.array([-a[1], a[0]])
+
+
+def world_rate(run: Run, states: str, time: float, y: Any) -> list[float]:
+    """Newton's law for (x, y, angle, vx, vy, omega) in the world, contact forces from a linear system."""
+    body, moves = run.body, run.support.motion(time)
+    assert body.old is not None
+    c, s = math.cos(moves.angle), math.sin(moves.angle)
+    origin, speed, push = (np.array(pair) for pair in ((moves.x, moves.y), (moves.vx, moves.vy), (moves.ax, moves.ay)))
+    place, velocity, omega = y[:2], y[3:5], y[5]
+    disc = body.old.normal != (0.0, 1.0)
+    rows, wanted, levers = [], [], []
+    for contact, state in zip((body.old, body.new), states, strict=True):
+        if state == "O":
+            continue
+        if disc:
+            edge = np.array([contact.x - body.old.x, contact.y - body.old.y])
+            touch = origin + np.array([c * edge[0] - s * edge[1], s * edge[0] + c * edge[1]])
+            normal = (place - touch) / np.linalg.norm(place - touch)
+        else:
+            cb, sb = math.cos(y[2]), math.sin(y[2])
+            touch = place + np.array([cb * contact.x - sb * contact.y, sb * contact.x + cb * contact.y])
+            normal = np.array([-s, c])
+        tangent = np.array([normal[1], -normal[0]])
+        lever, arm = touch - place, touch - origin
+        ground = push + moves.acceleration * left_of(arm) - moves.rate**2 * arm
+        ground_speed = speed + moves.rate * left_of(arm)
+        if disc:
+            # The distance from the edge stays, and the rim rolls on it or slips.
+            relative = velocity - ground_speed
+            want_n, want_t = normal @ ground - relative @ relative / math.hypot(*lever), tangent @ ground
+            row_n = np.array([normal[0], normal[1], 0.0])
+        else:
+            slip = velocity + omega * left_of(lever) - ground_speed
+            want = ground + 2.0 * moves.rate * left_of(slip) + omega**2 * lever
+            want_n, want_t = normal @ want, tangent @ want
+            row_n = np.array([*normal, cross(lever, normal)])
+        row_t = np.array([*tangent, cross(lever, tangent)])
+        friction = {"S": None, "+": -contact.friction, "-": contact.friction}[state]
+        if friction is None:
+            rows += [row_n, row_t]
+            wanted += [want_n, want_t]
+            levers += [[*normal, cross(lever, normal)], [*tangent, cross(lever, tangent)]]
+        else:
+            along = normal + friction * tangent
+            rows.append(row_n)
+            wanted.append(want_n)
+            levers.append([*along, cross(lever, along)])
+    free = np.array([0.0, -run.support.gravity, 0.0])
+    if rows:
+        weights = np.array([1.0 / body.mass, 1.0 / body.mass, 1.0 / body.inertia])
+        forces = np.array(levers)
+        system = np.array(rows) @ (weights[:, None] * forces.T)
+        reaction = np.linalg.lstsq(system, np.array(wanted) - np.array(rows) @ free, rcond=None)[0]
+        free = free + weights * (forces.T @ reaction)
+    return [y[3], y[4], y[5], *free]
+
+
+def worst_phase(run: Run, shortest: float = 1e-3) -> float:
+    """How far phases that begin alike end apart, integrated in the world and as followed."""
+    worst = 0.0
+    for start, end, states in run.phases:
+        if end - start < shortest or states == "SS":
+            continue
+        # Just inside, where both ends belong to the phase.
+        first, last = start + 1e-9 * (end - start), end - 1e-9 * (end - start)
+        goes = solve_ivp(
+            lambda t, y, states=states: world_rate(run, states, t, y),
+            (first, last),
+            np.array(run.world(first)),
+            method="DOP853",
+            rtol=1e-12,
+            atol=1e-13,
+        )
+        worst = max(worst, float(np.abs(goes.y[:, -1] - np.array(run.world(last))).max()))
+    return worst
+
+
+@pytest.mark.parametrize(
+    ("body", "start"),
+    [
+        (CRATE, standing(CRATE, 0.05)),
+        (CRATE, standing(CRATE, -0.2, -0.3)),
+        (
+            CRATE._replace(old=CRATE.old._replace(friction=0.1), new=CRATE.new._replace(friction=0.15)),
+            standing(CRATE, 0.3),
+        ),
+        (DRUM, standing(DRUM, 0.2)),
+        (DRUM, standing(DRUM, -0.3, slip=0.5)),
+        (DRUM, standing(DRUM, 0.0, slip=2.0)),
+        (DRUM, standing(DRUM, 0.1)._replace(vx=0.3, vy=1.5)),
+    ],
+)
+def test_every_phase_is_newtons_law_in_the_world(body: TwoPointBody, start: PlanarState) -> None:
+    run = rock(body, start, DECK, duration=4.0)
+    assert len(run.phases) > 2
+    assert worst_phase(run) < AGREES
+
+
+def test_all_kinds_of_phases_were_compared_with_the_world() -> None:
+    slippery = TwoPointBody(1.0, 0.15, Contact(-0.4, -0.5, 0.1, restitution=0.4), Contact(0.4, -0.5, 0.15))
+    seen = set()
+    rest = standing(CRATE, 0.0)
+    thrown = standing(slippery, 0.1)._replace(vx=-0.4, vy=1.0)
+    for body, start in (
+        (slippery, standing(slippery, 0.3)),
+        (slippery, thrown),
+        (TALL, standing(TALL, 0.05)),
+        (CRATE, rest),
+    ):
+        run = rock(body, start, DECK, duration=6.0)
+        assert worst_phase(run) < AGREES
+        seen |= {phase.states for phase in run.phases}
+    assert {"OO", "SS"} <= seen
+    assert seen & {"SO", "OS"}
+    assert seen & {"+O", "-O", "O+", "O-"}
+    assert seen & {"++", "--"}
+
+
+def accelerated(ax: float, ay: float = 0.0) -> MovingSupport:
+    def motion(t: Any) -> SupportMotion:
+        zero = 0.0 * t
+        return SupportMotion(zero, zero, zero, 0.5 * ax * t * t, 0.5 * ay * t * t, ax * t, ay * t, zero + ax, zero + ay)
+
+    return MovingSupport(motion, 1.0)
+
+
+@pytest.mark.parametrize(("body", "angle"), [(CRATE, 0.3), (DRUM, 0.2)])
+def test_constant_acceleration_of_the_support_is_tilted_gravity(body: TwoPointBody, angle: float) -> None:
+    tilted = FixedSupport(math.atan(1.5 / G), math.hypot(1.5, G))
+    one = rock(body, standing(body, angle), accelerated(1.5), duration=3.0)
+    other = rock(body, standing(body, angle), tilted, duration=3.0)
+    assert [s.outcome.mode for s in one.impacts[:6]] == [s.outcome.mode for s in other.impacts[:6]]
+    times = np.linspace(0.0, 0.9999 * other.impacts[:6][-1].time, 200)
+    for mine, theirs in zip(one.state(times), other.state(times), strict=True):
+        assert np.abs(mine - theirs).max() < AGREES
+
+
+def test_on_a_support_in_free_fall_a_body_turns_and_moves_for_ever() -> None:
+    start = standing(CRATE, 0.2)._replace(vx=0.1, vy=0.5, omega=0.3)
+    run = rock(CRATE, start, accelerated(0.0, -G), duration=2.0)
+    assert [phase.states for phase in run.phases] == ["OO"]
+    end = run.state(2.0)
+    assert end.omega == pytest.approx(0.3, abs=1e-12)
+    assert end.angle == pytest.approx(0.2 + 0.6, abs=1e-12)
+    assert (end.x - start.x, end.y - start.y) == pytest.approx((0.2, 1.0), abs=1e-12)
+
+
+def test_a_body_rests_on_a_support_in_free_fall() -> None:
+    run = rock(CRATE, standing(CRATE, 0.0), accelerated(0.0, -G), duration=2.0)
+    assert run.end is End.TIME_UP
+    assert run.state(2.0) == pytest.approx(run.state(0.0), abs=1e-12)
+
+
+def turntable(rate: float) -> MovingSupport:
+    def motion(t: Any) -> SupportMotion:
+        zero = 0.0 * t
+        return SupportMotion(rate * t, zero + rate, zero, zero, zero, zero, zero, zero, zero)
+
+    return MovingSupport(motion, 2.0 * math.pi / rate, gravity=0.0)
+
+
+@pytest.mark.parametrize(("offset", "rests"), [(0.99, True), (1.01, False)])
+def test_without_gravity_a_turning_support_throws_outwards(offset: float, rests: bool) -> None:
+    """3 m inside a turning drum the crate, its mass centre at 2.5 m, rests where x < f 2.5 m."""
+    run = rock(CRATE, standing(CRATE, 0.0), turntable(2.0).at(offset * 0.4 * 2.5 - 0.4, -3.0), duration=0.5)
+    assert (run.phases[0].states == "SS") is rests
+    if not rests:
+        assert run.phases[0].states == "++"
+
+
+SWAY, PACE = 1.0, 3.0
+
+
+def test_a_crate_begins_to_slide_when_the_felt_forces_say_so() -> None:
+    low = plate(length=0.8, height=0.3, mass=1.0, friction=0.3)
+    run = rock(low, standing(low, 0.0), harmonic_support(x=(Wave(SWAY, PACE),)), duration=3.0)
+    onset = math.asin(0.3 * G / (SWAY * PACE**2)) / PACE
+    assert run.phases[0].states == "SS"
+    assert run.phases[1].states == "++"
+    # A root of a smooth function, from polynomials exact to 1e-13.
+    assert run.phases[1].start == pytest.approx(onset, abs=1e-10)
+
+
+def test_a_crate_begins_to_tip_when_the_felt_forces_say_so() -> None:
+    tall = plate(length=0.4, height=1.6, mass=1.0, friction=1.0)
+    run = rock(tall, standing(tall, 0.0), harmonic_support(x=(Wave(SWAY, PACE),)), duration=1.0)
+    onset = math.asin(0.2 * G / 0.8 / (SWAY * PACE**2)) / PACE
+    assert [phase.states for phase in run.phases[:2]] == ["SS", "OS"]
+    assert run.phases[1].start == pytest.approx(onset, abs=1e-10)
+
+
+def test_rolling_of_the_deck_tips_with_the_moment_of_the_bodys_own_inertia() -> None:
+    tall = plate(length=0.5, height=1.6, mass=1.0, friction=1.0)
+    theta, pace, x, y = 0.35, 1.7, 2.0, 3.0
+    rho_squared = (0.5**2 + 1.6**2) / 12.0
+
+    def margin(t: float) -> float:
+        angle, rate = theta * math.sin(pace * t), theta * pace * math.cos(pace * t)
+        spin_up = -(pace**2) * angle
+        cx, cy = x + 0.25, y + 0.8  # the mass centre in the deck's frame
+        along = -G * math.sin(angle) + spin_up * cy + rate**2 * cx
+        load = G * math.cos(angle) + spin_up * cx - rate**2 * cy
+        return 0.25 * load - abs(0.8 * along + rho_squared * spin_up)
+
+    times = np.linspace(0.0, 3.0, 3001)
+    first = next(t for t in times if margin(t) < 0.0)
+    onset = brentq(margin, first - 1e-3, first, xtol=1e-14)
+    run = rock(tall, standing(tall, 0.0), harmonic_support(angle=(Wave(theta, pace),)).at(x, y), duration=3.0)
+    assert run.phases[1].states in ("SO", "OS")
+    assert run.phases[1].start == pytest.approx(onset, abs=1e-9)
+
+
+def test_a_short_swell_that_just_overcomes_friction_is_not_missed() -> None:
+    low = plate(length=0.8, height=0.3, mass=1.0, friction=0.3)
+    just = 0.3 * G * (1.0 + 1e-7) / PACE**2
+    run = rock(low, standing(low, 0.0), harmonic_support(x=(Wave(just, PACE),)), duration=1.0)
+    assert run.phases[1].states == "++"
+    under = rock(low, standing(low, 0.0), harmonic_support(x=(Wave(just * (1 - 2e-7), PACE),)), duration=10.0)
+    assert [phase.states for phase in under.phases] == ["SS"]
+
+
+def test_sliding_stops_and_starts_again_with_the_sea() -> None:
+    low = plate(length=0.8, height=0.3, mass=1.0, friction=0.3)
+    run = rock(low, standing(low, 0.0), harmonic_support(x=(Wave(SWAY, PACE),)), duration=70.0)
+    states = [phase.states for phase in run.phases]
+    assert states.count("++") > 5
+    assert states.count("--") > 5
+    # Once the beginning is forgotten a half wave to the right is one to the left mirrored: the crate comes back.
+    period = 2.0 * math.pi / PACE
+    assert run.state(25.0 * period).x == pytest.approx(run.state(30.0 * period).x, abs=1e-9)
+
+
+def test_a_sampled_support_is_the_support_that_was_sampled() -> None:
+    times = np.linspace(0.0, 12.0, 1201)
+    deck = harmonic_support(angle=(Wave(0.2, 1.1),), x=(Wave(0.5, 0.9),), y=(Wave(0.6, 1.3),))
+    moves = deck.motion(times)
+    sampled = sampled_support(times, moves.angle, moves.x, moves.y)
+    start = standing(CRATE, 0.1)
+    one, other = rock(CRATE, start, deck, duration=2.0), rock(CRATE, start, sampled, duration=2.0)
+    # Second derivatives of a quintic spline through samples 10 ms apart.
+    assert other.state(0.5) == pytest.approx(one.state(0.5), abs=1e-7)
+
+
+def test_a_support_at_another_point_moves_with_the_first() -> None:
+    times = np.linspace(0.0, 3.0, 7)
+    deck = harmonic_support(angle=(Wave(0.2, 1.1),), x=(Wave(0.5, 0.9),))
+    moves, there = deck.motion(times), deck.at(2.0, -1.0).motion(times)
+    assert there.x == pytest.approx(moves.x + 2.0 * np.cos(moves.angle) + np.sin(moves.angle))
+    step = 1e-4
+    for value, rate in (
+        (there.x, there.vx),
+        (there.vy, there.ay),
+        (there.y, there.vy),
+        (there.rate, there.acceleration),
+    ):
+        assert np.isfinite(value).all()
+        assert np.isfinite(rate).all()
+    ahead, behind = deck.at(2.0, -1.0).motion(times + step), deck.at(2.0, -1.0).motion(times - step)
+    for name, rate in (
+        ("x", "vx"),
+        ("y", "vy"),
+        ("vx", "ax"),
+        ("vy", "ay"),
+        ("angle", "rate"),
+        ("rate", "acceleration"),
+    ):
+        central = (getattr(ahead, name) - getattr(behind, name)) / (2.0 * step)
+        assert central == pytest.approx(getattr(there, rate), abs=1e-7)  # step^2 times the third derivative
+
+
+def test_what_a_body_feels_comes_from_polynomials_exact_to_rounding() -> None:
+    times = np.linspace(0.0, 30.0, 997)
+    for time in times:
+        exact, fitted = DECK.felt_exactly(float(time)), DECK.felt(float(time))
+        assert fitted == pytest.approx(exact, abs=1e-12)
+
+
+def test_supports_refuse_what_they_cannot_use() -> None:
+    with pytest.raises(InputError):
+        harmonic_support()
+    with pytest.raises(InputError):
+        MovingSupport(lambda t: SupportMotion(*[0.0 * t] * 9), period=0.0)
+    with pytest.raises(InputError):
+        sampled_support([0.0, 1.0], [0.0, 0.0], [0.0, 0.0], [0.0, 0.0])
