@@ -2,7 +2,8 @@
 
     python benchmarks/bench_import.py
 
-Prints a row for each: median, spread and worst of the runs in ms, Python's own start not included.
+Prints a row for each: median, spread and worst of the runs in ms, Python's own start not included. What a scene leaves
+out is not imported: the rows "with" show what each part would add (`impact-predictor explain` tells it for one scene).
 """
 
 from __future__ import annotations
@@ -15,17 +16,26 @@ from typing import Final
 from rich.console import Console
 from rich.table import Table
 
+from impact_predictor.prediction.parts import PARTS
+
 RUNS: Final = 15
 LIMIT: Final = 150.0
 """ms that the library may take."""
 
+NODE: Final = "impact_predictor.prediction.predictor, impact_predictor.ros.messages"
 IMPORTS: Final = {
     "the library": "impact_predictor",
-    "what the node needs besides ROS": "impact_predictor.prediction.predictor, impact_predictor.ros.messages",
+    "what the node needs besides ROS": NODE,
+    **{
+        f"... with {part.name}": ", ".join([NODE, *[f"impact_predictor.{module}" for module in part.modules]])
+        for part in PARTS
+        if part.modules and not part.of_node
+    },
     "impact-predictor --help": "impact_predictor.cli",
     "impact-predictor solve": "impact_predictor.cli, impact_predictor.report.outcome",
     "impact-predictor replay": "impact_predictor.cli, impact_predictor.bags.replay, impact_predictor.report.replay",
     "... --figure": "impact_predictor.cli, impact_predictor.report.figure",
+    "impact-predictor explain": "impact_predictor.cli, impact_predictor.report.parts.measure",
 }
 TIMED: Final = "import time; begin = time.perf_counter(); import {}; print(1e3 * (time.perf_counter() - begin))"
 

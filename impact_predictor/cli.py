@@ -12,8 +12,11 @@ from . import __version__
 from .commands.bench import bench
 from .commands.demo import demo
 from .commands.examples import examples
+from .commands.explain import explain
 from .commands.map import map_
 from .commands.replay import replay
+from .commands.report import report
+from .commands.simulate import simulate
 from .commands.solve import solve
 from .errors import InputError
 
@@ -62,6 +65,7 @@ def _sentence(error: click.ClickException) -> str:
         "impact-predictor demo",
         "impact-predictor solve plate --length 1 --height 0.4 --mass 10 --friction 0.2 --omega -1",
         "impact-predictor map plate",
+        "impact-predictor simulate rod --a 0.1 --a 0.075 --a 0.05 --plot rods.png",
         "impact-predictor replay examples/cube_tosses --params config/cube_tosses.yaml -o predictions.mcap",
     ),
 )
@@ -70,5 +74,5 @@ def main() -> None:
     """Predict the next touchdown of a body that turns about one contact, and what the impact does to it."""
 
 
-for _command in (demo, solve, map_, replay, bench):
+for _command in (demo, solve, map_, simulate, replay, explain, report, bench):
     main.add_command(_command)

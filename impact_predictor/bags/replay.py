@@ -5,19 +5,31 @@ from __future__ import annotations
 import os
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from pathlib import Path
 from time import perf_counter
-from typing import Final, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from ..errors import InputError
 from ..prediction.predictor import Predictor
 from ..prediction.scene import Scene
 from ..prediction.types import Prediction, Sample, Score, Status
 from ..ros.diagnostics import REMEDIES
-from ..ros.messages import ODOMETRY, OUTPUTS, POLYGON, MalformedMessage, decode_odometry, decode_polygon
+from ..ros.messages import (
+    DIAGNOSTIC_ARRAY,
+    ODOMETRY,
+    OUTPUTS,
+    POLYGON,
+    MalformedMessage,
+    decode_odometry,
+    decode_polygon,
+)
+from ..scenarios.truth import TRUTH_TOPIC, TrueImpact, decode_true_impacts
 from .read import BagMessage, read_messages, topics
 from .write import BagWriter
+
+if TYPE_CHECKING:
+    from ..scenarios.comparison import Announcements, Truth
 
 INPUTS: Final = {"odom": ODOMETRY, "contact_geometry": POLYGON}
 """The inputs of the predictor by their relative names, with the types of their messages."""
@@ -40,6 +52,7 @@ class Result(NamedTuple):
     `samples` counts the messages of odom, `seconds` is what everything took, reading and writing included. `statuses`
     and `geometry_statuses` say what became of the messages of the two inputs. `notes` are sentences about choices that
     were made; `unpredictable` says why nothing could be predicted, and `damaged` what of the bag was lost, or "".
+    `truth` is how the predictions compare with the true impacts, where the bag carries them.
     """
 
     bag: str
@@ -51,6 +64,7 @@ class Result(NamedTuple):
     notes: tuple[str, ...]
     unpredictable: str
     damaged: str
+    truth: Truth | None = None
 
 
 def replay(
@@ -73,9 +87,14 @@ def replay(
     started = perf_counter()
     if output is not None and Path(output).resolve() == Path(path).resolve():
         raise InputError(f"{os.fspath(output)} is the bag itself; give the predictions another name")
-    names, notes = _find_topics(path, scene, remap or {})
-    messages = read_messages(path, {topic: INPUTS[name] for name, topic in names.items()})
-    run = _Run(scene, names)
+    recorded = topics(path)
+    names, notes = _find_topics(path, recorded, scene, remap or {})
+    wanted = {topic: INPUTS[name] for name, topic in names.items()}
+    knows_truth = recorded.get(TRUTH_TOPIC) == DIAGNOSTIC_ARRAY
+    if knows_truth:
+        wanted[TRUTH_TOPIC] = DIAGNOSTIC_ARRAY
+    messages = read_messages(path, wanted)
+    run = _Run(scene, names, knows_truth)
     damage: list[str] = []
     with ExitStack() as stack:
         if output is not None:
@@ -94,6 +113,7 @@ def replay(
         notes,
         run.why_unpredictable(),
         damage[0] if damage else "",
+        run.truth(),
     )
 
 
@@ -113,7 +133,7 @@ def remapping(rules: tuple[str, ...]) -> dict[str, str]:
 
 
 def _find_topics(
-    path: str | os.PathLike[str], scene: Scene, remap: Mapping[str, str]
+    path: str | os.PathLike[str], recorded: Mapping[str, str], scene: Scene, remap: Mapping[str, str]
 ) -> tuple[dict[str, str], tuple[str, ...]]:
     """The topic of each input that the scene needs and the bag has, and what was chosen without being told."""
     given = {}
@@ -122,7 +142,6 @@ def _find_topics(
         if relative not in INPUTS:
             raise InputError(f"the remapping {name}:={topic} is of no input; the inputs are {' and '.join(INPUTS)}")
         given[relative] = "/" + topic.removeprefix("/")
-    recorded = topics(path)
     found, chosen = {}, []
     for name, type_name in INPUTS.items():
         needed = not (name == "contact_geometry" and scene.points)
@@ -163,7 +182,7 @@ def _counts(by_number: list[int]) -> dict[Status, int]:
 class _Run:
     """One bag on its way through the predictor."""
 
-    def __init__(self, scene: Scene, names: Mapping[str, str]) -> None:
+    def __init__(self, scene: Scene, names: Mapping[str, str], knows_truth: bool) -> None:
         self.write: Callable[[str, str, int, bytes], None] | None = None
         self.samples = 0
         self.settled: list[Settled] = []
@@ -175,14 +194,20 @@ class _Run:
         self._last: tuple[Sample, int] | None = None
         # What the predictions cost whose touchdowns may still be scored.
         self._costs: deque[tuple[int, float]] = deque(maxlen=256)
+        self._true_impacts: list[TrueImpact] = []
+        self._announcements: Announcements | None = None
+        if knows_truth:
+            from ..scenarios.comparison import Announcements
+
+            self._announcements = Announcements()
 
     def take(self, messages: Iterator[BagMessage], progress: Callable[[int], None] | None) -> None:
         """Answer every message as the node would."""
-        geometry_topic = self._names.get("contact_geometry")
+        odom_topic, announcements = self._names["odom"], self._announcements
         statuses, update, costs = self.statuses, self._predictor.update, self._costs
         for topic, log_time, data in messages:
-            if topic == geometry_topic:
-                self._take_geometry(data)
+            if topic != odom_topic:
+                self._take_true_impact(data) if topic == TRUTH_TOPIC else self._take_geometry(data)
                 continue
             self.samples += 1
             if progress is not None and self.samples % _REPORT_EVERY == 0:
@@ -199,6 +224,8 @@ class _Run:
             if prediction.status is not Status.ACCEPTED:
                 continue
             self._last = sample, log_time
+            if announcements is not None:
+                announcements.add(prediction)
             if prediction.touchdown is not None:
                 costs.append((sample.stamp, cost))
             if prediction.score is not None:
@@ -236,12 +263,25 @@ class _Run:
             "give body.contact_points in the parameter file, or --remap contact_geometry:=TOPIC"
         )
 
+    def truth(self) -> Truth | None:
+        """How the predictions compare with the true impacts, where the bag has their topic."""
+        if self._announcements is None:
+            return None
+        from ..scenarios.comparison import compare
+
+        return compare(self._true_impacts, self._announcements, self._predictor.scene)
+
     def _take_geometry(self, data: bytes) -> None:
         try:
             status = self._predictor.set_geometry(decode_polygon(data))
         except MalformedMessage:
             status = Status.MALFORMED
         self.geometry_statuses[status] += 1
+
+    def _take_true_impact(self, data: bytes) -> None:
+        # What tells no impact there is another program's.
+        with suppress(MalformedMessage):
+            self._true_impacts += decode_true_impacts(data)
 
     def _settle(self, body: str, score: Score) -> None:
         cost = next((cost for stamp, cost in reversed(self._costs) if stamp <= score.stamp), None)

@@ -109,15 +109,10 @@ def read_scene(params: str) -> Scene:
     Raises:
         InputError: the file cannot be read, or a parameter is wrong.
     """
-    from ..parameter_file import read_parameters
-    from ..parameters import validate
+    from ..parameter_file import read_values
     from ..prediction.scene import Scene
 
-    given = read_parameters(params)
-    try:
-        return Scene.from_parameters(validate(given))
-    except InputError as error:
-        raise InputError(f"the parameter file {params}: {error}") from error
+    return Scene.from_parameters(read_values(params))
 
 
 def outputs_of(bags: tuple[str, ...], output: str | None) -> list[Path | None]:

@@ -34,7 +34,7 @@ _VELOCITIES: Final[tuple[tuple[str, str, Callable[[Twist, float], float]], ...]]
     ("vx, along the support", _BLUE, lambda twist, arm: twist.vx),
     ("ω s, from turning\n(s: half the contacts' distance)", _VERMILION, lambda twist, arm: twist.omega * arm),
 )
-_STYLE: Final[dict[Any, Any]] = {
+STYLE: Final[dict[Any, Any]] = {
     "font.size": 10,
     "axes.spines.top": False,
     "axes.spines.right": False,
@@ -77,7 +77,7 @@ def write_figure(
     """
     path = check_figure(path)
     scored = [row for row in rows if row.scored and row.measured is not None and row.relative_error is not None]
-    with matplotlib.rc_context(_STYLE):
+    with matplotlib.rc_context(STYLE):
         figure = Figure(figsize=(13.5, 4.9), layout="constrained")
         FigureCanvasAgg(figure)
         left, middle, right = figure.subplots(1, 3, width_ratios=(1.1, 1.0, 1.0))

@@ -8,10 +8,11 @@ from rich.console import Console
 
 from ..prediction.types import Status
 from .summary import error_by_lead_time, row_of, words
-from .table import conclusions, lead_time_table, show, touchdown_table
+from .table import conclusions, lead_time_table, percent, show, touchdown_table
 
 if TYPE_CHECKING:
     from ..bags.replay import Result
+    from ..scenarios.comparison import Truth
 
 MOST_ROWS: Final = 20
 """Touchdowns that are listed unless all are asked for."""
@@ -31,8 +32,32 @@ def print_replay(console: Console, result: Result, every: bool = False) -> None:
         _say(console, "")
         show(console, lead_time_table(errors))
     _say(console, "")
-    for sentence in [*conclusions(rows), *_costs(result)]:
+    compared = [] if result.truth is None else truth_sentences(result.truth)
+    for sentence in [*conclusions(rows), *compared, *_costs(result)]:
         _say(console, sentence)
+
+
+def truth_sentences(truth: Truth) -> list[str]:
+    """How the predictions compare with the true impacts of the bag, one sentence each."""
+    found = truth.touchdowns - truth.missed
+    said = [f"Against the truth in the bag: {found} of {truth.touchdowns} touchdowns found, {truth.false} false alarms"]
+    if truth.mode_accuracy is not None:
+        said.append(
+            f"Of those found, {percent(truth.mode_accuracy)} % have the right mode; "
+            f"the velocities after them are {_small_percent(truth.median_velocity_error)} % wrong in the median"
+        )
+    if truth.median_time_error is not None:
+        said.append(f"The time told 20 ms ahead is {truth.median_time_error * 1e6:.3g} us wrong in the median")
+    if truth.unresolved:
+        said.append(
+            f"{truth.unresolved} more impacts cannot be seen at this rate of samples: they follow too closely, "
+            "or are too slow to be told from rest"
+        )
+    return [f"{sentence}." for sentence in said]
+
+
+def _small_percent(fraction: float | None) -> str:
+    return "-" if fraction is None else f"{100.0 * fraction:.2g}"
 
 
 def _costs(result: Result) -> list[str]:

@@ -169,6 +169,8 @@ def as_json(result: Result) -> dict[str, Any]:
         "statuses": _counts_as_json(result.statuses),
         "geometry_statuses": _counts_as_json(result.geometry_statuses),
     }
+    if result.truth is not None:
+        answer["truth"] = result.truth._asdict()
     if result.damaged:
         answer["damaged"] = result.damaged
     return answer

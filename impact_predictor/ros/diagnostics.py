@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter, deque
-from statistics import median
 from typing import Final, NamedTuple
 
+from ..prediction.score import median
 from ..prediction.types import Score, Status
 from .cdr import ERROR, NANOSECONDS, OK, WARN, DiagnosticForm
 

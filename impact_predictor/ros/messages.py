@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Callable
-from functools import lru_cache
+from functools import cache, lru_cache
 from typing import Final, NamedTuple
 
 from ..mechanics.types import Flag, Mode, Twist
@@ -32,7 +32,6 @@ from .cdr import (
 from .cdr import Diagnostic as Diagnostic
 from .cdr import MalformedMessage as MalformedMessage
 from .cdr import decode_diagnostic_array as decode_diagnostic_array
-from .confidence import MARGIN_KEYS, UNCERTAINTY_KEYS, margin_values, uncertainty_values
 
 ODOMETRY: Final = "nav_msgs/msg/Odometry"
 POLYGON: Final = "geometry_msgs/msg/PolygonStamped"
@@ -103,6 +102,39 @@ def _odometry_frames(frame_id: str, child_frame_id: str) -> bytes:
 _pack_numbers = LITTLE_ENDIAN.odometry_numbers.pack
 
 
+def encode_odometry(sample: Sample) -> bytes:
+    """A nav_msgs/Odometry of a sample."""
+    return b"".join(
+        (
+            LITTLE_ENDIAN_HEADER,
+            stamp(sample.stamp),
+            _odometry_frames(sample.frame_id, sample.child_frame_id),
+            _pack_numbers(
+                *sample.position,
+                *sample.orientation,
+                *sample.pose_covariance,
+                *sample.linear,
+                *sample.angular,
+                *sample.twist_covariance,
+            ),
+        )
+    )
+
+
+def encode_polygon(geometry: Geometry) -> bytes:
+    """A geometry_msgs/PolygonStamped of contact points, which float32 rounds."""
+    points = geometry.points
+    return b"".join(
+        (
+            LITTLE_ENDIAN_HEADER,
+            stamp(geometry.stamp),
+            string(geometry.frame_id),
+            LITTLE_ENDIAN.length.pack(len(points)),
+            *[LITTLE_ENDIAN.point32.pack(*point) for point in points],
+        )
+    )
+
+
 def encode_post_impact(prediction: Prediction) -> bytes | None:
     """A nav_msgs/Odometry of the body right after the predicted touchdown, or None where there is none.
 
@@ -113,19 +145,17 @@ def encode_post_impact(prediction: Prediction) -> bytes | None:
     if touchdown is None:
         return None
     sample, uncertainty = prediction.sample, touchdown.uncertainty
-    return b"".join(
-        (
-            LITTLE_ENDIAN_HEADER,
-            stamp(sample.stamp + round(touchdown.lead_time * NANOSECONDS)),
-            _odometry_frames(sample.frame_id, sample.child_frame_id),
-            _pack_numbers(
-                *touchdown.position,
-                *touchdown.orientation,
-                *sample.pose_covariance,
-                *touchdown.linear,
-                *touchdown.angular,
-                *(sample.twist_covariance if uncertainty is None else uncertainty.twist_covariance),
-            ),
+    return encode_odometry(
+        Sample(
+            sample.stamp + round(touchdown.lead_time * NANOSECONDS),
+            sample.frame_id,
+            sample.child_frame_id,
+            touchdown.position,
+            touchdown.orientation,
+            touchdown.linear,
+            touchdown.angular,
+            sample.pose_covariance,
+            sample.twist_covariance if uncertainty is None else uncertainty.twist_covariance,
         )
     )
 
@@ -161,16 +191,16 @@ _TOUCHDOWN_KEYS: Final = (
     *("impulse.old.normal", "impulse.old.tangent", "impulse.new.normal", "impulse.new.tangent"),
     *("axis.x", "axis.y", "axis.z", "half_distance", "off_axis", "lateral", "closing_spread", "offset"),
 )
-_TOUCHDOWNS: Final = {
-    (uncertainty, margins): DiagnosticForm(
-        "impact_predictor/prediction",
-        *_TOUCHDOWN_KEYS,
-        *(UNCERTAINTY_KEYS if uncertainty else ()),
-        *(MARGIN_KEYS if margins else ()),
-    )
-    for uncertainty in (False, True)
-    for margins in (False, True)
-}
+
+
+@cache
+def _touchdown_form(uncertainty: bool, margins: bool) -> DiagnosticForm:
+    keys: tuple[str, ...] = _TOUCHDOWN_KEYS
+    if uncertainty or margins:
+        from .confidence import MARGIN_KEYS, UNCERTAINTY_KEYS
+
+        keys += (UNCERTAINTY_KEYS if uncertainty else ()) + (MARGIN_KEYS if margins else ())
+    return DiagnosticForm("impact_predictor/prediction", *keys)
 
 
 def encode_prediction(prediction: Prediction) -> bytes:
@@ -191,11 +221,14 @@ def encode_prediction(prediction: Prediction) -> bytes:
         message = "no touchdown within the horizon" if accepted else f"sample refused: {status}"
         values = [status, str(sample.stamp), Mode.NO_IMPACT.name]
     else:
-        form = _TOUCHDOWNS[touchdown.uncertainty is not None, touchdown.planar is not None]
+        form = _touchdown_form(touchdown.uncertainty is not None, touchdown.planar is not None)
         level = WARN if _is_doubtful(touchdown) else OK
         message = f"{_MODE_NAMES[touchdown.mode]} in {touchdown.lead_time * 1e3:.1f} ms"
         values = [status, str(sample.stamp), *_touchdown_values(touchdown)]
-        values += uncertainty_values(touchdown) + margin_values(touchdown)
+        if touchdown.uncertainty is not None or touchdown.planar is not None:
+            from .confidence import margin_values, uncertainty_values  # only where the scene asks for it
+
+            values += uncertainty_values(touchdown) + margin_values(touchdown)
     return form.fill(sample.stamp, sample.frame_id, level, message, sample.child_frame_id, values)
 
 

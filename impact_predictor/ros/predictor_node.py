@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from time import perf_counter
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
@@ -21,7 +21,6 @@ from ..prediction.predictor import Predictor
 from ..prediction.scene import Scene
 from ..prediction.types import Prediction, Sample, Status
 from .diagnostics import Diagnostics, Refused
-from .geometry_topic import GeometryTopic
 from .messages import (
     DIAGNOSTIC_ARRAY,
     ODOMETRY,
@@ -33,6 +32,9 @@ from .messages import (
 from .node_parameters import check_qos_overrides, declare_parameters
 from .process import message_class, sentence
 from .qos import misfits
+
+if TYPE_CHECKING:
+    from .geometry_topic import GeometryTopic
 
 QUEUE: Final = 100
 """Messages that may wait: a tenth of a second at 1 kHz, which is longer than Python pauses."""
@@ -79,7 +81,7 @@ class PredictorNode(Node):
         self._encoders = [(self._outputs[name], output.encode) for name, output in OUTPUTS.items()]
         self._reports = self._publisher("/diagnostics", DIAGNOSTIC_ARRAY)
         # Made before that of the samples, it is served first when messages wait on both.
-        self._geometry = None if scene.points else GeometryTopic(self, self._on_geometry)
+        self._geometry = None if scene.points else self._geometry_topic()
         # Best effort matches every publisher; a sample that is sent again would come too late.
         self._samples = self.create_subscription(
             message_class(ODOMETRY),
@@ -93,6 +95,11 @@ class PredictorNode(Node):
         # By a steady clock, so that the node reports while simulated time stands still.
         self.create_timer(1.0, self._on_second, clock=Clock(clock_type=ClockType.STEADY_TIME))
         check_qos_overrides(self)
+
+    def _geometry_topic(self) -> GeometryTopic:
+        from .geometry_topic import GeometryTopic
+
+        return GeometryTopic(self, self._on_geometry)
 
     def _publisher(self, topic: str, type_name: str) -> Any:
         # Every event handler costs the executor about 25 us a round; QoS is looked at once a second instead.

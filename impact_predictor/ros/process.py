@@ -129,7 +129,7 @@ def spin(node: Node, stop: Stop, served: Callable[[], int], executor: str = "sin
     `served` counts the messages served so far. `executor` is single, or events where this rclpy has it (else single,
     with a warning).
     """
-    runner, period = _executor(node, executor)
+    runner, period = executor_of(node, executor)
     runner.add_node(node)
     # A task ends a round that waits; the events executor has no guard conditions.
     stop.call(lambda: runner.create_task(bool))
@@ -150,7 +150,7 @@ _IDLE_ROUNDS: Final = 20
 """A round may go to a timer, a service or the wish to stop; after this many without a message there is none."""
 
 
-def _executor(node: Node, kind: str) -> tuple[Any, float | None]:
+def executor_of(node: Node, kind: str) -> tuple[Any, float | None]:
     """An executor, and the timeout in s of its rounds."""
     from rclpy.executors import SingleThreadedExecutor
 

@@ -13,6 +13,7 @@ from impact_predictor.bags.read import BagMessage, read_messages, topics
 from impact_predictor.bags.replay import Result, remapping, replay
 from impact_predictor.bags.write import BagWriter
 from impact_predictor.errors import InputError
+from impact_predictor.mechanics.types import Mode
 from impact_predictor.parameter_file import read_parameters
 from impact_predictor.parameters import validate
 from impact_predictor.prediction.predictor import Predictor
@@ -27,6 +28,7 @@ from impact_predictor.ros.messages import (
     decode_odometry,
     decode_polygon,
 )
+from impact_predictor.scenarios.truth import TRUTH_TOPIC, TrueImpact, encode_true_impact
 
 ROOT = Path(__file__).parents[2]
 RECORDED = ROOT / "examples/cube_tosses/cube_tosses.mcap"
@@ -323,3 +325,26 @@ def test_a_bag_of_which_every_sample_is_refused_says_why(bag: Path, scene: Scene
     assert result.statuses == {Status.WRONG_FRAME: result.samples}
     assert "WRONG_FRAME" in result.unpredictable
     assert "support.frame" in result.unpredictable
+
+
+def test_true_impacts_in_a_bag_are_compared_and_change_no_prediction(
+    tmp_path: Path, bag: Path, scene: Scene, messages: list[BagMessage]
+) -> None:
+    plain = replay(bag, scene, output=tmp_path / "plain.mcap")
+    assert plain.truth is None
+    # Two of the impacts happened when they were predicted, one an hour after the record.
+    stamps = [settled.score.stamp for settled in plain.settled[:2]] + [END + 3600 * 10**9]
+    zero = (0.0, 0.0, 0.0)
+    impacts = [
+        TrueImpact(stamp, "cube", Mode.PIVOT, (0, 1), (2, 3), 1.0, 0.05, 0.1, (1.0, 0.0, 0.0), zero, zero, zero)
+        for stamp in stamps
+    ]
+    told = [BagMessage(TRUTH_TOPIC, one.stamp, encode_true_impact(one, "world")) for one in impacts]
+    other = BagMessage(TRUTH_TOPIC, told[0].log_time, b"of another program")
+    both = sorted([*messages, *told, other], key=lambda message: message.log_time)
+    known = write_bag(tmp_path / "known.mcap", both, {**WANTED, TRUTH_TOPIC: DIAGNOSTIC_ARRAY})
+    result = replay(known, scene, output=tmp_path / "out.mcap")
+    assert result.truth is not None
+    assert (result.truth.touchdowns, result.truth.missed, result.truth.unresolved) == (2, 0, 0)
+    assert result.truth.false > 0
+    assert read_outputs(tmp_path / "out.mcap") == read_outputs(tmp_path / "plain.mcap")

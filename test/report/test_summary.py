@@ -22,6 +22,7 @@ from impact_predictor.report.summary import (
     summarize,
 )
 from impact_predictor.ros.messages import decode_diagnostic_array, encode_score
+from impact_predictor.scenarios.comparison import Truth
 
 SAMPLE = Sample(
     10**9, "world", "cube", (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), (0.0,) * 3, (0.0,) * 3, (0.0,) * 36, (0.0,) * 36
@@ -149,6 +150,16 @@ def test_the_json_of_a_replay_has_the_promised_keys_and_no_nan() -> None:
     assert (unmeasured["measured_twist"], unmeasured["relative_error"], unmeasured["scored"]) == (None, None, False)
     assert "damaged" not in answer
     assert as_json(result._replace(damaged="the end"))["damaged"] == "the end"
+    assert "truth" not in answer
+    assert as_json(result._replace(truth=Truth(4, 1, 2, 3, 0.75, 0.01, None)))["truth"] == {
+        "touchdowns": 4,
+        "missed": 1,
+        "false": 2,
+        "unresolved": 3,
+        "mode_accuracy": 0.75,
+        "median_velocity_error": 0.01,
+        "median_time_error": None,
+    }
 
 
 def test_the_json_of_an_empty_replay_has_nothing_to_divide() -> None:

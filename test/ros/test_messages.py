@@ -40,6 +40,8 @@ from impact_predictor.ros.messages import (
     decode_odometry,
     decode_polygon,
     encode_mode,
+    encode_odometry,
+    encode_polygon,
     encode_post_impact,
     encode_prediction,
     encode_score,
@@ -132,15 +134,16 @@ def padded(data: bytes) -> bytes:
 
 
 @ENDIAN
-def test_a_sample_is_what_was_put_into_an_odometry(little_endian: bool) -> None:
+def test_a_sample_is_what_is_in_an_odometry_both_ways(little_endian: bool) -> None:
     rng = random.Random(2)
     for _ in range(300):
         sample = random_sample(rng)
         assert decode_odometry(serialize(odometry(sample), ODOMETRY, little_endian)) == sample
+        assert encode_odometry(sample) == serialize(odometry(sample), ODOMETRY)
 
 
 @ENDIAN
-def test_geometry_is_what_was_put_into_a_polygon(little_endian: bool) -> None:
+def test_geometry_is_what_is_in_a_polygon_both_ways(little_endian: bool) -> None:
     rng = random.Random(3)
     for count in [0, 1, 2, 8, 100]:
         # Point32 holds float32, so the numbers must be some.
@@ -149,6 +152,7 @@ def test_geometry_is_what_was_put_into_a_polygon(little_endian: bool) -> None:
         polygon = TYPES["geometry_msgs/msg/Polygon"]([TYPES["geometry_msgs/msg/Point32"](*point) for point in points])
         message = TYPES[POLYGON](header(geometry.stamp, geometry.frame_id), polygon)
         assert decode_polygon(serialize(message, POLYGON, little_endian)) == geometry
+        assert encode_polygon(geometry) == serialize(message, POLYGON)
 
 
 def test_bytes_that_a_middleware_pads_to_four_are_read() -> None:

@@ -1,0 +1,261 @@
+"""`impact-predictor simulate`: bodies that rock from contact to contact, as a table, a picture or a bag."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from math import radians
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from ..mechanics.bodies import refuse
+from ..mechanics.impact import LAWS
+from .examples import examples
+
+if TYPE_CHECKING:
+    from ..scenarios.rocking import Rocker, Rocking
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+EXAMPLES = {
+    "rod": (
+        "impact-predictor simulate rod --length 0.4 --a 0.1 --b 0.1 --angle 30 --json",
+        "impact-predictor simulate rod --a 0.1 --a 0.075 --a 0.05 --plot rods.png --animate rods.gif",
+        "impact-predictor simulate rod --a 0.05 -o rod.mcap",
+    ),
+    "plate": (
+        "impact-predictor simulate plate --length 1 --height 1.6 --angle 10 --animate plate.gif",
+        "impact-predictor simulate plate --friction 0.05 --plot plate.png",
+        "impact-predictor simulate plate --height 0.4 --angle 20 --friction 0.3 --slope -15 --duration 3",
+    ),
+    "cylinder": (
+        "impact-predictor simulate cylinder --radius 0.3 --gamma 40 --angle 15 --animate cylinder.gif",
+        "impact-predictor simulate cylinder --gamma 50 --gamma-new 30 --friction 0.5 --plot cylinder.svg",
+    ),
+}
+"""Of each body; the second ones of rod and plate make pictures of the documentation."""
+
+
+def number(name: str, default: float | None, help_text: str, **more: Any) -> Callable[[F], F]:
+    """An option that takes one number."""
+    return click.option(name, type=float, default=default, show_default=default is not None, help=help_text, **more)
+
+
+def motion_options(angle: float) -> Callable[[F], F]:
+    """The options that every body has: how it begins, by which laws it moves, and what is made of it."""
+    options: tuple[Callable[[Any], Any], ...] = (
+        number("--angle", angle, "Angle at which it is released at rest, degrees; negative stands on B."),
+        number("--mass", 1.0, "Mass, kg."),
+        number("--inertia", None, "Inertia about the mass centre, kg m^2 (a homogeneous body's unless given)."),
+        number("--friction", None, "Coulomb friction coefficient (it sticks unless given)."),
+        number("--restitution", 0.0, "Restitution of a contact that strikes, 0 (plastic) to 1."),
+        click.option("--law", type=click.Choice(LAWS), default="path", show_default=True, help="Impact law."),
+        number("--slope", 0.0, "Slope of the support, degrees; positive is uphill from A to B."),
+        number("--gravity", 9.81, "Gravity, m/s^2."),
+        number("--duration", 10.0, "Longest time that is simulated, s."),
+        click.option("--plot", metavar="FILE", help="Draw angular velocity and angle into a .png or .svg file."),
+        click.option("--animate", metavar="FILE", help="Draw a moving picture into a .gif file."),
+        click.option("--json", "as_json", is_flag=True, help="Print JSON: an object, or a list for several rods."),
+    )
+
+    def decorate(command: F) -> F:
+        for option in reversed(options):
+            command = option(command)
+        return command
+
+    return decorate
+
+
+def bag_options(command: F) -> F:
+    """The options of a body of which a bag can be written: points over a straight support."""
+    command = click.option(
+        "--rate", type=float, default=1000.0, show_default=True, help="Samples of the bag for each second."
+    )(command)
+    return click.option(
+        "-o",
+        "--output",
+        metavar="BAG",
+        help="Write a bag for `replay`, with the true impacts: NAME.mcap is one file, any other name a rosbag2 folder.",
+    )(command)
+
+
+@click.group(
+    short_help="Simulate bodies that rock, as a table, a picture or a bag.",
+    no_args_is_help=False,
+    epilog=examples(*(line for lines in EXAMPLES.values() for line in lines[:2])),
+)
+def simulate() -> None:
+    """How a body moves that is released at rest on one contact, from impact to impact until it stays.
+
+    It rocks between two contacts, A behind and B ahead of its mass centre. The plane is x forward, y up, and
+    counter-clockwise is positive. SI units; angles in degrees.
+    """
+
+
+@simulate.command("rod", epilog=examples(*EXAMPLES["rod"]))
+@number("--length", 0.4, "Length, m.")
+@number("--thickness", 0.0, "Thickness, m.")
+@number("--a", None, "Support A behind the middle, m; may be repeated for several rods. [default: 0.1]", multiple=True)
+@number("--b", None, "Support B ahead of the middle, m, once for each rod (as --a unless given).", multiple=True)
+@motion_options(angle=30.0)
+@bag_options
+def simulate_rod(
+    length: float,
+    thickness: float,
+    a: tuple[float, ...],
+    b: tuple[float, ...],
+    mass: float,
+    friction: float | None,
+    inertia: float | None,
+    restitution: float,
+    **options: Any,
+) -> int:
+    """A rod over two supports, the paper's Fig. 2; one for each --a."""
+    from ..scenarios.rocking import rocking_rod
+
+    behind = a or (0.1,)
+    ahead = b or behind
+    if len(ahead) != len(behind):
+        raise click.UsageError(f"There are {len(behind)} --a but {len(ahead)} --b: give one of each for every rod")
+    return answer(
+        [
+            rocking_rod(length, thickness, one_a, one_b, mass, friction, inertia, restitution)
+            for one_a, one_b in zip(behind, ahead, strict=True)
+        ],
+        **options,
+    )
+
+
+@simulate.command("plate", epilog=examples(*EXAMPLES["plate"]))
+@number("--length", 1.0, "Length, m.")
+@number("--height", 1.6, "Height, m.")
+@number("--a", None, "Contact A behind the mass centre, m (half the length unless given).")
+@number("--b", None, "Contact B ahead of the mass centre, m (half the length unless given).")
+@motion_options(angle=10.0)
+@bag_options
+def simulate_plate(
+    length: float,
+    height: float,
+    a: float | None,
+    b: float | None,
+    mass: float,
+    friction: float | None,
+    inertia: float | None,
+    restitution: float,
+    **options: Any,
+) -> int:
+    """A plate, crate or block on a flat floor."""
+    from ..scenarios.rocking import rocking_plate
+
+    return answer([rocking_plate(length, height, a, b, mass, friction, inertia, restitution)], **options)
+
+
+@simulate.command("cylinder", epilog=examples(*EXAMPLES["cylinder"]))
+@number("--radius", 0.3, "Radius, m.")
+@number("--gamma", 40.0, "Central angle of the edge A behind the vertical, degrees.")
+@number("--gamma-new", None, "Central angle of the edge B ahead of the vertical, degrees (--gamma unless given).")
+@motion_options(angle=15.0)
+def simulate_cylinder(
+    radius: float,
+    gamma: float,
+    gamma_new: float | None,
+    mass: float,
+    friction: float | None,
+    inertia: float | None,
+    restitution: float,
+    **options: Any,
+) -> int:
+    """A cylinder that rolls from edge to edge.
+
+    The predictor knows straight supports only, so no bag is written of it.
+    """
+    from ..scenarios.rocking import rocking_cylinder
+
+    ahead = gamma if gamma_new is None else gamma_new
+    return answer(
+        [rocking_cylinder(radius, radians(gamma), radians(ahead), mass, friction, inertia, restitution)], **options
+    )
+
+
+def answer(
+    rockers: Sequence[Rocker],
+    angle: float,
+    slope: float,
+    gravity: float,
+    law: str,
+    duration: float,
+    plot: str | None,
+    animate: str | None,
+    as_json: bool,
+    output: str | None = None,
+    rate: float = 1000.0,
+) -> int:
+    """Simulate the bodies, write what is asked for and say what happened; the exit status, 1 where it broke off."""
+    refuse({"rate": rate}, lambda value: 0.0 < value <= 1e6, "a number above 0, up to 1e6")
+    if plot is not None:
+        from ..report.figure import check_figure
+
+        check_figure(plot)
+    if animate is not None:
+        from ..report.motions.animation import check_animation
+
+        check_animation(animate)
+    from ..scenarios.rocking import release
+
+    rockings = [release(rocker, radians(angle), radians(slope), gravity, law, duration) for rocker in rockers]
+    if output is not None:
+        write_bag(output, rockings, rate)
+    if plot is not None:
+        from ..report.motions.figure import write_motion_figure
+
+        write_motion_figure(plot, rockings)
+    if animate is not None:
+        draw_animation(animate, rockings)
+    say(rockings, as_json)
+    if not as_json:
+        for what, file in (("Bag", output), ("Picture", plot), ("Animation", animate)):
+            if file is not None:
+                click.echo(f"{what}: {file}")
+    return 1 if any(rocking.broke_off for rocking in rockings) else 0
+
+
+def write_bag(output: str, rockings: Sequence[Rocking], rate: float) -> None:
+    """Write the motions into one bag."""
+    from ..scenarios.record import Actor, samples_in, write_record
+    from .progress import progress
+
+    actors = [
+        Actor(f"{rocking.rocker.name}_{k}" if len(rockings) > 1 else rocking.rocker.name, rocking.run)
+        for k, rocking in enumerate(rockings, 1)
+    ]
+    with progress(Path(output).name, total=sum(samples_in(actor.run, rate) for actor in actors)) as tell:
+        write_record(output, actors, rate, tell)
+
+
+def draw_animation(file: str, rockings: Sequence[Rocking]) -> None:
+    """Draw the moving picture."""
+    from ..report.motions.animation import times_of, write_animation
+    from .progress import progress
+
+    with progress(Path(file).name, "frames", len(times_of(rockings))) as tell:
+        write_animation(file, rockings, tell)
+
+
+def say(rockings: Sequence[Rocking], as_json: bool) -> None:
+    """Print what happened."""
+    if as_json:
+        from ..report.motions.words import as_json as fields_of
+
+        answers = [fields_of(rocking.run) for rocking in rockings]
+        click.echo(json.dumps(answers if len(answers) > 1 else answers[0], allow_nan=False))
+        return
+    from rich.console import Console
+
+    from ..report.motions.words import print_motion
+
+    for k, rocking in enumerate(rockings):
+        if k:
+            click.echo()
+        print_motion(Console(), rocking)

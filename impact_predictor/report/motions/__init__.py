@@ -1,0 +1,1 @@
+"""A simulated motion in words, as curves and as a moving picture."""

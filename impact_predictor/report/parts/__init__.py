@@ -1,0 +1,1 @@
+"""What the parts of a scene cost, for each sample and at the start."""

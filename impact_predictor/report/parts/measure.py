@@ -1,0 +1,169 @@
+"""What the parts of a scene cost, measured: CPU time for each sample, CPU time and memory at the start."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from itertools import zip_longest
+from pathlib import Path
+from statistics import median
+from time import process_time_ns
+from typing import Any, Final
+
+from ...parameter_file import read_values
+from ...prediction.parts import EVENTS, Part, Values, ladder
+from ...prediction.predictor import Predictor
+from ...prediction.scene import Scene
+from ...prediction.types import Prediction, Sample
+from ...ros.messages import OUTPUTS
+from .record import Record, record_of
+from .start import Start, Starts, Steps, starts_of
+
+Tell = Callable[[float], None]
+
+CORE: Final = "core"
+WHY_CORE: Final = "every scene: samples, impact plane, motion until the touchdown, impact, score"
+
+SAMPLES: Final = 400
+RUNS: Final = 5
+BUDGET: Final = 0.7
+"""Seconds after which what is expensive, and so stands out from the noise, is not measured once more."""
+
+
+def _nobody(done: float) -> None:
+    """Nobody is told."""
+
+
+def measure_parts(params: str | os.PathLike[str], tell: Tell = _nobody, runs: int = RUNS) -> dict[str, Any]:
+    """What each part of the scene of a parameter file costs, and what those that it leaves out would.
+
+    `tell` is told how much is done, 0 to 100. Keys:
+
+    - `parts`, each with `name`, `on`, `why`, `us_per_sample`, `start_ms`, `start_mb`; None where there is no such cost
+    - `us_per_sample`, `start_ms`, `start_mb` of the whole scene; in `all_on` with every part instead
+    - `node`, the same two of the start of the node, and `us_per_message`, in which a message without a touchdown is
+      published, received and answered; or None for the reason in `why_no_node`
+    - `outputs`, the microseconds for a sample in which each is encoded, paid only while somebody subscribes to it
+    - `scene`, and `record`: over what it was measured
+
+    Costs are CPU time, in medians of `runs` runs. The parts are switched on one after another, those of the scene
+    first, so that the costs add up; a part may cost less than nothing.
+
+    Raises:
+        InputError: the file cannot be read, or a parameter is wrong.
+    """
+    values, name = read_values(params), Path(params).stem
+    steps = ladder(values)
+    record = record_of(name, Scene.from_parameters(values), SAMPLES)
+    costs = us_per_sample(steps, record, runs, lambda done: tell(0.5 * done))
+    starts = starts_of(steps, runs, lambda done: tell(50 + 0.5 * done))
+    scene = max(k for k, (part, _) in enumerate(steps) if part is None or part.on(values))
+    added = [cost - before for cost, before in zip(costs, [0.0, *costs], strict=False)]
+    return {
+        "scene": name,
+        "parts": [
+            {
+                "name": CORE if part is None else part.name,
+                "on": part is None or part.on(values),
+                "why": WHY_CORE if part is None else part.why(values),
+                "us_per_sample": _us(part, us, starts),
+                **_start(part, predictor, node),
+            }
+            for (part, _), us, predictor, node in zip_longest(steps, added, starts.predictor, starts.node)
+        ],
+        "us_per_sample": costs[scene],
+        **_sum(starts.predictor[: scene + 1]),
+        "all_on": {"us_per_sample": costs[-1], **_sum(starts.predictor)},
+        "node": _node(starts, scene, values["executor"] == "events"),
+        "why_no_node": starts.why_no_node,
+        "outputs": us_per_output(values, record),
+        "record": record.origin,
+    }
+
+
+def _us(part: Part | None, us: float, starts: Starts) -> float | None:
+    """What a part adds to a sample; the executor, to its way to the predictor."""
+    if part is None or not part.of_node:
+        return us
+    if part.name != EVENTS or starts.messages is None:
+        return None
+    single, events = starts.messages
+    return events - single
+
+
+def _node(starts: Starts, scene: int, by_events: bool) -> dict[str, Any] | None:
+    """What the node costs with the first steps of a ladder, up to those of the scene, and with all."""
+    if starts.messages is None:
+        return None
+    single, events = starts.messages
+    return {
+        "us_per_message": events if by_events else single,
+        **_sum(starts.node[: scene + 1]),
+        "all_on": {"us_per_message": events, **_sum(starts.node)},
+    }
+
+
+def _start(part: Part | None, predictor: Start, node: Start | None) -> dict[str, float | None]:
+    """What a part adds to the start: a part of the node to the node's."""
+    if part is not None and part.of_node:
+        return {"start_ms": node.ms, "start_mb": node.mb} if node else {"start_ms": None, "start_mb": None}
+    if part is None or part.modules:
+        return {"start_ms": predictor.ms, "start_mb": predictor.mb}
+    return {"start_ms": None, "start_mb": None}
+
+
+def _sum(starts: Sequence[Start]) -> dict[str, float]:
+    return {"start_ms": sum(start.ms for start in starts), "start_mb": sum(start.mb for start in starts)}
+
+
+def us_per_sample(steps: Steps, record: Record, runs: int, tell: Tell = _nobody) -> list[float]:
+    """Microseconds of CPU time for each sample of a record, at every step of a ladder: medians of runs in turn."""
+    costs: list[list[float]] = [[] for _ in steps]
+    for run in range(runs + 1):
+        for k, (part, values) in enumerate(steps):
+            if part is not None and part.of_node:
+                costs[k] = costs[k - 1]
+            elif 1e-6 * record.samples * sum(costs[k]) < BUDGET:
+                cost = _run(values, record)
+                if run or cost * 1e-6 * record.samples > BUDGET:  # the first run warms up, if there is time for it
+                    costs[k].append(cost)
+            tell(100 * (run * len(steps) + k + 1) / ((runs + 1) * len(steps)))
+    return [median(cost) for cost in costs]
+
+
+def predictor_of(values: Values, record: Record) -> Predictor:
+    """The predictor of a scene, with the contact points of the record where they are parameters."""
+    scene = Scene.from_parameters(values)
+    return Predictor(scene._replace(points=record.points) if scene.points else scene)
+
+
+def _run(values: Values, record: Record) -> float:
+    predictor = predictor_of(values, record)
+    has_topic, wants_margins = not predictor.scene.points, predictor.scene.margins
+    began = process_time_ns()
+    for message in record.messages:
+        if isinstance(message, Sample):
+            touchdown = predictor.update(message).touchdown
+            if wants_margins and touchdown is not None and touchdown.planar is not None:
+                touchdown.planar.margins  # noqa: B018  # found when they are read
+        elif has_topic:
+            predictor.set_geometry(message)
+    return 1e-3 * (process_time_ns() - began) / record.samples
+
+
+def us_per_output(values: Values, record: Record) -> dict[str, float]:
+    """Microseconds of CPU time in which each output of the scene is encoded, for each sample of a record."""
+    predictor = predictor_of(values, record)
+    predictions: list[Prediction] = []
+    for message in record.messages:
+        if isinstance(message, Sample):
+            predictions.append(predictor.update(message))
+        elif not predictor.scene.points:
+            predictor.set_geometry(message)
+    costs = {}
+    for name, output in OUTPUTS.items():
+        began = process_time_ns()
+        for prediction in predictions:
+            output.encode(prediction)
+        costs[name] = 1e-3 * (process_time_ns() - began) / len(predictions)
+    return costs

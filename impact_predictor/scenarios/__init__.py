@@ -1,0 +1,1 @@
+"""Made scenes whose truth is known."""

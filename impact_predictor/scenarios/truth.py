@@ -1,0 +1,92 @@
+"""Impacts as a scenario knows them, and the messages in which a bag carries them.
+
+They travel on a topic of their own, as diagnostic_msgs/DiagnosticArray, and are never an input of a prediction.
+"""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+from ..mechanics.types import Mode
+from ..prediction.types import Vector3
+from ..ros.cdr import OK, DiagnosticForm, MalformedMessage, decode_diagnostic_array
+
+TRUTH_TOPIC: Final = "/truth/impacts"
+
+_VECTORS: Final = ("linear_before", "angular_before", "linear_after", "angular_after")
+_KEYS: Final = (
+    *("stamp", "body", "mode", "old", "new", "approach", "half_distance", "energy_lost"),
+    *(f"{name}.{axis}" for name in _VECTORS for axis in "xyz"),
+)
+_FORM: Final = DiagnosticForm("truth/impact", *_KEYS)
+
+
+class TrueImpact(NamedTuple):
+    """An impact that happened.
+
+    `stamp` in ns; `body` its frame; `old` and `new` the indices of the contact points that stood and that struck;
+    `approach` how fast the new contact came down, in m/s; `half_distance` between both contacts in m, for one contact
+    its distance from the mass centre; `energy_lost` in J; linear velocities of the mass centre in m/s and angular
+    velocities in rad/s, relative to the support, in the frame of odom.
+    """
+
+    stamp: int
+    body: str
+    mode: Mode
+    old: tuple[int, ...]
+    new: tuple[int, ...]
+    approach: float
+    half_distance: float
+    energy_lost: float
+    linear_before: Vector3
+    angular_before: Vector3
+    linear_after: Vector3
+    angular_after: Vector3
+
+
+def encode_true_impact(impact: TrueImpact, frame_id: str) -> bytes:
+    """A diagnostic_msgs/DiagnosticArray stamped with the impact; every number reads back as the same double."""
+    values = [
+        str(impact.stamp),
+        impact.body,
+        impact.mode.name,
+        " ".join(map(str, impact.old)),
+        " ".join(map(str, impact.new)),
+        repr(impact.approach),
+        repr(impact.half_distance),
+        repr(impact.energy_lost),
+        *[repr(float(part)) for name in _VECTORS for part in getattr(impact, name)],
+    ]
+    return _FORM.fill(impact.stamp, frame_id, OK, impact.mode.name, impact.body, values)
+
+
+def decode_true_impacts(data: bytes) -> list[TrueImpact]:
+    """The impacts in the bytes of a diagnostic_msgs/DiagnosticArray.
+
+    Raises:
+        MalformedMessage: the bytes are no such message, or tell no impacts.
+    """
+    try:
+        return [_impact(status.values) for status in decode_diagnostic_array(data)]
+    except (KeyError, ValueError) as error:
+        raise MalformedMessage(f"not a true impact: {error}") from None
+
+
+def _impact(values: dict[str, str]) -> TrueImpact:
+    def vector(name: str) -> Vector3:
+        return float(values[f"{name}.x"]), float(values[f"{name}.y"]), float(values[f"{name}.z"])
+
+    return TrueImpact(
+        int(values["stamp"]),
+        values["body"],
+        Mode[values["mode"]],
+        tuple(map(int, values["old"].split())),
+        tuple(map(int, values["new"].split())),
+        float(values["approach"]),
+        float(values["half_distance"]),
+        float(values["energy_lost"]),
+        vector("linear_before"),
+        vector("angular_before"),
+        vector("linear_after"),
+        vector("angular_after"),
+    )

@@ -1,0 +1,219 @@
+"""What parts cost: measured over motions of the body, and told so that the numbers add up."""
+
+from __future__ import annotations
+
+import io
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from rich.console import Console
+
+from impact_predictor.errors import InputError
+from impact_predictor.parameter_file import read_values
+from impact_predictor.parameters import validate
+from impact_predictor.prediction.parts import PARTS, ladder
+from impact_predictor.prediction.predictor import Predictor
+from impact_predictor.prediction.scene import Scene
+from impact_predictor.prediction.types import Sample, Status
+from impact_predictor.report.parts import start
+from impact_predictor.report.parts.measure import measure_parts, us_per_sample
+from impact_predictor.report.parts.record import Record, made, record_of
+from impact_predictor.report.parts.start import NO_ROS, starts_of
+from impact_predictor.report.parts.table import print_parts
+
+CUBE = Path(__file__).parents[2] / "config/cube_tosses.yaml"
+CRATE: dict[str, Any] = validate(
+    {
+        "body.mass": 12.0,
+        "body.inertia": [0.5, 0.6, 0.7, 0.0, 0.0, 0.0],
+        "body.center_of_mass": [0.01, 0.0, 0.02],
+        "contact.friction": 0.4,
+        "body.contact_points": [x for a in (-0.3, 0.3) for b in (-0.2, 0.2) for x in (a, b, -0.2)],
+        "support.normal": [0.6, 0.0, 0.8],
+        "support.height": 2.0,
+        "gravity": [0.0, 0.0, -9.81],
+    }
+)
+
+ANSWER: dict[str, Any] = {
+    "scene": "crate",
+    "parts": [
+        {
+            "name": "core",
+            "on": True,
+            "why": "every scene",
+            "us_per_sample": 60.0,
+            "start_ms": 45.0,
+            "start_mb": 2.25,
+        },
+        {
+            "name": "friction",
+            "on": True,
+            "why": "contact.friction is 0.4",
+            "us_per_sample": -20.0,
+            "start_ms": None,
+            "start_mb": None,
+        },
+        {
+            "name": "margins",
+            "on": False,
+            "why": "margins is false: nobody asks how far an impact is from another mode",
+            "us_per_sample": 1500.0,
+            "start_ms": 4.0,
+            "start_mb": 0.5,
+        },
+        {
+            "name": "events executor",
+            "on": False,
+            "why": "executor is single",
+            "us_per_sample": -150.0,
+            "start_ms": 0.5,
+            "start_mb": 0.0,
+        },
+    ],
+    "us_per_sample": 40.0,
+    "start_ms": 45.0,
+    "start_mb": 2.25,
+    "all_on": {"us_per_sample": 1540.0, "start_ms": 49.0, "start_mb": 2.75},
+    "node": {
+        "us_per_message": 210.0,
+        "start_ms": 400.0,
+        "start_mb": 60.0,
+        "all_on": {"us_per_message": 60.0, "start_ms": 404.5, "start_mb": 60.5},
+    },
+    "why_no_node": "",
+    "outputs": {"post_impact": 3.0, "mode": 0.2, "prediction": 21.0, "score": 2.0},
+    "record": "300 samples of something",
+}
+
+
+def printed(answer: dict[str, Any], width: int) -> str:
+    text = io.StringIO()
+    print_parts(Console(file=text, width=width), answer)
+    return text.getvalue()
+
+
+def predictions(scene: Scene, record: Record) -> list[Any]:
+    predictor = Predictor(scene)
+    return [predictor.update(message) for message in record.messages if isinstance(message, Sample)]
+
+
+def test_a_made_record_lets_the_body_fall_from_a_stance_and_throws_it() -> None:
+    scene = Scene.from_parameters(CRATE)
+    found = predictions(scene, made(scene))
+    assert {one.status for one in found} == {Status.ACCEPTED}
+    touchdowns = [one.touchdown for one in found if one.touchdown is not None]
+    assert len(touchdowns) > 0.5 * len(found)
+    standing = [one for one in touchdowns if one.old]
+    assert 0.3 * len(touchdowns) < len(standing) < len(touchdowns)
+    assert any(abs(one.lateral) > 0.1 for one in touchdowns)  # slip across the plane is among them
+
+
+def test_falls_of_a_made_record_are_motions_that_the_predictor_follows() -> None:
+    scene = Scene.from_parameters({**CRATE, "contact.friction": 100.0})  # nothing slips
+    scores = [one.score for one in predictions(scene, made(scene)) if one.score is not None]
+    announced = [score.touchdown.lead_time for score in scores if score.touchdown.old]
+    assert len(announced) >= 8
+    # The last prediction is of the last sample in the air, 1/200 s before the first on the ground.
+    assert max(announced) < 0.005 + 0.001
+
+
+def test_the_record_of_the_shipped_scene_is_its_example_and_of_another_scene_of_that_name_is_made() -> None:
+    scene = Scene.from_parameters(read_values(CUBE))
+    record = record_of("cube_tosses", scene, 300)
+    assert "examples/cube_tosses" in record.origin
+    assert 250 < record.samples < 600
+    assert len(record.points) == 8
+    assert "made" in record_of("cube_tosses", scene._replace(frame="map"), 300).origin
+    assert "made" in record_of("crate", scene, 300).origin
+
+
+def test_what_is_switched_on_costs_time() -> None:
+    steps = ladder(CRATE)
+    steps = steps[: 1 + [part.name if part else "" for part, _ in steps].index("margins")]
+    *_, before, with_margins = us_per_sample(steps, made(Scene.from_parameters(CRATE)), 1)
+    # A search in five directions, with several impacts in each, against one.
+    assert with_margins > 3.0 * before > 0.0
+
+
+@pytest.mark.slow
+def test_the_start_of_what_is_left_out_is_measured_and_without_ros_that_of_the_node_is_not(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(start, "find_spec", lambda name: None)
+    told: list[float] = []
+    steps = ladder(CRATE)
+    starts = starts_of(steps, 1, told.append)
+    assert (starts.node, starts.messages, starts.why_no_node) == ([], None, NO_ROS)
+    added = {part.name if part else "core": start for (part, _), start in zip(steps, starts.predictor, strict=True)}
+    assert added["core"].ms > added["transverse slip"].ms > 0.5
+    assert added["uncertainty"].ms > added["core"].ms  # numpy, and numba where it is installed
+    assert added["uncertainty"].mb > 5.0
+    assert added["friction"] == (0.0, 0.0)
+    assert told == sorted(told)
+
+
+def test_a_start_that_fails_is_one_sentence(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    probe = tmp_path / "probe.py"
+    probe.write_text("raise SystemExit('something is missing')")
+    monkeypatch.setattr(start, "PROBE", probe)
+    with pytest.raises(InputError, match=r"^the start cannot be measured: something is missing$"):
+        starts_of(ladder(CRATE), 1, lambda done: None)
+
+
+@pytest.mark.slow
+def test_the_measured_costs_of_the_parts_add_up_to_those_of_the_scene_and_of_everything() -> None:
+    told: list[float] = []
+    answer = measure_parts(CUBE, told.append, runs=1)
+    json.dumps(answer, allow_nan=False)
+    assert (told[-1], told) == (100.0, sorted(told))
+    assert [part["name"] for part in answer["parts"][:1]] == ["core"]
+    assert {part["name"] for part in answer["parts"][1:]} == {part.name for part in PARTS}
+    of_node = {part.name for part in PARTS if part.of_node}
+    parts = [part for part in answer["parts"] if part["name"] not in of_node]
+    for cost in ("us_per_sample", "start_ms", "start_mb"):
+        for whole, chosen in ((answer, [part for part in parts if part["on"]]), (answer["all_on"], parts)):
+            assert whole[cost] == pytest.approx(sum(part[cost] or 0.0 for part in chosen))
+        assert answer["all_on"][cost] > 1.5 * answer[cost] > 0.0
+    assert set(answer["outputs"]) == {"post_impact", "mode", "prediction", "score"}
+    assert answer["outputs"]["prediction"] > answer["outputs"]["mode"] > 0.0
+    if answer["node"] is None:
+        assert answer["why_no_node"]
+    else:
+        assert answer["node"]["start_ms"] > answer["start_ms"]
+        assert answer["node"]["us_per_message"] > answer["node"]["all_on"]["us_per_message"] > 0.0
+
+
+@pytest.mark.parametrize("width", [80, 120])
+def test_the_table_says_what_each_part_costs_and_what_is_saved(width: int) -> None:
+    text = printed(ANSWER, width)
+    assert max(map(len, text.splitlines())) <= width
+    assert "…" not in text
+    rows = {line[:15].strip(): line[15:].split() for line in text.splitlines()}
+    assert rows["core"][:4] == ["on", "60", "45", "2.2"]
+    assert rows["friction"][:2] == ["on", "-20"]
+    assert rows["this scene"][:3] == ["40", "45", "2.2"]
+    assert rows["margins"][:4] == ["off", "+1,500", "+4.0", "+0.5"]
+    assert rows["everything on"][:3] == ["1,540", "49", "2.8"]
+    assert rows["saved"][:3] == ["1,500", "4.0", "0.5"]
+    assert rows["events executor"][:4] == ["off", "-150", "+0.5", "+0.0"]
+    assert rows["this node"][:3] == ["250", "400", "60"]
+    assert rows["node"][:4] == ["on", "210", "355", "58"]
+
+
+def test_the_totals_are_told_in_words() -> None:
+    text = " ".join(printed(ANSWER, 80).split())
+    assert (
+        "This scene: 40 us per sample, 45 ms and 2.2 MB at the start; everything on: 1,540 us per sample, 49 ms and "
+        "2.8 MB at the start; saved: 1,500 us per sample, 4.0 ms and 0.5 MB at the start."
+    ) in text
+    assert "~/prediction 21" in text
+    assert "300 samples of something" in text
+
+
+def test_without_ros_one_line_says_so() -> None:
+    text = printed({**ANSWER, "node": None, "why_no_node": NO_ROS}, 120)
+    assert f"{NO_ROS}." in text
+    assert "this node" not in text

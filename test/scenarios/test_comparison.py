@@ -1,0 +1,158 @@
+"""Which predictions belong to which true impacts, and what is said of them, on records that one can count by hand."""
+
+from __future__ import annotations
+
+import pytest
+
+from impact_predictor.mechanics.types import Flag, Mode, Twist
+from impact_predictor.prediction.scene import Scene
+from impact_predictor.prediction.types import Leftover, Prediction, Sample, Status, Touchdown
+from impact_predictor.scenarios.comparison import Announcements, Truth, compare
+from impact_predictor.scenarios.truth import TrueImpact
+
+SCENE = Scene(1.0, ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), 0.5, contact_time=0.001)
+MS = 1_000_000
+NOTHING = Truth(0, 0, 0, 0, None, None, None)
+
+TOUCHDOWN = Touchdown(
+    lead_time=0.0,
+    mode=Mode.PIVOT,
+    before=Twist(0.0, -1.0, -2.0),
+    after=Twist(0.0, 0.5, -1.0),
+    impulses=((0.0, 0.0), (0.0, 1.5)),
+    segments=("OS",),
+    energy_lost=1.0,
+    flags=Flag.NONE,
+    unique=True,
+    law="path",
+    old=(0,),
+    new=(1,),
+    axis=(0.0, 1.0, 0.0),
+    position=(0.0, 0.0, 0.0),
+    orientation=(0.0, 0.0, 0.0, 1.0),
+    linear=(0.0, 0.0, 0.5),
+    angular=(0.0, 1.0, 0.0),
+    half_distance=0.5,
+    off_axis=0.0,
+    lateral=0.0,
+    closing_spread=0.0,
+    offset=0.0,
+    leftover=Leftover.NONE,
+)
+
+
+def impact(at: float, **changes: object) -> TrueImpact:
+    """An impact at a time in ms, which `TOUCHDOWN` predicts exactly."""
+    true = TrueImpact(
+        round(at * MS),
+        "rod",
+        Mode.PIVOT,
+        (0,),
+        (1,),
+        1.0,
+        0.5,
+        1.0,
+        (0.0, 0.0, -1.0),
+        (0.0, 2.0, 0.0),
+        (0.0, 0.0, 0.5),
+        (0.0, 1.0, 0.0),
+    )
+    return true._replace(**changes)  # type: ignore[arg-type]
+
+
+def sample(at: float, body: str = "rod") -> Sample:
+    zeros = (0.0,) * 36
+    return Sample(round(at * MS), "world", body, (0.0,) * 3, (0.0, 0.0, 0.0, 1.0), (0.0,) * 3, (0.0,) * 3, zeros, zeros)
+
+
+def record(until: int, announced: dict[int, float] | None = None, **changes: object) -> Announcements:
+    """Samples each ms up to `until`, of which some announce a touchdown: both times in ms."""
+    made = Announcements()
+    for at in range(until + 1):
+        touchdown = None
+        if announced is not None and at in announced:
+            touchdown = TOUCHDOWN._replace(lead_time=(announced[at] - at) * 1e-3, **changes)  # type: ignore[arg-type]
+        made.add(Prediction(Status.ACCEPTED, sample(at), touchdown))
+    return made
+
+
+def test_a_touchdown_that_is_predicted_exactly_has_no_error() -> None:
+    made = record(100, dict.fromkeys(range(20, 60), 60.0))
+    assert compare([impact(60)], made, SCENE) == Truth(1, 0, 0, 0, 1.0, 0.0, 0.0)
+
+
+def test_the_error_of_time_is_that_of_the_prediction_20_ms_ahead() -> None:
+    made = record(100, {at: 60.0 + (60 - at) * 0.1 for at in range(20, 60)})
+    assert compare([impact(60)], made, SCENE).median_time_error == pytest.approx(0.002)
+    late = record(100, dict.fromkeys(range(41, 60), 60.0))
+    assert compare([impact(60)], late, SCENE).median_time_error is None
+
+
+def test_mode_and_velocity_are_those_of_the_last_prediction() -> None:
+    made = record(
+        100, dict.fromkeys(range(20, 60), 60.0), mode=Mode.STOP, linear=(0.3, 0.0, 0.5), angular=(0.0, 1.8, 0.0)
+    )
+    truth = compare([impact(60)], made, SCENE)
+    assert truth.mode_accuracy == 0.0
+    # Wrong by 0.3 m/s and 0.8 rad/s at 0.5 m, of -1 m/s and 2 rad/s at 0.5 m.
+    assert truth.median_velocity_error == pytest.approx(0.5 / 2.0**0.5)
+
+
+def test_a_touchdown_without_a_prediction_is_missed_and_a_prediction_without_a_touchdown_is_false() -> None:
+    made = record(200, dict.fromkeys(range(20, 60), 60.0))
+    assert compare([impact(150)], made, SCENE) == Truth(1, 1, 1, 0, None, None, None)
+    assert compare([], made, SCENE) == NOTHING._replace(false=1)
+
+
+@pytest.mark.parametrize(("away", "found"), [(-20.0, True), (20.0, True), (-20.1, False), (20.1, False)])
+def test_a_prediction_is_of_a_touchdown_within_20_ms(away: float, found: bool) -> None:
+    made = record(200, dict.fromkeys(range(20, 60), 100.0 + away))
+    truth = compare([impact(100)], made, SCENE)
+    assert (truth.missed, truth.false) == ((0, 0) if found else (1, 1))
+
+
+def test_a_prediction_that_pauses_is_of_one_touchdown() -> None:
+    made = record(100, {at: 60.0 for at in range(20, 60) if at not in (30, 31, 45)})
+    assert compare([impact(60)], made, SCENE) == Truth(1, 0, 0, 0, 1.0, 0.0, 0.0)
+
+
+def test_of_two_touchdowns_close_together_each_has_its_own_predictions() -> None:
+    first, second = dict.fromkeys(range(20, 50), 50.0), dict.fromkeys(range(51, 56), 56.0)
+    truth = compare([impact(50), impact(56, mode=Mode.STOP)], record(100, first | second), SCENE)
+    assert truth == Truth(2, 0, 0, 0, 0.5, 0.0, 0.0)
+
+
+def test_nothing_is_predicted_of_what_has_happened() -> None:
+    # The impact lies before the first prediction, so 5 ms between them make no match.
+    assert compare([impact(50)], record(100, {52: 55.0}), SCENE) == Truth(1, 1, 1, 0, None, None, None)
+
+
+def test_a_prediction_without_lead_time_announces_nothing() -> None:
+    assert compare([], record(100, {52: 52.0}), SCENE) == NOTHING
+
+
+def test_what_the_record_does_not_reach_is_not_counted() -> None:
+    assert compare([impact(120)], record(100, dict.fromkeys(range(50, 101), 120.0)), SCENE) == NOTHING
+
+
+def test_impacts_that_no_sample_shows_are_not_missed() -> None:
+    # At 10.2 ms there was no sample since 10.1 ms, at 11.4 ms one; gravity makes 0.00981 m/s in the 1 ms of a contact.
+    impacts = [impact(10.1), impact(10.2), impact(11.4), impact(20.5, approach=0.0098)]
+    assert compare(impacts, record(100, {5: 10.1, 6: 10.1}), SCENE) == Truth(1, 0, 0, 3, 1.0, 0.0, None)
+    assert compare(impacts, record(100), SCENE) == Truth(1, 1, 0, 3, None, None, None)
+
+
+def test_bodies_are_told_apart_and_those_without_samples_do_not_count() -> None:
+    made = record(100, dict.fromkeys(range(20, 60), 60.0))
+    for at in range(101):
+        made.add(Prediction(Status.ACCEPTED, sample(at, "plate"), None))
+    impacts = [impact(60), impact(60, body="plate"), impact(60, body="cylinder")]
+    assert compare(impacts, made, SCENE) == Truth(2, 1, 0, 0, 1.0, 0.0, 0.0)
+    assert compare([impact(60)], Announcements(), SCENE) == NOTHING
+
+
+def test_velocities_are_compared_at_the_mass_centre() -> None:
+    # The body frame lies 0.2 m behind the mass centre, which moves up by 0.2 m * 1 rad/s less there.
+    scene = SCENE._replace(center_of_mass=(0.2, 0.0, 0.0))
+    made = record(100, dict.fromkeys(range(20, 60), 60.0), linear=(0.0, 0.0, 0.7))
+    assert compare([impact(60)], made, scene).median_velocity_error == pytest.approx(0.0, abs=1e-15)

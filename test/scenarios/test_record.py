@@ -1,0 +1,108 @@
+"""A motion as a bag: what stands on each topic, and that the predictor finds its way through it."""
+
+from __future__ import annotations
+
+from math import cos, hypot, radians, sin
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from impact_predictor.bags.read import read_messages, topics
+from impact_predictor.prediction.types import Sample
+from impact_predictor.prediction.vectors import axes_of, to_world
+from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY, ODOMETRY, POLYGON, decode_odometry, decode_polygon
+from impact_predictor.scenarios.record import REST, Actor, samples_in, write_record
+from impact_predictor.scenarios.rocking import Rocking, release, rocking_rod
+from impact_predictor.scenarios.truth import TRUTH_TOPIC, decode_true_impacts
+
+RATE = 1000.0
+
+
+def a_rod(a: float = 0.1, slope: float = 0.0) -> Rocking:
+    return release(rocking_rod(0.4, 0.02, a, a, 1.0, None, None, 0.0), radians(30.0), slope)
+
+
+def recorded(path: Path, *actors: Actor, rate: float = RATE) -> Path:
+    write_record(path, actors, rate)
+    return path
+
+
+def samples_of(path: Path, topic: str = "/odom") -> list[Sample]:
+    return [decode_odometry(message.data) for message in read_messages(path, {topic: ODOMETRY})]
+
+
+def test_one_body_stands_on_the_topics_of_the_node_and_several_on_their_own(tmp_path: Path) -> None:
+    alone = recorded(tmp_path / "alone.mcap", Actor("rod", a_rod().run))
+    assert topics(alone) == {"/contact_geometry": POLYGON, "/odom": ODOMETRY, TRUTH_TOPIC: DIAGNOSTIC_ARRAY}
+    both = recorded(tmp_path / "both", Actor("one", a_rod().run), Actor("two", a_rod(0.05).run))
+    assert set(topics(both)) == {
+        *("/one/odom", "/one/contact_geometry", "/two/odom", "/two/contact_geometry"),
+        TRUTH_TOPIC,
+    }
+    times = [message.log_time for message in read_messages(both, topics(both))]
+    assert times == sorted(times)
+
+
+def test_the_states_are_those_of_the_motion_in_space_at_the_rate(tmp_path: Path) -> None:
+    slope = radians(5.0)
+    run = a_rod(slope=slope).run
+    samples = samples_of(recorded(tmp_path / "rod.mcap", Actor("rod", run), rate=700.0))
+    assert len(samples) == samples_in(run, 700.0) == 1 + int((run.time + REST) * 700.0)
+    assert [sample.stamp for sample in samples] == [round(k * 1e9 / 700.0) for k in range(len(samples))]
+    for sample in samples[::7]:
+        state = run.state(sample.stamp / 1e9)
+        axes = axes_of(sample.orientation)
+        # The body's x axis in the world, and its rates: counter-clockwise in x and z is negative about y.
+        assert axes[0] == pytest.approx((cos(state.angle + slope), 0.0, sin(state.angle + slope)), abs=1e-14)
+        assert sample.angular == pytest.approx((0.0, -state.omega, 0.0), abs=1e-14)
+        place = state.x * cos(slope) - state.y * sin(slope), 0.0, state.x * sin(slope) + state.y * cos(slope)
+        assert sample.position == pytest.approx(place, abs=1e-14)
+        speed = to_world(axes, sample.linear)
+        assert (hypot(*speed), speed[1]) == (pytest.approx(hypot(state.vx, state.vy), abs=1e-14), 0.0)
+    # The twist is the derivative of the pose; a difference misses a sixth of the third one, which is 46 m/s^3 at most,
+    # times the square of the step.
+    for before, now, after in zip(samples[40:90], samples[41:91], samples[42:92], strict=True):
+        moved = (np.array(after.position) - before.position) / ((after.stamp - before.stamp) / 1e9)
+        assert to_world(axes_of(now.orientation), now.linear) == pytest.approx(moved, abs=2e-5)
+
+
+def test_the_true_impacts_are_those_of_the_motion(tmp_path: Path) -> None:
+    slope = radians(5.0)
+    run = a_rod(slope=slope).run
+    path = recorded(tmp_path / "rod.mcap", Actor("rod", run))
+    messages = list(read_messages(path, {TRUTH_TOPIC: DIAGNOSTIC_ARRAY}))
+    impacts = [impact for message in messages for impact in decode_true_impacts(message.data)]
+    assert len(impacts) == len(run.impacts) > 5
+    for message, impact, strike in zip(messages, impacts, run.impacts, strict=True):
+        assert message.log_time == impact.stamp == round(strike.time * 1e9)
+        assert (impact.mode, impact.old, impact.new) == (strike.outcome.mode, (strike.old,), (strike.new,))
+        assert impact.half_distance == pytest.approx(0.1)
+        assert impact.approach == pytest.approx(0.2 * abs(strike.before.omega))
+        assert impact.angular_after == (0.0, -strike.outcome.twist.omega, 0.0)
+        vx, vy = strike.before.vx, strike.before.vy
+        in_world = vx * cos(slope) - vy * sin(slope), 0.0, vx * sin(slope) + vy * cos(slope)
+        assert impact.linear_before == pytest.approx(in_world, abs=1e-12)
+
+
+def test_the_contact_points_are_those_of_the_body(tmp_path: Path) -> None:
+    path = recorded(tmp_path / "rod.mcap", Actor("rod", a_rod().run))
+    (message,) = read_messages(path, {"/contact_geometry": POLYGON})
+    geometry = decode_polygon(message.data)
+    old, new = geometry.points
+    # float32, as the message has it
+    assert (*old, *new) == pytest.approx((-0.1, 0.0, -0.01, 0.1, 0.0, -0.01), rel=1e-7)
+    assert geometry.frame_id == samples_of(path)[0].child_frame_id == "rod"
+
+
+def test_the_same_motion_makes_the_same_bytes(tmp_path: Path) -> None:
+    one, other = (recorded(tmp_path / name, Actor("rod", a_rod().run)) for name in ("one.mcap", "other.mcap"))
+    assert one.read_bytes() == other.read_bytes()
+
+
+def test_progress_is_told(tmp_path: Path) -> None:
+    run = a_rod().run
+    told: list[int] = []
+    write_record(tmp_path / "rod.mcap", [Actor("rod", run)], RATE, told.append)
+    assert told == sorted(told)
+    assert 0 < told[-1] <= samples_in(run, RATE)

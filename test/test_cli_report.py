@@ -1,0 +1,101 @@
+"""`impact-predictor report`: its files, its table, and one sentence for each mistake."""
+
+from __future__ import annotations
+
+import csv
+import json
+import sys
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from impact_predictor.cli import main
+from impact_predictor.report.accuracy import study
+from impact_predictor.report.accuracy.choices import USED, choices_of, defaults_of
+from impact_predictor.report.accuracy.rows import IMPACT, TOUCHDOWN, Errors, Family, Report, Row, Scene
+
+SCENES = [Scene("plate", question, "Plate", "A plate.", "exact") for question in (TOUCHDOWN, IMPACT)]
+NO_ERROR = Errors(0.0, 1e-15, 1e-15)
+
+
+def made_up(size: study.Size, command: str, tell: object) -> Report:
+    """A report that nobody measured."""
+    rows = [
+        Row(question, "plate", name, name, setting, 20.0, 25.0, time, NO_ERROR, None, 10, 0)
+        for question, time in ((TOUCHDOWN, NO_ERROR), (IMPACT, None))
+        for name, setting in [USED[question]]
+    ]
+    families = [Family(row.family, "What the node uses.") for row in rows]
+    said = study.made(command) | {"falls": str(size.falls)}
+    return Report(said, defaults_of(rows, SCENES), ["A note."], families, SCENES, rows, choices_of(rows, SCENES), [])
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(study, "report", made_up)
+    return tmp_path
+
+
+def run(*arguments: str) -> Result:
+    return CliRunner().invoke(main, ("report", *arguments), terminal_width=100)
+
+
+def test_page_json_and_csv_are_written_and_nothing_else(folder: Path) -> None:
+    result = run("-o", "out/today")
+    assert result.exit_code == 0, result.stderr
+    assert sorted(file.name for file in (folder / "out/today").iterdir()) == [
+        "report.csv",
+        "report.html",
+        "report.json",
+    ]
+    fields = json.loads((folder / "out/today/report.json").read_text())
+    assert fields["made"]["command"] == "impact-predictor report -o out/today"
+    with (folder / "out/today/report.csv").open(newline="") as file:
+        assert [line["method"] for line in csv.DictReader(file)] == [row["method"] for row in fields["rows"]]
+    assert "<html" in (folder / "out/today/report.html").read_text()
+
+
+def test_the_terminal_shows_what_to_choose_and_what_the_node_uses() -> None:
+    result = run("-o", "out")
+    assert result.stdout.count("next_touchdown") == 5  # for four accuracies, and for the node
+    assert "within 1e-15, for 20 us" in result.stdout
+    assert result.stdout.splitlines()[-1] == "Page: out/report.html"
+    assert result.stderr.splitlines()[-1] == "note: A note."
+
+
+def test_with_json_nothing_else_is_printed_and_no_file_written(folder: Path) -> None:
+    result = run("--json", "--quick")
+    fields = json.loads(result.stdout)
+    assert fields["made"]["falls"] == str(study.QUICK.falls)
+    assert fields["made"]["command"] == "impact-predictor report --quick --json"
+    assert list(folder.iterdir()) == []
+
+
+def test_without_a_name_the_folder_is_called_report(folder: Path) -> None:
+    assert run().exit_code == 0
+    assert (folder / "report/report.html").is_file()
+
+
+def test_a_file_in_the_place_of_the_folder_is_refused_in_one_sentence(folder: Path) -> None:
+    (folder / "taken").write_text("")
+    result = run("-o", "taken")
+    assert result.exit_code == 2
+    assert result.stderr.startswith("error: the folder taken cannot be made: ")
+    assert len(result.stderr.splitlines()) == 1
+
+
+def test_a_page_that_cannot_be_written_leaves_no_part_behind(folder: Path) -> None:
+    (folder / "out/report.html").mkdir(parents=True)
+    result = run("-o", "out")
+    assert result.exit_code == 2
+    assert "out/report.html cannot be written" in result.stderr
+    assert not list(folder.rglob("*.partial"))
+
+
+def test_without_mpmath_the_report_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "mpmath", None)
+    result = run("-o", "out")
+    assert result.exit_code == 2
+    assert "needs mpmath" in result.stderr

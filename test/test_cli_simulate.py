@@ -1,0 +1,285 @@
+"""`impact-predictor simulate`: what it prints and writes, and one sentence for each mistake."""
+
+from __future__ import annotations
+
+import json
+import shlex
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from click.testing import CliRunner, Result
+from PIL import Image
+
+from impact_predictor.bags.read import read_messages, topics
+from impact_predictor.bags.replay import replay
+from impact_predictor.cli import main
+from impact_predictor.commands.simulate import EXAMPLES
+from impact_predictor.parameter_file import read_parameters
+from impact_predictor.parameters import validate
+from impact_predictor.prediction.scene import Scene
+from impact_predictor.ros.messages import POLYGON, decode_polygon
+from impact_predictor.scenarios.truth import TRUTH_TOPIC
+
+ROOT = Path(__file__).parents[1]
+GOLDEN = json.loads((ROOT / "test/mechanics/golden/motion.json").read_text())["rocking"]
+BODIES = ["rod", "plate", "cylinder"]
+THREE_RODS = ["rod", "--a", "0.1", "--a", "0.075", "--a", "0.05"]
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def run(*arguments: str) -> Result:
+    return CliRunner().invoke(main, ("simulate", *arguments), terminal_width=100)
+
+
+def simulated(*arguments: str) -> Any:
+    result = run(*arguments, "--json")
+    assert result.exit_code == 0, result.stderr
+    return json.loads(result.stdout)
+
+
+def scene(name: str) -> Scene:
+    return Scene.from_parameters(validate(read_parameters(ROOT / "config" / name)))
+
+
+@pytest.mark.parametrize("case", GOLDEN, ids=lambda case: f"a = {case['a']}")
+def test_the_json_of_a_rod_is_its_reference_sequence(case: dict[str, Any]) -> None:
+    options = ["--length", case["length"], "--a", case["a"], "--b", case["b"], "--angle", case["release_angle_deg"]]
+    answer = simulated("rod", *options)
+    assert set(answer) == {"impacts", "accumulation_time", "end"}
+    assert answer["end"] == "RESTS"
+    # The sequences are known to 40 digits; the simulation is asked for 1e-9.
+    assert answer["accumulation_time"] == pytest.approx(float(case["accumulation_time"]), rel=1e-9)
+    assert len(answer["impacts"]) >= 8
+    for impact, reference in zip(answer["impacts"][:8], case["impacts"][:8], strict=True):
+        assert impact == {
+            "mode": "PIVOT",
+            **{name: pytest.approx(float(number), rel=1e-9) for name, number in reference.items()},
+        }
+
+
+def test_several_rods_are_a_list_of_each_alone() -> None:
+    assert simulated(*THREE_RODS) == [simulated("rod", "--a", a) for a in ("0.1", "0.075", "0.05")]
+    unequal = simulated("rod", "--a", "0.1", "--a", "0.05", "--b", "0.05", "--b", "0.1")
+    assert unequal == [simulated("rod", "--a", "0.1", "--b", "0.05"), simulated("rod", "--a", "0.05", "--b", "0.1")]
+
+
+def test_released_the_other_way_it_is_the_mirror_image() -> None:
+    assert simulated("rod", "--angle", "-30") == simulated("rod", "--angle", "30")
+
+
+@pytest.mark.parametrize("body", BODIES)
+def test_mass_changes_no_motion_and_gravity_its_pace_alone(body: str) -> None:
+    one, heavy, slow = simulated(body), simulated(body, "--mass", "7"), simulated(body, "--gravity", "2.4525")
+    for changed, pace in ((heavy, 1.0), (slow, 0.5)):
+        assert changed["end"] == one["end"]
+        for impact, reference in zip(changed["impacts"][:6], one["impacts"][:6], strict=True):
+            # Times to the accuracy that the steps of the simulation are asked for.
+            assert impact["time"] == pytest.approx(reference["time"] / pace, rel=1e-9)
+            assert impact["omega_after"] == pytest.approx(reference["omega_after"] * pace, rel=1e-8)
+
+
+def test_friction_restitution_law_slope_and_duration_reach_the_simulation() -> None:
+    first = simulated("plate")["impacts"][0]
+    assert simulated("plate", "--friction", "0.05")["impacts"][0]["mode"] != first["mode"] == "PIVOT"
+    assert simulated("plate", "--slope", "10")["impacts"][0]["time"] > first["time"]
+    assert simulated("plate", "--inertia", "1")["impacts"][0]["time"] > first["time"]
+    assert simulated("plate", "--duration", "0.5")["end"] == "TIME_UP"
+    bounces = [
+        simulated("plate", "--height", "0.4", "--friction", "0.2", "--restitution", "0.4", "--law", law, "--angle", "5")
+        for law in ("path", "total")
+    ]
+    assert bounces[0]["impacts"][0] != bounces[1]["impacts"][0]
+
+
+def test_people_read_the_impacts_when_they_accumulate_and_the_end() -> None:
+    result = run("rod")
+    assert result.exit_code == 0
+    lines = result.stdout.splitlines()
+    assert lines[0] == "rod, a = b = 0.1 m"
+    assert any(line.split()[:4] == ["1", "0.166294", "B", "PIVOT"] for line in lines)
+    assert "Impacts accumulate at 0.217703 s; then the body stays on both contacts." in lines
+    assert lines[-1] == "At 0.217703 s it rests on both contacts."
+
+
+def test_a_body_that_falls_over_says_so() -> None:
+    assert "it has overturned" in run("plate", "--angle", "40").stdout
+
+
+def test_a_bag_replays_to_its_truth(folder: Path) -> None:
+    result = run("rod", "--a", "0.05", "-o", "rod.mcap")
+    assert result.stdout.splitlines()[-1] == "Bag: rod.mcap"
+    points = ((-0.05, 0.0, 0.0), (0.05, 0.0, 0.0))
+    truth = replay("rod.mcap", scene("rocking_rod.yaml")._replace(points=points)).truth
+    assert truth is not None
+    assert (truth.touchdowns, truth.missed, truth.false, truth.mode_accuracy) == (15, 0, 0, 1.0)
+    # The states in the bag are those of the simulation to rounding, and stamps are whole ns.
+    assert truth.median_velocity_error is not None
+    assert truth.median_velocity_error < 1e-9
+    assert truth.median_time_error is not None
+    assert truth.median_time_error <= 2e-9
+
+
+@pytest.mark.parametrize("name", ["rocking_rod.yaml", "rocking_plate.yaml"])
+def test_the_commands_of_a_shipped_scene_find_every_touchdown(folder: Path, name: str) -> None:
+    head = (ROOT / "config" / name).read_text().partition("/**:")[0]
+    lines = [shlex.split(line.removeprefix("#")) for line in head.splitlines() if "impact-predictor " in line]
+    simulate, its_replay = (line[1:] for line in lines)
+    assert CliRunner().invoke(main, simulate).exit_code == 0
+    (folder / "config").symlink_to(ROOT / "config")
+    result = CliRunner().invoke(main, [*its_replay, "--json"])
+    assert result.exit_code == 0
+    truth = json.loads(result.stdout)["truth"]
+    assert list(truth)[:3] == ["touchdowns", "missed", "false"]
+    assert truth["touchdowns"] >= 3
+    assert (truth["missed"], truth["false"], truth["mode_accuracy"]) == (0, 0, 1.0)
+    assert truth["median_velocity_error"] < 1e-9
+    said = CliRunner().invoke(main, its_replay).stdout
+    assert f"Against the truth in the bag: {truth['touchdowns']} of {truth['touchdowns']} touchdowns found" in said
+
+
+@pytest.mark.parametrize("body", ["rod", "plate"])
+def test_a_shipped_scene_is_the_body_of_the_command(body: str) -> None:
+    shipped = scene(f"rocking_{body}.yaml")
+    assert run(body, "-o", "bag").exit_code == 0
+    (message,) = read_messages("bag", {"/contact_geometry": POLYGON})
+    told = [part for point in decode_polygon(message.data).points for part in point]
+    assert told == pytest.approx([part for point in shipped.points for part in point], rel=1e-7)
+
+
+def test_the_options_of_the_bag(folder: Path) -> None:
+    run(*THREE_RODS, "-o", "rods", "--rate", "100")
+    assert set(topics("rods")) == {
+        *(f"/rod_{k}/{name}" for k in (1, 2, 3) for name in ("odom", "contact_geometry")),
+        TRUTH_TOPIC,
+    }
+    assert len(list(read_messages("rods", {"/rod_1/odom": topics("rods")["/rod_1/odom"]}))) == 1 + int(46.77)
+    assert run("cylinder", "-o", "cylinder").exit_code == 2
+
+
+def is_drawn(image: Image.Image) -> bool:
+    pixels = np.asarray(image.convert("L"), float)
+    return bool(pixels.std() > 10.0 and (pixels < 128.0).mean() > 0.002)
+
+
+@pytest.mark.parametrize("arguments", [THREE_RODS, ["cylinder"]], ids=lambda one: one[0])
+def test_the_picture_is_drawn(folder: Path, arguments: list[str]) -> None:
+    result = run(*arguments, "--plot", "one.png")
+    assert result.stdout.splitlines()[-1] == "Picture: one.png"
+    with Image.open("one.png") as image:
+        assert image.size[0] > 1000
+        assert is_drawn(image)
+
+
+def test_the_same_motion_makes_the_same_vector_picture(folder: Path) -> None:
+    for name in ("one.SVG", "two.svg"):
+        assert run("plate", "--friction", "0.05", "--plot", name).exit_code == 0
+    assert Path("one.SVG").read_bytes() == Path("two.svg").read_bytes()
+    # Curves, bars, axes and letters.
+    assert Path("two.svg").read_text().count("<path") > 50
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("arguments", [["rod"], ["plate"], ["cylinder", "--gamma-new", "20"]], ids=lambda one: one[0])
+def test_the_animation_moves_and_ends_where_the_body_stays(folder: Path, arguments: list[str]) -> None:
+    result = run(*arguments, "--animate", "one.gif")
+    assert result.stdout.splitlines()[-1] == "Animation: one.gif"
+    assert Path("one.gif").stat().st_size < 500_000
+    with Image.open("one.gif") as film:
+        assert 40 < film.n_frames < 220
+        frames = []
+        for k in (0, film.n_frames // 2, film.n_frames - 1):
+            film.seek(k)
+            assert is_drawn(film)
+            frames.append(np.asarray(film.convert("L"), float))
+    assert all(np.abs(one - other).max() > 100.0 for one, other in pairwise(frames))
+
+
+@pytest.mark.slow
+def test_the_documentation_is_what_its_lines_make(folder: Path) -> None:
+    page = (ROOT / "docs/simulation.md").read_text(encoding="utf-8")
+    lines = [line.strip() for line in page.splitlines() if line.startswith("    impact-predictor ")]
+    (folder / "config").symlink_to(ROOT / "config")
+    for line in lines:
+        assert CliRunner().invoke(main, shlex.split(line)[1:]).exit_code == 0
+    for name in ("rocking_rods.png", "rocking_rod.gif"):
+        assert f"]({name})" in page
+        with Image.open(name) as made, Image.open(ROOT / "docs" / name) as shown:
+            assert made.size == shown.size
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("body", BODIES)
+def test_every_example_works(folder: Path, body: str) -> None:
+    for line in EXAMPLES[body]:
+        assert line in run(body, "--help").stdout
+        result = CliRunner().invoke(main, shlex.split(line)[1:])
+        assert result.exit_code == 0, result.stderr
+        files = [name for name in shlex.split(line) if "." in name and not name.replace(".", "").isdigit()]
+        assert all(Path(name).exists() for name in files)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (["rod", "--length", "-1"], "length is -1.0; give a finite number above 0"),
+        (["rod", "--angle", "90"], "angle is 1.57"),
+        (["rod", "--restitution", "2"], "restitution is 2.0; give a number from 0 to 1"),
+        (["rod", "--a", "0.1", "--b", "0.1", "--b", "0.2"], "There are 1 --a but 2 --b"),
+        (["rod", "--duration", "0"], "duration is 0.0; give a number above 0"),
+        (["rod", "-o", "x.mcap", "--rate", "0"], "rate is 0.0; give a number above 0, up to 1e6"),
+        (["rod", "--friction", "nan"], "friction is nan"),
+        (["plate", "--plot", "x.gif"], "give a name that ends in .png or .svg"),
+        (["plate", "--animate", "x.png"], "give a name that ends in .gif"),
+        (["plate", "--animate", "no/x.gif"], "the folder of no/x.gif does not exist"),
+        (["plate", "-o", "taken"], "taken is there and is not an output of impact_predictor"),
+        (["cylinder", "--gamma", "95"], "the angle gamma + gamma_new between the edges"),
+    ],
+)
+def test_a_mistake_is_said_in_one_sentence_and_nothing_is_written(
+    folder: Path, arguments: list[str], sentence: str
+) -> None:
+    (folder / "taken").write_text("something else")
+    result = run(*arguments)
+    assert result.exit_code == 2
+    assert result.stdout == ""
+    (line,) = result.stderr.splitlines()
+    assert line.startswith("error: ")
+    assert sentence in line
+    assert [file.name for file in folder.iterdir()] == ["taken"]
+
+
+@pytest.mark.parametrize(
+    ("name", "option", "last"),
+    [
+        ("rod.mcap", "-o", "impact_predictor.bags.write.BagWriter._publish"),
+        ("rod.png", "--plot", "matplotlib.figure.Figure.savefig"),
+        ("rod.gif", "--animate", "PIL.Image.Image.save"),
+    ],
+)
+def test_what_is_interrupted_leaves_no_output_named_as_whole(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, name: str, option: str, last: str
+) -> None:
+    def interrupt(*arguments: Any, **named: Any) -> None:
+        for one in arguments:
+            if isinstance(one, Path):
+                one.write_bytes(b"half")
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("impact_predictor.report.motions.animation.times_of", lambda rockings: [0.0, 0.1])
+    arguments = ["rod", option, name]
+    assert run(*arguments).exit_code == 0
+    older = Path(name).read_bytes()
+    monkeypatch.setattr(last, interrupt)
+    assert run(*arguments).exit_code == 130
+    assert Path(name).read_bytes() == older
+    Path(name).unlink()
+    assert run(*arguments).exit_code == 130
+    assert not Path(name).exists()
