@@ -20,7 +20,7 @@ endif
 endif
 
 ifeq ($(ROS),wheels)
-EXTRAS := [ros,fast,test]
+EXTRAS := ros,fast,test
 CONSTRAINTS := constraints/jazzy.txt
 # The wheels do not say where their ament index is.
 export AMENT_PREFIX_PATH := $(CURDIR)/.venv
@@ -29,7 +29,7 @@ ifdef _ROS_WHEELS_BOOTSTRAP_COMPLETE
 unexport _ROS_WHEELS_BOOTSTRAP_COMPLETE LD_LIBRARY_PATH
 endif
 else
-EXTRAS := [fast,test]
+EXTRAS := fast,test
 CONSTRAINTS := .venv/constraints.txt
 SYSTEM_SITE := --system-site-packages
 endif
@@ -37,7 +37,7 @@ endif
 # One stamp for each Python and each source of ROS, so that another choice makes the environment anew.
 READY := .venv/.ready-$(ROS)-$(subst /,_,$(PYTHON))
 
-.PHONY: all test demo lint types check test-install clean help
+.PHONY: all test demo lint types check test-extras test-install clean help
 
 all: $(READY) ## the environment in .venv (the default)
 
@@ -52,12 +52,17 @@ $(READY): setup.py constraints/jazzy.txt tools/requirements.txt
 	@$(PYTHON) -m venv --clear $(SYSTEM_SITE) .venv
 	@# The messages of a sourced ROS are compiled against the numpy of the system.
 	@[ "$(ROS)" = wheels ] || $(BIN)/python -c 'import numpy; print("numpy==" + numpy.__version__)' > $(CONSTRAINTS)
-	@$(BIN)/python -m pip install --quiet --quiet --disable-pip-version-check --editable '.$(EXTRAS)' \
+	@$(BIN)/python -m pip install --quiet --quiet --disable-pip-version-check --editable '.[$(EXTRAS)]' \
 	  --constraint $(CONSTRAINTS) --requirement tools/requirements.txt
 	@touch '$@'
 
 test: $(READY) ## all tests, the quick ones first; ARGS="-k rod" runs some
 	@$(BIN)/python -m pytest --numprocesses 2 $(ARGS)
+
+test-extras: $(READY) ## what make test skips: the report's page in a browser (Debian: chromium), MuJoCo beside the methods
+	@$(BIN)/python -m pip install --quiet --quiet --disable-pip-version-check --editable '.[$(EXTRAS),browser,peers]' \
+	  --constraint $(CONSTRAINTS)
+	@$(BIN)/python -m pytest -m extras $(ARGS)
 
 demo: $(READY) ## plays recorded tosses of a cube through ROS topics, and shows what was predicted
 	@$(BIN)/impact-predictor demo $(ARGS)

@@ -34,7 +34,7 @@ setup(
     ],
     python_requires=">=3.10",
     packages=find_packages(include=[NAME, f"{NAME}.*"]),
-    package_data={NAME: ["py.typed"]},
+    package_data={NAME: ["py.typed"], f"{NAME}.report.page": ["templates/*"]},
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
         (SHARE, ["package.xml"]),
@@ -44,8 +44,11 @@ setup(
     ],
     install_requires=[
         "click>=8.1",
+        "jinja2>=3.1",
         "matplotlib>=3.6",
+        "mpmath>=1.3",
         "numpy>=1.26",
+        "pillow>=9.2",
         "rich>=13",
         # Brings ruamel.yaml too, the reader of the parameter files.
         "rosbags>=0.11,<0.12",
@@ -54,6 +57,8 @@ setup(
     extras_require={
         "ros": ["ros-jazzy-common-interfaces", "ros-jazzy-rclpy[fastrtps]"],
         "fast": ["numba"],
+        "peers": ["mujoco>=3.2"],
+        "browser": ["playwright>=1.45"],
         "test": ["hypothesis", "pytest", "pytest-xdist"],
     },
     entry_points={

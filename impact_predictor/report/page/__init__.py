@@ -1,0 +1,1 @@
+"""The page of error against run time: one file that opens without a network."""
