@@ -226,21 +226,34 @@ def test_every_example_works(folder: Path, body: str) -> None:
         assert all(Path(name).exists() for name in files)
 
 
+def test_a_turning_that_is_rounding_is_none() -> None:
+    lines = run("cylinder", "--friction", "0").stdout.splitlines()
+    rows = [line.split() for line in lines if "PIVOT_SLIDE" in line]
+    assert len(rows) > 5
+    assert all(row[4:7] == ["0", "0", "-"] for row in rows)
+
+
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [
         (["rod", "--length", "-1"], "length is -1.0; give a finite number above 0"),
-        (["rod", "--angle", "90"], "angle is 1.57"),
+        (["rod", "--angle", "90"], "90.0 is not in the range -90.0<x<90.0"),
         (["rod", "--restitution", "2"], "restitution is 2.0; give a number from 0 to 1"),
-        (["rod", "--a", "0.1", "--b", "0.1", "--b", "0.2"], "There are 1 --a but 2 --b"),
-        (["rod", "--duration", "0"], "duration is 0.0; give a number above 0"),
+        (["rod", "--a", "0.1", "--b", "0.1", "--b", "0.2"], "--a is given 1 times but --b 2 times"),
+        (["rod", "--duration", "0"], "duration is 0.0; give a number between 0 and 1e9"),
+        (["rod", "--rate", "10"], "--rate is that of a bag: give -o BAG too"),
+        (["rod", "--a", "0.3"], "a is 0.3; give a distance in m that ends within the body, at most 0.2"),
+        (["plate", "--b", "1.1"], "b is 1.1; give a distance in m that ends within the body, at most 1"),
         (["rod", "-o", "x.mcap", "--rate", "0"], "rate is 0.0; give a number above 0, up to 1e6"),
         (["rod", "--friction", "nan"], "friction is nan"),
         (["plate", "--plot", "x.gif"], "give a name that ends in .png or .svg"),
         (["plate", "--animate", "x.png"], "give a name that ends in .gif"),
         (["plate", "--animate", "no/x.gif"], "the folder of no/x.gif does not exist"),
         (["plate", "-o", "taken"], "taken is there and is not an output of impact_predictor"),
-        (["cylinder", "--gamma", "95"], "the angle gamma + gamma_new between the edges"),
+        (
+            ["cylinder", "--gamma", "95"],
+            "the angle between the edges is 190.0; give angles in degrees with a sum between 0 and 180",
+        ),
     ],
 )
 def test_a_mistake_is_said_in_one_sentence_and_nothing_is_written(

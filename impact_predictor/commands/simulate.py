@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 
 F = TypeVar("F", bound=Callable[..., Any])
 
+ACUTE: dict[str, Any] = {"type": click.FloatRange(-90.0, 90.0, min_open=True, max_open=True), "metavar": "DEGREES"}
+RATE = 1000.0
+
 EXAMPLES = {
     "rod": (
         "impact-predictor simulate rod --length 0.4 --a 0.1 --b 0.1 --angle 30 --json",
@@ -40,24 +43,30 @@ EXAMPLES = {
 
 def number(name: str, default: float | None, help_text: str, **more: Any) -> Callable[[F], F]:
     """An option that takes one number."""
-    return click.option(name, type=float, default=default, show_default=default is not None, help=help_text, **more)
+    more = {"type": float, **more}
+    return click.option(name, default=default, show_default=default is not None, help=help_text, **more)
 
 
 def motion_options(angle: float) -> Callable[[F], F]:
     """The options that every body has: how it begins, by which laws it moves, and what is made of it."""
     options: tuple[Callable[[Any], Any], ...] = (
-        number("--angle", angle, "Angle at which it is released at rest, degrees; negative stands on B."),
+        number("--angle", angle, "Angle at which it is released at rest, degrees; negative stands on B.", **ACUTE),
         number("--mass", 1.0, "Mass, kg."),
         number("--inertia", None, "Inertia about the mass centre, kg m^2 (a homogeneous body's unless given)."),
         number("--friction", None, "Coulomb friction coefficient (it sticks unless given)."),
         number("--restitution", 0.0, "Restitution of a contact that strikes, 0 (plastic) to 1."),
         click.option("--law", type=click.Choice(LAWS), default="path", show_default=True, help="Impact law."),
-        number("--slope", 0.0, "Slope of the support, degrees; positive is uphill from A to B."),
+        number("--slope", 0.0, "Slope of the support, degrees; positive is uphill from A to B.", **ACUTE),
         number("--gravity", 9.81, "Gravity, m/s^2."),
         number("--duration", 10.0, "Longest time that is simulated, s."),
         click.option("--plot", metavar="FILE", help="Draw angular velocity and angle into a .png or .svg file."),
         click.option("--animate", metavar="FILE", help="Draw a moving picture into a .gif file."),
-        click.option("--json", "as_json", is_flag=True, help="Print JSON: an object, or a list for several rods."),
+        click.option(
+            "--json",
+            "as_json",
+            is_flag=True,
+            help="Print JSON, rates as magnitudes: an object, or a list for several rods.",
+        ),
     )
 
     def decorate(command: F) -> F:
@@ -70,9 +79,9 @@ def motion_options(angle: float) -> Callable[[F], F]:
 
 def bag_options(command: F) -> F:
     """The options of a body of which a bag can be written: points over a straight support."""
-    command = click.option(
-        "--rate", type=float, default=1000.0, show_default=True, help="Samples of the bag for each second."
-    )(command)
+    command = click.option("--rate", type=float, help=f"Samples of the bag for each second. [default: {RATE:g}]")(
+        command
+    )
     return click.option(
         "-o",
         "--output",
@@ -94,7 +103,7 @@ def simulate() -> None:
     """
 
 
-@simulate.command("rod", epilog=examples(*EXAMPLES["rod"]))
+@simulate.command("rod", short_help="A rod over two supports.", epilog=examples(*EXAMPLES["rod"]))
 @number("--length", 0.4, "Length, m.")
 @number("--thickness", 0.0, "Thickness, m.")
 @number("--a", None, "Support A behind the middle, m; may be repeated for several rods. [default: 0.1]", multiple=True)
@@ -118,7 +127,9 @@ def simulate_rod(
     behind = a or (0.1,)
     ahead = b or behind
     if len(ahead) != len(behind):
-        raise click.UsageError(f"There are {len(behind)} --a but {len(ahead)} --b: give one of each for every rod")
+        raise click.UsageError(
+            f"--a is given {len(behind)} times but --b {len(ahead)} times: give one of each for every rod"
+        )
     return answer(
         [
             rocking_rod(length, thickness, one_a, one_b, mass, friction, inertia, restitution)
@@ -174,6 +185,8 @@ def simulate_cylinder(
     from ..scenarios.rocking import rocking_cylinder
 
     ahead = gamma if gamma_new is None else gamma_new
+    between = "angles in degrees with a sum between 0 and 180"
+    refuse({"the angle between the edges": gamma + ahead}, lambda value: 0.0 < value < 180.0, between)
     return answer(
         [rocking_cylinder(radius, radians(gamma), radians(ahead), mass, friction, inertia, restitution)], **options
     )
@@ -190,9 +203,12 @@ def answer(
     animate: str | None,
     as_json: bool,
     output: str | None = None,
-    rate: float = 1000.0,
+    rate: float | None = None,
 ) -> int:
     """Simulate the bodies, write what is asked for and say what happened; the exit status, 1 where it broke off."""
+    if rate is not None and output is None:
+        raise click.UsageError("--rate is that of a bag: give -o BAG too")
+    rate = RATE if rate is None else rate
     refuse({"rate": rate}, lambda value: 0.0 < value <= 1e6, "a number above 0, up to 1e6")
     if plot is not None:
         from ..report.figure import check_figure

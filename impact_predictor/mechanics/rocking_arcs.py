@@ -13,6 +13,8 @@ from .support import FixedSupport, Support
 
 _SMALLEST = 1e-10
 """The smallest step of dense output, relative to the stretch."""
+_FINER = 0.01
+"""Tolerance of a stretch whose end is known exactly, relative to that of others: its steps must meet the end."""
 
 
 class Happening(IntEnum):
@@ -103,7 +105,7 @@ class Arc:
         while now.time < until:
             left = until - now.time
             h = min(h, left)
-            then, rows = step(rate, now, h, self.scale, self.tolerance)
+            then, rows = step(rate, now, h, self.scale, _FINER * self.tolerance)
             if not rows and h > smallest:
                 h *= GROWTH[0]
                 continue

@@ -22,8 +22,9 @@ def shape_of(body: TwoPointBody) -> Shape:
         raise InputError("a body that rocks needs two contacts; give TwoPointBody.old, too")
     radius, radius_b = math.hypot(old.x, old.y), math.hypot(new.x, new.y)
     size = radius + radius_b
-    if not math.hypot(new.x - old.x, new.y - old.y) > UNIT * size:
-        raise InputError("the two contacts lie in one place; give two that are apart")
+    span = math.hypot(new.x - old.x, new.y - old.y)
+    if not (span > UNIT * size and 0.0 < span * span < math.inf):
+        raise InputError("the two contacts lie in one place or endlessly far from each other; give two that are apart")
     if all(abs(nx) <= UNIT and ny > 0.0 for nx, ny in (old.normal, new.normal)):
         return Points(body)
     radial = all(

@@ -18,7 +18,7 @@ from .rocking_tail import Limit
 from .rocking_turn import turn_about
 from .rocking_wait import wait
 from .support import Support
-from .types import Flag, Twist, TwoPointBody
+from .types import Flag, Twist, TwoPointBody, Validity
 
 _SPEED_ROUNDING = 1e-15
 """Part of a body's speeds that is rounding in the normal velocity at a contact."""
@@ -29,6 +29,8 @@ _QUIET = 1e-9
 bouncing on the other."""
 _STUCK = 1000
 """Events without any time between them; more come only from rounding."""
+_NOTHING = 1e-100
+"""Smaller numbers of a state are none: their products would be no numbers."""
 _BOTH = (0, 1)
 
 
@@ -48,6 +50,7 @@ class Rocking(Course):
     ) -> None:
         super().__init__(body, support, time, until, limit, tolerance)
         self.law, self.max_events = law, max_events
+        self.validity = Validity(gravity=abs(support.gravity))
         self.stretches: list[Stretch] = []
         self.impacts: list[Strike] = []
         self.accumulations: list[Accumulation] = []
@@ -60,21 +63,17 @@ class Rocking(Course):
     def run(self, start: PlanarState) -> Run:
         """Follow the motion to its end."""
         shape = self.shape
+        start = PlanarState(*[part if abs(part) >= _NOTHING else 0.0 for part in start])
         angle = start.angle
         if not shape.rolls:
             angle = math.remainder(start.angle + shape.lean, 2.0 * math.pi)
         shift = start.angle - angle
-        self._begin(start._replace(angle=angle))
-        still, last, events = 0, self.time, 0
-        while self.end is None:
-            if events >= self.max_events:
-                self.end = End.TOO_MANY_EVENTS
-                break
-            self._go_on()
-            still = still + 1 if self.time <= last else 0
-            if still > _STUCK:
-                self.end = End.NO_SOLUTION
-            events, last = events + 1, self.time
+        try:
+            self._begin(start._replace(angle=angle))
+            self._follow_all()
+        except ArithmeticError:  # numbers so large or so small that their products are none
+            self.end = End.NO_SOLUTION
+        assert self.end is not None
         impacts = [
             strike._replace(
                 before=strike.before._replace(angle=strike.before.angle + shift),
@@ -95,6 +94,19 @@ class Rocking(Course):
             self.accumulations,
             self.jams,
         )
+
+    def _follow_all(self) -> None:
+        """One stretch after the other, to the end."""
+        still, last, events = 0, self.time, 0
+        while self.end is None:
+            if events >= self.max_events:
+                self.end = End.TOO_MANY_EVENTS
+                return
+            self._go_on()
+            still = still + 1 if self.time <= last else 0
+            if still > _STUCK:
+                self.end = End.NO_SOLUTION
+            events, last = events + 1, self.time
 
     def _go_on(self) -> None:
         """Follow the next stretch to its event, and find out what comes after it."""
@@ -180,7 +192,7 @@ class Rocking(Course):
         self._impact(self.pairs[old], old, 1 - old, self.shape.state(old, 0.0, w, z, s), 0.0, z)
 
     def _impact(self, body: TwoPointBody, old: int | None, new: int, before: PlanarState, u: float, z: float) -> None:
-        outcome = solve_impact(body, Twist(before.vx, before.vy, before.omega), self.law)
+        outcome = solve_impact(body, Twist(before.vx, before.vy, before.omega), self.law, self.validity)
         if outcome.flags & (Flag.NO_SOLUTION | Flag.INVALID_INPUT):
             self.end = End.NO_SOLUTION
             return
@@ -249,23 +261,19 @@ class Rocking(Course):
 
     def _accumulate(self, limit: Limit, new: int) -> None:
         """Pass from an impact to the end of all that follow it."""
-        u, w, z, s = limit.values
+        _, _, z, s = limit.values
         last = self.impacts[-1]
         now, start = self.time, Instant(0.0, *self.shape.seen_from(new, last.after), 0.0, 0.0)
         self.time = min(self.time + limit.after, self.until)
-        if len(limit.contacts) == 2:
-            u = w = 0.0
-            start = start._replace(u=0.0, w=0.0)
-            self._hold(z, s)
-        else:
-            self._stand(new, u, w, z, s)
+        start = start._replace(u=0.0, w=0.0)
+        self._hold(z, s)
         one = self.next
         assert one is not None
         rest = Arc(self.shape, self.support, one.a, one.b, now, start, self.tolerance, True)
-        rest.close(Instant(self.time - now, u, w, z, s, 0.0, 0.0))
+        rest.close(Instant(self.time - now, 0.0, 0.0, z, s, 0.0, 0.0))
         self.stretches.append(rest)
         states = STATES[one.a] + STATES[one.b]
-        self.accumulations.append(Accumulation(self.time, limit.error, limit.contacts, states, limit.impacts))
+        self.accumulations.append(Accumulation(self.time, limit.error, _BOTH, states, limit.impacts))
         self.since = 0.0
         self.tail.forget()
 

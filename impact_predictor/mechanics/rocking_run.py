@@ -32,7 +32,7 @@ class End(IntEnum):
     TOO_MANY_EVENTS = 4
     """As many events, or steps between two of them, as were allowed came first."""
     NO_SOLUTION = 5
-    """No law has an answer to an impact."""
+    """No law has an answer to an impact, or numbers become too large or too small."""
     INVALID_INPUT = 6
     """A number is not finite or out of its range."""
 

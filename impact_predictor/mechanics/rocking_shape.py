@@ -104,7 +104,7 @@ class Shape:
         """Slip's acceleration and both normal reactions for a mass of 1, while both contacts slip."""
         raise NotImplementedError
 
-    def felt_at(self, felt: Felt, x: float, y: float, vx: float, vy: float) -> Vector:
+    def felt_at(self, felt: tuple[Any, Any, Any, Any], x: float, y: float, vx: float, vy: float) -> tuple[Any, Any]:
         """Acceleration that the mass centre feels."""
         gx, gy, rate, spin_up = felt
         return (
@@ -159,7 +159,7 @@ class Shape:
                 found.append((sign * side_x, sign * side_y, sign * side_m))
         return tuple(found)
 
-    def hold_margins(self, felt: Felt, z: float) -> list[float]:
+    def hold_margins(self, felt: tuple[Any, Any, Any, Any], z: float) -> list[Any]:
         """What must not be negative while the body rests on both contacts, in m/s^2; numbers or arrays over time."""
         x, y, _ = self.pose(0, 0.0, z)
         fx, fy = self.felt_at(felt, x, y, 0.0, 0.0)

@@ -144,7 +144,7 @@ def values_at(found: list[Piece], time: Any) -> tuple[Any, Any, Any, Any]:
     return values[0], values[1], values[2], values[3]
 
 
-def pieces(rate: Rate, now: Instant, end: Instant, scale: Vector, tolerance: float, depth: int = 8) -> list[Piece]:
+def pieces(rate: Rate, now: Instant, end: Instant, scale: Vector, tolerance: float, depth: int = 5) -> list[Piece]:
     """Polynomials from one instant of a step to another, halved until they agree with the step itself."""
     h, length = end.time - now.time, scale[0]
     middle, _ = step(rate, now, 0.5 * h, scale, tolerance)

@@ -9,12 +9,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from functools import cache
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..errors import InputError
 from .bodies import sine_and_cosine
 from .types import Vector
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 Felt = tuple[float, float, float, float]
 """Acceleration felt at rest at the origin, along the support's axes (m/s^2); rate (rad/s); angular acceleration."""
@@ -22,10 +26,12 @@ Felt = tuple[float, float, float, float]
 Part = tuple[tuple[float, ...], ...]
 """Coefficients of the polynomials of the four numbers felt, the highest power first; empty where they do not fit."""
 
-_NODES = 12
+_NODES = 10
 """Values that the polynomials of a moving support go through: with `_PART` they are exact to rounding."""
-_PART = 0.0625
+_PART = 1.0 / 24.0
 """Length of one polynomial, in shortest periods."""
+_FEW = 6
+"""Up to as many waves are added one by one."""
 _MAX_PARTS = 4096
 """Polynomials that are kept."""
 _FIT = 1e-12
@@ -50,8 +56,7 @@ class SupportMotion(NamedTuple):
     ay: Any
 
 
-@dataclass(frozen=True)
-class FixedSupport:
+class FixedSupport(NamedTuple):
     """A straight support at rest; `slope` in rad, CCW (its x axis rises), `gravity` in m/s^2 downwards."""
 
     slope: float = 0.0
@@ -71,24 +76,30 @@ class FixedSupport:
         return SupportMotion(self.slope + rest, rest, rest, rest, rest, rest, rest, rest, rest)
 
 
-@dataclass(frozen=True)
 class MovingSupport:
     """A straight support that moves as `function` of time tells, about the point of it where its frame has its origin.
 
     `function(time)` gives a SupportMotion with derivatives that belong together, for a time in s or, if it can, an
-    array. `period` is the shortest time in s in which the motion swings to and fro: no shorter swing may be in it.
-    `gravity` in m/s^2 downwards; `origin` (x, y) in m is where the frame's origin lies in the frame of `function`.
+    array of times. `period` is the shortest time in s in which the motion swings to and fro: no shorter swing may be in
+    it. `gravity` in m/s^2 downwards; `origin` (x, y) in m is where the frame's origin lies in the frame of `function`.
+    Not to be changed once it is made.
+
+    Raises:
+        InputError: the period is not a finite time above 0.
     """
 
-    function: Callable[[Any], SupportMotion]
-    period: float
-    gravity: float = 9.81
-    origin: Vector = (0.0, 0.0)
-    _parts: dict[int, Part] = field(default_factory=dict, init=False, repr=False, compare=False)
-
-    def __post_init__(self) -> None:
-        if not 0.0 < self.period < math.inf:
-            raise InputError(f"period of the moving support is {self.period}; give a finite number of seconds above 0")
+    def __init__(
+        self,
+        function: Callable[[Any], SupportMotion],
+        period: float,
+        gravity: float = 9.81,
+        origin: Vector = (0.0, 0.0),
+    ) -> None:
+        if not 0.0 < period < math.inf:
+            raise InputError(f"period of the moving support is {period}; give a finite number of seconds above 0")
+        self.function, self.period, self.gravity, self.origin = function, period, gravity, origin
+        self._parts: dict[int, Part] = {}
+        self._takes_arrays = True
 
     def at(self, x: float, y: float) -> MovingSupport:
         """The same support, its frame's origin moved by (x, y) in m along its axes: to where a body stands."""
@@ -114,6 +125,18 @@ class MovingSupport:
         down = self.gravity + ay
         return -cosine * ax - sine * down, sine * ax - cosine * down, rate, acceleration
 
+    def felt_at(self, times: NDArray[np.float64]) -> NDArray[np.float64]:
+        """As `felt_exactly` in the columns of an array (n, 4), also where the function takes one time only."""
+        import numpy as np
+
+        if self._takes_arrays:
+            try:
+                columns = [np.broadcast_to(part, times.shape) for part in self.felt_exactly(times)]
+                return np.stack(columns, axis=1).astype(float)
+            except (TypeError, ValueError):
+                self._takes_arrays = False
+        return np.array([self.felt_exactly(time) for time in times.tolist()], dtype=float)
+
     def felt(self, time: float) -> Felt:
         """What a body feels at rest at the origin, from polynomials in time: a sum of many waves costs no more."""
         width = _PART * self.period
@@ -133,21 +156,20 @@ class MovingSupport:
         return x, y, w, a
 
     def _fit(self, number: int, width: float) -> Part:
-        """Coefficients of the four polynomials, the highest power first; none where they do not fit."""
-        samples = [self.felt_exactly((number + 0.5 + 0.5 * node) * width) for node in _CHEBYSHEV_NODES]
-        columns = list(zip(*samples, strict=True))
-        push = max(map(abs, columns[0] + columns[1]))
-        rate = max(map(abs, columns[2]))
-        rows: list[list[float]] = []
-        for values, size in zip(columns, (push, push, rate, rate / width), strict=True):
-            waves = [sum(w * v for w, v in zip(weights, values, strict=True)) for weights in _TO_WAVES]
-            if abs(waves[-1]) + abs(waves[-2]) > _FIT * (size + sum(map(abs, waves))):
-                rows = []
-                break
-            rows.append([sum(w * v for w, v in zip(weights, waves, strict=True)) for weights in _TO_POWERS])
+        """The polynomials of one part; none where they do not fit."""
+        import numpy as np
+
+        nodes = np.cos(np.pi * (np.arange(_NODES) + 0.5) / _NODES)
+        values = self.felt_at((number + 0.5 + 0.5 * nodes) * width)
+        waves = np.polynomial.chebyshev.chebvander(nodes, _NODES - 1).T @ values * (2.0 / _NODES)
+        waves[0] *= 0.5
+        push, rate = np.abs(values[:, :2]).max(), np.abs(values[:, 2]).max()
+        size = np.array([push, push, rate, rate / width]) + np.abs(waves).sum(axis=0)
+        part: Part = ()
+        if (np.abs(waves[-2:]).sum(axis=0) <= _FIT * size).all():
+            part = tuple(map(tuple, (_powers() @ waves)[::-1].tolist()))
         if len(self._parts) >= _MAX_PARTS:
             self._parts.clear()
-        part = tuple(zip(*rows, strict=True))[::-1] if rows else ()
         self._parts[number] = part
         return part
 
@@ -179,9 +201,11 @@ def harmonic_support(
     if not frequencies or not 0.0 < max(frequencies) < math.inf:
         raise InputError("the waves of the support have no frequency above 0; give one, or use FixedSupport")
     sums = tuple(angle), tuple(x), tuple(y)
+    many = len(frequencies) > _FEW
 
     def motion(time: Any) -> SupportMotion:
-        (a, da, dda), (px, vx, ax), (py, vy, ay) = (_sum_of(waves, time) for waves in sums)
+        add = _sum_of_many if many or not isinstance(time, (float, int)) else _sum_of
+        (a, da, dda), (px, vx, ax), (py, vy, ay) = (add(waves, time) for waves in sums)
         return SupportMotion(mean_angle + a, da, dda, px, py, vx, vy, ax, ay)
 
     return MovingSupport(motion, 2.0 * math.pi / max(frequencies), gravity)
@@ -218,32 +242,39 @@ def sampled_support(times: Any, angle: Any, x: Any, y: Any, gravity: float = 9.8
     return MovingSupport(motion, 4.0 * float(np.diff(times).min()), gravity)
 
 
-def _sum_of(waves: tuple[Wave, ...], time: Any) -> tuple[Any, Any, Any]:
+def _sum_of(waves: tuple[Wave, ...], time: float) -> tuple[float, float, float]:
     """A sum of waves and its two derivatives."""
-    value = rate = acceleration = 0.0 * time
+    value = rate = acceleration = 0.0
     for amplitude, frequency, phase in waves:
-        sine, cosine = sine_and_cosine(frequency * time + phase)
-        value = value + amplitude * sine
-        rate = rate + amplitude * frequency * cosine
-        acceleration = acceleration - amplitude * frequency * frequency * sine
+        angle = frequency * time + phase
+        swing = amplitude * math.sin(angle)
+        value += swing
+        rate += amplitude * frequency * math.cos(angle)
+        acceleration -= frequency * frequency * swing
     return value, rate, acceleration
 
 
-_CHEBYSHEV_NODES = tuple(math.cos(math.pi * (k + 0.5) / _NODES) for k in range(_NODES))
-_TO_WAVES = tuple(
-    tuple((2.0 if j else 1.0) / _NODES * math.cos(math.pi * j * (k + 0.5) / _NODES) for k in range(_NODES))
-    for j in range(_NODES)
-)
-"""Coefficients of Chebyshev's polynomials from values at their nodes."""
+def _sum_of_many(waves: tuple[Wave, ...], time: Any) -> tuple[Any, Any, Any]:
+    """As `_sum_of`, for many waves or an array of times."""
+    import numpy as np
+
+    if not waves:
+        rest = 0.0 * time
+        return rest, rest, rest
+    amplitude, frequency, phase = np.array(waves).T
+    angle = np.multiply.outer(np.asarray(time, dtype=float), frequency) + phase
+    swing = amplitude * np.sin(angle)
+    return swing.sum(axis=-1), np.cos(angle) @ (amplitude * frequency), -(swing @ (frequency * frequency))
 
 
-def _powers() -> tuple[tuple[float, ...], ...]:
-    """Coefficients of powers from those of Chebyshev's polynomials."""
-    columns = [[1.0] + [0.0] * (_NODES - 1), [0.0, 1.0] + [0.0] * (_NODES - 2)]
-    while len(columns) < _NODES:
-        last, before = columns[-1], columns[-2]
-        columns.append([2.0 * a - b for a, b in zip([0.0, *last[:-1]], before, strict=True)])
-    return tuple(zip(*columns, strict=True))
+@cache
+def _powers() -> NDArray[np.float64]:
+    """Coefficients of powers, the lowest first, from those of Chebyshev's polynomials."""
+    import numpy as np
+
+    polynomials = np.polynomial.chebyshev
+    return np.stack([np.pad(polynomials.cheb2poly(row), (0, _NODES - 1 - k)) for k, row in enumerate(_units())], axis=1)
 
 
-_TO_POWERS = _powers()
+def _units() -> list[list[float]]:
+    return [[0.0] * k + [1.0] for k in range(_NODES)]

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from math import cos, inf, radians, sin
+from math import cos, degrees, inf, radians, sin
 from typing import Final, NamedTuple
 
+from ..errors import InputError
 from ..mechanics.answer import VALIDITY
 from ..mechanics.bodies import rod
 from ..mechanics.impact import solve_impact
@@ -76,12 +77,19 @@ def trial(thickness: float, a: float, b: float, friction: float, angle: float) -
 
 
 def falling(body: TwoPointBody, angle: float) -> Twist:
-    """The twist with which a body strikes its new contact that was raised about the old one by `angle` rad, at rest."""
+    """The twist with which a body strikes its new contact that was raised about the old one by `angle` rad, at rest.
+
+    Raises:
+        InputError: it is raised beyond its balance.
+    """
     assert body.old is not None
     feet = (body.old.x, body.old.y), (body.new.x, body.new.y)
     x, y = -feet[0][0], -feet[0][1]
     raised = PlanarState(x * cos(angle) - y * sin(angle), x * sin(angle) + y * cos(angle), angle, 0.0, 0.0, 0.0)
-    state = next_touchdown(raised, feet, 0, body.inertia / body.mass, friction=inf).state
+    fall = next_touchdown(raised, feet, 0, body.inertia / body.mass, friction=inf)
+    if fall.point != 1 or not fall.state.omega < 0.0:
+        raise InputError(f"a body raised by {degrees(angle):g} degrees does not fall back; give a smaller angle")
+    state = fall.state
     return Twist(state.vx, state.vy, state.omega)
 
 

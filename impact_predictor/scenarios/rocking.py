@@ -6,7 +6,7 @@ from math import pi
 from typing import Final, NamedTuple
 
 from ..errors import InputError
-from ..mechanics.bodies import cylinder, plate, refuse, rod
+from ..mechanics.bodies import Number, cylinder, plate, refuse, rod
 from ..mechanics.rocking import End, Run, rock, standing
 from ..mechanics.support import FixedSupport
 from ..mechanics.types import TwoPointBody, Vector
@@ -54,6 +54,7 @@ def rocking_rod(
 ) -> Rocker:
     """The paper's rod on supports `a` behind and `b` ahead of its middle (Fig. 1)."""
     body = bouncing(rod(length, thickness, a, b, mass, grip(friction), inertia, restitution))
+    within(0.5 * length, a=a, b=b)
     label = f"a = b = {a:g} m" if a == b else f"a = {a:g} m, b = {b:g} m"
     height = max(thickness, _LEAST_THICKNESS * length)
     bottom = -0.5 * thickness
@@ -72,6 +73,7 @@ def rocking_plate(
 ) -> Rocker:
     """The paper's plate on the floor (Fig. 4)."""
     body = bouncing(plate(length, height, mass, grip(friction), inertia, a, b, restitution))
+    within(length, a=a or 0.0, b=b or 0.0)
     return Rocker("plate", f"{length:g} m x {height:g} m", body, _rectangle(length, -0.5 * height, 0.5 * height))
 
 
@@ -100,7 +102,7 @@ def release(
         InputError: a number is out of its range.
     """
     refuse({"angle": angle, "slope": slope}, lambda value: abs(value) < 0.5 * pi, "an angle between -90 and 90 degrees")
-    refuse({"gravity": gravity, "duration": duration}, lambda value: 0.0 < value < 1e9, "a number above 0")
+    refuse({"gravity": gravity, "duration": duration}, lambda value: 0.0 < value < 1e9, "a number between 0 and 1e9")
     start, support = standing(rocker.body, angle), FixedSupport(slope, gravity)
     run = rock(rocker.body, start, support, law, duration, max_events=_MOST_EVENTS)
     if run.end is End.INVALID_INPUT:
@@ -112,6 +114,11 @@ def bouncing(body: TwoPointBody) -> TwoPointBody:
     """The body with the restitution of its new contact at both: a body that rocks strikes with each in turn."""
     assert body.old is not None
     return body._replace(old=body.old._replace(restitution=body.new.restitution))
+
+
+def within(most: float, **distances: Number) -> None:
+    """Refuse contacts beyond the ends of a body."""
+    refuse(distances, lambda value: value <= most, f"a distance in m that ends within the body, at most {most:g}")
 
 
 def grip(friction: float | None) -> float:

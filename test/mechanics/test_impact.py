@@ -316,3 +316,9 @@ def test_thickness_over_length_decides_whether_a_rod_is_thin(scale):
 def test_a_cylinder_on_edges_beside_its_axis_is_not_thin():
     body = cylinder(radius=0.3, gamma=1.5, mass=2.0, friction=0.5)  # 1.5 rad: nearly level with the axis
     assert not solve_impact(body, body.turning(omega=-1.0)).flags & Flag.THIN_BODY
+
+
+def test_a_body_that_reaches_far_below_one_of_its_contacts_is_not_thin():
+    body = TwoPointBody(1.0, 1.0, Contact(-1.0, 0.0, 0.5), Contact(1.0, -0.5, 0.5))
+    for one in (body, body._replace(old=body.old._replace(y=-0.5), new=body.new._replace(y=0.0))):
+        assert not solve_impact(one, one.turning(omega=-1.0)).flags & Flag.THIN_BODY

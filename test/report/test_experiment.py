@@ -92,3 +92,9 @@ def test_a_friction_that_no_support_has_is_refused_in_a_sentence():
     assert result.exit_code == 2
     assert result.stderr.startswith("error: ")
     assert result.stderr.count("\n") == 1
+
+
+def test_a_rod_that_is_raised_beyond_its_balance_is_refused_in_a_sentence():
+    result = run("--angle", "60")
+    assert result.exit_code == 2
+    assert result.stderr == "error: a body raised by 60 degrees does not fall back; give a smaller angle\n"

@@ -62,9 +62,10 @@ def defaults_of(rows: Sequence[Row], scenes: Sequence[Scene]) -> dict[str, Defau
 def why(used: Row, everywhere: Sequence[Row]) -> str:
     """A sentence on the method that is used, and on the ones that are cheaper or more accurate on all scenes."""
     said = f"Of every scene 90 % are within {used.error:.1g}, for {used.us:.0f} us in the mean of the scenes"
-    cheaper = min((row for row in everywhere if row.us < used.us), key=lambda row: row.error, default=None)
+    others = (row for row in everywhere if row.us < used.us and row.method != used.method)
+    cheaper = min(others, key=lambda row: row.error, default=None)
     if cheaper is None:
-        return f"{said}; nothing that answers on all scenes is cheaper."
+        return f"{said}; no other method that answers on all scenes is cheaper."
     error = f"is {cheaper.error:.1g} off" if cheaper.error < inf else "has no answer on some"
     name = f"{cheaper.method}, {cheaper.setting}" if cheaper.setting else cheaper.method
-    return f"{said}; the most accurate of the cheaper methods that apply to all, {name}, {error}."
+    return f"{said}; the most accurate of the other methods that are cheaper and apply to all, {name}, {error}."

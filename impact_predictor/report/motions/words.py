@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from math import hypot
 from typing import Any, Final
 
 from rich.console import Console
 from rich.table import Table
 
+from ...mechanics.motion import PlanarState
 from ...mechanics.rocking import Accumulation, End, Run
+from ...mechanics.types import TwoPointBody
 from ...scenarios.rocking import Rocking
 from ..table import plain_table, show
 
@@ -20,6 +23,8 @@ ENDS: Final = {
     End.NO_SOLUTION: "cannot go on: the impact law has no answer",
     End.INVALID_INPUT: "cannot be computed: a number is out of its range",
 }
+ROUNDING: Final = 1e-13
+"""An angular velocity below this part of what the speeds come to is none."""
 MOST_ROWS: Final = 12
 """Impacts that are listed; the others of an accumulation say no more."""
 
@@ -62,6 +67,7 @@ def print_motion(console: Console, rocking: Rocking) -> None:
 def impact_table(run: Run) -> Table:
     """The first impacts of a motion."""
     table = plain_table()
+    rounding = ROUNDING * max([_turning(strike.before, run.body) for strike in run.impacts])
     for header in ("impact\n", "time\ns"):
         table.add_column(header, justify="right", no_wrap=True)
     for header in ("at\n", "mode\n"):
@@ -69,7 +75,8 @@ def impact_table(run: Run) -> Table:
     for header in ("before\nrad/s", "after\nrad/s", "ratio\n", "energy\nlost, J"):
         table.add_column(header, justify="right", no_wrap=True)
     for number, strike in enumerate(run.impacts[:MOST_ROWS], 1):
-        before, after = strike.before.omega, strike.after.omega
+        rates = strike.before.omega, strike.after.omega
+        before, after = (rate if abs(rate) > rounding else 0.0 for rate in rates)
         table.add_row(
             str(number),
             f"{strike.time:.6f}",
@@ -77,10 +84,15 @@ def impact_table(run: Run) -> Table:
             strike.outcome.mode.name,
             f"{before:.4g}",
             f"{after:.4g}",
-            f"{after / before:.4f}" if before else "-",
+            f"{after / before:.4f}" if before and after else "-",
             f"{strike.outcome.energy_lost:.3g}",
         )
     return table
+
+
+def _turning(state: PlanarState, body: TwoPointBody) -> float:
+    """Angular velocity of a state, or of the size of its velocity."""
+    return abs(state.omega) + hypot(state.vx, state.vy) / hypot(body.new.x, body.new.y)
 
 
 def sentences(run: Run) -> list[str]:
