@@ -82,11 +82,11 @@ def main() -> None:
     slippery = plate(length=0.8, height=0.6, mass=500.0, friction=0.1)
     drum = cylinder(radius=0.4, gamma=0.35, mass=300.0, friction=0.4)
     for name, body, support in (
-        ("crate at rest, 3 waves", crate, deck(1, 1.0, 0.4, 1.2)),
-        ("crate at rest, 60 waves", crate, deck(20, 1.0, 0.4, 1.2)),
-        ("crate that slides, 60 waves", slippery, deck(20, 0.7, 0.4, 1.2)),
-        ("crate that rocks, 60 waves", crate, deck(20, 1.8, 3.0, 9.0)),
-        ("drum that rolls in its gap, 60 waves", drum, deck(20, 1.0, 3.0, 9.0)),
+        ("crate at rest, 3 waves", crate, deck(1, 0.5, 0.8, 1.5)),
+        ("crate at rest, 60 waves", crate, deck(20, 0.5, 0.8, 1.5)),
+        ("crate that slides, 60 waves", slippery, deck(20, 0.5, 0.8, 1.5)),
+        ("crate that rocks, 60 waves", crate, deck(20, 1.6, 3.0, 9.0)),
+        ("drum that rolls in its gap, 60 waves", drum, deck(20, 0.9, 3.0, 9.0)),
     ):
         deck_case(name, body, support)
 

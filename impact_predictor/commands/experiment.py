@@ -85,7 +85,8 @@ def experiment(friction: float, angle: float, as_json: bool) -> None:
     said = sum(trial.doubted for trial in others)
     for line in (
         "Numbers: omega after over omega before.  *: seen otherwise.",
-        "t, s: the prediction itself warns that rigid theory is too simple (flags THIN_BODY, SLOW_IMPACT).\n",
+        "t, s: the prediction itself warns that rigid theory is too simple (flags THIN_BODY, SLOW_IMPACT).",
+        "Seen: what the paper says of all its rods in words; it has no table of them.\n",
         f"Predicted: with a = b the rod stops from a = {at}.",
         "Seen: sticking from a = 115.5 mm and no sliding; rods of 2 mm rebound at both supports everywhere (FLIGHT).",
         f"As seen: {len(trials) - len(others)} of {len(trials)}; of the {len(others)} others {said} are flagged.",

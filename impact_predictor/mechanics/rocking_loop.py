@@ -75,11 +75,7 @@ class Rocking(Course):
             self.end = End.NO_SOLUTION
         assert self.end is not None
         impacts = [
-            strike._replace(
-                before=strike.before._replace(angle=strike.before.angle + shift),
-                after=strike.after._replace(angle=strike.after.angle + shift),
-            )
-            for strike in self.impacts
+            one._replace(before=_ahead(one.before, shift), after=_ahead(one.after, shift)) for one in self.impacts
         ]
         return Run(
             self.body,
@@ -220,7 +216,7 @@ class Rocking(Course):
             _, w, _, s = shape.seen_from(i, after)
             key = -1 if old is None else old, new, sum(1 << i for i in leaving)
             limit = self.tail.add(key, since, (u, w, z, s))
-            if limit is not None:
+            if limit is not None and self._stays_open(limit, since, after, new, u):
                 self._accumulate(limit, new)
                 return
         if not closed:
@@ -232,6 +228,19 @@ class Rocking(Course):
             self._hold(z, s)
         else:
             self._stand(closed[0], u, w, z, s)
+
+    def _stays_open(self, limit: Limit, since: float, after: PlanarState, new: int, u: float) -> bool:
+        """Whether nothing but the impacts that are summed can happen before their end.
+
+        While one contact alone hops the other one may come down among the hops; then they are followed on.
+        """
+        if len(limit.contacts) == 2:
+            return True
+        gap, slope = self.shape.gap_of_other(new, u)
+        rate = min(0.0, self.shape.gap_rate(1 - new, after), slope * limit.values[1])
+        span, felt = limit.after + since, self.support.felt(self.time)
+        weight = abs(felt[0]) + abs(felt[1]) + self.shape.length * (after.omega**2 + abs(felt[3]))
+        return gap + (rate - 4.0 * weight * span) * span > 0.0
 
     def _is_quiet(self, after: PlanarState, new: int, u: float) -> bool:
         """Whether both contacts bounce less than can matter: their hops may have no pattern that could be summed."""
@@ -261,21 +270,29 @@ class Rocking(Course):
 
     def _accumulate(self, limit: Limit, new: int) -> None:
         """Pass from an impact to the end of all that follow it."""
-        _, _, z, s = limit.values
+        u, w, z, s = limit.values
         last = self.impacts[-1]
         now, start = self.time, Instant(0.0, *self.shape.seen_from(new, last.after), 0.0, 0.0)
         self.time = min(self.time + limit.after, self.until)
-        start = start._replace(u=0.0, w=0.0)
-        self._hold(z, s)
+        if len(limit.contacts) == 2:
+            u = w = 0.0
+            start = start._replace(u=0.0, w=0.0)
+            self._hold(z, s)
+        else:
+            self._stand(new, u, w, z, s)
         one = self.next
         assert one is not None
         rest = Arc(self.shape, self.support, one.a, one.b, now, start, self.tolerance, True)
-        rest.close(Instant(self.time - now, 0.0, 0.0, z, s, 0.0, 0.0))
+        rest.close(Instant(self.time - now, u, w, z, s, 0.0, 0.0))
         self.stretches.append(rest)
         states = STATES[one.a] + STATES[one.b]
-        self.accumulations.append(Accumulation(self.time, limit.error, _BOTH, states, limit.impacts))
+        self.accumulations.append(Accumulation(self.time, limit.error, limit.contacts, states, limit.impacts))
         self.since = 0.0
         self.tail.forget()
+
+
+def _ahead(state: PlanarState, angle: float) -> PlanarState:
+    return state._replace(angle=state.angle + angle)
 
 
 _ENDS = {

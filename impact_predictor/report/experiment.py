@@ -94,7 +94,7 @@ def falling(body: TwoPointBody, angle: float) -> Twist:
 
 
 def observed(thickness: float, a: float, b: float) -> Mode:
-    """What the paper says it saw."""
+    """What the paper says it saw of rods such as this one; it has words for all of them, and no table."""
     if thickness == REBOUNDED:
         return Mode.FLIGHT
     if a <= VERY_SMALL and b > a:

@@ -28,6 +28,7 @@ from . import (
     stepping,
     tosses,
     touchdown_methods,
+    touchdown_problems,
     touchdown_reference,
     touchdown_scenes,
 )
@@ -93,7 +94,7 @@ def works(size: Size) -> Iterator[Work]:
 
 def touchdown_rows(scene: Scene, size: Size, tell: Callable[[], None]) -> list[Row]:
     """The methods for touchdowns on one scene."""
-    problems = touchdown_scenes.falls(scene.name, size.falls)
+    problems = touchdown_problems.falls(scene.name, size.falls)
     references = [touchdown_reference.reference_of(problem) for problem in problems]
     rows = []
     for measured in measure(TOUCHDOWN_METHODS, problems, size.effort, tell):

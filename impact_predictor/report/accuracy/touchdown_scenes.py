@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from random import Random
 from typing import NamedTuple
 
-from ...mechanics.motion import Motion, PlanarState, next_touchdown
+from ...mechanics.motion import Motion, PlanarState
 from ...mechanics.types import Twist, Vector
 from .rows import TOUCHDOWN, Scene
 
@@ -184,28 +184,3 @@ SCENES: dict[str, tuple[str, str, str, Callable[[Random, int], Falling], Motion]
 def scenes() -> Iterator[Scene]:
     for name, (title, description, reference, _, _) in SCENES.items():
         yield Scene(name, TOUCHDOWN, title, description, reference)
-
-
-def falls(name: str, count: int) -> list[Falling]:
-    """`count` problems of a scene, always the same ones, whose motion is the one that the scene is about."""
-    _, _, _, draw, motion = SCENES[name]
-    source, found = Random(f"{SEED} {name}"), list[Falling]()
-    while len(found) < count:
-        fall = draw(source, len(found))
-        if all_the_way(fall, motion):
-            found.append(fall)
-    return found
-
-
-def all_the_way(fall: Falling, motion: Motion) -> bool:
-    """Whether a body touches down with another point after nothing but one kind of motion."""
-    state, points, stance, rho_squared, friction, gravity = fall
-    end = next_touchdown(state, points, stance, rho_squared, friction, gravity)
-    if motion is Motion.TURNING:
-        held = next_touchdown(state, points, stance, rho_squared, math.inf, gravity)
-        return end.point == 1 and end.motion is motion and abs(end.time - held.time) <= 1e-12 * held.time
-    if motion is Motion.SLIDING:
-        slip = state.vx + state.omega * state.y
-        after = end.state.vx + end.state.omega * end.state.y
-        return end.point == 1 and end.motion is motion and slip * after > 0.0
-    return end.point >= 0 and end.motion is motion

@@ -23,6 +23,7 @@ from impact_predictor.report.accuracy.touchdown_methods import (
     quadrature,
     regular_quadrature,
 )
+from impact_predictor.report.accuracy.touchdown_problems import falls
 from impact_predictor.report.accuracy.touchdown_reference import distance, reference_of, size_of, time_error
 from impact_predictor.report.accuracy.touchdown_scenes import (
     CRATE,
@@ -31,7 +32,6 @@ from impact_predictor.report.accuracy.touchdown_scenes import (
     Falling,
     Figure,
     Landing,
-    falls,
     standing,
 )
 
