@@ -3,6 +3,13 @@
 import os
 
 import pytest
+from hypothesis import settings
+
+# The same draws on every machine, so that a change is judged by what it changes. New ones are drawn by
+# `make test ARGS=--hypothesis-profile=search`.
+settings.register_profile("search")
+settings.register_profile("repeatable", derandomize=True)
+settings.load_profile("repeatable")
 
 
 def pytest_configure() -> None:

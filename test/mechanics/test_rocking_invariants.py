@@ -218,12 +218,12 @@ def test_a_tall_plate_that_bounces_on_one_contact_before_the_other_lands_gains_n
     height: float, restitution: float
 ) -> None:
     body = plate(1.0, height, 1.0, 0.0, restitution=restitution)
-    run = rock(body, standing(body, 0.03), max_events=3000)
+    run = rock(body, standing(body, 0.03), max_events=10_000)
     assert run.end in (End.RESTS, End.TIME_UP)
     energies = [energy(run, state) for strike in run.impacts for state in (strike.before, strike.after)]
     released = energies[0]
-    # 1e-13 of the energy is what its sum is rounded to.
-    assert all(then <= before + 1e-13 * released for before, then in pairwise(energies))
+    # Hops that are summed are known to 1e-12.
+    assert all(then <= before + 1e-12 * released for before, then in pairwise(energies))
 
 
 @pytest.mark.parametrize(("gravity", "slow"), [(0.0981, False), (9.81, True), (981.0, True)])
