@@ -25,8 +25,7 @@ _SPEED_ROUNDING = 1e-15
 _BOUNCE = 1e-12
 """A body thrown up more slowly than this part of its natural speed has stopped bouncing."""
 _QUIET = 1e-9
-"""So has one whose contacts both move more slowly than this part of it and are as near: bouncing on one inside the
-bouncing on the other."""
+"""So has one whose contacts both move more slowly than this part of it, as bouncing within bouncing does."""
 _STUCK = 1000
 """Events without any time between them; more come only from rounding."""
 _NOTHING = 1e-100
@@ -205,11 +204,12 @@ class Rocking(Course):
         rates = {i: shape.gap_rate(i, after) for i in touching}
         leaving = [i for i in touching if rates[i] > least]
         closed = [i for i in touching if i not in leaving]
+        _, w, _, s = shape.seen_from(new, after)
         if self._is_quiet(after, new, u):
-            self._quieten(_BOTH, _QUIET, z, shape.seen_from(new, after))
+            self._quieten(_BOTH, _QUIET, u, w, z, s)
             return
         if not closed and max(rates.values()) <= _BOUNCE * self.speed:
-            self._quieten(touching, _BOUNCE, z, shape.seen_from(new, after))
+            self._quieten(touching, _BOUNCE, u, w, z, s)
             return
         if leaving:
             i = closed[0] if closed else new
@@ -249,13 +249,10 @@ class Rocking(Course):
             return False
         return max(abs(shape.gap_rate(i, after)) for i in _BOTH) <= _QUIET * self.speed
 
-    def _quieten(
-        self, contacts: tuple[int, ...], part: float, z: float, seen: tuple[float, float, float, float]
-    ) -> None:
+    def _quieten(self, contacts: tuple[int, ...], part: float, u: float, w: float, z: float, s: float) -> None:
         """Contacts that hardly bounce any more are closed from now on."""
-        u, w, _, s = seen
         s = 0.0 if abs(s) <= part * self.speed else s
-        impacts, self.since = self.tail.impacts, 0.0
+        impacts, self.since = self.tail.impacts + 1, 0.0
         if len(contacts) == 2:
             self._hold(z, s)
         else:

@@ -176,6 +176,20 @@ def test_a_dropped_body_bounces_on_both_contacts_until_it_rests() -> None:
     assert (end.y, end.angle, end.vx, end.vy, end.omega) == pytest.approx((0.2, 0.0, 0.0, 0.0, 0.0), abs=1e-12)
 
 
+def test_bouncing_on_one_edge_within_bouncing_on_both_comes_to_rest() -> None:
+    """Each touchdown on edge 0 is followed by infinitely many hops on edge 1, and there are infinitely many such."""
+    body = cylinder(1.0, 0.5, mass=1.0, friction=1.3, gamma_new=0.6, restitution=0.16)
+    start = standing(body, 0.0)
+    run = rock(body, start._replace(y=start.y + 0.3))
+    inner = [accumulation for accumulation in run.accumulations if accumulation.contacts == (1,)]
+    assert len(inner) > 3
+    assert run.accumulations[-1].contacts == (0, 1)
+    assert run.end is End.RESTS
+    assert len(run.impacts) < 500
+    spans = [other.time - one.time for one, other in pairwise(inner)]
+    assert all(later < earlier for earlier, later in pairwise(spans))
+
+
 def test_a_flat_drop_strikes_both_contacts_at_once() -> None:
     body = plate(1.0, 0.4, mass=1.0, friction=0.3)
     start = standing(body, 0.0)
