@@ -147,7 +147,8 @@ def near(mode: Mode) -> tuple[Mode, ...]:
     return slow.get(mode, ())
 
 
-@pytest.mark.skipif(not mujoco_peer.is_installed(), reason="MuJoCo is not installed")
+@pytest.mark.extras
+@pytest.mark.skipif(not mujoco_peer.is_installed(), reason="MuJoCo is missing: make test-extras installs it")
 def test_mujoco_meets_the_law_where_nothing_slides() -> None:
     for name in ("rod", "plate"):
         for strike in strikes(name, COUNT):
