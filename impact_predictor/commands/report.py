@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Callable
-from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -119,6 +118,7 @@ def write(folder: Path, found: Report, fields: dict[str, Any]) -> None:
     """
     from ..report.accuracy.rows import write_csv
     from ..report.page.write import write_page
+    from ..report.whole import whole
 
     writers: dict[str, Callable[[Path], object]] = {
         DATA: lambda file: file.write_text(json.dumps(fields, indent=1, allow_nan=False), encoding="utf-8"),
@@ -126,16 +126,8 @@ def write(folder: Path, found: Report, fields: dict[str, Any]) -> None:
         PAGE: lambda file: write_page(file, fields),
     }
     for name, writer in writers.items():
-        file = folder / name
-        partial = file.with_name(f"{name}.partial")
-        try:
+        with whole(folder / name) as partial:
             writer(partial)
-            partial.replace(file)
-        except OSError as error:
-            raise InputError(f"{file} cannot be written: {error.strerror or error}; give another folder") from error
-        finally:
-            with suppress(OSError):
-                partial.unlink(missing_ok=True)
 
 
 def table_of(found: Report) -> Table:

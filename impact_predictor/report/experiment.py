@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from math import cos, degrees, inf, radians, sin
+from math import degrees, inf, radians
 from typing import Final, NamedTuple
 
 from ..errors import InputError
 from ..mechanics.answer import VALIDITY
 from ..mechanics.bodies import rod
 from ..mechanics.impact import solve_impact
-from ..mechanics.motion import PlanarState, next_touchdown
+from ..mechanics.motion import next_touchdown
+from ..mechanics.rocking import standing
 from ..mechanics.types import Flag, Mode, Outcome, Twist, TwoPointBody
 
 LENGTH: Final = 0.4
@@ -84,9 +85,7 @@ def falling(body: TwoPointBody, angle: float) -> Twist:
     """
     assert body.old is not None
     feet = (body.old.x, body.old.y), (body.new.x, body.new.y)
-    x, y = -feet[0][0], -feet[0][1]
-    raised = PlanarState(x * cos(angle) - y * sin(angle), x * sin(angle) + y * cos(angle), angle, 0.0, 0.0, 0.0)
-    fall = next_touchdown(raised, feet, 0, body.inertia / body.mass, friction=inf)
+    fall = next_touchdown(standing(body, angle), feet, 0, body.inertia / body.mass, friction=inf)
     if fall.point != 1 or not fall.state.omega < 0.0:
         raise InputError(f"a body raised by {degrees(angle):g} degrees does not fall back; give a smaller angle")
     state = fall.state

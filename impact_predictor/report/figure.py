@@ -17,6 +17,7 @@ from matplotlib.ticker import MaxNLocator
 from ..errors import InputError
 from ..mechanics.types import Mode, Twist
 from .summary import LeadTimeErrors, TouchdownRow, errors_of, words
+from .whole import whole
 
 SUFFIXES: Final = (".png", ".svg")
 
@@ -85,11 +86,18 @@ def write_figure(
         _draw_velocities(left, scored)
         _draw_errors(middle, scored)
         _draw_lead_times(right, lead_time_errors)
-        metadata = {"Date": None} if path.suffix.lower() == ".svg" else {}
-        try:
-            figure.savefig(path, dpi=120, metadata=metadata)
-        except OSError as error:
-            raise InputError(f"{path} cannot be written: {error.strerror or error}") from error
+        save_figure(figure, path)
+
+
+def save_figure(figure: Figure, path: Path) -> None:
+    """Write a picture in the format of its name, the same bytes every time; an older one stays until it is whole.
+
+    Raises:
+        InputError: the file cannot be written.
+    """
+    metadata = {"Date": None} if path.suffix.lower() == ".svg" else {}
+    with whole(path) as partial:
+        figure.savefig(partial, format=path.suffix[1:].lower(), dpi=120, metadata=metadata)
 
 
 def _draw_velocities(axes: Axes, rows: Sequence[TouchdownRow]) -> None:

@@ -20,8 +20,8 @@ from matplotlib.path import Path
 from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt
 
-from ...errors import InputError
 from ...mechanics.types import Mode
+from ..figure import save_figure
 from .borders import Border, borders_of
 from .modes import ModeMap, middles, shares
 from .sketch import draw_sketch
@@ -80,11 +80,7 @@ def write_figure(path: FilePath, modes: ModeMap) -> None:
         figure.draw_without_rendering()  # a text along a curve needs the final shape of the axes
         for border in borders:
             draw_border(axes, border)
-        metadata = {"Date": None} if path.suffix.lower() == ".svg" else {}
-        try:
-            figure.savefig(path, dpi=120, metadata=metadata)
-        except OSError as error:
-            raise InputError(f"{path} cannot be written: {error.strerror or error}") from error
+        save_figure(figure, path)
 
 
 def draw_regions(axes: Axes, modes: ModeMap) -> None:

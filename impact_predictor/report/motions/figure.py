@@ -19,8 +19,7 @@ from numpy.typing import NDArray
 
 from ...mechanics.rocking import End, Run
 from ...scenarios.rocking import Rocking
-from ..figure import STYLE, check_figure
-from ..whole import whole
+from ..figure import STYLE, check_figure, save_figure
 
 COLOURS: Final = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00")
 """One for each body, in turn; of Okabe and Ito, which people of any colour vision tell apart."""
@@ -72,9 +71,7 @@ def write_motion_figure(path: str | os.PathLike[str], rockings: Sequence[Rocking
         upper.legend(loc="lower right" if _falls_forwards(rockings) else "upper right")
         _draw_bars(lower, rockings, end)
         lower.set(xlim=(0.0, end), xlabel="time (s)")
-        with whole(path) as partial:
-            metadata = {"Date": None} if path.suffix.lower() == ".svg" else {}
-            figure.savefig(partial, format=path.suffix[1:].lower(), dpi=120, metadata=metadata)
+        save_figure(figure, path)
 
 
 def title_of(rockings: Sequence[Rocking]) -> str:

@@ -8,7 +8,7 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from ...errors import InputError
+from ..whole import whole
 from .choosing import choosing, headline
 from .data import Entry
 from .measured import measured
@@ -29,10 +29,8 @@ def write_page(file: Path, report: Mapping[str, Any]) -> None:
     Raises:
         InputError: the file cannot be written.
     """
-    try:
-        file.write_text(page_of(report), encoding="utf-8")
-    except OSError as error:
-        raise InputError(f"{file} cannot be written: {error.strerror or error}; give another folder") from error
+    with whole(file) as partial:
+        partial.write_text(page_of(report), encoding="utf-8")
 
 
 def page_of(report: Mapping[str, Any]) -> str:
