@@ -13,6 +13,38 @@ from .types import Vector3
 Matrix3 = tuple[Vector3, Vector3, Vector3]
 
 
+class MovingDeck(NamedTuple):
+    """How a moving support is observed; SI units.
+
+    `source` is "odom" (pose and twist) or "imu", which lies at `imu_position` in the support's frame with its axes;
+    `window` in s over which accelerations are estimated; `extrapolation` is "constant" acceleration or "harmonic", a
+    fit to the last `harmonic_window` s; a message older than `timeout` s tells nothing any more; `extent` is (least x,
+    greatest x, least y, greatest y) of the deck in its frame, () for one without end.
+    """
+
+    source: str = "odom"
+    imu_position: Vector3 = (0.0, 0.0, 0.0)
+    window: float = 0.2
+    extrapolation: str = "constant"
+    harmonic_window: float = 20.0
+    timeout: float = 0.5
+    extent: tuple[float, ...] = ()
+
+
+class Watching(NamedTuple):
+    """When the margins of a body against sliding and tipping raise its level.
+
+    `warn` and `error` are parts of the margin that is used up (1 at the onset); a level falls again when the part is
+    `hysteresis` below them for `hold` s; the onset is looked for `horizon` s ahead.
+    """
+
+    warn: float = 0.7
+    error: float = 1.0
+    hysteresis: float = 0.1
+    hold: float = 5.0
+    horizon: float = 5.0
+
+
 class Scene(NamedTuple):
     """A body over a plane; SI units, the body's quantities in the body frame.
 
@@ -24,6 +56,12 @@ class Scene(NamedTuple):
     the impact plane, which only the path law knows; `samples` how many points carry uncertainty through an impact, 0
     for none, with the standard deviations of friction and restitution; `margins` whether a touchdown keeps the impact
     whose margins can be read; `validity` from where on rigid theory is too simple.
+
+    `deck` tells that the support moves: then `normal`, `height` and the predicted impacts are in its frame, while
+    `gravity` stays in the world's. `source` of the body's state is "odom", "imu" (its tilt alone) or "none"; it stands
+    at `place` in the support's frame, turned by `yaw` about the normal, until its source says more. A `radius` above
+    zero makes it a cylinder along the line between pairs of `edges` of the support, on which it lies, in the place of
+    `points`: x y z of one point of each edge, in the support's frame. `watching` tells to watch its margins.
     """
 
     mass: float
@@ -47,6 +85,13 @@ class Scene(NamedTuple):
     restitution_deviation: float = 0.0
     margins: bool = False
     validity: Validity = VALIDITY
+    deck: MovingDeck | None = None
+    source: str = "odom"
+    place: Vector3 = (0.0, 0.0, 0.0)
+    yaw: float = 0.0
+    radius: float = 0.0
+    edges: tuple[Vector3, ...] = ()
+    watching: Watching | None = None
 
     @classmethod
     def from_parameters(cls, values: Mapping[str, Any]) -> Scene:

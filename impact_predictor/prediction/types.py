@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from enum import IntEnum, IntFlag
 from typing import NamedTuple
 
@@ -33,6 +34,20 @@ class Status(IntEnum):
     """Two points of the geometry lie at the same place."""
     MALFORMED = 9
     """The bytes are not a message of the expected type."""
+    NO_SUPPORT = 10
+    """The support moves, and nothing is known of its motion yet."""
+    SUPPORT_STALE = 11
+    """The support moves, and its last message is too old."""
+    CLOCKS_APART = 12
+    """Body and support both keep coming, but their stamps are too far apart to be of one clock."""
+    SUPPORT_JUMPED = 13
+    """The support's pose or twist does not follow from those before; it is trusted again when new ones agree."""
+    GRAVITY_WRONG = 14
+    """What lies on the support would fall off it, or feels far more or less than gravity."""
+    OFF_SUPPORT = 15
+    """The body has left the support: it is beyond its edges, or far above it."""
+    BELOW_SUPPORT = 16
+    """The body lies deeper in the support than any noise puts it."""
 
 
 class Leftover(IntFlag):
@@ -75,6 +90,49 @@ class Sample(NamedTuple):
     angular: Vector3
     pose_covariance: tuple[float, ...]
     twist_covariance: tuple[float, ...]
+
+
+class Imu(NamedTuple):
+    """A measurement of an inertial sensor, along its own axes.
+
+    `stamp` in ns; `orientation` as (x, y, z, w) in the world, None where the sensor gives none; `angular` velocity in
+    rad/s; `specific_force` in m/s^2: acceleration less gravity, so that a sensor at rest measures 9.81 upwards.
+    """
+
+    stamp: int
+    frame_id: str
+    orientation: Quaternion | None
+    angular: Vector3
+    specific_force: Vector3
+
+
+class Felt(NamedTuple):
+    """What moves a body in the frame of a moving support, along the support's axes.
+
+    `gravity`: acceleration that is felt at rest at the frame's origin, R^T (g - A), in m/s^2; `angular` velocity in
+    rad/s and `turning`, its derivative, in rad/s^2, both of the support.
+    """
+
+    gravity: Vector3
+    angular: Vector3
+    turning: Vector3
+
+
+class Moment(NamedTuple):
+    """A moving support at one instant.
+
+    `stamp` in ns; pose of its frame `child_frame_id` in the world frame `frame_id` ("" where nobody measures it);
+    `linear` velocity of its origin in m/s along its axes; what is `felt` now, and `ahead(t)`, t seconds later.
+    """
+
+    stamp: int
+    frame_id: str
+    child_frame_id: str
+    position: Vector3
+    orientation: Quaternion
+    linear: Vector3
+    felt: Felt
+    ahead: Callable[[float], Felt]
 
 
 class Geometry(NamedTuple):
@@ -161,10 +219,12 @@ class Prediction(NamedTuple):
     """The answer to one sample.
 
     `touchdown` is None when none lies within the horizon; `score` is the touchdown that this sample's measurement
-    completed, if any.
+    completed, if any. Over a moving `support` both are in its frame, as is `relative`, the sample seen from there.
     """
 
     status: Status
     sample: Sample
     touchdown: Touchdown | None = None
     score: Score | None = None
+    support: Moment | None = None
+    relative: Sample | None = None
