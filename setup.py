@@ -58,6 +58,8 @@ setup(
         "ros": ["ros-jazzy-common-interfaces", "ros-jazzy-rclpy[fastrtps]"],
         "fast": ["numba"],
         "peers": ["mujoco>=3.2"],
+        # Spectra of waves to compare with.
+        "spectra": ["wavespectra>=4.4"],
         "browser": ["playwright>=1.45"],
         "test": ["hypothesis", "pytest", "pytest-xdist"],
     },

@@ -1,10 +1,11 @@
-"""What one sample costs: `Predictor.update` over the recorded tosses of a cube.
+"""What one sample costs: `Predictor.update` over the recorded tosses of a cube, and on a deck in a swell.
 
     python benchmarks/bench_predictor.py [RUNS]
 
 Each run goes over the whole record; of each sample the fastest run counts, so that other programs disturb little. The
 messages are decoded as they come, as in the node, but only the predictor is timed. What a part of it costs is what is
-saved where a recording of its answers answers in its place.
+saved where a recording of its answers answers in its place. On the deck the cost of its tracker (`Deck.at`, at the
+stamp of the body) is part of the sample's; what a message of the deck costs is told apart.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from typing import Any, NamedTuple
 from unittest.mock import patch
 
 import numpy as np
+from deck_motions import Motions, motions
 from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
@@ -27,8 +29,10 @@ from impact_predictor.bags.read import BagMessage, read_messages
 from impact_predictor.parameter_file import read_parameters
 from impact_predictor.parameters import validate
 from impact_predictor.prediction import approach, predictor, transverse
+from impact_predictor.prediction.deck import Deck
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene
+from impact_predictor.prediction.types import Status
 from impact_predictor.ros.messages import ODOMETRY, POLYGON, decode_odometry, decode_polygon
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -105,6 +109,41 @@ def by_kind(title: str, costs: NDArray[np.float64], kinds: list[int]) -> Table:
     return table
 
 
+def on_deck(moves: Motions) -> tuple[list[float], list[float], list[bool]]:
+    """Microseconds of each message of the deck and of each sample of the body, and whether a touchdown is ahead."""
+    scene = moves.scene
+    assert scene.deck is not None
+    deck = Deck(scene.deck, scene.gravity, scene.normal)
+    body = Predictor(scene, deck)
+    of_deck, of_body, ahead = [], [], []
+    for deck_sample, sample in moves.messages:
+        started = perf_counter_ns()
+        deck.update(deck_sample)
+        between = perf_counter_ns()
+        prediction = body.update(sample)
+        ended = perf_counter_ns()
+        if prediction.status is Status.ACCEPTED:
+            of_deck.append((between - started) * 1e-3)
+            of_body.append((ended - between) * 1e-3)
+            ahead.append(prediction.touchdown is not None)
+    return of_deck, of_body, ahead
+
+
+def deck_table(runs: int) -> Table:
+    """What messages cost on a deck, by the body and by what it does."""
+    table = Table("us per sample: on a deck", "samples", "median", "mean", "99 %", "deck message: median")
+    for moves in motions():
+        measured = [on_deck(moves) for _ in range(runs)]
+        of_deck = np.min([one[0] for one in measured], axis=0)
+        of_body = np.min([one[1] for one in measured], axis=0)
+        ahead = np.array(measured[0][2])
+        for what, chosen in (("no touchdown ahead", of_body[~ahead]), ("touchdown ahead", of_body[ahead])):
+            if chosen.size:
+                numbers = np.median(chosen), np.mean(chosen), np.percentile(chosen, 99), np.median(of_deck)
+                table.add_row(f"{moves.name}: {what}", str(chosen.size), *(f"{number:.1f}" for number in numbers))
+    return table
+
+
 def main() -> int:
     """Print what a sample costs in all, by what the body does, and by part."""
     runs = int(sys.argv[1]) if len(sys.argv) > 1 else 3
@@ -118,7 +157,7 @@ def main() -> int:
         parts.add_row(part.name, f"{np.mean(whole - fastest(scene, record, runs, part)):.1f}")
     parts.add_row("all else", f"{np.mean(fastest(scene, record, runs, *PARTS)):.1f}")
     Console(width=120).print(
-        by_kind("as shipped", whole, kinds), by_kind("transverse_slip off", in_plane, kinds), parts
+        by_kind("as shipped", whole, kinds), by_kind("transverse_slip off", in_plane, kinds), parts, deck_table(runs)
     )
     return 0
 

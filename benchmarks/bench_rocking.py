@@ -1,5 +1,7 @@
 """What following a rocking motion costs: the three rods of Fig. 2, and a crate and a drum on a ship's deck.
 
+What the next strike alone costs, too: as a predictor asks for it, over a deck told by functions quadratic in time.
+
     python benchmarks/bench_rocking.py
 
 Prints minima and medians of several runs. The first lines include the start of Python and all imports.
@@ -17,10 +19,12 @@ from pathlib import Path
 from time import perf_counter
 
 from impact_predictor import TwoPointBody, cylinder, plate, rod
-from impact_predictor.mechanics.rocking import Run, rock, standing
-from impact_predictor.mechanics.support import MovingSupport, Wave, harmonic_support
+from impact_predictor.mechanics.motion import PlanarState
+from impact_predictor.mechanics.rocking import Run, next_strike, rock, standing
+from impact_predictor.mechanics.support import Felt, MovingSupport, Wave, harmonic_support
 
 REPEATS = 5
+HORIZON, STRIKES = 0.25, 1000
 RODS = tuple(rod(0.4, 0.0, a, a, mass=0.3, friction=1e3) for a in (0.1, 0.075, 0.05))
 ALONE = """
 from math import radians
@@ -32,10 +36,10 @@ for a in (0.1, 0.075, 0.05):
 """
 
 
-def timed(work: Callable[[], object]) -> tuple[float, float]:
+def timed(work: Callable[[], object], repeats: int = REPEATS) -> tuple[float, float]:
     """Minimum and median of some runs, in s."""
     times = []
-    for _ in range(REPEATS):
+    for _ in range(repeats):
         start = perf_counter()
         work()
         times.append(perf_counter() - start)
@@ -89,6 +93,38 @@ def main() -> None:
         ("drum that rolls in its gap, 60 waves", drum, deck(20, 0.9, 3.0, 9.0)),
     ):
         deck_case(name, body, support)
+
+    print(f"\n{'min':>10} {'median':>10}   us for the next strike within {HORIZON} s, steps to 1e-6; minimum to 1e-9")
+    for name, body, start, old in (
+        ("crate that sticks", crate, standing(crate, 0.06, -0.5), 0),
+        ("crate whose slip stops", crate, standing(crate, 0.06, -0.5, 0.05), 0),
+        ("crate that slips", slippery, standing(slippery, 0.06, -0.5, 0.4), 0),
+        ("crate in flight", crate, standing(crate, 0.05, -0.5)._replace(vx=0.1, vy=0.3), None),
+        ("crate that does not strike", crate, standing(crate, 0.2), 0),
+        ("drum that rolls", drum, standing(drum, 0.1, -0.5), 0),
+    ):
+        strike_case(name, body, start, old)
+
+
+class Told:
+    """What is felt on a deck, in functions of time that cost next to nothing."""
+
+    period, gravity = math.inf, 9.81
+
+    def felt(self, time: float) -> Felt:
+        return 0.3 + (0.4 - 0.1 * time) * time, -9.7 + (0.5 + 0.3 * time) * time, 0.05 + 0.1 * time, 0.1
+
+
+def strike_case(name: str, body: TwoPointBody, start: PlanarState, old: int | None) -> None:
+    """Time the next strike, and say when and how it comes."""
+    support = Told()
+    fast, exact = (
+        timed(lambda tolerance=tolerance: next_strike(body, start, old, support, HORIZON, tolerance), STRIKES)
+        for tolerance in (1e-6, 1e-9)
+    )
+    fall = next_strike(body, start, old, support, HORIZON)
+    comes = "none" if fall is None else f"after {fall.time:.3f} s, {fall.motion.name}"
+    show(f"{exact[0] * 1e6:8.2f}   {name}: {comes}", fast, 1e6)
 
 
 def sample(run: Run) -> object:

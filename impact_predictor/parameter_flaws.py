@@ -1,12 +1,16 @@
-"""What is wrong with a list of numbers as the parameter of a body or a support: a part of a sentence, or ""."""
+"""What is wrong with a list as the parameter of bodies or a support: a part of a sentence, or ""."""
 
 from __future__ import annotations
 
 import math
+import re
 from typing import Final
 
 ROUNDED: Final = 0.01
 """By this part of its trace an inertia may miss the triangle inequality: thin plates are given with few digits."""
+
+_PART_OF_A_NAME: Final = re.compile(r"[A-Za-z](_?[A-Za-z0-9])*")
+"""No two underscores in a row: ROS keeps those for itself."""
 
 
 def inertia_flaw(inertia: tuple[float, ...]) -> str:
@@ -57,3 +61,27 @@ def points_flaw(numbers: tuple[float, ...]) -> str:
 def normal_flaw(normal: tuple[float, ...]) -> str:
     """Of a direction."""
     return "" if math.hypot(*normal) > 0.0 else "it must have a direction"
+
+
+def edges_flaw(numbers: tuple[float, ...]) -> str:
+    """Of two edges, x y z of a point of each (m)."""
+    return "the two edges coincide" if numbers[:3] == numbers[3:] else ""
+
+
+def extent_flaw(extent: tuple[float, ...]) -> str:
+    """Of a rectangle: least x, greatest x, least y, greatest y (m)."""
+    least_x, greatest_x, least_y, greatest_y = extent
+    return "" if least_x < greatest_x and least_y < greatest_y else "each least must be below its greatest"
+
+
+def names_flaw(names: tuple[str, ...]) -> str:
+    """Of the names of bodies, which become parts of the names of topics."""
+    for k, name in enumerate(names):
+        if not _PART_OF_A_NAME.fullmatch(name):
+            return (
+                f"{name!r} is no part of a ROS name: take letters, digits and single underscores, and begin and end "
+                "with a letter or a digit, the first one a letter"
+            )
+        if name in names[:k]:
+            return f"{name!r} is there twice"
+    return ""

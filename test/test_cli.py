@@ -240,6 +240,27 @@ def test_replay_writes_predictions_and_a_picture(tmp_path: Path, bag: str) -> No
     assert f"Predictions: {output}" in result.stdout
 
 
+def test_replay_writes_markers_where_they_are_asked_for(tmp_path: Path, bag: str) -> None:
+    output = tmp_path / "out.mcap"
+    assert run("replay", bag, "--params", SCENE, "-o", str(output), "--markers").exit_code == 0
+    assert topics(output)["/impact_predictor/markers"] == "visualization_msgs/msg/MarkerArray"
+
+
+def test_replay_tells_bodies_with_names_apart(tmp_path: Path, bag: str) -> None:
+    scene = tmp_path / "two.yaml"
+    given = (
+        Path(SCENE).read_text(encoding="utf-8").replace("ros__parameters:", "ros__parameters:\n    bodies: [cube, rod]")
+    )
+    scene.write_text(given, encoding="utf-8")
+    result = run("replay", bag, "--params", str(scene))
+    assert result.exit_code == 0
+    assert "has no rod/odom: nothing is predicted there" in result.stderr
+    assert any(line.split()[:1] == ["cube"] for line in result.stdout.splitlines())
+    answer = json.loads(run("replay", bag, "--params", str(scene), "--json").stdout)
+    assert {touchdown["body"] for touchdown in answer["touchdowns"]} == {"cube"}
+    assert set(answer["inputs"]) == {"cube/odom", "cube/contact_geometry"}
+
+
 def test_of_several_bags_one_that_cannot_be_read_stops_no_other(tmp_path: Path, bag: str) -> None:
     output = tmp_path / "out"
     missing = str(tmp_path / "missing.mcap")
@@ -297,6 +318,7 @@ def test_of_a_damaged_bag_the_readable_part_is_used_with_status_3(tmp_path: Path
         (["{bag}", "{bag}", "--params", SCENE, "-o", "both.mcap"], "both.mcap is one file, but 2 bags are given"),
         (["{bag}", "{bag}", "--params", SCENE, "-o", "both"], "would be written for two bags"),
         (["{bag}", "--params", SCENE, "-o", "{bag}/out"], "cannot be written"),
+        (["{bag}", "--params", SCENE, "--markers"], "--markers are written into an output: give its name with -o"),
     ],
 )
 def test_replay_says_what_is_wrong_with_its_files(

@@ -35,15 +35,16 @@ def test_what_is_not_given_has_its_default() -> None:
 def test_every_parameter_is_declared_so_that_a_node_can_declare_it() -> None:
     for name, parameter in PARAMETERS.items():
         assert parameter.name == name
-        assert parameter.kind in ("bool", "integer", "double", "double_array", "string")
+        assert parameter.kind in ("bool", "integer", "double", "double_array", "string", "string_array")
         assert parameter.description.endswith(".")
         assert parameter.low < parameter.high
-        assert bool(parameter.unit) == (parameter.kind not in ("bool", "string"))
+        assert bool(parameter.unit) == (parameter.kind not in ("bool", "string", "string_array"))
 
 
 def test_every_default_is_allowed() -> None:
     defaults = {name: one.default for name, one in PARAMETERS.items() if one.default not in (None, ())}
-    assert set(PARAMETERS) - set(defaults) == {*REQUIRED, "body.contact_points"}
+    empty = {"body.contact_points", "bodies", "support.edges", "support.extent"}
+    assert set(PARAMETERS) - set(defaults) == {*REQUIRED, *empty}
     validate({**REQUIRED, **defaults})
 
 
@@ -140,6 +141,7 @@ def test_a_text_is_one_of_its_choices() -> None:
     assert refusal(law=1) == "the parameter law is 1, but it must be 'path' or 'total'"
     assert refusal(executor="multi").endswith("it must be 'single' or 'events'")
     assert refusal(support__frame=5).endswith("but it must be a text")
+    assert refusal(source="lidar").endswith("but it must be 'odom', 'imu' or 'none'")
 
 
 @pytest.mark.parametrize("value", [1, 0.0, "true", [True], None])

@@ -3,82 +3,84 @@
 from __future__ import annotations
 
 import os
-from collections import deque
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import ExitStack, suppress
+from contextlib import ExitStack
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Final, NamedTuple
+from types import MappingProxyType
+from typing import TYPE_CHECKING, NamedTuple
 
 from ..errors import InputError
-from ..prediction.predictor import Predictor
+from ..prediction.inputs import CONTACT_GEOMETRY, Input, inputs_of
+from ..prediction.remedies import REMEDIES
 from ..prediction.scene import Scene
-from ..prediction.types import Prediction, Sample, Score, Status
-from ..ros.diagnostics import REMEDIES
-from ..ros.messages import (
-    DIAGNOSTIC_ARRAY,
-    ODOMETRY,
-    OUTPUTS,
-    POLYGON,
-    MalformedMessage,
-    decode_odometry,
-    decode_polygon,
-)
-from ..scenarios.truth import TRUTH_TOPIC, TrueImpact, decode_true_impacts
+from ..prediction.types import Status
+from ..ros.messages import DIAGNOSTIC_ARRAY, POLYGON
+from ..scenarios.truth import ONSET_TOPIC, TRUTH_TOPIC
+from .inputs import TYPES, find_topics
+from .inputs import remapping as remapping
 from .read import BagMessage, read_messages, topics
+from .run import NODE as NODE
+from .run import Run
+from .run import Settled as Settled
 from .write import BagWriter
 
 if TYPE_CHECKING:
-    from ..scenarios.comparison import Announcements, Truth
+    from ..scenarios.comparison import Truth
+    from ..scenarios.warned import Warned
 
-INPUTS: Final = {"odom": ODOMETRY, "contact_geometry": POLYGON}
-"""The inputs of the predictor by their relative names, with the types of their messages."""
-
-NODE: Final = "/impact_predictor"
-_REPORT_EVERY: Final = 256
+Statuses = dict[Status, int]
 
 
-class Settled(NamedTuple):
-    """A touchdown that has happened: the body's frame, its score, and what the last prediction of it cost in s."""
+class BodyTruth(NamedTuple):
+    """How the predictions of a body compare with what happened to it, and whether it was warned of; None where not."""
 
-    body: str
-    score: Score
-    cost: float | None
+    truth: Truth | None
+    warned: Warned | None
 
 
 class Result(NamedTuple):
     """What a replay found.
 
     `samples` counts the messages of odom, `seconds` is what everything took, reading and writing included. `statuses`
-    and `geometry_statuses` say what became of the messages of the two inputs. `notes` are sentences about choices that
-    were made; `unpredictable` says why nothing could be predicted, and `damaged` what of the bag was lost, or "".
-    `truth` is how the predictions compare with the true impacts, where the bag carries them.
+    and `geometry_statuses` say what became of the messages about states and about contact points of all bodies, and
+    `inputs` the same for each input by its name. `notes` are sentences about choices that were made; `unpredictable`
+    says why nothing could be predicted, and `damaged` what of the bag was lost, or "". `truth` is how the predictions
+    compare with the true impacts, where the bag carries them, and `truths` the same for each body.
     """
 
     bag: str
     samples: int
     seconds: float
     settled: tuple[Settled, ...]
-    statuses: dict[Status, int]
-    geometry_statuses: dict[Status, int]
+    statuses: Statuses
+    geometry_statuses: Statuses
     notes: tuple[str, ...]
     unpredictable: str
     damaged: str
     truth: Truth | None = None
+    truths: Mapping[str, BodyTruth] = MappingProxyType({})
+    inputs: Mapping[str, Statuses] = MappingProxyType({})
 
 
 def replay(
     path: str | os.PathLike[str],
-    scene: Scene,
+    scenes: Scene | Mapping[str, Scene],
     remap: Mapping[str, str] | None = None,
     output: str | os.PathLike[str] | None = None,
     progress: Callable[[int], None] | None = None,
+    markers: bool = False,
 ) -> Result:
-    """Predict every touchdown of a recorded body, and score it by what was recorded after it.
+    """Predict every touchdown of recorded bodies, and score it by what was recorded after it.
 
-    `remap` gives the topics of the inputs, as in {"odom": "/cube/odom"}; without it the only topic of the right type
-    is taken. With an `output` (see `BagWriter`) every message is written that the node would publish, with the log
-    time of the input that caused it. `progress` is told now and then how many samples are done.
+    `scenes` are those of the bodies by their names, or that of a body without one. `remap` gives the topics of the
+    inputs, as in {"odom": "/cube/odom"} (see `find_topics`). With an `output` (see `BagWriter`) every message is
+    written that the node would publish, `markers` too where they are asked for, with the log time of the input that
+    caused it. `progress` is told now and then how many samples are done.
+
+    Messages are taken in the order of their log times, those of one log time in that of the recording. The node, which
+    takes them as they arrive, gives the same answers to messages that arrive in this order.
 
     Raises:
         InputError: the bag cannot be read or lacks a topic, a remapping fits no input, or the output cannot be
@@ -87,84 +89,38 @@ def replay(
     started = perf_counter()
     if output is not None and Path(output).resolve() == Path(path).resolve():
         raise InputError(f"{os.fspath(output)} is the bag itself; give the predictions another name")
+    by_name = {"": scenes} if isinstance(scenes, Scene) else scenes
     recorded = topics(path)
-    names, notes = _find_topics(path, recorded, scene, remap or {})
-    wanted = {topic: INPUTS[name] for name, topic in names.items()}
+    names, notes = find_topics(path, recorded, inputs_of(by_name), remap or {})
+    wanted = {topic: TYPES[one.kind] for one, topic in names.items()}
     knows_truth = recorded.get(TRUTH_TOPIC) == DIAGNOSTIC_ARRAY
     if knows_truth:
-        wanted[TRUTH_TOPIC] = DIAGNOSTIC_ARRAY
+        wanted |= {one: DIAGNOSTIC_ARRAY for one in (TRUTH_TOPIC, ONSET_TOPIC) if recorded.get(one) == DIAGNOSTIC_ARRAY}
     messages = read_messages(path, wanted)
-    run = _Run(scene, names, knows_truth)
     damage: list[str] = []
     with ExitStack() as stack:
-        if output is not None:
-            run.write = stack.enter_context(BagWriter(output)).write
+        write = None if output is None else stack.enter_context(BagWriter(output)).write
+        run = Run(by_name, names, write, knows_truth=knows_truth, markers=markers)
         run.take(_readable(messages, damage), progress)
-        if damage and not run.samples:
+        inputs = {one: _counts(counts) for one, counts in run.statuses.items()}
+        if damage and not any(counts for one, counts in inputs.items() if one.kind != CONTACT_GEOMETRY):
             raise InputError(damage[0])
         run.finish()
+    truth, truths = _compare(run, by_name)
     return Result(
         os.fspath(path),
         run.samples,
         perf_counter() - started,
         tuple(run.settled),
-        _counts(run.statuses),
-        _counts(run.geometry_statuses),
+        _sum([counts for one, counts in inputs.items() if one.body is not None and one.kind != CONTACT_GEOMETRY]),
+        _sum([counts for one, counts in inputs.items() if one.kind == CONTACT_GEOMETRY]),
         notes,
-        run.why_unpredictable(),
+        _why_unpredictable(inputs, names),
         damage[0] if damage else "",
-        run.truth(),
+        truth,
+        truths,
+        {one.name: counts for one, counts in inputs.items()},
     )
-
-
-def remapping(rules: tuple[str, ...]) -> dict[str, str]:
-    """The remapping of rules like `odom:=/cube/odom`, as `replay` takes it.
-
-    Raises:
-        InputError: a rule is not of that form.
-    """
-    remap = {}
-    for rule in rules:
-        name, separator, topic = rule.partition(":=")
-        if not (name and separator and topic):
-            raise InputError(f"the remapping {rule!r} is not of the form from:=to; write for example odom:=/cube/odom")
-        remap[name] = topic
-    return remap
-
-
-def _find_topics(
-    path: str | os.PathLike[str], recorded: Mapping[str, str], scene: Scene, remap: Mapping[str, str]
-) -> tuple[dict[str, str], tuple[str, ...]]:
-    """The topic of each input that the scene needs and the bag has, and what was chosen without being told."""
-    given = {}
-    for name, topic in remap.items():
-        relative = name.removeprefix("/")
-        if relative not in INPUTS:
-            raise InputError(f"the remapping {name}:={topic} is of no input; the inputs are {' and '.join(INPUTS)}")
-        given[relative] = "/" + topic.removeprefix("/")
-    found, chosen = {}, []
-    for name, type_name in INPUTS.items():
-        needed = not (name == "contact_geometry" and scene.points)
-        of_type = [topic for topic, its_type in recorded.items() if its_type == type_name]
-        if not needed:
-            continue
-        if name in given:
-            found[name] = given[name]
-        elif f"/{name}" in of_type or (not of_type and name == "odom"):
-            # A missing state is reported by the reader, which says what there is instead.
-            found[name] = f"/{name}"
-        elif len(of_type) == 1:
-            found[name] = of_type[0]
-            chosen.append(f"{of_type[0]} as {name}")
-        elif of_type:
-            raise InputError(
-                f"{os.fspath(path)} has {len(of_type)} topics that could be {name}: {', '.join(of_type)}; "
-                f"choose one: --remap {name}:={of_type[0]}"
-            )
-    if len(set(found.values())) < len(found):
-        raise InputError(f"{' and '.join(found)} cannot both be {found['odom']}; remap one of them to another topic")
-    note = f"in {os.fspath(path)}, took {' and '.join(chosen)}: there is no other of the type"
-    return found, (note,) if chosen else ()
 
 
 def _readable(messages: Iterator[BagMessage], damage: list[str]) -> Iterator[BagMessage]:
@@ -175,121 +131,47 @@ def _readable(messages: Iterator[BagMessage], damage: list[str]) -> Iterator[Bag
         damage.append(str(error))
 
 
-def _counts(by_number: list[int]) -> dict[Status, int]:
+def _counts(by_number: list[int]) -> Statuses:
     return {status: by_number[status] for status in Status if by_number[status]}
 
 
-class _Run:
-    """One bag on its way through the predictor."""
+def _sum(counts: list[Statuses]) -> Statuses:
+    total = sum(map(Counter, counts), Counter[Status]())
+    return {status: total[status] for status in Status if total[status]}
 
-    def __init__(self, scene: Scene, names: Mapping[str, str], knows_truth: bool) -> None:
-        self.write: Callable[[str, str, int, bytes], None] | None = None
-        self.samples = 0
-        self.settled: list[Settled] = []
-        self.statuses = [0] * len(Status)
-        self.geometry_statuses = [0] * len(Status)
-        self._predictor = Predictor(scene)
-        self._names = names
-        self._outputs = [(f"{NODE}/{name}", *output) for name, output in OUTPUTS.items()]
-        self._last: tuple[Sample, int] | None = None
-        # What the predictions cost whose touchdowns may still be scored.
-        self._costs: deque[tuple[int, float]] = deque(maxlen=256)
-        self._true_impacts: list[TrueImpact] = []
-        self._announcements: Announcements | None = None
-        if knows_truth:
-            from ..scenarios.comparison import Announcements
 
-            self._announcements = Announcements()
+def _why_unpredictable(inputs: Mapping[Input, Statuses], names: Mapping[Input, str]) -> str:
+    """Why no state could be used, in one sentence, or ""."""
+    states = {one: counts for one, counts in inputs.items() if one.body is not None and one.kind != CONTACT_GEOMETRY}
+    # Bodies of which nothing is measured are watched by the motion of the support alone.
+    states = states or dict(inputs)
+    if not states:
+        return "nothing is measured in this scene, so there is nothing for it in a bag"
+    counts = _sum(list(states.values()))
+    where = ", ".join(names[one] for one in states)
+    if not counts:
+        return f"there is no message on {where}, so nothing was predicted"
+    if Status.ACCEPTED in counts:
+        return ""
+    status = max(counts, key=lambda status: counts[status])
+    if status is not Status.NO_GEOMETRY:
+        refused = f"{counts[status]} of {sum(counts.values())} messages on {where}"
+        return f"no sample was accepted, so nothing was predicted: {refused} are {status.name}: {REMEDIES[status]}"
+    topics_of_points = [topic for one, topic in names.items() if one.kind == CONTACT_GEOMETRY]
+    told = f"{', '.join(topics_of_points)} told none that can be used"
+    where = told if topics_of_points else f"there is no {POLYGON} in the bag"
+    return (
+        f"no contact points are known, so nothing was predicted: {where}; "
+        "give body.contact_points in the parameter file, or --remap contact_geometry:=TOPIC"
+    )
 
-    def take(self, messages: Iterator[BagMessage], progress: Callable[[int], None] | None) -> None:
-        """Answer every message as the node would."""
-        odom_topic, announcements = self._names["odom"], self._announcements
-        statuses, update, costs = self.statuses, self._predictor.update, self._costs
-        for topic, log_time, data in messages:
-            if topic != odom_topic:
-                self._take_true_impact(data) if topic == TRUTH_TOPIC else self._take_geometry(data)
-                continue
-            self.samples += 1
-            if progress is not None and self.samples % _REPORT_EVERY == 0:
-                progress(self.samples)
-            try:
-                sample = decode_odometry(data)
-            except MalformedMessage:
-                statuses[Status.MALFORMED] += 1
-                continue
-            began = perf_counter()
-            prediction = update(sample)
-            cost = perf_counter() - began
-            statuses[prediction.status] += 1
-            if prediction.status is not Status.ACCEPTED:
-                continue
-            self._last = sample, log_time
-            if announcements is not None:
-                announcements.add(prediction)
-            if prediction.touchdown is not None:
-                costs.append((sample.stamp, cost))
-            if prediction.score is not None:
-                self._settle(sample.child_frame_id, prediction.score)
-            if self.write is not None:
-                self._publish(prediction, log_time)
 
-    def finish(self) -> None:
-        """End the record: what it settles is written with the time of the last sample."""
-        if self._last is None:
-            return
-        sample, log_time = self._last
-        for score in self._predictor.finish():
-            self._settle(sample.child_frame_id, score)
-            if self.write is not None:
-                _, type_name, encode = next(one for one in self._outputs if one[0] == f"{NODE}/score")
-                data = encode(Prediction(Status.ACCEPTED, sample, None, score))
-                if data is not None:
-                    self.write(f"{NODE}/score", type_name, log_time, data)
+def _compare(run: Run, scenes: Mapping[str, Scene]) -> tuple[Truth | None, dict[str, BodyTruth]]:
+    """How the predictions compare with the true impacts, all together and of each body."""
+    if run.announcements is None:
+        return None, {}
+    from ..scenarios.comparison import compare
 
-    def why_unpredictable(self) -> str:
-        """Why no sample could be answered with a touchdown, in one sentence, or ""."""
-        if not self.samples:
-            return f"there is no message on {self._names['odom']}, so nothing was predicted"
-        if self.statuses[Status.ACCEPTED]:
-            return ""
-        status = max(Status, key=lambda status: self.statuses[status])
-        if status is not Status.NO_GEOMETRY:
-            refused = f"{self.statuses[status]} of {self.samples} messages on {self._names['odom']}"
-            return f"no sample was accepted, so nothing was predicted: {refused} are {status.name}: {REMEDIES[status]}"
-        topic = self._names.get("contact_geometry")
-        where = f"there is no {POLYGON} in the bag" if topic is None else f"{topic} told none that can be used"
-        return (
-            f"no contact points are known, so nothing was predicted: {where}; "
-            "give body.contact_points in the parameter file, or --remap contact_geometry:=TOPIC"
-        )
-
-    def truth(self) -> Truth | None:
-        """How the predictions compare with the true impacts, where the bag has their topic."""
-        if self._announcements is None:
-            return None
-        from ..scenarios.comparison import compare
-
-        return compare(self._true_impacts, self._announcements, self._predictor.scene)
-
-    def _take_geometry(self, data: bytes) -> None:
-        try:
-            status = self._predictor.set_geometry(decode_polygon(data))
-        except MalformedMessage:
-            status = Status.MALFORMED
-        self.geometry_statuses[status] += 1
-
-    def _take_true_impact(self, data: bytes) -> None:
-        # What tells no impact there is another program's.
-        with suppress(MalformedMessage):
-            self._true_impacts += decode_true_impacts(data)
-
-    def _settle(self, body: str, score: Score) -> None:
-        cost = next((cost for stamp, cost in reversed(self._costs) if stamp <= score.stamp), None)
-        self.settled.append(Settled(body, score, cost))
-
-    def _publish(self, prediction: Prediction, log_time: int) -> None:
-        assert self.write is not None
-        for topic, type_name, encode in self._outputs:
-            data = encode(prediction)
-            if data is not None:
-                self.write(topic, type_name, log_time, data)
+    together, bodies = compare(run.true_impacts, run.announcements, scenes)
+    warned = run.warned({body: scene for body, scene in scenes.items() if scene.watching is not None})
+    return together, {body: BodyTruth(bodies.get(body), warned.get(body)) for body in {**bodies, **warned}}

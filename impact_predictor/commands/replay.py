@@ -27,6 +27,7 @@ DAMAGED: Final = 3
     epilog=examples(
         "impact-predictor replay examples/cube_tosses --params config/cube_tosses.yaml",
         "impact-predictor replay run.mcap --params scene.yaml --remap odom:=/cube/odom -o predictions.mcap --json",
+        "impact-predictor replay voyage.mcap --params config/deck_many.yaml --remap support/odom:=/deck/odom",
         "impact-predictor replay monday.mcap tuesday.mcap --params scene.yaml -o predictions --figure errors.png",
     ),
 )
@@ -37,7 +38,7 @@ DAMAGED: Final = 3
     "--remap",
     multiple=True,
     metavar="FROM:=TO",
-    help="Topic of an input, odom or contact_geometry; may be repeated.",
+    help="Topic of an input: odom, contact_geometry, crate/odom, support/odom ...; may be repeated.",
 )
 @click.option(
     "-o",
@@ -46,6 +47,7 @@ DAMAGED: Final = 3
     help="Write the predictions: NAME.mcap is one file, any other name a rosbag2 folder; with several bags, "
     "a folder with one file for each.",
 )
+@click.option("--markers", is_flag=True, help="Write the markers for RViz and Foxglove too, into the output.")
 @click.option("--figure", metavar="FILE", help="Draw errors and velocities into a .png or .svg file.")
 @click.option("--all", "every", is_flag=True, help="List every touchdown, not only the first scored ones.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON only: an object, or a list for several bags.")
@@ -54,18 +56,22 @@ def replay(
     params: str,
     remap: tuple[str, ...],
     output: str | None,
+    markers: bool,
     figure: str | None,
     every: bool,
     as_json: bool,
 ) -> int:
     """Predict the touchdowns in recorded bags as the node would, and score them by what was recorded after them.
 
-    A BAG is an .mcap file, a rosbag2 folder or a ROS 1 .bag file. Where a bag has one topic of the right type, it is
-    taken; where it has several, --remap says which. The exit status is 3 where only a part of a bag could be read.
+    A BAG is an .mcap file, a rosbag2 folder or a ROS 1 .bag file. Topics are found by the names of the inputs; where a
+    bag has only one topic of the right type, it is taken, and where it has several, --remap says which. The exit status
+    is 3 where only a part of a bag could be read.
     """
     from ..bags.replay import remapping
 
-    scene = read_scene(params)
+    if markers and output is None:
+        raise InputError("--markers are written into an output: give its name with -o")
+    scenes = read_scenes(params)
     topics = remapping(remap)
     outputs = outputs_of(bags, output)
     if figure is not None:
@@ -76,7 +82,7 @@ def replay(
     answers: list[dict[str, Any]] = []
     for bag, its_output in zip(bags, outputs, strict=True):
         try:
-            result = replay_one(bag, scene, topics, its_output)
+            result = replay_one(bag, scenes, topics, its_output, markers)
         except InputError as error:
             if len(bags) == 1:
                 raise
@@ -103,16 +109,16 @@ def replay(
     return DAMAGED if any(result.damaged for result in results) else 0
 
 
-def read_scene(params: str) -> Scene:
-    """The scene of a parameter file.
+def read_scenes(params: str) -> dict[str, Scene]:
+    """The scenes of the bodies of a parameter file, by their names.
 
     Raises:
         InputError: the file cannot be read, or a parameter is wrong.
     """
     from ..parameter_file import read_values
-    from ..prediction.scene import Scene
+    from ..prediction.scene import scenes_of
 
-    return Scene.from_parameters(read_values(params))
+    return scenes_of(read_values(params))
 
 
 def outputs_of(bags: tuple[str, ...], output: str | None) -> list[Path | None]:
@@ -144,14 +150,17 @@ def _name_of(bag: str) -> str:
     return path.stem if path.suffix in (".mcap", ".db3", ".bag") else path.name
 
 
-def replay_one(bag: str, scene: Scene, topics: dict[str, str], output: Path | None) -> Result:
+def replay_one(
+    bag: str, scenes: dict[str, Scene], topics: dict[str, str], output: Path | None, markers: bool
+) -> Result:
     """Replay a bag, and say on standard error what was chosen or is wrong."""
     from ..bags.replay import replay as replay_bag
     from .compiling import compiling_is_said
     from .progress import progress
 
-    with progress(Path(bag).name) as tell, compiling_is_said() if scene.samples else nullcontext():
-        result = replay_bag(bag, scene, topics, output, tell)
+    samples = any(scene.samples for scene in scenes.values())
+    with progress(Path(bag).name) as tell, compiling_is_said() if samples else nullcontext():
+        result = replay_bag(bag, scenes, topics, output, tell, markers)
     for note in result.notes:
         click.echo(f"note: {note}", err=True)
     if result.unpredictable:

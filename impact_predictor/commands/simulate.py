@@ -13,6 +13,8 @@ import click
 from ..mechanics.bodies import refuse
 from ..mechanics.impact import LAWS
 from .examples import examples
+from .simulate_deck import EXAMPLES as DECK_EXAMPLES
+from .simulate_deck import simulate_deck
 
 if TYPE_CHECKING:
     from ..scenarios.rocking import Rocker, Rocking
@@ -93,14 +95,17 @@ def bag_options(command: F) -> F:
 @click.group(
     short_help="Simulate bodies that rock, as a table, a picture or a bag.",
     no_args_is_help=False,
-    epilog=examples(*(line for lines in EXAMPLES.values() for line in lines[:2])),
+    epilog=examples(*(line for lines in EXAMPLES.values() for line in lines[:2]), *DECK_EXAMPLES[:1]),
 )
 def simulate() -> None:
-    """How a body moves that is released at rest on one contact, from impact to impact until it stays.
+    """How a body moves from impact to impact: released at rest on one contact until it stays, or on a moving deck.
 
     It rocks between two contacts, A behind and B ahead of its mass centre. The plane is x forward, y up, and
     counter-clockwise is positive. SI units; angles in degrees.
     """
+
+
+simulate.add_command(simulate_deck)
 
 
 @simulate.command("rod", short_help="A rod over two supports.", epilog=examples(*EXAMPLES["rod"]))

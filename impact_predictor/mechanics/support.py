@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from functools import cache
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from ..errors import InputError
 from .bodies import sine_and_cosine
@@ -36,6 +36,21 @@ _MAX_PARTS = 4096
 """Polynomials that are kept."""
 _FIT = 1e-12
 """Where the last two terms of a polynomial are above this part of the first ones the motion is evaluated itself."""
+
+
+class FeltSupport(Protocol):
+    """What motion between two impacts asks of a support; any object that answers it will do."""
+
+    @property
+    def period(self) -> float:
+        """The shortest time in s in which its motion swings to and fro; inf where it does not swing."""
+
+    @property
+    def gravity(self) -> float:
+        """Gravity in m/s^2."""
+
+    def felt(self, time: float) -> Felt:
+        """What a body at rest at the frame's origin feels at a time in s."""
 
 
 class SupportMotion(NamedTuple):

@@ -10,7 +10,7 @@ from ..mechanics.motion import PlanarState, next_touchdown
 from ..mechanics.types import Contact, Twist, TwoPointBody, Vector
 from .planar import Contacts, Plane, Posture, contacts_of, inertia_about, plane_of
 from .scene import Scene
-from .types import Sample, Vector3
+from .types import Moment, Sample, Vector3
 
 GRAZES = 1e-9
 """m/s: what reaches the support slower only grazes it."""
@@ -39,12 +39,24 @@ class Approach(NamedTuple):
     speed: float
 
 
-def approach_of(scene: Scene, points: tuple[Vector3, ...], sample: Sample, posture: Posture) -> Approach | None:
-    """The touchdown that a sample shows to be ahead; None where there is none within the horizon."""
+def approach_of(
+    scene: Scene, points: tuple[Vector3, ...], sample: Sample, posture: Posture, moment: Moment | None = None
+) -> Approach | None:
+    """The touchdown that a sample shows to be ahead; None where there is none within the horizon.
+
+    Over a moving support the sample is seen from there, and `moment` is the support at its stamp.
+    """
     contacts = contacts_of(scene, posture)
     if contacts is None:
         return None
-    plane = plane_of(scene, points, sample, posture, contacts)
+    gravity = scene.gravity
+    if moment is not None:
+        from .over_support import fall_over, gravity_over, is_uniform  # only where the support moves
+
+        gravity = gravity_over(scene, moment, sample, posture)
+        if is_uniform(moment, scene.horizon):
+            moment = None
+    plane = plane_of(scene, points, sample, posture, contacts, gravity)
     on_edge = len(contacts.old) > 1
     inertia = inertia_about(scene, plane.axis, blocked=on_edge)
     # An averaged twist is that of half its window ago: the motion is followed from there.
@@ -57,16 +69,20 @@ def approach_of(scene: Scene, points: tuple[Vector3, ...], sample: Sample, postu
     else:
         striking = (old, new)
         height = -old[1]
-    fall = next_touchdown(
-        new_tuple(PlanarState, (-vx * age, height - vy * age, -omega * age, vx, vy, omega)),
-        striking,
-        None if old is None else 0,
-        inertia / scene.mass,
-        scene.friction,
-        plane.gravity[:2],
-        scene.horizon + age,
-        ACCURACY,
-    )
+    start = new_tuple(PlanarState, (-vx * age, height - vy * age, -omega * age, vx, vy, omega))
+    if moment is None:
+        fall = next_touchdown(
+            start,
+            striking,
+            None if old is None else 0,
+            inertia / scene.mass,
+            scene.friction,
+            plane.gravity[:2],
+            scene.horizon + age,
+            ACCURACY,
+        )
+    else:
+        fall = fall_over(scene, moment, sample, posture, plane, inertia, start, height)
     if fall.point != len(striking) - 1:
         return None
     x, y, angle, vx, vy, omega = fall.state

@@ -9,6 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any, Final, NamedTuple
 
+from ..parameter_types import values_of
+from . import part_reasons as reasons
+
 Values = Mapping[str, Any]
 """All parameters of a scene, as `impact_predictor.parameters.validate` gives them."""
 
@@ -16,77 +19,44 @@ Values = Mapping[str, Any]
 class Part(NamedTuple):
     """A part that a scene has or leaves out.
 
-    `on` says which, from the scene's parameters, and `why` says why, in words of the scene. `to_have` and
-    `to_leave_out` are the parameters that switch it. `modules` of this package are loaded for it alone, or for one of
-    several parts; `of_node` says that the node has the part, not the predictor.
+    `has` says from the values of a body whether it needs the part, and `reason` why, in words of the scene. `to_have`
+    and `to_leave_out` are the parameters that switch it; without them it belongs to what the scene is about, and cannot
+    be switched. `modules` of this package are loaded for it alone, or for one of several parts; `of_node` says that the
+    node has the part, not the predictor.
     """
 
     name: str
-    on: Callable[[Values], bool]
-    why: Callable[[Values], str]
-    to_have: Mapping[str, Any]
-    to_leave_out: Mapping[str, Any]
+    has: Callable[[Values], bool]
+    reason: Callable[[Values], str]
+    to_have: Mapping[str, Any] = {}
+    to_leave_out: Mapping[str, Any] = {}
     modules: tuple[str, ...] = ()
     of_node: bool = False
 
+    def on(self, values: Values) -> bool:
+        """Whether any body of a scene needs the part."""
+        return any(map(self.has, _bodies(values)))
 
-def _why_friction(values: Values) -> str:
-    if values["contact.friction"]:
-        return f"contact.friction is {values['contact.friction']:g}: a stance may stick, and then moves in closed form"
-    return "contact.friction is 0: every stance slips, and its motion is integrated"
-
-
-def _why_restitution(values: Values) -> str:
-    if values["contact.restitution"]:
-        return f"contact.restitution is {values['contact.restitution']:g}: the new contact also pushes back"
-    return "contact.restitution is 0: a plastic impact ends with the compression"
-
-
-def _why_twist_window(values: Values) -> str:
-    if values["odom.twist_window"]:
-        window = f"odom.twist_window is {1e3 * values['odom.twist_window']:g} ms"
-        return f"{window}: the twist is older than its stamp, and may have the impact in it"
-    return "odom.twist_window is 0: the twist is that of the very instant"
+    def why(self, values: Values) -> str:
+        """Why it does, or why none does; and how many do where not all are alike."""
+        bodies = _bodies(values)
+        those = [one for one in bodies if self.has(one)]
+        few = f" (for {len(those)} of {len(bodies)} bodies)" if 0 < len(those) < len(bodies) else ""
+        return self.reason((those or bodies)[0]) + few
 
 
-def _why_geometry(values: Values) -> str:
-    if values["body.contact_points"]:
-        return "the contact points are parameters, so there is no subscription to contact_geometry"
-    return "body.contact_points is not given, so the points come from the topic contact_geometry"
+def _bodies(values: Values) -> list[dict[str, Any]]:
+    return [values_of(values, body) for body in values["bodies"] or ("",)]
 
 
-def _on_transverse(values: Values) -> bool:
-    return bool(values["transverse_slip"] and values["law"] == "path" and values["contact.friction"] > 0.0)
-
-
-def _why_transverse(values: Values) -> str:
-    if not values["transverse_slip"]:
-        return "transverse_slip is false: friction acts in the impact plane alone"
-    if values["law"] != "path":
-        return f"the law is {values['law']}, which knows no slip across the impact plane"
-    if not values["contact.friction"]:
-        return "contact.friction is 0: nothing opposes slip across the impact plane either"
-    return "transverse_slip is true: friction also opposes slip across the impact plane"
-
-
-def _why_margins(values: Values) -> str:
-    if values["margins"]:
-        return "margins is true: how far each impact is from another mode, told while somebody reads ~/prediction"
-    return "margins is false: nobody asks how far an impact is from another mode"
-
-
-def _why_uncertainty(values: Values) -> str:
-    samples = values["uncertainty.samples"]
-    if samples:
-        return f"uncertainty.samples is {samples}: so many points carry the uncertainty through each impact"
-    return "uncertainty.samples is 0: no probabilities are asked for, so neither numpy nor numba is needed"
-
-
-def _why_events(values: Values) -> str:
-    if values["executor"] == "events":
-        return "executor is events: rclpy's experimental one, which costs less for each message"
-    return "executor is single: rclpy's usual one; events would be its experimental one"
-
+ROCKING: Final = (
+    *("mechanics.bodies", "mechanics.rocking", "mechanics.rocking.arcs", "mechanics.rocking.bodies"),
+    *("mechanics.rocking.contacts", "mechanics.rocking.course", "mechanics.rocking.disc", "mechanics.rocking.flight"),
+    *("mechanics.rocking.follow", "mechanics.rocking.loop", "mechanics.rocking.motion", "mechanics.rocking.points"),
+    *("mechanics.rocking.run", "mechanics.rocking.shape", "mechanics.rocking.step", "mechanics.rocking.strike"),
+    *("mechanics.rocking.tail", "mechanics.rocking.turn", "mechanics.rocking.wait", "mechanics.support"),
+)
+"""What follows a body until it strikes where no closed form does."""
 
 EVENTS: Final = "events executor"
 
@@ -94,28 +64,28 @@ PARTS: Final = (
     Part(
         "friction",
         lambda values: bool(values["contact.friction"]),
-        _why_friction,
+        reasons.why_friction,
         {"contact.friction": 0.3},
         {"contact.friction": 0.0},
     ),
     Part(
         "restitution",
         lambda values: bool(values["contact.restitution"]),
-        _why_restitution,
+        reasons.why_restitution,
         {"contact.restitution": 0.3},
         {"contact.restitution": 0.0},
     ),
     Part(
         "twist window",
         lambda values: bool(values["odom.twist_window"]),
-        _why_twist_window,
+        reasons.why_twist_window,
         {"odom.twist_window": 0.01},
         {"odom.twist_window": 0.0},
     ),
     Part(
         "transverse slip",
-        _on_transverse,
-        _why_transverse,
+        reasons.has_transverse,
+        reasons.why_transverse,
         {"transverse_slip": True, "law": "path"},
         {"transverse_slip": False},
         (
@@ -129,17 +99,63 @@ PARTS: Final = (
     ),
     Part(
         "geometry topic",
-        lambda values: not values["body.contact_points"],
-        _why_geometry,
+        reasons.has_geometry,
+        reasons.why_geometry,
         {"body.contact_points": ()},
         {"body.contact_points": (1.0, 0.0, 0.0, -1.0, 0.0, 0.0)},
         ("ros.geometry_topic",),
         of_node=True,
     ),
     Part(
+        "moving support",
+        lambda values: bool(values["support.motion"] != "fixed"),
+        reasons.why_moving,
+        {"support.motion": "odom"},
+        {"support.motion": "fixed"},
+        (
+            *ROCKING,
+            *("prediction.aboard", "prediction.deck", "prediction.deck_jumps", "prediction.deck_motion"),
+            "prediction.deck_usual",
+            *("prediction.motion_window", "prediction.over_support", "prediction.relative", "ros.support_topic"),
+        ),
+    ),
+    Part(
+        "harmonic extrapolation",
+        reasons.has_harmonic,
+        reasons.why_harmonic,
+        {"support.extrapolation": "harmonic"},
+        {"support.extrapolation": "constant"},
+        ("prediction.deck_course", "prediction.deck_harmonic"),
+    ),
+    Part(
+        "onset watch",
+        lambda values: bool(values["onset.watch"]),
+        reasons.why_watch,
+        {"onset.watch": True},
+        {"onset.watch": False},
+        (
+            *("prediction.levels", "prediction.onset", "prediction.onset_counts", "prediction.remedies"),
+            *("prediction.stance", "prediction.standing", "prediction.watch", "prediction.watch_unit"),
+            *("prediction.watch_words", "ros.messages.reports"),
+        ),
+    ),
+    Part(
+        "cylinder",
+        lambda values: bool(values["body.radius"]),
+        reasons.why_cylinder,
+        modules=(*ROCKING, "prediction.drum", "prediction.over_support", "prediction.relative"),
+    ),
+    Part(
+        "tilt",
+        lambda values: bool(values["source"] == "imu"),
+        reasons.why_tilt,
+        modules=("prediction.tilt", "ros.messages.imu"),
+    ),
+    Part("several bodies", lambda values: bool(values["bodies"]), reasons.why_several),
+    Part(
         "margins",
         lambda values: bool(values["margins"]),
-        _why_margins,
+        reasons.why_margins,
         {"margins": True},
         {"margins": False},
         ("mechanics.margins", "ros.confidence"),
@@ -147,7 +163,7 @@ PARTS: Final = (
     Part(
         "uncertainty",
         lambda values: bool(values["uncertainty.samples"]),
-        _why_uncertainty,
+        reasons.why_uncertainty,
         {"uncertainty.samples": 64, "uncertainty.friction": 0.02, "uncertainty.restitution": 0.02},
         {"uncertainty.samples": 0},
         (
@@ -161,13 +177,20 @@ PARTS: Final = (
     Part(
         EVENTS,
         lambda values: bool(values["executor"] == "events"),
-        _why_events,
+        reasons.why_events,
         {"executor": "events"},
         {"executor": "single"},
         of_node=True,
     ),
 )
 """Every part. Those that others need stand before them."""
+
+TOGETHER: Final = (
+    (lambda values: values["support.motion"] == "imu", ("prediction.deck_imu", "ros.messages.imu")),
+    (lambda values: values["support.motion"] != "fixed" and values["onset.watch"], ("prediction.deck_forecast",)),
+    (lambda values: values["support.motion"] == "fixed" and values["onset.watch"], ("prediction.resting",)),
+)
+"""Modules that a part loads only in some scenes, and for which bodies."""
 
 CORE: Final = frozenset(
     {
@@ -176,16 +199,18 @@ CORE: Final = frozenset(
         *("mechanics.problem", "mechanics.radau", "mechanics.sliding_events", "mechanics.sliding_stance"),
         *("mechanics.sliding_sweep", "mechanics.stretch", "mechanics.total_law"),
         *("mechanics.turning_stance", "mechanics.types"),
-        *("prediction", "prediction.approach", "prediction.planar", "prediction.predictor", "prediction.scene"),
-        *("prediction.score", "prediction.types", "prediction.vectors"),
+        *("prediction", "prediction.approach", "prediction.monitor", "prediction.planar", "prediction.predictor"),
+        *("prediction.scene", "prediction.score", "prediction.types", "prediction.vectors"),
     }
 )
 """The modules that the predictor loads in every scene."""
 
 CORE_OF_NODE: Final = frozenset(
     {
-        *("ros", "ros.cdr", "ros.diagnostics", "ros.messages", "ros.node", "ros.node_parameters"),
-        *("ros.predictor_node", "ros.process", "ros.qos"),
+        *("prediction.inputs", "prediction.monitor", "prediction.remedies"),
+        *("ros", "ros.body_topics", "ros.cdr", "ros.diagnostics", "ros.endpoints", "ros.marker_topic", "ros.messages"),
+        *("ros.messages.inputs", "ros.messages.outputs", "ros.node", "ros.node_parameters", "ros.predictor_node"),
+        *("ros.process", "ros.qos", "ros.reporter"),
     }
 )
 """Those that the node loads besides."""
@@ -195,19 +220,42 @@ def modules_of(values: Values, node: bool = False) -> frozenset[str]:
     """The modules of this package that a scene loads, in its predictor or in the node, by their names in it."""
     parts = [part for part in PARTS if part.on(values) and (node or not part.of_node)]
     loaded = {module for part in parts for module in part.modules if node or not module.startswith("ros.")}
-    return frozenset(CORE | loaded | (CORE_OF_NODE if node else frozenset()))
+    together = {module for needs, modules in TOGETHER if any(map(needs, _bodies(values))) for module in modules}
+    together = {module for module in together if node or not module.startswith("ros.")}
+    return frozenset(CORE | loaded | together | (CORE_OF_NODE if node else frozenset()))
 
 
 def ladder(values: Values) -> list[tuple[Part | None, dict[str, Any]]]:
     """The parameters of the core alone, then with one part more each time: first those of the scene, then the others.
 
-    So the costs of the parts, from one to the next, add up to that of the scene, and on to that of everything.
+    So the costs of the parts, from one to the next, add up to that of the scene, and on to that of everything that such
+    bodies can have.
     """
-    switched = dict(values)
+    everything = dict(values)
     for part in PARTS:
-        switched.update(part.to_leave_out)
-    steps: list[tuple[Part | None, dict[str, Any]]] = [(None, dict(switched))]
-    for part in sorted(PARTS, key=lambda part: not part.on(values)):
-        switched.update({name: values[name] for name in part.to_have} if part.on(values) else part.to_have)
-        steps.append((part, dict(switched)))
+        everything = _switch(everything, part.to_have)
+    parts = [part for part in PARTS if part.to_have and (part.on(values) or part.on(everything))]
+    switched = dict(values)
+    for part in parts:
+        switched = _switch(switched, part.to_leave_out)
+    steps: list[tuple[Part | None, dict[str, Any]]] = [(None, switched)]
+    for part in sorted(parts, key=lambda part: not part.on(values)):
+        switched = _restore(switched, values, part.to_have) if part.on(values) else _switch(switched, part.to_have)
+        steps.append((part, switched))
     return steps
+
+
+def _switch(values: Values, settings: Values) -> dict[str, Any]:
+    """The values with other settings for all bodies."""
+    return {name: value for name, value in values.items() if _common(name, values) not in settings} | dict(settings)
+
+
+def _restore(values: Values, original: Values, names: Values) -> dict[str, Any]:
+    """The values with those of some names as they were."""
+    return {**values, **{name: value for name, value in original.items() if _common(name, values) in names}}
+
+
+def _common(name: str, values: Values) -> str:
+    """The name of a parameter without that of a body."""
+    body, _, common = name.partition(".")
+    return common if body in values["bodies"] else name

@@ -122,8 +122,15 @@ def hardly(scene: Scene) -> float:
     return scene.contact_time * hypot(*scene.gravity)
 
 
-def plane_of(scene: Scene, points: tuple[Vector3, ...], sample: Sample, posture: Posture, contacts: Contacts) -> Plane:
-    """The impact plane of a posture's contacts."""
+def plane_of(
+    scene: Scene,
+    points: tuple[Vector3, ...],
+    sample: Sample,
+    posture: Posture,
+    contacts: Contacts,
+    gravity: Vector3 | None = None,
+) -> Plane:
+    """The impact plane of a posture's contacts; `gravity` in the frame of the sample is the scene's unless given."""
     n, spin, velocity = posture.normal, sample.angular, posture.velocity
     old, new, base = contacts
     center = scene.center_of_mass
@@ -143,9 +150,8 @@ def plane_of(scene: Scene, points: tuple[Vector3, ...], sample: Sample, posture:
         stance = dot(ahead, stood), dot(n, stood)
         offset = max(offset, abs(dot(axis, stood)))
         lateral += dot(axis, cross(spin, stood))
-    rate, turning = dot(axis, spin), dot(spin, spin)
-    across = add(spin, axis, -rate)
-    gravity = to_body(posture.axes, scene.gravity)
+    rate = dot(axis, spin)
+    gravity = to_body(posture.axes, scene.gravity if gravity is None else gravity)
     plane = (
         axis,
         ahead,
@@ -154,11 +160,17 @@ def plane_of(scene: Scene, points: tuple[Vector3, ...], sample: Sample, posture:
         new_tuple(Twist, (dot(ahead, velocity), dot(n, velocity), -rate)),
         (dot(ahead, gravity), dot(n, gravity), dot(axis, gravity)),
         max(0.0, sum([posture.gaps[i] for i in new]) / len(new) - base),
-        sqrt(min(1.0, dot(across, across) / turning)) if turning > 0.0 else 0.0,
+        off_axis_of(spin, axis, rate),
         lateral,
         offset,
     )
     return new_tuple(Plane, plane)
+
+
+def off_axis_of(spin: Vector3, axis: Vector3, rate: float) -> float:
+    """The part of the angular velocity off an axis about which it is `rate`."""
+    turning, across = dot(spin, spin), add(spin, axis, -rate)
+    return sqrt(min(1.0, dot(across, across) / turning)) if turning > 0.0 else 0.0
 
 
 def axis_of(n: Vector3, spin: Vector3, velocity: Vector3, edge: Vector3 | None, arm: Vector3, slow: float) -> Vector3:

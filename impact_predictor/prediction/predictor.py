@@ -13,10 +13,13 @@ from .approach import Approach, approach_of
 from .planar import Across, Posture, across_of, in_space, posture_of
 from .scene import Scene
 from .score import NANOSECONDS, Pending, Track, leftover_of
-from .types import Geometry, Prediction, Sample, Score, Status, Touchdown, Vector3
+from .types import Geometry, Moment, Prediction, Sample, Score, Status, Touchdown, Vector3
 from .vectors import dot, to_world
 
 if TYPE_CHECKING:
+    from .aboard import Aboard
+    from .deck import Deck
+    from .drum import Drum
     from .uncertainty import Sampler
 
 PAUSE = 250_000_000
@@ -40,13 +43,26 @@ class Predictor:
     """Predicts the touchdowns of one body of a scene.
 
     `update` answers each sample, in the order of their stamps; `set_geometry` tells the contact points when they are
-    not in the scene; `finish` ends the record.
+    not in the scene; `finish` ends the record. Where the scene's support moves `deck` knows its motion.
+
+    Raises:
+        InputError: the edges do not carry the cylinder of the scene.
     """
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, deck: Deck | None = None) -> None:
         self.scene = scene
+        self._drum: Drum | None = None
+        if scene.radius > 0.0:
+            from .drum import Drum
+
+            self._drum = Drum(scene)
+        self._aboard: Aboard | None = None
+        if scene.deck is not None:
+            from .aboard import Aboard
+
+            self._aboard = Aboard(scene, deck, self._drum)
         self._impact_across: Callable[..., tuple[Outcome, Across] | None] | None = None
-        if scene.transverse_slip and scene.law == "path" and scene.friction > 0.0:
+        if scene.transverse_slip and scene.law == "path" and scene.friction > 0.0 and self._drum is None:
             from .transverse import impact_across
 
             self._impact_across = impact_across
@@ -57,7 +73,7 @@ class Predictor:
             self._sampler = Sampler(scene)
         if scene.margins:
             from ..mechanics import margins  # noqa: F401  # loaded now, not with the first sample
-        self._points = scene.points
+        self._points = scene.edges if self._drum else scene.points
         self._geometry_frame = ""
         self._last: int | None = None
         self._track: Track | None = None
@@ -81,14 +97,27 @@ class Predictor:
         status = self._check(sample)
         if status is not Status.ACCEPTED:
             return Prediction(status, sample)
+        moment, seen, aboard = None, sample, self._aboard
+        if aboard is not None:
+            found = aboard.seen(sample)
+            if isinstance(found, Status):
+                return Prediction(found, sample)
+            moment, seen = found
+        posture = posture_of(self.scene, self._points, seen) if self._drum is None else self._drum.posture_of(seen)
+        if aboard is not None:
+            status = aboard.place_of(seen, posture, self._points)
+            if status is not Status.ACCEPTED:
+                return Prediction(status, sample, None, None, moment, seen)
         if self._last is not None and sample.stamp - self._last > PAUSE:
             self._forget()
         self._last = sample.stamp
-        posture = posture_of(self.scene, self._points, sample)
-        self._measure(sample, posture)
-        touchdown = self._revise(sample, posture)
-        self._recent.append((sample, posture))
-        return Prediction(status, sample, touchdown, self._scores.popleft() if self._scores else None)
+        self._measure(seen, posture)
+        touchdown = self._revise(seen, posture, moment)
+        self._recent.append((seen, posture))
+        score = self._scores.popleft() if self._scores else None
+        if moment is None:
+            return Prediction(status, sample, touchdown, score)
+        return Prediction(status, sample, touchdown, score, moment, seen)
 
     def finish(self) -> tuple[Score, ...]:
         """End the record: the scores not yet handed out, those without enough samples after them included."""
@@ -110,7 +139,7 @@ class Predictor:
         x, y, z, w = sample.orientation
         if not -UNIT < x * x + y * y + z * z + w * w - 1.0 < UNIT:
             return Status.BAD_QUATERNION if all(map(isfinite, sample.orientation)) else Status.NOT_FINITE
-        if self.scene.frame and sample.frame_id != self.scene.frame:
+        if self._aboard is None and self.scene.frame and sample.frame_id != self.scene.frame:
             return Status.WRONG_FRAME
         if not self._points:
             return Status.NO_GEOMETRY
@@ -158,9 +187,12 @@ class Predictor:
         approach = -sum([rates[i] for i in new]) / len(new)
         return gap <= self.scene.tolerance and approach < SETTLED * track.approach
 
-    def _revise(self, sample: Sample, posture: Posture) -> Touchdown | None:
+    def _revise(self, sample: Sample, posture: Posture, moment: Moment | None) -> Touchdown | None:
         """The touchdown ahead as this sample shows it, and keep track of it."""
-        approach = approach_of(self.scene, self._points, sample, posture)
+        if self._drum is None:
+            approach = approach_of(self.scene, self._points, sample, posture, moment)
+        else:
+            approach = self._drum.approach_of(sample, posture, moment)
         track = self._track
         if approach is None or self._is_echo(approach, sample):
             self._track = None

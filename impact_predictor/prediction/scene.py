@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 from ..mechanics.answer import VALIDITY
 from ..mechanics.types import Validity
+from ..parameter_types import values_of
 from .types import Vector3
 
 Matrix3 = tuple[Vector3, Vector3, Vector3]
@@ -98,14 +99,14 @@ class Scene(NamedTuple):
         """The scene of validated parameters (see `impact_predictor.parameters`)."""
         normal = values["support.normal"]
         length = hypot(*normal)
-        points = values["body.contact_points"]
+        points = () if values["body.radius"] else values["body.contact_points"]
         return cls(
             mass=values["body.mass"],
             inertia=inertia_matrix(values["body.inertia"]),
             friction=values["contact.friction"],
             restitution=values["contact.restitution"],
             center_of_mass=triple(values["body.center_of_mass"]),
-            points=tuple(triple(points[i : i + 3]) for i in range(0, len(points), 3)),
+            points=triples(points),
             frame=values["support.frame"],
             normal=triple([part / length for part in normal]),
             height=values["support.height"],
@@ -126,13 +127,61 @@ class Scene(NamedTuple):
                 contact_time=values["contact.time"],
                 gravity_share=values["validity.gravity_share"],
             ),
+            deck=_moving_deck(values) if values["support.motion"] != "fixed" else None,
+            source=values["source"],
+            place=triple(values["place.position"]),
+            yaw=values["place.yaw"],
+            radius=values["body.radius"],
+            edges=triples(values["support.edges"]),
+            watching=_watching(values) if values["onset.watch"] else None,
         )
+
+    @property
+    def needs_geometry(self) -> bool:
+        """Whether the contact points come from a topic."""
+        return not (self.points or self.radius)
+
+
+def scenes_of(values: Mapping[str, Any]) -> dict[str, Scene]:
+    """The scene of each body of validated parameters, by its name; of the only one without a name by ""."""
+    return {body: Scene.from_parameters(values_of(values, body)) for body in values["bodies"] or ("",)}
+
+
+def shared_by(scenes: Mapping[str, Scene]) -> Scene:
+    """Any of the scenes, for what all of them share: the motion of the support, its frame, and gravity."""
+    return next(iter(scenes.values()))
+
+
+def _moving_deck(values: Mapping[str, Any]) -> MovingDeck:
+    return MovingDeck(
+        source=values["support.motion"],
+        imu_position=triple(values["support.imu_position"]),
+        window=values["support.window"],
+        extrapolation=values["support.extrapolation"],
+        harmonic_window=values["support.harmonic_window"],
+        timeout=values["support.timeout"],
+        extent=tuple(values["support.extent"]),
+    )
+
+
+def _watching(values: Mapping[str, Any]) -> Watching:
+    return Watching(
+        warn=values["onset.warn"],
+        error=values["onset.error"],
+        hysteresis=values["onset.hysteresis"],
+        hold=values["onset.hold"],
+        horizon=values["onset.horizon"],
+    )
 
 
 def inertia_matrix(numbers: Sequence[float]) -> Matrix3:
     """The inertia tensor of one number (the same about every axis) or of ixx, iyy, izz, ixy, ixz, iyz."""
     xx, yy, zz, xy, xz, yz = (*(numbers[0],) * 3, 0.0, 0.0, 0.0) if len(numbers) == 1 else numbers
     return (xx, xy, xz), (xy, yy, yz), (xz, yz, zz)
+
+
+def triples(numbers: Sequence[float]) -> tuple[Vector3, ...]:
+    return tuple(triple(numbers[i : i + 3]) for i in range(0, len(numbers), 3))
 
 
 def triple(numbers: Sequence[float]) -> Vector3:

@@ -79,12 +79,12 @@ class Pending:
     def __init__(self, track: Track, stamp: int) -> None:
         self.track = track
         self.stamp = stamp
-        self._measured: list[tuple[Vector3, Vector3]] = []
+        self._measured: list[tuple[int, Vector3, Vector3]] = []
 
     def add(self, sample: Sample, posture: Posture) -> None:
         """Take a sample after the touchdown."""
         axes = posture.axes
-        self._measured.append((to_world(axes, posture.velocity), to_world(axes, sample.angular)))
+        self._measured.append((sample.stamp, to_world(axes, posture.velocity), to_world(axes, sample.angular)))
 
     @property
     def complete(self) -> bool:
@@ -118,12 +118,22 @@ class Pending:
     def _twist(self, scene: Scene, touchdown: Touchdown) -> Twist:
         """The measured twist in the plane of a prediction."""
         ahead = cross(touchdown.axis, scene.normal)
-        taken = self._measured[MEASURED]
-        return Twist(
-            median([dot(ahead, velocity) for velocity, _ in taken]),
-            median([dot(scene.normal, velocity) for velocity, _ in taken]),
-            -median([dot(touchdown.axis, spin) for _, spin in taken]),
-        )
+        along = [dot(ahead, velocity) for _, velocity, _ in self._measured]
+        up = [dot(scene.normal, velocity) for _, velocity, _ in self._measured]
+        spin = [-dot(touchdown.axis, spin) for _, _, spin in self._measured]
+        if scene.deck is None or scene.twist_window:
+            return Twist(median(along[MEASURED]), median(up[MEASURED]), median(spin[MEASURED]))
+        # What rocks on a deck comes slowly and has turned on by then: its twists are followed back to the touchdown.
+        times = [(stamp - self.stamp) / NANOSECONDS for stamp, _, _ in self._measured]
+        return Twist(_at_zero(times, along), _at_zero(times, up), _at_zero(times, spin))
+
+
+def _at_zero(times: list[float], values: list[float]) -> float:
+    """The value at time zero of the straight line nearest to some values (least squares)."""
+    middle = sum(times) / len(times)
+    mean = sum(values) / len(values)
+    slope = sum([(t - middle) * v for t, v in zip(times, values, strict=True)])
+    return mean - middle * slope / sum([(t - middle) ** 2 for t in times])
 
 
 def leftover_of(

@@ -48,6 +48,8 @@ class Status(IntEnum):
     """The body has left the support: it is beyond its edges, or far above it."""
     BELOW_SUPPORT = 16
     """The body lies deeper in the support than any noise puts it."""
+    BODY_STALE = 17
+    """No message of the body's source, or none any more."""
 
 
 class Leftover(IntFlag):
@@ -122,7 +124,8 @@ class Moment(NamedTuple):
     """A moving support at one instant.
 
     `stamp` in ns; pose of its frame `child_frame_id` in the world frame `frame_id` ("" where nobody measures it);
-    `linear` velocity of its origin in m/s along its axes; what is `felt` now, and `ahead(t)`, t seconds later.
+    `linear` velocity of its origin in m/s along its axes; what is `felt` now, and `ahead(t)`, t seconds later;
+    `gravity` in m/s^2 in the world frame.
     """
 
     stamp: int
@@ -133,6 +136,7 @@ class Moment(NamedTuple):
     linear: Vector3
     felt: Felt
     ahead: Callable[[float], Felt]
+    gravity: Vector3 = (0.0, 0.0, -9.81)
 
 
 class Geometry(NamedTuple):

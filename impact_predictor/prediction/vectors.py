@@ -86,10 +86,20 @@ def turned(orientation: Quaternion, rotation: Vector3) -> Quaternion:
     scale = sin(0.5 * angle) / angle if angle > 0.0 else 0.5
     qx, qy, qz = times(rotation, scale)
     qw = cos(0.5 * angle)
-    px, py, pz, pw = orientation
-    x = pw * qx + px * qw + py * qz - pz * qy
-    y = pw * qy - px * qz + py * qw + pz * qx
-    z = pw * qz + px * qy - py * qx + pz * qw
-    w = pw * qw - px * qx - py * qy - pz * qz
+    x, y, z, w = composed(orientation, (qx, qy, qz, qw))
     unit = 1.0 / sqrt(x * x + y * y + z * z + w * w)
     return x * unit, y * unit, z * unit, w * unit
+
+
+def composed(first: Quaternion, second: Quaternion) -> Quaternion:
+    """The product of two quaternions: the orientation in the world of what is turned by `second` in a frame that is
+    turned by `first`.
+    """
+    px, py, pz, pw = first
+    qx, qy, qz, qw = second
+    return (
+        pw * qx + px * qw + py * qz - pz * qy,
+        pw * qy - px * qz + py * qw + pz * qx,
+        pw * qz + px * qy - py * qx + pz * qw,
+        pw * qw - px * qx - py * qy - pz * qz,
+    )

@@ -23,7 +23,7 @@ SUFFIXES: Final = (".png", ".svg")
 
 # The colours of Okabe and Ito, which people of any colour vision tell apart.
 _BLUE, _VERMILION, _GREY = "#0072B2", "#D55E00", "#666666"
-_MARKERS: Final = {
+MODE_MARKERS: Final = {
     Mode.STOP: "s",
     Mode.SLIDE: ">",
     Mode.PIVOT_SLIDE: "P",
@@ -113,7 +113,7 @@ def _draw_velocities(axes: Axes, rows: Sequence[TouchdownRow]) -> None:
         for _, colour, of in _VELOCITIES:
             x, y = of(row.measured, row.half_distance), of(row.predicted, row.half_distance)
             extent = max(extent, abs(x), abs(y))
-            axes.plot(x, y, _MARKERS.get(row.mode, "x"), color=colour, markersize=6, alpha=0.6, markeredgewidth=0)
+            axes.plot(x, y, MODE_MARKERS.get(row.mode, "x"), color=colour, markersize=6, alpha=0.6, markeredgewidth=0)
     extent = 1.08 * extent or 1.0
     axes.axline((0.0, 0.0), slope=1.0, color=_GREY, linewidth=1.0, zorder=1)
     axes.set(xlim=(-extent, extent), ylim=(-extent, extent), aspect="equal")
@@ -125,7 +125,7 @@ def _draw_velocities(axes: Axes, rows: Sequence[TouchdownRow]) -> None:
     for mode in sorted({row.mode for row in rows}):
         count = sum(row.mode is mode for row in rows)
         label = f"{words(mode.name)} ({count})"
-        handles.append(Line2D([], [], linestyle="", marker=_MARKERS.get(mode, "x"), color=_GREY, label=label))
+        handles.append(Line2D([], [], linestyle="", marker=MODE_MARKERS.get(mode, "x"), color=_GREY, label=label))
     axes.legend(handles=handles, loc="upper left", borderaxespad=0.2, handletextpad=0.2)
 
 

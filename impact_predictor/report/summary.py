@@ -12,7 +12,9 @@ from ..mechanics.types import Mode, Twist
 from ..prediction.types import Leftover, Score, Status
 
 if TYPE_CHECKING:
-    from ..bags.replay import Result
+    from ..bags.replay import BodyTruth, Result
+    from ..scenarios.comparison import Truth
+    from ..scenarios.warned import Warned
 
 LEAD_TIME_EDGES: Final = (0.0, 0.01, 0.02, 0.03, 0.04, 0.05, 0.06)
 """Borders in s between which the error is shown against the lead time."""
@@ -169,10 +171,31 @@ def as_json(result: Result) -> dict[str, Any]:
         "statuses": _counts_as_json(result.statuses),
         "geometry_statuses": _counts_as_json(result.geometry_statuses),
     }
+    if set(result.inputs) - {"odom", "contact_geometry"}:
+        answer["inputs"] = {name: _counts_as_json(counts) for name, counts in result.inputs.items()}
     if result.truth is not None:
-        answer["truth"] = result.truth._asdict()
+        answer["truth"] = _truth_as_json(result.truth, result.truths)
     if result.damaged:
         answer["damaged"] = result.damaged
+    return answer
+
+
+def _truth_as_json(truth: Truth, bodies: Mapping[str, BodyTruth]) -> dict[str, Any]:
+    """The comparison with the truth, of all bodies and of each; stamps in ns."""
+    answer: dict[str, Any] = truth._asdict()
+    warned = [one.warned.before_first_impact for one in bodies.values() if one.warned is not None]
+    if warned:
+        happened = [one for one in warned if one is not None]
+        answer |= {"bodies_with_slide_or_impact": len(happened), "warned_before_first_impact": sum(happened)}
+    if bodies:
+        answer["bodies"] = {body: _body_as_json(*one) for body, one in bodies.items()}
+    return answer
+
+
+def _body_as_json(truth: Truth | None, warned: Warned | None) -> dict[str, Any]:
+    answer = {} if truth is None else truth._asdict()
+    if warned is not None:
+        answer |= {**warned._asdict(), "warned_before_first_impact": warned.before_first_impact}
     return answer
 
 

@@ -12,7 +12,7 @@ from rich.table import Table
 from ..mechanics.types import Twist
 from .summary import LeadTimeErrors, TouchdownRow, errors_of, reasons, words
 
-_NONE: Final = "-"
+NONE: Final = "-"
 _WALL_CLOCK: Final = 10**17
 """Stamps above this many ns (the year 1973) are times of day, and are counted from the first touchdown."""
 _UNLIMITED: Final = 10_000
@@ -79,7 +79,7 @@ def _touchdown_table(rows: Sequence[TouchdownRow], stacked: bool) -> Table:
             cells += [*seen, row.mode.name, *predicted, *measured]
         cells.append(percent(row.relative_error))
         if costs:
-            cells.append(_NONE if row.cost is None else f"{row.cost * 1e6:.0f}")
+            cells.append(NONE if row.cost is None else f"{row.cost * 1e6:.0f}")
         if any(notes):
             cells.append(note)
         table.add_row(*cells, style="" if row.scored else "dim")
@@ -87,7 +87,7 @@ def _touchdown_table(rows: Sequence[TouchdownRow], stacked: bool) -> Table:
 
 
 def _velocities(twist: Twist | None) -> list[str]:
-    return [_NONE] * 3 if twist is None else [f"{twist.vx:.3f}", f"{twist.vy:.3f}", f"{twist.omega:.2f}"]
+    return [NONE] * 3 if twist is None else [f"{twist.vx:.3f}", f"{twist.vy:.3f}", f"{twist.omega:.2f}"]
 
 
 def _notes(row: TouchdownRow) -> str:
@@ -97,7 +97,12 @@ def _notes(row: TouchdownRow) -> str:
 
 def percent(fraction: float | None) -> str:
     """A fraction of 1 as a number of percent."""
-    return _NONE if fraction is None else f"{fraction * 100:.1f}"
+    return NONE if fraction is None else f"{fraction * 100:.1f}"
+
+
+def small_percent(fraction: float | None) -> str:
+    """A fraction of 1, which may be tiny, as a number of percent."""
+    return NONE if fraction is None else f"{100.0 * fraction:.2g}"
 
 
 def lead_time_table(errors: Sequence[LeadTimeErrors]) -> Table:

@@ -7,6 +7,7 @@ A string is its length with the closing NUL as uint32, the UTF-8 text and the NU
 from __future__ import annotations
 
 import struct
+from collections.abc import Sequence
 from functools import lru_cache
 from struct import Struct
 from typing import Final, NamedTuple
@@ -32,11 +33,12 @@ class ByteOrder(NamedTuple):
     stamp: Struct
     length: Struct
     odometry_numbers: Struct
+    imu_numbers: Struct
     point32: Struct
 
 
 def _byte_order(mark: str) -> ByteOrder:
-    return ByteOrder(Struct(mark + "iI"), Struct(mark + "I"), Struct(mark + "85d"), Struct(mark + "3f"))
+    return ByteOrder(*[Struct(mark + layout) for layout in ("iI", "I", "85d", "37d", "3f")])
 
 
 LITTLE_ENDIAN: Final = _byte_order("<")
@@ -121,11 +123,19 @@ def _frame(name: str) -> bytes:
     return string(name)
 
 
+class StatusBytes(NamedTuple):
+    """A diagnostic_msgs/DiagnosticStatus for `diagnostic_array`: its level, and the rest, `padding` bytes too long."""
+
+    level: int
+    rest: bytes
+    padding: int
+
+
 class DiagnosticForm:
-    """A diagnostic_msgs/DiagnosticArray of one status whose name and keys are prepared once for many values."""
+    """A diagnostic_msgs/DiagnosticStatus whose name and keys are prepared once for many values."""
 
     def __init__(self, name: str, *keys: str) -> None:
-        """Prepare the name and the keys, in the order of the values; at least one key."""
+        """Prepare the name and the keys, in the order of the values."""
         self._name = string(name)
         self._keys = [string(key) for key in keys]
         self._count = _pack_length(len(keys))
@@ -133,17 +143,20 @@ class DiagnosticForm:
     def fill(
         self, nanoseconds: int, frame_id: str, level: int, message: str, hardware_id: str, values: list[str]
     ) -> bytes:
-        """The message with one value for each key, stamped in ns; `level` as in DiagnosticStatus."""
-        parts = [
-            LITTLE_ENDIAN_HEADER,
-            stamp(nanoseconds),
-            _frame(frame_id),
-            _ONE_STATUS[level],
-            self._name,
-            string(message),
-            _frame(hardware_id),
-            self._count,
-        ]
+        """A diagnostic_msgs/DiagnosticArray of this status alone, stamped in ns; `level` as in DiagnosticStatus."""
+        parts = [LITTLE_ENDIAN_HEADER, stamp(nanoseconds), _frame(frame_id), _ONE_STATUS[level]]
+        self._append(parts, message, hardware_id, values)
+        # The padding of the last value pads the whole, as DDS does, so that a bag holds what a topic carried.
+        return b"".join(parts)
+
+    def status(self, level: int, message: str, hardware_id: str, values: list[str]) -> StatusBytes:
+        """This status with one value for each key, for an array of several."""
+        parts: list[bytes] = []
+        self._append(parts, message, hardware_id, values)
+        return StatusBytes(level, b"".join(parts), len(parts[-1]) - 1 if values else 0)
+
+    def _append(self, parts: list[bytes], message: str, hardware_id: str, values: list[str]) -> None:
+        parts += (self._name, string(message), _frame(hardware_id), self._count)
         append = parts.append
         for key, value in zip(self._keys, values, strict=True):
             raw = value.encode()
@@ -152,8 +165,20 @@ class DiagnosticForm:
             append(_pack_length(size + 1))
             append(raw)
             append(_PADDING[size & 3])
-        # The padding of the last value pads the whole, as DDS does, so that a bag holds what a topic carried.
-        return b"".join(parts)
+
+
+def diagnostic_array(nanoseconds: int, frame_id: str, statuses: Sequence[StatusBytes]) -> bytes:
+    """A diagnostic_msgs/DiagnosticArray of statuses, stamped in ns."""
+    data = bytearray(LITTLE_ENDIAN_HEADER + stamp(nanoseconds) + _frame(frame_id) + _pack_length(len(statuses)))
+    padding = 0
+    for level, rest, its_padding in statuses:
+        # A level is a byte, which needs no alignment: it follows at once on the last text before it.
+        del data[len(data) - padding :]
+        data.append(level)
+        data += bytes(-len(data) & 3)
+        data += rest
+        padding = its_padding
+    return bytes(data)
 
 
 class Diagnostic(NamedTuple):

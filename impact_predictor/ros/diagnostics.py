@@ -2,32 +2,21 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter, deque
+from collections.abc import Sequence
 from typing import Final, NamedTuple
 
+from ..prediction.remedies import REMEDIES
 from ..prediction.score import median
 from ..prediction.types import Score, Status
-from .cdr import ERROR, NANOSECONDS, OK, WARN, DiagnosticForm
+from .cdr import ERROR, NANOSECONDS, OK, WARN, DiagnosticForm, StatusBytes
 
 STALE_AFTER: Final = 1.0
 """Seconds without a sample after which the input counts as stale."""
 
 COMPARABLE: Final = 10.0
 """Stamps further than this many seconds from the clock were not taken from it, so that no latency follows from them."""
-
-REMEDIES: Final[dict[Status, str]] = {
-    Status.NOT_FINITE: "a field is NaN or infinite; look at its source",
-    Status.BAD_QUATERNION: "the orientation is zero or not of unit length; look at its source",
-    Status.STAMP_REPEATED: "the stamp is that of the message before; let a single source publish, with its own stamps",
-    Status.STAMP_WENT_BACK: "the stamp is older than the one before; let a single source publish, in order",
-    Status.WRONG_FRAME: "its frame is not that of the scene; compare frame_id with support.frame, and child_frame_id "
-    "with the frame of the contact points",
-    Status.NO_GEOMETRY: "no contact points are known; publish them on contact_geometry or give body.contact_points",
-    Status.TOO_FEW_POINTS: "a body needs at least two contact points",
-    Status.COINCIDENT_POINTS: "two of its points coincide",
-    Status.MALFORMED: "its bytes are not a message of the topic's type; look at who else publishes there",
-}
-"""What is wrong with a message of each status but ACCEPTED, and where to look."""
 
 
 class Refused(NamedTuple):
@@ -58,22 +47,23 @@ class Diagnostics:
     judgement; `accepted`, `refused` and `second_over` say whether it has changed, so that a report is due at once.
     """
 
-    def __init__(self, name: str, now: float) -> None:
-        """Count from `now` on, and report under the name of the node."""
+    def __init__(self, name: str, now: float, inputs: Sequence[str] = ("odom",)) -> None:
+        """Count from `now` on what comes on the inputs, and report under the name of the node."""
         self.level = WARN
         self.message = "no sample yet"
-        self.lost = 0
-        """Messages that the middleware says it has lost."""
+        self.lost: int | None = 0
+        """Messages that the middleware says it has lost; None where it is not asked."""
         self.misfits: list[str] = []
         """Whom QoS keeps apart from this node now: topic, node and reason of each."""
-        self.publishers = 0
-        """Publishers of samples."""
+        self.publishers = dict.fromkeys(inputs, 0)
+        """How many publish on each input."""
         self._name = name
         self._body = ""
         self._accepted = 0
         self._refused: Counter[Refused] = Counter()
-        self._last_sample: float | None = None
-        self._last_stamp: int | None = None
+        self._others = 0
+        self._last: dict[str, float] = {}
+        self._last_stamps: dict[str, int] = {}
         self._touchdowns = 0
         self._scored = 0
         self._errors: deque[float] = deque(maxlen=1000)
@@ -89,18 +79,31 @@ class Diagnostics:
         self._latency: int | None = None
         self._refused_before = self._refused_now
         self._refused_now = Counter()
+        self._told: set[tuple[str, Status]] = set()
 
-    def accepted(self, now: float, stamp: int, latency: int, update: float, total: float) -> bool:
-        """Count an accepted sample; `stamp` and its `latency` in ns, the costs of `update` and in `total` in s."""
+    def accepted(self, now: float, name: str, stamp: int, latency: int, update: float, total: float) -> bool:
+        """Count an accepted sample on an input; `stamp` and `latency` in ns, costs of `update` and in `total` in s."""
         self._accepted += 1
         self._updates.append(update)
         self._totals.append(total)
-        if self._last_stamp is not None and stamp - self._last_stamp > self._largest_gap:
-            self._largest_gap = stamp - self._last_stamp
-        self._last_stamp = stamp
+        gap = stamp - self._last_stamps.get(name, stamp)
+        if gap > self._largest_gap:
+            self._largest_gap = gap
+        self._last_stamps[name] = stamp
         self._latency = latency
-        self._last_sample = now
-        return self.level != OK and self._judge(now)
+        return self._heard(now, name)
+
+    def taken(self, now: float, name: str) -> bool:
+        """Count another accepted message: of the support, or a tilt."""
+        self._others += 1
+        return self._heard(now, name)
+
+    def _heard(self, now: float, name: str) -> bool:
+        """Note an accepted message; whether it changed the level, which it does when it was waited for."""
+        was = self._last.get(name, -math.inf)
+        self._last[name] = now
+        waited_for = self.level == ERROR or (self.level == WARN and now - was > STALE_AFTER)
+        return waited_for and self._judge(now)
 
     def refused(self, now: float, reason: Refused) -> bool:
         """Count a refused message."""
@@ -110,12 +113,15 @@ class Diagnostics:
 
     def is_news(self, reason: Refused) -> bool:
         """Whether a message is the first in this second to be refused for a reason, and so worth a line in the log."""
-        return self._refused_now[reason] == 1
+        kind = reason.input.rpartition("/")[2], reason.status
+        news = kind not in self._told
+        self._told.add(kind)
+        return news
 
     @property
     def served(self) -> int:
-        """How many samples were accepted and messages refused so far."""
-        return self._accepted + self._refused.total()
+        """How many messages were accepted or refused so far."""
+        return self._accepted + self._others + self._refused.total()
 
     def settled(self, body: str, score: Score) -> None:
         """Count a touchdown of a body, which has happened."""
@@ -140,11 +146,11 @@ class Diagnostics:
         self._begin_second(now)
         return changed
 
-    def report(self, now: float, nanoseconds: int) -> bytes:
-        """The bytes of a diagnostic_msgs/DiagnosticArray with everything, stamped in ns."""
+    def report(self, now: float) -> StatusBytes:
+        """Everything, as one status of a diagnostic_msgs/DiagnosticArray."""
         values = self._values(now)
         form = DiagnosticForm(f"{self._name}: predictions", *values)
-        return form.fill(nanoseconds, "", self.level, self.message, self._body, list(values.values()))
+        return form.status(self.level, self.message, self._body, list(values.values()))
 
     def _values(self, now: float) -> dict[str, str]:
         second = self._second
@@ -152,12 +158,14 @@ class Diagnostics:
             "samples.accepted": str(self._accepted),
             "samples.rate": f"{second.rate:.1f}",
             "samples.largest_gap": f"{second.largest_gap:.4f}",
-            "samples.publishers": str(self.publishers),
+            "samples.publishers": str(sum(self.publishers.values())),
             "samples.lost": str(self.lost),
             "incompatible_qos": str(len(self.misfits)),
         }
-        if self._last_sample is not None:
-            values["samples.seconds_since_last"] = f"{now - self._last_sample:.3f}"
+        if self.lost is None:
+            del values["samples.lost"]
+        if self._last:
+            values["samples.seconds_since_last"] = f"{now - max(self._last.values()):.3f}"
         if second.latency is not None and abs(second.latency) < COMPARABLE:
             values["samples.latency"] = f"{second.latency:.6f}"
         for reason in sorted(self._refused):
@@ -196,9 +204,20 @@ class Diagnostics:
             return WARN, f"{count} messages refused in the last second; {reason}"
         if self.misfits:
             return WARN, f"QoS does not match ({len(self.misfits)}): {self.misfits[0]}"
-        if self._last_sample is None:
-            return WARN, "no sample yet" if self.publishers else "no sample yet: nobody publishes on odom"
-        age = now - self._last_sample
+        if len(self._last) < len(self.publishers):
+            return WARN, self._missing()
+        age = now - min(self._last.values(), default=now)
         if age > STALE_AFTER:
-            return WARN, f"no sample for {age:.1f} s"
+            where = "" if len(self._last) == 1 else f" on {min(self._last, key=self._last.__getitem__)}"
+            return WARN, f"no sample{where} for {age:.1f} s"
         return OK, "predicting"
+
+    def _missing(self) -> str:
+        """Which inputs have never told anything."""
+        names = [name for name in self.publishers if name not in self._last]
+        silent = [name for name in names if not self.publishers[name]] or names
+        where = "" if len(self.publishers) == 1 else f" on {silent[0]}"
+        more = "" if len(silent) == 1 else f" (and on {len(silent) - 1} more)"
+        if self.publishers[silent[0]]:
+            return f"no sample yet{where}{more}"
+        return f"no sample yet{where}{more}: nobody publishes " + ("there" if where else f"on {silent[0]}")

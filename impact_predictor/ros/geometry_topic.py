@@ -53,17 +53,18 @@ class Once:
 
 
 class GeometryTopic:
-    """Hands every message on `contact_geometry` to `take`, as bytes."""
+    """Hands every message on a topic of contact points to `take`, as bytes."""
 
-    def __init__(self, node: Node, take: Callable[[bytes], None]) -> None:
+    def __init__(self, node: Node, take: Callable[[bytes], None], topic: str = "contact_geometry") -> None:
         self._node = node
+        self._topic = topic
         self._once = Once(take)
         self._type = message_class(POLYGON)
         self._events = SubscriptionEventCallbacks(use_default_callbacks=False)
         self._has_latched = False
         self.live = node.create_subscription(
             self._type,
-            "contact_geometry",
+            topic,
             self._once.live,
             LIVE,
             raw=True,
@@ -81,6 +82,6 @@ class GeometryTopic:
             if (qos.durability, qos.reliability) == (DurabilityPolicy.TRANSIENT_LOCAL, ReliabilityPolicy.RELIABLE):
                 self._has_latched = True
                 self._node.create_subscription(
-                    self._type, "contact_geometry", self._once.latched, LATCHED, raw=True, event_callbacks=self._events
+                    self._type, self._topic, self._once.latched, LATCHED, raw=True, event_callbacks=self._events
                 )
                 return

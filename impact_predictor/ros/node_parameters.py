@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from array import array
 from collections.abc import Mapping
+from difflib import get_close_matches
 from typing import Any, Final
 
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
@@ -12,7 +13,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter as NodeParameter
 
 from ..errors import InputError
-from ..parameters import PARAMETERS, Parameter, Value, validate
+from ..parameters import Parameter, Value, parameter_of, validate
 
 _QOS_OVERRIDES: Final = "qos_overrides."
 
@@ -29,11 +30,12 @@ def declare_parameters(node: Node) -> dict[str, Value]:
     for name, depth in given.items():
         if name.startswith(_QOS_OVERRIDES) and name.endswith(".depth") and not (type(depth) is int and depth > 0):
             raise InputError(f"the parameter {name} is {depth!r}, but it must be a whole number of messages above 0")
-    for parameter in PARAMETERS.values():
-        if parameter.name in given:
-            node.set_descriptor(parameter.name, _descriptor(parameter))
+    for name, value in values.items():
+        parameter = parameter_of(name)
+        if name in given:
+            node.set_descriptor(name, _descriptor(parameter))
         else:
-            node.declare_parameter(parameter.name, _ros_value(values[parameter.name]), _descriptor(parameter))
+            node.declare_parameter(name, _ros_value(parameter, value), _descriptor(parameter))
     return values
 
 
@@ -52,9 +54,10 @@ def check_qos_overrides(node: Node) -> None:
     for name in node.get_parameters_by_prefix("qos_overrides"):
         endpoint = f"{_QOS_OVERRIDES}{name}".rpartition(".")[0]
         if endpoint not in known:
+            near = get_close_matches(endpoint, known, 5, 0.0)
             raise InputError(
-                f"the parameter {_QOS_OVERRIDES}{name} is of no topic of this node; the topics are "
-                f"{', '.join(one.removeprefix(_QOS_OVERRIDES) for one in known)}"
+                f"the parameter {_QOS_OVERRIDES}{name} is of no topic of this node; near it there are "
+                f"{', '.join(one.removeprefix(_QOS_OVERRIDES) for one in near)}"
             )
 
 
@@ -62,11 +65,11 @@ def _plain(value: Any) -> Any:
     return list(value) if isinstance(value, array) else value
 
 
-def _ros_value(value: Value) -> Any:
+def _ros_value(parameter: Parameter, value: Value) -> Any:
     if not isinstance(value, tuple):
         return value
     # An empty list does not say of what; declared by its type alone, the parameter is not set.
-    return list(value) or NodeParameter.Type.DOUBLE_ARRAY
+    return list(value) or NodeParameter.Type[parameter.kind.upper()]
 
 
 def _descriptor(parameter: Parameter) -> ParameterDescriptor:

@@ -15,10 +15,13 @@ from typing import Any, Final, NamedTuple
 
 from ..bags.read import BagMessage, read_messages, topics
 from ..errors import InputError
-from .messages import ODOMETRY, POLYGON
+from .messages import IMU, ODOMETRY, POLYGON
 from .process import Stop, message_class, run
 
 NANOSECONDS: Final = 1e9
+
+INPUTS: Final = (ODOMETRY, IMU, POLYGON)
+"""Types of the messages that are played."""
 
 LONGEST_GAP: Final = 0.5
 """Seconds without a message after which nothing happens: a run of the recording ends, and the next may begin."""
@@ -84,9 +87,9 @@ def timed(messages: Iterable[BagMessage], runs: int) -> Iterator[tuple[float, Ba
 
 
 def _play(options: Options, stop: Stop) -> int:
-    types = {topic: kind for topic, kind in topics(options.bag).items() if kind in (ODOMETRY, POLYGON)}
+    types = {topic: kind for topic, kind in topics(options.bag).items() if kind in INPUTS}
     if not types:
-        raise InputError(f"{options.bag} has no topic of type {ODOMETRY} or {POLYGON}, so there is nothing to play")
+        raise InputError(f"{options.bag} has no topic of type {' or '.join(INPUTS)}, so there is nothing to play")
     messages = timed(read_messages(options.bag, types), options.runs)
     from rclpy.node import Node
 

@@ -80,6 +80,10 @@ class Child:
         self._errors.close()
 
     @property
+    def process_id(self) -> int:
+        return self._process.pid
+
+    @property
     def ended(self) -> bool:
         return self._process.poll() is not None
 

@@ -3,24 +3,40 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import Any
+from itertools import chain, cycle, islice
+from typing import Any, Final
 
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
-
-def misfits(node: Node, subscriptions: Iterable[Any], publishers: Iterable[Any]) -> list[str]:
-    """A text for each endpoint of another node that does not match one of these, with topic, node and reason."""
-    return list(_misfits(node, subscriptions, publishers))
+AT_ONCE: Final = 25
+"""Endpoints that are looked at in one turn: that takes a millisecond, for which no message has to wait."""
 
 
-def _misfits(node: Node, subscriptions: Iterable[Any], publishers: Iterable[Any]) -> Iterator[str]:
-    for ours in subscriptions:
-        for theirs in node.get_publishers_info_by_topic(ours.topic_name):
+class Misfits:
+    """The endpoints of other nodes that do not match those of this one."""
+
+    def __init__(self, node: Node, subscriptions: Iterable[Any], publishers: Iterable[Any]) -> None:
+        self._node = node
+        ours = [*((one, True) for one in subscriptions), *((one, False) for one in publishers)]
+        self._found: dict[str, list[str]] = {one.topic_name: [] for one, _ in ours}
+        self._turns = cycle(ours)
+        self._at_once = min(AT_ONCE, len(ours))
+
+    def look(self) -> list[str]:
+        """A text for each that is known, with topic, node and reason; looks at some of many topics in their turn."""
+        for ours, is_subscription in islice(self._turns, self._at_once):
+            find = self._publishers if is_subscription else self._subscriptions
+            self._found[ours.topic_name] = list(find(ours))
+        return list(chain.from_iterable(self._found.values()))
+
+    def _publishers(self, ours: Any) -> Iterator[str]:
+        for theirs in self._node.get_publishers_info_by_topic(ours.topic_name):
             if reason := _reason(theirs.qos_profile, ours.qos_profile):
                 yield f"the publisher on {ours.topic_name} from {theirs.node_name} {reason}"
-    for ours in publishers:
-        for theirs in node.get_subscriptions_info_by_topic(ours.topic_name):
+
+    def _subscriptions(self, ours: Any) -> Iterator[str]:
+        for theirs in self._node.get_subscriptions_info_by_topic(ours.topic_name):
             if reason := _reason(ours.qos_profile, theirs.qos_profile):
                 yield f"this node's publisher on {ours.topic_name} for {theirs.node_name} {reason}"
 

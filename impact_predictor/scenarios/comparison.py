@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from math import dist, hypot
 from statistics import median
 from typing import Final, NamedTuple
@@ -27,6 +27,9 @@ NEAREST: Final = 20_000_000
 AHEAD: Final = 20_000_000
 """ns before a touchdown at which the prediction is made whose error of time counts."""
 
+BORDER: Final = 0.02
+"""Relative change of friction or geometry within which another mode may be as right as the true one."""
+
 SEEN: Final = 2
 """Samples between two impacts of which the last one shows the second ahead: a body that rocks rises before it falls."""
 
@@ -41,6 +44,10 @@ class Truth(NamedTuple):
     gravity moves a body within the contact time. Of those found: the part whose mode the last prediction had right; the
     median relative error of the velocities after them, all three in the plane; the median error in s of the time that
     was announced 20 ms ahead, or last before that. None where there is none.
+
+    `clear` of those found are far enough from another mode to tell it: so small an error as `BORDER` does not change
+    theirs; then the part of them whose mode was right. `unresolved_wrong` of the unresolved impacts were predicted all
+    the same, with another mode than they had.
     """
 
     touchdowns: int
@@ -50,6 +57,16 @@ class Truth(NamedTuple):
     mode_accuracy: float | None
     median_velocity_error: float | None
     median_time_error: float | None
+    clear: int = 0
+    clear_mode_accuracy: float | None = None
+    unresolved_wrong: int = 0
+
+
+class Comparison(NamedTuple):
+    """How the predictions of all bodies together compare with what happened, and those of each body."""
+
+    together: Truth
+    bodies: dict[str, Truth]
 
 
 class Announcement(NamedTuple):
@@ -69,18 +86,24 @@ class Found(NamedTuple):
 
 
 class Announcements:
-    """The predictions of each body, in rows of one touchdown each."""
+    """The predictions of each body, in rows of one touchdown each.
+
+    A body goes by its name, or where it has none by its frame.
+    """
 
     def __init__(self) -> None:
         self.samples: dict[str, list[int]] = defaultdict(list)
-        """Stamps in ns, by the body's frame."""
+        """Stamps in ns."""
         self.rows: dict[str, list[list[Announcement]]] = defaultdict(list)
+        self.names: dict[str, str] = {}
+        """The names of bodies by their frames, by which a truth may call them too."""
         self._goes_on: dict[str, bool] = {}
 
-    def add(self, prediction: Prediction) -> None:
+    def add(self, prediction: Prediction, name: str = "") -> None:
         """Take the answer to an accepted sample; what has no lead time announces nothing."""
         sample, touchdown = prediction.sample, prediction.touchdown
-        body = sample.child_frame_id
+        body = name or sample.child_frame_id
+        self.names[sample.child_frame_id] = body
         self.samples[body].append(sample.stamp)
         if touchdown is None:
             self._goes_on[body] = False
@@ -99,33 +122,74 @@ def follows(announced: Announcement, last: Announcement) -> bool:
     return announced.seen <= last.stamp and not set(announced.touchdown.new).isdisjoint(last.touchdown.new)
 
 
-def compare(impacts: Iterable[TrueImpact], announcements: Announcements, scene: Scene) -> Truth:
-    """Compare the predictions of all bodies that have samples with the true impacts."""
+class _Compared(NamedTuple):
+    """What was found of the impacts of one body."""
+
+    found: list[Found]
+    touchdowns: int
+    false: int
+    unresolved: int
+    unresolved_wrong: int
+    errors: list[float]
+
+
+def compare(impacts: Iterable[TrueImpact], announcements: Announcements, scenes: Mapping[str, Scene]) -> Comparison:
+    """Compare the predictions of all bodies that have samples with the true impacts.
+
+    `scenes` are those of the bodies by their names, or that of bodies without names by "".
+    """
     of_body: dict[str, list[TrueImpact]] = defaultdict(list)
     for impact in impacts:
-        of_body[impact.body].append(impact)
-    found: list[Found] = []
-    touchdowns = false = unresolved = 0
-    for body, samples in announcements.samples.items():
-        recorded = sorted(samples)
-        happened = sorted((one for one in of_body[body] if one.stamp <= recorded[-1]), key=lambda one: one.stamp)
-        rows = [row for row in announcements.rows[body] if row[-1].stamp <= recorded[-1]]
-        matched, alarms = match(happened, rows)
-        shown = resolved(happened, recorded, hardly(scene))
-        false += alarms
-        touchdowns += len(shown)
-        unresolved += len(happened) - len(shown)
-        found += [find(happened[k], matched[k]) for k in shown if k in matched]
+        of_body[announcements.names.get(impact.body, impact.body)].append(impact)
+    compared = {
+        body: _compare(of_body[body], announcements.rows[body], sorted(samples), scenes[body if body in scenes else ""])
+        for body, samples in announcements.samples.items()
+    }
+    return Comparison(_truth(compared.values()), {body: _truth([one]) for body, one in compared.items()})
+
+
+def _compare(
+    impacts: Sequence[TrueImpact], announced: Sequence[list[Announcement]], recorded: Sequence[int], scene: Scene
+) -> _Compared:
+    happened = sorted((one for one in impacts if one.stamp <= recorded[-1]), key=lambda one: one.stamp)
+    rows = [row for row in announced if row[-1].stamp <= recorded[-1]]
+    matched, alarms = match(happened, rows)
+    shown = resolved(happened, recorded, hardly(scene))
+    found = [find(happened[k], matched[k]) for k in shown if k in matched]
+    hidden = [find(happened[k], matched[k]) for k in set(matched) - set(shown)]
+    return _Compared(
+        found,
+        len(shown),
+        alarms,
+        len(happened) - len(shown),
+        sum(not is_right(one) for one in hidden),
+        [velocity_error(one, scene.center_of_mass) for one in found],
+    )
+
+
+def _truth(bodies: Collection[_Compared]) -> Truth:
+    found = [one for body in bodies for one in body.found]
+    clear = [one for one in found if one.impact.border > BORDER]
+    errors = [error for body in bodies for error in body.errors]
     times = [abs(one.ahead.stamp - one.impact.stamp) / NANOSECONDS for one in found if one.ahead]
+    touchdowns = sum(body.touchdowns for body in bodies)
     return Truth(
         touchdowns,
         touchdowns - len(found),
-        false,
-        unresolved,
-        sum(one.last.touchdown.mode is one.impact.mode for one in found) / len(found) if found else None,
-        median([velocity_error(one, scene.center_of_mass) for one in found]) if found else None,
+        sum(body.false for body in bodies),
+        sum(body.unresolved for body in bodies),
+        sum(map(is_right, found)) / len(found) if found else None,
+        median(errors) if errors else None,
         median(times) if times else None,
+        len(clear),
+        sum(map(is_right, clear)) / len(clear) if clear else None,
+        sum(body.unresolved_wrong for body in bodies),
     )
+
+
+def is_right(found: Found) -> bool:
+    """Whether the last prediction before an impact had its mode."""
+    return found.last.touchdown.mode is found.impact.mode
 
 
 def match(

@@ -1,25 +1,23 @@
-"""Planar motions as bags: bodies sampled at a rate, with their true impacts.
-
-The plane of a motion is x forward and z up of the bag's frame (REP-103); a body's frame lies at its mass centre.
-"""
+"""Planar motions as bags: bodies sampled at a rate, with their true impacts."""
 
 from __future__ import annotations
 
 import heapq
 import os
 from collections.abc import Callable, Iterator, Sequence
-from math import cos, hypot, sin
+from math import cos, hypot, inf, sin
 from typing import Final, NamedTuple
 
 import numpy as np
 
 from ..bags.write import BagWriter
-from ..mechanics.motion import PlanarState
 from ..mechanics.problem import approach
 from ..mechanics.rocking import End, Run, Strike
-from ..prediction.types import Geometry, Sample, Vector3
+from ..prediction.types import Geometry
 from ..ros.cdr import NANOSECONDS
 from ..ros.messages import DIAGNOSTIC_ARRAY, ODOMETRY, POLYGON, encode_odometry, encode_polygon
+from .sensors import AT_ONCE, Odometer
+from .space import FORWARD, Mount, Plane
 from .truth import TRUTH_TOPIC, TrueImpact, encode_true_impact
 
 FRAME: Final = "world"
@@ -27,13 +25,9 @@ FRAME: Final = "world"
 REST: Final = 0.25
 """Seconds that are recorded of a body that has come to rest."""
 
-_AT_ONCE: Final = 256
-"""Samples whose states are computed together."""
-_NO_COVARIANCE: Final = (0.0,) * 36
-
 
 class Actor(NamedTuple):
-    """A body of a record: the name of its frame, and how it moves on two points of it."""
+    """A body of a record, its frame at its mass centre: the name of its frame, and how it moves on two points of it."""
 
     name: str
     run: Run
@@ -54,20 +48,32 @@ def write_record(
     """Write a bag (see `BagWriter`) with the states of bodies at a rate in Hz, their contact points and true impacts.
 
     The topics are `/odom` and `/contact_geometry`, with several bodies `/<name>/odom` and `/<name>/contact_geometry`,
-    and `TRUTH_TOPIC`. Stamps count from the beginning of a motion. `tell` takes now and then how many samples are done.
+    and `TRUTH_TOPIC`. The plane of the motions is x forward and z up of the frame `FRAME`. Stamps count from the
+    beginning of a motion. `tell` takes now and then how many samples are done.
 
     Raises:
         InputError: the bag cannot be written.
     """
     alone = len(actors) == 1
-    streams = [messages_of(actor, "" if alone else f"/{actor.name}", rate) for actor in actors]
-    samples = 0
+    write_messages(path, [messages_of(actor, "" if alone else f"/{actor.name}", rate) for actor in actors], tell)
+
+
+def write_messages(
+    path: str | os.PathLike[str], streams: Sequence[Iterator[Message]], tell: Callable[[int], None] | None = None
+) -> None:
+    """Write a bag of messages, each stream of them ordered, while they are made: a long record takes no more memory.
+
+    `tell` takes now and then how many messages are done.
+
+    Raises:
+        InputError: the bag cannot be written.
+    """
     with BagWriter(path) as writer:
-        for message in heapq.merge(*streams, key=lambda message: message.log_time):
-            writer.write(message.topic, message.type_name, message.log_time, message.data)
-            samples += message.type_name == ODOMETRY
-            if tell is not None and samples % _AT_ONCE == 0:
-                tell(samples)
+        ordered = heapq.merge(*streams, key=lambda message: message.log_time)
+        for count, (log_time, topic, type_name, data) in enumerate(ordered, 1):
+            writer.write(topic, type_name, log_time, data)
+            if tell is not None and count % AT_ONCE == 0:
+                tell(count)
 
 
 def messages_of(actor: Actor, namespace: str, rate: float) -> Iterator[Message]:
@@ -87,62 +93,59 @@ def _states(actor: Actor, namespace: str, rate: float) -> Iterator[Message]:
     geometry = Geometry(0, actor.name, ((old.x, 0.0, old.y), (new.x, 0.0, new.y)))
     yield Message(0, f"{namespace}/contact_geometry", POLYGON, encode_polygon(geometry))
     count = samples_in(actor.run, rate)
-    for first in range(0, count, _AT_ONCE):
-        stamps = [round(k * NANOSECONDS / rate) for k in range(first, min(first + _AT_ONCE, count))]
-        states = np.array(actor.run.world(np.array(stamps) / NANOSECONDS)).T.tolist()
-        for stamp, state in zip(stamps, states, strict=True):
-            sample = sample_of(PlanarState(*state), stamp, actor.name)
-            yield Message(stamp, f"{namespace}/odom", ODOMETRY, encode_odometry(sample))
+    odometer = Odometer(FRAME, actor.name, FORWARD, Mount())
+    for first in range(0, count, AT_ONCE):
+        stamps = [round(k * NANOSECONDS / rate) for k in range(first, min(first + AT_ONCE, count))]
+        state = actor.run.world(np.array(stamps) / NANOSECONDS)
+        for sample in odometer.samples(stamps, state):
+            yield Message(sample.stamp, f"{namespace}/odom", ODOMETRY, encode_odometry(sample))
 
 
 def _truths(actor: Actor) -> Iterator[Message]:
     for strike in actor.run.impacts:
-        impact = true_impact(strike, actor)
+        tilt = actor.run.support.motion(strike.time).angle
+        impact = true_impact(strike, actor.name, FORWARD, tilt)
         yield Message(impact.stamp, TRUTH_TOPIC, DIAGNOSTIC_ARRAY, encode_true_impact(impact, FRAME))
 
 
-def sample_of(state: PlanarState, stamp: int, name: str) -> Sample:
-    """A planar state in space. Counter-clockwise in the plane of x and z is negative about y."""
-    x, z, angle, vx, vz, omega = state
-    c, s = cos(angle), sin(angle)
-    return Sample(
-        stamp,
-        FRAME,
-        name,
-        (x, 0.0, z),
-        (0.0, -sin(0.5 * angle), 0.0, cos(0.5 * angle)),
-        (c * vx + s * vz, 0.0, c * vz - s * vx),
-        (0.0, -omega, 0.0),
-        _NO_COVARIANCE,
-        _NO_COVARIANCE,
-    )
+def true_impact(
+    strike: Strike,
+    name: str,
+    plane: Plane,
+    tilt: float = 0.0,
+    contacts: Sequence[tuple[int, ...]] = ((0,), (1,)),
+    border: float = inf,
+) -> TrueImpact:
+    """An impact of a motion as the truth of a record.
 
-
-def true_impact(strike: Strike, actor: Actor) -> TrueImpact:
-    """An impact of a motion as the truth of a record."""
+    Its velocities are along axes that are turned by -`tilt` (rad) from the support's; `contacts` are the indices of the
+    points, in the scene, that the two contacts stand for.
+    """
     body, before = strike.outcome.body, strike.outcome.before
     assert body is not None
     assert before is not None
-    new, old = body.new, body.old
-    half_distance = hypot(new.x, new.y) if old is None else 0.5 * hypot(new.x - old.x, new.y - old.y)
-    tilt = actor.run.support.motion(strike.time).angle
+    after = strike.outcome.twist
     c, s = cos(tilt), sin(tilt)
-
-    def linear(vx: float, vy: float) -> Vector3:
-        return c * vx - s * vy, 0.0, s * vx + c * vy
-
-    vx, vy, omega = strike.outcome.twist
     return TrueImpact(
         round(strike.time * NANOSECONDS),
-        actor.name,
+        name,
         strike.outcome.mode,
-        () if strike.old is None else (strike.old,),
-        (strike.new,),
-        -approach(new, before)[0],
-        half_distance,
+        () if strike.old is None else contacts[strike.old],
+        contacts[strike.new],
+        -approach(body.new, before)[0],
+        half_distance(strike),
         strike.outcome.energy_lost,
-        linear(before.vx, before.vy),
-        (0.0, -before.omega, 0.0),
-        linear(vx, vy),
-        (0.0, -omega, 0.0),
+        plane.vector(c * before.vx - s * before.vy, s * before.vx + c * before.vy),
+        plane.spin(before.omega),
+        plane.vector(c * after.vx - s * after.vy, s * after.vx + c * after.vy),
+        plane.spin(after.omega),
+        border,
     )
+
+
+def half_distance(strike: Strike) -> float:
+    """Half the distance of the contacts in m, for one contact its distance from the mass centre."""
+    body = strike.outcome.body
+    assert body is not None
+    new, old = body.new, body.old
+    return hypot(new.x, new.y) if old is None else 0.5 * hypot(new.x - old.x, new.y - old.y)

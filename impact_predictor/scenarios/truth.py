@@ -1,24 +1,27 @@
 """Impacts as a scenario knows them, and the messages in which a bag carries them.
 
-They travel on a topic of their own, as diagnostic_msgs/DiagnosticArray, and are never an input of a prediction.
+They travel on topics of their own, as diagnostic_msgs/DiagnosticArray, and are never an input of a prediction.
 """
 
 from __future__ import annotations
 
+from math import inf
 from typing import Final, NamedTuple
 
-from ..mechanics.types import Mode
+from ..mechanics.types import Mode, Outcome
 from ..prediction.types import Vector3
 from ..ros.cdr import OK, DiagnosticForm, MalformedMessage, decode_diagnostic_array
 
 TRUTH_TOPIC: Final = "/truth/impacts"
+ONSET_TOPIC: Final = "/truth/onsets"
 
 _VECTORS: Final = ("linear_before", "angular_before", "linear_after", "angular_after")
 _KEYS: Final = (
-    *("stamp", "body", "mode", "old", "new", "approach", "half_distance", "energy_lost"),
+    *("stamp", "body", "mode", "old", "new", "approach", "half_distance", "energy_lost", "border"),
     *(f"{name}.{axis}" for name in _VECTORS for axis in "xyz"),
 )
 _FORM: Final = DiagnosticForm("truth/impact", *_KEYS)
+_ONSET_FORM: Final = DiagnosticForm("truth/onset", "stamp", "body", "slides", "lifts")
 
 
 class TrueImpact(NamedTuple):
@@ -27,7 +30,8 @@ class TrueImpact(NamedTuple):
     `stamp` in ns; `body` its frame; `old` and `new` the indices of the contact points that stood and that struck;
     `approach` how fast the new contact came down, in m/s; `half_distance` between both contacts in m, for one contact
     its distance from the mass centre; `energy_lost` in J; linear velocities of the mass centre in m/s and angular
-    velocities in rad/s, relative to the support, in the frame of odom.
+    velocities in rad/s, relative to the support: in the frame of odom, over a moving support in its axes. `border` is
+    the smallest relative change of friction or of geometry with which the mode would be another, see `border_of`.
     """
 
     stamp: int
@@ -42,6 +46,34 @@ class TrueImpact(NamedTuple):
     angular_before: Vector3
     linear_after: Vector3
     angular_after: Vector3
+    border: float = inf
+
+
+class TrueOnset(NamedTuple):
+    """The moment at which a body that stood still on its support begins to slide on it, to lift a contact, or both.
+
+    `stamp` in ns; `body` its frame.
+    """
+
+    stamp: int
+    body: str
+    slides: bool
+    lifts: bool
+
+
+def border_of(outcome: Outcome, half_distance: float) -> float:
+    """The smallest relative change with which an impact would have another mode; inf where none was found.
+
+    A change of the friction of both contacts counts against the larger one, a shift of the mass centre or of the new
+    contact against `half_distance` in m (see `mechanics.margins`).
+    """
+    body = outcome.body
+    if body is None:
+        return inf
+    friction = max(contact.friction for contact in (body.old, body.new) if contact is not None)
+    found = outcome.margins
+    least = abs(found.friction.change) / friction if friction > 0.0 else inf
+    return min(least, *[abs(one.change) / half_distance for one in (found.center, found.height, found.reach)])
 
 
 def encode_true_impact(impact: TrueImpact, frame_id: str) -> bytes:
@@ -52,9 +84,7 @@ def encode_true_impact(impact: TrueImpact, frame_id: str) -> bytes:
         impact.mode.name,
         " ".join(map(str, impact.old)),
         " ".join(map(str, impact.new)),
-        repr(impact.approach),
-        repr(impact.half_distance),
-        repr(impact.energy_lost),
+        *[repr(float(part)) for part in (impact.approach, impact.half_distance, impact.energy_lost, impact.border)],
         *[repr(float(part)) for name in _VECTORS for part in getattr(impact, name)],
     ]
     return _FORM.fill(impact.stamp, frame_id, OK, impact.mode.name, impact.body, values)
@@ -89,4 +119,28 @@ def _impact(values: dict[str, str]) -> TrueImpact:
         vector("angular_before"),
         vector("linear_after"),
         vector("angular_after"),
+        # Bags of older versions have none.
+        float(values.get("border", inf)),
     )
+
+
+def encode_true_onset(onset: TrueOnset, frame_id: str) -> bytes:
+    """A diagnostic_msgs/DiagnosticArray stamped with the onset."""
+    said = " and ".join(word for word, holds in (("slides", onset.slides), ("lifts", onset.lifts)) if holds)
+    values = [str(onset.stamp), onset.body, *("true" if one else "false" for one in (onset.slides, onset.lifts))]
+    return _ONSET_FORM.fill(onset.stamp, frame_id, OK, said, onset.body, values)
+
+
+def decode_true_onsets(data: bytes) -> list[TrueOnset]:
+    """The onsets in the bytes of a diagnostic_msgs/DiagnosticArray.
+
+    Raises:
+        MalformedMessage: the bytes are no such message, or tell no onsets.
+    """
+    try:
+        return [
+            TrueOnset(int(one["stamp"]), one["body"], one["slides"] == "true", one["lifts"] == "true")
+            for one in (status.values for status in decode_diagnostic_array(data))
+        ]
+    except (KeyError, ValueError) as error:
+        raise MalformedMessage(f"not a true onset: {error}") from None

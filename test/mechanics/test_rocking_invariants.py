@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from impact_predictor import Contact, Flag, TwoPointBody, cylinder, plate
 from impact_predictor.mechanics.motion import PlanarState
 from impact_predictor.mechanics.rocking import End, Run, rock, standing
-from impact_predictor.mechanics.rocking_bodies import shape_of
+from impact_predictor.mechanics.rocking.bodies import shape_of
 from impact_predictor.mechanics.support import FixedSupport, Support, Wave, harmonic_support
 
 G = 9.81

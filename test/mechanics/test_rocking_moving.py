@@ -1,8 +1,4 @@
-"""Rocking on a moving support, against Newton's law in the world's axes and against cases known in closed form.
-
-The reference knows nothing of the support's frame: it integrates the mass centre and the angle in the world, and finds
-the contact forces from what the contacts' accelerations there must be.
-"""
+"""Rocking on a moving support, against Newton's law in the world's axes and against cases known in closed form."""
 
 from __future__ import annotations
 
@@ -11,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from newton_in_world import newton
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
@@ -41,69 +38,6 @@ DECK = harmonic_support(
 ).at(4.0, 2.5)
 
 
-def cross(a: Any, b: Any) -> float:
-    return float(a[0] * b[1] - a[1] * b[0])
-
-
-def left_of(a: Any) -> Any:
-    return np.array([-a[1], a[0]])
-
-
-def world_rate(run: Run, states: str, time: float, y: Any) -> list[float]:
-    """Newton's law for (x, y, angle, vx, vy, omega) in the world, contact forces from a linear system."""
-    body, moves = run.body, run.support.motion(time)
-    assert body.old is not None
-    c, s = math.cos(moves.angle), math.sin(moves.angle)
-    origin, speed, push = (np.array(pair) for pair in ((moves.x, moves.y), (moves.vx, moves.vy), (moves.ax, moves.ay)))
-    place, velocity, omega = y[:2], y[3:5], y[5]
-    disc = body.old.normal != (0.0, 1.0)
-    rows, wanted, levers = [], [], []
-    for contact, state in zip((body.old, body.new), states, strict=True):
-        if state == "O":
-            continue
-        if disc:
-            edge = np.array([contact.x - body.old.x, contact.y - body.old.y])
-            touch = origin + np.array([c * edge[0] - s * edge[1], s * edge[0] + c * edge[1]])
-            normal = (place - touch) / np.linalg.norm(place - touch)
-        else:
-            cb, sb = math.cos(y[2]), math.sin(y[2])
-            touch = place + np.array([cb * contact.x - sb * contact.y, sb * contact.x + cb * contact.y])
-            normal = np.array([-s, c])
-        tangent = np.array([normal[1], -normal[0]])
-        lever, arm = touch - place, touch - origin
-        ground = push + moves.acceleration * left_of(arm) - moves.rate**2 * arm
-        ground_speed = speed + moves.rate * left_of(arm)
-        if disc:
-            # The distance from the edge stays, and the rim rolls on it or slips.
-            relative = velocity - ground_speed
-            want_n, want_t = normal @ ground - relative @ relative / math.hypot(*lever), tangent @ ground
-            row_n = np.array([normal[0], normal[1], 0.0])
-        else:
-            slip = velocity + omega * left_of(lever) - ground_speed
-            want = ground + 2.0 * moves.rate * left_of(slip) + omega**2 * lever
-            want_n, want_t = normal @ want, tangent @ want
-            row_n = np.array([*normal, cross(lever, normal)])
-        row_t = np.array([*tangent, cross(lever, tangent)])
-        friction = {"S": None, "+": -contact.friction, "-": contact.friction}[state]
-        if friction is None:
-            rows += [row_n, row_t]
-            wanted += [want_n, want_t]
-            levers += [[*normal, cross(lever, normal)], [*tangent, cross(lever, tangent)]]
-        else:
-            along = normal + friction * tangent
-            rows.append(row_n)
-            wanted.append(want_n)
-            levers.append([*along, cross(lever, along)])
-    free = np.array([0.0, -run.support.gravity, 0.0])
-    if rows:
-        weights = np.array([1.0 / body.mass, 1.0 / body.mass, 1.0 / body.inertia])
-        forces = np.array(levers)
-        system = np.array(rows) @ (weights[:, None] * forces.T)
-        reaction = np.linalg.lstsq(system, np.array(wanted) - np.array(rows) @ free, rcond=None)[0]
-        free = free + weights * (forces.T @ reaction)
-    return [y[3], y[4], y[5], *free]
-
-
 def worst_phase(run: Run, shortest: float = 1e-3) -> float:
     """How far phases that begin alike end apart, integrated in the world and as followed."""
     worst = 0.0
@@ -113,7 +47,7 @@ def worst_phase(run: Run, shortest: float = 1e-3) -> float:
         # Just inside, where both ends belong to the phase.
         first, last = start + 1e-9 * (end - start), end - 1e-9 * (end - start)
         goes = solve_ivp(
-            lambda t, y, states=states: world_rate(run, states, t, y),
+            lambda t, y, states=states: newton(run.body, run.support, states, t, y)[0],
             (first, last),
             np.array(run.world(first)),
             method="DOP853",

@@ -8,7 +8,7 @@ import pytest
 
 from impact_predictor.mechanics.types import Validity
 from impact_predictor.parameters import validate
-from impact_predictor.prediction.scene import Scene, inertia_matrix
+from impact_predictor.prediction.scene import MovingDeck, Scene, Watching, inertia_matrix
 
 BODY = {"body.mass": 2.0, "body.inertia": [0.1, 0.2, 0.25, 0.01, 0.02, 0.03], "contact.friction": 0.4}
 
@@ -35,12 +35,27 @@ FIELDS: list[tuple[str, Any, str, Any]] = [
     ("margins", True, "margins", True),
     ("horizon", 0.5, "horizon", 0.5),
     ("validity.gravity_share", 0.1, "validity", Validity(gravity_share=0.1)),
+    ("support.motion", "odom", "deck", MovingDeck()),
+    ("source", "imu", "source", "imu"),
+    ("place.position", [1.0, 2.0, 3.0], "place", (1.0, 2.0, 3.0)),
+    ("place.yaw", 0.5, "yaw", 0.5),
+    ("body.radius", 0.3, "radius", 0.3),
+    ("support.edges", [0.0, -0.2, 0.0, 0.0, 0.2, 0.0], "edges", ((0.0, -0.2, 0.0), (0.0, 0.2, 0.0))),
+    ("onset.watch", True, "watching", Watching()),
 ]
+
+
+# What else must be given with some parameters.
+NEEDS: dict[str, dict[str, Any]] = {
+    "source": {"onset.watch": True, "body.contact_points": [0.0, 0.0, 0.0, 1.0, 0.0, 0.0]},
+    "body.radius": {"support.edges": [0.0, -0.2, 0.0, 0.0, 0.2, 0.0]},
+    "support.edges": {"body.radius": 0.3},
+}
 
 
 @pytest.mark.parametrize(("name", "value", "field", "expected"), FIELDS, ids=[field[0] for field in FIELDS])
 def test_every_parameter_of_the_prediction_reaches_its_field(name: str, value: Any, field: str, expected: Any) -> None:
-    scene = Scene.from_parameters(validate({**BODY, name: value}))
+    scene = Scene.from_parameters(validate({**BODY, **NEEDS.get(name, {}), name: value}))
     assert getattr(scene, field) == expected
 
 

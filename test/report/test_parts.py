@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
@@ -18,8 +19,8 @@ from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.prediction.types import Sample, Status
 from impact_predictor.report.parts import start
-from impact_predictor.report.parts.measure import measure_parts, us_per_sample
-from impact_predictor.report.parts.record import Record, made, record_of
+from impact_predictor.report.parts.measure import COSTS, measure_parts, measured, monitor_of, take, us_per_sample
+from impact_predictor.report.parts.record import OfSupport, Record, made, record_of
 from impact_predictor.report.parts.start import NO_ROS, starts_of
 from impact_predictor.report.parts.table import print_parts
 
@@ -34,6 +35,26 @@ CRATE: dict[str, Any] = validate(
         "support.normal": [0.6, 0.0, 0.8],
         "support.height": 2.0,
         "gravity": [0.0, 0.0, -9.81],
+    }
+)
+
+DECK: dict[str, Any] = {
+    "body.mass": 12.0,
+    "body.inertia": [0.5, 0.6, 0.7, 0.0, 0.0, 0.0],
+    "contact.friction": 0.4,
+    "body.contact_points": [x for a in (-0.3, 0.3) for b in (-0.2, 0.2) for x in (a, b, -0.2)],
+    "support.motion": "odom",
+    "support.frame": "world",
+    "place.position": [3.0, 1.0, 0.2],
+    "support.extent": [0.0, 6.0, -2.0, 4.0],
+}
+DRUM = validate(
+    {
+        "body.mass": 12.0,
+        "body.inertia": [0.5],
+        "contact.friction": 0.4,
+        "body.radius": 0.3,
+        "support.edges": [2.0, -0.2, 0.0, 2.0, 0.2, 0.0],
     }
 )
 
@@ -128,6 +149,55 @@ def test_the_record_of_the_shipped_scene_is_its_example_and_of_another_scene_of_
     assert len(record.points) == 8
     assert "made" in record_of("cube_tosses", scene._replace(frame="map"), 300).origin
     assert "made" in record_of("crate", scene, 300).origin
+
+
+@pytest.mark.parametrize("motion", ["odom", "imu"])
+def test_a_record_over_a_moving_support_has_messages_of_it_too(motion: str) -> None:
+    values = validate({**DECK, "support.motion": motion})
+    body, scene = measured(values)
+    record = made(scene)
+    monitor = monitor_of(values, record)[1]
+    answers = [take(monitor, body, message) for message in record.messages]
+    statuses = Counter(answer.status for answer in answers if answer is not None)
+    assert statuses == {Status.ACCEPTED: record.samples}
+    touchdowns = sum(answer is not None and answer.touchdown is not None for answer in answers)
+    assert touchdowns > 0.5 * record.samples
+    of_support = sum(isinstance(message, OfSupport) for message in record.messages)
+    assert 0.5 * record.samples < of_support < 2.0 * record.samples
+
+
+def test_a_cylinder_falls_from_edge_to_edge() -> None:
+    scene = Scene.from_parameters(DRUM)
+    touchdowns = [one.touchdown for one in predictions(scene, made(scene)) if one.touchdown is not None]
+    assert {(touchdown.old, touchdown.new) for touchdown in touchdowns} == {((0,), (1,)), ((1,), (0,))}
+
+
+def test_the_body_of_a_record_is_the_first_whose_pose_is_measured() -> None:
+    blind = {"blind.source": "none", "onset.watch": True}
+    body, scene = measured(validate({**DECK, **blind, "bodies": ["blind", "crate", "box"], "crate.body.mass": 7.0}))
+    assert (body, scene.mass) == ("crate", 7.0)
+
+
+@pytest.mark.slow
+def test_parts_that_are_about_what_the_scene_has_are_told_without_costs(tmp_path: Path) -> None:
+    file = tmp_path / "cargo.yaml"
+    lines = [f"    {name}: {json.dumps(value)}" for name, value in {**DECK, "bodies": ["crate", "box"]}.items()]
+    file.write_text("/**:\n  ros__parameters:\n" + "\n".join(lines) + "\n", encoding="utf-8")
+    answer = measure_parts(file, runs=1)
+    assert {part["name"] for part in answer["parts"]} == {"core", *(part.name for part in PARTS)}
+    kept = {part["name"]: part for part in answer["parts"] if part["name"] in ("cylinder", "tilt", "several bodies")}
+    assert {name: part["on"] for name, part in kept.items()} == {
+        "cylinder": False,
+        "tilt": False,
+        "several bodies": True,
+    }
+    assert all(part[cost] is None for part in kept.values() for cost in COSTS)
+    assert answer["record"].endswith("(the body is crate)")
+    moving = next(part for part in answer["parts"] if part["name"] == "moving support")
+    assert moving["on"]
+    assert moving["us_per_sample"] > 0.0
+    assert moving["start_ms"] > 0.0
+    assert "several bodies" in printed(answer, 100)
 
 
 def test_what_is_switched_on_costs_time() -> None:

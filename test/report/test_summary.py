@@ -7,7 +7,7 @@ import json
 import numpy as np
 import pytest
 
-from impact_predictor.bags.replay import Result, Settled
+from impact_predictor.bags.replay import BodyTruth, Result, Settled
 from impact_predictor.mechanics.types import Flag, Mode, Twist
 from impact_predictor.prediction.types import Leftover, Prediction, Sample, Score, Status, Touchdown
 from impact_predictor.report.summary import (
@@ -23,6 +23,7 @@ from impact_predictor.report.summary import (
 )
 from impact_predictor.ros.messages import decode_diagnostic_array, encode_score
 from impact_predictor.scenarios.comparison import Truth
+from impact_predictor.scenarios.warned import Warned
 
 SAMPLE = Sample(
     10**9, "world", "cube", (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), (0.0,) * 3, (0.0,) * 3, (0.0,) * 36, (0.0,) * 36
@@ -159,7 +160,47 @@ def test_the_json_of_a_replay_has_the_promised_keys_and_no_nan() -> None:
         "mode_accuracy": 0.75,
         "median_velocity_error": 0.01,
         "median_time_error": None,
+        "clear": 0,
+        "clear_mode_accuracy": None,
+        "unresolved_wrong": 0,
     }
+
+
+def test_the_json_of_several_bodies_has_their_inputs_and_how_each_compares_with_the_truth() -> None:
+    truth = Truth(4, 1, 2, 3, 0.75, 0.01, None, 2, 1.0, 1)
+    result = Result(
+        "a.mcap",
+        4,
+        0.001,
+        (Settled("crate", SCORED, 1e-4),),
+        {Status.ACCEPTED: 4},
+        {},
+        (),
+        "",
+        "",
+        truth,
+        {
+            "crate": BodyTruth(truth, Warned(5, 10, None, 20)),
+            "blind": BodyTruth(None, Warned(5, None, 15, None)),
+            "still": BodyTruth(None, Warned(5, 6, None, None)),
+        },
+        {"support/odom": {Status.ACCEPTED: 9, Status.SUPPORT_JUMPED: 1}, "crate/odom": {Status.ACCEPTED: 4}},
+    )
+    answer = json.loads(json.dumps(as_json(result), allow_nan=False))
+    assert answer["inputs"] == {"support/odom": {"ACCEPTED": 9, "SUPPORT_JUMPED": 1}, "crate/odom": {"ACCEPTED": 4}}
+    compared = answer["truth"]
+    assert (compared["clear"], compared["clear_mode_accuracy"], compared["unresolved_wrong"]) == (2, 1.0, 1)
+    assert (compared["bodies_with_slide_or_impact"], compared["warned_before_first_impact"]) == (2, 1)
+    assert compared["bodies"]["crate"]["missed"] == 1
+    assert compared["bodies"]["crate"]["first_warning"] == 10
+    assert compared["bodies"]["blind"] == {
+        "first_known": 5,
+        "first_warning": None,
+        "first_slide": 15,
+        "first_impact": None,
+        "warned_before_first_impact": False,
+    }
+    assert compared["bodies"]["still"]["warned_before_first_impact"] is None
 
 
 def test_the_json_of_an_empty_replay_has_nothing_to_divide() -> None:

@@ -1,9 +1,10 @@
 import pytest
 
 from impact_predictor.mechanics.types import Flag, Mode, Twist
+from impact_predictor.prediction.remedies import REMEDIES
 from impact_predictor.prediction.types import Leftover, Score, Status, Touchdown
-from impact_predictor.ros.cdr import ERROR, OK, WARN, decode_diagnostic_array
-from impact_predictor.ros.diagnostics import REMEDIES, STALE_AFTER, Diagnostics, Refused
+from impact_predictor.ros.cdr import ERROR, OK, WARN, decode_diagnostic_array, diagnostic_array
+from impact_predictor.ros.diagnostics import STALE_AFTER, Diagnostics, Refused
 
 SECOND = 1_000_000_000
 BAD = Refused("odom", Status.NOT_FINITE)
@@ -15,11 +16,11 @@ def diagnostics():
 
 
 def accept(diagnostics, now, stamp=None, latency=0, update=50e-6, total=80e-6):
-    return diagnostics.accepted(now, round(now * SECOND) if stamp is None else stamp, latency, update, total)
+    return diagnostics.accepted(now, "odom", round(now * SECOND) if stamp is None else stamp, latency, update, total)
 
 
 def report(diagnostics, now=0.0):
-    (status,) = decode_diagnostic_array(diagnostics.report(now, round(now * SECOND)))
+    (status,) = decode_diagnostic_array(diagnostic_array(0, "", [diagnostics.report(now)]))
     return status
 
 
@@ -37,7 +38,7 @@ def test_before_the_first_sample_it_warns_and_says_whether_anybody_publishes(dia
     diagnostics.second_over(1.0)
     assert report(diagnostics).level == WARN
     assert report(diagnostics).message == "no sample yet: nobody publishes on odom"
-    diagnostics.publishers = 1
+    diagnostics.publishers["odom"] = 1
     diagnostics.second_over(2.0)
     assert report(diagnostics).message == "no sample yet"
 
@@ -159,3 +160,25 @@ def test_touchdowns_are_counted_and_the_error_is_the_median_of_the_scored(diagno
     assert values["touchdowns"] == "4"
     assert values["touchdowns.scored"] == "3"
     assert values["touchdowns.median_relative_error"] == "0.0700"
+
+
+def test_of_several_inputs_the_one_that_is_missing_or_silent_is_named():
+    diagnostics = Diagnostics("impact_predictor", 0.0, ["support/odom", "crate/odom"])
+    diagnostics.publishers["support/odom"] = 1
+    diagnostics.taken(0.1, "support/odom")
+    diagnostics.second_over(0.2)
+    assert report(diagnostics).message == "no sample yet on crate/odom: nobody publishes there"
+    assert diagnostics.accepted(0.3, "crate/odom", 0, 0, 50e-6, 80e-6)
+    assert diagnostics.level == OK
+    diagnostics.taken(1.2, "support/odom")
+    diagnostics.second_over(2.0)
+    assert report(diagnostics).message == "no sample on crate/odom for 1.7 s"
+
+
+def test_gaps_are_those_of_one_input_and_the_same_reason_on_several_is_news_once(diagnostics):
+    for now, name in ((0.1, "a/odom"), (0.2, "b/odom"), (0.4, "a/odom"), (0.5, "b/odom")):
+        diagnostics.accepted(now, name, round(now * SECOND), 0, 50e-6, 80e-6)
+    diagnostics.second_over(1.0)
+    assert report(diagnostics).values["samples.largest_gap"] == "0.3000"
+    reasons = [Refused(f"{body}/odom", Status.SUPPORT_STALE) for body in "ab"]
+    assert [diagnostics.is_news(reason) for reason in reasons] == [True, False]

@@ -21,6 +21,7 @@ from impact_predictor.mechanics.types import Flag, Mode, Twist
 from impact_predictor.prediction.types import (
     Covariance,
     Geometry,
+    Imu,
     Leftover,
     Prediction,
     Sample,
@@ -29,21 +30,26 @@ from impact_predictor.prediction.types import (
     Touchdown,
     Uncertainty,
 )
+from impact_predictor.prediction.watch import Level, Report
 from impact_predictor.ros.messages import (
     DIAGNOSTIC_ARRAY,
+    IMU,
     ODOMETRY,
     OUTPUTS,
     POLYGON,
     UINT8,
     MalformedMessage,
     decode_diagnostic_array,
+    decode_imu,
     decode_odometry,
     decode_polygon,
+    encode_imu,
     encode_mode,
     encode_odometry,
     encode_polygon,
     encode_post_impact,
     encode_prediction,
+    encode_reports,
     encode_score,
 )
 
@@ -155,6 +161,40 @@ def test_geometry_is_what_is_in_a_polygon_both_ways(little_endian: bool) -> None
         assert encode_polygon(geometry) == serialize(message, POLYGON)
 
 
+def imu_message(imu: Imu, rng: random.Random) -> Any:
+    vector = TYPES["geometry_msgs/msg/Vector3"]
+    known = np.array([rng.random() for _ in range(9)])
+    return TYPES[IMU](
+        header(imu.stamp, imu.frame_id),
+        TYPES["geometry_msgs/msg/Quaternion"](*(imu.orientation or (0.0, 0.0, 0.0, 0.0))),
+        known if imu.orientation else np.array([-1.0, *known[1:]]),
+        vector(*imu.angular),
+        known,
+        vector(*imu.specific_force),
+        known,
+    )
+
+
+@ENDIAN
+def test_a_measurement_is_what_is_in_an_imu_both_ways(little_endian: bool) -> None:
+    rng = random.Random(3)
+    for _ in range(200):
+        sample = random_sample(rng)
+        orientation = sample.orientation if rng.random() < 0.5 else None
+        imu = Imu(sample.stamp, sample.frame_id, orientation, sample.linear, sample.angular)
+        assert decode_imu(serialize(imu_message(imu, rng), IMU, little_endian)) == imu
+        assert decode_imu(encode_imu(imu)) == imu
+        read = TYPESTORE.deserialize_cdr(encode_imu(imu), IMU)
+        assert (read.orientation_covariance[0] == -1.0) == (orientation is None)
+        assert serialize(read, IMU) == encode_imu(imu)
+
+
+@pytest.mark.parametrize("data", [b"", b"\0\1\0\0", b"\0\1\0\0" + bytes(100), b"\0\1\0\0" + bytes(400)])
+def test_bytes_that_are_no_imu_are_malformed(data: bytes) -> None:
+    with pytest.raises(MalformedMessage):
+        decode_imu(data)
+
+
 def test_bytes_that_a_middleware_pads_to_four_are_read() -> None:
     sample = random_sample(random.Random(4))
     data = serialize(odometry(sample), ODOMETRY)
@@ -240,6 +280,8 @@ def check_all_decoders(data: bytes) -> None:
         assert isinstance(decode_odometry(data), Sample)
     with suppress(MalformedMessage):
         assert isinstance(decode_polygon(data), Geometry)
+    with suppress(MalformedMessage):
+        assert isinstance(decode_imu(data), Imu)
     with suppress(MalformedMessage):
         assert isinstance(decode_diagnostic_array(data), list)
 
@@ -526,3 +568,28 @@ def test_rclpy_reads_what_is_written_and_writes_what_is_read() -> None:
     polygon.polygon.points = [Point32(x=0.5, y=-1.0, z=2.0), Point32()]
     geometry = Geometry(7 * 10**9, "cube", ((0.5, -1.0, 2.0), (0.0, 0.0, 0.0)))
     assert decode_polygon(serialization.serialize_message(polygon)) == geometry
+
+
+def test_reports_on_several_units_are_one_array_as_rosbags_writes_it() -> None:
+    one, pair = TYPES["diagnostic_msgs/msg/DiagnosticStatus"], TYPES["diagnostic_msgs/msg/KeyValue"]
+    # Texts of every length modulo four, and units without any value.
+    for length in range(9):
+        values = [{f"{k}" * length: "v" * k for k in range(length)}, {}, {"level": "0.5", "reason": "x" * length}]
+        reports = [
+            Report(body, 7, Level(level), "m" * length, texts)
+            for level, (body, texts) in enumerate(zip(("a" * length, "", "crate"), values, strict=True))
+        ]
+        expected = TYPES[DIAGNOSTIC_ARRAY](
+            header(7 * 10**9 + 5, ""),
+            [
+                one(
+                    int(report.level),
+                    "impact_predictor/unit" + (f"/{report.body}" if report.body else ""),
+                    report.message,
+                    report.body,
+                    [pair(key, value) for key, value in report.values.items()],
+                )
+                for report in reports
+            ],
+        )
+        assert encode_reports(reports, 7 * 10**9 + 5) == padded(serialize(expected, DIAGNOSTIC_ARRAY))

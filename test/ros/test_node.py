@@ -2,6 +2,7 @@
 
 import math
 import os
+import sys
 import time
 from contextlib import contextmanager
 from pathlib import Path
@@ -21,7 +22,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.serialization import serialize_message
 from std_msgs.msg import UInt8
 
-from impact_predictor.ros.process import message_class
+from impact_predictor.ros.process import executor_of, message_class
 
 SCENE = Path(__file__).parents[2] / "config/cube_tosses.yaml"
 HALF = 0.05
@@ -242,14 +243,14 @@ def test_publishers_and_subscribers_that_qos_keeps_apart_from_the_node_are_named
 @pytest.fixture
 def node_without_peers(monkeypatch):
     """The node in this process, and the names of what it encodes."""
-    from impact_predictor.ros import predictor_node
+    from impact_predictor.ros import body_topics, predictor_node
 
     encoded = []
 
     def counting(name, output):
         return output._replace(encode=lambda prediction: encoded.append(name) or output.encode(prediction))
 
-    monkeypatch.setattr(predictor_node, "OUTPUTS", {name: counting(name, output) for name, output in OUTPUTS.items()})
+    monkeypatch.setattr(body_topics, "OUTPUTS", {name: counting(name, output) for name, output in OUTPUTS.items()})
     rclpy.init(args=["--ros-args", "--params-file", str(SCENE), *FIXED_POINTS])
     node = predictor_node.PredictorNode()
     yield node, encoded
@@ -259,12 +260,56 @@ def node_without_peers(monkeypatch):
 
 def test_nothing_is_encoded_for_a_topic_without_subscribers(node_without_peers):
     node, encoded = node_without_peers
-    node._on_odometry(serialize_message(odometry(0)))
+    node._bodies[""]._on_odometry(serialize_message(odometry(0)))
     assert encoded == []
     heard = node.create_subscription(message_class(OUTPUTS["mode"].type_name), "~/mode", print, 10)
     patience = time.monotonic() + PATIENCE
     while not node.count_subscribers(heard.topic_name) and time.monotonic() < patience:
         time.sleep(0.01)
     time.sleep(0.1)
-    node._on_odometry(serialize_message(odometry(1)))
+    node._bodies[""]._on_odometry(serialize_message(odometry(1)))
     assert encoded == ["mode"]
+
+
+def test_nothing_is_drawn_until_somebody_looks_nor_when_nobody_does_any_more(node_without_peers):
+    node, _ = node_without_peers
+    markers = node._reporter.markers
+    shown = []
+    viewer = rclpy.create_node("viewer", use_global_arguments=False)
+    looking = viewer.create_subscription(
+        message_class("visualization_msgs/msg/MarkerArray"), "/impact_predictor/markers", shown.append, 10, raw=True
+    )
+    until(lambda: markers.publisher.get_subscription_count() == 1)
+    node._on_second()
+    node._bodies[""]._on_odometry(serialize_message(odometry(0)))
+    assert "impact_predictor.ros.markers" in sys.modules
+    executor = SingleThreadedExecutor()
+    executor.add_node(viewer)
+    until(lambda: executor.spin_once(timeout_sec=0.02) or shown)
+    viewer.destroy_subscription(looking)
+    until(lambda: markers.publisher.get_subscription_count() == 0)
+    node._on_second()
+    assert markers.drawing is None
+    executor.shutdown()
+    viewer.destroy_node()
+
+
+def until(condition):
+    patience = time.monotonic() + PATIENCE
+    while not condition():
+        assert time.monotonic() < patience
+        time.sleep(0.01)
+
+
+def test_without_an_events_executor_the_single_threaded_one_is_used_and_one_sentence_says_so(
+    node_without_peers, monkeypatch, capfd
+):
+    node, _ = node_without_peers
+    monkeypatch.setitem(sys.modules, "rclpy.experimental", None)
+    executor, period = executor_of(node, "events")
+    assert type(executor) is SingleThreadedExecutor
+    assert period is None
+    executor.shutdown()
+    said = capfd.readouterr().err
+    assert said.count("\n") == 1
+    assert "this rclpy has no events executor, so the single-threaded one is used" in said

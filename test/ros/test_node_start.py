@@ -14,17 +14,24 @@ needs_ros = pytest.mark.skipif(
     reason="the node needs ROS 2: source it, or install the extra `ros`",
 )
 NODE = [sys.executable, "-m", "impact_predictor.ros.node"]
-SCENE = Path(__file__).parents[2] / "config/cube_tosses.yaml"
+CONFIG = Path(__file__).parents[2] / "config"
+SCENE = CONFIG / "cube_tosses.yaml"
 PATIENCE = 20.0
 
 
 @needs_ros
 @pytest.mark.slow
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize("executor", ["single", "events"])
-def test_a_signal_ends_the_node_with_status_0_whenever_it_comes(number, executor):
-    for moment in (0.0, 0.05, 0.1, 0.2, 0.4, 0.8, 1.6):
-        arguments = ("--ros-args", "--params-file", SCENE, "-p", f"executor:={executor}")
+@pytest.mark.parametrize(
+    ("number", "executor", "scene"),
+    [
+        (signal.SIGINT, "single", "cube_tosses"),
+        (signal.SIGTERM, "events", "cube_tosses"),
+        (signal.SIGINT, "events", "deck_crate"),
+    ],
+)
+def test_a_signal_ends_the_node_with_status_0_whenever_it_comes(number, executor, scene):
+    for moment in (0.0, 0.1, 0.2, 0.3, 0.5, 1.2):
+        arguments = ("--ros-args", "--params-file", CONFIG / f"{scene}.yaml", "-p", f"executor:={executor}")
         node = subprocess.Popen([*NODE, *arguments], stderr=subprocess.PIPE, text=True)
         send(node, number, moment)
         _, complaint = node.communicate(timeout=PATIENCE)

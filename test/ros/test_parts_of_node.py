@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import pickle
 import subprocess
 import sys
@@ -12,12 +13,22 @@ import pytest
 
 from impact_predictor.parameter_file import read_values
 from impact_predictor.parameters import validate
+from impact_predictor.prediction.inputs import inputs_of
 from impact_predictor.prediction.parts import ladder, modules_of
-from impact_predictor.prediction.scene import Scene
-from impact_predictor.prediction.types import Sample
+from impact_predictor.prediction.scene import scenes_of
+from impact_predictor.prediction.types import Geometry, Sample
+from impact_predictor.report.parts.measure import measured
 from impact_predictor.report.parts.record import made
 from impact_predictor.report.parts.start import arguments_of
-from impact_predictor.ros.messages import encode_odometry, encode_polygon
+from impact_predictor.ros.messages import (
+    DIAGNOSTIC_ARRAY,
+    IMU,
+    ODOMETRY,
+    POLYGON,
+    encode_imu,
+    encode_odometry,
+    encode_polygon,
+)
 
 pytest.importorskip("rclpy", reason="the node needs ROS 2: source it, or install the extra `ros`")
 
@@ -35,72 +46,41 @@ SCENES: dict[str, Any] = {
     "events": validate({**BOX, "executor": "events"}),
 }
 
-# The node, with somebody who publishes to it and one who reads what it publishes.
-SERVE = """
-import pickle, sys, time
-messages = pickle.load(sys.stdin.buffer)
-import impact_predictor.ros.node
-import rclpy
-rclpy.init(args=sys.argv)
-from rclpy.node import Node
-from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY, ODOMETRY, POLYGON
-from impact_predictor.ros.predictor_node import PredictorNode
-from impact_predictor.ros.process import executor_of, message_class
-node, other = PredictorNode(), Node("other", use_global_arguments=False)
-runner, _ = executor_of(node, node.executor_kind)
-runner.add_node(node)
-inputs = {kind: other.create_publisher(message_class(kind), topic, 100)
-          for kind, topic in ((ODOMETRY, "odom"), (POLYGON, "contact_geometry"))}
-prediction = "/impact_predictor/prediction"
-reader = other.create_subscription(message_class(DIAGNOSTIC_ARRAY), prediction, print, 100, raw=True)
-patience = time.monotonic() + 20.0
-def until(true):
-    while not true():
-        assert time.monotonic() < patience
-        runner.spin_once(timeout_sec=0.05)
-until(lambda: inputs[ODOMETRY].get_subscription_count() and node.count_subscribers(prediction))
-topics = {one.topic_name for one in node.subscriptions}
-for kind, data in messages:
-    if kind == POLYGON:
-        if "/contact_geometry" in topics and not node._predictor._points:
-            inputs[kind].publish(data)
-            until(lambda: node._predictor._points)
-        continue
-    served = node.served()
-    inputs[kind].publish(data)
-    until(lambda: node.served() > served)
-print("TOPICS", *topics)
-print("MODULES", *sys.modules)
-sys.stdout.flush()
-import os; os._exit(0)
-"""
+SERVE = Path(__file__).with_name("serve.py")
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", SCENES)
 def test_the_node_loads_the_core_and_the_parts_of_its_scene_and_nothing_else(name: str) -> None:
     values = SCENES[name]
-    record = made(Scene.from_parameters(values))
-    messages = [
-        ("nav_msgs/msg/Odometry", encode_odometry(message))
-        if isinstance(message, Sample)
-        else ("geometry_msgs/msg/PolygonStamped", encode_polygon(message))
-        for message in record.messages[:60]
-    ]
+    body, scene = measured(values)
+    prefix = f"/{body}/" if body else "/"
+    record = made(scene)
+    messages: list[tuple[str, str, bytes]] = []
+    for message in record.messages[:300]:
+        if isinstance(message, Geometry):
+            messages.append((f"{prefix}contact_geometry", POLYGON, encode_polygon(message)))
+        elif isinstance(message, Sample):
+            messages.append((f"{prefix}odom", ODOMETRY, encode_odometry(message)))
+        elif isinstance(message.message, Sample):
+            messages.append(("/support/odom", ODOMETRY, encode_odometry(message.message)))
+        else:
+            messages.append(("/support/imu", IMU, encode_imu(message.message)))
+    outputs = {f"/impact_predictor{prefix}prediction": DIAGNOSTIC_ARRAY, "/diagnostics": DIAGNOSTIC_ARRAY}
     done = subprocess.run(
-        [sys.executable, "-c", SERVE, *arguments_of(values)],
-        input=pickle.dumps(messages),
+        [sys.executable, str(SERVE), *arguments_of(values)],
+        input=pickle.dumps((messages, outputs)),
         capture_output=True,
         cwd=ROOT,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
         timeout=90.0,  # numba may have to compile
     )
     assert done.returncode == 0, done.stderr.decode()
-    found = {line.split()[0]: set(line.split()[1:]) for line in done.stdout.decode().splitlines() if line}
-    modules = {name.removeprefix("impact_predictor.") for name in found["MODULES"]}
+    _, topics, loaded = pickle.loads(done.stdout)
+    modules = {name.removeprefix("impact_predictor.") for name in loaded}
     rooms = {name for name in modules if name.split(".")[0] in ("mechanics", "prediction", "ros")}
     assert rooms == modules_of(values, node=True)
     unwanted = {"click", "matplotlib", "rich", "rosbags", "ruamel", "scipy", "statistics"}
     assert not (unwanted if not values["uncertainty.samples"] else unwanted - {"statistics", "scipy"}) & modules
     assert ("numba" in modules) <= bool(values["uncertainty.samples"])
-    assert ("/contact_geometry" in found["TOPICS"]) == (not values["body.contact_points"])
-    assert "/odom" in found["TOPICS"]
+    assert topics - {"/parameter_events"} == {f"/{one.name}" for one in inputs_of(scenes_of(values))}

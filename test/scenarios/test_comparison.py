@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import pytest
 
 from impact_predictor.mechanics.types import Flag, Mode, Twist
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.prediction.types import Leftover, Prediction, Sample, Status, Touchdown
-from impact_predictor.scenarios.comparison import Announcements, Truth, compare
+from impact_predictor.scenarios.comparison import Announcements, Truth
+from impact_predictor.scenarios.comparison import compare as compare_all
 from impact_predictor.scenarios.truth import TrueImpact
 
 SCENE = Scene(1.0, ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), 0.5, contact_time=0.001)
@@ -39,6 +42,10 @@ TOUCHDOWN = Touchdown(
     offset=0.0,
     leftover=Leftover.NONE,
 )
+
+
+def compare(impacts: Iterable[TrueImpact], announcements: Announcements, scene: Scene) -> Truth:
+    return compare_all(impacts, announcements, {"": scene}).together
 
 
 def impact(at: float, **changes: object) -> TrueImpact:
@@ -78,7 +85,7 @@ def record(until: int, announced: dict[int, float] | None = None, **changes: obj
 
 def test_a_touchdown_that_is_predicted_exactly_has_no_error() -> None:
     made = record(100, dict.fromkeys(range(20, 60), 60.0))
-    assert compare([impact(60)], made, SCENE) == Truth(1, 0, 0, 0, 1.0, 0.0, 0.0)
+    assert compare([impact(60)], made, SCENE) == Truth(1, 0, 0, 0, 1.0, 0.0, 0.0, 1, 1.0)
 
 
 def test_the_error_of_time_is_that_of_the_prediction_20_ms_ahead() -> None:
@@ -113,13 +120,13 @@ def test_a_prediction_is_of_a_touchdown_within_20_ms(away: float, found: bool) -
 
 def test_a_prediction_that_pauses_is_of_one_touchdown() -> None:
     made = record(100, {at: 60.0 for at in range(20, 60) if at not in (30, 31, 45)})
-    assert compare([impact(60)], made, SCENE) == Truth(1, 0, 0, 0, 1.0, 0.0, 0.0)
+    assert compare([impact(60)], made, SCENE) == Truth(1, 0, 0, 0, 1.0, 0.0, 0.0, 1, 1.0)
 
 
 def test_of_two_touchdowns_close_together_each_has_its_own_predictions() -> None:
     first, second = dict.fromkeys(range(20, 50), 50.0), dict.fromkeys(range(51, 56), 56.0)
     truth = compare([impact(50), impact(56, mode=Mode.STOP)], record(100, first | second), SCENE)
-    assert truth == Truth(2, 0, 0, 0, 0.5, 0.0, 0.0)
+    assert truth == Truth(2, 0, 0, 0, 0.5, 0.0, 0.0, 2, 0.5)
 
 
 def test_nothing_is_predicted_of_what_has_happened() -> None:
@@ -138,7 +145,7 @@ def test_what_the_record_does_not_reach_is_not_counted() -> None:
 def test_impacts_that_no_sample_shows_are_not_missed() -> None:
     # At 10.2 ms there was no sample since 10.1 ms, at 11.4 ms one; gravity makes 0.00981 m/s in the 1 ms of a contact.
     impacts = [impact(10.1), impact(10.2), impact(11.4), impact(20.5, approach=0.0098)]
-    assert compare(impacts, record(100, {5: 10.1, 6: 10.1}), SCENE) == Truth(1, 0, 0, 3, 1.0, 0.0, None)
+    assert compare(impacts, record(100, {5: 10.1, 6: 10.1}), SCENE) == Truth(1, 0, 0, 3, 1.0, 0.0, None, 1, 1.0)
     assert compare(impacts, record(100), SCENE) == Truth(1, 1, 0, 3, None, None, None)
 
 
@@ -147,7 +154,7 @@ def test_bodies_are_told_apart_and_those_without_samples_do_not_count() -> None:
     for at in range(101):
         made.add(Prediction(Status.ACCEPTED, sample(at, "plate"), None))
     impacts = [impact(60), impact(60, body="plate"), impact(60, body="cylinder")]
-    assert compare(impacts, made, SCENE) == Truth(2, 1, 0, 0, 1.0, 0.0, 0.0)
+    assert compare(impacts, made, SCENE) == Truth(2, 1, 0, 0, 1.0, 0.0, 0.0, 1, 1.0)
     assert compare([impact(60)], Announcements(), SCENE) == NOTHING
 
 
@@ -156,3 +163,48 @@ def test_velocities_are_compared_at_the_mass_centre() -> None:
     scene = SCENE._replace(center_of_mass=(0.2, 0.0, 0.0))
     made = record(100, dict.fromkeys(range(20, 60), 60.0), linear=(0.0, 0.0, 0.7))
     assert compare([impact(60)], made, scene).median_velocity_error == pytest.approx(0.0, abs=1e-15)
+
+
+def test_the_mode_counts_where_a_small_error_does_not_change_it() -> None:
+    first, second = dict.fromkeys(range(20, 50), 50.0), dict.fromkeys(range(51, 90), 90.0)
+    made = record(100, first | second)
+    near = impact(50, mode=Mode.STOP, border=0.019)
+    truth = compare([near, impact(90, border=0.021)], made, SCENE)
+    assert (truth.mode_accuracy, truth.clear, truth.clear_mode_accuracy) == (0.5, 1, 1.0)
+    truth = compare([near], record(100, first), SCENE)
+    assert (truth.mode_accuracy, truth.clear, truth.clear_mode_accuracy) == (0.0, 0, None)
+
+
+def test_a_wrong_prediction_of_an_impact_that_no_record_shows_is_counted_apart() -> None:
+    slow = impact(60, approach=0.001, mode=Mode.STOP)
+    truth = compare([slow], record(100, dict.fromkeys(range(20, 60), 60.0)), SCENE)
+    assert (truth.touchdowns, truth.false, truth.unresolved, truth.unresolved_wrong) == (0, 0, 1, 1)
+    right = compare([slow._replace(mode=Mode.PIVOT)], record(100, dict.fromkeys(range(20, 60), 60.0)), SCENE)
+    assert (right.unresolved, right.unresolved_wrong) == (1, 0)
+    assert compare([slow], record(100), SCENE).unresolved_wrong == 0
+
+
+def named(names: dict[str, str], announced: float) -> Announcements:
+    """What is announced for a time in ms of bodies by their names, whose frames are given."""
+    made = Announcements()
+    for at in range(100):
+        for name, frame in names.items():
+            ahead = TOUCHDOWN._replace(lead_time=(announced - at) / 1000) if 20 <= at < announced else None
+            made.add(Prediction(Status.ACCEPTED, sample(at, frame), ahead), name)
+    return made
+
+
+def test_bodies_go_by_their_names_and_truths_may_call_them_by_their_frames() -> None:
+    made = named({"crate": "crate_link", "drum": "drum"}, 60.0)
+    impacts = [impact(60, body="crate_link"), impact(60, body="drum", mode=Mode.STOP)]
+    together, bodies = compare_all(impacts, made, {"crate": SCENE, "drum": SCENE})
+    assert (together.touchdowns, together.missed, together.mode_accuracy) == (2, 0, 0.5)
+    assert {name: truth.mode_accuracy for name, truth in bodies.items()} == {"crate": 1.0, "drum": 0.0}
+
+
+def test_each_body_is_compared_in_its_own_scene() -> None:
+    # Gravity makes 0.981 m/s in the 0.1 s of a contact of the drum, so that 0.5 m/s cannot be told from rest there.
+    made = named({"crate": "crate", "drum": "drum"}, 60.0)
+    impacts = [impact(60, body=name, approach=0.5) for name in ("crate", "drum")]
+    _, bodies = compare_all(impacts, made, {"crate": SCENE, "drum": SCENE._replace(contact_time=0.1)})
+    assert [(truth.touchdowns, truth.unresolved) for truth in bodies.values()] == [(1, 0), (0, 1)]

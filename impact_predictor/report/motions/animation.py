@@ -30,7 +30,7 @@ SPEEDS: Final = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0,
 
 _LONGEST: Final = 10.0
 """Seconds that a picture lasts at most, unless its motion is longer than the highest speed can show."""
-_STEP: Final = 0.06
+STEP: Final = 0.06
 """Seconds for which a frame is seen; GIF counts in hundredths of a second."""
 _STILL: Final = 1.5
 """Seconds for which the end is seen before it begins again."""
@@ -67,7 +67,7 @@ def speed_of(rockings: Sequence[Rocking]) -> float:
 
 def times_of(rockings: Sequence[Rocking]) -> list[float]:
     """The moments in s at which frames are drawn."""
-    step = speed_of(rockings) * _STEP
+    step = speed_of(rockings) * STEP
     longest = max(rocking.run.time for rocking in rockings)
     return [k * step for k in range(2 + int(longest / step))]
 
@@ -82,16 +82,28 @@ def write_animation(
     """
     path = check_animation(path)
     with matplotlib.rc_context(STYLE):
-        film = _Film(rockings)
-        times = times_of(rockings)
-        palette = _palette_of(film.frame(time) for time in times[:: max(1, len(times) // _LOOKS)])
-        frames = []
-        for done, time in enumerate(times, 1):
-            frames.append(film.frame(time).quantize(palette=palette, dither=Image.Dither.NONE))
-            if tell is not None:
-                tell(done)
+        save_film(path, _Film(rockings).frame, times_of(rockings), tell)
+
+
+def save_film(
+    path: Path,
+    frame: Callable[[float], Image.Image],
+    times: Sequence[float],
+    tell: Callable[[int], None] | None = None,
+) -> None:
+    """Write the frames of some moments as a GIF, in few colours; the last one is seen longer.
+
+    Raises:
+        InputError: the file cannot be written.
+    """
+    palette = _palette_of(frame(time) for time in times[:: max(1, len(times) // _LOOKS)])
+    frames = []
+    for done, time in enumerate(times, 1):
+        frames.append(frame(time).quantize(palette=palette, dither=Image.Dither.NONE))
+        if tell is not None:
+            tell(done)
     first, *others = frames
-    durations = [round(1000 * _STEP)] * len(others) + [round(1000 * _STILL)]
+    durations = [round(1000 * STEP)] * len(others) + [round(1000 * _STILL)]
     with whole(path) as partial:
         first.save(partial, "GIF", save_all=True, append_images=others, duration=durations, loop=0, optimize=True)
 
@@ -117,7 +129,7 @@ class _Film:
     def __init__(self, rockings: Sequence[Rocking]) -> None:
         speed = speed_of(rockings)
         figure = Figure(figsize=(_WIDTH, _WIDTH), dpi=_DPI)
-        self._canvas = cast(Any, FigureCanvasAgg(figure))  # its methods have no types
+        FigureCanvasAgg(figure)
         self._digits = _digits(speed)
         count = len(rockings)
         axes = [figure.add_axes((0.0, 0.0, 1.0, 1.0)) for _ in rockings]
@@ -137,17 +149,30 @@ class _Film:
         figure.text(0.02, s=_pace(speed), color="#555555", **corner)
         self._clock = figure.text(0.98, s="", ha="right", family="monospace", **corner)
         self._parts: list[Stage | _Traces] = [*self._stages, traces]
-        self._moving = [self._clock, *(artist for part in self._parts for artist in part.moving)]
-        for artist in self._moving:
-            artist.set_animated(True)
-        self._canvas.draw()
-        self._background = self._canvas.copy_from_bbox(figure.bbox)
+        moving = [self._clock, *(artist for part in self._parts for artist in part.moving)]
+        self._picture = Picture(figure, moving)
 
     def frame(self, time: float) -> Image.Image:
         """The picture at a time in s."""
         for part in self._parts:
             part.show(time)
         self._clock.set_text(f"t = {time:.{self._digits}f} s")
+        return self._picture.now()
+
+
+class Picture:
+    """A figure of which little is drawn anew for each frame: what is `moving`, from the back to the front."""
+
+    def __init__(self, figure: Figure, moving: Sequence[Artist]) -> None:
+        self._canvas = cast(Any, figure.canvas)  # its methods have no types
+        self._moving = moving
+        for artist in moving:
+            artist.set_animated(True)
+        self._canvas.draw()
+        self._background = self._canvas.copy_from_bbox(figure.bbox)
+
+    def now(self) -> Image.Image:
+        """The figure as it is now."""
         self._canvas.restore_region(self._background)
         for artist in self._moving:
             self._canvas.figure.draw_artist(artist)

@@ -11,12 +11,12 @@ from time import process_time_ns
 from typing import Any, Final
 
 from ...parameter_file import read_values
-from ...prediction.parts import EVENTS, Part, Values, ladder
-from ...prediction.predictor import Predictor
-from ...prediction.scene import Scene
-from ...prediction.types import Prediction, Sample
+from ...prediction.monitor import Monitor
+from ...prediction.parts import EVENTS, PARTS, Part, Values, ladder
+from ...prediction.scene import Scene, scenes_of
+from ...prediction.types import Geometry, Prediction, Sample
 from ...ros.messages import OUTPUTS
-from .record import Record, record_of
+from .record import OfSupport, Record, record_of
 from .start import Start, Starts, Steps, starts_of
 
 Tell = Callable[[float], None]
@@ -24,6 +24,7 @@ Tell = Callable[[float], None]
 CORE: Final = "core"
 WHY_CORE: Final = "every scene: samples, impact plane, motion until the touchdown, impact, score"
 
+COSTS: Final = ("us_per_sample", "start_ms", "start_mb")
 SAMPLES: Final = 400
 RUNS: Final = 5
 BUDGET: Final = 0.7
@@ -54,7 +55,8 @@ def measure_parts(params: str | os.PathLike[str], tell: Tell = _nobody, runs: in
     """
     values, name = read_values(params), Path(params).stem
     steps = ladder(values)
-    record = record_of(name, Scene.from_parameters(values), SAMPLES)
+    body, one = measured(values)
+    record = record_of(name, one, SAMPLES)
     costs = us_per_sample(steps, record, runs, lambda done: tell(0.5 * done))
     starts = starts_of(steps, runs, lambda done: tell(50 + 0.5 * done))
     scene = max(k for k, (part, _) in enumerate(steps) if part is None or part.on(values))
@@ -70,6 +72,11 @@ def measure_parts(params: str | os.PathLike[str], tell: Tell = _nobody, runs: in
                 **_start(part, predictor, node),
             }
             for (part, _), us, predictor, node in zip_longest(steps, added, starts.predictor, starts.node)
+        ]
+        + [
+            {"name": part.name, "on": part.on(values), "why": part.why(values), **dict.fromkeys(COSTS)}
+            for part in PARTS
+            if part not in [step for step, _ in steps]
         ],
         "us_per_sample": costs[scene],
         **_sum(starts.predictor[: scene + 1]),
@@ -77,7 +84,7 @@ def measure_parts(params: str | os.PathLike[str], tell: Tell = _nobody, runs: in
         "node": _node(starts, scene, values["executor"] == "events"),
         "why_no_node": starts.why_no_node,
         "outputs": us_per_output(values, record),
-        "record": record.origin,
+        "record": record.origin + (f" (the body is {body})" if body else ""),
     }
 
 
@@ -131,35 +138,60 @@ def us_per_sample(steps: Steps, record: Record, runs: int, tell: Tell = _nobody)
     return [median(cost) for cost in costs]
 
 
-def predictor_of(values: Values, record: Record) -> Predictor:
-    """The predictor of a scene, with the contact points of the record where they are parameters."""
-    scene = Scene.from_parameters(values)
-    return Predictor(scene._replace(points=record.points) if scene.points else scene)
+def measured(values: Values) -> tuple[str, Scene]:
+    """The body that costs are measured of, with its scene: the first whose pose is measured, if there is one."""
+    scenes = scenes_of(values)
+    body = next((body for body, scene in scenes.items() if scene.source == "odom"), next(iter(scenes)))
+    return body, scenes[body]
+
+
+def monitor_of(values: Values, record: Record) -> tuple[str, Monitor]:
+    """The predictors of a scene, and the body of the record, with its contact points where they are parameters."""
+    scenes = scenes_of(values)
+    body, scene = measured(values)
+    if scene.points:
+        scenes[body] = scene._replace(points=record.points)
+    return body, Monitor(scenes)
 
 
 def _run(values: Values, record: Record) -> float:
-    predictor = predictor_of(values, record)
-    has_topic, wants_margins = not predictor.scene.points, predictor.scene.margins
+    body, monitor = monitor_of(values, record)
+    wants_margins = monitor.scenes[body].margins
     began = process_time_ns()
     for message in record.messages:
-        if isinstance(message, Sample):
-            touchdown = predictor.update(message).touchdown
-            if wants_margins and touchdown is not None and touchdown.planar is not None:
-                touchdown.planar.margins  # noqa: B018  # found when they are read
-        elif has_topic:
-            predictor.set_geometry(message)
+        prediction = take(monitor, body, message)
+        touchdown = None if prediction is None else prediction.touchdown
+        if wants_margins and touchdown is not None and touchdown.planar is not None:
+            touchdown.planar.margins  # noqa: B018  # found when they are read
     return 1e-3 * (process_time_ns() - began) / record.samples
+
+
+def take(monitor: Monitor, body: str, message: Geometry | Sample | OfSupport) -> Prediction | None:
+    """Hand a message of a record to whom it concerns, if anybody; the answer to a sample."""
+    if isinstance(message, OfSupport):
+        if monitor.deck is not None:
+            if isinstance(message.message, Sample):
+                monitor.update_support(message.message)
+            else:
+                monitor.update_support_imu(message.message)
+            monitor.reports()
+    elif body in monitor.predictors:
+        if isinstance(message, Sample):
+            prediction = monitor.update(body, message)
+            monitor.reports()
+            return prediction
+        if monitor.scenes[body].needs_geometry:
+            monitor.set_geometry(body, message)
+    return None
 
 
 def us_per_output(values: Values, record: Record) -> dict[str, float]:
     """Microseconds of CPU time in which each output of the scene is encoded, for each sample of a record."""
-    predictor = predictor_of(values, record)
-    predictions: list[Prediction] = []
-    for message in record.messages:
-        if isinstance(message, Sample):
-            predictions.append(predictor.update(message))
-        elif not predictor.scene.points:
-            predictor.set_geometry(message)
+    body, monitor = monitor_of(values, record)
+    answers = [take(monitor, body, message) for message in record.messages]
+    predictions = [answer for answer in answers if answer is not None]
+    if not predictions:
+        return {}
     costs = {}
     for name, output in OUTPUTS.items():
         began = process_time_ns()

@@ -11,8 +11,8 @@ from typing import Final, NamedTuple
 from ...errors import InputError
 from ...prediction.planar import inertia_about
 from ...prediction.predictor import PAUSE
-from ...prediction.scene import Scene
-from ...prediction.types import Geometry, Quaternion, Sample, Vector3
+from ...prediction.scene import MovingDeck, Scene
+from ...prediction.types import Geometry, Imu, Quaternion, Sample, Vector3
 from ...prediction.vectors import add, axes_of, cross, dot, mean, times, to_body, to_world, turned
 from ...resources import find
 
@@ -31,13 +31,28 @@ LEVEL: Final = 1e-3
 """Points that lie higher by less than this part of the body's size are on one level."""
 COVARIANCE: Final = tuple(1e-4 if i % 7 == 0 else 0.0 for i in range(36))
 
+GAP: Final = 0.3
+"""Seconds between two made motions: longer than a pause."""
+SUPPORT_RATE: Final = 100
+"""Messages per second about a support at rest, which count where the support is said to move."""
+BEFORE: Final = 0.4
+"""Seconds of them before each recorded motion: twice the usual window."""
+LEAD: Final = 1.5
+"""Seconds of them before the first motion, beyond their window: in less nobody believes what a sensor feels."""
+
 Motion = list[Sample]
 
 
-class Record(NamedTuple):
-    """Motions of a body, each after its contact points; `origin` says where they are from."""
+class OfSupport(NamedTuple):
+    """A message about the support: its pose and twist, or what a sensor on it measures."""
 
-    messages: tuple[Geometry | Sample, ...]
+    message: Sample | Imu
+
+
+class Record(NamedTuple):
+    """Motions of a body, each after its contact points, and of its support; `origin` says where they are from."""
+
+    messages: tuple[Geometry | Sample | OfSupport, ...]
     points: tuple[Vector3, ...]
     origin: str
 
@@ -48,6 +63,8 @@ class Record(NamedTuple):
 
 def record_of(name: str, scene: Scene, samples: int) -> Record:
     """About so many samples for the scene of a name: of examples/NAME where that exists, else made ones."""
+    if scene.deck is not None or scene.radius:
+        return made(scene)
     try:
         bag = find(f"examples/{name}")
     except InputError:
@@ -56,24 +73,54 @@ def record_of(name: str, scene: Scene, samples: int) -> Record:
     if scene.frame not in ("", motions[0][0].frame_id):
         return made(scene)  # another scene of that name
     motions = motions[:: max(1, round(sum(map(len, motions)) / samples))]
-    return _record(motions, points, f"{sum(map(len, motions))} samples of examples/{name}, taken from all over it")
+    origin = f"{sum(map(len, motions))} samples of examples/{name}, taken from all over it"
+    support = [
+        message
+        for motion in motions
+        for message in _still(scene, motion[0].stamp - round(BEFORE * NANOSECONDS), motion[-1].stamp)
+    ]
+    return _record(motions, points, origin, support)
 
 
 def made(scene: Scene) -> Record:
-    """The body let fall from what it stands on, to every side, and thrown."""
-    motions = [
-        [sample._replace(stamp=sample.stamp + 2 * k * NANOSECONDS) for sample in motion]  # far beyond a pause
-        for k, motion in enumerate([*falls(scene), *throws(scene)])
-    ]
+    """The body let fall from what it stands on, to every side, and thrown; its support lies still."""
+    start = (scene.deck or MovingDeck()).window + LEAD
+    motions: list[Motion] = []
+    for motion in (*falls(scene), *(() if scene.radius else throws(scene))):
+        motions.append([sample._replace(stamp=sample.stamp + round(start * NANOSECONDS)) for sample in motion])
+        start = motions[-1][-1].stamp / NANOSECONDS + GAP
     origin = f"{sum(map(len, motions))} samples at {RATE} Hz of falls and throws of this body, made up for this"
-    return _record(motions, points_of(scene), origin)
+    return _record(motions, points_of(scene), origin, _still(scene, 0, round(start * NANOSECONDS)))
 
 
-def _record(motions: list[Motion], points: tuple[Vector3, ...], origin: str) -> Record:
-    messages: list[Geometry | Sample] = []
+def _still(scene: Scene, begin: int, end: int) -> list[OfSupport]:
+    """Messages about a support at rest from one stamp to another, in ns."""
+    return [OfSupport(still(scene, stamp)) for stamp in range(begin, end, NANOSECONDS // SUPPORT_RATE)]
+
+
+def _stamp_of(message: Geometry | Sample | OfSupport) -> int:
+    return message.message.stamp if isinstance(message, OfSupport) else message.stamp
+
+
+def still(scene: Scene, stamp: int) -> Sample | Imu:
+    """A message about a moving support that lies level at a stamp in ns, at the origin of its world."""
+    level, nothing, deck = (0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0), scene.deck
+    if deck is not None and deck.source == "imu":
+        return Imu(stamp, frame_of(scene), level, nothing, times(scene.gravity, -1.0))
+    return Sample(stamp, frame_of(scene), "support", nothing, level, nothing, nothing, COVARIANCE, COVARIANCE)
+
+
+def frame_of(scene: Scene) -> str:
+    """The frame of made samples."""
+    return scene.frame or "world"
+
+
+def _record(motions: list[Motion], points: tuple[Vector3, ...], origin: str, support: list[OfSupport]) -> Record:
+    messages: list[Geometry | Sample | OfSupport] = [*support]
     for motion in motions:
         messages += [Geometry(motion[0].stamp, "", points), *motion]
-    return Record(tuple(messages), points, origin)
+    # The support comes first where stamps are the same, and the points of the body before its state.
+    return Record(tuple(sorted(messages, key=_stamp_of)), points, origin)
 
 
 def _motions_of(bag: Path, scene: Scene) -> tuple[list[Motion], tuple[Vector3, ...]]:
@@ -98,7 +145,16 @@ def _motions_of(bag: Path, scene: Scene) -> tuple[list[Motion], tuple[Vector3, .
 
 
 def points_of(scene: Scene) -> tuple[Vector3, ...]:
-    """The contact points of a scene; where they come with the samples, the corners of the cube of its inertia."""
+    """The contact points of a scene; where they come with the samples, the corners of the cube of its inertia.
+
+    Those of a cylinder are its edges as it lies on them, seen from its axis.
+    """
+    if scene.radius:
+        first, second = scene.edges
+        line = add(second, first, -1.0)
+        high = sqrt(scene.radius * scene.radius - 0.25 * dot(line, line))
+        rest = add(times(add(first, second), 0.5), scene.normal, high)
+        return tuple(add(add(edge, rest, -1.0), scene.center_of_mass) for edge in scene.edges)
     if scene.points:
         return scene.points
     # A cube has the inertia (2/3) m h^2 about its middle, h being half its side.
@@ -126,7 +182,7 @@ def _fall(scene: Scene, foot: Vector3, side: Vector3, arm: tuple[float, float], 
     """From a tilt in rad about the foot, against the direction `side`, until the body lies flat, and a bit longer."""
     radius, bearing = hypot(*arm), atan2(arm[1], arm[0])
     stiffness = _pull(scene) * radius / (inertia_about(scene, side, True) / scene.mass + radius * radius)
-    upright, ground = _upright(scene), times(scene.normal, scene.height)
+    upright, ground = _upright(scene), _ground(scene, foot)
     states, rate, flat = [], 0.0, 0
     while flat < 5:  # what a touchdown is measured by, and one more
         states.append((tilt, rate))
@@ -153,7 +209,7 @@ def throws(scene: Scene) -> Iterator[Motion]:
         height = random.uniform(0.2, 1.0) * size - min(
             dot(normal, to_world(axes_of(orientation), point)) for point in points
         )
-        place = add(times(normal, scene.height + height), to_world(axes_of(orientation), center))
+        place = add(add(_ground(scene), normal, height), to_world(axes_of(orientation), center))
         motion, gap = [], size
         while gap > 0.0:
             axes = axes_of(orientation)
@@ -169,9 +225,16 @@ def throws(scene: Scene) -> Iterator[Motion]:
 def _stamped(scene: Scene, motion: list[tuple[Vector3, Quaternion, Vector3, Vector3]]) -> Motion:
     period = NANOSECONDS // RATE
     return [
-        Sample(k * period, scene.frame, "", position, orientation, linear, angular, COVARIANCE, COVARIANCE)
+        Sample(k * period, frame_of(scene), "", position, orientation, linear, angular, COVARIANCE, COVARIANCE)
         for k, (position, orientation, linear, angular) in enumerate(motion)
     ]
+
+
+def _ground(scene: Scene, foot: Vector3 | None = None) -> Vector3:
+    """Where a foot of the body stands on its support: a cylinder on an edge, else where the body is placed."""
+    if scene.radius and foot is not None:
+        return next(edge for edge, point in zip(scene.edges, points_of(scene), strict=True) if point == foot)
+    return add(scene.place, scene.normal, scene.height - dot(scene.normal, scene.place))
 
 
 def _any(random: Random, largest: float) -> Vector3:

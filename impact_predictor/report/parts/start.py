@@ -52,7 +52,8 @@ def starts_of(steps: Steps, runs: int, tell: Callable[[float], None]) -> Starts:
     if find_spec("rclpy") is None:
         return Starts(predictor, [], None, NO_ROS)
     try:
-        node, messages = _measured(steps, arguments_of(steps[0][1]), runs // 2 + 1, lambda done: tell(35 + 0.65 * done))
+        arguments = arguments_of(with_poses(steps[0][1]))
+        node, messages = _measured(steps, arguments, runs // 2 + 1, lambda done: tell(35 + 0.65 * done))
     except InputError as error:
         return Starts(predictor, [], None, str(error))
     return Starts(predictor, node, messages, "")
@@ -95,6 +96,12 @@ def _probe(steps: Sequence[dict[str, Any] | str], arguments: tuple[str, ...]) ->
         said = probe.stderr.decode(errors="replace").strip().splitlines()
         raise InputError(f"the start cannot be measured: {said[-1] if said else f'status {probe.returncode}'}")
     return list(zip(numbers[::2], numbers[1::2], strict=True))
+
+
+def with_poses(values: Values) -> dict[str, Any]:
+    """The values with a source of the pose of each body: without one, a node that watches nothing has nothing to do."""
+    own = [f"{body}.source" for body in values["bodies"]]
+    return {**values, **{name: "odom" for name in ("source", *own) if name in values}}
 
 
 def arguments_of(values: Values) -> tuple[str, ...]:

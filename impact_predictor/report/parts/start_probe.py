@@ -49,13 +49,13 @@ def take(step: dict[str, Any] | str, node: Any) -> object:
         from impact_predictor.ros.process import executor_of
 
         return executor_of(node, "events")
-    from impact_predictor.prediction.predictor import Predictor
-    from impact_predictor.prediction.scene import Scene
+    from impact_predictor.prediction.monitor import Monitor
+    from impact_predictor.prediction.scene import scenes_of
 
-    return Predictor(Scene.from_parameters(step))  # type: ignore[arg-type]
+    return Monitor(scenes_of(step))  # type: ignore[arg-type]
 
 
-def us_per_message(node: Any, frame: str, kind: str) -> float:
+def us_per_message(node: Any, values: dict[str, Any], kind: str) -> float:
     """What a message costs with an executor, of a body at rest far away."""
     from impact_predictor.prediction.types import Sample
     from impact_predictor.ros.messages import ODOMETRY, encode_odometry
@@ -63,7 +63,7 @@ def us_per_message(node: Any, frame: str, kind: str) -> float:
 
     runner, _ = executor_of(node, kind)
     runner.add_node(node)
-    publisher = node.create_publisher(message_class(ODOMETRY), "odom", 10)
+    publisher = node.create_publisher(message_class(ODOMETRY), "/".join([*values["bodies"][:1], "odom"]), 10)
     nothing, covariance = (0.0, 0.0, 0.0), (0.0,) * 36
     spent, patience = [], time.monotonic() + 5.0
     while not publisher.get_subscription_count() and time.monotonic() < patience:
@@ -71,7 +71,17 @@ def us_per_message(node: Any, frame: str, kind: str) -> float:
     for _ in range(MESSAGES):
         stamp, served = time.time_ns(), node.served()
         data = encode_odometry(
-            Sample(stamp, frame, "", nothing, (0.0, 0.0, 0.0, 1.0), nothing, nothing, covariance, covariance)
+            Sample(
+                stamp,
+                values["support.frame"],
+                "",
+                nothing,
+                (0.0, 0.0, 0.0, 1.0),
+                nothing,
+                nothing,
+                covariance,
+                covariance,
+            )
         )
         began = time.process_time()
         publisher.publish(data)
@@ -97,7 +107,7 @@ def main() -> None:
     if node is None:
         print(0.0, 0.0)
     else:
-        print(*[us_per_message(node, steps[0]["support.frame"], kind) for kind in ("single", "events")])
+        print(*[us_per_message(node, steps[0], kind) for kind in ("single", "events")])
         sys.stdout.flush()
         os._exit(0)  # the executors of this process end in no defined order
 

@@ -11,8 +11,8 @@ from rich.table import Table
 
 from ...prediction.parts import PARTS
 from ..table import plain_table
+from .measure import COSTS
 
-COSTS: Final = ("us_per_sample", "start_ms", "start_mb")
 OF_NODE: Final = frozenset(part.name for part in PARTS if part.of_node)
 WHY_SHORTEST: Final = 24
 """Characters below which a column is no longer read well."""
@@ -110,6 +110,7 @@ def sentences(answer: Costs) -> list[str]:
         f"{total}.",
         f"To encode an output costs more, but only while somebody subscribes to it (us for each sample): {outputs}.",
         f"Measured over {answer['record']}: CPU time, medians; memory beyond Python's own. A cost below 0 is a saving.",
+        "A support that may move tells 100 times a second that it is at rest; its messages count with the samples.",
     ]
     return said if answer["node"] is not None else [*said, f"{answer['why_no_node']}."]
 

@@ -1,0 +1,278 @@
+"""How well a moving deck is tracked, how far ahead its motion is known, and what a message costs.
+
+    python benchmarks/bench_tracking.py [--seconds 100]
+
+Decks: the recorded one of examples/vessel_deck (10.24 Hz), and two in simulated JONSWAP seas from the side (100 Hz).
+Errors are root mean squares over a run; those of predictions are parts of the standard deviation of what is predicted,
+so that 1 is no better than to expect the mean.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Sequence
+from itertools import product
+from math import pi
+from pathlib import Path
+from time import perf_counter_ns
+from typing import NamedTuple
+
+import click
+import numpy as np
+from numpy.typing import NDArray
+from rich.console import Console
+from rich.progress import track
+from rich.table import Table
+
+from impact_predictor.bags.read import read_messages
+from impact_predictor.mechanics.motion import PlanarState
+from impact_predictor.prediction.deck import Deck
+from impact_predictor.prediction.scene import MovingDeck
+from impact_predictor.prediction.types import Felt, Imu, Sample, Vector3
+from impact_predictor.ros.messages import IMU, ODOMETRY, decode_imu, decode_odometry
+from impact_predictor.scenarios.sea import SeaState, waves_of
+from impact_predictor.scenarios.space import ACROSS, Mount, poses
+from impact_predictor.scenarios.vessel import SecondOrder, Vessel, deck_in
+
+Array = NDArray[np.float64]
+
+ROOT = Path(__file__).resolve().parents[1]
+BAG = ROOT / "examples/vessel_deck"
+UP: Vector3 = (0.0, 0.0, 1.0)
+SHIP = Vessel(SecondOrder(2.0 * pi / 11.0, 0.1, 0.8, "slope"), SecondOrder(2.0 * pi / 7.0, 0.4), height=8.0)
+LEADS = (0.1, 0.25, 0.5, 1.0, 2.0, 3.0, 5.0)
+WINDOWS = (0.1, 0.2, 0.5, 1.0)
+NOISES = (0.0, 0.002, 0.01)
+"""m/s of each velocity; angular velocities have a tenth of it in rad/s."""
+SETTLING = 20.0
+ZEROS = (0.0,) * 36
+
+
+class Record(NamedTuple):
+    """A deck: its messages, and what is felt on it at their stamps, (n, 9) as gravity, angular and turning."""
+
+    name: str
+    gravity: Vector3
+    samples: list[Sample]
+    felt: Array
+
+
+def recorded() -> tuple[Record, list[Imu]]:
+    """The recorded deck; what is felt on it is its own sensor's, with angular accelerations by central differences."""
+    samples, sensed = [], []
+    for topic, _, data in read_messages(BAG, {"/deck/odom": ODOMETRY, "/deck/imu": IMU}):
+        if topic == "/deck/odom":
+            samples.append(decode_odometry(data))
+        else:
+            sensed.append(decode_imu(data))
+    times = np.array([imu.stamp for imu in sensed]) / 1e9
+    angular = np.array([imu.angular for imu in sensed])
+    force = np.array([imu.specific_force for imu in sensed])
+    felt = np.concatenate([-force, angular, np.gradient(angular, times, axis=0)], axis=1)
+    return Record("recorded vessel, 10.24 Hz", (0.0, 0.0, -9.80665), samples, felt), sensed
+
+
+def simulated(name: str, vessel: Vessel, sea: SeaState, seconds: float) -> Record:
+    times = np.arange(0.0, seconds, 0.01)
+    support = deck_in(waves_of(sea, seed=1), vessel)
+    motion = support.motion(times)
+    state = PlanarState(motion.x, motion.y, motion.angle, motion.vx, motion.vy, motion.rate)
+    columns = [part.tolist() for part in poses(state, ACROSS, Mount())]
+    samples = [
+        Sample(round(1e9 * time), "world", "deck", *map(tuple, pose), ZEROS, ZEROS)
+        for time, *pose in zip(times.tolist(), *columns, strict=True)
+    ]
+    ahead, up, rate, turning = support.felt_exactly(times)
+    rest = np.zeros_like(times)
+    felt = np.stack([rest, ahead, up, rate, rest, rest, turning, rest, rest], 1)
+    return Record(name, (0.0, 0.0, -support.gravity), samples, felt)
+
+
+def noisy(samples: Sequence[Sample], noise: float) -> list[Sample]:
+    rng = np.random.default_rng(0)
+    off = rng.standard_normal((len(samples), 6)) * np.repeat([noise, 0.1 * noise], 3)
+    return [
+        sample._replace(
+            linear=tuple((off[i, :3] + sample.linear).tolist()), angular=tuple((off[i, 3:] + sample.angular).tolist())
+        )
+        for i, sample in enumerate(samples)
+    ]
+
+
+def rms(errors: Array) -> float:
+    return float(np.sqrt(np.square(errors).sum(-1).mean()))
+
+
+def tracking(record: Record, window: float, noise: float) -> tuple[float, float]:
+    """Error of gravity (m/s^2) and of angular acceleration (rad/s^2) as the tracker estimates them."""
+    deck = Deck(MovingDeck(window=window), record.gravity, UP)
+    errors = []
+    for sample, felt in zip(noisy(record.samples, noise), record.felt, strict=True):
+        deck.update(sample)
+        if deck.last is not None:
+            errors.append(np.concatenate(deck.last.felt) - felt)
+    found = np.array(errors)
+    return rms(found[:, :3]), rms(found[:, 6:])
+
+
+def by_degree(record: Record, window: float, noise: float, degree: int) -> float:
+    """Error in m/s^2 of the acceleration along the deck's normal, by a polynomial of a degree through velocities."""
+    times = np.array([sample.stamp for sample in record.samples]) / 1e9
+    count = round(window / (times[1] - times[0])) + 1
+    if count <= degree:
+        return np.nan
+    powers = np.vander(times[:count] - times[count - 1], degree + 1, increasing=True)
+    weights = np.linalg.pinv(powers)[1]
+    velocity = np.array([sample.linear[2] for sample in record.samples])
+    exact = np.gradient(velocity, times)
+    measured = velocity + noise * np.random.default_rng(0).standard_normal(len(velocity))
+    found = np.convolve(measured, weights[::-1], "valid")
+    return rms((found - exact[count - 1 :])[:-1, None])
+
+
+Extrapolation = Callable[[Deck, Array], Array]
+
+
+def by_ahead(deck: Deck, times: Array) -> Array:
+    last = deck.last
+    assert last is not None
+    return np.array([np.concatenate(last.ahead(time)) for time in times.tolist()])
+
+
+def by_forecast(deck: Deck, times: Array) -> Array:
+    return np.concatenate(deck.forecast(times), axis=1)
+
+
+METHODS: tuple[tuple[str, str, Extrapolation], ...] = (
+    ("constant, ahead", "constant", by_ahead),
+    ("constant, forecast", "constant", by_forecast),
+    ("harmonic, both", "harmonic", by_ahead),
+)
+
+
+def predicting(record: Record, extrapolation: str, method: Extrapolation, noise: float, window: float) -> Array:
+    """Errors (3, leads) of gravity, angular velocity and angular acceleration, as parts of their deviations."""
+    deck = Deck(MovingDeck(window=window, extrapolation=extrapolation), record.gravity, UP)
+    stamps = np.array([sample.stamp for sample in record.samples]) / 1e9
+    leads = np.array(LEADS)
+    due, errors = stamps[0] + SETTLING, []
+    for sample, now in zip(noisy(record.samples, noise), stamps.tolist(), strict=True):
+        deck.update(sample)
+        if now >= due and now + LEADS[-1] <= stamps[-1] and deck.last is not None:
+            due += 1.0
+            later = np.stack([np.interp(now + leads, stamps, column) for column in record.felt.T], 1)
+            errors.append(method(deck, leads) - later)
+    found = np.array(errors)
+    deviation = record.felt.std(0)
+    return np.array(
+        [
+            [rms(found[:, i, part]) / float(np.sqrt(np.square(deviation[part]).sum())) for i in range(len(LEADS))]
+            for part in (slice(0, 3), slice(3, 6), slice(6, 9))
+        ]
+    )
+
+
+def costs(record: Record, extrapolation: str) -> tuple[float, float, float, float]:
+    """Least microseconds over runs: a message in the median and in 1 of 100, a moment, and what is ahead of one."""
+    times: list[list[int]] = []
+    samples = record.samples[:3000]
+    for _ in range(5):
+        deck, took = Deck(MovingDeck(extrapolation=extrapolation), record.gravity, UP), []
+        for sample in samples:
+            begin = perf_counter_ns()
+            deck.update(sample)
+            took.append(perf_counter_ns() - begin)
+        times.append(took)
+    update = np.array(times).min(0) / 1e3
+    moments, aheads = [], []
+    for _ in range(300):
+        begin = perf_counter_ns()
+        moment = deck.at(samples[-1].stamp + 3_000_000)
+        moments.append(perf_counter_ns() - begin)
+        assert not isinstance(moment, int)
+        begin = perf_counter_ns()
+        moment.ahead(0.1)
+        aheads.append(perf_counter_ns() - begin)
+    return float(np.median(update)), float(np.quantile(update, 0.99)), min(moments) / 1e3, min(aheads) / 1e3
+
+
+def table(title: str, *columns: str) -> Table:
+    made = Table(*columns, title=title, title_justify="left")
+    for column in made.columns[1:]:
+        column.justify = "right"
+    return made
+
+
+def check_of_sensor(record: Record, sensed: Sequence[Imu], console: Console) -> None:
+    """The recorded deck by its poses and by its sensor."""
+    shown = table(
+        "Recorded deck: what is felt, against the sensor's own message (root mean square)",
+        *("tracked from", "gravity, m/s^2", "angular, rad/s"),
+    )
+    ways: tuple[tuple[str, str, bool], ...] = (
+        ("odometry", "odom", True),
+        ("sensor", "imu", True),
+        ("sensor without orientation", "imu", False),
+    )
+    for name, source, oriented in ways:
+        deck, errors = Deck(MovingDeck(source=source), record.gravity, UP), []
+        for sample, imu, felt in zip(record.samples, sensed, record.felt, strict=True):
+            if source == "odom":
+                deck.update(sample)
+            else:
+                deck.update_imu(imu if oriented else imu._replace(orientation=None))
+            if deck.last is not None:
+                errors.append(np.concatenate(deck.last.felt) - felt)
+        found = np.array(errors)
+        shown.add_row(name, f"{rms(found[:, :3]):.6f}", f"{rms(found[:, 3:6]):.6f}")
+    console.print(shown)
+
+
+@click.command()
+@click.option("--seconds", default=100.0, show_default=True, help="How long the simulated seas last.")
+def main(seconds: float) -> None:
+    """Print the tables."""
+    console = Console(width=130 if not sys.stdout.isatty() else None)
+    vessel, sensed = recorded()
+    pontoon = simulated("pontoon, 5 s waves of 1 m", Vessel(), SeaState(1.0, 5.0), seconds)
+    ship = simulated("ship, 9 s waves of 4 m", SHIP, SeaState(4.0, 9.0), seconds)
+    check_of_sensor(vessel, sensed, console)
+
+    degrees = table(
+        "Acceleration of the pontoon, error in m/s^2, by the degree of the polynomial through the velocities",
+        *("noise, m/s", "window, s", "1", "2 (used)", "3"),
+    )
+    for noise, window in product(NOISES, WINDOWS):
+        row = [f"{by_degree(pontoon, window, noise, degree):.4f}" for degree in (1, 2, 3)]
+        degrees.add_row(f"{noise:g}", f"{window:g}", *row)
+    console.print(degrees)
+
+    windows = table(
+        "Tracking: error of gravity, m/s^2, and of angular acceleration, rad/s^2",
+        *("deck", "noise, m/s", *(f"{window:g} s" for window in WINDOWS)),
+    )
+    cases = list(product((vessel, pontoon, ship), NOISES))
+    for record, noise in track(cases, "tracking", console=Console(stderr=True), transient=True):
+        errors = [tracking(record, window, noise) for window in WINDOWS]
+        windows.add_row(record.name, f"{noise:g}", *(f"{felt:.4f}, {turning:.4f}" for felt, turning in errors))
+    console.print(windows)
+
+    for noise, window in ((0.0, 0.2), (0.002, 0.5)):
+        shown = table(
+            f"Predictions, noise {noise:g} m/s, window {window:g} s: error by lead time, part of the deviation",
+            *("deck", "method", "of", *(f"{lead:g} s" for lead in LEADS)),
+        )
+        for record, (name, extrapolation, method) in product((vessel, pontoon, ship), METHODS):
+            found = predicting(record, extrapolation, method, noise, window)
+            for of, row in zip(Felt._fields, found, strict=True):
+                shown.add_row(record.name, name, of, *(f"{error:.3f}" for error in row))
+        console.print(shown)
+
+    spent = table("Microseconds, deck at 100 Hz", "extrapolation", "message", "1 in 100", "moment", "ahead")
+    for extrapolation in ("constant", "harmonic"):
+        spent.add_row(extrapolation, *(f"{cost:.1f}" for cost in costs(ship, extrapolation)))
+    console.print(spent)
+
+
+if __name__ == "__main__":
+    main()

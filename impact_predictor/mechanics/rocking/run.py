@@ -1,0 +1,155 @@
+"""What a rocking motion was: its impacts, accumulations, phases and end, and its state at any time."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from enum import IntEnum
+from typing import Any, NamedTuple
+
+from ..motion import PlanarState
+from ..support import Support
+from ..types import Outcome, TwoPointBody
+from .arcs import Arc
+from .flight import Flight, in_world
+
+STATES = "OS+-"
+"""Letters of the contact states: open, sticks, slips along +t and along -t."""
+
+Stretch = Arc | Flight
+
+
+class End(IntEnum):
+    """Why a motion is followed no further."""
+
+    RESTS = 0
+    """At rest on both contacts of a fixed support, for ever."""
+    BALANCED = 1
+    """At rest on one contact of a fixed support, for ever."""
+    OVERTURNED = 2
+    """Turned too far to be carried by its two contacts; a disc has left its edges."""
+    TIME_UP = 3
+    """The duration is over; `phases` tell how the body moved then."""
+    TOO_MANY_EVENTS = 4
+    """As many events, or steps between two of them, as were allowed came first."""
+    NO_SOLUTION = 5
+    """No law has an answer to an impact, or numbers become too large or too small."""
+    INVALID_INPUT = 6
+    """A number is not finite or out of its range."""
+
+
+class Strike(NamedTuple):
+    """An impact at `time` (s) of contact `new` of a body that stood on contact `old`, or on none.
+
+    States are in the support's frame; `outcome` is that of `solve_impact`.
+    """
+
+    time: float
+    old: int | None
+    new: int
+    before: PlanarState
+    after: PlanarState
+    outcome: Outcome
+
+
+class Accumulation(NamedTuple):
+    """Infinitely many impacts that end at `time` (s), known to `error` s.
+
+    `contacts` are closed from then on, in `states` (as those of `Phase`); `impacts` of them, from the first on, were
+    followed one by one, the rest is summed.
+    """
+
+    time: float
+    error: float
+    contacts: tuple[int, ...]
+    states: str
+    impacts: int
+
+    @property
+    def slides(self) -> bool:
+        """Whether the body slides on its contacts then."""
+        return "+" in self.states or "-" in self.states
+
+
+class Phase(NamedTuple):
+    """A stretch between two events (s); `states` of contacts 0 and 1: O open, S sticks, + or - slips along +t or -t.
+
+    "OO" is flight, "SO" turning about contact 0, "SS" rest, "++" sliding on both.
+    """
+
+    start: float
+    end: float
+    states: str
+
+
+class Run:
+    """A rocking motion, in the support's frame, from `start` to `time` (s)."""
+
+    def __init__(
+        self,
+        body: TwoPointBody,
+        support: Support,
+        law: str,
+        stretches: list[Stretch],
+        shift: float,
+        end: End,
+        time: float,
+        start: PlanarState,
+        impacts: list[Strike],
+        accumulations: list[Accumulation],
+        jams: list[float],
+    ) -> None:
+        self.body, self.support, self.law = body, support, law
+        self.end, self.time = end, time
+        self.impacts, self.accumulations = tuple(impacts), tuple(accumulations)
+        self.jams = tuple(jams)
+        """Times (s) at which slip that no finite reaction can go with ended at once (Painleve)."""
+        self._start, self._shift = start, shift
+        self._stretches = [one for one in stretches[:-1] if one.end > one.start] + stretches[-1:]
+        self._starts = [one.start for one in self._stretches]
+
+    @property
+    def phases(self) -> tuple[Phase, ...]:
+        """The stretches between events."""
+        return tuple(Phase(one.start, one.end, STATES[one.a] + STATES[one.b]) for one in self._stretches)
+
+    def states(self, time: float) -> str:
+        """Contact states at a time, as those of `Phase`."""
+        if not self._stretches:
+            return "OO"
+        one = self._stretches[max(0, bisect_right(self._starts, time) - 1)]
+        return STATES[one.a] + STATES[one.b]
+
+    def state(self, time: Any) -> PlanarState:
+        """State in the support's frame at a time in s (numbers) or at an array of times (arrays).
+
+        At an impact it is the state after it; before the start and after the end it is the state there.
+        """
+        if isinstance(time, (float, int)):
+            if not self._stretches:
+                return self._start
+            one = self._stretches[max(0, bisect_right(self._starts, time) - 1)]
+            state = one.at(min(max(float(time), one.start), one.end))
+            return state._replace(angle=state.angle + self._shift)
+        import numpy as np
+
+        times = np.atleast_1d(np.asarray(time, dtype=float))
+        flat = times.ravel()
+        values = np.empty((6, flat.size))
+        if not self._stretches:
+            values[:] = np.array(self._start)[:, None]
+        else:
+            place = np.clip(np.searchsorted(self._starts, flat, side="right") - 1, 0, None)
+            order = np.argsort(place, kind="stable")
+            borders = np.flatnonzero(np.diff(place[order])) + 1
+            for chosen in np.split(order, borders):
+                if chosen.size:
+                    one = self._stretches[place[chosen[0]]]
+                    values[:, chosen] = np.array(
+                        np.broadcast_arrays(*one.at(np.clip(flat[chosen], one.start, one.end)))
+                    )
+            values[2] += self._shift
+        return PlanarState(*values.reshape(6, *np.shape(time)))
+
+    def world(self, time: Any) -> PlanarState:
+        """As `state`, in the world's axes."""
+        return in_world(self.support.motion(time), self.state(time))

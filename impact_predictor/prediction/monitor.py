@@ -1,0 +1,174 @@
+"""Several bodies on one support: each message goes where it belongs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from .predictor import Predictor
+from .scene import MovingDeck, Scene, shared_by
+from .types import Geometry, Imu, Moment, Prediction, Quaternion, Sample, Score, Status
+
+if TYPE_CHECKING:
+    from .deck import Deck
+    from .resting import Resting
+    from .tilt import Tilt
+    from .watch import Report, Watch
+
+OF_SUPPORT = frozenset({Status.NO_SUPPORT, Status.SUPPORT_STALE})
+"""Why a sample may be refused through no fault of its body: nobody knows then what any of the bodies feels."""
+
+SPOILT = frozenset({Status.NOT_FINITE, Status.BAD_QUATERNION})
+"""Messages that are bad in themselves: what was known stays known, until it is too old."""
+
+AGAIN = frozenset({Status.STAMP_REPEATED, Status.STAMP_WENT_BACK})
+"""Messages that tell nothing new, and so take nothing away from what is known either."""
+
+NANOSECONDS = 1e9
+
+
+class Monitor:
+    """The bodies of some scenes, by their names, over the support that they share.
+
+    It has a `Predictor` for each body whose pose is measured, a tracker of the support if that moves, and a watch over
+    the margins of bodies if their scenes ask for it. It routes between them and computes nothing itself. Messages are
+    taken as they arrive, and each stream in the order of its stamps.
+    """
+
+    def __init__(self, scenes: Mapping[str, Scene]) -> None:
+        self.scenes = scenes
+        shared = shared_by(scenes)
+        self.deck: Deck | None = None
+        self.watch: Watch | None = None
+        self._resting: Resting | None = None
+        self._tilts: dict[str, Tilt] = {}
+        self.tilts: dict[str, Quaternion] = {}
+        """The orientations, relative to the support, of bodies of which no more is measured."""
+        self._known: dict[str, int] = {}
+        self._unknown = Status.NO_SUPPORT  # why nothing can be told of the support, while that is so
+        self._timeout = (shared.deck or MovingDeck()).timeout * NANOSECONDS
+        if shared.deck is not None:
+            from .deck import Deck
+
+            self.deck = Deck(shared.deck, shared.gravity, shared.normal)
+        self.predictors = {
+            body: Predictor(scene) if self.deck is None else Predictor(scene, self.deck)
+            for body, scene in scenes.items()
+            if scene.source == "odom"
+        }
+        self._watched = {body: scene for body, scene in scenes.items() if scene.watching is not None}
+        if self._watched:
+            from .watch import Watch
+
+            if self.deck is None:
+                from .resting import Resting
+
+                self._resting = Resting(shared.gravity)
+                self.watch = Watch(self._watched, self._resting.forecast)
+            else:
+                self.watch = Watch(self._watched, self.deck.forecast)
+        of_imu = {body: scene for body, scene in scenes.items() if scene.source == "imu"}
+        if of_imu:
+            from .tilt import Tilt
+
+            self._tilts = {body: Tilt(scene) for body, scene in of_imu.items()}
+
+    def update(self, body: str, sample: Sample) -> Prediction:
+        """The answer to a sample of a body."""
+        prediction = self.predictors[body].update(sample)
+        watch = self.watch
+        if watch is not None:
+            if prediction.status is not Status.ACCEPTED:
+                self._refused(watch, body, prediction.status, sample.stamp)
+            else:
+                self._rest(watch, sample.stamp)
+                if body in self._watched:
+                    self._known[body] = sample.stamp
+                    watch.update_body(body, prediction.relative or sample, prediction.touchdown)
+        return prediction
+
+    def update_imu(self, body: str, imu: Imu) -> Status:
+        """Take the tilt of a body; what became of the message."""
+        watch, tilt = self.watch, self._tilts[body]
+        status = tilt.check(imu)
+        moment: Moment | None = None
+        if status is Status.ACCEPTED and self.deck is not None:
+            known = self.deck.at(imu.stamp)
+            if isinstance(known, Status):
+                status = known
+            else:
+                moment = known
+        if status is Status.ACCEPTED and imu.orientation is not None:
+            orientation = self.tilts[body] = tilt.on(moment, imu.orientation)
+            if watch is not None:
+                self._rest(watch, imu.stamp)
+                if body in self._watched:
+                    self._known[body] = imu.stamp
+                    watch.update_tilt(body, imu.stamp, orientation)
+        elif watch is not None:
+            self._refused(watch, body, status, imu.stamp)
+        return status
+
+    def update_support(self, sample: Sample) -> Status:
+        """Take pose and twist of the support; what became of the message."""
+        assert self.deck is not None
+        return self._moved(self.deck.update(sample), sample.stamp)
+
+    def update_support_imu(self, imu: Imu) -> Status:
+        """Take what an inertial sensor on the support measures; what became of the message."""
+        assert self.deck is not None
+        return self._moved(self.deck.update_imu(imu), imu.stamp)
+
+    def set_geometry(self, body: str, geometry: Geometry) -> Status:
+        """Take the contact points of a body."""
+        status = self.predictors[body].set_geometry(geometry)
+        if self.watch is not None and status is Status.ACCEPTED and body in self._watched:
+            self.watch.set_points(body, geometry.points)
+        return status
+
+    def silent(self, stamp: int) -> None:
+        """Know that no message came until a stamp (ns), so that what is too old by then counts as lost."""
+        watch, deck = self.watch, self.deck
+        if watch is None:
+            return
+        if deck is None:
+            self._rest(watch, stamp)
+        elif deck.last is None:
+            watch.support_lost(self._unknown, stamp)
+        elif stamp - deck.last.stamp > self._timeout:
+            watch.support_lost(Status.SUPPORT_STALE, stamp)
+
+    def reports(self) -> tuple[Report, ...]:
+        """What the watch has to say now; mostly nothing."""
+        return () if self.watch is None else self.watch.reports()
+
+    def finish(self) -> dict[str, tuple[Score, ...]]:
+        """End the record: the scores that were not handed out yet, by the names of their bodies."""
+        return {body: predictor.finish() for body, predictor in self.predictors.items()}
+
+    def _moved(self, status: Status, stamp: int) -> Status:
+        watch, last = self.watch, None if self.deck is None else self.deck.last
+        if watch is None or status in AGAIN:
+            return status
+        if status is Status.ACCEPTED and last is not None:
+            watch.update_support(last)
+        elif status is Status.ACCEPTED:
+            self._unknown = Status.NO_SUPPORT
+            watch.support_lost(Status.NO_SUPPORT, stamp)
+        elif not (status in SPOILT and last is not None and stamp - last.stamp <= self._timeout):
+            self._unknown = status
+            watch.support_lost(status, stamp)
+        return status
+
+    def _rest(self, watch: Watch, stamp: int) -> None:
+        """Know that a fixed support is at rest still."""
+        if self._resting is not None:
+            watch.update_support(self._resting.at(stamp))
+
+    def _refused(self, watch: Watch, body: str, status: Status, stamp: int) -> None:
+        if status in OF_SUPPORT:
+            watch.support_lost(status, stamp)
+        elif body in self._watched and status not in AGAIN:
+            known = self._known.get(body)
+            if not (status in SPOILT and known is not None and stamp - known <= self._timeout):
+                watch.body_lost(body, status, stamp)

@@ -1,0 +1,33 @@
+"""What is wrong with a message, a support or a body of each status, and where to look."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from .types import Status
+
+REMEDIES: Final[dict[Status, str]] = {
+    Status.NOT_FINITE: "a field is NaN or infinite; look at its source",
+    Status.BAD_QUATERNION: "the orientation is zero or not of unit length; look at its source",
+    Status.STAMP_REPEATED: "the stamp is that of the message before; let a single source publish, with its own stamps",
+    Status.STAMP_WENT_BACK: "the stamp is older than the one before; let a single source publish, in order",
+    Status.WRONG_FRAME: "its frame is not that of the scene; compare frame_id with support.frame, and child_frame_id "
+    "with the frame of the contact points",
+    Status.NO_GEOMETRY: "no contact points are known; publish them on contact_geometry or give body.contact_points",
+    Status.TOO_FEW_POINTS: "a body needs at least two contact points",
+    Status.COINCIDENT_POINTS: "two of its points coincide",
+    Status.MALFORMED: "its bytes are not a message of the topic's type; look at who else publishes there",
+    Status.NO_SUPPORT: "nothing is known of the support's motion yet; look whether its source publishes",
+    Status.SUPPORT_STALE: "the support's last message is too old; look whether its source still publishes",
+    Status.CLOCKS_APART: "the stamps of body and support are too far apart; let both sources stamp by one clock",
+    Status.SUPPORT_JUMPED: "the support's pose or twist does not follow from those before; look at its source, which "
+    "is trusted again when new messages agree",
+    Status.GRAVITY_WRONG: "what lies on the support would fall off it, or feels far more or less than gravity; compare "
+    "the axes and the sign of the support's source with gravity and support.normal",
+    Status.OFF_SUPPORT: "the body is beyond the support's edges or far above it; if it is not, compare its frame and "
+    "support.extent",
+    Status.BELOW_SUPPORT: "the body lies deeper in the support than noise puts it; compare its frame, its contact "
+    "points and support.height",
+    Status.BODY_STALE: "no message of the body's source, or none any more; look whether it still publishes",
+}
+"""What to say of each status but ACCEPTED."""

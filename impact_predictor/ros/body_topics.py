@@ -1,0 +1,135 @@
+"""The topics of one body, and what becomes of its messages."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from functools import partial
+from time import perf_counter
+from typing import TYPE_CHECKING, Any, Final
+
+from rclpy.duration import Duration
+from rclpy.node import Node
+
+from ..prediction.types import Prediction, Sample, Score, Status
+from .endpoints import publisher, subscription
+from .messages import IMU, ODOMETRY, OUTPUTS, MalformedMessage, decode_odometry, decode_polygon
+from .reporter import Reporter
+
+if TYPE_CHECKING:
+    from ..prediction.monitor import Monitor
+    from .geometry_topic import GeometryTopic
+
+LAST_WORDS: Final = Duration(seconds=1)
+"""How long the node waits at its end until its last score is received."""
+
+
+class BodyTopics:
+    """Takes what is told about one body, and publishes what the monitor makes of it.
+
+    A body without a name has the topics `odom` and `~/mode`, another one `crate/odom` and `~/crate/mode`.
+    """
+
+    def __init__(self, node: Node, reporter: Reporter, monitor: Monitor, body: str) -> None:
+        self.outputs: dict[str, Any] = {}
+        self._node, self._reporter, self._monitor, self._body = node, reporter, monitor, body
+        self._geometry: GeometryTopic | None = None
+        self._last_sample: Sample | None = None
+
+    def listen_to_geometry(self, topic: str) -> None:
+        """Take the contact points from a topic."""
+        from .geometry_topic import GeometryTopic
+
+        self._geometry_name = topic
+        self._geometry = GeometryTopic(self._node, self._on_geometry, topic)
+
+    def listen_to_imu(self, topic: str) -> Any:
+        """Take the tilt from a topic; its subscription."""
+        from .messages.imu import decode_imu
+
+        self._name, self._decode_imu = topic, decode_imu
+        return subscription(self._node, topic, IMU, self._on_imu, self._reporter.on_lost)
+
+    def listen_to_odom(self, topic: str) -> Any:
+        """Take the state from a topic, and publish the answers; its subscription."""
+        self._name = topic
+        self._update = self._monitor.predictors[self._body].update
+        if self._monitor.watch is not None:
+            self._update = partial(self._monitor.update, self._body)
+        prefix = f"~/{self._body}/" if self._body else "~/"
+        self.outputs = {name: publisher(self._node, prefix + name, one.type_name) for name, one in OUTPUTS.items()}
+        self._encoders = [(self.outputs[name], output.encode) for name, output in OUTPUTS.items()]
+        return subscription(self._node, topic, ODOMETRY, self._on_odometry, self._reporter.on_lost)
+
+    def look_for_history(self) -> None:
+        """Ask for contact points that were published before, if there may be any."""
+        if self._geometry is not None:
+            self._geometry.look_for_history()
+
+    def _on_geometry(self, data: bytes) -> None:
+        status = Status.MALFORMED
+        with suppress(MalformedMessage):
+            geometry = decode_polygon(data)
+            status = self._monitor.set_geometry(self._body, geometry)
+        if status is Status.ACCEPTED:
+            self._reporter.markers.set_geometry(self._body, geometry)
+        else:
+            self._reporter.refuse(self._geometry_name, status)
+
+    def _on_imu(self, data: bytes) -> None:
+        try:
+            imu = self._decode_imu(data)
+        except MalformedMessage:
+            self._reporter.refuse(self._name, Status.MALFORMED)
+            return
+        status = self._monitor.update_imu(self._body, imu)
+        markers = self._reporter.markers
+        if markers.drawing is not None and status is Status.ACCEPTED:
+            markers.drawing.take_tilt(self._body, imu.stamp, self._monitor.tilts[self._body])
+            markers.show(imu.stamp)
+        self._reporter.took(self._name, status, imu.stamp)
+
+    def _on_odometry(self, data: bytes) -> None:
+        began = perf_counter()
+        try:
+            sample = decode_odometry(data)
+        except MalformedMessage:
+            self._reporter.refuse(self._name, Status.MALFORMED)
+            return
+        latency = time.time_ns() - sample.stamp
+        decoded = perf_counter()
+        prediction = self._update(sample)
+        update = perf_counter() - decoded
+        if prediction.status is not Status.ACCEPTED:
+            if prediction.status is Status.NO_GEOMETRY:
+                self.look_for_history()
+            self._reporter.refuse(self._name, prediction.status)
+            return
+        self._last_sample = sample
+        for output, encode in self._encoders:
+            _publish(output, encode, prediction)
+        if prediction.score is not None:
+            self._reporter.settled(sample.child_frame_id, prediction.score)
+        markers = self._reporter.markers
+        if markers.drawing is not None:
+            markers.drawing.take(self._body, prediction)
+            markers.show(sample.stamp)
+        self._reporter.answered(self._name, sample.stamp, latency, update, began)
+
+    def publish_scores(self, scores: tuple[Score, ...]) -> None:
+        """Publish the scores that the end of the record settles, and see them received."""
+        if self._last_sample is None or not scores:
+            return
+        for score in scores:
+            prediction = Prediction(Status.ACCEPTED, self._last_sample, None, score)
+            _publish(self.outputs["score"], OUTPUTS["score"].encode, prediction)
+        self.outputs["score"].wait_for_all_acked(LAST_WORDS)
+
+
+def _publish(output: Any, encode: Callable[[Prediction], bytes | None], prediction: Prediction) -> None:
+    """Publish what there is to say, unless nobody listens: then it is not even encoded."""
+    if output.get_subscription_count():
+        data = encode(prediction)
+        if data is not None:
+            output.publish(data)

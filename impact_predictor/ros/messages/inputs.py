@@ -1,0 +1,123 @@
+"""What the predictor is told, both ways: nav_msgs/Odometry and geometry_msgs/PolygonStamped of ROS 2 Jazzy."""
+
+from __future__ import annotations
+
+import struct
+from functools import lru_cache
+from typing import Final
+
+from ...prediction.types import Geometry, Sample
+from ..cdr import (
+    HEADER_SIZE,
+    LITTLE_ENDIAN,
+    LITTLE_ENDIAN_HEADER,
+    NANOSECONDS,
+    MalformedMessage,
+    align4,
+    align8,
+    byte_order,
+    check_end,
+    read_string,
+    stamp,
+    string,
+)
+
+ODOMETRY: Final = "nav_msgs/msg/Odometry"
+POLYGON: Final = "geometry_msgs/msg/PolygonStamped"
+IMU: Final = "sensor_msgs/msg/Imu"
+
+_ODOMETRY_NUMBERS_SIZE: Final = LITTLE_ENDIAN.odometry_numbers.size
+_POINT_SIZE: Final = LITTLE_ENDIAN.point32.size
+
+
+def decode_odometry(data: bytes) -> Sample:
+    """The sample in the bytes of a nav_msgs/Odometry, of either byte order; its numbers are taken as they are.
+
+    Raises:
+        MalformedMessage: the bytes are no such message.
+    """
+    order = byte_order(data)
+    try:
+        seconds, nanoseconds = order.stamp.unpack_from(data, HEADER_SIZE)
+        frame_id, end = read_string(data, HEADER_SIZE + 8, order)
+        child_frame_id, end = read_string(data, align4(end), order)
+        start = align8(end)
+        n = order.odometry_numbers.unpack_from(data, start)
+    except (struct.error, UnicodeDecodeError) as error:
+        raise MalformedMessage(f"not a nav_msgs/Odometry: {error}") from None
+    check_end(data, start + _ODOMETRY_NUMBERS_SIZE)
+    return Sample(
+        seconds * NANOSECONDS + nanoseconds,
+        frame_id,
+        child_frame_id,
+        n[0:3],
+        n[3:7],
+        n[43:46],
+        n[46:49],
+        n[7:43],
+        n[49:85],
+    )
+
+
+def decode_polygon(data: bytes) -> Geometry:
+    """The contact points in the bytes of a geometry_msgs/PolygonStamped, of either byte order, as float32 gives them.
+
+    Raises:
+        MalformedMessage: the bytes are no such message.
+    """
+    order = byte_order(data)
+    try:
+        seconds, nanoseconds = order.stamp.unpack_from(data, HEADER_SIZE)
+        frame_id, end = read_string(data, HEADER_SIZE + 8, order)
+        (count,) = order.length.unpack_from(data, align4(end))
+    except (struct.error, UnicodeDecodeError) as error:
+        raise MalformedMessage(f"not a geometry_msgs/PolygonStamped: {error}") from None
+    start = align4(end) + 4
+    end = start + count * _POINT_SIZE
+    check_end(data, end)
+    points = tuple((x, y, z) for x, y, z in order.point32.iter_unpack(data[start:end]))
+    return Geometry(seconds * NANOSECONDS + nanoseconds, frame_id, points)
+
+
+@lru_cache(maxsize=64)
+def _odometry_frames(frame_id: str, child_frame_id: str) -> bytes:
+    """What lies between the stamp and the first double of a nav_msgs/Odometry."""
+    frames = string(frame_id) + string(child_frame_id)
+    # The stamp before them has eight bytes, so they end at a multiple of eight when they are one.
+    return frames if len(frames) % 8 == 0 else frames + bytes(4)
+
+
+_pack_numbers = LITTLE_ENDIAN.odometry_numbers.pack
+
+
+def encode_odometry(sample: Sample) -> bytes:
+    """A nav_msgs/Odometry of a sample."""
+    return b"".join(
+        (
+            LITTLE_ENDIAN_HEADER,
+            stamp(sample.stamp),
+            _odometry_frames(sample.frame_id, sample.child_frame_id),
+            _pack_numbers(
+                *sample.position,
+                *sample.orientation,
+                *sample.pose_covariance,
+                *sample.linear,
+                *sample.angular,
+                *sample.twist_covariance,
+            ),
+        )
+    )
+
+
+def encode_polygon(geometry: Geometry) -> bytes:
+    """A geometry_msgs/PolygonStamped of contact points, which float32 rounds."""
+    points = geometry.points
+    return b"".join(
+        (
+            LITTLE_ENDIAN_HEADER,
+            stamp(geometry.stamp),
+            string(geometry.frame_id),
+            LITTLE_ENDIAN.length.pack(len(points)),
+            *[LITTLE_ENDIAN.point32.pack(*point) for point in points],
+        )
+    )

@@ -1,0 +1,122 @@
+"""What goes to /diagnostics: the units whenever their reports are due, and the node itself every second."""
+
+from __future__ import annotations
+
+from time import perf_counter
+from typing import TYPE_CHECKING, Any
+
+from rclpy.node import Node
+
+from ..prediction.types import Score, Status
+from .cdr import NANOSECONDS, diagnostic_array
+from .diagnostics import Diagnostics, Refused
+from .endpoints import publisher
+from .marker_topic import MarkerTopic
+from .messages import DIAGNOSTIC_ARRAY
+
+if TYPE_CHECKING:
+    from ..prediction.monitor import Monitor
+    from ..prediction.watch import Report
+
+
+class Reporter:
+    """Counts what happens to the messages, and publishes reports and markers of what came of them."""
+
+    def __init__(self, node: Node, monitor: Monitor, counts_losses: bool) -> None:
+        """Report for a node; `counts_losses` says whether its subscriptions are to tell what the middleware loses."""
+        self.on_lost = self._on_lost if counts_losses else None
+        self.publisher = publisher(node, "/diagnostics", DIAGNOSTIC_ARRAY)
+        self.markers = MarkerTopic(node, monitor.scenes)
+        self._node = node
+        self._name = node.get_fully_qualified_name().lstrip("/")
+        self._monitor = monitor
+        self._units = monitor.watch is not None
+        # The stamp that counts, and when it came: that of the support where it has one.
+        self._time: tuple[int, float] | None = None
+        self._support = ""
+
+    def listen(self, inputs: list[str]) -> None:
+        """Expect messages on these inputs; the first is of the support where that moves."""
+        self._support = inputs[0] if self._monitor.deck is not None else ""
+        self.diagnostics = Diagnostics(self._name, perf_counter(), inputs)
+        self.diagnostics.lost = None if self.on_lost is None else 0
+
+    def _on_lost(self, event: Any) -> None:
+        self.diagnostics.lost = (self.diagnostics.lost or 0) + event.total_count_change
+
+    def settled(self, body: str, score: Score) -> None:
+        """A touchdown of a body has happened."""
+        self.diagnostics.settled(body, score)
+
+    def answered(self, name: str, stamp: int, latency: int, update: float, began: float) -> None:
+        """A sample on an input was answered; arguments as of `Diagnostics.accepted`, times of the steady clock."""
+        now = perf_counter()
+        if not self._support or self._time is None:
+            self._time = stamp, now
+        if self.diagnostics.accepted(now, name, stamp, latency, update, now - began):
+            self.report()
+        if self._units:
+            self.report_units()
+
+    def took(self, name: str, status: Status, stamp: int) -> None:
+        """The monitor has taken another message, or refused it."""
+        if status is not Status.ACCEPTED:
+            self.refuse(name, status)
+            return
+        now = perf_counter()
+        if name == self._support or not self._support or self._time is None:
+            self._time = stamp, now
+        if self.diagnostics.taken(now, name):
+            self.report()
+        if self._units:
+            self.report_units()
+
+    def refuse(self, name: str, status: Status) -> None:
+        """A message on an input was refused."""
+        reason = Refused(name, status)
+        if self.diagnostics.refused(perf_counter(), reason):
+            self.report()
+        if self.diagnostics.is_news(reason):
+            self._node.get_logger().warning(f"refused a message on {reason}")
+        if self._units:
+            self.report_units()
+
+    def report_units(self) -> None:
+        """Publish the reports on the units that are due."""
+        reports = self._due()
+        if reports:
+            from .messages.reports import encode_reports
+
+            stamp = max(report.stamp for report in reports)
+            self.publisher.publish(encode_reports(reports, stamp, self._name))
+
+    def second_over(self) -> None:
+        """Sum up a second of the steady clock, in which time goes on for the units too."""
+        now = perf_counter()
+        self.diagnostics.second_over(now)
+        if self._units and self._time is not None:
+            stamp, heard = self._time
+            self._monitor.silent(stamp + round((now - heard) * NANOSECONDS))
+        self.markers.look_for_viewers()
+        self.report()
+
+    def report(self) -> None:
+        """Publish what the node says about itself, with the reports on the units that are due."""
+        if self.publisher.get_subscription_count():
+            statuses = [self.diagnostics.report(perf_counter())]
+            if self._units:
+                from .messages.reports import status_of
+
+                statuses += [status_of(report, self._name) for report in self._due()]
+            stamp = self._node.get_clock().now().nanoseconds
+            self.publisher.publish(diagnostic_array(stamp, "", statuses))
+
+    def _due(self) -> tuple[Report, ...]:
+        """The reports on the units that are due, if there is anybody to be told."""
+        drawing = self.markers.drawing
+        if drawing is None and not self.publisher.get_subscription_count():
+            return ()
+        reports = self._monitor.reports()
+        if reports and drawing is not None:
+            drawing.take_reports(reports)
+        return reports

@@ -1,0 +1,119 @@
+"""Deck cargo in a sea or on a recorded deck, from a parameter file's scenes to what happened, and as a bag."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Mapping
+from math import hypot
+from typing import NamedTuple
+
+import numpy as np
+
+from ..errors import InputError
+from ..mechanics.rocking import End
+from ..mechanics.support import MovingSupport
+from ..prediction.scene import Scene, shared_by
+from .deck import Span, Unit, follow, units_of
+from .deck_record import Followed, Sensors, messages_in, messages_of
+from .record import write_messages
+from .truth import ONSET_TOPIC, TRUTH_TOPIC
+
+CONTACTS = ("rigid", "compliant")
+
+_LONGEST = 7 * 24 * 3600.0
+
+
+class Voyage(NamedTuple):
+    """A deck with its units, and what happened to each of them."""
+
+    deck: MovingSupport
+    units: tuple[Followed, ...]
+    duration: float
+    most_rolled: float
+    """The largest angle of the deck in rad."""
+    most_lateral: float
+    """The largest acceleration felt along the deck, as a part of that felt out of it, at the deck's origin."""
+
+    @property
+    def broke_off(self) -> bool:
+        """Whether the motion of a unit was lost before its end."""
+        return any(one.end in (End.NO_SOLUTION, End.TOO_MANY_EVENTS, End.INVALID_INPUT) for one in self.units)
+
+
+def gravity_of(scenes: Mapping[str, Scene]) -> float:
+    """Gravity of the scenes of a moving deck in m/s^2.
+
+    Raises:
+        InputError: the support does not move, or gravity is not along -z of the world.
+    """
+    scene = shared_by(scenes)
+    x, y, z = scene.gravity
+    if scene.deck is None:
+        raise InputError("the support of the parameter file is fixed; give support.motion odom or imu")
+    if hypot(x, y) > 0.0 or z >= 0.0:
+        raise InputError(f"gravity is {list(scene.gravity)}; a deck is simulated with z up, as in [0.0, 0.0, -9.81]")
+    return -z
+
+
+def sail(
+    scenes: Mapping[str, Scene],
+    deck: MovingSupport,
+    duration: float,
+    contacts: str = "rigid",
+    bag: str | os.PathLike[str] | None = None,
+    sensors: Sensors = Sensors(),  # noqa: B008 - it is immutable
+    tell: Callable[[int], None] | None = None,
+    seen: Callable[[Unit, Iterator[Span]], Iterator[Span]] = lambda unit, spans: spans,
+) -> Voyage:
+    """Follow all units of the scenes for `duration` s, and write a `bag` with what their sensors told.
+
+    `contacts` are rigid, by the impact law of each scene, or compliant (see `compliant_deck`). `tell` takes now and
+    then how many messages are done, without a bag how many seconds. The spans of each unit pass `seen`.
+
+    Raises:
+        InputError: a unit cannot be simulated, a number is out of its range, or the bag cannot be written.
+    """
+    if not 0.0 < duration <= _LONGEST:
+        raise InputError(f"the duration is {duration}; give seconds above 0, up to a week")
+    for name, rate in (("rate", sensors.rate), ("deck rate", sensors.deck_rate)):
+        if not 0.0 < rate <= 1e4:
+            raise InputError(f"the {name} is {rate}; give Hz above 0, up to 10000")
+    for name, deviation in sensors.noise._asdict().items():
+        if not 0.0 <= deviation < 1e3:
+            raise InputError(f"the noise of the {name} is {deviation}; give a standard deviation of 0 or more")
+    motion_of: Callable[[Unit, MovingSupport, float, str], Iterator[Span]] = follow
+    truths: tuple[str, ...] = (TRUTH_TOPIC, ONSET_TOPIC)
+    if contacts == "compliant":
+        from .compliant_deck import follow_compliant
+
+        motion_of, truths = follow_compliant, (TRUTH_TOPIC,)
+    supports: dict[tuple[float, float], MovingSupport] = {}
+    followed = []
+    for unit in units_of(scenes):
+        support = supports.setdefault(unit.foot, deck.at(*unit.foot))
+        followed.append(Followed(unit, support, seen(unit, motion_of(unit, support, duration, unit.scene.law))))
+    if bag is None:
+        _pass(followed, tell)
+    else:
+        write_messages(bag, messages_of(followed, deck, "" in scenes, duration, sensors, truths), tell)
+    times = np.arange(0.0, duration, deck.period / 16.0)
+    rolled = lateral = 0.0
+    for block in np.array_split(times, 1 + len(times) // 4096):
+        ahead, up, *_ = deck.felt_exactly(block)
+        rolled = max(rolled, float(np.abs(deck.motion(block).angle).max()))
+        lateral = max(lateral, float(np.abs(ahead / up).max()))
+    return Voyage(deck, tuple(followed), duration, rolled, lateral)
+
+
+def total(scenes: Mapping[str, Scene], duration: float, bag: bool, sensors: Sensors) -> int:
+    """What `tell` of `sail` counts to."""
+    return messages_in(scenes, duration, sensors) if bag else round(duration * len(scenes))
+
+
+def _pass(followed: list[Followed], tell: Callable[[int], None] | None) -> None:
+    done = 0.0
+    for one in followed:
+        for span in one.spans():
+            if tell is not None:
+                tell(round(done + span.time))
+        done += one.time

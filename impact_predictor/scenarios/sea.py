@@ -1,0 +1,111 @@
+"""Irregular seas: wave spectra, and waves drawn from them.
+
+JONSWAP after Hasselmann et al. (1973), "Measurements of wind-wave growth and swell decay during the Joint North Sea
+Wave Project", Deutsche Hydrographische Zeitschrift A8(12); Pierson and Moskowitz (1964), "A proposed spectral form for
+fully developed wind seas", J. Geophys. Res. 69(24). Both as DNV-RP-C205, section 3.5.5, writes them: by significant
+wave height and peak period. Angular frequencies in rad/s, one-sided densities in m^2 s/rad, of deep water.
+"""
+
+from __future__ import annotations
+
+from math import log, pi, sqrt
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+
+Array = NDArray[np.float64]
+
+SPECTRA: Final = ("jonswap", "pm")
+
+RANGE: Final = 0.5, 4.0
+"""Least and greatest frequency of the waves over that of the peak: outside lies half a percent of the energy."""
+
+WAVES: Final = 200
+
+_PARTS: Final = 8
+"""Samples of the density in the band of one wave."""
+
+
+class SeaState(NamedTuple):
+    """Significant wave height in m, peak period in s, and the spectrum of an irregular sea.
+
+    `gamma` is the peak enhancement of JONSWAP: 1 is Pierson and Moskowitz' spectrum, 3.3 the mean of the North Sea.
+    """
+
+    height: float
+    period: float
+    spectrum: str = "jonswap"
+    gamma: float = 3.3
+
+
+class Waves(NamedTuple):
+    """Regular waves that make up a sea; arrays (n,): frequencies (rad/s), amplitudes (m) and phases (rad).
+
+    The surface at the origin is the sum of amplitude * cos(frequency * t + phase).
+    """
+
+    frequencies: Array
+    amplitudes: Array
+    phases: Array
+
+    @property
+    def significant_height(self) -> float:
+        """4 sqrt(m0) in m, m0 the variance of the surface."""
+        return 4.0 * sqrt(0.5 * float(self.amplitudes @ self.amplitudes))
+
+
+def density(state: SeaState, frequencies: Array) -> Array:
+    """Spectral density in m^2 s/rad at frequencies above 0 in rad/s (DNV-RP-C205, 3.5.5.1 and 3.5.5.2).
+
+    Raises:
+        InputError: a number of the sea state is out of its range, or the spectrum is unknown.
+    """
+    height, period, spectrum, gamma = checked(state)
+    peak = 2.0 * pi / period
+    ratio = frequencies / peak
+    moskowitz: Array = 0.3125 * height * height / peak * ratio**-5.0 * np.exp(-1.25 * ratio**-4.0)
+    if spectrum == "pm" or gamma == 1.0:
+        return moskowitz
+    width = np.where(ratio <= 1.0, 0.07, 0.09)
+    enhanced: Array = (1.0 - 0.287 * log(gamma)) * moskowitz * gamma ** np.exp(-0.5 * ((ratio - 1.0) / width) ** 2)
+    return enhanced
+
+
+def waves_of(state: SeaState, seed: int, count: int = WAVES) -> Waves:
+    """Waves whose significant height is that of the sea state to rounding.
+
+    Each has the energy of one of `count` equal bands of `RANGE`, a random phase and a random frequency in its band: no
+    two are multiples of a common one, so the sea does not repeat itself. The same seed makes the same sea.
+
+    Raises:
+        InputError: a number of the sea state is out of its range, or the spectrum is unknown.
+    """
+    peak = 2.0 * pi / checked(state).period
+    band = (RANGE[1] - RANGE[0]) * peak / count
+    places = RANGE[0] * peak + band * (np.arange(count * _PARTS) + 0.5) / _PARTS
+    energies = density(state, places).reshape(count, _PARTS).sum(axis=1)
+    energies *= state.height**2 / 16.0 / energies.sum()
+    rng = np.random.default_rng(seed)
+    frequencies = RANGE[0] * peak + band * (np.arange(count) + rng.random(count))
+    return Waves(frequencies, np.sqrt(2.0 * energies), rng.uniform(0.0, 2.0 * pi, count))
+
+
+def checked(state: SeaState) -> SeaState:
+    """The sea state, if its numbers make sense.
+
+    Raises:
+        InputError: one does not.
+    """
+    height, period, spectrum, gamma = state
+    if not 0.0 < height <= 40.0:
+        raise InputError(f"the significant wave height is {height}; give metres above 0, up to 40")
+    if not 0.5 <= period <= 60.0:
+        raise InputError(f"the peak period is {period}; give seconds from 0.5 to 60")
+    if spectrum not in SPECTRA:
+        raise InputError(f"the spectrum is {spectrum!r}; give one of {', '.join(SPECTRA)}")
+    if not 1.0 <= gamma <= 10.0:
+        raise InputError(f"the peak enhancement is {gamma}; give a number from 1 to 10")
+    return state

@@ -1,0 +1,113 @@
+"""Which topics of a bag are taken for which inputs: by their names, or where there can be no doubt."""
+
+from __future__ import annotations
+
+import pytest
+
+from impact_predictor.bags.inputs import find_topics
+from impact_predictor.errors import InputError
+from impact_predictor.prediction.inputs import inputs_of
+from impact_predictor.prediction.scene import MovingDeck, Scene
+from impact_predictor.ros.messages import IMU, ODOMETRY, POLYGON
+
+POINTS = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0))
+SCENE = Scene(1.0, ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), 0.5, points=POINTS)
+DECK = SCENE._replace(deck=MovingDeck())
+FLOOR = {"": SCENE}
+ABOARD = {"": DECK}
+CARGO = {
+    "crate": DECK,
+    "drum": DECK,
+    "leaning": DECK._replace(source="imu"),
+    "blind": DECK._replace(source="none"),
+}
+
+
+def found(
+    recorded: dict[str, str], scenes: dict[str, Scene], remap: dict[str, str] | None = None
+) -> tuple[dict[str, str], str]:
+    """The topic of each input by its name, and the notes in one text."""
+    topics, notes = find_topics("bag", recorded, inputs_of(scenes), remap or {})
+    return {one.name: topic for one, topic in topics.items()}, " | ".join(notes)
+
+
+def refusal(recorded: dict[str, str], scenes: dict[str, Scene], remap: dict[str, str] | None = None) -> str:
+    with pytest.raises(InputError) as caught:
+        found(recorded, scenes, remap)
+    return str(caught.value)
+
+
+def test_topics_of_the_names_of_the_inputs_are_taken_whatever_else_there_is() -> None:
+    recorded = {
+        **dict.fromkeys(("/crate/odom", "/drum/odom", "/support/odom", "/odom", "/tf/odom"), ODOMETRY),
+        **dict.fromkeys(("/leaning/imu", "/support/imu"), IMU),
+        "/crate/contact_geometry": POLYGON,
+    }
+    topics, notes = found(recorded, CARGO)
+    assert topics == {name: f"/{name}" for name in ("support/odom", "crate/odom", "drum/odom", "leaning/imu")}
+    assert notes == ""
+
+
+def test_the_only_other_topic_of_the_type_is_taken_where_one_input_has_none() -> None:
+    assert found({"/x": ODOMETRY}, FLOOR) == ({"odom": "/x"}, "in bag, took /x as odom: there is no other of the type")
+    topics, notes = found({"/odom": ODOMETRY, "/deck/odom": ODOMETRY}, ABOARD)
+    assert topics == {"support/odom": "/deck/odom", "odom": "/odom"}
+    assert "took /deck/odom as support/odom" in notes
+    assert found({"/x": ODOMETRY, "/support/odom": ODOMETRY}, ABOARD)[0]["odom"] == "/x"
+
+
+def test_of_two_inputs_without_a_topic_neither_takes_the_only_one() -> None:
+    assert refusal({"/x": ODOMETRY}, ABOARD) == (
+        "bag has 1 topic that could be support/odom or odom: /x; choose one: --remap support/odom:=/x"
+    )
+    topics, _ = found({"/x": ODOMETRY, "/y": ODOMETRY}, ABOARD, {"support/odom": "/x"})
+    assert topics == {"support/odom": "/x", "odom": "/y"}
+
+
+def test_of_several_topics_one_must_be_chosen() -> None:
+    assert refusal({"/x": ODOMETRY, "/y": ODOMETRY}, FLOOR) == (
+        "bag has 2 topics that could be odom: /x, /y; choose one: --remap odom:=/x"
+    )
+
+
+def test_a_body_with_a_name_takes_no_topic_of_another_name() -> None:
+    recorded = {"/crate/odom": ODOMETRY, "/support/odom": ODOMETRY, "/barrel/odom": ODOMETRY, "/leaning/imu": IMU}
+    topics, notes = found(recorded, CARGO)
+    assert "drum/odom" not in topics
+    assert notes == "bag has no drum/odom: nothing is predicted there"
+    # What is left could be the support or the drum.
+    del recorded["/support/odom"]
+    assert refusal(recorded, CARGO).startswith("bag has 1 topic that could be support/odom or drum/odom: /barrel/odom")
+
+
+def test_without_any_state_the_reader_shall_say_what_there_is() -> None:
+    topics, _ = found({"/support/odom": ODOMETRY}, CARGO)
+    assert topics == {"support/odom": "/support/odom", "crate/odom": "/crate/odom"}
+    assert found({}, FLOOR)[0] == {"odom": "/odom"}
+    topics, _ = found({"/crate/odom": ODOMETRY, "/leaning/imu": IMU}, CARGO)
+    assert topics["support/odom"] == "/support/odom"
+
+
+def test_every_input_may_be_remapped() -> None:
+    recorded = {"/a": ODOMETRY, "/b": ODOMETRY, "/deck": ODOMETRY, "/i": IMU}
+    remap = {"crate/odom": "/a", "/drum/odom": "b", "support/odom": "/deck", "leaning/imu": "/i"}
+    topics, notes = found(recorded, CARGO, remap)
+    assert topics == {"support/odom": "/deck", "crate/odom": "/a", "drum/odom": "/b", "leaning/imu": "/i"}
+    assert notes == ""
+
+
+def test_a_remapping_of_no_input_is_refused_with_those_there_are() -> None:
+    assert refusal({}, CARGO, {"blind/odom": "/x"}) == (
+        "the remapping blind/odom:=/x is of no input; the inputs are support/odom, crate/odom, drum/odom, leaning/imu, "
+        "crate/contact_geometry and drum/contact_geometry"
+    )
+    assert found({"/odom": ODOMETRY}, FLOOR, {"contact_geometry": "/feet"})[0] == {"odom": "/odom"}
+    many = {f"unit_{k}": DECK for k in range(50)}
+    assert refusal({}, many, {"x": "/y"}).endswith("unit_18/odom and 81 more")
+
+
+def test_no_topic_is_two_inputs() -> None:
+    recorded = {"/x": ODOMETRY, "/support/odom": ODOMETRY}
+    assert refusal(recorded, ABOARD, {"odom": "/support/odom"}) == (
+        "support/odom and odom cannot both be /support/odom; remap one of them to another topic"
+    )

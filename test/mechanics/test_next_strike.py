@@ -1,0 +1,363 @@
+"""The next strike over a moving support: against Newton's law in the world's axes, against `rock`, and its edges.
+
+The reference goes from phase to phase in the world: it integrates each one until a gap, a slip, a reaction or the edge
+of a cone of friction is zero, by finding the root of that on its own dense output.
+"""
+
+from __future__ import annotations
+
+import math
+import random
+import subprocess
+import sys
+from typing import Any
+
+import numpy as np
+import pytest
+from newton_in_world import newton, touch
+from scipy.integrate import solve_ivp
+
+from impact_predictor import Contact, InputError, TwoPointBody, cylinder, plate
+from impact_predictor.mechanics.motion import Fall, Motion, PlanarState, next_touchdown
+from impact_predictor.mechanics.rocking import next_strike, rock, standing
+from impact_predictor.mechanics.rocking.flight import from_world, in_world
+from impact_predictor.mechanics.support import FixedSupport, MovingSupport, SupportMotion, Wave, harmonic_support
+
+G = 9.81
+AGREES = 1e-9
+"""The tolerance of `next_strike`; what is left of its errors is smaller, and the reference's are below 1e-11."""
+
+CRATE = plate(length=0.8, height=1.0, mass=50.0, friction=0.8)
+SMOOTH = TwoPointBody(50.0, 7.0, Contact(-0.4, -0.5, 0.1), Contact(0.4, -0.5, 0.15))
+DRUM = cylinder(radius=0.3, gamma=0.5, gamma_new=0.7, mass=40.0, friction=0.5)
+HARMONIC = harmonic_support(
+    angle=(Wave(0.25, 1.1, 0.3), Wave(0.08, 2.3, 1.0)),
+    x=(Wave(0.9, 0.9, 2.0),),
+    y=(Wave(1.1, 1.3, 0.5), Wave(0.2, 3.1)),
+).at(4.0, 2.5)
+
+
+def accelerated(time: Any) -> SupportMotion:
+    """Constant linear and angular acceleration."""
+    ax, ay, turning, rate = 1.1, -0.8, 0.7, 0.3
+    zero = 0.0 * time
+    return SupportMotion(
+        0.1 + (rate + 0.5 * turning * time) * time,
+        rate + turning * time,
+        zero + turning,
+        0.5 * ax * time * time,
+        (0.4 + 0.5 * ay * time) * time,
+        ax * time,
+        0.4 + ay * time,
+        zero + ax,
+        zero + ay,
+    )
+
+
+CONSTANT = MovingSupport(accelerated, 1.0).at(2.0, -1.5)
+SUPPORTS = {"constant": CONSTANT, "harmonic": HARMONIC}
+
+
+class Told:
+    """What is felt on a support, told by a plain function of time."""
+
+    def __init__(self, support: MovingSupport, period: float = math.inf) -> None:
+        self.felt, self.gravity, self.period = support.felt_exactly, support.gravity, period
+
+
+def margins(body: TwoPointBody, support: MovingSupport, states: str, time: float, y: Any) -> dict[str, float]:
+    """What ends a phase where it falls to zero, by the states after it or by the contact that strikes."""
+    found: dict[str, float] = {}
+    reaction = newton(body, support, states, time, y)[1]
+    for i, state in enumerate(states):
+        contact = touch(body, support, i, time, y)
+        if state == "O":
+            found[str(i)] = contact.gap
+            continue
+        found["OO"] = reaction[0]
+        if state == "S":
+            hold = (body.new if i else body.old).friction * reaction[0]
+            found[states.replace("S", "+")] = hold + reaction[1]
+            found[states.replace("S", "-")] = hold - reaction[1]
+        else:
+            found[states.replace(state, "S")] = contact.slip if state == "+" else -contact.slip
+    return found
+
+
+def reference(
+    body: TwoPointBody, support: MovingSupport, start: PlanarState, states: str, duration: float
+) -> tuple[float, int, PlanarState, list[str]]:
+    """Time, contact and state of the first strike, and the phases before it."""
+    time, y, phases = 0.0, np.array(in_world(support.motion(0.0), start)), [states]
+    while True:
+        names = list(margins(body, support, states, time, y))
+        events = [lambda t, y, name=name, states=states: margins(body, support, states, t, y)[name] for name in names]
+        for event in events:
+            event.direction = -1.0
+        goes = solve_ivp(
+            lambda t, y, states=states: newton(body, support, states, t, y)[0],
+            (time, duration),
+            y,
+            method="DOP853",
+            rtol=1e-12,
+            atol=1e-13,
+            max_step=0.005,  # no dip is stepped over, and roots on the interpolants are as exact
+            events=events,
+        )
+        # What begins at zero is not over as soon as rounding says so.
+        ends = [
+            (at, name, end)
+            for name, times, values in zip(names, goes.t_events, goes.y_events, strict=True)
+            for at, end in zip(times, values, strict=True)
+            if at > time + 1e-6
+        ]
+        time, name, y = min(ends, key=lambda one: one[0])
+        if name in "01":
+            return float(time), int(name), from_world(support.motion(time), PlanarState(*y)), phases
+        if "S" in name and min(margins(body, support, name, time, y).values()) < 0.0:
+            name = states.translate(str.maketrans("+-", "-+"))  # it does not stick: the slip reverses
+        states = name
+        phases.append(states)
+
+
+CASES = {
+    "sticks": (CRATE, standing(CRATE, 0.2, -0.7), ["SO"], {"constant", "harmonic"}),
+    "sticks on contact 1": (CRATE, standing(CRATE, -0.1, 0.5), ["OS"], {"constant", "harmonic"}),
+    "slips": (SMOOTH, standing(SMOOTH, 0.15, -1.2, 0.9), ["+O"], {"constant", "harmonic"}),
+    "slips backwards": (SMOOTH, standing(SMOOTH, 0.15, -0.4, -0.3), ["-O"], {"constant", "harmonic"}),
+    "sticks after it slipped": (CRATE, standing(CRATE, 0.22, 0.0, 0.6), ["+O", "SO"], {"constant", "harmonic"}),
+    "slips after it stuck": (CRATE, standing(CRATE, 0.437, -3.335), ["SO", "+O"], {"harmonic"}),
+    "reverses its slip": (SMOOTH, standing(SMOOTH, 0.333, -1.337, 0.738), ["+O", "-O"], {"constant"}),
+    "lifts off": (SMOOTH, standing(SMOOTH, 0.454, -3.64), ["+O", "OO"], {"harmonic"}),
+    "sticks, slips and lifts off": (CRATE, standing(CRATE, 0.495, -3.638), ["SO", "+O", "OO"], {"harmonic"}),
+    "lifts off under constant acceleration": (SMOOTH, standing(SMOOTH, 0.456, 0.835), ["-O", "OO"], {"constant"}),
+    "flies": (CRATE, standing(CRATE, 0.1, -1.0)._replace(vx=0.4, vy=0.8), ["OO"], {"constant", "harmonic"}),
+    "drum rolls": (DRUM, standing(DRUM, 0.147, -0.376), ["SO"], {"constant", "harmonic"}),
+    "drum rolls back": (DRUM, standing(DRUM, -0.08, 0.5), ["OS", "O-"], {"constant", "harmonic"}),
+    "drum spins": (DRUM, standing(DRUM, 0.264, -3.7, 1.5), ["+O"], {"constant", "harmonic"}),
+    "drum spins and rolls": (DRUM, standing(DRUM, 0.376, -1.0, -0.6), ["-O", "SO"], {"constant", "harmonic"}),
+    "drum leaves its edge": (DRUM, standing(DRUM, 0.223, -5.073), ["+O", "OO"], {"harmonic"}),
+}
+MOTIONS = {"S": Motion.TURNING, "+": Motion.SLIDING, "-": Motion.SLIDING, "O": Motion.FLIGHT}
+
+
+@pytest.mark.parametrize(
+    ("name", "moves"), [(name, moves) for name, case in CASES.items() for moves in sorted(case[3])]
+)
+def test_the_next_strike_is_newtons_in_the_world(name: str, moves: str) -> None:
+    body, start, states, _ = CASES[name]
+    support = SUPPORTS[moves]
+    old = None if states[0] == "OO" else states[0].index("O") ^ 1
+    fall = next_strike(body, start, old, Told(support), 1.2)
+    assert fall is not None
+    time, point, state, phases = reference(body, support, start, states[0], 1.1 * fall.time + 0.02)
+    assert phases == states
+    assert fall.point == point
+    assert fall.time == pytest.approx(time, abs=AGREES)
+    assert fall.state == pytest.approx(state, rel=AGREES, abs=AGREES)
+    assert fall.motion is MOTIONS[states[-1].replace("O", "") or "O"]
+
+
+def random_start(draw: random.Random, body: TwoPointBody) -> tuple[PlanarState, int | None]:
+    angle, omega = draw.uniform(-0.4, 0.4), draw.uniform(-3.0, 3.0)
+    state = standing(body, angle, omega, draw.choice([0.0, draw.uniform(-1.0, 1.0)]))
+    if draw.random() < 0.3:
+        return state._replace(y=state.y + 0.1, vx=draw.uniform(-0.5, 0.5), vy=draw.uniform(0.0, 1.0)), None
+    return state, 0 if angle > 0.0 else 1
+
+
+@pytest.mark.parametrize("support", [*SUPPORTS.values(), FixedSupport(0.05)], ids=[*SUPPORTS, "fixed"])
+@pytest.mark.parametrize("body", [CRATE, SMOOTH, DRUM], ids=["crate", "smooth", "drum"])
+def test_the_next_strike_is_the_first_impact_of_a_run(body: TwoPointBody, support: Any) -> None:
+    draw, struck = random.Random(7), 0
+    for _ in range(25):
+        start, old = random_start(draw, body)
+        run = rock(body, start, support, duration=1.0, max_events=50)
+        fall = next_strike(body, start, old, support, 1.0, 1e-11)
+        first = run.impacts[0] if run.impacts else None
+        assert (fall is None) == (first is None)
+        if fall is None or first is None:
+            continue
+        struck += 1
+        assert fall.point == first.new
+        # Both follow the motion in the same way, to 1e-11 of what happens in a step; grazes amplify what is left.
+        assert fall.time == pytest.approx(first.time, abs=1e-9)
+        assert fall.state == pytest.approx(first.before, rel=1e-8, abs=1e-8)
+    assert struck >= 15
+
+
+@pytest.mark.parametrize("old", [0, 1])
+@pytest.mark.parametrize("tilt", [1e-9, 0.2])
+def test_a_measured_gap_and_normal_velocity_of_the_standing_contact_are_dropped(old: int, tilt: float) -> None:
+    side = 1.0 if old == 0 else -1.0
+    start = standing(CRATE, side * tilt, side * 0.3)
+    wanted = next_strike(CRATE, start, old, Told(CONSTANT), 1.0)
+    for gap, speed in ((1e-3, 0.05), (-1e-3, -0.05), (1e-3, -0.05)):
+        measured = start._replace(y=start.y + gap, vy=start.vy + speed)
+        assert next_strike(CRATE, measured, old, Told(CONSTANT), 1.0) == wanted
+    assert wanted is not None
+    assert wanted.point == 1 - old
+
+
+@pytest.mark.parametrize("old", [0, 1])
+def test_a_drum_measured_off_its_edge_or_into_it_rolls_on_the_edge(old: int) -> None:
+    side = 1.0 if old == 0 else -1.0
+    start = standing(DRUM, side * 0.2, -side * 0.3)
+    edge = (0.0, 0.0) if old == 0 else (DRUM.new.x - DRUM.old.x, DRUM.new.y - DRUM.old.y)
+    out = np.array([start.x - edge[0], start.y - edge[1]]) / 0.3
+    wanted = next_strike(DRUM, start, old, Told(CONSTANT), 1.0)
+    for part in (1e-4, -1e-4):
+        gap, speed = 0.3 * part * out, 0.05 * out * math.copysign(1.0, part)
+        # Farther out the axis moves faster at the same rate about the edge.
+        measured = PlanarState(
+            start.x + gap[0],
+            start.y + gap[1],
+            start.angle,
+            start.vx * (1.0 + part) + speed[0],
+            start.vy * (1.0 + part) + speed[1],
+            start.omega,
+        )
+        fall = next_strike(DRUM, measured, old, Told(CONSTANT), 1.0)
+        assert fall is not None
+        assert wanted is not None
+        assert (fall.time, *fall.state) == pytest.approx((wanted.time, *wanted.state), abs=1e-9)
+
+
+def test_slip_of_the_standing_contact_is_kept() -> None:
+    start = standing(CRATE, 0.2)
+    still, slips = (next_strike(CRATE, start._replace(vx=vx), 0, Told(CONSTANT), 1.0) for vx in (0.0, 1.0))
+    assert still is not None
+    assert slips is not None
+    assert slips.state.x - still.state.x > 0.01
+
+
+def test_on_a_fixed_support_it_is_the_next_touchdown() -> None:
+    slope = FixedSupport(0.1)
+    gravity = slope.felt(0.0)[:2]
+    for friction, angle, slip in ((0.8, 0.2, 0.0), (0.1, 0.3, 0.4), (0.3, 0.1, -0.2)):
+        body = plate(length=0.8, height=1.0, mass=50.0, friction=friction)
+        points = ((-0.4, -0.5), (0.4, -0.5))
+        start = standing(body, angle, 0.1, slip)
+        touchdown = next_touchdown(start, points, 0, body.inertia / body.mass, friction, gravity, 1.0)
+        fall = next_strike(body, start, 0, slope, 1.0)
+        assert fall is not None
+        assert fall.motion is touchdown.motion
+        assert (fall.time, *fall.state) == pytest.approx((touchdown.time, *touchdown.state), abs=1e-8)
+
+
+@pytest.mark.parametrize("turns", [-2, 1])
+def test_a_body_that_has_turned_around_strikes_as_one_that_has_not(turns: int) -> None:
+    start = standing(CRATE, 0.2)
+    shift = 2.0 * math.pi * turns
+    one, other = (
+        next_strike(CRATE, start._replace(angle=start.angle + by), 0, Told(CONSTANT), 1.0) for by in (0.0, shift)
+    )
+    assert one is not None
+    assert other is not None
+    assert other.state == pytest.approx(one.state._replace(angle=one.state.angle + shift), abs=1e-12)
+
+
+def strike_of(angle: float, omega: float, old: int | None = 0, **changes: float) -> Fall | None:
+    return next_strike(CRATE, standing(CRATE, angle, omega)._replace(**changes), old, Told(CONSTANT), 1.0)
+
+
+@pytest.mark.parametrize("angle", [0.0, -1e-3])
+def test_a_contact_on_the_support_or_below_it_strikes_at_once_when_it_moves_down(angle: float) -> None:
+    start = standing(CRATE, -angle, -0.5)  # turned about contact 0, so that contact 1 may be below
+    fall = next_strike(CRATE, start._replace(angle=angle), 0, Told(CONSTANT), 1.0)
+    assert fall is not None
+    assert (fall.time, fall.point, fall.state.angle) == (0.0, 1, 0.0)
+    assert fall.state.omega == -0.5
+
+
+@pytest.mark.parametrize("angle", [0.0, -1e-3])
+def test_a_contact_on_the_support_or_below_it_that_rises_strikes_after_it_has_risen(angle: float) -> None:
+    fall = next_strike(CRATE, standing(CRATE, 0.0, 0.5)._replace(angle=angle), 0, Told(CONSTANT), 1.0)
+    assert fall is not None
+    assert fall.time > 0.1
+    assert fall.state.omega < -0.3
+
+
+def test_in_flight_a_contact_below_the_support_strikes_at_once_when_it_moves_down_and_later_when_it_rises() -> None:
+    start = standing(CRATE, 0.05)
+    falls = start._replace(y=start.y - 1e-3, vy=-0.2)
+    fall = next_strike(CRATE, falls, None, Told(CONSTANT), 1.0)
+    assert fall == Fall(0.0, 0, falls, Motion.FLIGHT)
+    rises = next_strike(CRATE, falls._replace(vy=0.6), None, Told(CONSTANT), 1.0)
+    assert rises is not None
+    assert rises.time > 0.05
+    assert rises.motion is Motion.FLIGHT
+
+
+def test_of_two_contacts_below_the_support_the_faster_one_strikes() -> None:
+    for omega, point in ((0.3, 0), (-0.3, 1)):
+        start = standing(CRATE, 0.0)._replace(vy=-0.5, omega=omega)
+        fall = next_strike(CRATE, start._replace(y=start.y - 1e-3), None, Told(CONSTANT), 1.0)
+        assert fall is not None
+        assert (fall.time, fall.point) == (0.0, point)
+
+
+@pytest.mark.parametrize("support", [Told(CONSTANT), FixedSupport()], ids=["moving", "fixed"])
+def test_a_body_that_has_overturned_is_not_followed_even_as_it_falls_back(support: Any) -> None:
+    assert next_strike(CRATE, standing(CRATE, 1.5, -4.0), 0, support, 2.0) is not None
+    assert next_strike(CRATE, standing(CRATE, 1.6, -4.0), 0, support, 2.0) is None
+
+
+def test_what_does_not_strike_within_the_duration_has_no_next_strike() -> None:
+    for start, old in (
+        (standing(CRATE, 0.0), 0),  # rests on both contacts
+        (standing(CRATE, 0.5, 1.5), 0),  # overturns
+        (standing(CRATE, 1.6), 0),  # has overturned
+        (standing(CRATE, 0.3, 0.5), 0),  # takes longer
+        (standing(CRATE, 0.3)._replace(vy=3.0), None),  # flies longer
+    ):
+        assert next_strike(CRATE, start, old, Told(CONSTANT), 0.1) is None
+
+
+@pytest.mark.parametrize("wrong", [math.nan, math.inf, 1e300])
+def test_numbers_that_cannot_be_followed_have_no_next_strike(wrong: float) -> None:
+    start = standing(CRATE, 0.2)
+    for name in start._fields:
+        for old in (0, None):
+            fall = next_strike(CRATE, start._replace(**{name: wrong}), old, Told(CONSTANT), 1.0)
+            assert fall is None or math.isfinite(sum(fall.state))
+
+
+def test_a_body_of_neither_shape_is_refused() -> None:
+    with pytest.raises(InputError):
+        next_strike(CRATE._replace(old=None), standing(CRATE, 0.1), 0, Told(CONSTANT), 1.0)
+
+
+def test_the_period_of_a_support_bounds_the_steps_so_that_no_swing_is_missed() -> None:
+    """A short kick throws the crate off its contact: between two long steps nobody would know of it."""
+    start = standing(CRATE, 0.3)
+
+    class Kicked(Told):
+        def felt(self, time: float) -> tuple[float, float, float, float]:  # type: ignore[override]
+            kick = 60.0 * math.exp(-(((time - 0.05) / 0.0005) ** 2))
+            return 0.0, -G + kick, 0.0, 0.0
+
+        def __init__(self, period: float) -> None:
+            self.gravity, self.period = G, period
+
+    fall = next_strike(CRATE, start, 0, Kicked(0.004), 1.0)
+    assert fall is not None
+    assert fall.motion is Motion.FLIGHT
+
+
+def test_the_next_strike_needs_no_numpy() -> None:
+    code = """
+import math, sys
+from impact_predictor import plate
+from impact_predictor.mechanics.rocking import next_strike, standing
+class Support:
+    period, gravity = math.inf, 9.81
+    def felt(self, time):
+        return 0.3 + 0.4 * time, -9.7 + 0.3 * time * time, 0.05 + 0.1 * time, 0.1
+body = plate(length=0.6, height=1.2, mass=500.0, friction=0.3)
+for start, old in ((standing(body, 0.1), 0), (standing(body, 0.1, slip=0.5), 0), (standing(body, 0.0, slip=1.0), 0),
+                   (standing(body, 0.1)._replace(vy=1.0), None)):
+    next_strike(body, start, old, Support(), 1.0)
+assert "numpy" not in sys.modules
+"""
+    subprocess.run([sys.executable, "-c", code], check=True)

@@ -1,0 +1,199 @@
+"""Rocking where events hide: dips within a step, the edge of a disc's cone, slip that ends among impacts."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+from impact_predictor import cylinder, plate
+from impact_predictor.mechanics.motion import Motion
+from impact_predictor.mechanics.rocking import next_strike, rock, standing
+from impact_predictor.mechanics.rocking.tail import Tail
+from impact_predictor.mechanics.support import Felt, FixedSupport, Wave, harmonic_support
+
+G = 9.81
+
+
+@pytest.mark.parametrize("depth", [1e-3, 1e-6, 1e-9, 1e-11, -1e-11])
+@pytest.mark.parametrize("late", [0.4, 0.5, 0.6, 0.7])
+def test_a_corner_that_dips_into_the_support_while_the_body_spins_past_strikes(depth: float, late: float) -> None:
+    """A spinning plate rises, and its corner comes down to the support for less than a step of the search.
+
+    The corner's height is y + vy t - g t^2/2 - R cos(w (t - t0)): its lowest value is found by itself.
+    """
+    body, spin, rise = plate(length=0.8, height=1.0, mass=1.0, friction=0.5), 20.0, 0.5
+    corner = math.hypot(0.4, 0.5)
+    lowest = late * 0.25 / spin
+
+    def height(t: float) -> float:
+        return rise * t - 0.5 * G * t * t - corner * math.cos(spin * (t - lowest))
+
+    def rate(t: float) -> float:
+        return rise - G * t + corner * spin * math.sin(spin * (t - lowest))
+
+    bottom = brentq(rate, lowest - 0.05, lowest + 0.05, xtol=1e-15)
+    # Contact 1, below and ahead of the mass centre, comes to the lowest place at angle -atan2(0.4, 0.5).
+    angle = -math.atan2(0.4, 0.5) - spin * lowest
+    start = standing(body, 0.0)._replace(y=-height(bottom) - depth, angle=angle, vx=0.0, vy=rise, omega=spin)
+    run = rock(body, start, FixedSupport(), duration=0.03)
+    fall = next_strike(body, start, None, FixedSupport(), 0.03)
+    if depth < 0.0:
+        assert not run.impacts
+        assert fall is None
+        return
+    strikes = brentq(lambda t: start.y + height(t), 0.0, bottom, xtol=1e-16)
+    assert run.impacts[0].new == 1
+    # Where a dip is only `depth` deep a rounding of the height moves the time by its root.
+    assert run.impacts[0].time == pytest.approx(strikes, abs=1e-14 / math.sqrt(depth) + 1e-12)
+    assert fall is not None
+    assert (fall.point, fall.time) == (1, run.impacts[0].time)
+
+
+@pytest.mark.parametrize("depth", [1e-3, 1e-5, 1e-7, -1e-7])
+def test_without_weight_a_deck_that_comes_up_to_a_body_for_a_moment_strikes_it(depth: float) -> None:
+    """The deck is at A sin(w t); a tilted crate hovers, its lower corner `depth` below the crest."""
+    body, height, pace = plate(length=0.8, height=1.0, mass=1.0, friction=0.5), 0.1, 2.0
+    deck = harmonic_support(y=(Wave(height, pace),), gravity=0.0)
+    hovers = standing(body, 0.1)
+    start = hovers._replace(y=hovers.y + height - depth, vy=-height * pace)
+    for strike in (rock(body, start, deck, duration=1.5).impacts[:1], [next_strike(body, start, None, deck, 1.5)]):
+        if depth < 0.0:
+            assert not any(strike)
+        else:
+            (found,) = strike
+            assert found is not None
+            # The crest is flat: a rounding of its height moves the time by its root.
+            wanted = math.asin(1.0 - depth / height) / pace
+            assert found.time == pytest.approx(wanted, abs=1e-12 / math.sqrt(depth) + 1e-11)
+
+
+class Recoil:
+    """A deck without gravity that from `start` on accelerates away from a body with sin(PACE t) m/s^2."""
+
+    gravity, PACE = 0.0, 2.0
+    period = 2.0 * math.pi / PACE
+
+    def __init__(self, start: float) -> None:
+        self.start = start
+
+    def felt(self, time: float) -> Felt:
+        return 0.0, math.sin(self.PACE * max(0.0, time - self.start)), 0.0, 0.0
+
+    def away(self, time: float) -> float:
+        """How far the deck has gone."""
+        angle = self.PACE * max(0.0, time - self.start)
+        return (angle - math.sin(angle)) / self.PACE**2
+
+
+def test_a_gap_that_closes_and_opens_again_within_a_step_is_not_missed() -> None:
+    """A crate drifts slowly to the deck, which recoils just as it comes: the gap is below zero for a moment."""
+    body, depth, speed = plate(length=0.8, height=1.0, mass=1.0, friction=0.5), 3e-5, 0.0025
+    flat = standing(body, 0.1)
+    for begins in np.linspace(0.5, 0.9, 60).tolist():
+        deck = Recoil(begins)
+        least = begins + math.acos(1.0 - speed * deck.PACE) / deck.PACE
+        gap = speed * least - deck.away(least) - depth
+        fall = next_strike(body, flat._replace(y=flat.y + gap, vy=-speed), None, deck, 3.0)
+        assert fall is not None
+        assert fall.time < least
+        # The recoil begins with a kink, and no order of extrapolation holds across it.
+        assert gap - speed * fall.time + deck.away(fall.time) == pytest.approx(0.0, abs=0.2 * depth)
+
+
+class Swell:
+    """A heave of which the least weight, for a moment, is `least` m/s^2; `part` of its period is told as its period."""
+
+    gravity, pace = G, 8.0
+
+    def __init__(self, least: float, part: float) -> None:
+        self.least, self.period = least, part * 2.0 * math.pi / self.pace
+
+    def felt(self, time: float) -> Felt:
+        swing = 0.5 * (1.0 - math.cos(self.pace * (time - 0.05)))
+        return 0.0, -self.least - (G - self.least) * swing, 0.0, 0.0
+
+
+def test_a_contact_that_lifts_off_within_a_step_is_not_missed() -> None:
+    body = plate(length=0.8, height=1.0, mass=1.0, friction=5.0)
+    start, motions = standing(body, 0.3, -1.0), []
+    for least in np.linspace(-0.5, 2.0, 41).tolist():
+        found, finely = (next_strike(body, start, 0, Swell(least, part), 1.0) for part in (1.0, 0.05))
+        assert found is not None
+        assert finely is not None
+        assert found.motion is finely.motion
+        assert found.time == pytest.approx(finely.time, abs=1e-7)  # grazing lift-offs amplify what is left
+        motions.append(found.motion)
+    assert set(motions) == {Motion.TURNING, Motion.FLIGHT}
+
+
+@pytest.mark.parametrize(("edge", "states"), [(0, ["SO", "+O"]), (1, ["OS", "O-"])])
+def test_a_disc_that_rolls_into_its_gap_slips_where_the_cone_of_friction_ends(edge: int, states: list[str]) -> None:
+    _slips_where_the_cone_ends(edge, 0.5, 0.0, states)
+
+
+@pytest.mark.parametrize(("edge", "states"), [(0, ["SO", "-O"]), (1, ["OS", "O+"])])
+def test_a_disc_that_rolls_over_its_edge_slips_where_the_cone_of_friction_ends(edge: int, states: list[str]) -> None:
+    _slips_where_the_cone_ends(edge, 0.6, 1.0, states)
+
+
+def _slips_where_the_cone_ends(edge: int, angle: float, omega: float, states: list[str]) -> None:
+    """theta is the angle of the line from the edge to the axis from the vertical, out of the gap.
+
+    N = m (g cos theta - theta'^2 R) and |T| = m g |sin theta| rho^2/(rho^2 + R^2).
+    """
+    radius, gamma, friction = 0.3, 0.9 if omega == 0.0 else 0.5, 0.2
+    body = cylinder(radius=radius, gamma=gamma, mass=40.0, friction=friction)
+    side = 1.0 if edge == 0 else -1.0
+    part = body.inertia / body.mass / (body.inertia / body.mass + radius**2)
+
+    def hold(_: float, y: np.ndarray) -> float:
+        theta, pace = y
+        return friction * (G * math.cos(theta) - pace**2 * radius) - part * G * abs(math.sin(theta))
+
+    hold.terminal = True  # type: ignore[attr-defined]
+    goes = solve_ivp(
+        lambda _, y: [y[1], G * math.sin(y[0]) * (1.0 - part) / radius],
+        (0.0, 2.0),
+        [angle - gamma, omega],
+        method="DOP853",
+        rtol=1e-12,
+        atol=1e-13,
+        max_step=0.01,
+        events=hold,
+    )
+    assert goes.status == 1
+    run = rock(body, standing(body, side * angle, side * omega), FixedSupport(), duration=2.0)
+    assert [phase.states for phase in run.phases[:2]] == states
+    assert run.phases[0].end == pytest.approx(goes.t[-1], abs=1e-9)
+    assert abs(run.state(run.phases[0].end).angle - run.state(0.0).angle) == pytest.approx(
+        abs(goes.y[0, -1] - goes.y[0, 0]), abs=1e-9
+    )
+
+
+def tail_of(slips: float, now: float, count: int) -> list[object]:
+    """What a tail says after each of some impacts, each the one before halved; the slip falls to `slips` at its end."""
+    tail = Tail(time=0.3, speed=3.0, length=1.0, tolerance=1e-12)
+    found: list[object] = []
+    for k in range(count):
+        shrinks = 0.5**k
+        found.append(tail.add((0, 1, 2), 0.01 * shrinks, (0.0, shrinks, 0.0, slips + (now - slips) * shrinks)))
+    return found
+
+
+def test_impacts_are_summed_while_the_slip_goes_on() -> None:
+    assert tail_of(slips=0.9, now=1.0, count=8)[-1] is not None
+
+
+def test_impacts_are_not_summed_across_the_end_of_the_slip() -> None:
+    """The friction that acts until the impacts end would reverse the slip: so it stops before, and all is different."""
+    assert tail_of(slips=-0.1, now=30.0, count=8) == [None] * 8
+
+
+def test_impacts_are_not_summed_while_they_take_most_of_the_slip() -> None:
+    found = tail_of(slips=0.1, now=30.0, count=12)
+    # After the k-th impact what is left, 0.1, is less than half of 0.1 + 29.9/2^(k-1) until k is 10.
+    assert [limit is None for limit in found] == [True] * 9 + [False] * 3

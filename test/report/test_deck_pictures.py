@@ -1,0 +1,156 @@
+"""What the pictures of a deck show: how its units moved, and the seconds in which they did."""
+
+from __future__ import annotations
+
+from math import cos, pi, radians, sin
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+import pytest
+from PIL import Image
+
+from impact_predictor.mechanics.rocking import End
+from impact_predictor.mechanics.support import MovingSupport, Wave, harmonic_support
+from impact_predictor.prediction.scene import MovingDeck, Scene
+from impact_predictor.prediction.types import Vector3
+from impact_predictor.report.motions.course import Course, Courses, margin_used, moments, outline_of
+from impact_predictor.report.motions.deck_animation import LONGEST, deck_frames, write_deck_animation
+from impact_predictor.report.motions.deck_figure import busiest, title_of, write_deck_figure
+from impact_predictor.scenarios.deck import follow, units_of
+
+matplotlib.use("agg")
+
+DURATION = 60.0
+
+
+def box(width: float, height: float, friction: float, place: Vector3, yaw: float = 0.0) -> Scene:
+    mass, across = 1000.0, width * width + height * height
+    points = tuple((x, y, -0.5 * height) for x in (-0.6, 0.6) for y in (-0.5 * width, 0.5 * width))
+    inertia = ((mass * across / 12.0, 0.0, 0.0), (0.0, 500.0, 0.0), (0.0, 0.0, 500.0))
+    return Scene(mass, inertia, friction, points=points, deck=MovingDeck(), place=place, yaw=yaw)
+
+
+SCENES = {
+    "crate": box(2.4, 3.0, 0.6, (0.0, 0.0, 1.5)),
+    "cabinet": box(0.9, 1.9, 0.9, (4.0, 2.0, 0.95)),
+    "pallet": box(1.2, 0.6, 0.35, (-4.0, -2.0, 0.3)),
+    "tank": box(1.3, 3.0, 0.8, (-8.0, 1.0, 1.5)),
+}
+ROLL = (
+    Wave(radians(6.5), 2.0 * pi / 4.1, 0.3),
+    Wave(radians(4.5), 2.0 * pi / 5.0, 1.0),
+    Wave(radians(3.0), 2.0 * pi / 3.4, 2.0),
+)
+
+
+@pytest.fixture(scope="module")
+def deck() -> MovingSupport:
+    return harmonic_support(ROLL, [Wave(0.5, 0.5 * pi)], [Wave(0.7, 2.0 * pi / 4.5, 2.0)]).at(0.0, 2.0)
+
+
+@pytest.fixture(scope="module")
+def courses(deck: MovingSupport) -> list[Course]:
+    found = Courses(DURATION)
+    for unit in units_of(SCENES):
+        for _ in found.taking(unit, follow(unit, deck.at(*unit.foot), DURATION)):
+            pass
+    return found.all
+
+
+def test_a_course_is_the_motion_from_the_decks_origin(deck: MovingSupport, courses: list[Course]) -> None:
+    for course in courses:
+        unit = course.unit
+        (span, *_) = follow(unit, deck.at(*unit.foot), DURATION)
+        for time in course.times[course.times < course.ended][::200]:
+            state, seen = span.state(np.array([time])), course.at(float(time))
+            # At its own moments a course has what the motion tells, but for rounding.
+            assert seen.x == pytest.approx(float(state.x[0]) + unit.foot[0], abs=1e-12)
+            assert seen.y == pytest.approx(float(state.y[0]) + unit.foot[1], abs=1e-12)
+            assert seen.angle == pytest.approx(float(state.angle[0]), abs=1e-12)
+
+
+def test_units_rock_slide_topple_and_stay(courses: list[Course]) -> None:
+    crate, cabinet, pallet, tank = courses
+    assert not crate.impacts
+    assert np.abs(crate.slid).max() == 0.0
+    assert np.abs(crate.tilt).max() == 0.0
+    assert cabinet.impacts
+    assert 0.0 < np.degrees(np.abs(cabinet.tilt).max()) < 20.0
+    assert np.abs(cabinet.slid).max() < 1e-9  # it sticks: turning about an edge is no slide
+    assert np.abs(pallet.slid).max() > 0.1
+    assert np.abs(pallet.tilt).max() == 0.0
+    assert tank.toppled
+    assert tank.end is End.OVERTURNED
+    assert np.isnan(tank.tilt[tank.times > tank.ended]).all()
+
+
+def test_a_margin_is_used_up_when_a_unit_leaves_its_rest_and_not_before(
+    deck: MovingSupport, courses: list[Course]
+) -> None:
+    for course in courses:
+        used = margin_used(deck, course.unit, course.times)
+        step = course.times[1]
+        if not course.onsets:
+            assert used.max() < 1.0
+            continue
+        first = course.onsets[0].stamp * 1e-9
+        assert (used[course.times < first - step] < 1.0).all()
+        assert margin_used(deck, course.unit, np.array([first])) == pytest.approx(1.0, abs=1e-3)
+
+
+def test_an_outline_is_the_box_seen_along_the_deck() -> None:
+    (unit,) = units_of({"turned": box(1.0, 2.0, 0.5, (0.0, 0.0, 1.0), yaw=0.5 * pi)})
+    low, high = outline_of(unit).min(axis=0), outline_of(unit).max(axis=0)
+    assert (*low, *high) == pytest.approx((-0.6, -1.0, 0.6, 1.0))
+
+
+def test_an_outline_of_a_cylinder_is_round() -> None:
+    drum = Scene(
+        *(200.0, ((16.0, 0.0, 0.0), (0.0, 16.0, 0.0), (0.0, 0.0, 16.0)), 0.5),
+        radius=0.4,
+        edges=((0.0, -0.4 * sin(0.5), 0.0), (0.0, 0.4 * sin(0.5), 0.0)),
+        place=(0.0, 0.0, 0.4 * cos(0.5)),
+        deck=MovingDeck(),
+    )
+    (unit,) = units_of({"drum": drum})
+    assert np.hypot(*outline_of(unit).T) == pytest.approx(0.4)
+
+
+def test_the_moving_picture_shows_the_seconds_in_which_most_units_move(courses: list[Course]) -> None:
+    frames = deck_frames(courses)
+    assert frames[-1] - frames[0] == pytest.approx(LONGEST, abs=0.1)
+    onsets = [onset.stamp * 1e-9 for course in courses for onset in course.onsets]
+    assert sum(frames[0] <= onset <= frames[-1] for onset in onsets) >= 0.5 * len(onsets)
+
+
+def test_the_moving_picture_of_a_calm_deck_or_a_short_one_is_not_empty(courses: list[Course]) -> None:
+    assert len(deck_frames(courses[:1])) > 100
+    short = Course(courses[0].unit, moments(1.0))
+    assert deck_frames([short])[-1] <= 1.0
+
+
+def test_the_busiest_units_are_drawn_and_the_title_says_so(courses: list[Course]) -> None:
+    shown = busiest(courses, 2)
+    assert [course.unit.name for course in shown] == ["cabinet", "tank"]
+    impacts = sum(len(course.impacts) for course in courses)
+    assert title_of(courses, 2) == f"4 units on a rolling deck: {impacts} impacts, 1 toppled; the 2 that moved most"
+
+
+def test_moments_of_a_long_motion_are_not_too_many() -> None:
+    assert len(moments(1e6)) == 200_000
+    assert moments(10.0)[1] == pytest.approx(0.05)
+
+
+def test_the_pictures_are_written_the_same_every_time(
+    deck: MovingSupport, courses: list[Course], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("impact_predictor.report.motions.deck_animation.LONGEST", 0.6)
+    told: list[int] = []
+    for name in ("one", "two"):
+        write_deck_figure(tmp_path / f"{name}.svg", deck, courses)
+        write_deck_animation(tmp_path / f"{name}.gif", deck, courses, told.append)
+    for suffix in ("svg", "gif"):
+        assert (tmp_path / f"one.{suffix}").read_bytes() == (tmp_path / f"two.{suffix}").read_bytes()
+    with Image.open(tmp_path / "one.gif") as film:
+        assert film.n_frames == len(told) / 2  # type: ignore[attr-defined]

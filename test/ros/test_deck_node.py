@@ -1,0 +1,252 @@
+"""The node for several bodies over a moving support: the same as a replay, and never OK where something is wrong."""
+
+import os
+import pickle
+import struct
+import subprocess
+import sys
+import time
+from itertools import islice
+from pathlib import Path
+
+import pytest
+
+from impact_predictor.bags.read import read_messages, topics
+from impact_predictor.bags.replay import replay
+from impact_predictor.mechanics.support import Wave, harmonic_support
+from impact_predictor.parameters import validate
+from impact_predictor.prediction.inputs import inputs_of
+from impact_predictor.prediction.scene import scenes_of
+from impact_predictor.prediction.types import Imu, Sample, Status
+from impact_predictor.report.parts.start import arguments_of
+from impact_predictor.ros.cdr import OK, STALE, WARN
+from impact_predictor.ros.messages import (
+    DIAGNOSTIC_ARRAY,
+    IMU,
+    ODOMETRY,
+    OUTPUTS,
+    decode_diagnostic_array,
+    encode_imu,
+    encode_odometry,
+)
+from impact_predictor.ros.processes import Child
+from impact_predictor.scenarios.deck_record import Sensors
+from impact_predictor.scenarios.deck_run import sail
+
+pytest.importorskip("rclpy", reason="the node needs ROS 2: source it, or install the extra `ros`")
+
+import rclpy
+from rclpy.executors import SingleThreadedExecutor
+
+from impact_predictor.ros.process import message_class
+
+ROOT = Path(__file__).parents[2]
+SERVE = Path(__file__).with_name("serve.py")
+UNIT = "impact_predictor/unit/"
+BODIES = ("rocker", "tilter", "plain")
+CARGO = {
+    "bodies": list(BODIES),
+    "body.mass": 80.0,
+    "body.inertia": [8.0, 8.0, 4.0, 0.0, 0.0, 0.0],
+    "body.contact_points": [part for x in (-0.3, 0.3) for y in (-0.2, 0.2) for part in (x, y, -0.5)],
+    "contact.friction": 0.6,
+    "support.motion": "odom",
+    "onset.watch": True,
+    "tilter.source": "imu",
+    "plain.source": "none",
+    **{f"{body}.place.position": [2.0 * k, 0.0, 0.5] for k, body in enumerate(BODIES)},
+}
+
+
+def sailed(bag, **more):
+    """A bag of three crates on a deck in a short steep sea, which rock for three seconds before they overturn."""
+    sea = harmonic_support(angle=(Wave(0.1, 5.0),), x=(Wave(0.14, 5.0, 3.14),))
+    voyage = sail(scenes_of(validate({**CARGO, **more})), sea, 3.3, bag=bag, sensors=Sensors(rate=20.0, deck_rate=50.0))
+    assert len(voyage.units[0].impacts) == 3
+
+
+def serve(values, messages, outputs):
+    """What the node publishes when it is told messages one by one, and which topics it reads."""
+    done = subprocess.run(
+        [sys.executable, str(SERVE), *arguments_of(values)],
+        input=pickle.dumps((messages, outputs)),
+        capture_output=True,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        timeout=60.0,
+    )
+    assert done.returncode == 0, done.stderr.decode()
+    heard, read, _ = pickle.loads(done.stdout)
+    return heard, read
+
+
+def said_of_units(arrays):
+    """What a sequence of diagnostics says about units, and not about the node."""
+    return [one for data in arrays for one in decode_diagnostic_array(data) if one.name.startswith(UNIT)]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("executor", "motion"), [("single", "odom"), ("events", "odom"), ("events", "imu")])
+def test_several_bodies_on_a_deck_are_told_live_what_the_replay_tells_byte_for_byte(tmp_path, executor, motion):
+    more = {"executor": executor, "support.motion": motion}
+    values = validate({**CARGO, **more})
+    bag, output = tmp_path / "deck.mcap", tmp_path / "replayed.mcap"
+    sailed(bag, **more)
+    replay(bag, scenes_of(values), output=output)
+    replayed = {topic: [] for topic in topics(output)}
+    for message in read_messages(output, topics(output)):
+        replayed[message.topic].append(message.data)
+    of_rocker = {f"/impact_predictor/rocker/{name}": one.type_name for name, one in OUTPUTS.items()}
+    assert replayed.keys() == {*of_rocker, "/diagnostics"}
+    inputs = {f"/{one.name}" for one in inputs_of(scenes_of(values))}
+    types = {topic: kind for topic, kind in topics(bag).items() if topic in inputs}
+    messages = [(topic, types[topic], data) for topic, _, data in read_messages(bag, types)]
+    heard, read = serve(values, messages, {**of_rocker, "/diagnostics": DIAGNOSTIC_ARRAY})
+    assert read - {"/parameter_events"} == {f"/support/{motion}", "/rocker/odom", "/tilter/imu"}
+    for topic in of_rocker:
+        assert len(heard[topic]) > 2
+        assert heard[topic] == replayed[topic]
+    assert said_of_units(heard["/diagnostics"]) == said_of_units(replayed["/diagnostics"])
+    assert {one.name for one in said_of_units(heard["/diagnostics"])} == {UNIT + body for body in BODIES}
+
+
+SECOND = 10**9
+FAULT = 2 * SECOND
+"""ns for which something is wrong, and for which all is well before and after it."""
+GRACE = 600_000_000
+"""ns in which it must be noticed: the timeout of the support, and a message of each."""
+NOTHING, LEVEL = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)
+COVARIANCE = (0.0,) * 36
+
+
+def deck(stamp):
+    return Sample(stamp, "world", "deck", NOTHING, LEVEL, NOTHING, NOTHING, COVARIANCE, COVARIANCE)
+
+
+def crate(stamp):
+    return deck(stamp)._replace(child_frame_id="crate", position=(0.0, 0.0, 0.5))
+
+
+def to_and_fro(sample):
+    """Another place every fifth of a second."""
+    return sample._replace(position=(3.0 * (sample.stamp // 200_000_000 % 2), 0.0, 0.0))
+
+
+FAULTS = {
+    Status.SUPPORT_STALE: (lambda sample: None, lambda sample: sample),
+    Status.CLOCKS_APART: (lambda sample: sample, lambda sample: sample._replace(stamp=sample.stamp + 3 * SECOND)),
+    Status.WRONG_FRAME: (lambda sample: sample, lambda sample: sample._replace(frame_id="elsewhere")),
+    Status.SUPPORT_JUMPED: (to_and_fro, lambda sample: sample),
+    Status.OFF_SUPPORT: (lambda sample: sample, lambda sample: sample._replace(position=(0.0, 0.0, 9.0))),
+    Status.BELOW_SUPPORT: (lambda sample: sample, lambda sample: sample._replace(position=(0.0, 0.0, -9.0))),
+    Status.BODY_STALE: (lambda sample: sample, lambda sample: None),
+}
+"""What becomes of the messages of deck and crate while something is wrong, by the status that must tell it."""
+
+
+def troubled():
+    """Each fault in its turn, and time to get over it: the messages, and from when to when it is there."""
+    found, times, now = [], {}, 100 * SECOND
+    for status, (of_deck, of_crate) in FAULTS.items():
+        times[status] = now + FAULT, now + 2 * FAULT
+        for stamp in range(now, now + 2 * FAULT, SECOND // 20):
+            both = ("/support/odom", deck(stamp), of_deck), ("/crate/odom", crate(stamp), of_crate)
+            for topic, sample, fault in both[: 1 + stamp // 50_000_000 % 2]:
+                told = fault(sample) if stamp >= now + FAULT else sample
+                if told is not None:
+                    found.append((topic, ODOMETRY, encode_odometry(told)))
+        now += 2 * FAULT
+    return found, times
+
+
+def one_crate(**more):
+    places = {name: value for name, value in CARGO.items() if name.partition(".")[0] not in BODIES}
+    return validate({**places, "bodies": ["crate"], "crate.place.position": [0.0, 0.0, 0.5], "onset.hold": 0.0, **more})
+
+
+def units_between(arrays, begin, end):
+    """What is said about units with stamps in ns from a beginning to an end."""
+    within = []
+    for data in arrays:
+        seconds, nanoseconds = struct.unpack_from("<iI", data, 4)
+        if begin <= seconds * SECOND + nanoseconds <= end:
+            within.append(data)
+    return said_of_units(within)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("executor", ["single", "events"])
+def test_what_goes_wrong_on_a_deck_is_named_and_the_unit_is_not_ok_while_it_lasts(executor):
+    messages, times = troubled()
+    heard, _ = serve(one_crate(executor=executor), messages, {"/diagnostics": DIAGNOSTIC_ARRAY})
+    for status, (begin, end) in times.items():
+        before = units_between(heard["/diagnostics"], begin - SECOND, begin - 1)
+        assert [one.level for one in before[-1:]] == [OK], (status, before[-1:])
+        while_it_lasts = units_between(heard["/diagnostics"], begin + GRACE, end - 1)
+        assert while_it_lasts, status
+        assert not [one for one in while_it_lasts if one.level == OK], status
+        assert any(status.name in one.message for one in while_it_lasts), (status, while_it_lasts[-1])
+
+
+@pytest.mark.slow
+def test_a_sensor_that_feels_gravity_the_wrong_way_round_is_named_and_nothing_is_ok():
+    imus = [Imu(k * SECOND // 20, "deck", LEVEL, NOTHING, (0.0, 0.0, -9.81)) for k in range(100, 200)]
+    messages = [("/support/imu", IMU, encode_imu(imu)) for imu in imus]
+    values = one_crate(**{"support.motion": "imu", "source": "none"})
+    heard, _ = serve(values, messages, {"/diagnostics": DIAGNOSTIC_ARRAY})
+    said = said_of_units(heard["/diagnostics"])
+    assert said
+    assert OK not in {one.level for one in said}
+    assert "GRAVITY_WRONG" in said[-1].message
+
+
+@pytest.mark.slow
+def test_a_deck_and_its_cargo_that_fall_silent_are_stale_though_no_message_comes(peer):
+    values = one_crate(executor="events")
+    with Child("node", dict(os.environ), "-m", "impact_predictor.ros.node", *arguments_of(values)) as node:
+        publishers = {
+            topic: peer.create_publisher(message_class(ODOMETRY), topic, 100)
+            for topic in ("support/odom", "crate/odom")
+        }
+        heard = []
+        peer.create_subscription(message_class(DIAGNOSTIC_ARRAY), "/diagnostics", heard.append, 100, raw=True)
+        executor = SingleThreadedExecutor(context=peer.context)
+        executor.add_node(peer)
+        stamps = iter(range(100 * SECOND, 200 * SECOND, SECOND // 20))
+
+        def until(levels, speaking):
+            patience = time.monotonic() + 20.0
+            while {one.name: one.level for one in statuses_of(heard)} != levels:
+                assert time.monotonic() < patience, statuses_of(heard)
+                node.check()
+                executor.spin_once(timeout_sec=0.02)
+                if speaking:
+                    stamp = next(stamps)
+                    publishers["support/odom"].publish(encode_odometry(deck(stamp)))
+                    publishers["crate/odom"].publish(encode_odometry(crate(stamp)))
+
+        own = "impact_predictor: predictions"
+        until({own: OK, UNIT + "crate": OK}, True)
+        until({own: WARN, UNIT + "crate": STALE}, False)
+        assert any("SUPPORT_STALE" in one.message for one in statuses_of(heard))
+        until({own: OK, UNIT + "crate": OK}, True)
+        # Messages wait while the node is asked to end.
+        for stamp in islice(stamps, 20):
+            publishers["crate/odom"].publish(encode_odometry(crate(stamp)))
+        node.end()
+        assert node.complained().count("\n") <= 2
+        executor.shutdown()
+
+
+def statuses_of(arrays):
+    """The latest status of each name."""
+    return {one.name: one for data in arrays for one in decode_diagnostic_array(data)}.values()
+
+
+@pytest.fixture
+def peer():
+    context = rclpy.Context()
+    context.init()
+    node = rclpy.create_node("peer", context=context)
+    yield node
+    node.destroy_node()
+    context.shutdown()

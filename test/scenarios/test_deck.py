@@ -1,0 +1,219 @@
+"""Units of a scene on a deck: where they stand, and how they move, against the motion in one piece."""
+
+from __future__ import annotations
+
+import itertools
+from math import asin, pi, sqrt
+from typing import Any
+
+import numpy as np
+import pytest
+
+from impact_predictor.errors import InputError
+from impact_predictor.mechanics.bodies import cylinder, plate
+from impact_predictor.mechanics.rocking import End, rock
+from impact_predictor.mechanics.support import FixedSupport, MovingSupport, Wave, harmonic_support
+from impact_predictor.prediction.scene import MovingDeck, Scene
+from impact_predictor.scenarios import deck as deck_module
+from impact_predictor.scenarios.deck import Span, Unit, follow, unit_of, units_of
+
+B, H, MASS, FRICTION = 0.4, 1.0, 500.0, 0.6
+
+
+def box(**changes: Any) -> Scene:
+    # Its z axis is the lightest, so that a wrong axis of the inertia shows.
+    scene = Scene(
+        MASS,
+        ((200.0, 0.0, 0.0), (0.0, 300.0, 0.0), (0.0, 0.0, 50.0)),
+        FRICTION,
+        points=tuple((x, y, z) for z in (-H, H) for x in (-0.7, 0.7) for y in (-B, B)),
+        deck=MovingDeck(),
+        place=(3.0, 5.0, H),
+    )
+    return scene._replace(**changes)
+
+
+def a_drum(**changes: Any) -> Scene:
+    scene = Scene(
+        MASS,
+        ((90.0, 0.0, 0.0), (0.0, 300.0, 0.0), (0.0, 0.0, 300.0)),
+        FRICTION,
+        radius=0.6,
+        edges=((0.0, 4.3, 0.1), (0.0, 3.7, 0.1)),
+        deck=MovingDeck(),
+    )
+    return scene._replace(**changes)
+
+
+def a_deck(angle: float = 0.12) -> MovingSupport:
+    """Rolls hard enough to rock the box."""
+    return harmonic_support([Wave(angle, 2.4), Wave(0.4 * angle, 3.5, 1.0)], [Wave(0.35, 2.4, 0.3)], [Wave(0.2, 1.7)])
+
+
+def motion_of(unit: Unit, duration: float) -> list[Span]:
+    return list(follow(unit, a_deck().at(*unit.foot), duration))
+
+
+def test_a_box_stands_on_the_lower_edges_that_lie_along_the_deck() -> None:
+    unit = unit_of("box", box())
+    assert unit.contacts == ((0, 2), (1, 3))
+    # About x, and turning off it is blocked by the edges.
+    assert unit.body == plate(2 * B, 2 * H, MASS, FRICTION, inertia=200.0)
+    assert unit.start[:3] == pytest.approx((5.0, H, 0.0), abs=1e-15)
+
+
+def test_a_turned_box_stands_on_its_other_edges() -> None:
+    unit = unit_of("box", box(yaw=0.5 * pi))
+    # Its own x axis points to port: the points with x > 0 are to port.
+    assert unit.contacts == ((0, 1), (2, 3))
+    assert unit.body.new.x == pytest.approx(0.7)
+    assert unit.body.inertia == pytest.approx(300.0)
+
+
+def test_the_mass_centre_stands_where_the_frame_and_its_offset_say() -> None:
+    unit = unit_of("box", box(center_of_mass=(0.1, 0.2, -0.3)))
+    assert unit.start[:2] == pytest.approx((5.2, H - 0.3))
+    assert unit.mount.beside == pytest.approx(3.1)
+    old = unit.body.old
+    assert old is not None
+    assert (old.x, old.y, unit.body.new.x) == pytest.approx((-B - 0.2, 0.3 - H, B - 0.2))
+
+
+def test_two_points_without_edges_are_a_free_body_s_contacts() -> None:
+    scene = box(
+        points=((0.0, -B, -H), (0.0, B, -H)), inertia=((200.0, 30.0, 0.0), (30.0, 300.0, 0.0), (0.0, 0.0, 50.0))
+    )
+    # 1 / (axis . I^-1 . axis): the body is free to turn off the axis.
+    assert unit_of("box", scene).body.inertia == pytest.approx(200.0 - 30.0**2 / 300.0)
+
+
+def test_restitution_is_that_of_both_contacts() -> None:
+    for scene in (box(restitution=0.3), a_drum(restitution=0.3)):
+        body = unit_of("one", scene).body
+        assert body.old is not None
+        assert (body.old.restitution, body.new.restitution) == (0.3, 0.3)
+
+
+def test_a_drum_lies_between_its_edges_from_starboard_to_port() -> None:
+    unit = unit_of("drum", a_drum())
+    assert unit.contacts == ((1,), (0,))
+    assert unit.foot == (3.7, 0.1)
+    expected = cylinder(0.6, asin(0.5), MASS, FRICTION, inertia=90.0)
+    assert expected.old is not None
+    assert unit.body.old is not None
+    for ours, theirs in ((unit.body.old, expected.old), (unit.body.new, expected.new)):
+        assert (*ours[:3], *ours.normal) == pytest.approx((*theirs[:3], *theirs.normal))
+    # Seen from the edge to starboard.
+    assert unit.start[:2] == pytest.approx((0.3, 0.6 * sqrt(0.75)))
+
+
+def test_a_drum_on_chocks_of_two_heights_touches_both() -> None:
+    unit = unit_of("drum", a_drum(edges=((0.0, 3.7, 0.1), (0.0, 4.3, 0.3))))
+    body, (x, y, *_) = unit.body, unit.start
+    assert body.old is not None
+    edges = [(x + contact.x, y + contact.y) for contact in (body.old, body.new)]
+    assert edges[0] == pytest.approx((0.0, 0.0), abs=1e-12)
+    assert edges[1] == pytest.approx((0.6, 0.2))
+
+
+@pytest.mark.parametrize(
+    ("scene", "sentence"),
+    [
+        (box(points=()), "box has no contact points; give body.contact_points"),
+        (box(yaw=0.3), "box would turn out of the deck's y-z plane"),
+        (box(normal=(0.0, 0.6, 0.8)), "support.normal of box"),
+        (box(points=((-0.7, 0.0, -H), (0.7, 0.0, -H))), "box stands on one line along the deck's x axis"),
+        (a_drum(edges=()), "box lies on 0 edges"),
+        (a_drum(radius=0.2), "a drum of radius 0.2 m falls through"),
+    ],
+)
+def test_what_cannot_be_simulated_in_the_plane_is_said_in_one_sentence(scene: Scene, sentence: str) -> None:
+    with pytest.raises(InputError, match=sentence):
+        unit_of("box", scene)
+
+
+def test_units_have_the_names_of_their_bodies() -> None:
+    assert [unit.name for unit in units_of({"a": box(), "b": a_drum()})] == ["a", "b"]
+    assert [unit.name for unit in units_of({"": box()})] == ["unit"]
+
+
+@pytest.mark.parametrize("scene", [box(), a_drum(edges=((0.0, 4.13, 0.1), (0.0, 3.87, 0.1)))], ids=["box", "drum"])
+def test_the_truth_is_that_of_the_motion_in_one_piece(monkeypatch: pytest.MonkeyPatch, scene: Scene) -> None:
+    # The spans cut through rest and motion alike.
+    monkeypatch.setattr(deck_module, "SPAN", 3.7)
+    unit = unit_of("one", scene)
+    spans = motion_of(unit, 30.0)
+    whole = rock(unit.body, unit.start, a_deck().at(*unit.foot), duration=30.0)
+    assert len(spans) > 5
+    large = [impact for span in spans for impact in span.impacts if impact.approach > 1e-3]
+    assert len(large) > 10
+    # What is carried on from span to span differs by rounding, which rocking magnifies.
+    for impact in large:
+        strike = min(whole.impacts, key=lambda one: abs(one.time - impact.stamp / 1e9))
+        assert impact.stamp / 1e9 == pytest.approx(strike.time, abs=1e-6)
+        assert impact.mode is strike.outcome.mode
+        assert impact.new == unit.contacts[strike.new]
+        # y to port and z up are the plane, and it turns about x.
+        assert impact.linear_before == pytest.approx((0.0, strike.before.vx, strike.before.vy), abs=1e-5)
+        assert impact.angular_after == pytest.approx((strike.after.omega, 0.0, 0.0), abs=1e-5)
+        assert impact.energy_lost == pytest.approx(strike.outcome.energy_lost, rel=1e-3, abs=1e-6)
+
+
+def test_a_span_tells_its_states_and_the_next_one_begins_where_it_ends(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(deck_module, "SPAN", 5.0)
+    spans = motion_of(unit_of("box", box()), 20.0)
+    for one, other in itertools.pairwise(spans):
+        assert one.time == other.start
+        ends, begins = one.state(np.array([one.time])), other.state(np.array([one.time]))
+        assert np.ravel(ends) == pytest.approx(np.ravel(begins), abs=1e-9)
+
+
+def test_onsets_are_where_a_unit_at_rest_begins_to_move() -> None:
+    unit = unit_of("box", box())
+    whole = rock(unit.body, unit.start, a_deck().at(*unit.foot), duration=20.0)
+    onsets = [onset for span in motion_of(unit, 20.0) for onset in span.onsets]
+    phases = whole.phases
+    left = [(then.start, then.states) for now, then in itertools.pairwise(phases) if now.states == "SS" != then.states]
+    assert len(onsets) == len(left) > 0
+    for onset, (time, states) in zip(onsets, left, strict=True):
+        assert onset.stamp / 1e9 == pytest.approx(time, abs=1e-6)
+        assert onset.lifts == ("O" in states)
+        assert onset.slides == ("+" in states or "-" in states)
+
+
+def test_a_box_with_little_friction_slides_and_never_strikes() -> None:
+    spans = motion_of(unit_of("box", box(friction=0.1)), 20.0)
+    onsets = [onset for span in spans for onset in span.onsets]
+    assert onsets
+    assert all(onset.slides and not onset.lifts for onset in onsets)
+    assert not any(span.impacts for span in spans)
+
+
+def test_a_toppled_unit_ends_there() -> None:
+    unit = unit_of("box", box())
+    spans = list(follow(unit, a_deck(0.5), 60.0))
+    assert spans[-1].end is End.OVERTURNED
+    assert spans[-1].time < 60.0
+    assert all(span.end is End.TIME_UP for span in spans[:-1])
+
+
+def test_a_border_is_the_smallest_relative_change_to_another_mode() -> None:
+    # A plate that turns about a resting contact slips at the new one below f = 3 d / (4 d^2 + 1), d = height / length.
+    delta = H / B
+    border = 3.0 * delta / (4.0 * delta * delta + 1.0)
+    inertia = MASS * (B * B + H * H) / 3.0
+    for friction in (0.99 * border, 1.01 * border):
+        scene = box(friction=friction, inertia=((inertia, 0.0, 0.0), (0.0, inertia, 0.0), (0.0, 0.0, 50.0)))
+        unit = unit_of("box", scene)
+        start = unit.start._replace(angle=0.05, y=unit.start.y + 0.02)
+        strike = rock(unit.body, start, FixedSupport(), duration=5.0).impacts
+        found = next(deck_module.Borders().of(one) for one in strike if one.old is not None)
+        # The change against friction is the smallest: no shift of a hundredth of the half distance does as much.
+        assert found == pytest.approx(0.01, rel=0.3)
+
+
+def test_borders_that_are_remembered_are_those_that_are_computed() -> None:
+    strikes = rock(unit_of("box", box()).body, unit_of("box", box()).start, a_deck(), duration=20.0).impacts
+    kept = deck_module.Borders()
+    for strike in strikes[:40]:
+        assert kept.of(strike) == pytest.approx(deck_module.Borders().of(strike), rel=1e-6)

@@ -1,0 +1,121 @@
+"""Responses of a vessel against closed forms, and its deck in a sea."""
+
+from __future__ import annotations
+
+from math import pi, sqrt
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from impact_predictor.errors import InputError
+from impact_predictor.mechanics.support import Wave, harmonic_support
+from impact_predictor.scenarios.sea import SeaState, Waves, waves_of
+from impact_predictor.scenarios.vessel import SecondOrder, Table, Vessel, deck_in, read_vessel
+
+G = 9.81
+NONE = Table((0.1, 10.0), (0.0, 0.0), (0.0, 0.0))
+TIMES = np.linspace(0.0, 300.0, 1001)
+
+
+def one_wave(frequency: float, amplitude: float = 1.0, phase: float = 0.0) -> Waves:
+    return Waves(np.array([frequency]), np.array([amplitude]), np.array([phase]))
+
+
+def test_a_second_order_response_solves_its_equation() -> None:
+    # x'' + 2 z w0 x' + w0^2 x = gain w0^2 cos(w t): the deck's own derivatives, put into it.
+    natural, damping, gain, frequency = 1.3, 0.2, 0.8, 0.9
+    vessel = Vessel(NONE, SecondOrder(natural, damping, gain), NONE, height=0.0)
+    motion = deck_in(one_wave(frequency, 2.0, 0.4), vessel).motion(TIMES)
+    left = motion.ay + 2.0 * damping * natural * motion.vy + natural**2 * motion.y
+    assert left == pytest.approx(gain * natural**2 * 2.0 * np.cos(frequency * TIMES + 0.4), abs=1e-12)
+
+
+def test_a_slow_wave_is_followed_by_the_surface_its_slope_and_its_drift() -> None:
+    # Far below the natural frequencies, with k = w^2 / g and the wave towards port.
+    frequency, amplitude = 1e-2, 3.0
+    system = SecondOrder(50.0, 0.1)
+    vessel = Vessel(system._replace(drive="slope"), system, system._replace(drive="drift"), 0.0)
+    motion = deck_in(one_wave(frequency, amplitude), vessel).motion(TIMES)
+    k = frequency**2 / G
+    # eta = a cos(w t - k y): at y = 0 its slope is a k sin(w t), and the water drifts with a sin(w t).
+    # The system is 2 damping w / w0 behind.
+    assert motion.y == pytest.approx(amplitude * np.cos(frequency * TIMES), abs=2e-4)
+    assert motion.angle == pytest.approx(amplitude * k * np.sin(frequency * TIMES), abs=1e-8)
+    assert motion.x == pytest.approx(amplitude * np.sin(frequency * TIMES), abs=2e-4)
+
+
+def test_a_raft_that_follows_the_water_feels_no_push_to_the_side() -> None:
+    # The surface is where the felt acceleration is normal to it: to first order in the slope.
+    system = SecondOrder(1e4, 0.1)
+    vessel = Vessel(system._replace(drive="slope"), system, system._replace(drive="drift"), 0.0)
+    ahead, up, _, _ = deck_in(one_wave(0.8, 1e-4), vessel).felt_exactly(TIMES)
+    slope = 1e-4 * 0.8**2 / G
+    assert np.abs(ahead / up).max() < 1e-3 * slope
+
+
+def test_a_table_is_met_at_its_frequencies_and_linear_between_them() -> None:
+    table = Table((0.5, 1.0), (0.2, 0.4), (0.0, 0.5 * pi))
+    at = table.at(np.array([0.3, 0.5, 0.75, 1.0, 2.0]), G)
+    assert at == pytest.approx([0.2, 0.2, 0.1 + 0.2j, 0.4j, 0.4j], abs=1e-15)
+
+
+def test_the_deck_is_the_sum_of_its_waves_above_the_axis_of_the_roll() -> None:
+    waves, vessel = waves_of(SeaState(2.0, 6.0), 4, count=40), Vessel(height=3.0)
+    roll, sway, heave = (
+        [
+            Wave(amplitude * abs(answer), frequency, phase + np.angle(answer) + 0.5 * pi)
+            for frequency, amplitude, phase, answer in zip(*waves, response.at(waves.frequencies, G), strict=True)
+        ]
+        for response in (vessel.roll, vessel.sway, vessel.heave)
+    )
+    expected = harmonic_support(roll, sway, heave).at(0.0, 3.0)
+    deck = deck_in(waves, vessel)
+    assert deck.period == pytest.approx(expected.period)
+    for ours, theirs in zip(deck.motion(TIMES), expected.motion(TIMES), strict=True):
+        assert ours == pytest.approx(theirs, abs=1e-11)
+    # One time as well as an array of them, and what is felt from the polynomials.
+    assert deck.motion(7.0) == pytest.approx(expected.motion(7.0), abs=1e-11)
+    assert deck.felt(7.0) == pytest.approx(expected.felt_exactly(7.0), abs=1e-9)
+
+
+def test_the_variance_of_a_response_is_that_of_its_spectrum() -> None:
+    waves, vessel = waves_of(SeaState(1.4, 4.0), 1), Vessel()
+    answer = vessel.roll.at(waves.frequencies, G)
+    expected = sqrt(0.5 * float((abs(answer) ** 2 * waves.amplitudes**2).sum()))
+    rolled = deck_in(waves, vessel).motion(np.arange(0.0, 7200.0, 0.5)).angle
+    # Some two thousand swings.
+    assert rolled.std() == pytest.approx(expected, rel=0.05)
+
+
+def test_a_file_of_tables_is_a_vessel(tmp_path: Path) -> None:
+    file = tmp_path / "rao.csv"
+    file.write_text(
+        "frequency,roll,roll_phase,heave,heave_phase,sway,sway_phase\n0.3,0.01,-1.57,1,0,1,-1.57\n1,0.05,-1.6,0.5,-0.3,0.4,-2\n"
+    )
+    vessel = read_vessel(str(file), 7.0)
+    assert vessel.height == 7.0
+    assert vessel.roll == Table((0.3, 1.0), (0.01, 0.05), (-1.57, -1.6))
+    assert vessel.sway == Table((0.3, 1.0), (1.0, 0.4), (-1.57, -2.0))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "frequency,roll\n1,2\n",
+        "frequency,roll,roll_phase,heave,heave_phase,sway,sway_phase\n1,1,1,1,1,1,1\n",
+        "frequency,roll,roll_phase,heave,heave_phase,sway,sway_phase\n1,1,1,1,1,1,1\n0.5,1,1,1,1,1,1\n",
+        "frequency,roll,roll_phase,heave,heave_phase,sway,sway_phase\n1,1,1,1,1,1,1\n2,nan,1,1,1,1,1\n",
+        "frequency,roll,roll_phase,heave,heave_phase,sway,sway_phase\n1,1,1,1,1,1,1\n2,x,1,1,1,1,1\n",
+    ],
+)
+def test_what_is_no_table_is_said_in_one_sentence(tmp_path: Path, text: str) -> None:
+    file = tmp_path / "rao.csv"
+    file.write_text(text)
+    with pytest.raises(InputError, match=r"rao\.csv.*give (finite )?numbers"):
+        read_vessel(str(file), 1.0)
+
+
+def test_a_file_that_is_not_there_is_said_in_one_sentence(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"no\.csv cannot be read"):
+        read_vessel(str(tmp_path / "no.csv"), 1.0)

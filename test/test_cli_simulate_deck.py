@@ -1,0 +1,226 @@
+"""`impact-predictor simulate deck`: what it prints and writes, and one sentence for each mistake."""
+
+from __future__ import annotations
+
+import json
+import shlex
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import CliRunner, Result
+
+from impact_predictor.bags.read import read_messages, topics
+from impact_predictor.cli import main
+from impact_predictor.commands.simulate_deck import EXAMPLES, SCENE
+from impact_predictor.parameter_file import read_values
+from impact_predictor.prediction.scene import Scene, scenes_of
+from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY, ODOMETRY, decode_odometry
+from impact_predictor.scenarios.deck import units_of
+from impact_predictor.scenarios.truth import TRUTH_TOPIC, decode_true_impacts
+
+ROOT = Path(__file__).parents[1]
+SCENES = ("deck_crate.yaml", "deck_drum.yaml", "deck_many.yaml")
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "config").symlink_to(ROOT / "config")
+    return tmp_path
+
+
+def run(*arguments: str) -> Result:
+    return CliRunner().invoke(main, ("simulate", "deck", *arguments), terminal_width=100)
+
+
+def simulated(*arguments: str) -> Any:
+    result = run(*arguments, "--json")
+    assert result.exit_code == 0, result.stderr
+    return json.loads(result.stdout)
+
+
+def scenes(name: str) -> dict[str, Scene]:
+    return scenes_of(read_values(ROOT / "config" / name))
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_a_shipped_scene_stands_on_its_deck(name: str) -> None:
+    found = scenes(name)
+    for unit in units_of(found):
+        # place.position is where the simulation puts it: on the deck.
+        (x, y, z), (foot_y, foot_z) = unit.scene.place, unit.foot
+        assert (unit.start.x + foot_y, unit.start.y + foot_z) == pytest.approx((y, z), abs=1e-5)
+        assert unit.mount.beside == x
+        assert unit.scene.watching is not None
+        assert unit.scene.deck is not None
+    assert len(found) == (7 if name == "deck_many.yaml" else 1)
+
+
+def test_several_units_stand_beside_each_other() -> None:
+    boxes = [
+        (min(x) + place[0], max(x) + place[0], min(y) + place[1], max(y) + place[1])
+        for scene in scenes("deck_many.yaml").values()
+        for place, points in [(scene.place, scene.points)]
+        if points
+        for x, y in [([p[0] for p in points], [p[1] for p in points])]
+    ]
+    assert len(boxes) == 6
+    for k, (a, b, c, d) in enumerate(boxes):
+        for e, f, g, h in boxes[:k]:
+            assert b < e or f < a or d < g or h < c
+    assert {scene.source for scene in scenes("deck_many.yaml").values()} == {"odom", "imu", "none"}
+
+
+def test_the_json_has_the_impacts_of_all_and_of_each_unit() -> None:
+    answer = simulated("--params", "config/deck_many.yaml", "--duration", "60", "--hs", "1.8")
+    assert set(answer) == {"duration", "impacts", "accumulation_time", "end", "deck", "units"}
+    assert answer["end"] == "TIME_UP"
+    assert list(answer["units"]) == list(scenes("deck_many.yaml"))
+    times = [impact["time"] for impact in answer["impacts"]]
+    assert times == sorted(times)
+    assert len(times) == sum(len(unit["impacts"]) for unit in answer["units"].values()) > 20
+    for impact in answer["impacts"]:
+        assert set(impact) == {"unit", "time", "mode", "omega_before", "omega_after"}
+        assert impact["omega_before"] >= 0.0
+        unit = answer["units"][impact["unit"]]
+        assert {name: value for name, value in impact.items() if name != "unit"} in unit["impacts"]
+
+
+def test_people_read_what_each_unit_did() -> None:
+    lines = run("--params", "config/deck_many.yaml", "--duration", "60").stdout.splitlines()
+    assert "1 min on a deck that rolls up to" in lines[0]
+    for name in scenes("deck_many.yaml"):
+        assert any(line.startswith(f"{name} ") and line.rstrip().endswith("stands") for line in lines)
+    assert any("impacts, " in line and "a minute" in line for line in lines)
+
+
+def test_what_topples_is_said() -> None:
+    said = run("--duration", "300", "--hs", "3").stdout
+    assert "Toppled, and not recorded after that: unit at" in said
+    assert simulated("--duration", "300", "--hs", "3")["end"] == "OVERTURNED"
+
+
+def test_the_bag_is_that_of_the_default_scene_and_its_truth() -> None:
+    result = run("--duration", "30", "--rate", "20", "--deck-rate", "40", "--hs", "1.8", "-o", "crate.mcap")
+    assert result.stdout.splitlines()[-1] == "Bag: crate.mcap"
+    found = topics("crate.mcap")
+    assert found["/odom"] == found["/support/odom"] == ODOMETRY
+    count = {topic: len(list(read_messages("crate.mcap", {topic: ODOMETRY}))) for topic in ("/odom", "/support/odom")}
+    assert count == {"/odom": 601, "/support/odom": 1201}
+    told = [
+        impact
+        for message in read_messages("crate.mcap", {TRUTH_TOPIC: DIAGNOSTIC_ARRAY})
+        for impact in decode_true_impacts(message.data)
+    ]
+    answer = simulated("--duration", "30", "--hs", "1.8")
+    assert [impact.stamp / 1e9 for impact in told] == [impact["time"] for impact in answer["impacts"]]
+    assert [impact.mode.name for impact in told] == [impact["mode"] for impact in answer["impacts"]]
+
+
+def test_sea_vessel_and_seed_reach_the_simulation(folder: Path) -> None:
+    (folder / "rao.csv").write_text(
+        "frequency,roll,roll_phase,heave,heave_phase,sway,sway_phase\n0.1,0,0,1,0,0,0\n9,0,0,1,0,0,0\n"
+    )
+    first = simulated("--duration", "60")["deck"]
+    assert first == simulated("--duration", "60", "--params", SCENE)["deck"]
+    for options in (
+        ["--seed", "2"],
+        ["--hs", "1.0"],
+        ["--tp", "6"],
+        ["--spectrum", "pm"],
+        ["--gamma", "2"],
+        ["--roll-period", "6"],
+        ["--roll-damping", "0.1"],
+        ["--rao", "rao.csv"],
+    ):
+        assert simulated("--duration", "60", *options)["deck"] != first
+    # It rolls about the middle of the vessel: further up there is more sway.
+    assert simulated("--duration", "60", "--deck-height", "5")["deck"]["most_lateral"] > first["most_lateral"]
+    assert simulated("--duration", "60", "--rao", "rao.csv")["deck"]["most_rolled"] == 0.0
+
+
+def test_a_recorded_deck_carries_the_units_as_long_as_it_lasts() -> None:
+    assert run("--duration", "40", "--hs", "1.8", "-o", "sea.mcap").exit_code == 0
+    first = simulated("--duration", "40", "--hs", "1.8")
+    again = simulated("--record", "sea.mcap", "--record-topic", "/support/odom")
+    assert again["duration"] == 40.0
+    # Looked for at other times.
+    assert again["deck"]["most_rolled"] == pytest.approx(first["deck"]["most_rolled"], rel=0.02)
+    assert [impact["time"] for impact in again["impacts"]][:5] == pytest.approx(
+        [impact["time"] for impact in first["impacts"]][:5], abs=1e-4
+    )
+    result = run("--record", "sea.mcap", "--record-topic", "/support/odom", "--duration", "50")
+    assert (result.exit_code, "the recorded deck ends after 40 s" in result.stderr) == (2, True)
+
+
+def test_compliant_contacts_tell_impacts_too() -> None:
+    options = ["--duration", "20", "--hs", "1.8"]
+    first = []
+    for contacts in ("rigid", "compliant"):
+        impacts = simulated(*options, "--contacts", contacts)["impacts"]
+        first.append(next(one for one in impacts if one["omega_before"] > 0.02))
+    rigid, compliant = first
+    assert compliant["time"] == pytest.approx(rigid["time"], abs=5e-3)
+    assert compliant["mode"] == rigid["mode"]
+
+
+def test_the_noise_is_that_of_the_options() -> None:
+    for name, options in (("one", []), ("two", ["--noise-position", "0.05"])):
+        assert run("--duration", "10", "-o", name, *options).exit_code == 0
+    places = [
+        [decode_odometry(message.data).position[0] for message in read_messages(name, {"/odom": ODOMETRY})]
+        for name in ("one", "two")
+    ]
+    apart = [one - two for one, two in zip(*places, strict=True)]
+    assert (sum(part * part for part in apart) / len(apart)) ** 0.5 == pytest.approx(0.05, rel=0.15)
+
+
+@pytest.mark.slow
+def test_the_default_sea_gives_two_impacts_a_minute_and_topples_nothing_in_an_hour() -> None:
+    answer = simulated()
+    assert answer["duration"] == 3600.0
+    assert answer["end"] == "TIME_UP"
+    assert len(answer["impacts"]) > 120
+
+
+@pytest.mark.slow
+def test_every_example_works() -> None:
+    for line in EXAMPLES:
+        assert line in run("--help").stdout
+        arguments = shlex.split(line)[1:]
+        if "--duration" not in arguments:
+            arguments += ["--duration", "60"]
+        result = CliRunner().invoke(main, arguments)
+        assert result.exit_code == 0, result.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (["--hs", "0"], "the significant wave height is 0.0"),
+        (["--tp", "nan"], "the peak period is nan"),
+        (["--gamma", "20"], "the peak enhancement is 20.0"),
+        (["--duration", "0"], "the duration is 0.0"),
+        (["--rate", "0"], "the rate is 0.0"),
+        (["--deck-rate", "-1"], "the deck rate is -1.0"),
+        (["--noise-gyro", "-1"], "the noise of the gyro is -1.0"),
+        (["--roll-period", "0"], "roll_period is 0.0"),
+        (["--rao", "no.csv"], "no.csv cannot be read"),
+        (["--record", "no.mcap"], "no.mcap"),
+        (["--params", "config/rocking_plate.yaml"], "the support of the parameter file is fixed"),
+        (["--params", "config/deck_drum.yaml", "--contacts", "compliant", "--duration", "1"], "unit is a drum"),
+        (["-o", "taken"], "taken is there and is not an output of impact_predictor"),
+    ],
+)
+def test_a_mistake_is_said_in_one_sentence_and_nothing_is_written(
+    folder: Path, arguments: list[str], sentence: str
+) -> None:
+    (folder / "taken").write_text("something else")
+    result = run(*arguments)
+    assert result.exit_code == 2
+    assert result.stdout == ""
+    (line,) = result.stderr.splitlines()
+    assert line.startswith("error: ")
+    assert sentence in line
+    assert sorted(file.name for file in folder.iterdir()) == ["config", "taken"]
