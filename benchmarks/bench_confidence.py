@@ -27,8 +27,8 @@ from impact_predictor import Twist, cylinder, plate
 from impact_predictor.bags.read import read_messages
 from impact_predictor.mechanics.margins import margins
 from impact_predictor.mechanics.sensitivity import sensitivity
-from impact_predictor.parameter_file import read_parameters
-from impact_predictor.parameters import validate
+from impact_predictor.parameters.file import read_parameters
+from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.prediction.uncertainty import propagate

@@ -17,7 +17,7 @@ from rich.table import Table
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import MovingDeck, Scene
 from impact_predictor.prediction.types import Felt, Moment, Prediction, Sample, Status
-from impact_predictor.ros.markers import PERIOD, MarkerScene
+from impact_predictor.ros.markers.scene import PERIOD, MarkerScene
 
 TURNS = 60
 CASES = ((1, 0), (1, 1), (50, 0), (50, 5), (50, 50))

@@ -18,11 +18,11 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from impact_predictor.prediction.onset import Onset, motion_of, motions
 from impact_predictor.prediction.scene import MovingDeck, Scene, Watching
-from impact_predictor.prediction.standing import Standing
 from impact_predictor.prediction.types import Felt, Moment, Sample
-from impact_predictor.prediction.watch import Watch
+from impact_predictor.prediction.watch.onset import Onset, motion_of, motions
+from impact_predictor.prediction.watch.standing import Standing
+from impact_predictor.prediction.watch.watch import Watch
 
 TURNS = 1000
 CASES = ((1, 0), (50, 0), (50, 10))

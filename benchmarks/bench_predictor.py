@@ -26,10 +26,10 @@ from rich.console import Console
 from rich.table import Table
 
 from impact_predictor.bags.read import BagMessage, read_messages
-from impact_predictor.parameter_file import read_parameters
-from impact_predictor.parameters import validate
+from impact_predictor.parameters.file import read_parameters
+from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction import approach, predictor, transverse
-from impact_predictor.prediction.deck import Deck
+from impact_predictor.prediction.deck.tracker import Deck
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.prediction.types import Status

@@ -25,8 +25,8 @@ from rich.table import Table
 from impact_predictor.bags.read import read_messages
 from impact_predictor.bags.replay import NODE, replay
 from impact_predictor.bags.write import BagWriter
-from impact_predictor.parameter_file import read_parameters
-from impact_predictor.parameters import validate
+from impact_predictor.parameters.file import read_parameters
+from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.resources import find

@@ -26,7 +26,7 @@ from rich.table import Table
 
 from impact_predictor.bags.read import read_messages
 from impact_predictor.mechanics.motion import PlanarState
-from impact_predictor.prediction.deck import Deck
+from impact_predictor.prediction.deck.tracker import Deck
 from impact_predictor.prediction.scene import MovingDeck
 from impact_predictor.prediction.types import Felt, Imu, Sample, Vector3
 from impact_predictor.ros.messages import IMU, ODOMETRY, decode_imu, decode_odometry

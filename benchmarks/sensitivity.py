@@ -19,8 +19,8 @@ from rich.progress import track
 from rich.table import Table
 
 from impact_predictor.bags.read import read_messages
-from impact_predictor.parameter_file import read_parameters
-from impact_predictor.parameters import validate
+from impact_predictor.parameters.file import read_parameters
+from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction import planar, predictor, score, transverse
 from impact_predictor.prediction.scene import Scene, inertia_matrix
 from impact_predictor.prediction.types import Geometry, Sample

@@ -29,8 +29,8 @@ from sensitivity import PARAMETERS, load
 from impact_predictor.mechanics.impact import solve_impact
 from impact_predictor.mechanics.transverse import Transverse, TransverseOutcome, solve_transverse_impact
 from impact_predictor.mechanics.types import Outcome, Twist, TwoPointBody
-from impact_predictor.parameter_file import read_parameters
-from impact_predictor.parameters import validate
+from impact_predictor.parameters.file import read_parameters
+from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction import transverse
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene

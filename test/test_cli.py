@@ -343,7 +343,7 @@ def test_ctrl_c_ends_without_a_traceback(monkeypatch: pytest.MonkeyPatch, bag: s
     def interrupt(path: str) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("impact_predictor.parameter_file.read_parameters", interrupt)
+    monkeypatch.setattr("impact_predictor.parameters.file.read_parameters", interrupt)
     result = run("replay", bag, "--params", SCENE)
     assert (result.exit_code, result.output.strip()) == (130, "")
 

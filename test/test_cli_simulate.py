@@ -17,8 +17,8 @@ from impact_predictor.bags.read import read_messages, topics
 from impact_predictor.bags.replay import replay
 from impact_predictor.cli import main
 from impact_predictor.commands.simulate import EXAMPLES
-from impact_predictor.parameter_file import read_parameters
-from impact_predictor.parameters import validate
+from impact_predictor.parameters.file import read_parameters
+from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.ros.messages import POLYGON, decode_polygon
 from impact_predictor.scenarios.truth import TRUTH_TOPIC

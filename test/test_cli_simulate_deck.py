@@ -13,7 +13,7 @@ from click.testing import CliRunner, Result
 from impact_predictor.bags.read import read_messages, topics
 from impact_predictor.cli import main
 from impact_predictor.commands.simulate_deck import EXAMPLES, SCENE
-from impact_predictor.parameter_file import read_values
+from impact_predictor.parameters.file import read_values
 from impact_predictor.prediction.scene import Scene, scenes_of
 from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY, ODOMETRY, decode_odometry
 from impact_predictor.scenarios.deck import units_of

@@ -25,7 +25,7 @@ from ..scenarios.truth import (
 from .read import BagMessage
 
 if TYPE_CHECKING:
-    from ..ros.markers import MarkerScene
+    from ..ros.markers.scene import MarkerScene
     from ..scenarios.comparison import Announcements
     from ..scenarios.warned import Warned, Warnings
 
@@ -93,7 +93,7 @@ class Run:
 
                 self.warnings = Warnings()
         if markers:
-            from ..ros.markers import MarkerScene
+            from ..ros.markers.scene import MarkerScene
 
             self._drawing = MarkerScene(scenes)
 

@@ -115,7 +115,7 @@ def read_scenes(params: str) -> dict[str, Scene]:
     Raises:
         InputError: the file cannot be read, or a parameter is wrong.
     """
-    from ..parameter_file import read_values
+    from ..parameters.file import read_values
     from ..prediction.scene import scenes_of
 
     return scenes_of(read_values(params))

@@ -114,7 +114,7 @@ def simulate_deck(
     Each unit moves in the deck's y-z plane: it sticks, slides, rocks from edge to edge, or topples, which ends its
     record. Units do not touch each other. The same options and seed make the same bytes.
     """
-    from ..parameter_file import read_values
+    from ..parameters.file import read_values
     from ..prediction.scene import scenes_of
     from ..resources import find
     from ..scenarios.deck_record import Sensors

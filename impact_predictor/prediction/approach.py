@@ -51,7 +51,7 @@ def approach_of(
         return None
     gravity = scene.gravity
     if moment is not None:
-        from .over_support import fall_over, gravity_over, is_uniform  # only where the support moves
+        from .deck.approach import fall_over, gravity_over, is_uniform  # only where the support moves
 
         gravity = gravity_over(scene, moment, sample, posture)
         if is_uniform(moment, scene.horizon):

@@ -17,7 +17,7 @@ from ..mechanics.rocking import next_strike
 from ..mechanics.support import FixedSupport
 from ..mechanics.types import Contact, Twist, TwoPointBody, Vector
 from .approach import GRAZES, Approach
-from .over_support import PlanarSupport, center_of, gravity_over, is_uniform
+from .deck.approach import PlanarSupport, center_of, gravity_over, is_uniform
 from .planar import Contacts, Plane, Posture, contacts_of, inertia_about, off_axis_of
 from .scene import Scene
 from .types import Moment, Sample, Vector3

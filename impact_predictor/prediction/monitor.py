@@ -10,10 +10,10 @@ from .scene import MovingDeck, Scene, shared_by
 from .types import Geometry, Imu, Moment, Prediction, Quaternion, Sample, Score, Status
 
 if TYPE_CHECKING:
-    from .deck import Deck
-    from .resting import Resting
-    from .tilt import Tilt
-    from .watch import Report, Watch
+    from .deck.resting import Resting
+    from .deck.tilt import Tilt
+    from .deck.tracker import Deck
+    from .watch.watch import Report, Watch
 
 OF_SUPPORT = frozenset({Status.NO_SUPPORT, Status.SUPPORT_STALE})
 """Why a sample may be refused through no fault of its body: nobody knows then what any of the bodies feels."""
@@ -48,7 +48,7 @@ class Monitor:
         self._unknown = Status.NO_SUPPORT  # why nothing can be told of the support, while that is so
         self._timeout = (shared.deck or MovingDeck()).timeout * NANOSECONDS
         if shared.deck is not None:
-            from .deck import Deck
+            from .deck.tracker import Deck
 
             self.deck = Deck(shared.deck, shared.gravity, shared.normal)
         self.predictors = {
@@ -58,10 +58,10 @@ class Monitor:
         }
         self._watched = {body: scene for body, scene in scenes.items() if scene.watching is not None}
         if self._watched:
-            from .watch import Watch
+            from .watch.watch import Watch
 
             if self.deck is None:
-                from .resting import Resting
+                from .deck.resting import Resting
 
                 self._resting = Resting(shared.gravity)
                 self.watch = Watch(self._watched, self._resting.forecast)
@@ -69,7 +69,7 @@ class Monitor:
                 self.watch = Watch(self._watched, self.deck.forecast)
         of_imu = {body: scene for body, scene in scenes.items() if scene.source == "imu"}
         if of_imu:
-            from .tilt import Tilt
+            from .deck.tilt import Tilt
 
             self._tilts = {body: Tilt(scene) for body, scene in of_imu.items()}
 

@@ -9,11 +9,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any, Final, NamedTuple
 
-from ..parameter_types import values_of
+from ..parameters.types import values_of
 from . import part_reasons as reasons
 
 Values = Mapping[str, Any]
-"""All parameters of a scene, as `impact_predictor.parameters.validate` gives them."""
+"""All parameters of a scene, as `impact_predictor.parameters.validation.validate` gives them."""
 
 
 class Part(NamedTuple):
@@ -114,9 +114,9 @@ PARTS: Final = (
         {"support.motion": "fixed"},
         (
             *ROCKING,
-            *("prediction.aboard", "prediction.deck", "prediction.deck_jumps", "prediction.deck_motion"),
-            "prediction.deck_usual",
-            *("prediction.motion_window", "prediction.over_support", "prediction.relative", "ros.support_topic"),
+            *("prediction.deck.aboard", "prediction.deck.approach", "prediction.deck.jumps", "prediction.deck.motion"),
+            *("prediction.deck.relative", "prediction.deck.tracker", "prediction.deck.usual", "prediction.deck.window"),
+            "ros.support_topic",
         ),
     ),
     Part(
@@ -125,7 +125,7 @@ PARTS: Final = (
         reasons.why_harmonic,
         {"support.extrapolation": "harmonic"},
         {"support.extrapolation": "constant"},
-        ("prediction.deck_course", "prediction.deck_harmonic"),
+        ("prediction.deck.course", "prediction.deck.harmonic"),
     ),
     Part(
         "onset watch",
@@ -134,22 +134,27 @@ PARTS: Final = (
         {"onset.watch": True},
         {"onset.watch": False},
         (
-            *("prediction.levels", "prediction.onset", "prediction.onset_counts", "prediction.remedies"),
-            *("prediction.stance", "prediction.standing", "prediction.watch", "prediction.watch_unit"),
-            *("prediction.watch_words", "ros.messages.reports"),
+            *(
+                "prediction.watch.counts",
+                "prediction.watch.levels",
+                "prediction.watch.onset",
+                "prediction.watch.stance",
+            ),
+            *("prediction.watch.standing", "prediction.watch.unit", "prediction.watch.watch", "prediction.watch.words"),
+            *("prediction.remedies", "ros.messages.reports"),
         ),
     ),
     Part(
         "cylinder",
         lambda values: bool(values["body.radius"]),
         reasons.why_cylinder,
-        modules=(*ROCKING, "prediction.drum", "prediction.over_support", "prediction.relative"),
+        modules=(*ROCKING, "prediction.drum", "prediction.deck.approach", "prediction.deck.relative"),
     ),
     Part(
         "tilt",
         lambda values: bool(values["source"] == "imu"),
         reasons.why_tilt,
-        modules=("prediction.tilt", "ros.messages.imu"),
+        modules=("prediction.deck.tilt", "ros.messages.imu"),
     ),
     Part("several bodies", lambda values: bool(values["bodies"]), reasons.why_several),
     Part(
@@ -186,9 +191,9 @@ PARTS: Final = (
 """Every part. Those that others need stand before them."""
 
 TOGETHER: Final = (
-    (lambda values: values["support.motion"] == "imu", ("prediction.deck_imu", "ros.messages.imu")),
-    (lambda values: values["support.motion"] != "fixed" and values["onset.watch"], ("prediction.deck_forecast",)),
-    (lambda values: values["support.motion"] == "fixed" and values["onset.watch"], ("prediction.resting",)),
+    (lambda values: values["support.motion"] == "imu", ("prediction.deck.imu", "ros.messages.imu")),
+    (lambda values: values["support.motion"] != "fixed" and values["onset.watch"], ("prediction.deck.forecast",)),
+    (lambda values: values["support.motion"] == "fixed" and values["onset.watch"], ("prediction.deck.resting",)),
 )
 """Modules that a part loads only in some scenes, and for which bodies."""
 
@@ -208,7 +213,7 @@ CORE: Final = frozenset(
 CORE_OF_NODE: Final = frozenset(
     {
         *("prediction.inputs", "prediction.monitor", "prediction.remedies"),
-        *("ros", "ros.body_topics", "ros.cdr", "ros.diagnostics", "ros.endpoints", "ros.marker_topic", "ros.messages"),
+        *("ros", "ros.body_topics", "ros.cdr", "ros.diagnostics", "ros.endpoints", "ros.markers.topic", "ros.messages"),
         *("ros.messages.inputs", "ros.messages.outputs", "ros.node", "ros.node_parameters", "ros.predictor_node"),
         *("ros.process", "ros.qos", "ros.reporter"),
     }
@@ -222,7 +227,8 @@ def modules_of(values: Values, node: bool = False) -> frozenset[str]:
     loaded = {module for part in parts for module in part.modules if node or not module.startswith("ros.")}
     together = {module for needs, modules in TOGETHER if any(map(needs, _bodies(values))) for module in modules}
     together = {module for module in together if node or not module.startswith("ros.")}
-    return frozenset(CORE | loaded | together | (CORE_OF_NODE if node else frozenset()))
+    modules = CORE | loaded | together | (CORE_OF_NODE if node else frozenset())
+    return modules | {module.rpartition(".")[0] for module in modules if "." in module}
 
 
 def ladder(values: Values) -> list[tuple[Part | None, dict[str, Any]]]:

@@ -17,8 +17,8 @@ from .types import Geometry, Moment, Prediction, Sample, Score, Status, Touchdow
 from .vectors import dot, to_world
 
 if TYPE_CHECKING:
-    from .aboard import Aboard
-    from .deck import Deck
+    from .deck.aboard import Aboard
+    from .deck.tracker import Deck
     from .drum import Drum
     from .uncertainty import Sampler
 
@@ -58,7 +58,7 @@ class Predictor:
             self._drum = Drum(scene)
         self._aboard: Aboard | None = None
         if scene.deck is not None:
-            from .aboard import Aboard
+            from .deck.aboard import Aboard
 
             self._aboard = Aboard(scene, deck, self._drum)
         self._impact_across: Callable[..., tuple[Outcome, Across] | None] | None = None

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from ..mechanics.answer import VALIDITY
 from ..mechanics.types import Validity
-from ..parameter_types import values_of
+from ..parameters.types import values_of
 from .types import Vector3
 
 Matrix3 = tuple[Vector3, Vector3, Vector3]
@@ -96,7 +96,7 @@ class Scene(NamedTuple):
 
     @classmethod
     def from_parameters(cls, values: Mapping[str, Any]) -> Scene:
-        """The scene of validated parameters (see `impact_predictor.parameters`)."""
+        """The scene of validated parameters (see `impact_predictor.parameters.validation`)."""
         normal = values["support.normal"]
         length = hypot(*normal)
         points = () if values["body.radius"] else values["body.contact_points"]

@@ -13,7 +13,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter as NodeParameter
 
 from ..errors import InputError
-from ..parameters import Parameter, Value, parameter_of, validate
+from ..parameters.validation import Parameter, Value, parameter_of, validate
 
 _QOS_OVERRIDES: Final = "qos_overrides."
 

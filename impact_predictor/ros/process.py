@@ -104,7 +104,7 @@ def _flaw_of_file(args: list[str] | None) -> str:
     words = sys.argv if args is None else args
     for option, path in pairwise(words):
         if option == "--params-file":
-            from ..parameter_file import read_parameters
+            from ..parameters.file import read_parameters
 
             try:
                 read_parameters(path)

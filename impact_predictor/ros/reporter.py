@@ -11,12 +11,12 @@ from ..prediction.types import Score, Status
 from .cdr import NANOSECONDS, diagnostic_array
 from .diagnostics import Diagnostics, Refused
 from .endpoints import publisher
-from .marker_topic import MarkerTopic
+from .markers.topic import MarkerTopic
 from .messages import DIAGNOSTIC_ARRAY
 
 if TYPE_CHECKING:
     from ..prediction.monitor import Monitor
-    from ..prediction.watch import Report
+    from ..prediction.watch.watch import Report
 
 
 class Reporter:

@@ -14,7 +14,7 @@ from ..errors import InputError
 from ..mechanics.bodies import wedged
 from ..mechanics.motion import PlanarState
 from ..mechanics.rocking import End, Run, Strike, rock, standing
-from ..mechanics.support import Support
+from ..mechanics.support import MovingSupport
 from ..mechanics.types import Contact, TwoPointBody, Vector
 from ..prediction.planar import inertia_about
 from ..prediction.scene import Scene
@@ -164,34 +164,47 @@ def _ahead(vector: Vector3, yaw: float) -> Vector3:
     return c * x - s * y, s * x + c * y, z
 
 
-def follow(unit: Unit, support: Support, duration: float, law: str = "path") -> Iterator[Span]:
+def follow(unit: Unit, support: MovingSupport, duration: float, law: str = "path") -> Iterator[Span]:
     """The motion of a unit, one span after the other; `support` has its origin at the unit's foot."""
     time, state, end, rested = 0.0, unit.start, End.TIME_UP, True
     borders = Borders()
     while time < duration and end is End.TIME_UP:
-        run = rock(unit.body, state, support, law, min(SPAN, duration - time), time, max_events=_MOST_EVENTS)
+        # Times of a motion are told to the last digit only where they count from near it.
+        run = rock(unit.body, state, _later(support, time), law, min(SPAN, duration - time), max_events=_MOST_EVENTS)
+        impacts = [
+            true_impact(strike, unit.name, ACROSS, 0.0, unit.contacts, borders.of(strike), time)
+            for strike in run.impacts
+        ]
+        until = min(time + run.time, duration)
         yield Span(
             time,
-            run.time,
-            run.state,
-            tuple(
-                true_impact(strike, unit.name, ACROSS, 0.0, unit.contacts, borders.of(strike)) for strike in run.impacts
-            ),
-            tuple(_onsets(unit.name, run, rested)),
-            tuple(one.time for one in run.accumulations),
+            until,
+            _states_of(run, time),
+            tuple(impacts),
+            tuple(_onsets(unit.name, run, rested, time)),
+            tuple(time + one.time for one in run.accumulations),
             run.end,
         )
         rested = run.states(run.time) == STILL
-        state, time, end = run.state(run.time), run.time, run.end
+        state, time, end = run.state(run.time), until, run.end
 
 
-def _onsets(name: str, run: Run, rested: bool) -> Iterator[TrueOnset]:
+def _later(support: MovingSupport, since: float) -> MovingSupport:
+    """The support with its time counted from `since` in s."""
+    return MovingSupport(lambda time: support.motion(since + time), support.period, support.gravity)
+
+
+def _states_of(run: Run, since: float) -> Callable[[Array], PlanarState]:
+    return lambda times: run.state(times - since)
+
+
+def _onsets(name: str, run: Run, rested: bool, since: float) -> Iterator[TrueOnset]:
     """Where a unit left its rest; `rested`: whether it was at rest right before the run."""
     for phase in run.phases:
         still = phase.states == STILL
         if rested and not still:
             slides, lifts = "+" in phase.states or "-" in phase.states, "O" in phase.states
-            yield TrueOnset(round(phase.start * NANOSECONDS), name, slides, lifts)
+            yield TrueOnset(round((since + phase.start) * NANOSECONDS), name, slides, lifts)
         rested = still
 
 

@@ -115,11 +115,12 @@ def true_impact(
     tilt: float = 0.0,
     contacts: Sequence[tuple[int, ...]] = ((0,), (1,)),
     border: float = inf,
+    since: float = 0.0,
 ) -> TrueImpact:
     """An impact of a motion as the truth of a record.
 
     Its velocities are along axes that are turned by -`tilt` (rad) from the support's; `contacts` are the indices of the
-    points, in the scene, that the two contacts stand for.
+    points, in the scene, that the two contacts stand for; the times of the motion count from `since` (s).
     """
     body, before = strike.outcome.body, strike.outcome.before
     assert body is not None
@@ -127,7 +128,7 @@ def true_impact(
     after = strike.outcome.twist
     c, s = cos(tilt), sin(tilt)
     return TrueImpact(
-        round(strike.time * NANOSECONDS),
+        round((since + strike.time) * NANOSECONDS),
         name,
         strike.outcome.mode,
         () if strike.old is None else contacts[strike.old],

@@ -9,7 +9,7 @@ from ..ros.cdr import ERROR, STALE, WARN
 from .truth import TrueImpact, TrueOnset
 
 if TYPE_CHECKING:
-    from ..prediction.watch import Report
+    from ..prediction.watch.watch import Report
 
 
 class Warned(NamedTuple):

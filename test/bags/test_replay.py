@@ -14,8 +14,8 @@ from impact_predictor.bags.replay import Result, remapping, replay
 from impact_predictor.bags.write import BagWriter
 from impact_predictor.errors import InputError
 from impact_predictor.mechanics.types import Mode
-from impact_predictor.parameter_file import read_parameters
-from impact_predictor.parameters import validate
+from impact_predictor.parameters.file import read_parameters
+from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.prediction.types import Leftover, Prediction, Status

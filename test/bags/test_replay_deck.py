@@ -14,7 +14,7 @@ from impact_predictor.bags.replay import Result, replay
 from impact_predictor.bags.write import BagWriter
 from impact_predictor.errors import InputError
 from impact_predictor.mechanics.types import Mode
-from impact_predictor.parameters import validate
+from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction.monitor import Monitor
 from impact_predictor.prediction.scene import Scene, scenes_of
 from impact_predictor.prediction.types import Imu, Quaternion, Sample, Status

@@ -13,8 +13,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from impact_predictor.bags.read import read_messages
-from impact_predictor.parameter_file import read_parameters
-from impact_predictor.parameters import validate
+from impact_predictor.parameters.file import read_parameters
+from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.prediction.types import Leftover, Prediction, Sample, Score, Status, Vector3

@@ -12,8 +12,8 @@ from typing import Any
 
 import pytest
 
-from impact_predictor.parameter_file import read_values
-from impact_predictor.parameters import PARAMETERS, validate
+from impact_predictor.parameters.file import read_values
+from impact_predictor.parameters.validation import PARAMETERS, validate
 from impact_predictor.prediction.parts import PARTS, Part, ladder, modules_of
 from impact_predictor.prediction.scene import Scene, scenes_of
 from impact_predictor.report.parts.measure import measured

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from impact_predictor.mechanics.types import Validity
-from impact_predictor.parameters import validate
+from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction.scene import MovingDeck, Scene, Watching, inertia_matrix
 
 BODY = {"body.mass": 2.0, "body.inertia": [0.1, 0.2, 0.25, 0.01, 0.02, 0.03], "contact.friction": 0.4}

@@ -12,8 +12,8 @@ import pytest
 from rich.console import Console
 
 from impact_predictor.errors import InputError
-from impact_predictor.parameter_file import read_values
-from impact_predictor.parameters import validate
+from impact_predictor.parameters.file import read_values
+from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction.parts import PARTS, ladder
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene

@@ -10,8 +10,8 @@ import pytest
 from impact_predictor.bags.read import read_messages, topics
 from impact_predictor.bags.replay import replay
 from impact_predictor.bags.write import BagWriter
-from impact_predictor.parameter_file import read_parameters
-from impact_predictor.parameters import validate
+from impact_predictor.parameters.file import read_parameters
+from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.prediction.types import Leftover

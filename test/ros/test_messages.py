@@ -30,7 +30,7 @@ from impact_predictor.prediction.types import (
     Touchdown,
     Uncertainty,
 )
-from impact_predictor.prediction.watch import Level, Report
+from impact_predictor.prediction.watch.watch import Level, Report
 from impact_predictor.ros.messages import (
     DIAGNOSTIC_ARRAY,
     IMU,

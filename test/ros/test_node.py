@@ -282,7 +282,7 @@ def test_nothing_is_drawn_until_somebody_looks_nor_when_nobody_does_any_more(nod
     until(lambda: markers.publisher.get_subscription_count() == 1)
     node._on_second()
     node._bodies[""]._on_odometry(serialize_message(odometry(0)))
-    assert "impact_predictor.ros.markers" in sys.modules
+    assert "impact_predictor.ros.markers.scene" in sys.modules
     executor = SingleThreadedExecutor()
     executor.add_node(viewer)
     until(lambda: executor.spin_once(timeout_sec=0.02) or shown)

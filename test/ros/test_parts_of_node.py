@@ -11,8 +11,8 @@ from typing import Any
 
 import pytest
 
-from impact_predictor.parameter_file import read_values
-from impact_predictor.parameters import validate
+from impact_predictor.parameters.file import read_values
+from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction.inputs import inputs_of
 from impact_predictor.prediction.parts import ladder, modules_of
 from impact_predictor.prediction.scene import scenes_of

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from impact_predictor.mechanics.types import Mode
-from impact_predictor.prediction.watch import Level, Report
+from impact_predictor.prediction.watch.watch import Level, Report
 from impact_predictor.scenarios.truth import TrueImpact, TrueOnset
 from impact_predictor.scenarios.warned import Warned, Warnings
 

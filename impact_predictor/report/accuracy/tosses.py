@@ -15,8 +15,8 @@ from typing import NamedTuple
 
 from ...bags.read import read_messages
 from ...mechanics.motion import PlanarState
-from ...parameter_file import read_parameters
-from ...parameters import validate
+from ...parameters.file import read_parameters
+from ...parameters.validation import validate
 from ...prediction.planar import contacts_of, inertia_about, plane_of, posture_of
 from ...prediction.predictor import Predictor
 from ...prediction.scene import Scene as Body

@@ -11,9 +11,9 @@ import numpy as np
 from ...mechanics.motion import PlanarState
 from ...mechanics.rocking import End
 from ...mechanics.support import MovingSupport
-from ...prediction.onset import Onset, motions
-from ...prediction.standing import Standing
-from ...ros.marker_shapes import box_of
+from ...prediction.watch.onset import Onset, motions
+from ...prediction.watch.standing import Standing
+from ...ros.markers.shapes import box_of
 from ...scenarios.deck import Span, Unit
 from ...scenarios.sea import Array
 from ...scenarios.truth import TrueImpact, TrueOnset

@@ -10,7 +10,7 @@ from statistics import median
 from time import process_time_ns
 from typing import Any, Final
 
-from ...parameter_file import read_values
+from ...parameters.file import read_values
 from ...prediction.monitor import Monitor
 from ...prediction.parts import EVENTS, PARTS, Part, Values, ladder
 from ...prediction.scene import Scene, scenes_of

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 from ..cdr import DiagnosticForm, StatusBytes, diagnostic_array
 
 if TYPE_CHECKING:
-    from ...prediction.watch import Report
+    from ...prediction.watch.watch import Report
 
 
 NODE: Final = "impact_predictor"

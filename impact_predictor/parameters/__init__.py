@@ -1,0 +1,1 @@
+"""What the node and the offline commands may be told: the parameters, their rules, and the files they come in."""

@@ -1,0 +1,91 @@
+"""Whether values that are each allowed also make a scene together."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from typing import Any
+
+from ..errors import InputError
+
+Values = Mapping[str, Any]
+
+
+class _Body:
+    """The values that hold for one body, and the names under which they were given."""
+
+    def __init__(self, body: str, values: Values, given: Collection[str]) -> None:
+        self.values = values
+        self.of = f" of {body}" if body else ""
+        self._prefix = f"{body}." if body else ""
+        self._given = given
+
+    def is_own(self, name: str) -> bool:
+        """Whether a value was given for this body alone, or is that of the only body."""
+        return self._prefix + name in self._given
+
+    def named(self, name: str) -> str:
+        """The name under which a value was given, to be changed there."""
+        return self._prefix + name if self.is_own(name) else name
+
+
+def check_body(body: str, values: Values, given: Collection[str]) -> None:
+    """Whether the values that hold for a body fit together.
+
+    `given` has the names that were given, and so shows which values were chosen.
+
+    Raises:
+        InputError: they do not fit.
+    """
+    one = _Body(body, values, given)
+    _check_source(one)
+    _check_cylinder(one)
+    _check_gravity(one)
+    if values["onset.warn"] > values["onset.error"]:
+        raise InputError(
+            f"{one.named('onset.warn')} is {values['onset.warn']:g}, above {one.named('onset.error')}, which is "
+            f"{values['onset.error']:g}: the level is WARN before it is ERROR"
+        )
+    if values["support.harmonic_window"] <= values["support.window"]:
+        raise InputError("support.harmonic_window must be longer than support.window, which tells accelerations")
+
+
+def _check_source(one: _Body) -> None:
+    values = one.values
+    if values["source"] == "odom":
+        return
+    source = f"{one.named('source')} is {values['source']}"
+    if values["support.motion"] == "fixed" and not values["onset.watch"]:
+        raise InputError(
+            f"{source}, so no impact can be predicted: set onset.watch: true to watch the body, or source: odom"
+        )
+    if not (values["body.contact_points"] or values["body.radius"]):
+        raise InputError(f"{source}, so the contact points{one.of} must be parameters: give body.contact_points")
+    if values["support.extent"]:
+        least_x, greatest_x, least_y, greatest_y = values["support.extent"]
+        x, y, _ = values["place.position"]
+        if not (least_x <= x <= greatest_x and least_y <= y <= greatest_y):
+            raise InputError(f"{one.named('place.position')}{one.of} is outside support.extent: put the body on it")
+
+
+def _check_cylinder(one: _Body) -> None:
+    radius, edges, points = "body.radius", "support.edges", "body.contact_points"
+    if not one.values[radius]:
+        if one.values[edges] and one.is_own(edges):
+            raise InputError(f"{one.named(edges)} carry a cylinder: give the radius of the body as {radius}")
+        return
+    if not one.values[edges]:
+        raise InputError(f"{one.named(radius)} makes the body a cylinder: give the {edges} on which it lies")
+    # Points that are common to the other bodies may stand beside the radius of one.
+    if one.values[points] and one.is_own(points) >= one.is_own(radius):
+        raise InputError(f"{one.named(points)} and {one.named(radius)} are both given: a cylinder has no points")
+
+
+def _check_gravity(one: _Body) -> None:
+    values = one.values
+    if values["support.motion"] == "fixed" and not values["onset.watch"]:
+        return
+    if sum(g * n for g, n in zip(values["gravity"], values["support.normal"], strict=True)) > 0.0:
+        raise InputError(
+            f"gravity points out of the support{one.of}, so everything falls off it: it is the acceleration of a free "
+            "body, [0.0, 0.0, -9.81] where z points up"
+        )

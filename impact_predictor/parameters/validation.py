@@ -1,0 +1,112 @@
+"""Every ROS parameter, declared once: the node declares these, and the offline commands check files against them."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, Final
+
+from ..errors import InputError
+from .scene import check_body
+from .table import PARAMETERS as PARAMETERS
+from .types import Parameter as Parameter
+from .types import Value as Value
+from .types import values_of
+from .values import allowed, check
+
+_OF_EVERY_NODE: Final = ("use_sim_time", "start_type_description_service")
+_QOS_OVERRIDES: Final = "qos_overrides."
+_TAKEN: Final = frozenset(name.partition(".")[0] for name in (*PARAMETERS, *_OF_EVERY_NODE, _QOS_OVERRIDES))
+"""First words of parameters, which the name of a body would hide."""
+
+
+def is_of_every_node(name: str) -> bool:
+    """Whether a parameter belongs to ROS itself, so that it may stand beside those of this program."""
+    return name in _OF_EVERY_NODE or name.startswith(_QOS_OVERRIDES)
+
+
+def validate(values: Mapping[str, object]) -> dict[str, Value]:
+    """The values of all parameters, with the defaults of those that are not given; lists become tuples.
+
+    With `bodies`, those that are given for one of them follow as <body>.<parameter>, and of a parameter without default
+    that is given for each of them alone there is no common value. Parameters that every ROS node has are passed over.
+    `impact_predictor.prediction.scene.scenes_of` makes the scenes of them.
+
+    Raises:
+        InputError: a name is unknown, a value has the wrong type or is out of range, one without default is missing, or
+            values do not fit together.
+    """
+    given = {name: value for name, value in values.items() if not is_of_every_node(name)}
+    bodies = _bodies(given)
+    checked: dict[str, Value] = {"bodies": bodies}
+    own: dict[str, Value] = {}
+    for name, value in given.items():
+        parameter = _parameter_of(name, bodies)
+        (checked if name in PARAMETERS else own)[name] = check(parameter._replace(name=name), value)
+    for parameter in PARAMETERS.values():
+        if parameter.name in checked:
+            continue
+        if parameter.default is not None:
+            checked[parameter.name] = parameter.default
+            continue
+        lacking = [body for body in bodies if f"{body}.{parameter.name}" not in own]
+        if lacking or not bodies:
+            raise _missing(parameter, lacking)
+    # In one order, whatever that of the file.
+    checked = {name: checked[name] for name in PARAMETERS if name in checked} | own
+    for body in bodies or ("",):
+        check_body(body, values_of(checked, body), set(given))
+    return checked
+
+
+def parameter_of(name: str) -> Parameter:
+    """The parameter of a name that `validate` has let pass, which may begin with that of a body.
+
+    Raises:
+        KeyError: there is none.
+    """
+    return PARAMETERS.get(name) or PARAMETERS[name.partition(".")[2]]
+
+
+def _bodies(given: Mapping[str, object]) -> tuple[str, ...]:
+    if "bodies" not in given:
+        return ()
+    bodies: Any = check(PARAMETERS["bodies"], given["bodies"])
+    for body in bodies:
+        if body in _TAKEN:
+            raise InputError(f"a body cannot be named {body}, as parameters begin with that; give it another name")
+    return tuple(bodies)
+
+
+def _parameter_of(name: str, bodies: Sequence[str]) -> Parameter:
+    """The parameter of a name that was given.
+
+    Raises:
+        InputError: there is none.
+    """
+    if name in PARAMETERS:
+        return PARAMETERS[name]
+    body, _, common = name.partition(".")
+    if common in PARAMETERS and body in bodies:
+        if PARAMETERS[common].shared:
+            raise InputError(f"the parameter {common} holds for all bodies: give {common} in the place of {name}")
+        return PARAMETERS[common]
+    raise InputError(f"there is no parameter {name}{_hint(name, bodies)}")
+
+
+def _hint(name: str, bodies: Sequence[str]) -> str:
+    body, _, common = name.partition(".")
+    if common in PARAMETERS and body not in _TAKEN:
+        return f", for {body} is not among the bodies: {', '.join(bodies)}" if bodies else ", for bodies is not given"
+    close = difflib.get_close_matches(name, [*PARAMETERS, *_all_own(bodies)], n=1, cutoff=0.5)
+    return f", did you mean {close[0]}?" if close else f"; there are {', '.join(PARAMETERS)}"
+
+
+def _all_own(bodies: Sequence[str]) -> Iterator[str]:
+    return (f"{body}.{name}" for body in bodies for name, parameter in PARAMETERS.items() if not parameter.shared)
+
+
+def _missing(parameter: Parameter, lacking: Sequence[str]) -> InputError:
+    of = f", or {lacking[0]}.{parameter.name} for {lacking[0]} alone" if lacking else ""
+    meaning = parameter.description.rstrip(".")
+    return InputError(f"the parameter {parameter.name} is missing: give {allowed(parameter)} ({meaning}){of}")

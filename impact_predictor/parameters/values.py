@@ -1,0 +1,92 @@
+"""Whether a value is allowed for a parameter, and what is said where it is not."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from ..errors import InputError
+from .types import Parameter, Value
+
+
+def check(parameter: Parameter, value: object) -> Value:
+    """The value of a parameter, a list as a tuple.
+
+    Raises:
+        InputError: it has the wrong type, is out of range, or has a flaw.
+    """
+    if parameter.kind == "bool":
+        if not isinstance(value, bool):
+            raise _refusal(parameter, value)
+        return value
+    if parameter.kind == "integer":
+        if not isinstance(value, int) or isinstance(value, bool) or not parameter.low <= value <= parameter.high:
+            raise _refusal(parameter, value)
+        return value
+    if parameter.kind == "string":
+        if not isinstance(value, str) or (parameter.choices and value not in parameter.choices):
+            raise _refusal(parameter, value)
+        return value
+    if parameter.kind == "double":
+        return _numbers(parameter, value, [value])[0]
+    if isinstance(value, str | bytes) or not isinstance(value, Sequence):
+        raise _refusal(parameter, value)
+    items: Any = _texts(parameter, value) if parameter.kind == "string_array" else _numbers(parameter, value, value)
+    if parameter.lengths and len(items) not in parameter.lengths:
+        raise _refusal(parameter, value)
+    flaw = parameter.flaw(items) if parameter.flaw else ""
+    if flaw:
+        raise _refusal(parameter, value, flaw)
+    return items  # type: ignore[no-any-return]
+
+
+def _texts(parameter: Parameter, value: Sequence[object]) -> tuple[str, ...]:
+    texts = tuple(item for item in value if isinstance(item, str))
+    if len(texts) < len(value):
+        raise _refusal(parameter, value)
+    return texts
+
+
+def _numbers(parameter: Parameter, value: object, numbers: Sequence[object]) -> tuple[float, ...]:
+    checked = []
+    for number in numbers:
+        if isinstance(number, int) and not isinstance(number, bool):
+            raise _refusal(
+                parameter, value, f"ROS takes no integer for a double, so write {float(number)} for {number}"
+            )
+        if not isinstance(number, float) or not (math.isfinite(number) and parameter.low <= number <= parameter.high):
+            raise _refusal(parameter, value)
+        checked.append(float(number))
+    return tuple(checked)
+
+
+def _refusal(parameter: Parameter, value: object, flaw: str = "") -> InputError:
+    shown = list(value) if isinstance(value, Sequence) and not isinstance(value, str | bytes) else value
+    return InputError(f"the parameter {parameter.name} is {shown!r}, but {flaw or f'it must be {allowed(parameter)}'}")
+
+
+def allowed(parameter: Parameter) -> str:
+    """What a value may be, as the end of a sentence."""
+    if parameter.choices:
+        *others, last = map(repr, parameter.choices)
+        return f"{', '.join(others)} or {last}"
+    if parameter.kind == "bool":
+        return "true or false"
+    if parameter.kind == "string":
+        return "a text"
+    if parameter.kind == "string_array":
+        return "a list of texts"
+    unit = "" if parameter.unit == "1" else f" {parameter.unit}"
+    bounds = []
+    if math.isfinite(parameter.low):
+        bounds.append(f"from {parameter.low:g}")
+    if math.isfinite(parameter.high):
+        bounds.append(f"to {parameter.high:g}")
+    limits = " ".join(["", *bounds])
+    if parameter.kind == "integer":
+        return f"a whole number{limits}"
+    if parameter.kind == "double":
+        return f"a finite double{limits}{unit}"
+    count = f"{' or '.join(map(str, parameter.lengths))} " if parameter.lengths else ""
+    return f"a list of {count}finite doubles{limits}{unit}"

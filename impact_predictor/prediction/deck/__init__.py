@@ -1,0 +1,1 @@
+"""Bodies over a moving support: its motion now and ahead, and what a body does in its frame."""

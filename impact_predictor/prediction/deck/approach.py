@@ -1,0 +1,185 @@
+"""The motion until the next touchdown over a moving support, in an impact plane.
+
+A body in a plane that is fixed in the support, with axes `ahead` and the support's normal, feels of the support's
+rotation
+
+- about the plane's axis: the accelerations of Euler, of the centrifugal force and of Coriolis in the plane, and minus
+  the angular acceleration;
+- about the other two: everything at the plane's origin. From there on Euler's and Coriolis' acceleration of a motion in
+  the plane point along the axis, where the contacts take them up. What remains in the plane is of second order in these
+  rates, times the body's size, and so is the gyroscopic moment where the axis is a principal one: both are left out.
+  Coriolis' acceleration of a velocity along the axis lies in the plane and is kept.
+"""
+
+from __future__ import annotations
+
+from math import cos, floor, hypot, inf, pi
+
+from ...mechanics.motion import Fall, Motion, PlanarState
+from ...mechanics.rocking import next_strike
+from ...mechanics.rocking.arcs import Happening
+from ...mechanics.rocking.flight import Flight
+from ...mechanics.rocking.points import Points
+from ...mechanics.support import Felt
+from ...mechanics.types import Contact, TwoPointBody
+from ..planar import ORIGIN, Plane, Posture
+from ..scene import Scene
+from ..types import Moment, Sample, Vector3
+from ..vectors import add, cross, dot, times, to_world
+from .relative import pull_at
+
+APART = 1e-6
+"""Contacts nearer to each other in the plane than this part of their distance from the mass centre are one."""
+
+
+PART = 0.25
+"""Length in s of one polynomial."""
+
+NODES = tuple(cos(k * pi / 14.0) for k in (5, 3, 1))
+"""The nodes of a polynomial on -1..1, Chebyshev's: 0, and these on both sides."""
+
+SQUARES = tuple(node * node for node in NODES)
+
+TOLERANCE = 1e-9
+"""Error allowed to a step of a flight, relative to what happens in it; as that of `next_strike`."""
+
+MOST_STEPS = 1000
+
+
+class PlanarSupport:
+    """A moving support as an impact plane sees it, from `age` s before the moment on.
+
+    The plane has its origin at `place` in the support's frame, and `ahead` and `normal` are its axes there; what is
+    felt counts along them. The body moves with `lateral` m/s along the axis normal x ahead, which is against the
+    plane's own z.
+    """
+
+    period = inf
+
+    def __init__(
+        self, moment: Moment, age: float, place: Vector3, ahead: Vector3, normal: Vector3, lateral: float
+    ) -> None:
+        self._later, self._age, self._place, self._ahead, self._normal = moment.ahead, age, place, ahead, normal
+        self._axis = cross(normal, ahead)
+        self._velocity = times(self._axis, lateral)
+        self.gravity = hypot(*moment.felt.gravity)
+        self._parts: dict[int, tuple[Felt, ...]] = {}
+
+    def felt(self, time: float) -> Felt:
+        """Acceleration felt at rest at the origin, ahead and along the normal; rate and angular acceleration, CCW.
+
+        From polynomials through seven values for each quarter of a second, because a motion asks a hundred times. Of
+        what swings at w rad/s they miss (w / 8 s)^7 / 322560: 2e-10 at 2 rad/s.
+        """
+        number = floor(time / PART)
+        part = self._parts.get(number)
+        if part is None:
+            part = self._parts[number] = self._fit((number + 0.5) * PART)
+        s = 2.0 * (time / PART - number) - 1.0
+        x = y = w = a = 0.0
+        for cx, cy, cw, ca in part:
+            x = x * s + cx
+            y = y * s + cy
+            w = w * s + cw
+            a = a * s + ca
+        return x, y, w, a
+
+    def felt_exactly(self, time: float) -> Felt:
+        felt = self._later(time - self._age)
+        pull = pull_at(felt, self._place, self._velocity)
+        axis = self._axis
+        return dot(self._ahead, pull), dot(self._normal, pull), -dot(axis, felt.angular), -dot(axis, felt.turning)
+
+    def _fit(self, middle: float) -> tuple[Felt, ...]:
+        """Coefficients of the polynomials about the middle of a part, the highest power first."""
+        half, felt = 0.5 * PART, self.felt_exactly
+        steps = [half * node for node in NODES]
+        here = felt(middle)
+        sides = zip(
+            here, *[felt(middle + step) for step in steps], *[felt(middle - step) for step in steps], strict=True
+        )
+        columns = []
+        for f, *values in sides:
+            pairs = list(zip(values[:3], values[3:], NODES, SQUARES, strict=True))
+            odd = parabola([0.5 * (up - down) / node for up, down, node, _ in pairs])
+            even = parabola([(0.5 * (up + down) - f) / square for up, down, _, square in pairs])
+            columns.append((even[0], odd[0], even[1], odd[1], even[2], odd[2], f))
+        return tuple(zip(*columns, strict=True))
+
+
+def parabola(values: list[float]) -> tuple[float, float, float]:
+    """Coefficients of the parabola with these values at `SQUARES`, the highest power first."""
+    (first, second, third), (a, b, c) = values, SQUARES
+    slope = (second - first) / (b - a)
+    bend = ((third - second) / (c - b) - slope) / (c - a)
+    return bend, slope - bend * (a + b), first - a * (slope - bend * b)
+
+
+def gravity_over(scene: Scene, moment: Moment, sample: Sample, posture: Posture) -> Vector3:
+    """Acceleration that the body would have now without contacts, in the support's frame."""
+    return pull_at(moment.felt, center_of(scene, sample, posture), to_world(posture.axes, posture.velocity))
+
+
+def center_of(scene: Scene, sample: Sample, posture: Posture) -> Vector3:
+    """Where the mass centre is."""
+    return add(sample.position, to_world(posture.axes, scene.center_of_mass))
+
+
+def is_uniform(moment: Moment, horizon: float) -> bool:
+    """Whether what is felt stays as it is everywhere: the support does not turn, and keeps its acceleration."""
+    felt = moment.felt
+    return felt.angular == ORIGIN and felt.turning == ORIGIN and moment.ahead(horizon) == felt
+
+
+def fall_over(
+    scene: Scene,
+    moment: Moment,
+    sample: Sample,
+    posture: Posture,
+    plane: Plane,
+    inertia: float,
+    start: PlanarState,
+    height: float,
+) -> Fall:
+    """The next touchdown of a body on points, from `start` in its impact plane, as `next_touchdown` tells it.
+
+    The mass centre is at `height` above the support at the sample, half a twist window after the start.
+    """
+    age = 0.5 * scene.twist_window
+    place = add(center_of(scene, sample, posture), scene.normal, -height)
+    ahead = to_world(posture.axes, plane.ahead)
+    support = PlanarSupport(moment, age, place, ahead, scene.normal, dot(plane.axis, posture.velocity))
+    new = Contact(*plane.new, scene.friction)
+    if plane.old is None:
+        return flight_of(scene.mass, inertia, new, start, support, scene.horizon + age)
+    old = Contact(*plane.old, scene.friction)
+    fall = None
+    if hypot(new.x - old.x, new.y - old.y) > APART * (hypot(new.x, new.y) + hypot(old.x, old.y)):
+        fall = next_strike(TwoPointBody(scene.mass, inertia, old, new), start, 0, support, scene.horizon + age)
+    return never(start) if fall is None else fall
+
+
+def flight_of(
+    mass: float, inertia: float, new: Contact, start: PlanarState, support: PlanarSupport, duration: float
+) -> Fall:
+    """When a body in flight touches with its contact `new`, its point 0."""
+    # A shape has two contacts: the one opposite to this one is above it until this one touches.
+    shape = Points(TwoPointBody(mass, inertia, new._replace(x=-new.x, y=-new.y), new))
+    state = start._replace(angle=shape.own_angle(start.angle))
+    gaps = [max(0.0, shape.gap(i, state.x, state.y, state.angle)) for i in (0, 1)]
+    if gaps[1] == 0.0 and shape.gap_rate(1, state) < 0.0:
+        return Fall(0.0, 0, start, Motion.FLIGHT)
+    try:
+        flight = Flight(shape, support, 0.0, state, (gaps[0], gaps[1]), TOLERANCE)
+        landing = flight.follow(duration, MOST_STEPS)
+    except ArithmeticError:  # numbers so large or so small that their products are none
+        return never(start)
+    if landing.happening is not Happening.TOUCHES or landing.contact != 1:
+        return never(start)
+    turned = landing.state.angle - state.angle
+    return Fall(landing.time, 0, landing.state._replace(angle=start.angle + turned), Motion.FLIGHT)
+
+
+def never(state: PlanarState) -> Fall:
+    """No touchdown."""
+    return Fall(inf, -1, state, Motion.FLIGHT)

@@ -1,0 +1,238 @@
+"""The tracker of a moving support: messages of its motion in, what is felt on it at the stamp of a body out."""
+
+from __future__ import annotations
+
+from collections import deque
+from math import isfinite, sqrt
+from typing import TYPE_CHECKING
+
+from ...mechanics.impact import new_tuple
+from ..predictor import LARGEST, PAUSE, UNIT
+from ..scene import MovingDeck
+from ..types import Imu, Moment, Quaternion, Sample, Status, Vector3
+from ..vectors import add, axes_of, dot, times, to_world
+from .jumps import Following
+from .motion import NOWHERE, Known, Seen, between, later, moment_of
+from .usual import Usual
+from .window import NANOSECONDS, MotionWindow
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from .harmonic import Harmonic
+    from .imu import DeckImu
+
+LEVEL: Quaternion = (0.0, 0.0, 0.0, 1.0)
+
+
+class Deck:
+    """Tracks one moving support from its odometry, or from an inertial sensor on it.
+
+    `update` or `update_imu` takes each message, in the order of their stamps; `at` tells of the support at the stamp
+    of a body. `gravity` is in the world frame (m/s^2), `normal` the unit normal of the support in its own.
+
+    Accelerations are known as soon as three messages span the scene's `window`. A sensor is trusted one second after
+    its first message; as it is all there is then, the support's place and velocity stay unknown: `Moment.frame_id` is
+    "", and the orientation is the sensor's or, if it gives none, has the heading of the start.
+    """
+
+    def __init__(self, deck: MovingDeck, gravity: Vector3, normal: Vector3) -> None:
+        self.deck = deck
+        self._gravity, self._normal = gravity, normal
+        self._timeout = round(deck.timeout * NANOSECONDS)
+        self._window = MotionWindow(deck.window, 6)
+        self._following = Following()
+        self._imu: DeckImu | None = None
+        if deck.source == "imu":
+            from .imu import DeckImu
+
+            self._imu = DeckImu(deck.imu_position, gravity, normal)
+        self._harmonic: Harmonic | None = None
+        if deck.extrapolation == "harmonic":
+            from .harmonic import Harmonic
+
+            self._harmonic = Harmonic(deck.harmonic_window)
+        self._frames = ("", "")
+        self._seen: Seen | None = None
+        self._history: deque[Known] = deque()
+        self._latest: Moment | None = None
+        self._state = self._before = Status.NO_SUPPORT
+        self._still = times(normal, -sqrt(dot(gravity, gravity)))
+        self._usual = Usual(self._still)
+        self._asked: int | None = None
+        self._heard: int | None = None
+
+    def update(self, sample: Sample) -> Status:
+        """Take a message of the support's pose and twist, where the scene says so. A refused one tells nothing."""
+        if self._imu is not None:
+            return Status.MALFORMED
+        position, linear, angular = sample.position, sample.linear, sample.angular
+        # False for NaN as well.
+        if not dot(position, position) + dot(linear, linear) + dot(angular, angular) < LARGEST:
+            return Status.NOT_FINITE
+        status = check_unit(sample.orientation) or self._in_order(
+            sample.stamp, (sample.frame_id, sample.child_frame_id)
+        )
+        if status:
+            return status
+        axes = axes_of(sample.orientation)
+        velocity = to_world(axes, linear)
+        seen = new_tuple(Seen, (sample.stamp, position, sample.orientation, axes, velocity, angular))
+        if not self._spans(seen, velocity):
+            return self._refused()
+        ax, ay, az, *turning = self._window.slopes()
+        acceleration = ax, ay, az
+        felt = add(self._gravity, acceleration, -1.0)
+        upright = dot(to_world(axes, self._normal), self._gravity) < 0.0
+        known = new_tuple(Known, (*seen, acceleration, felt, tuple(turning)))
+        return self._know(known, Status.ACCEPTED if upright else Status.GRAVITY_WRONG)
+
+    def update_imu(self, imu: Imu) -> Status:
+        """Take a message of an inertial sensor on it, where the scene says so. A refused one tells nothing."""
+        sensor = self._imu
+        if sensor is None:
+            return Status.MALFORMED
+        force, angular = imu.specific_force, imu.angular
+        if not dot(force, force) + dot(angular, angular) < LARGEST:
+            return Status.NOT_FINITE
+        status = Status.ACCEPTED if imu.orientation is None else check_unit(imu.orientation)
+        status = status or self._in_order(imu.stamp, ("", imu.frame_id))
+        if status:
+            return status
+        if self._seen is None:
+            sensor.clear()
+        if sensor.oriented_anew(imu):
+            self._forget(Status.NO_SUPPORT)
+        seen = sensor.seen(imu, self._seen)
+        verdict = sensor.judge(imu)
+        # In a frame that does not turn what is felt changes with the support's acceleration alone.
+        if not self._spans(seen, to_world(seen.axes, sensor.felt(force, angular))):
+            return self._refused()
+        _, _, _, tx, ty, tz = self._window.slopes()
+        fx, fy, fz, *_ = self._window.ends()
+        turning = tx, ty, tz
+        felt = add((fx, fy, fz), to_world(seen.axes, sensor.euler(turning)))
+        return self._know(new_tuple(Known, (*seen, NOWHERE, felt, turning)), verdict)
+
+    @property
+    def last(self) -> Moment | None:
+        """The support at its last message; None while nothing can be told of it."""
+        if self._latest is None and not self._state:
+            self._latest = self._moment(self._history[-1])
+        return self._latest
+
+    def at(self, stamp: int) -> Moment | Status:
+        """The support at the stamp of a body (ns), or why nothing can be told of it then.
+
+        After the last message it goes on with constant accelerations; before, the messages on both sides tell.
+        """
+        seen = self._seen
+        if seen is None:
+            return self._state
+        if self._asked is None or stamp > self._asked:
+            self._asked = stamp
+        gap = stamp - seen.stamp
+        if gap > self._timeout:
+            return Status.CLOCKS_APART if self._keeps_coming(stamp, seen.stamp) else Status.SUPPORT_STALE
+        if -gap > self._timeout:
+            return Status.CLOCKS_APART
+        if self._state:
+            return self._state
+        second = self._history[-1]
+        if gap >= 0:
+            return self._moment(later(second, stamp)) if gap else self.last or self._state
+        for first in reversed(self._history):
+            if first.stamp <= stamp:
+                return self._moment(between(first, second, stamp))
+            second = first
+        return self._before
+
+    def forecast(self, times: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
+        """What will be felt at times (n,) in s after the last message: gravity, angular, turning; each of shape (n, 3).
+
+        Constant accelerations fade to the mean of the last minute within a quarter of a wave, because nothing is known
+        from them later; a harmonic fit tells what it can up to 10 s ahead. While nothing is known of the support
+        (`last` is None) it counts as level and at rest.
+        """
+        from .forecast import forecast
+
+        moment = self.last
+        if moment is None:
+            known = Known(0, NOWHERE, LEVEL, axes_of(LEVEL), NOWHERE, NOWHERE, NOWHERE, self._still, NOWHERE)
+            moment = moment_of(known, *self._frames, self._gravity)
+        fitted = self._harmonic is not None and self._harmonic.fitted
+        return forecast(moment, None if fitted else self._usual, times)
+
+    def _in_order(self, stamp: int, frames: tuple[str, str]) -> Status:
+        if self._seen is not None:
+            gap = stamp - self._seen.stamp
+            if gap > self._timeout:
+                self._forget(Status.SUPPORT_STALE)
+            elif frames != self._frames:
+                return Status.WRONG_FRAME
+            elif gap == 0:
+                return Status.STAMP_REPEATED
+            elif gap < 0:
+                if -gap > PAUSE:
+                    self._forget(Status.NO_SUPPORT)
+                    self._asked = None
+                return Status.STAMP_WENT_BACK
+        self._frames = frames
+        self._heard = self._asked
+        return Status.ACCEPTED
+
+    def _forget(self, state: Status) -> None:
+        """Begin anew; until accelerations are known again `state` says why they are not."""
+        self._state = state
+        self._seen = self._latest = None
+        self._window.clear()
+        self._history.clear()
+        if self._harmonic is not None:
+            self._harmonic.clear()
+
+    def _spans(self, seen: Seen, signal: Vector3) -> bool:
+        """Take what was seen; whether the window is full, so that accelerations are known."""
+        if self._seen is not None and not self._following.follows(self._seen, seen):
+            self._forget(Status.SUPPORT_JUMPED)
+        self._seen = seen
+        return self._window.add(seen.stamp, (*signal, *seen.angular))
+
+    def _refused(self) -> Status:
+        """What becomes of a message that does not fill the window yet: after a jump it is not trusted."""
+        return Status.SUPPORT_JUMPED if self._state is Status.SUPPORT_JUMPED else Status.ACCEPTED
+
+    def _know(self, known: Known, state: Status) -> Status:
+        history = self._history
+        if not history:
+            self._before = self._state or Status.NO_SUPPORT
+        else:
+            self._usual.add(known, (known.stamp - history[-1].stamp) / NANOSECONDS)
+        self._state = state
+        self._latest = None
+        history.append(known)
+        oldest = known.stamp - self._timeout
+        while history[0].stamp < oldest:
+            history.popleft()
+        if self._harmonic is not None:
+            self._harmonic.add(known)
+        return Status.ACCEPTED if state is Status.NO_SUPPORT else state
+
+    def _keeps_coming(self, stamp: int, last: int) -> bool:
+        """Whether messages, though older than a body's stamp by more than the timeout, came while bodies were heard.
+
+        When the last one came the latest stamp of a body was `_heard`: far ahead of it already, and not long ago.
+        """
+        heard = self._heard
+        return heard is not None and stamp - heard <= self._timeout and heard - last > self._timeout // 2
+
+    def _moment(self, known: Known) -> Moment:
+        extrapolate = None if self._harmonic is None else self._harmonic.ahead
+        return moment_of(known, *self._frames, self._gravity, extrapolate)
+
+
+def check_unit(orientation: Quaternion) -> Status:
+    x, y, z, w = orientation
+    if -UNIT < x * x + y * y + z * z + w * w - 1.0 < UNIT:
+        return Status.ACCEPTED
+    return Status.BAD_QUATERNION if all(map(isfinite, orientation)) else Status.NOT_FINITE

@@ -1,0 +1,261 @@
+"""How near bodies on a moving support are to sliding and to tipping, all of them at once.
+
+At rest on the support a body feels at its mass centre r the acceleration a = g - W' x r - W x (W x r): g what is felt
+at the frame's origin, W the support's angular velocity. It slides when the friction that holds it does not suffice,
+|a_t| > f a_n. About an edge with direction e (to the left of which the body stands) the reactions must balance the
+moment of m a about the edge less the rate of change of the angular momentum, I W' + W x I W. They can only push, so it
+tips when h a_o - e . (I W' + W x I W) / m > b a_n: h the height of the mass centre over the edge, b its distance
+inwards, a_o the part of a outwards. In a plane that is h a_t + rho^2 W' > b a_n.
+
+Everything is linear in g, W' and the products of W, so that one matrix serves all bodies and all times.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import hypot
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..types import Felt, Vector3
+from ..vectors import add, any_across, cross, times
+from .stance import Stance
+
+Array = NDArray[np.float64]
+
+FULL: Final = 99.0
+"""The ratio of a body that nothing holds: it weighs nothing on the support, or its mass centre is beyond an edge."""
+
+_ROUNDING: Final = 1e-12
+"""Part of the acceleration felt below which its tangential part is none: without friction any other slides."""
+
+_LEAST: Final = 1e-300
+"""Of what is divided by."""
+
+_MOTIONS: Final = 12
+"""Numbers of a support's motion: g, W', and the products xx, yy, zz, xy, xz, yz of W."""
+
+
+class Margins(NamedTuple):
+    """Arrays (n,) over the bodies; of several times (n, times).
+
+    `slide` and `tip` are the parts that are used up of the margins, from 0 over 1 (the onset) to FULL; `edge` the one
+    that is nearest to tipping, by its number; `lifted` where nothing presses the body on the support.
+    """
+
+    slide: Array
+    tip: Array
+    edge: NDArray[np.intp]
+    lifted: NDArray[np.bool_]
+
+
+class Barriers(NamedTuple):
+    """Arrays (n,) over the bodies: the work in J against what they feel until they topple over the easiest `edge`."""
+
+    work: Array
+    edge: NDArray[np.intp]
+
+
+def motions(gravity: Array, angular: Array, turning: Array) -> Array:
+    """The numbers (12, times) of a support's motion: what is felt at its origin in m/s^2, its angular velocity in rad/s
+    and its derivative, each (times, 3), along its axes.
+    """
+    x, y, z = angular.T
+    return np.concatenate((gravity.T, turning.T, (x * x, y * y, z * z, x * y, x * z, y * z)))
+
+
+def motion_of(felt: Felt) -> Array:
+    """As `motions`, (12,) of one time."""
+    (gx, gy, gz), (x, y, z), (tx, ty, tz) = felt
+    return np.array((gx, gy, gz, tx, ty, tz, x * x, y * y, z * z, x * y, x * z, y * z))
+
+
+class Onset:
+    """The bodies of some stances; `replace` gives one another."""
+
+    def __init__(self, stances: Sequence[Stance]) -> None:
+        self._stances = list(stances)
+        self._width = 0
+        self._changed = set(range(len(stances)))
+
+    def replace(self, number: int, stance: Stance) -> None:
+        """Let a body stand otherwise from now on."""
+        self._stances[number] = stance
+        self._changed.add(number)
+
+    def margins(self, motion: Array) -> Margins:
+        """The margins at a support's `motions` (12, times), or (12,) at one time."""
+        numbers = self._numbers(motion)
+        rolling = self._drum_slide(numbers) if self._drums else None
+        weight = numbers[:, :1]
+        used = numbers[:, 2:]  # its first row, one part along the support, makes place for the whole of it
+        np.hypot(numbers[:, 1], used[:, 0], out=used[:, 0])
+        used[:, 0][used[:, 0] <= _ROUNDING * np.abs(weight[:, 0])] = 0.0
+        limits = self._limits * weight
+        ratios: Array = np.full(used.shape, FULL)
+        np.divide(used, limits, out=ratios, where=limits > 0.0)
+        if self._smooth:
+            ratios[self._smooth, 0] = np.where(used[self._smooth, 0] > 0.0, FULL, 0.0)
+        if rolling is not None:
+            ratios[self._drums, 0] = rolling
+        np.clip(ratios, 0.0, FULL, out=ratios)
+        lifted = weight[:, 0] <= 0.0
+        np.copyto(ratios, FULL, where=lifted[:, None])
+        tips = ratios[:, 1:]
+        edge = tips.argmax(axis=1)
+        if motion.ndim == 2:
+            return Margins(ratios[:, 0], tips.max(axis=1), edge, lifted)
+        return Margins(ratios[:, 0, 0], tips.max(axis=1)[:, 0], edge[:, 0], lifted[:, 0])
+
+    def barriers(self, motion: Array) -> Barriers:
+        """The work until the bodies topple, at a support's `motions` (12,) at one time.
+
+        The mass centre must get to where it is highest against the acceleration felt, on its way about the edge: the
+        rest of that way it falls. It is nothing beyond there.
+        """
+        numbers = self._numbers(motion)[:, :, 0]
+        weight = numbers[:, :1]
+        a = np.einsum("nkc,nk->nc", self._axes, numbers[:, :3])
+        outwards = (self._outward * a[:, None]).sum(axis=2)
+        lever, height = self._limits[:, 1:, 0], self._height
+        steepest = np.hypot(outwards, weight) * np.hypot(lever, height)
+        work = self._mass[:, None] * (steepest - lever * outwards - height * weight)
+        work[(height * outwards >= lever * weight) | (weight <= 0.0)] = 0.0
+        work[self._absent] = np.inf
+        edge = work.argmin(axis=1)
+        return Barriers(np.maximum(work[np.arange(len(work)), edge], 0.0), edge)
+
+    def _numbers(self, motion: Array) -> Array:
+        """For each body what presses it on the support, its two parts along it, and what tips it about each edge, in
+        m/s^2 and m^2/s^2, as (n, 3 + edges, times).
+        """
+        if self._changed:
+            self._renew()
+        return (self._rows @ motion).reshape(len(self._stances), 3 + self._width, -1)
+
+    def _drum_slide(self, numbers: Array) -> Array:
+        """The part of the friction on their edges that cylinders use against spinning, and against slip along the axis.
+
+        While one spins, both reactions are on the same side of their cones; where they cannot be so together it rolls
+        over an edge first, and the whole force counts, which is less than both together.
+        """
+        arms, both, radius, friction, height = self._rolling
+        weight, push, axial, first = numbers[self._drums, :4].swapaxes(0, 1)
+        turn = (height * push - first) / radius
+        wanted = np.hypot(turn, axial)
+        # The reactions, inclined by the part of their friction that holds the spin, along (ahead, normal).
+        lean = friction * turn / np.maximum(wanted, _LEAST)
+        (x, y), (u, v) = [(arm[0] - lean * arm[1], arm[1] + lean * arm[0]) for arm in arms]
+        width = np.where(both, x * v - y * u, 1.0)
+        one, other = (-push * v - weight * u) / width, (x * weight + y * push) / width
+        whole = np.hypot(push, weight)
+        held = friction * np.where(both & (one >= 0.0) & (other >= 0.0), one + other, whole)
+        wanted[wanted <= _ROUNDING * whole] = 0.0
+        ratios: Array = np.where(wanted > 0.0, FULL, 0.0)
+        np.divide(wanted, held, out=ratios, where=held > 0.0)
+        return ratios
+
+    def _renew(self) -> None:
+        """Take the stances that have changed into the arrays."""
+        widest = max(2, *(len(self._stances[number].edges) for number in self._changed))
+        if widest > self._width:
+            self._allot(widest)
+        changed = sorted(self._changed)
+        self._changed.clear()
+        stances, width = [self._stances[number] for number in changed], self._width
+        spare = [((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))] * width
+        edges = np.array([([edge[:2] for edge in stance.edges] + spare)[:width] for stance in stances])
+        point, outward = edges[:, :, 0], edges[:, :, 1]
+        absent = np.array([[k >= len(stance.edges) for k in range(width)] for stance in stances])
+        center, normal = np.array([s.center for s in stances]), np.array([s.normal for s in stances])
+        mass, inertia = np.array([s.mass for s in stances]), np.array([s.inertia for s in stances])
+        arm = center[:, None] - point
+        height = np.where(absent, 0.0, (normal[:, None] * arm).sum(axis=2))
+        # Any two directions along the support; of a cylinder's across its axis and along it.
+        ahead = np.array([s.edges[0].outward if s.edges else _unit_across(s.normal) for s in stances])
+        axes = np.stack((-normal, ahead, np.cross(normal, ahead)), axis=1)
+        felt = _felt_rows(center)
+        rows = self._rows.reshape(-1, 3 + width, _MOTIONS)
+        rows[changed, :3] = axes @ felt
+        spin = _spin_rows(np.cross(normal[:, None], outward), inertia / mass[:, None, None])
+        rows[changed, 3:] = height[:, :, None] * (outward @ felt) - spin
+        self._limits[changed, 0, 0] = [stance.friction for stance in stances]
+        self._limits[changed, 1:, 0] = np.where(absent, 1.0, -(outward * arm).sum(axis=2))
+        self._axes[changed], self._outward[changed], self._height[changed] = axes, outward, height
+        self._mass[changed], self._absent[changed] = mass, absent
+        self._smooth = [number for number, stance in enumerate(self._stances) if stance.friction == 0.0]
+        self._drums = [number for number, stance in enumerate(self._stances) if stance.radius > 0.0 and stance.edges]
+        if self._drums:
+            self._roll([self._stances[number] for number in self._drums])
+
+    def _allot(self, width: int) -> None:
+        """Make place for so many edges of a body."""
+        count = len(self._stances)
+        self._width, self._changed = width, set(range(count))
+        self._rows = np.zeros((count * (3 + width), _MOTIONS))
+        self._limits = np.zeros((count, 1 + width, 1))
+        self._axes, self._outward = np.zeros((count, 3, 3)), np.zeros((count, width, 3))
+        self._height, self._mass = np.zeros((count, width)), np.zeros(count)
+        self._absent = np.ones((count, width), dtype=bool)
+
+    def _roll(self, stances: Sequence[Stance]) -> None:
+        """Collect what counts for cylinders alone: the directions from their edges to their axes along (ahead, normal),
+        whether they lie on both, and their radii.
+        """
+        radius = np.array([[stance.radius] for stance in stances])
+        ahead, normal = self._axes[self._drums, 1], -self._axes[self._drums, 0]
+        arms = []
+        for k in (0, -1):
+            arm = np.array([add(stance.center, stance.edges[k].point, -1.0) for stance in stances]) / radius
+            arms.append(((ahead * arm).sum(axis=1)[:, None], (normal * arm).sum(axis=1)[:, None]))
+        both = np.array([[len(stance.edges) == 2] for stance in stances])
+        self._rolling = arms, both, radius, self._limits[self._drums, 0], self._height[self._drums, :1]
+
+
+def first_times(ratios: Array, times: Array) -> Array:
+    """When each row of ratios (n, times) first reaches 1, linear between the times; inf where it does not."""
+    over = ratios >= 1.0
+    number = over.argmax(axis=1)
+    row = np.arange(len(ratios))
+    before = np.maximum(number - 1, 0)
+    low, high = ratios[row, before], ratios[row, number]
+    part = np.divide(1.0 - low, high - low, out=np.ones_like(low), where=high > low)
+    found = times[before] + part * (times[number] - times[before])
+    return np.where(over.any(axis=1), found, np.inf)
+
+
+def _unit_across(normal: Vector3) -> Vector3:
+    across = cross(normal, any_across(normal))
+    return times(across, 1.0 / hypot(*across))
+
+
+def _felt_rows(r: Array) -> Array:
+    """a = g - W' x r - W x (W x r) as rows (n, 3, 12) of the numbers of the motion, for r (n, 3)."""
+    x, y, z = r.T
+    rows = np.zeros((len(r), 3, _MOTIONS))
+    rows[:, (0, 1, 2), (0, 1, 2)] = 1.0
+    rows[:, 0, 4], rows[:, 0, 5] = -z, y
+    rows[:, 1, 3], rows[:, 1, 5] = z, -x
+    rows[:, 2, 3], rows[:, 2, 4] = -y, x
+    rows[:, 0, 7], rows[:, 0, 8], rows[:, 0, 9], rows[:, 0, 10] = x, x, -y, -z
+    rows[:, 1, 6], rows[:, 1, 8], rows[:, 1, 9], rows[:, 1, 11] = y, y, -x, -z
+    rows[:, 2, 6], rows[:, 2, 7], rows[:, 2, 10], rows[:, 2, 11] = z, z, -x, -y
+    return rows
+
+
+def _spin_rows(along: Array, inertia: Array) -> Array:
+    """e . (I W' + W x I W) as rows (n, edges, 12), for directions e (n, edges, 3) and tensors I (n, 3, 3)."""
+    rows = np.zeros((*along.shape[:2], _MOTIONS))
+    rows[:, :, 3:6] = along @ inertia
+    # e . (W x I W) = (e x W) . I W
+    x, y, z = np.moveaxis(along, 2, 0)
+    none = np.zeros_like(x)
+    across = np.stack([none, -z, y, z, none, -x, -y, x, none], axis=-1).reshape(*along.shape[:2], 3, 3)
+    product = np.swapaxes(across, 2, 3) @ inertia[:, None]
+    rows[:, :, 6], rows[:, :, 7], rows[:, :, 8] = product[:, :, 0, 0], product[:, :, 1, 1], product[:, :, 2, 2]
+    rows[:, :, 9] = product[:, :, 0, 1] + product[:, :, 1, 0]
+    rows[:, :, 10] = product[:, :, 0, 2] + product[:, :, 2, 0]
+    rows[:, :, 11] = product[:, :, 1, 2] + product[:, :, 2, 1]
+    return rows

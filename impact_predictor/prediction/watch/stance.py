@@ -1,0 +1,145 @@
+"""How a body stands on its support: the points it stands on, and the edges about which it can tip."""
+
+from __future__ import annotations
+
+from math import hypot
+from typing import NamedTuple
+
+from ..scene import Matrix3, Scene
+from ..types import Vector3
+from ..vectors import Axes, add, any_across, axes_of, cross, dot, times, to_body, to_world, turned
+
+NARROW = 1e-6
+"""A support polygon narrower than this part of its length is a line: it has the extent of rounding."""
+
+
+class Edge(NamedTuple):
+    """An edge about which a body can tip, in the support's frame.
+
+    `point` on it in m, `outward` the unit vector across it in the support, away from the body, and its `name` by the
+    support's axes.
+    """
+
+    point: Vector3
+    outward: Vector3
+    name: str
+
+
+class Stance(NamedTuple):
+    """A body on its support, in the support's frame.
+
+    `center` of mass in m, `inertia` about it in kg m^2 along the support's axes, `normal` of the support, the `edges`
+    about which it can tip now; a cylinder of `radius` (m) lies on its two edges, in the place of feet.
+    """
+
+    mass: float
+    friction: float
+    normal: Vector3
+    center: Vector3
+    inertia: Matrix3
+    edges: tuple[Edge, ...]
+    radius: float = 0.0
+
+
+class Pose(NamedTuple):
+    """Where a body frame is in the support's frame: its origin in m, its axes."""
+
+    position: Vector3
+    axes: Axes
+
+    def place(self, point: Vector3) -> Vector3:
+        """A point of the body (m) in the support's frame."""
+        return add(self.position, to_world(self.axes, point))
+
+    def body(self, point: Vector3) -> Vector3:
+        """A point of the support's frame in the body's."""
+        return to_body(self.axes, add(point, self.position, -1.0))
+
+
+def placed(scene: Scene) -> Pose:
+    """The pose in which the scene places the body."""
+    return Pose(scene.place, axes_of(turned((0.0, 0.0, 0.0, 1.0), times(scene.normal, scene.yaw))))
+
+
+def outline(points: list[Vector3], up: Vector3) -> list[Vector3]:
+    """The corners of the convex hull of points across `up`, counter-clockwise; two where they lie on a line.
+
+    The monotone chain: Andrew, Another efficient algorithm for convex hulls in two dimensions, Information Processing
+    Letters 9 (1979) 216-219.
+    """
+    first = _unit(cross(up, any_across(up)))
+    second = cross(up, first)
+    flat = sorted((dot(first, point), dot(second, point), point) for point in points)
+    chain: list[tuple[float, float, Vector3]] = []
+    for way in (flat, flat[::-1]):
+        start = len(chain)
+        for corner in way:
+            while len(chain) > start + 1 and _area(chain[-2], chain[-1], corner) <= 0.0:
+                chain.pop()
+            chain.append(corner)
+        chain.pop()
+    corners = chain or flat[:1]
+    ends = max(
+        ((p, q) for p in corners for q in corners),
+        key=lambda pair: hypot(pair[0][0] - pair[1][0], pair[0][1] - pair[1][1]),
+    )
+    length = hypot(ends[0][0] - ends[1][0], ends[0][1] - ends[1][1])
+    if length == 0.0:
+        return [corners[0][2]]
+    if max(abs(_area(*ends, corner)) for corner in corners) <= NARROW * length * length:
+        return [ends[0][2], ends[1][2]]
+    return [corner[2] for corner in corners]
+
+
+def edges_of(corners: list[Vector3], normal: Vector3) -> list[tuple[Edge, Vector3]]:
+    """The edges between the corners of an outline (m, in the support's frame), each with the end of it.
+
+    Of a line the ends are edges across it: what stands on it is judged in its plane alone.
+    """
+    if len(corners) < 2:
+        return []
+    found = []
+    for i, point in enumerate(corners):
+        following = corners[(i + 1) % len(corners)]
+        along = add(following, point, -1.0)
+        if len(corners) == 2:
+            outward, end = add(times(along, -1.0), normal, dot(along, normal)), point
+        else:
+            outward, end = cross(along, normal), following
+        length = hypot(*outward)
+        if length > 0.0:
+            outward = times(outward, 1.0 / length)
+            found.append((Edge(point, outward, side(outward, normal)), end))
+    return found
+
+
+def side(outward: Vector3, normal: Vector3) -> str:
+    """A direction in the support by the names of its axes: x is fore and y port (REP-103)."""
+    x, y = outward[0], outward[1]
+    if abs(normal[2]) < 0.5:  # the support's frame does not lie in the support: its own directions count
+        first = _unit(cross(normal, any_across(normal)))
+        x, y = dot(outward, first), dot(outward, cross(normal, first))
+    along = "fore" if x > _DIAGONAL * abs(y) else "aft" if -x > _DIAGONAL * abs(y) else ""
+    across = "port" if y > _DIAGONAL * abs(x) else "starboard" if -y > _DIAGONAL * abs(x) else ""
+    return "-".join(name for name in (along, across) if name)
+
+
+def inertia_in_support(inertia: Matrix3, axes: Axes) -> Matrix3:
+    """A tensor of the body frame along the support's axes: R I R^T."""
+    columns = [to_world(axes, row) for row in inertia]
+    rows = [to_world(axes, (columns[0][i], columns[1][i], columns[2][i])) for i in range(3)]
+    return rows[0], rows[1], rows[2]
+
+
+_DIAGONAL = 0.4142135623730951
+"""tan 22.5 degrees: the eight directions are 45 degrees wide."""
+
+_Corner = tuple[float, float, Vector3]
+
+
+def _area(a: _Corner, b: _Corner, c: _Corner) -> float:
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+
+
+def _unit(u: Vector3) -> Vector3:
+    return times(u, 1.0 / hypot(*u))

@@ -1,0 +1,1 @@
+"""What the predictor knows, as markers for RViz and Foxglove."""

@@ -1,0 +1,224 @@
+"""The harmonic prediction of a support's motion: on sums of waves, where it begins, and between its steps."""
+
+from __future__ import annotations
+
+from math import isfinite
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from impact_predictor.prediction.deck import harmonic as deck_harmonic
+from impact_predictor.prediction.deck.course import SECONDS, STEP, Course
+from impact_predictor.prediction.deck.harmonic import PAST, REACH, Harmonic, predicted
+from impact_predictor.prediction.deck.motion import Known, ahead
+from impact_predictor.prediction.types import Felt
+from impact_predictor.prediction.vectors import axes_of, to_body, turned
+
+Array = NDArray[np.float64]
+
+NOTHING = (0.0, 0.0, 0.0)
+LEVEL = (0.0, 0.0, 0.0, 1.0)
+WAVES = np.array([[0.55, 0.3, 0.1], [0.8, 1.0, 2.0], [1.3, 0.4, 4.0], [1.9, 0.1, 1.0]])
+"""Frequency in rad/s, height and phase."""
+
+
+def signals(times: Array) -> Array:
+    """Gravity felt and angular velocity, (n, 6), of a deck in some waves."""
+    columns = []
+    for channel in range(6):
+        size = (0.3, 1.0, 0.8, 0.12, 0.05, 0.02)[channel]
+        rows = sum(h * np.sin(w * times + p * (1 + channel)) for w, h, p in WAVES)
+        columns.append(size * rows - (9.81 if channel == 2 else 0.0))
+    return np.stack(columns, axis=1)
+
+
+def known_at(time: float, off: Any = 0.0) -> Known:
+    """What a tracker without error knows then; its frame does not turn, as the angular velocities stay small here."""
+    felt = signals(np.array([time - 1e-4, time, time + 1e-4])) + off
+    turning = (felt[2, 3:] - felt[0, 3:]) / 2e-4
+    row = felt[1].tolist()
+    return Known(
+        round(time * 1e9),
+        NOTHING,
+        LEVEL,
+        axes_of(LEVEL),
+        NOTHING,
+        tuple(row[3:]),
+        NOTHING,
+        tuple(row[:3]),
+        tuple(turning.tolist()),
+    )
+
+
+def fitted(until: float = 30.0, rate: float = 20.0, window: float = 20.0, begin: float = 0.0) -> Harmonic:
+    harmonic = Harmonic(window)
+    for time in np.arange(begin, until, 1.0 / rate):
+        harmonic.add(known_at(float(time)))
+    return harmonic
+
+
+@pytest.mark.parametrize(("time", "error"), [(0.25, 0.005), (1.0, 0.05), (2.0, 0.25), (5.0, 0.6)])
+def test_waves_of_four_frequencies_are_told_ahead(time: float, error: float) -> None:
+    harmonic = fitted()
+    course = harmonic._course
+    assert course is not None
+    now = course.time_of(30 * 10**9)
+    wanted = signals(np.array([30.0 + time]))[0]
+    force, angular, _, _ = course.at(now + time)
+    deviations = signals(np.arange(0.0, 60.0, 0.1)).std(0)
+    # Parts of the deviation. Straight lines between messages 50 ms apart are off by up to 3e-4 of a wave: the only
+    # noise here, which a recursion over 3.2 s multiplies when it is led on for longer than that.
+    assert np.abs((np.array([*force, *angular]) - wanted) / deviations).max() < error
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.1])
+@pytest.mark.parametrize("time", [29.97, 30.0, 30.17])
+def test_it_begins_with_the_estimate_of_now_whatever_the_fit_says(time: float, offset: float) -> None:
+    harmonic = fitted()
+    known = known_at(time, offset)
+    felt = harmonic.ahead(known)(0.0)
+    # The offsets are differences from the course, which they are then added to: roundings of 10 m/s^2.
+    assert felt.gravity == pytest.approx(known.felt, abs=1e-13)
+    assert felt.angular == pytest.approx(known.angular, abs=1e-14)
+    assert felt.turning == pytest.approx(known.turning, abs=1e-14)
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.1])
+def test_what_is_ahead_is_smooth_and_its_parts_belong_together(offset: float) -> None:
+    harmonic = fitted()
+    on = harmonic.ahead(known_at(30.0, offset))
+    step = 1e-5
+    for time in np.linspace(-0.3, 6.0, 64).tolist():
+        before, now, after = on(time - step), on(time), on(time + step)
+        turning = (np.array(after.angular) - np.array(before.angular)) / (2.0 * step)
+        # A central difference over a corner of the curvature, of up to 10 rad/s^3 where an offset begins to fade.
+        assert turning == pytest.approx(now.turning, abs=10.0 * step)
+        # In the frame that does not turn what is felt has no jump.
+        assert np.array(after.gravity) == pytest.approx(np.array(before.gravity), abs=50.0 * step)
+
+
+def test_an_offset_of_the_estimate_from_the_fit_fades() -> None:
+    harmonic = fitted()
+    plain, off = harmonic.ahead(known_at(30.0)), harmonic.ahead(known_at(30.0, 0.1))
+    near, far = (np.abs(np.array(off(time).angular) - np.array(plain(time).angular)).max() for time in (0.0, 5.0))
+    assert near == pytest.approx(0.1)
+    assert far < 1e-3
+
+
+def test_gravity_ahead_is_seen_along_the_axes_of_then() -> None:
+    harmonic = Harmonic(4.0)
+    rate = 0.2
+    still = Known(0, NOTHING, LEVEL, axes_of(LEVEL), NOTHING, (rate, 0.0, 0.0), NOTHING, (0.0, 0.0, -9.81), NOTHING)
+    for k in range(100):
+        orientation = turned(LEVEL, (rate * k * 0.1, 0.0, 0.0))
+        known = still._replace(stamp=k * STEP, orientation=orientation, axes=axes_of(orientation))
+        harmonic.add(known)
+    assert harmonic.fitted
+    for time in (0.0, 0.3, 2.0):
+        orientation = turned(LEVEL, (rate * (9.9 + time), 0.0, 0.0))
+        wanted = Felt(to_body(axes_of(orientation), (0.0, 0.0, -9.81)), (rate, 0.0, 0.0), NOTHING)
+        assert np.allclose(harmonic.ahead(known)(time), wanted, atol=1e-12)  # roundings of 10 m/s^2
+
+
+def test_it_goes_on_with_constant_accelerations_until_half_the_window_is_known() -> None:
+    harmonic = Harmonic(20.0)
+    for time in np.arange(0.0, 9.9, 0.05):
+        harmonic.add(known_at(float(time)))
+        assert not harmonic.fitted
+    known = known_at(9.9)
+    assert harmonic.ahead(known)(0.4) == ahead(known.felt, known.angular, known.turning, 0.4)
+    for time in np.arange(9.9, 10.2, 0.05):
+        harmonic.add(known_at(float(time)))
+    assert harmonic.fitted
+    harmonic.clear()
+    assert not harmonic.fitted
+
+
+def test_it_is_fitted_a_few_times_a_second_of_stamps(monkeypatch: pytest.MonkeyPatch) -> None:
+    fits = []
+
+    def counted(rows: Array) -> Array:
+        fits.append(len(rows))
+        return predicted(rows)
+
+    monkeypatch.setattr(deck_harmonic, "predicted", counted)
+    fitted(until=30.0, rate=200.0)
+    assert len(fits) == pytest.approx(20.0 / 0.3, abs=2.0)
+    assert max(fits) == 200
+
+
+def test_fits_do_not_depend_on_the_rate_of_the_messages() -> None:
+    slow, fast = fitted(rate=20.0).ahead(known_at(30.0)), fitted(rate=100.0).ahead(known_at(30.0))
+    # Between messages 50 ms apart a straight line is off by (w dt)^2/8 of a wave of 1.9 rad/s and 0.1 m/s^2.
+    assert np.allclose(slow(1.0), fast(1.0), atol=0.02)
+
+
+def test_a_support_at_rest_stays_at_rest() -> None:
+    course = predicted(np.tile((0.0, 0.0, -9.81, 0.0, 0.0, 0.0), (200, 1)))
+    assert course.shape == (PAST + 1 + REACH, 6)
+    assert np.ptp(course, axis=0).max() < 1e-12
+    assert course[0] == pytest.approx((0.0, 0.0, -9.81, 0.0, 0.0, 0.0), abs=1e-14)
+
+
+@given(st.integers(20, 200), st.floats(-1e12, 1e12), st.integers(0, 2**32))
+@settings(max_examples=60, deadline=None)
+def test_whatever_the_course_was_its_prediction_stays_within_bounds(count: int, size: float, seed: int) -> None:
+    rows = size * np.random.default_rng(seed).standard_normal((count, 6))
+    course = predicted(rows)
+    assert np.isfinite(course).all()
+    mean = rows.mean(0)
+    assert (np.abs(course - mean) <= deck_harmonic.LIMIT * np.abs(rows - mean).max(0) * (1.0 + 1e-9)).all()
+
+
+@pytest.mark.parametrize("kind", ["ramp", "growing", "square"])
+def test_a_course_that_is_no_sum_of_waves_does_no_harm(kind: str) -> None:
+    times = np.arange(200) / 10.0
+    shape = {"ramp": times, "growing": np.exp(0.4 * times) * np.sin(times), "square": np.sign(np.sin(times))}[kind]
+    course = predicted(np.outer(shape, np.ones(6)))
+    limit = deck_harmonic.LIMIT * np.abs(shape - shape.mean()).max()
+    assert (np.abs(course - shape.mean()) <= limit * (1.0 + 1e-9)).all()
+
+
+def cubic(times: Array) -> Array:
+    factors = np.array([[1.0, -2.0, 0.5, 0.1, 0.2, -0.3], [0.5] * 6, [-0.2] * 6, [0.03, 0.01, -0.02, 0.03, 0.0, 0.01]])
+    return np.vander(times, 4, increasing=True) @ factors
+
+
+def test_a_course_goes_through_cubics_exactly_with_their_slopes_and_areas() -> None:
+    rows = cubic(np.arange(40) * SECONDS)
+    course = Course(25, rows, 5)
+    assert course.time_of(20 * STEP) == 0.0
+    for time in (0.3, 0.37, 1.111, 2.5):
+        force, angular, turning, rotation = course.at(time)
+        values = cubic(np.array([time - 1e-3, time, time + 1e-3]))
+        assert [*force, *angular] == pytest.approx(values[1], abs=1e-13)
+        assert turning == pytest.approx((values[2, 3:] - values[0, 3:]) / 2e-3, abs=1e-6)  # third derivative 0.2
+        middle = cubic(np.array([0.5 * (0.3 + time)]))[0]
+        area = (time - 0.3) / 6.0 * (cubic(np.array([0.3]))[0] + 4.0 * middle + values[1])  # Simpson: exact for cubics
+        assert np.array(rotation) - course.at(0.3)[3] == pytest.approx(area[3:], abs=1e-13)
+
+
+def test_between_steps_the_error_shrinks_with_the_fourth_power_of_the_frequency() -> None:
+    errors = []
+    for omega in (4.0, 2.0, 1.0):
+        times = np.arange(60) * SECONDS
+        course = Course(0, np.sin(omega * times)[:, None] * np.ones(6), 0)
+        inner = np.linspace(1.0, 4.0, 500)
+        errors.append(max(abs(course.at(time)[0][0] - np.sin(omega * time)) for time in inner.tolist()))
+    assert errors[0] == pytest.approx((4.0 * SECONDS) ** 4 / 384.0, rel=0.3)  # of cubic pieces through exact slopes
+    assert 13.0 < errors[0] / errors[1] < 19.0
+    assert 13.0 < errors[1] / errors[2] < 19.0
+
+
+def test_before_its_first_row_and_after_its_last_a_course_stands() -> None:
+    course = Course(0, cubic(np.arange(30) * SECONDS), 0)
+    first, last = course.at(0.0), course.at(29 * SECONDS)
+    for time in (-1e308, -1.0):
+        assert course.at(time) == first
+    for time in (3.0, 1e308):
+        assert course.at(time)[:2] == last[:2]
+        assert all(isfinite(number) for part in course.at(time) for number in part)

@@ -1,0 +1,522 @@
+"""The tracker of a moving support against motions that are known exactly, and against bad input."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import cos, hypot, inf, isfinite, nan, pi, sin
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from impact_predictor.prediction.deck.motion import ahead, rotation_between, turned_back
+from impact_predictor.prediction.deck.tracker import Deck
+from impact_predictor.prediction.predictor import PAUSE
+from impact_predictor.prediction.scene import MovingDeck
+from impact_predictor.prediction.types import Felt, Moment, Sample, Status, Vector3
+from impact_predictor.prediction.vectors import axes_of, composed, to_body, turned
+
+GRAVITY = (0.0, 0.0, -9.81)
+UP = (0.0, 0.0, 1.0)
+ZEROS = (0.0,) * 36
+SECOND = 1_000_000_000
+TIMEOUT = MovingDeck().timeout
+
+Motion = Callable[[float], tuple[Sample, Felt]]
+
+
+def accelerating(
+    rate: float = 0.3,
+    turning: float = -0.4,
+    axis: Vector3 = (1.0, 0.0, 0.0),
+    velocity: Vector3 = (5.0, -1.0, 0.5),
+    acceleration: Vector3 = (0.4, -1.5, 2.0),
+) -> Motion:
+    """A deck with constant acceleration, and constant angular acceleration about one axis, from an odd pose on."""
+    start = turned((0.0, 0.0, 0.0, 1.0), (0.1, -0.2, 2.5))
+
+    def at(time: float) -> tuple[Sample, Felt]:
+        angle = rate * time + 0.5 * turning * time * time
+        turn = (*(sin(0.5 * angle) * part for part in axis), cos(0.5 * angle))
+        orientation = composed(start, turn)
+        axes = axes_of(orientation)
+        position = tuple(
+            100.0 * i + v * time + 0.5 * a * time * time
+            for i, v, a in zip((1, 2, 3), velocity, acceleration, strict=True)
+        )
+        moving = tuple(v + a * time for v, a in zip(velocity, acceleration, strict=True))
+        pull = tuple(g - a for g, a in zip(GRAVITY, acceleration, strict=True))
+        spin = tuple((rate + turning * time) * part for part in axis)
+        sample = Sample(
+            round(time * SECOND), "world", "deck", position, orientation, to_body(axes, moving), spin, ZEROS, ZEROS
+        )
+        return sample, Felt(to_body(axes, pull), spin, tuple(turning * part for part in axis))
+
+    return at
+
+
+def swinging(omega: float, angle: float = 0.1, sway: float = 1.0) -> Motion:
+    """A deck that rolls and sways in harmonics."""
+
+    def at(time: float) -> tuple[Sample, Felt]:
+        s, c = sin(omega * time), cos(omega * time)
+        roll, rate, turning = angle * s, angle * omega * c, -angle * omega * omega * s
+        orientation = (sin(0.5 * roll), 0.0, 0.0, cos(0.5 * roll))
+        axes = axes_of(orientation)
+        velocity = to_body(axes, (0.0, -sway * omega * s, 0.0))
+        spin = (rate, 0.0, 0.0)
+        sample = Sample(
+            round(time * SECOND), "world", "deck", (0.0, sway * c, 0.0), orientation, velocity, spin, ZEROS, ZEROS
+        )
+        pull = (0.0, sway * omega * omega * c, GRAVITY[2])
+        return sample, Felt(to_body(axes, pull), spin, (turning, 0.0, 0.0))
+
+    return at
+
+
+def apart(felt: Felt, wanted: Felt) -> float:
+    """The largest difference in any number."""
+    return max(abs(a - b) for one, other in zip(felt, wanted, strict=True) for a, b in zip(one, other, strict=True))
+
+
+def still(stamp: int = 0, **changes: Any) -> Sample:
+    nothing = (0.0, 0.0, 0.0)
+    return Sample(stamp, "world", "deck", nothing, (0.0, 0.0, 0.0, 1.0), nothing, nothing, ZEROS, ZEROS)._replace(
+        **changes
+    )
+
+
+def deck_at_rest(until: float = 1.0, **settings: Any) -> Deck:
+    """A deck that has heard messages at 100 Hz for a while."""
+    deck = Deck(MovingDeck(**settings), GRAVITY, UP)
+    for k in range(round(100 * until) + 1):
+        assert deck.update(still(k * 10_000_000)) is Status.ACCEPTED
+    return deck
+
+
+def followed(motion: Motion, times: Any, **settings: Any) -> Deck:
+    deck = Deck(MovingDeck(**settings), GRAVITY, UP)
+    for time in times:
+        assert deck.update(motion(float(time))[0]) is Status.ACCEPTED
+    return deck
+
+
+def moment_at(deck: Deck, stamp: int) -> Moment:
+    moment = deck.at(stamp)
+    assert isinstance(moment, Moment), moment
+    return moment
+
+
+EVEN = np.arange(101) / 100.0
+IRREGULAR = np.round(np.cumsum(np.random.default_rng(3).uniform(0.002, 0.03, 80)), 9)
+SLOW = np.arange(12) / 10.24
+
+MOTIONS = {
+    "rolling": accelerating(),
+    "off axis": accelerating(axis=(0.6, 0.0, 0.8)),
+    "not turning": accelerating(0.0, 0.0),
+    "in one direction": accelerating(0.2, 0.0, acceleration=(0.0, 0.0, 0.0)),
+}
+
+
+@pytest.mark.parametrize("times", [EVEN, IRREGULAR, SLOW], ids=["even", "irregular", "slow"])
+@pytest.mark.parametrize("name", MOTIONS)
+def test_constant_accelerations_are_found_exactly(name: str, times: Any) -> None:
+    motion = MOTIONS[name]
+    deck = followed(motion, times)
+    sample, felt = motion(float(times[-1]))
+    assert deck.last is not None
+    # A rounding of 5 m/s, times 13.9/(T sqrt(n)) with a few roundings for the irregular stamps.
+    assert apart(deck.last.felt, felt) < 1e-11
+    assert deck.last[:5] == (sample.stamp, "world", "deck", sample.position, sample.orientation)
+    assert deck.last.linear == pytest.approx(sample.linear, abs=1e-14)
+    assert deck.last.gravity == GRAVITY
+
+
+@pytest.mark.parametrize("name", MOTIONS)
+@pytest.mark.parametrize("time", [-0.1, 0.001, 0.25, 1.0, 3.0])
+def test_what_is_ahead_is_exact_with_constant_accelerations(name: str, time: float) -> None:
+    motion = MOTIONS[name]
+    now, later = motion(1.0)[1], motion(1.0 + time)[1]
+    assert apart(ahead(*now, time), later) < 1e-13  # roundings of 10 m/s^2
+    deck = followed(motion, EVEN)
+    assert deck.last is not None
+    # The estimate's own rounding: of the angular acceleration, 1e-13, times 3^2/2 s^2 times gravity.
+    assert apart(deck.last.ahead(time), later) < 1e-12 * (1.0 + 10.0 * time * time)
+
+
+@pytest.mark.parametrize("name", MOTIONS)
+@pytest.mark.parametrize("time", [0.9071, 0.95, 1.0, 1.0031, 1.2])
+def test_a_moment_at_any_stamp_is_exact_with_constant_accelerations(name: str, time: float) -> None:
+    motion = MOTIONS[name]
+    moment = moment_at(followed(motion, EVEN), round(time * SECOND))
+    sample, felt = motion(time)
+    assert moment.stamp == sample.stamp
+    assert apart(moment.felt, felt) < 1e-11  # as above
+    assert moment.position == pytest.approx(sample.position, abs=1e-12)  # roundings of 300 m
+    assert hypot(*rotation_between(sample.orientation, moment.orientation)) < 1e-13
+    assert moment.linear == pytest.approx(sample.linear, abs=1e-12)
+    assert apart(moment.ahead(0.1), motion(time + 0.1)[1]) < 1e-11
+
+
+def test_a_moment_joins_the_messages_around_it() -> None:
+    deck = followed(swinging(2.0), np.arange(30) / 10.24)
+    for message in list(deck._history)[1:-1]:
+        before, now, after = (moment_at(deck, message.stamp + step) for step in (-1, 0, 1))
+        for one in (before, after):
+            # 1 ns away; the pose on the way is led on from the message before, over which a jerk of 8 m/s^3 has
+            # 0.1 s to work: 8 0.1^3/12 m and its equivalent in the angle.
+            assert apart(one.felt, now.felt) < 1e-3
+            assert one.position == pytest.approx(now.position, abs=1e-3)
+            assert one.linear == pytest.approx(now.linear, abs=1e-3)
+
+
+def test_the_error_of_the_estimate_shrinks_with_the_square_of_the_window() -> None:
+    motion = swinging(1.5)
+    errors = []
+    for window in (0.4, 0.2, 0.1):
+        deck = Deck(MovingDeck(window=window), GRAVITY, UP)
+        worst = 0.0
+        for time in np.arange(2000) / 200.0:
+            sample, felt = motion(float(time))
+            deck.update(sample)
+            if deck.last is not None:
+                worst = max(worst, apart(deck.last.felt, felt))
+        errors.append(worst)
+    # 0.1 (w T)^2 of the acceleration 1.5^2 m/s^2
+    assert errors[0] == pytest.approx(0.1 * (1.5 * 0.4) ** 2 * 1.5**2, rel=0.25)
+    assert 3.5 < errors[0] / errors[1] < 4.5
+    assert 3.5 < errors[1] / errors[2] < 4.5
+
+
+def test_the_noise_of_the_estimate_is_what_the_window_makes_of_it() -> None:
+    rng = np.random.default_rng(2)
+    noise = 0.01
+    errors = {}
+    for window in (0.2, 0.8):
+        deck = Deck(MovingDeck(window=window), GRAVITY, UP)
+        found = []
+        for k in range(3000):
+            deck.update(still(k * 10_000_000, linear=tuple((noise * rng.standard_normal(3)).tolist())))
+            if deck.last is not None:
+                found.append(deck.last.felt.gravity)
+        errors[window] = float(np.std(found, axis=0).mean())
+        assert errors[window] == pytest.approx(13.9 * noise / (window * (100 * window + 1) ** 0.5), rel=0.15)
+    assert errors[0.2] / errors[0.8] == pytest.approx(8.0, rel=0.15)  # (0.8 / 0.2)^1.5
+
+
+def test_nothing_is_told_before_three_messages_span_the_window() -> None:
+    deck = Deck(MovingDeck(), GRAVITY, UP)
+    assert deck.at(0) is Status.NO_SUPPORT
+    assert deck.last is None
+    for k in range(20):
+        assert deck.update(still(k * 10_000_000)) is Status.ACCEPTED
+        assert deck.at(k * 10_000_000) is Status.NO_SUPPORT
+    deck.update(still(200_000_000))
+    assert moment_at(deck, 200_000_000).felt == Felt(GRAVITY, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+
+
+def test_nothing_is_told_of_a_stamp_from_before_it_was_known() -> None:
+    deck = deck_at_rest(0.3)
+    assert deck.at(199_999_999) is Status.NO_SUPPORT
+    moment_at(deck, 200_000_000)
+
+
+@pytest.mark.parametrize(
+    ("changes", "status"),
+    [
+        ({"position": (nan, 0.0, 0.0)}, Status.NOT_FINITE),
+        ({"position": (1e200, 0.0, 0.0)}, Status.NOT_FINITE),
+        ({"linear": (0.0, inf, 0.0)}, Status.NOT_FINITE),
+        ({"linear": (inf, -inf, 0.0)}, Status.NOT_FINITE),
+        ({"angular": (0.0, 0.0, -inf)}, Status.NOT_FINITE),
+        ({"orientation": (nan, 0.0, 0.0, 1.0)}, Status.NOT_FINITE),
+        ({"orientation": (0.0, 0.0, 0.0, 0.0)}, Status.BAD_QUATERNION),
+        ({"orientation": (0.0, 0.0, 0.0, 1.01)}, Status.BAD_QUATERNION),
+        ({"frame_id": "map"}, Status.WRONG_FRAME),
+        ({"child_frame_id": "hull"}, Status.WRONG_FRAME),
+        ({"stamp": SECOND}, Status.STAMP_REPEATED),
+        ({"stamp": SECOND - 1}, Status.STAMP_WENT_BACK),
+    ],
+)
+def test_a_bad_message_is_named_and_changes_nothing(changes: dict[str, Any], status: Status) -> None:
+    deck = deck_at_rest()
+    assert deck.update(still(SECOND + 10_000_000)._replace(**changes)) is status
+    assert moment_at(deck, SECOND).stamp == SECOND
+    assert deck.update(still(SECOND + 10_000_000)) is Status.ACCEPTED
+    moment_at(deck, SECOND + 10_000_000)
+
+
+def test_an_orientation_may_change_its_sign() -> None:
+    deck = deck_at_rest()
+    assert deck.update(still(SECOND + 10_000_000, orientation=(0.0, 0.0, 0.0, -1.0))) is Status.ACCEPTED
+
+
+def test_a_deck_that_falls_silent_is_stale_after_the_timeout() -> None:
+    deck = deck_at_rest()
+    last = SECOND
+    for k in range(1, 100):
+        stamp = last + k * 50_000_000
+        answer = deck.at(stamp)
+        if stamp - last > TIMEOUT * SECOND:
+            assert answer is Status.SUPPORT_STALE
+        else:
+            assert isinstance(answer, Moment)
+    # It comes again, and is known when its messages fill the window.
+    begin = last + 10 * SECOND
+    for k in range(21):
+        assert deck.at(begin + k * 10_000_000) is Status.SUPPORT_STALE
+        assert deck.update(still(begin + k * 10_000_000)) is Status.ACCEPTED
+    moment_at(deck, begin + 200_000_000)
+
+
+def test_a_deck_elsewhere_after_a_silence_has_not_jumped() -> None:
+    deck = deck_at_rest()
+    for k in range(21):
+        assert deck.update(still(5 * SECOND + k * 10_000_000, position=(50.0, 0.0, 0.0))) is Status.ACCEPTED
+    assert moment_at(deck, 5 * SECOND + 200_000_000).position == (50.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("offset", [-3.0, -0.8, 0.8, 3.0, 1e6])
+def test_clocks_that_stay_apart_are_named(offset: float) -> None:
+    deck = deck_at_rest()
+    answers = []
+    for k in range(101, 400):
+        now = k * 10_000_000
+        assert deck.update(still(now)) is Status.ACCEPTED
+        if k % 5 == 0:
+            answers.append(deck.at(now + round(offset * SECOND)))
+    # The first stamp far ahead might also be that of a deck that has just fallen silent.
+    assert set(answers[:1]) <= {Status.SUPPORT_STALE, Status.CLOCKS_APART}
+    assert set(answers[1:]) == {Status.CLOCKS_APART}
+
+
+def test_a_late_message_of_the_deck_does_not_set_clocks_apart() -> None:
+    deck = deck_at_rest()
+    for k in range(1, 60):  # 0.1 s of latency
+        moment_at(deck, SECOND + k * 10_000_000 + 100_000_000)
+        deck.update(still(SECOND + k * 10_000_000))
+    answers = [deck.at(SECOND + 590_000_000 + k * 10_000_000) for k in range(1, 300)]
+    assert {answer for answer in answers if not isinstance(answer, Moment)} == {Status.SUPPORT_STALE}
+
+
+def test_a_deck_with_clocks_apart_that_falls_silent_becomes_stale() -> None:
+    deck = deck_at_rest()
+    for k in range(1, 100):
+        deck.update(still(SECOND + k * 10_000_000))
+        deck.at(4 * SECOND + k * 10_000_000)
+    assert deck.at(5 * SECOND) is Status.CLOCKS_APART
+    assert deck.at(6 * SECOND) is Status.SUPPORT_STALE
+
+
+JUMPS: dict[str, dict[str, Any]] = {
+    "place": {"position": (0.0, 0.2, 0.0)},
+    "place far away": {"position": (0.0, 2000.0, 0.0)},
+    "orientation": {"orientation": turned((0.0, 0.0, 0.0, 1.0), (0.0, 0.05, 0.0))},
+    "heading": {"orientation": (0.0, 0.0, 1.0, 0.0)},
+    "velocity": {"linear": (0.0, 0.0, 1.0)},
+    "angular velocity": {"angular": (0.3, 0.0, 0.0)},
+}
+
+
+@pytest.mark.parametrize("name", JUMPS)
+def test_a_jump_is_refused_until_new_messages_fill_a_window(name: str) -> None:
+    deck = deck_at_rest()
+    jumped = still(**JUMPS[name])
+    speed, rate = np.array(jumped.linear), np.array(jumped.angular)
+    for k in range(1, 21):
+        time = k / 100.0
+        moving = jumped._replace(
+            stamp=SECOND + k * 10_000_000,
+            position=tuple((np.array(jumped.position) + speed * time).tolist()),
+            orientation=turned(jumped.orientation, tuple((rate * time).tolist())),
+        )
+        assert deck.update(moving) is Status.SUPPORT_JUMPED
+        assert deck.at(moving.stamp) is Status.SUPPORT_JUMPED
+        assert deck.last is None
+    moving = moving._replace(
+        stamp=SECOND + 210_000_000,
+        position=tuple((np.array(jumped.position) + speed * 0.21).tolist()),
+        orientation=turned(jumped.orientation, tuple((rate * 0.21).tolist())),
+    )
+    assert deck.update(moving) is Status.ACCEPTED
+    assert moment_at(deck, moving.stamp).felt.gravity == pytest.approx(
+        to_body(axes_of(moving.orientation), GRAVITY), abs=1e-9
+    )
+    # Of the time of the jump nothing is told later either.
+    assert deck.at(SECOND + 100_000_000) is Status.SUPPORT_JUMPED
+
+
+def test_two_publishers_of_different_decks_are_never_trusted() -> None:
+    deck = Deck(MovingDeck(), GRAVITY, UP)
+    statuses = [deck.update(still(k * 10_000_000, position=(float(k % 2), 0.0, 0.0))) for k in range(1000)]
+    assert set(statuses[1:]) == {Status.SUPPORT_JUMPED}
+
+
+def test_a_noisy_source_is_trusted_once_its_noise_is_known() -> None:
+    rng = np.random.default_rng(4)
+    deck = Deck(MovingDeck(), GRAVITY, UP)
+    statuses = []
+    for k in range(3000):
+        place, rotation = (0.03 * rng.standard_normal(3)).tolist(), (0.005 * rng.standard_normal(3)).tolist()
+        orientation = turned((0.0, 0.0, 0.0, 1.0), tuple(rotation))
+        statuses.append(deck.update(still(k * 10_000_000, position=tuple(place), orientation=orientation)))
+    assert set(statuses[100:]) == {Status.ACCEPTED}
+
+
+def test_a_slam_is_no_jump() -> None:
+    deck = deck_at_rest()
+    for k in range(1, 100):  # 3 g for 0.15 s, and it stays in motion
+        time = k / 100.0
+        hit = min(time, 0.15)
+        moving = still(
+            SECOND + k * 10_000_000,
+            position=(0.0, 0.0, 15.0 * hit * hit + 30.0 * hit * (time - hit)),
+            linear=(0.0, 0.0, 30.0 * hit),
+        )
+        assert deck.update(moving) is Status.ACCEPTED
+
+
+def test_a_clock_that_is_set_back_begins_anew() -> None:
+    deck = deck_at_rest(2.0)
+    assert deck.update(still(2 * SECOND - PAUSE)) is Status.STAMP_WENT_BACK
+    moment_at(deck, 2 * SECOND)
+    assert deck.update(still(0, position=(100.0, 0.0, 0.0))) is Status.STAMP_WENT_BACK
+    for k in range(1, 22):
+        assert deck.at(k * 10_000_000) is Status.NO_SUPPORT
+        assert deck.update(still(k * 10_000_000, position=(100.0, 0.0, 0.0))) is Status.ACCEPTED
+    assert moment_at(deck, 210_000_000).position == (100.0, 0.0, 0.0)
+
+
+def test_frames_may_change_with_a_new_beginning_only() -> None:
+    deck = deck_at_rest()
+    for k in range(1, 50):
+        assert deck.update(still(SECOND + k * 10_000_000, frame_id="map")) is Status.WRONG_FRAME
+    assert deck.at(SECOND + 600_000_000) is Status.SUPPORT_STALE
+    for k in range(60, 82):
+        assert deck.update(still(SECOND + k * 10_000_000, frame_id="map")) is Status.ACCEPTED
+    assert moment_at(deck, SECOND + 810_000_000).frame_id == "map"
+
+
+@pytest.mark.parametrize(
+    ("gravity", "orientation"),
+    [
+        ((0.0, 0.0, 9.81), (0.0, 0.0, 0.0, 1.0)),
+        (GRAVITY, (1.0, 0.0, 0.0, 0.0)),  # axes forward, right, down
+        (GRAVITY, (sin(0.3 * pi), 0.0, 0.0, cos(0.3 * pi))),  # capsized
+        ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)),
+    ],
+)
+def test_a_deck_off_which_everything_would_fall_is_named(gravity: Vector3, orientation: Any) -> None:
+    deck = Deck(MovingDeck(), gravity, UP)
+    for k in range(40):
+        status = deck.update(still(k * 10_000_000, orientation=orientation))
+        assert status is (Status.ACCEPTED if k < 20 else Status.GRAVITY_WRONG)
+        assert deck.at(k * 10_000_000) is (Status.NO_SUPPORT if k < 20 else Status.GRAVITY_WRONG)
+
+
+def test_a_heavy_list_is_no_wrong_gravity() -> None:
+    deck = Deck(MovingDeck(), GRAVITY, UP)
+    listing = (sin(0.25 * pi * 0.9), 0.0, 0.0, cos(0.25 * pi * 0.9))  # 81 degrees
+    assert {deck.update(still(k * 10_000_000, orientation=listing)) for k in range(100)} == {Status.ACCEPTED}
+
+
+def test_messages_of_the_source_that_the_scene_does_not_name_are_refused() -> None:
+    deck = Deck(MovingDeck(source="imu"), GRAVITY, UP)
+    assert deck.update(still()) is Status.MALFORMED
+
+
+def row(forecast: tuple[Any, ...], index: int) -> Felt:
+    return Felt(*(tuple(part[index].tolist()) for part in forecast))
+
+
+def test_a_forecast_begins_with_what_is_known_and_ends_with_what_is_usual() -> None:
+    deck = followed(swinging(0.8), np.arange(1600) / 100.0)  # two waves
+    forecast = deck.forecast(np.array([0.0, 0.001, 30.0]))
+    assert deck.last is not None
+    assert apart(row(forecast, 0), deck.last.felt) < 1e-14
+    assert apart(row(forecast, 1), deck.last.ahead(1e-3)) < 1e-5  # (1 ms / 1.75 s)^2 of 9.81 m/s^2
+    gravity, angular, turning = row(forecast, 2)
+    assert hypot(*angular, *turning) < 1e-30
+    # The mean of harmonics is that of gravity turned by up to 0.1 rad, less what the last minute does not even out.
+    assert gravity == pytest.approx(GRAVITY, abs=0.15)
+
+
+def test_a_harmonic_forecast_is_what_is_ahead() -> None:
+    deck = followed(swinging(0.8), np.arange(1600) / 100.0, extrapolation="harmonic")
+    assert deck.last is not None
+    times = np.linspace(0.0, 5.0, 11)
+    forecast = deck.forecast(times)
+    for i, time in enumerate(times.tolist()):
+        assert row(forecast, i) == deck.last.ahead(time)
+
+
+def test_a_forecast_of_nothing_known_is_a_level_support_at_rest() -> None:
+    deck = Deck(MovingDeck(), GRAVITY, UP)
+    gravity, angular, turning = deck.forecast(np.linspace(0.0, 5.0, 11))
+    assert gravity.shape == angular.shape == turning.shape == (11, 3)
+    assert (gravity == GRAVITY).all()
+    assert not angular.any()
+    assert not turning.any()
+    assert [part.shape for part in deck_at_rest().forecast(np.array([]))] == [(0, 3)] * 3
+
+
+@given(st.tuples(*[st.floats(-100.0, 100.0)] * 3), st.tuples(*[st.floats(-3.0, 3.0)] * 3))
+@settings(max_examples=200, deadline=None)
+def test_a_vector_is_turned_back_as_by_the_axes_of_the_rotation(vector: Vector3, rotation: Vector3) -> None:
+    orientation = turned((0.0, 0.0, 0.0, 1.0), rotation)
+    size = 1.0 + hypot(*vector)
+    assert turned_back(vector, rotation) == pytest.approx(to_body(axes_of(orientation), vector), abs=1e-14 * size)
+    if hypot(*rotation) < 3.1:
+        assert rotation_between((0.0, 0.0, 0.0, 1.0), orientation) == pytest.approx(rotation, abs=1e-13)
+
+
+ANY = st.floats(width=64) | st.sampled_from([0.0, 1.0, 1e12, 1e-300, 1e308])
+NUMBERS = st.tuples(ANY, ANY, ANY)
+ODD = st.fixed_dictionaries(
+    {"stamp": st.integers(-(2**62), 2**62) | st.integers(0, 2 * SECOND)},
+    optional={
+        "frame_id": st.sampled_from(["", "world", "map"]),
+        "position": NUMBERS,
+        "orientation": st.tuples(ANY, ANY, ANY, ANY) | st.sampled_from([(0.0, 0.0, 0.0, 1.0), (1.0, 0.0, 0.0, 0.0)]),
+        "linear": NUMBERS,
+        "angular": NUMBERS,
+    },
+)
+
+
+@given(st.lists(ODD, max_size=12), st.sampled_from(["constant", "harmonic"]), st.floats(-10.0, 10.0))
+@settings(max_examples=300, deadline=None)
+def test_whatever_comes_there_is_a_status_or_numbers(odd: list[dict[str, Any]], way: str, time: float) -> None:
+    deck = deck_at_rest(0.25, extrapolation=way, harmonic_window=1.0)
+    for changes in odd:
+        assert isinstance(deck.update(still(**changes)), Status)
+        for stamp in (changes["stamp"], changes["stamp"] - 7, 300_000_000):
+            check(deck.at(stamp), time)
+        assert all(np.isfinite(part).all() for part in deck.forecast(np.array([0.0, abs(time)])))
+
+
+@given(NUMBERS, NUMBERS, NUMBERS, st.sampled_from(["constant", "harmonic"]))
+@settings(max_examples=200, deadline=None)
+def test_whatever_a_steady_source_tells_there_is_a_status_or_numbers(
+    position: Vector3, linear: Vector3, angular: Vector3, way: str
+) -> None:
+    deck = Deck(MovingDeck(extrapolation=way, harmonic_window=2.0), GRAVITY, UP)
+    for k in range(30):
+        stamp = k * 100_000_000
+        sample = still(stamp, position=position, linear=linear, angular=angular)
+        assert isinstance(deck.update(sample), Status)
+        check(deck.at(stamp + 1_000_000), 0.2)
+        assert all(np.isfinite(part).all() for part in deck.forecast(np.array([0.0, 5.0])))
+
+
+def check(answer: Moment | Status, time: float) -> None:
+    """A status that says why, or a moment of finite numbers."""
+    if isinstance(answer, Moment):
+        numbers = (*answer.position, *answer.orientation, *answer.linear)
+        felt = (*answer.felt, *answer.ahead(time))
+        assert all(map(isfinite, (*numbers, *(number for part in felt for number in part))))
+    else:
+        assert answer is not Status.ACCEPTED

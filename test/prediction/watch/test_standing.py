@@ -1,0 +1,227 @@
+"""What a measured body does on its support."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from impact_predictor.prediction.scene import Scene
+from impact_predictor.prediction.types import Sample, Vector3
+from impact_predictor.prediction.watch.standing import CONFIRMED, Motion, Standing
+
+CORNERS = tuple((x, y, z) for x in (-0.4, 0.4) for y in (-0.3, 0.3) for z in (-0.5, 0.5))
+INERTIA = ((5.0, 0.0, 0.0), (0.0, 6.0, 0.0), (0.0, 0.0, 3.0))
+CRATE = Scene(mass=50.0, inertia=INERTIA, friction=0.5, points=CORNERS, place=(2.0, 1.0, 0.5), yaw=0.3)
+EDGES = ((2.0, 0.9, 0.0), (2.0, 1.1, 0.0))
+HIGH = math.sqrt(0.3**2 - 0.1**2)
+DRUM = Scene(mass=50.0, inertia=INERTIA, friction=0.5, radius=0.3, edges=EDGES, place=(2.0, 1.0, HIGH))
+ORIGIN = (0.0, 0.0, 0.0)
+
+
+def sample(
+    position: Vector3,
+    rotation: Rotation = Rotation.identity(),  # noqa: B008 - it is immutable
+    linear: Vector3 = ORIGIN,
+    angular: Vector3 = ORIGIN,
+    time: float = 0.0,
+) -> Sample:
+    x, y, z, w = rotation.as_quat()
+    return Sample(round(time * 1e9), "deck", "crate", position, (x, y, z, w), linear, angular, (), ())
+
+
+def shown(standing: Standing, seen: Sample) -> bool:
+    """Show it often enough to be believed; whether the stance has changed."""
+    changed = [standing.update(seen) for _ in range(CONFIRMED)]
+    return any(changed)
+
+
+def tipped(angle: float, pivot: Vector3 = (0.0, 0.3, -0.5), axis: str = "x", sign: float = -1.0) -> Sample:
+    """The crate at (2, 1) without yaw, turned about the edge through a pivot."""
+    rotation = Rotation.from_euler(axis, sign * angle)
+    foot = rotation.apply(pivot)
+    x, y, z = (p + q - r for p, q, r in zip((2.0, 1.0, 0.5), pivot, foot, strict=True))
+    return sample((x, y, z), rotation)
+
+
+def test_a_body_stands_where_it_is_placed_before_anything_is_measured() -> None:
+    standing = Standing(CRATE)
+    assert standing.motion is Motion.UNKNOWN
+    assert standing.tilt is None
+    assert standing.solid
+    assert len(standing.stance.edges) == 4
+    assert standing.stance.center == pytest.approx((2.0, 1.0, 0.5))
+    # Turned by 0.3 rad to port: its front edge looks 17 degrees to port of fore, which still is fore.
+    assert sorted(edge.name for edge in standing.stance.edges) == ["aft", "fore", "port", "starboard"]
+
+
+def test_a_measured_body_at_rest_stands_with_all_its_edges() -> None:
+    standing = Standing(CRATE._replace(yaw=0.0))
+    assert not standing.update(sample((2.001, 1.0, 0.501)))  # as near as the contact tolerance: nothing is new
+    assert standing.motion is Motion.STANDS
+    assert standing.tilt == pytest.approx(0.0)
+    assert standing.update(sample((2.1, 1.0, 0.5)))
+    assert standing.stance.center == (2.1, 1.0, 0.5)
+    assert len(standing.stance.edges) == 4
+
+
+@pytest.mark.parametrize("angle", [0.05, 0.3])
+def test_a_body_that_rocks_has_the_one_edge_it_turns_about(angle: float) -> None:
+    standing = Standing(CRATE._replace(yaw=0.0))
+    standing.update(sample((2.0, 1.0, 0.5)))
+    assert shown(standing, tipped(angle))
+    assert standing.motion is Motion.ROCKS
+    assert standing.tilt == pytest.approx(angle)
+    (edge,) = standing.stance.edges
+    assert edge.name == "port"
+    assert edge.point[1:] == pytest.approx((1.3, 0.0))
+
+
+def test_the_energy_of_rocking_is_that_of_the_motion_relative_to_the_support() -> None:
+    standing = Standing(CRATE)
+    rocks = tipped(0.2)._replace(linear=(0.0, 1.0, 2.0), angular=(0.5, 0.0, 0.0))
+    shown(standing, rocks)
+    assert standing.kinetic == pytest.approx(0.5 * 50.0 * 5.0 + 0.5 * 5.0 * 0.25)
+    standing.update(sample((2.0, 1.0, 0.5), linear=(0.1, 0.0, 0.0)))
+    assert standing.kinetic == 0.0
+
+
+def test_a_body_in_the_air_is_off_the_deck() -> None:
+    standing = Standing(CRATE)
+    shown(standing, sample((2.0, 1.0, 0.6)))
+    assert standing.motion is Motion.LIFTS
+
+
+def test_a_body_that_moves_along_the_deck_slides_and_noise_does_not() -> None:
+    standing = Standing(CRATE._replace(yaw=0.0))
+    told = []
+    for k in range(100):
+        standing.update(sample((2.0 + 0.002 * (-1) ** k, 1.0 + 0.002 * (k % 3), 0.5), time=0.05 * k))
+        told.append(standing.slid)
+    assert not any(told)
+    for k in range(100, 110):
+        standing.update(sample((2.0, 1.0 + 0.004 * (k - 100), 0.5), time=0.05 * k))
+        told.append(standing.slid)
+    found = [words for words in told if words]
+    assert found
+    assert all(words.startswith("slides to port, by 0.0") for words in found)
+
+
+def test_a_slow_drift_of_the_pose_is_no_slide() -> None:
+    standing = Standing(CRATE._replace(yaw=0.0))
+    for k in range(1000):
+        standing.update(sample((2.0 + 1e-5 * k, 1.0, 0.5), time=0.1 * k))
+        assert not standing.slid
+
+
+def test_a_body_on_another_side_has_toppled_and_stands_there() -> None:
+    standing = Standing(CRATE._replace(yaw=0.0))
+    standing.update(sample((2.0, 1.0, 0.5)))
+    standing.update(tipped(0.4))
+    assert not standing.toppled
+    standing.update(tipped(0.5 * math.pi))
+    assert standing.toppled
+    assert standing.motion is Motion.STANDS
+    assert standing.tilt == pytest.approx(0.5 * math.pi)
+    assert len(standing.stance.edges) == 4
+    # Its mass centre is as far from its new edges as it was high.
+    assert max(abs(edge.point[1] - standing.stance.center[1]) for edge in standing.stance.edges) == pytest.approx(0.5)
+
+
+def test_the_side_on_which_it_is_first_seen_is_its_own() -> None:
+    standing = Standing(CRATE._replace(yaw=0.0))
+    standing.update(tipped(0.5 * math.pi))
+    assert not standing.toppled
+    assert standing.tilt == pytest.approx(0.0, abs=1e-7)
+    assert standing.motion is Motion.STANDS
+
+
+def test_a_planar_body_stands_on_two_points_and_rocks_on_one() -> None:
+    points = tuple((0.0, y, z) for y in (-0.3, 0.3) for z in (-0.5, 0.5))
+    standing = Standing(CRATE._replace(points=points, yaw=0.0))
+    standing.update(sample((2.0, 1.0, 0.5)))
+    assert [edge.name for edge in standing.stance.edges] == ["starboard", "port"]
+    shown(standing, tipped(0.1))
+    assert standing.motion is Motion.ROCKS
+    assert [edge.name for edge in standing.stance.edges] == ["port"]
+    standing.update(tipped(0.5 * math.pi))
+    assert standing.toppled
+
+
+def test_a_tilt_alone_tells_rocking_but_no_misalignment_of_sensors() -> None:
+    standing = Standing(CRATE._replace(yaw=0.0))
+    for angle, motion in ((0.01, Motion.STANDS), (0.1, Motion.ROCKS), (0.0, Motion.STANDS)):
+        standing.lean(sample((0.0, 0.0, 0.0), Rotation.from_euler("x", -angle)).orientation)
+        assert standing.motion is motion
+        assert standing.tilt == pytest.approx(angle, abs=1e-7)
+    standing.lean(sample((0.0, 0.0, 0.0), Rotation.from_euler("x", -0.1)).orientation)
+    assert [edge.name for edge in standing.stance.edges] == ["port"]
+    # It has turned about the port edge where it was placed.
+    assert standing.stance.edges[0].point[1:] == pytest.approx((1.3, 0.0))
+
+
+def test_a_drum_rolls_over_an_edge_spins_and_leaves() -> None:
+    standing = Standing(DRUM)
+    assert [edge.name for edge in standing.stance.edges] == ["starboard", "port"]
+    standing.update(sample((2.0, 1.0, HIGH)))
+    assert standing.motion is Motion.STANDS
+    angle = 0.2
+    dy, dz = -0.1, HIGH
+    y, z = (
+        1.1 + dy * math.cos(angle) + dz * math.sin(angle),
+        dz * math.cos(angle) - dy * math.sin(angle),
+    )
+    shown(standing, sample((2.0, y, z), Rotation.from_euler("x", -angle), time=0.1))
+    assert standing.motion is Motion.ROCKS
+    assert [edge.name for edge in standing.stance.edges] == ["port"]
+    standing.update(sample((2.0, 1.0, HIGH), time=0.2))
+    assert standing.motion is Motion.STANDS
+    assert not standing.slid
+    shown(standing, sample((2.0, 1.0, HIGH), Rotation.from_euler("x", 0.1), time=0.3))
+    assert standing.slid.startswith("spins on its edges, by 0.030 m")
+    shown(standing, sample((2.0, 2.0, 0.3), time=0.4))
+    assert standing.motion is Motion.LIFTS
+
+
+def test_a_drum_that_is_placed_roughly_lies_on_its_edges() -> None:
+    stance = Standing(DRUM._replace(place=(2.5, 1.02, 0.4))).stance
+    assert stance.center == pytest.approx((2.5, 1.0, HIGH))
+    assert [edge.point for edge in stance.edges] == [pytest.approx((2.5, 0.9, 0.0)), pytest.approx((2.5, 1.1, 0.0))]
+
+
+def test_a_body_on_one_point_is_not_solid() -> None:
+    assert not Standing(CRATE._replace(points=((0.0, 0.0, -0.5), (0.0, 0.0, 0.5)))).solid
+    assert not Standing(CRATE._replace(points=())).solid
+
+
+def test_a_body_of_a_very_fine_contact_tolerance_is_not_taken_to_rock_by_noise() -> None:
+    standing = Standing(CRATE._replace(yaw=0.0, tolerance=1e-6))
+    for k in range(20):
+        standing.update(
+            sample((2.0, 1.0, 0.5 + 1e-4 * (-1) ** k), Rotation.from_euler("x", 1e-4 * (k % 3)), time=0.1 * k)
+        )
+        assert standing.motion is Motion.STANDS
+        assert not standing.toppled
+
+
+def test_a_single_outlier_is_neither_rocking_nor_a_slide() -> None:
+    standing = Standing(CRATE._replace(yaw=0.0))
+    for k in range(30):
+        seen = (tipped(0.1), sample((2.0, 1.1, 0.5)), sample((2.0, 1.0, 0.7)))[k // 10] if k % 10 == 5 else None
+        standing.update((seen or sample((2.0, 1.0, 0.5)))._replace(stamp=k * 50_000_000))
+        assert standing.motion is Motion.STANDS
+        assert not standing.slid
+        assert len(standing.stance.edges) == 4
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_noise_of_a_pose_within_the_contact_tolerance_raises_nothing(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    standing = Standing(CRATE._replace(yaw=0.0))
+    for k in range(2000):
+        x, y, z = rng.normal((2.0, 1.0, 0.5), 0.0015).tolist()
+        standing.update(sample((x, y, z), Rotation.from_rotvec(rng.normal(0.0, 0.0015, 3)), time=0.05 * k))
+        assert standing.motion is Motion.STANDS
+        assert not standing.slid

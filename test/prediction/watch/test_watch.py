@@ -1,0 +1,475 @@
+"""The watch: levels with their reasons, reports when they are due, and never OK where something is not known."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from impact_predictor.mechanics.types import Mode
+from impact_predictor.prediction.remedies import REMEDIES
+from impact_predictor.prediction.scene import MovingDeck, Scene, Watching
+from impact_predictor.prediction.types import Felt, Moment, Quaternion, Sample, Status, Touchdown, Vector3
+from impact_predictor.prediction.watch.standing import CONFIRMED
+from impact_predictor.prediction.watch.watch import Level, Report, Watch
+
+G = 9.81
+CORNERS = tuple((x, y, z) for x in (-0.4, 0.4) for y in (-0.3, 0.3) for z in (-0.5, 0.5))
+INERTIA = ((5.0, 0.0, 0.0), (0.0, 6.0, 0.0), (0.0, 0.0, 3.0))
+TALL = Scene(
+    mass=50.0,
+    inertia=INERTIA,
+    friction=0.9,
+    points=CORNERS,
+    place=(0.0, 0.0, 0.5),
+    deck=MovingDeck(),
+    source="none",
+    watching=Watching(),
+)
+"""It tips about its port edge at a list of atan(0.3 / 0.5), and slides at one of atan(0.9)."""
+DRUM = TALL._replace(points=(), radius=0.3, edges=((0.0, -0.1, 0.0), (0.0, 0.1, 0.0)), place=(0.0, 0.0, 0.28))
+KEYS = [
+    *("slide_ratio", "tip_ratio", "edge", "time_to_tip", "time_to_slide", "energy_to_topple", "tilt"),
+    *("slides_per_hour", "tips_per_hour", "impacts_per_hour", "status"),
+]
+LEVEL: Quaternion = (0.0, 0.0, 0.0, 1.0)
+ORIGIN: Vector3 = (0.0, 0.0, 0.0)
+STILL: Vector3 = (0.0, 0.0, -G)
+
+
+def leaning(part: float) -> Vector3:
+    """What is felt on a deck that lists to port so far that this part of TALL's margin against tipping is used."""
+    angle = math.atan(0.6 * part)
+    return 0.0, G * math.sin(angle), -G * math.cos(angle)
+
+
+class Run:
+    """A watch over some bodies on a deck that does what it is told, ten times a second."""
+
+    def __init__(self, *scenes: Scene, later: Callable[[float], Vector3] | None = None) -> None:
+        self.time = 0.0
+        self.looked = 0
+        self.later = later
+        self.felt = STILL
+        self.watch = Watch({f"u{k}": scene for k, scene in enumerate(scenes)}, self.forecast)
+
+    def forecast(self, times: Any) -> Any:
+        self.looked += 1
+        felt = [self.later(time) if self.later else self.felt for time in times.tolist()]
+        return np.array(felt), np.zeros((len(felt), 3)), np.zeros((len(felt), 3))
+
+    @property
+    def stamp(self) -> int:
+        return round(self.time * 1e9)
+
+    def ahead(self, time: float) -> Felt:
+        return Felt(self.felt, ORIGIN, ORIGIN)
+
+    def deck(self, gravity: Vector3 = STILL, seconds: float = 0.1, each: Callable[[], None] | None = None) -> None:
+        """Let the deck tell that this is felt, until so many seconds later."""
+        self.felt = gravity
+        for _ in range(round(seconds * 10)):
+            self.time = round(self.time + 0.1, 1)
+            felt = Felt(gravity, ORIGIN, ORIGIN)
+            self.watch.update_support(Moment(self.stamp, "world", "deck", ORIGIN, LEVEL, ORIGIN, felt, self.ahead))
+            if each is not None:
+                each()
+
+    def see(
+        self,
+        position: Vector3 = (0.0, 0.0, 0.5),
+        rotation: Rotation | None = None,
+        touchdown: Touchdown | None = None,
+        angular: Vector3 = ORIGIN,
+        times: int = 1,
+    ) -> None:
+        x, y, z, w = (rotation or Rotation.identity()).as_quat()
+        sample = Sample(self.stamp, "deck", "u0", position, (x, y, z, w), ORIGIN, angular, (), ())
+        for _ in range(times):
+            self.watch.update_body("u0", sample, touchdown)
+
+    def reports(self) -> tuple[Report, ...]:
+        return self.watch.reports()
+
+    def report(self) -> Report:
+        """What is said of the first body once the next second is over, whatever was said of it already."""
+        self.reports()
+        self.watch._told = None
+        return self.reports()[0]
+
+
+def touchdown(lead_time: float, mode: Mode = Mode.PIVOT) -> Touchdown:
+    blank: dict[str, Any] = dict.fromkeys(Touchdown._fields)
+    return Touchdown(**{**blank, "lead_time": lead_time, "mode": mode})
+
+
+def test_a_unit_without_a_sensor_is_watched_by_the_motion_of_the_deck_alone() -> None:
+    run = Run(TALL)
+    run.deck(leaning(0.3))
+    (report,) = run.reports()
+    assert (report.body, report.stamp, report.level) == ("u0", 100_000_000, Level.OK)
+    assert report.message == "tipping about its port edge: 0.30 of the margin used; sliding: 0.20"
+    assert list(report.values) == KEYS
+    assert report.values["tip_ratio"] == "0.300"
+    assert report.values["slide_ratio"] == "0.200"
+    assert report.values["edge"] == "port"
+    assert report.values["time_to_tip"] == "inf"
+    assert report.values["tilt"] == "unknown"
+    assert report.values["impacts_per_hour"] == "unknown"
+    assert report.values["status"] == "ACCEPTED"
+
+
+def test_the_message_says_what_was_exceeded_by_how_much_and_where() -> None:
+    run = Run(TALL)
+    run.deck(leaning(1.08))
+    report = run.report()
+    assert report.level == Level.ERROR
+    assert report.message == "tips about its port edge: 1.08 of the margin used; near sliding: 0.72"
+    run = Run(TALL._replace(friction=0.3))
+    run.deck(leaning(0.6))
+    assert run.report().message == "slides: 1.20 of the margin used; tipping about its port edge: 0.60"
+    run = Run(DRUM)
+    run.deck((0.0, -0.5 * G, -G))
+    assert run.report().message.startswith("rolls over its starboard edge: 1.4")
+
+
+def test_what_weighs_nothing_on_the_deck_lifts_off() -> None:
+    run = Run(TALL)
+    run.deck((0.0, 0.0, 0.1))
+    report = run.report()
+    assert report.level == Level.ERROR
+    assert report.message == "weighs nothing on the deck: it lifts off"
+    assert float(report.values["tip_ratio"]) == 99.0
+
+
+def test_reports_come_once_in_a_second_and_at_once_when_a_level_changes() -> None:
+    run = Run(TALL, TALL._replace(friction=0.3))
+    told: list[tuple[float, int, Level]] = []
+
+    def each() -> None:
+        found = run.reports()
+        assert run.reports() == ()
+        if found:
+            told.append((run.time, len(found), found[1].level))
+
+    run.deck(leaning(0.1), 2.5, each)
+    assert told == [(0.1, 2, Level.OK), (1.0, 2, Level.OK), (2.0, 2, Level.OK)]
+    told.clear()
+    run.deck(leaning(0.4), 0.5, each)
+    assert told == [(2.6, 2, Level.WARN), (3.0, 2, Level.WARN)]
+    told.clear()
+    run.deck(leaning(0.6), 0.2, each)
+    assert told == [(3.1, 2, Level.ERROR)]
+
+
+def test_a_level_that_is_held_says_why_it_was_raised_and_when() -> None:
+    run = Run(TALL)
+    run.deck(leaning(1.02))
+    run.deck(leaning(1.3))
+    run.deck(leaning(0.2), 2.0)
+    report = run.report()
+    assert report.level == Level.ERROR
+    assert report.message == (
+        "tipping about its port edge: 0.20 of the margin used; sliding: 0.13 "
+        "(2.0 s ago: tips about its port edge: 1.30 of the margin used; near sliding: 0.87)"
+    )
+    run.deck(leaning(0.2), 3.5)
+    assert run.report().level == Level.OK
+
+
+def test_noise_about_a_threshold_does_not_make_a_unit_flicker() -> None:
+    rng = np.random.default_rng(1)
+    for part in (0.7, 1.0):
+        run, levels = Run(TALL), []
+        for _ in range(400):
+            run.deck(leaning(part + rng.normal(0.0, 0.03)))
+            levels.append(run.report().level)
+        assert sum(a != b for a, b in pairwise(levels)) <= 2
+
+
+def test_an_onset_ahead_warns_and_says_when() -> None:
+    run = Run(TALL, later=lambda time: leaning(0.2 + 0.4 * time))
+    run.deck(leaning(0.2))
+    report = run.report()
+    assert report.level == Level.WARN
+    assert report.message.startswith("tips in 2.0 s if the deck goes on so; ")
+    assert report.values["time_to_tip"] == "2.00"
+    assert report.values["time_to_slide"] == "3.25"
+    run.deck(leaning(0.2))
+    assert run.report().values["time_to_tip"] == "1.90"
+
+
+def test_an_onset_beyond_the_horizon_is_none() -> None:
+    watching = Watching(horizon=1.5)
+    run = Run(TALL._replace(watching=watching), TALL, later=lambda time: leaning(0.2 + 0.4 * time))
+    run.deck(leaning(0.2))
+    first, second = run.reports()
+    assert (first.level, first.values["time_to_tip"]) == (Level.OK, "inf")
+    assert (second.level, second.values["time_to_tip"]) == (Level.WARN, "2.00")
+
+
+def test_the_deck_is_looked_ahead_a_few_times_a_second() -> None:
+    run = Run(TALL)
+    run.deck(leaning(0.2), 10.0)
+    assert run.looked <= 40
+
+
+@pytest.mark.parametrize("status", [status for status in Status if status is not Status.ACCEPTED])
+def test_no_fault_of_the_support_is_ever_ok(status: Status) -> None:
+    run = Run(TALL)
+    run.deck(leaning(0.1), 3.0)
+    assert run.report().level == Level.OK
+    run.reports()
+    run.watch.support_lost(status, run.stamp + 1)
+    (report,) = run.reports()  # at once
+    assert report.level in (Level.ERROR, Level.STALE)
+    assert report.message == f"{status.name}: {REMEDIES[status]}"
+    assert report.values["status"] == status.name
+    assert report.values["tip_ratio"] == "unknown"
+    run.watch.support_lost(status, run.stamp + 60_000_000_000)
+    assert run.reports()[0].level == report.level
+
+
+@pytest.mark.parametrize("status", [status for status in Status if status is not Status.ACCEPTED])
+def test_no_fault_of_a_body_is_ever_ok(status: Status) -> None:
+    run = Run(TALL._replace(source="odom"), TALL)
+    run.deck()
+    run.see()
+    run.deck(STILL, 6.0, run.see)
+    assert run.report().level == Level.OK
+    run.watch.body_lost("u0", status, run.stamp)
+    report, other = run.reports()
+    assert report.level in (Level.ERROR, Level.STALE)
+    assert report.message.startswith(f"{status.name}: {REMEDIES[status]}")
+    assert other.level == Level.OK
+    run.deck(STILL, 20.0)
+    assert run.report().level in (Level.ERROR, Level.STALE)
+    run.see()
+    run.deck(STILL, 6.0, run.see)
+    assert run.report().level == Level.OK
+
+
+@pytest.mark.parametrize("source", ["odom", "imu"])
+def test_a_measured_unit_is_stale_until_it_is_heard_and_when_it_falls_silent(source: str) -> None:
+    run = Run(TALL._replace(source=source))
+
+    def hear() -> None:
+        if source == "odom":
+            run.see()
+        else:
+            run.watch.update_tilt("u0", run.stamp, LEVEL)
+
+    run.deck(STILL, 8.0)
+    report = run.report()
+    assert report.level == Level.STALE
+    assert report.message.startswith("BODY_STALE: ")
+    assert report.values["tip_ratio"] == "0.000"  # the deck is known, and the unit taken to stand where it is placed
+    hear()
+    run.deck(STILL, 6.0, hear)
+    assert run.report().level == Level.OK
+    run.deck(STILL, 0.5)
+    assert run.report().level == Level.OK
+    run.deck(STILL, 0.2)
+    assert run.report().level == Level.STALE
+
+
+def test_what_becomes_known_for_the_first_time_is_not_held_as_stale() -> None:
+    run = Run(TALL._replace(source="odom"))
+    run.watch.support_lost(Status.NO_SUPPORT, 1)
+    assert run.reports()[0].level == Level.STALE
+    run.deck()
+    run.see()
+    run.deck()
+    assert run.reports()[0].level == Level.OK
+    run.watch.support_lost(Status.SUPPORT_STALE, run.stamp)
+    run.deck(each=run.see)
+    assert run.report().level == Level.STALE
+
+
+def test_something_wrong_is_told_though_nothing_is_known_besides() -> None:
+    run = Run(TALL._replace(source="odom"))
+    run.deck(leaning(1.1))
+    report = run.report()
+    assert report.level == Level.ERROR
+    assert "BODY_STALE" in report.message
+    assert "tips about its port edge: 1.10" in report.message
+
+
+def test_nothing_is_reported_before_any_stamp_is_known() -> None:
+    assert Run(TALL).reports() == ()
+
+
+def test_a_unit_whose_points_are_not_known_yet_is_stale_until_they_are() -> None:
+    run = Run(TALL._replace(points=()))
+    run.deck()
+    report = run.report()
+    assert report.level == Level.STALE
+    assert report.message.startswith("NO_GEOMETRY")
+    run.watch.set_points("u0", CORNERS)
+    run.deck(leaning(0.3), 6.0)
+    assert run.report().values["tip_ratio"] == "0.300"
+    assert run.report().level == Level.OK
+
+
+def test_a_unit_on_one_point_is_an_error() -> None:
+    run = Run(TALL._replace(points=((0.0, 0.0, -0.5), (0.0, 0.0, 0.5))))
+    run.deck()
+    assert run.report().level == Level.ERROR
+    assert "stands on a single point" in run.report().message
+
+
+def test_a_unit_that_rocks_is_an_error_at_once_and_says_what_is_missing_to_topple() -> None:
+    run = Run(TALL._replace(source="odom"))
+    run.see()
+    run.deck(STILL, 6.0, run.see)
+    run.reports()
+    rotation = Rotation.from_euler("x", -0.2)
+    foot = rotation.apply((0.0, 0.3, -0.5))
+    run.see((0.0, 0.3 - foot[1], -foot[2]), rotation, times=CONFIRMED)
+    (report,) = run.reports()
+    assert report.level == Level.ERROR
+    # m g (R - z) over the port edge.
+    missing = 50.0 * G * (math.hypot(0.3, 0.5) + foot[2])
+    assert report.message.startswith(
+        f"rocks, tilted by 11.5 degrees, {missing:.3g} J short of toppling over its port edge; "
+    )
+    assert float(report.values["energy_to_topple"]) == pytest.approx(missing, abs=1e-3)
+    assert report.values["tilt"] == "0.2000"
+    fast = math.sqrt(2.2 * missing / 5.0)
+    run.see((0.0, 0.3 - foot[1], -foot[2]), rotation, angular=(-fast, 0.0, 0.0))
+    report = run.report()
+    assert "would topple over its port edge if the deck stayed so" in report.message
+    assert float(report.values["energy_to_topple"]) == 0.0
+
+
+def test_a_unit_that_slides_lifts_or_has_toppled_is_an_error() -> None:
+    run = Run(TALL._replace(source="odom"))
+    run.deck()
+    run.see()
+    run.deck(STILL, 6.0, run.see)
+    run.see((0.0, 0.05, 0.5), times=CONFIRMED)
+    assert run.report().level == Level.ERROR
+    assert "slides to port, by 0.050 m; " in run.report().message
+    run.deck(STILL, 1.0, lambda: run.see((0.0, 0.05, 0.5)))
+    assert "s ago: slides to port" in run.report().message
+    run.deck(STILL, 6.0, lambda: run.see((0.0, 0.05, 0.5)))
+    assert run.report().level == Level.OK
+    run.see((0.0, 0.05, 0.7), times=CONFIRMED)
+    assert run.report().level == Level.ERROR
+    assert run.report().message.startswith("is off the deck")
+    run.deck(STILL, 6.0, lambda: run.see((0.0, 0.8, 0.3), Rotation.from_euler("x", -90, degrees=True)))
+    report = run.report()
+    assert report.level == Level.ERROR
+    assert report.message.startswith("has toppled: it lies on another side")
+
+
+LIFTED = Rotation.from_euler("x", -0.1)
+FOOT = LIFTED.apply((0.0, 0.3, -0.5))
+
+
+def rocks(run: Run, ahead: Touchdown | None) -> None:
+    run.see((0.0, 0.3 - FOOT[1], -FOOT[2]), LIFTED, ahead, times=CONFIRMED)
+
+
+def test_a_touchdown_ahead_of_a_unit_that_rocks_is_told_with_its_mode_and_when() -> None:
+    run = Run(TALL._replace(source="odom"))
+    run.deck()
+    run.see()
+    rocks(run, touchdown(0.12))
+    assert "; strikes in 0.12 s: PIVOT; " in run.report().message
+    run.deck(STILL, 0.2)
+    assert "strikes" not in run.report().message.split(" (")[0]
+
+
+def test_a_touchdown_that_noise_announces_for_a_unit_that_stands_raises_nothing() -> None:
+    run = Run(TALL._replace(source="odom"))
+    run.deck()
+    for _ in range(20):
+        run.see(touchdown=touchdown(0.02))
+        run.deck()
+    report = run.report()
+    assert report.level == Level.OK
+    assert report.values["impacts_per_hour"] == "0.0"
+
+
+def test_impacts_are_counted_when_an_announced_touchdown_has_come_to_pass() -> None:
+    run = Run(TALL._replace(source="odom"))
+    run.deck()
+    for _ in range(3):
+        for lead_time in (0.25, 0.15, 0.05):  # one touchdown, announced again and again
+            rocks(run, touchdown(lead_time))
+            run.deck()
+        run.see()
+        run.deck()
+    rocks(run, touchdown(0.25))  # one that does not come
+    run.deck()
+    run.see()
+    run.deck()
+    run.see()
+    assert run.report().values["impacts_per_hour"] == "180.0"  # 3 in less than a minute
+
+
+def test_onsets_are_counted_once_for_each_crossing_of_one() -> None:
+    run = Run(TALL)
+    run.deck(STILL, 100.0)
+    for _ in range(4):
+        run.deck(leaning(1.1))
+        run.deck(leaning(0.95))  # within the hysteresis: not yet below
+        run.deck(leaning(1.1))
+        run.deck(leaning(0.5))
+    run.deck(leaning(1.6))  # both
+    run.deck(STILL, 98.4)
+    report = run.report()
+    # 5 tips and a slide in 200 s between the first and the last message
+    assert float(report.values["tips_per_hour"]) == pytest.approx(90.0, abs=0.1)
+    assert float(report.values["slides_per_hour"]) == pytest.approx(18.0, abs=0.1)
+
+
+def test_an_imu_gives_the_tilt_and_the_edge() -> None:
+    run = Run(TALL._replace(source="imu"))
+    run.deck()
+    x, y, z, w = Rotation.from_euler("x", -0.1).as_quat()
+    run.watch.update_tilt("u0", run.stamp, (x, y, z, w))
+    report = run.report()
+    assert report.level == Level.ERROR
+    assert report.message.startswith("rocks, tilted by 5.7 degrees")
+    assert report.values["tilt"] == "0.1000"
+    assert report.values["impacts_per_hour"] == "unknown"
+
+
+def test_time_that_begins_anew_is_followed() -> None:
+    run = Run(TALL)
+    run.deck(leaning(1.1), 100.0)
+    run.time = 0.0
+    run.deck(leaning(0.1), 6.0)
+    report = run.report()
+    assert report.stamp == 6_000_000_000
+    assert report.level == Level.OK
+
+
+def test_the_same_messages_give_the_same_reports() -> None:
+    def told() -> list[tuple[Report, ...]]:
+        rng = np.random.default_rng(7)
+        run, found = Run(TALL._replace(source="odom"), DRUM), []
+        for _ in range(200):
+            run.deck(leaning(rng.uniform(-0.5, 1.2)))
+            run.see((rng.normal(0.0, 0.01), 0.0, 0.5))
+            found.append(run.reports())
+        return found
+
+    assert told() == told()
+
+
+def test_values_are_plain_numbers_and_names_whatever_happens() -> None:
+    run = Run(TALL, DRUM, TALL._replace(source="odom"), TALL._replace(points=()))
+    for gravity in (STILL, (0.0, 0.0, 0.0), (99.0, 0.0, 5.0), leaning(2.0)):
+        run.deck(gravity)
+        for report in run.reports():
+            assert list(report.values) == KEYS
+            assert "nan" not in "".join(report.values.values())
+            assert report.message
