@@ -46,6 +46,7 @@ class Monitor:
         """The orientations, relative to the support, of bodies of which no more is measured."""
         self._known: dict[str, int] = {}
         self._unknown = Status.NO_SUPPORT  # why nothing can be told of the support, while that is so
+        self._doubted = False  # whether a stamp made the support's last message too old
         self._timeout = (shared.deck or MovingDeck()).timeout * NANOSECONDS
         if shared.deck is not None:
             from .deck.tracker import Deck
@@ -150,6 +151,7 @@ class Monitor:
         watch, last = self.watch, None if self.deck is None else self.deck.last
         if watch is None or status in AGAIN:
             return status
+        self._doubted = False
         if status is Status.ACCEPTED and last is not None:
             watch.update_support(last)
         elif status is Status.ACCEPTED:
@@ -166,9 +168,20 @@ class Monitor:
             watch.update_support(self._resting.at(stamp))
 
     def _refused(self, watch: Watch, body: str, status: Status, stamp: int) -> None:
-        if status in OF_SUPPORT:
+        if status in OF_SUPPORT and self._lost(status):
             watch.support_lost(status, stamp)
         elif body in self._watched and status not in AGAIN:
             known = self._known.get(body)
             if not (status in SPOILT and known is not None and stamp - known <= self._timeout):
                 watch.body_lost(body, status, stamp)
+
+    def _lost(self, status: Status) -> bool:
+        """Whether the support is lost to all of its bodies when one of them is refused for its sake.
+
+        A stamp from before the support was known says nothing of now, and the clock of one body may be ahead. Silence
+        makes a second message too old before the next one of the support.
+        """
+        if status is Status.NO_SUPPORT:
+            return self.deck is None or self.deck.last is None
+        doubted, self._doubted = self._doubted, True
+        return doubted

@@ -8,7 +8,7 @@ from .types import Status
 
 REMEDIES: Final[dict[Status, str]] = {
     Status.NOT_FINITE: "a field is NaN or infinite; look at its source",
-    Status.BAD_QUATERNION: "the orientation is zero or not of unit length; look at its source",
+    Status.BAD_QUATERNION: "the orientation is missing, zero or not of unit length; look at its source",
     Status.STAMP_REPEATED: "the stamp is that of the message before; let a single source publish, with its own stamps",
     Status.STAMP_WENT_BACK: "the stamp is older than the one before; let a single source publish, in order",
     Status.WRONG_FRAME: "its frame is not that of the scene; compare frame_id with support.frame, and child_frame_id "

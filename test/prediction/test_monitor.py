@@ -229,7 +229,8 @@ def test_a_deck_that_falls_silent_is_noticed_by_the_bodies_and_by_the_clock() ->
     monitor = Monitor(scenes())
     time = afloat(monitor)
     later = time + 60
-    assert monitor.update("crate", standing(later)).status is Status.SUPPORT_STALE
+    for late in (later, later + 5):
+        assert monitor.update("crate", standing(late)).status is Status.SUPPORT_STALE
     assert level_of(monitor, "blind") is not Level.OK
 
     monitor = Monitor(scenes())
@@ -238,6 +239,29 @@ def test_a_deck_that_falls_silent_is_noticed_by_the_bodies_and_by_the_clock() ->
     assert level_of(monitor, "blind") is Level.OK
     monitor.silent(SECOND + later * PERIOD)
     assert level_of(monitor, "blind") is not Level.OK
+
+
+@pytest.mark.parametrize("offset", [60, 100_000])
+def test_a_body_whose_clock_is_ahead_is_lost_alone_however_seldom_it_is_heard(offset: int) -> None:
+    monitor = Monitor(scenes())
+    time = afloat(monitor)
+    assert level_of(monitor, "crate") is Level.OK
+    for step in range(time, time + 300):
+        monitor.update_support(deck(step))
+        if step % 100 == 0:
+            assert monitor.update("crate", standing(step + offset)).status is Status.SUPPORT_STALE
+            assert level_of(monitor, "crate") is not Level.OK
+        assert level_of(monitor, "blind") is Level.OK
+
+
+def test_a_body_that_is_behind_at_the_start_does_not_make_the_support_unknown_again() -> None:
+    monitor = Monitor(scenes())
+    for time in range(60):
+        monitor.update_support(deck(time))
+    assert level_of(monitor, "blind") is Level.OK
+    assert monitor.update("crate", standing(15)).status is Status.NO_SUPPORT
+    assert level_of(monitor, "crate") is Level.STALE
+    assert level_of(monitor, "blind") is Level.OK
 
 
 def test_a_body_in_a_wrong_frame_is_lost_alone() -> None:

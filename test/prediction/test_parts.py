@@ -40,6 +40,7 @@ CARGO = {
     "support.motion": "odom",
     "onset.watch": True,
     "bodies": ["blind", "crate", "drum", "leaning", "walker"],
+    "place.position": [0.0, 0.0, 0.2],
     "blind.source": "none",
     "crate.contact.friction": 0.3,
     "drum.body.radius": 0.3,

@@ -27,7 +27,7 @@ _CLOSE = 1e-7
 
 NEAR = 1e-6
 """Way of a nudge, relative to the step that it is within: its third power is rounding."""
-_ROUNDING = 1e-14
+_ROUNDING = 1e-13
 """Part of the accelerations that is rounding: they may be small differences of large ones."""
 
 Rate = Callable[[float, float, float, float, float], tuple[float, float]]

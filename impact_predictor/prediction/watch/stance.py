@@ -114,8 +114,12 @@ def edges_of(corners: list[Vector3], normal: Vector3) -> list[tuple[Edge, Vector
 
 
 def side(outward: Vector3, normal: Vector3) -> str:
-    """A direction in the support by the names of its axes: x is fore and y port (REP-103)."""
+    """A direction in the support by the names of its axes: x is fore and y port (REP-103), or starboard where z points
+    down.
+    """
     x, y = outward[0], outward[1]
+    if normal[2] < 0.0:
+        y = -y
     if abs(normal[2]) < 0.5:  # the support's frame does not lie in the support: its own directions count
         first = _unit(cross(normal, any_across(normal)))
         x, y = dot(outward, first), dot(outward, cross(normal, first))

@@ -128,6 +128,7 @@ class Standing:
             self._feet = [pose.body(self._at_center(edge, pose)) for edge in scene.edges]
         else:
             self._feet = outline(self._standing_points(pose), self._up) if scene.points else []
+        self._own = self._feet
         self._draw(pose, [pose.place(foot) for foot in self._feet], [0.0] * len(self._feet))
 
     def _lies_otherwise(self, pose: Pose) -> bool:
@@ -144,10 +145,9 @@ class Standing:
             return False
         self._feet = feet
         self._anchor, self._drawn = [], []
-        if self._seen:
-            self.toppled = True
-        else:
-            self._up = up
+        if not self._seen:
+            self._own, self._up = feet, up
+        self.toppled = not set(feet) <= set(self._own)
         return True
 
     def _standing_points(self, pose: Pose) -> list[Vector3]:
@@ -198,12 +198,15 @@ class Standing:
         if self._moved < CONFIRMED:
             return
         moves = [add(foot, stood, -1.0) for foot, stood in zip(feet, self._anchor, strict=True)]
+        rises = [dot(scene.normal, move) for move in moves]
         if not scene.radius:
-            moves = [add(move, scene.normal, -dot(scene.normal, move)) for move in moves]
+            moves = [add(move, scene.normal, -rise) for move, rise in zip(moves, rises, strict=True)]
         farthest = max(moves, key=lambda move: dot(move, move))
-        distance = hypot(*farthest)
+        distance, rise = hypot(*farthest), max(rises, key=abs)
         verb = "spins on its edges"
-        if not scene.radius:
+        if not scene.radius and abs(rise) > distance:
+            verb, distance = "rises from where it stood" if rise > 0.0 else "sinks into the deck", abs(rise)
+        elif not scene.radius:
             verb = f"slides to {side(times(farthest, 1.0 / distance), scene.normal)}"
         self.slid = f"{verb}, by {distance:.3f} m"
         self._settle(pose, feet)

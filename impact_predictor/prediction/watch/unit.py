@@ -89,8 +89,11 @@ class Unit:
         return True
 
     def begin_anew(self) -> None:
-        """Wait for no stamp any more."""
+        """Wait for no stamp any more, but for its source to be heard."""
         self._strike = None
+        self.heard = False
+        if self.status is Status.ACCEPTED and self.scene.source != "none":
+            self.status = Status.BODY_STALE
 
 
 def place_of(status: Status) -> int:

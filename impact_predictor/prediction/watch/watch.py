@@ -160,8 +160,10 @@ class Watch:
         if self._now is not None and stamp < self._now - SECOND:
             self._levels.begin_anew()
             self._judged = self._looked = self._told = None
-            for unit in self._units:
+            self._begun = False
+            for number, unit in enumerate(self._units):
                 unit.begin_anew()
+                self._others[number] = unit.place()
             self._heard[:] = self._now = stamp
         self._now = stamp if self._now is None else max(stamp, self._now)
 
@@ -244,7 +246,9 @@ class Watch:
         """What is known of a body now; `work` in J topples it over its edge of that number."""
         unit = self._units[number]
         standing, edges = unit.standing, unit.standing.stance.edges
-        status = self._support if unit.status is Status.ACCEPTED else unit.status
+        status = unit.status
+        if status in (Status.ACCEPTED, Status.BODY_STALE) and self._support is not Status.ACCEPTED:
+            status = self._support  # a body that is refused for the support's sake is not silent
         felt = self._support is Status.ACCEPTED and unit.known and self._judged is not None
         tips, slides, impacts = self._counts.per_hour(number)
         assert self._now is not None

@@ -229,6 +229,13 @@ def test_edges_are_named_by_the_axes_of_the_deck() -> None:
     assert names == ["fore-port", "port", "aft-port", "aft", "aft-starboard", "starboard", "fore-starboard", "fore"]
 
 
+def test_with_an_axis_that_points_down_y_is_starboard() -> None:
+    corners = [(1.0, 1.0, 0.0), (1.0, -1.0, 0.0), (-1.0, -1.0, 0.0), (-1.0, 1.0, 0.0)]  # counter-clockwise from above
+    names = [(edge.name, edge.outward[1]) for edge, _ in edges_of(corners, (0.0, 0.0, -1.0))]
+    assert [y > 0.0 for name, y in names if name == "starboard"] == [True]
+    assert [y < 0.0 for name, y in names if name == "port"] == [True]
+
+
 def test_the_energy_to_topple_is_what_lifts_the_mass_centre_over_the_easiest_edge() -> None:
     rng = np.random.default_rng(4)
     for _ in range(20):

@@ -130,6 +130,31 @@ def test_a_body_on_another_side_has_toppled_and_stands_there() -> None:
     assert max(abs(edge.point[1] - standing.stance.center[1]) for edge in standing.stance.edges) == pytest.approx(0.5)
 
 
+def test_a_body_that_is_put_upright_again_has_not_toppled_any_more() -> None:
+    standing = Standing(CRATE._replace(yaw=0.0))
+    for seen in (sample((2.0, 1.0, 0.5)), tipped(0.5 * math.pi), sample((2.0, 1.0, 0.5))):
+        standing.update(seen)
+    assert not standing.toppled
+    assert standing.tilt == pytest.approx(0.0)
+    standing.update(tipped(0.5 * math.pi))
+    assert standing.toppled
+
+
+@pytest.mark.parametrize(("down", "words"), [(0.05, "sinks into the deck, by 0.050 m"), (-0.05, "")])
+def test_a_body_that_moves_across_the_deck_does_not_slide(down: float, words: str) -> None:
+    standing = Standing(CRATE._replace(yaw=0.0))
+    standing.update(sample((2.0, 1.0, 0.5)))
+    shown(standing, sample((2.0, 1.0, 0.5 - down), time=0.1))
+    assert standing.slid == words
+
+
+def test_a_body_that_sank_rises_again() -> None:
+    standing = Standing(CRATE._replace(yaw=0.0))
+    standing.update(sample((2.0, 1.0, 0.45)))
+    shown(standing, sample((2.0, 1.0, 0.5), time=0.1))
+    assert standing.slid == "rises from where it stood, by 0.050 m"
+
+
 def test_the_side_on_which_it_is_first_seen_is_its_own() -> None:
     standing = Standing(CRATE._replace(yaw=0.0))
     standing.update(tipped(0.5 * math.pi))

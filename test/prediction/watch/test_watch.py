@@ -291,6 +291,27 @@ def test_what_becomes_known_for_the_first_time_is_not_held_as_stale() -> None:
     assert run.report().level == Level.STALE
 
 
+def test_bodies_are_not_called_silent_while_it_is_the_support_that_is_not_known() -> None:
+    run = Run(TALL._replace(source="odom"))
+    run.watch.support_lost(Status.NO_SUPPORT, 1)
+    assert run.report().message.startswith("NO_SUPPORT")
+    run.deck()
+    assert run.report().message.startswith("BODY_STALE")
+
+
+def test_what_is_not_known_for_a_moment_when_time_begins_anew_is_not_held_as_stale() -> None:
+    run = Run(TALL._replace(source="odom"))
+    run.deck(STILL, 100.0, each=run.see)
+    run.time = 0.0
+    run.watch.support_lost(Status.NO_SUPPORT, 1)
+    assert run.report().level == Level.STALE
+    run.deck()
+    assert run.report().level == Level.STALE
+    run.see()
+    run.deck()
+    assert run.report().level == Level.OK
+
+
 def test_something_wrong_is_told_though_nothing_is_known_besides() -> None:
     run = Run(TALL._replace(source="odom"))
     run.deck(leaning(1.1))
