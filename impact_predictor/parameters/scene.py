@@ -3,11 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from math import copysign, cos, hypot, sin
 from typing import Any
 
 from ..errors import InputError
 
 Values = Mapping[str, Any]
+
+INCLINED = 1e-6
+"""A unit normal that differs from z by more than this is inclined: less is rounding."""
+
+OFF = 0.01
+"""A body may be placed this part of its size above or below its support: its place was measured with a tape."""
 
 
 class _Body:
@@ -40,6 +47,8 @@ def check_body(body: str, values: Values, given: Collection[str]) -> None:
     _check_source(one)
     _check_cylinder(one)
     _check_gravity(one)
+    if values["onset.watch"] and values["source"] != "odom":
+        _check_place(one)
     if values["onset.warn"] > values["onset.error"]:
         raise InputError(
             f"{one.named('onset.warn')} is {values['onset.warn']:g}, above {one.named('onset.error')}, which is "
@@ -89,3 +98,42 @@ def _check_gravity(one: _Body) -> None:
             f"gravity points out of the support{one.of}, so everything falls off it: it is the acceleration of a free "
             "body, [0.0, 0.0, -9.81] where z points up"
         )
+
+
+def _check_place(one: _Body) -> None:
+    """Whether a body that is watched where it was placed, for nothing tells its pose, stands on its support there."""
+    values = one.values
+    x, y, z = values["support.normal"]
+    length = hypot(x, y, z)
+    if hypot(x, y, z - length) > INCLINED * length:
+        raise InputError(
+            f"{one.named('support.normal')}{one.of} is not along z, and {one.named('source')} is {values['source']}: "
+            "the place of a body is not turned onto an inclined support, so give source: odom, or choose the support's "
+            "frame with z along the normal"
+        )
+    gap, size = _gap_of_cylinder(values) if values["body.radius"] else _gap_of_points(values)
+    if abs(gap) > max(values["contact.tolerance"], OFF * size):
+        place, support = one.named("place.position"), "edges" if values["body.radius"] else "support"
+        wrong = f"floats {gap:.3g} m above its {support}" if gap > 0.0 else f"sinks {-gap:.3g} m into its {support}"
+        raise InputError(f"at {place} the body{one.of} {wrong}: correct {place}, or where its {support} is")
+
+
+def _gap_of_points(values: Values) -> tuple[float, float]:
+    """How far the lowest contact point is above a level support, and the size of the body, in m."""
+    points = values["body.contact_points"]
+    lowest = values["place.position"][2] + min(points[2::3]) - values["support.height"]
+    return lowest, hypot(*(max(points[i::3]) - min(points[i::3]) for i in range(3)))
+
+
+def _gap_of_cylinder(values: Values) -> tuple[float, float]:
+    """How far a cylinder is from that of its edges from which it is wrong most, and its size, in m."""
+    radius, (ax, ay, az, bx, by, bz) = values["body.radius"], values["support.edges"]
+    width, rise = hypot(bx - ax, by - ay), bz - az
+    if width == 0.0:  # no edges for a cylinder, whatever its place: that is refused with the cylinder
+        return 0.0, 2.0 * radius
+    (x, y, z), (cx, cy, cz), yaw = values["place.position"], values["body.center_of_mass"], values["place.yaw"]
+    x, y, high = x + cx * cos(yaw) - cy * sin(yaw), y + cx * sin(yaw) + cy * cos(yaw), z + cz - az
+    aside = ((x - ax) * (bx - ax) + (y - ay) * (by - ay)) / width
+    side = copysign(1.0, width * high - rise * aside)  # an axis below the line between the edges hangs under them
+    gaps = side * hypot(aside, high) - radius, side * hypot(aside - width, high - rise) - radius
+    return max(gaps, key=abs), 2.0 * radius

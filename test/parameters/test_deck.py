@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import hypot, pi, sqrt
 from typing import Any
 
 import pytest
@@ -14,6 +15,8 @@ BODY: dict[str, Any] = {"body.mass": 100.0, "body.inertia": [20.0], "contact.fri
 BOX = [x for a in (-0.5, 0.5) for b in (-0.5, 0.5) for x in (a, b, -0.8)]
 EDGES = [0.0, -0.2, 0.0, 0.0, 0.2, 0.0]
 UP = [0.0, 0.0, 9.81]
+BLIND: dict[str, Any] = {"source": "none", "onset.watch": True, "body.contact_points": BOX}
+STANDS = [0.0, 0.0, 0.8]
 
 
 def refusal(given: dict[str, Any]) -> str:
@@ -51,6 +54,7 @@ def test_what_every_body_has_of_its_own_needs_no_common_value() -> None:
 
 def test_values_that_were_checked_are_allowed_as_they_are() -> None:
     given = {**BODY, "bodies": ["a", "b"], "body.contact_points": BOX, "a.source": "none", "onset.watch": True}
+    given["place.position"] = STANDS
     values = validate(given)
     assert validate({name: value for name, value in values.items() if value != ()}) == values
     assert all(parameter_of(name).name == name.removeprefix("a.") for name in values)
@@ -112,7 +116,7 @@ def test_a_body_whose_pose_is_not_measured_is_watched_or_on_a_deck_and_has_its_p
         f"b.source is {source}, so the contact points of b must be parameters: give body.contact_points"
     )
     for enough in ({"onset.watch": True}, {"support.motion": "odom"}):
-        validate({**BODY, "source": source, "body.contact_points": BOX, **enough})
+        validate({**BODY, "source": source, "body.contact_points": BOX, "place.position": STANDS, **enough})
 
 
 def test_a_cylinder_has_a_radius_and_two_edges_and_no_points() -> None:
@@ -153,6 +157,54 @@ def test_an_extent_is_ordered_and_carries_what_is_placed_on_it() -> None:
     validate({**BODY, **blind, "place.position": [5.0, -2.0, 0.8]})
     assert refusal({**blind, "place.position": [0.0, 2.1, 0.8]}).startswith("place.position is outside support.extent")
     validate({**BODY, **blind, "source": "odom", "place.position": [0.0, 2.1, 0.8]})
+
+
+@pytest.mark.parametrize("source", ["imu", "none"])
+def test_a_body_watched_where_it_was_placed_needs_a_support_across_z(source: str) -> None:
+    blind = {**BLIND, "source": source, "place.position": STANDS}
+    for normal in ([0.0, 0.1, 1.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0], [0.0, 2e-6, 1.0]):
+        assert refusal({**blind, "support.normal": normal, "gravity": [0.0, 0.0, 0.0]}) == (
+            f"support.normal is not along z, and source is {source}: the place of a body is not turned onto an "
+            "inclined support, so give source: odom, or choose the support's frame with z along the normal"
+        )
+        validate({**BODY, **blind, "source": "odom", "support.normal": normal, "gravity": [0.0, 0.0, 0.0]})
+    for normal in ([0.0, 0.0, 3.0], [0.0, 1e-6, 3.0]):
+        validate({**BODY, **blind, "support.normal": normal})
+
+
+@pytest.mark.parametrize("source", ["imu", "none"])
+def test_a_body_watched_where_it_was_placed_stands_on_its_support(source: str) -> None:
+    blind = {**BLIND, "source": source, "support.height": 0.3}
+    # A hundredth of its size, the diagonal of 1 m x 1 m, is 0.0141 m.
+    for z in (1.1, 1.114, 1.086):
+        validate({**BODY, **blind, "place.position": [0.0, 0.0, z]})
+    assert refusal({**blind, "place.position": [0.0, 0.0, 1.125]}) == (
+        "at place.position the body floats 0.025 m above its support: correct place.position, or where its support is"
+    )
+    many = {"bodies": ["a", "b"], **blind, "place.position": [0.0, 0.0, 1.1], "b.place.position": STANDS}
+    assert refusal(many).startswith("at b.place.position the body of b sinks 0.3 m into its support")
+    far = {**blind, "place.position": [0.0, 0.0, 1.125]}
+    validate({**BODY, **far, "contact.tolerance": 0.03})
+    validate({**BODY, **far, "source": "odom"})
+
+
+def test_a_cylinder_watched_where_it_was_placed_touches_both_edges() -> None:
+    high = sqrt(0.3**2 - 0.2**2)
+    drum = {"source": "none", "onset.watch": True, "body.radius": 0.3, "support.edges": EDGES}
+    validate({**BODY, **drum, "place.position": [4.0, 0.0, high]})
+    # Its axis runs through the mass centre, which the yaw takes along.
+    turned = {"body.center_of_mass": [0.1, 0.0, 0.0], "place.yaw": 0.5 * pi, "place.position": [0.0, -0.1, high]}
+    validate({**BODY, **drum, **turned})
+    assert "floats" in refusal({**drum, **turned, "place.yaw": -0.5 * pi})
+    above = hypot(0.2, high + 0.1) - 0.3
+    assert refusal({**drum, "place.position": [0.0, 0.0, high + 0.1]}).startswith(
+        f"at place.position the body floats {above:.3g} m above its edges"
+    )
+    for z in (high - 0.1, -high):
+        assert "m into its edges" in refusal({**drum, "place.position": [0.0, 0.0, z]})
+    leaning = [0.0, -0.2, 0.0, 0.0, 0.2, 0.3]
+    up = sqrt(0.3**2 - 0.25**2) / 0.5
+    validate({**BODY, **drum, "support.edges": leaning, "place.position": [0.0, -0.3 * up, 0.15 + 0.4 * up]})
 
 
 def test_levels_rise_in_their_order() -> None:

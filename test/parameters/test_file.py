@@ -6,6 +6,7 @@ The odd values are those on which YAML 1.1, YAML 1.2 and strtol or strtod differ
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,9 @@ import pytest
 
 from impact_predictor.errors import InputError
 from impact_predictor.parameters.file import read_parameters
+from impact_predictor.parameters.validation import PARAMETERS
+
+SCENES = Path(__file__).parents[2] / "config"
 
 READ: dict[str, Any] = {
     "1": 1,
@@ -307,3 +311,12 @@ def test_a_node_in_a_namespace_has_its_own_sections(tmp_path: Path) -> None:
     file = parameter_file(tmp_path, section("1", "/robot/impact_predictor") + section("2", "impact_predictor"))
     assert read_parameters(file, "/robot/impact_predictor") == {"x": 1}
     assert read_parameters(file) == {"x": 2}
+
+
+def test_every_parameter_is_explained_in_a_shipped_scene() -> None:
+    lines = [line.strip() for file in SCENES.glob("*.yaml") for line in file.read_text().splitlines()]
+    # Right behind a comment, or named in one.
+    set_behind = {line.partition(":")[0] for above, line in pairwise(lines) if above.startswith("#")}
+    comments = " ".join(line for line in lines if line.startswith("#"))
+    unexplained = [name for name in PARAMETERS if name.split(".")[-1] not in set_behind and name not in comments]
+    assert unexplained == []
