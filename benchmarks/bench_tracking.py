@@ -30,9 +30,9 @@ from impact_predictor.prediction.deck.tracker import Deck
 from impact_predictor.prediction.scene import MovingDeck
 from impact_predictor.prediction.types import Felt, Imu, Sample, Vector3
 from impact_predictor.ros.messages import IMU, ODOMETRY, decode_imu, decode_odometry
-from impact_predictor.scenarios.sea import SeaState, waves_of
+from impact_predictor.scenarios.deck.sea import SeaState, waves_of
+from impact_predictor.scenarios.deck.vessel import SecondOrder, Vessel, deck_in
 from impact_predictor.scenarios.space import ACROSS, Mount, poses
-from impact_predictor.scenarios.vessel import SecondOrder, Vessel, deck_in
 
 Array = NDArray[np.float64]
 

@@ -19,11 +19,11 @@ from impact_predictor.bags.replay import Result, replay
 from impact_predictor.parameters.file import read_values
 from impact_predictor.prediction.scene import Scene, scenes_of
 from impact_predictor.report.table import plain_table, show
-from impact_predictor.scenarios.deck_record import Sensors
-from impact_predictor.scenarios.deck_run import sail
-from impact_predictor.scenarios.sea import SeaState, waves_of
-from impact_predictor.scenarios.sensors import NO_NOISE, Noise
-from impact_predictor.scenarios.vessel import Vessel, deck_in
+from impact_predictor.scenarios.deck.record import Sensors
+from impact_predictor.scenarios.deck.sea import SeaState, waves_of
+from impact_predictor.scenarios.deck.sensors import NO_NOISE, Noise
+from impact_predictor.scenarios.deck.vessel import Vessel, deck_in
+from impact_predictor.scenarios.deck.voyage import sail
 
 SCENE: Final = Path(__file__).parents[1] / "test" / "heavy_sea.yaml"
 SEA: Final = SeaState(1.6, 4.0)

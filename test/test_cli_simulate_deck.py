@@ -16,7 +16,7 @@ from impact_predictor.commands.simulate_deck import EXAMPLES, SCENE
 from impact_predictor.parameters.file import read_values
 from impact_predictor.prediction.scene import Scene, scenes_of
 from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY, ODOMETRY, decode_odometry
-from impact_predictor.scenarios.deck import units_of
+from impact_predictor.scenarios.deck.cargo import units_of
 from impact_predictor.scenarios.truth import TRUTH_TOPIC, decode_true_impacts
 
 ROOT = Path(__file__).parents[1]
@@ -197,6 +197,8 @@ def test_every_example_works() -> None:
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [
+        (["--duration", "nan"], "the duration is nan"),
+        (["--hs", "20"], "the deck rolls to 180 degrees, which no cargo is simulated on"),
         (["--hs", "0"], "the significant wave height is 0.0"),
         (["--tp", "nan"], "the peak period is nan"),
         (["--gamma", "20"], "the peak enhancement is 20.0"),

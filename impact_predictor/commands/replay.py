@@ -63,9 +63,9 @@ def replay(
 ) -> int:
     """Predict the touchdowns in recorded bags as the node would, and score them by what was recorded after them.
 
-    A BAG is an .mcap file, a rosbag2 folder or a ROS 1 .bag file. Topics are found by the names of the inputs; where a
-    bag has only one topic of the right type, it is taken, and where it has several, --remap says which. The exit status
-    is 3 where only a part of a bag could be read.
+    A BAG is an .mcap file, a rosbag2 folder or a ROS 1 .bag file. Topics are found by the names of the inputs; for a
+    body without a name the only other topic of the right type is taken too, and where there are several, --remap says
+    which. What is the deck is never guessed. The exit status is 3 where only a part of a bag could be read.
     """
     from ..bags.replay import remapping
 

@@ -10,8 +10,8 @@ from rich.console import Console
 from rich.table import Table
 
 from ..mechanics.rocking import End
-from ..scenarios.deck_record import Followed
-from ..scenarios.deck_run import Voyage
+from ..scenarios.deck.record import Followed
+from ..scenarios.deck.voyage import Voyage
 from ..scenarios.truth import TrueImpact
 from .table import plain_table, show
 
@@ -124,14 +124,14 @@ def sentences(voyage: Voyage) -> list[str]:
     """What the table comes to."""
     impacts = [impact for one in voyage.units for impact in one.impacts]
     minutes = voyage.duration / 60.0
-    if not impacts:
-        return ["No contact ever struck."]
-    modes = Counter(impact.mode.name for impact in impacts if impact.approach > RESOLVED)
-    counts = ": " + ", ".join(f"{count} {mode}" for mode, count in modes.most_common()) if modes else ""
-    said = [
-        f"{len(impacts)} impacts, {len(impacts) / minutes:.3g} a minute.",
-        f"{modes.total()} of them came with more than {RESOLVED:g} m/s{counts}.",
-    ]
+    said = ["No contact ever struck."]
+    if impacts:
+        modes = Counter(impact.mode.name for impact in impacts if impact.approach > RESOLVED)
+        counts = ": " + ", ".join(f"{count} {mode}" for mode, count in modes.most_common()) if modes else ""
+        said = [
+            f"{len(impacts)} impact{'s' if len(impacts) > 1 else ''}, {len(impacts) / minutes:.3g} a minute.",
+            f"{modes.total()} of them came with more than {RESOLVED:g} m/s{counts}.",
+        ]
     toppled = [f"{one.unit.name} at {one.time:.1f} s" for one in voyage.units if one.end is End.OVERTURNED]
     if toppled:
         said.append(f"Toppled, and not recorded after that: {', '.join(toppled)}.")

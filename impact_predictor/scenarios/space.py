@@ -9,7 +9,7 @@ import numpy as np
 
 from ..mechanics.motion import PlanarState
 from ..prediction.types import Vector3
-from .sea import Array
+from .deck.sea import Array
 
 
 class Plane(NamedTuple):

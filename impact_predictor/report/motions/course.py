@@ -14,8 +14,8 @@ from ...mechanics.support import MovingSupport
 from ...prediction.watch.onset import Onset, motions
 from ...prediction.watch.standing import Standing
 from ...ros.markers.shapes import box_of
-from ...scenarios.deck import Span, Unit
-from ...scenarios.sea import Array
+from ...scenarios.deck.cargo import Span, Unit
+from ...scenarios.deck.sea import Array
 from ...scenarios.truth import TrueImpact, TrueOnset
 from .stage import circle
 

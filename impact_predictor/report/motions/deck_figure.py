@@ -21,7 +21,7 @@ from ...mechanics.support import MovingSupport
 from ...mechanics.types import Mode
 from ...prediction.scene import Watching
 from ...prediction.score import NANOSECONDS
-from ...scenarios.sea import Array
+from ...scenarios.deck.sea import Array
 from ..figure import MODE_MARKERS, STYLE, check_figure, save_figure
 from ..maps.figure import COLOURS as MODE_COLOURS
 from ..summary import words

@@ -16,7 +16,7 @@ from ...mechanics.motion import PlanarState
 from ...mechanics.support import MovingSupport
 from ...prediction.scene import Watching
 from ...prediction.score import NANOSECONDS
-from ...scenarios.sea import Array
+from ...scenarios.deck.sea import Array
 from .course import Course, margin_used, outline_of
 from .stage import CLOSED, LINE, OPEN, STRUCK, SUPPORT, placed
 

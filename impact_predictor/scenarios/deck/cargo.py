@@ -10,20 +10,20 @@ from collections.abc import Callable, Iterator, Mapping
 from math import asin, atan2, cos, hypot, sin
 from typing import Final, NamedTuple
 
-from ..errors import InputError
-from ..mechanics.bodies import wedged
-from ..mechanics.motion import PlanarState
-from ..mechanics.rocking import End, Run, Strike, rock, standing
-from ..mechanics.support import MovingSupport
-from ..mechanics.types import Contact, TwoPointBody, Vector
-from ..prediction.planar import inertia_about
-from ..prediction.scene import Scene
-from ..prediction.types import Vector3
-from ..ros.cdr import NANOSECONDS
-from .record import half_distance, true_impact
+from ...errors import InputError
+from ...mechanics.bodies import wedged
+from ...mechanics.motion import PlanarState
+from ...mechanics.rocking import End, Run, Strike, rock, standing
+from ...mechanics.support import MovingSupport
+from ...mechanics.types import Contact, TwoPointBody, Vector
+from ...prediction.planar import inertia_about
+from ...prediction.scene import Scene
+from ...prediction.types import Vector3
+from ...ros.cdr import NANOSECONDS
+from ..record import half_distance, true_impact
+from ..space import ACROSS, Mount
+from ..truth import TrueImpact, TrueOnset, border_of
 from .sea import Array
-from .space import ACROSS, Mount
-from .truth import TrueImpact, TrueOnset, border_of
 
 ALONE: Final = "unit"
 """Frame of the unit of a scene file without `bodies`."""

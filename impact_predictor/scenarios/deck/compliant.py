@@ -14,20 +14,20 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from ..errors import InputError
-from ..mechanics.compliant.integrator import Status
-from ..mechanics.compliant.motion import CompliantMotion, compliant_motion
-from ..mechanics.impact import solve_impact
-from ..mechanics.motion import PlanarState
-from ..mechanics.rocking import End
-from ..mechanics.rocking.flight import from_world
-from ..mechanics.support import MovingSupport
-from ..mechanics.types import Contact, Mode, Twist, TwoPointBody
-from ..ros.cdr import NANOSECONDS
-from .deck import Span, Unit
+from ...errors import InputError
+from ...mechanics.compliant.integrator import Status
+from ...mechanics.compliant.motion import CompliantMotion, compliant_motion
+from ...mechanics.impact import solve_impact
+from ...mechanics.motion import PlanarState
+from ...mechanics.rocking import End
+from ...mechanics.rocking.flight import from_world
+from ...mechanics.support import MovingSupport
+from ...mechanics.types import Contact, Mode, Twist, TwoPointBody
+from ...ros.cdr import NANOSECONDS
+from ..space import ACROSS
+from ..truth import TrueImpact, border_of
+from .cargo import Span, Unit
 from .sea import Array
-from .space import ACROSS
-from .truth import TrueImpact, border_of
 
 SPAN: Final = 10.0
 """Seconds that are integrated at once."""

@@ -16,10 +16,10 @@ from impact_predictor.prediction.scene import MovingDeck, Scene
 from impact_predictor.prediction.types import Imu, Sample
 from impact_predictor.prediction.vectors import axes_of
 from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY, IMU, ODOMETRY, decode_imu, decode_odometry
-from impact_predictor.scenarios.deck import follow, unit_of
-from impact_predictor.scenarios.deck_record import Followed, Sensors, messages_of
-from impact_predictor.scenarios.deck_run import gravity_of, sail
-from impact_predictor.scenarios.sensors import Noise
+from impact_predictor.scenarios.deck.cargo import follow, unit_of
+from impact_predictor.scenarios.deck.record import Followed, Sensors, messages_of
+from impact_predictor.scenarios.deck.sensors import Noise
+from impact_predictor.scenarios.deck.voyage import gravity_of, sail
 from impact_predictor.scenarios.truth import (
     ONSET_TOPIC,
     TRUTH_TOPIC,

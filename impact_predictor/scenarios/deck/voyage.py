@@ -4,23 +4,25 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator, Mapping
-from math import hypot
+from math import degrees, hypot, pi
 from typing import NamedTuple
 
 import numpy as np
 
-from ..errors import InputError
-from ..mechanics.rocking import End
-from ..mechanics.support import MovingSupport
-from ..prediction.scene import Scene, shared_by
-from .deck import Span, Unit, follow, units_of
-from .deck_record import Followed, Sensors, messages_in, messages_of
-from .record import write_messages
-from .truth import ONSET_TOPIC, TRUTH_TOPIC
+from ...errors import InputError
+from ...mechanics.rocking import End
+from ...mechanics.support import MovingSupport
+from ...prediction.scene import Scene, shared_by
+from ..record import write_messages
+from ..truth import ONSET_TOPIC, TRUTH_TOPIC
+from .cargo import Span, Unit, follow, units_of
+from .record import Followed, Sensors, messages_in, messages_of
 
 CONTACTS = ("rigid", "compliant")
 
 _LONGEST = 7 * 24 * 3600.0
+_CAPSIZED = 0.25 * pi
+"""rad: no vessel with cargo on deck comes back from there."""
 
 
 class Voyage(NamedTuple):
@@ -67,14 +69,13 @@ def sail(
 ) -> Voyage:
     """Follow all units of the scenes for `duration` s, and write a `bag` with what their sensors told.
 
-    `contacts` are rigid, by the impact law of each scene, or compliant (see `compliant_deck`). `tell` takes now and
+    `contacts` are rigid, by the impact law of each scene, or compliant (see `compliant`). `tell` takes now and
     then how many messages are done, without a bag how many seconds. The spans of each unit pass `seen`.
 
     Raises:
         InputError: a unit cannot be simulated, a number is out of its range, or the bag cannot be written.
     """
-    if not 0.0 < duration <= _LONGEST:
-        raise InputError(f"the duration is {duration}; give seconds above 0, up to a week")
+    check_duration(duration)
     for name, rate in (("rate", sensors.rate), ("deck rate", sensors.deck_rate)):
         if not 0.0 < rate <= 1e4:
             raise InputError(f"the {name} is {rate}; give Hz above 0, up to 10000")
@@ -84,9 +85,10 @@ def sail(
     motion_of: Callable[[Unit, MovingSupport, float, str], Iterator[Span]] = follow
     truths: tuple[str, ...] = (TRUTH_TOPIC, ONSET_TOPIC)
     if contacts == "compliant":
-        from .compliant_deck import follow_compliant
+        from .compliant import follow_compliant
 
         motion_of, truths = follow_compliant, (TRUTH_TOPIC,)
+    rolled, lateral = _extremes(deck, duration)
     supports: dict[tuple[float, float], MovingSupport] = {}
     followed = []
     for unit in units_of(scenes):
@@ -96,17 +98,40 @@ def sail(
         _pass(followed, tell)
     else:
         write_messages(bag, messages_of(followed, deck, "" in scenes, duration, sensors, truths), tell)
+    return Voyage(deck, tuple(followed), duration, rolled, lateral)
+
+
+def check_duration(duration: float) -> None:
+    """See that a voyage may last so many seconds.
+
+    Raises:
+        InputError: it may not.
+    """
+    if not 0.0 < duration <= _LONGEST:
+        raise InputError(f"the duration is {duration}; give seconds above 0, up to a week")
+
+
+def _extremes(deck: MovingSupport, duration: float) -> tuple[float, float]:
+    """The largest roll in rad, and the largest push along the deck as a part of the weight on it.
+
+    Raises:
+        InputError: no deck with cargo on it moves like that.
+    """
     times = np.arange(0.0, duration, deck.period / 16.0)
     rolled = lateral = 0.0
     for block in np.array_split(times, 1 + len(times) // 4096):
         ahead, up, *_ = deck.felt_exactly(block)
         rolled = max(rolled, float(np.abs(deck.motion(block).angle).max()))
+        if rolled > _CAPSIZED or up.max() >= 0.0:
+            what = f"rolls to {degrees(rolled):.0f} degrees" if rolled > _CAPSIZED else "falls away under its cargo"
+            raise InputError(f"the deck {what}, which no cargo is simulated on; give a lower sea, or another record")
         lateral = max(lateral, float(np.abs(ahead / up).max()))
-    return Voyage(deck, tuple(followed), duration, rolled, lateral)
+    return rolled, lateral
 
 
 def total(scenes: Mapping[str, Scene], duration: float, bag: bool, sensors: Sensors) -> int:
-    """What `tell` of `sail` counts to."""
+    """What `tell` of `sail` counts to, for a duration that may be."""
+    check_duration(duration)
     return messages_in(scenes, duration, sensors) if bag else round(duration * len(scenes))
 
 

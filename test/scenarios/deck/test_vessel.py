@@ -10,8 +10,8 @@ import pytest
 
 from impact_predictor.errors import InputError
 from impact_predictor.mechanics.support import Wave, harmonic_support
-from impact_predictor.scenarios.sea import SeaState, Waves, waves_of
-from impact_predictor.scenarios.vessel import SecondOrder, Table, Vessel, deck_in, read_vessel
+from impact_predictor.scenarios.deck.sea import SeaState, Waves, waves_of
+from impact_predictor.scenarios.deck.vessel import SecondOrder, Table, Vessel, deck_in, read_vessel
 
 G = 9.81
 NONE = Table((0.1, 10.0), (0.0, 0.0), (0.0, 0.0))

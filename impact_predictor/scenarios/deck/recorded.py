@@ -7,11 +7,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..bags.read import read_messages, topics
-from ..errors import InputError
-from ..mechanics.support import MovingSupport, sampled_support
-from ..ros.cdr import NANOSECONDS
-from ..ros.messages import ODOMETRY, MalformedMessage, decode_odometry
+from ...bags.read import read_messages, topics
+from ...errors import InputError
+from ...mechanics.support import MovingSupport, sampled_support
+from ...ros.cdr import NANOSECONDS
+from ...ros.messages import ODOMETRY, MalformedMessage, decode_odometry
 
 
 class RecordedDeck(NamedTuple):

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from impact_predictor.errors import InputError
-from impact_predictor.scenarios.sea import RANGE, SeaState, Waves, density, waves_of
+from impact_predictor.scenarios.deck.sea import RANGE, SeaState, Waves, density, waves_of
 
 HEIGHT, PERIOD = 3.0, 9.0
 PEAK = 2.0 * pi / PERIOD

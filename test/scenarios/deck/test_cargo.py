@@ -14,8 +14,8 @@ from impact_predictor.mechanics.bodies import cylinder, plate
 from impact_predictor.mechanics.rocking import End, rock
 from impact_predictor.mechanics.support import FixedSupport, MovingSupport, Wave, harmonic_support
 from impact_predictor.prediction.scene import MovingDeck, Scene
-from impact_predictor.scenarios import deck as deck_module
-from impact_predictor.scenarios.deck import Span, Unit, follow, unit_of, units_of
+from impact_predictor.scenarios.deck import cargo as deck_module
+from impact_predictor.scenarios.deck.cargo import Span, Unit, follow, unit_of, units_of
 
 B, H, MASS, FRICTION = 0.4, 1.0, 500.0, 0.6
 

@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 
 from impact_predictor.errors import InputError
-from impact_predictor.mechanics.rocking import End
+from impact_predictor.mechanics.rocking import End, standing
 from impact_predictor.mechanics.support import MovingSupport, Wave, harmonic_support
 from impact_predictor.prediction.scene import MovingDeck, Scene
-from impact_predictor.scenarios.compliant_deck import follow_compliant
-from impact_predictor.scenarios.deck import follow, unit_of
+from impact_predictor.scenarios.deck import compliant as compliant_deck
+from impact_predictor.scenarios.deck.cargo import follow, unit_of
+from impact_predictor.scenarios.deck.compliant import follow_compliant
 from impact_predictor.scenarios.truth import TrueImpact
 
 
@@ -71,23 +72,18 @@ def test_the_mode_is_read_from_gaps_and_velocities_as_the_law_has_it(friction: f
     # Dropped from a tilt on a deck that hardly moves.
     unit = unit_of("box", box(friction=friction, points=points, place=(0.0, 0.0, 0.0)))
     deck = harmonic_support([Wave(1e-6, 1.0)])
-    tilted = unit._replace(start=_tilted(unit, 0.03))
+    tilted = unit._replace(start=standing(unit.body, 0.03))
     (rigid, *_), (compliant, *_) = (impacts_of(way(tilted, deck, 0.7)) for way in (follow, follow_compliant))
     assert compliant.mode is rigid.mode
     assert compliant.linear_after == pytest.approx(rigid.linear_after, abs=0.03 * rigid.approach)
 
 
-def _tilted(unit: Any, angle: float) -> Any:
-    from impact_predictor.mechanics.rocking import standing
-
-    return standing(unit.body, angle)
-
-
-def test_it_goes_on_where_a_span_ends() -> None:
+def test_it_goes_on_where_a_span_ends(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(compliant_deck, "SPAN", 0.5)
     unit = unit_of("box", box(friction=0.2))
-    spans = list(follow_compliant(unit, a_deck(), 11.0))
-    assert [span.time for span in spans] == pytest.approx([10.0, 11.0])
-    ends, begins = (np.ravel(span.state(np.array([10.0]))) for span in spans)
+    spans = list(follow_compliant(unit, a_deck(), 0.8))
+    assert [span.time for span in spans] == pytest.approx([0.5, 0.8])
+    ends, begins = (np.ravel(span.state(np.array([0.5]))) for span in spans)
     assert ends == pytest.approx(begins, abs=1e-9)
 
 

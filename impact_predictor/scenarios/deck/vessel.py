@@ -14,8 +14,8 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import InputError
-from ..mechanics.support import MovingSupport, SupportMotion
+from ...errors import InputError
+from ...mechanics.support import MovingSupport, SupportMotion
 from .sea import Array, Waves
 
 Complex = NDArray[np.complex128]

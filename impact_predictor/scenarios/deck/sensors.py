@@ -7,11 +7,11 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from ..mechanics.motion import PlanarState
-from ..prediction.types import Imu, Sample
-from ..ros.cdr import NANOSECONDS
+from ...mechanics.motion import PlanarState
+from ...prediction.types import Imu, Sample
+from ...ros.cdr import NANOSECONDS
+from ..space import Mount, Plane, Poses, in_frame, origin_velocity, poses
 from .sea import Array
-from .space import Mount, Plane, Poses, in_frame, origin_velocity, poses
 
 AT_ONCE: Final = 256
 """Samples that are computed together."""

@@ -8,19 +8,19 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from ..mechanics.motion import PlanarState
-from ..mechanics.rocking import End
-from ..mechanics.rocking.flight import in_world
-from ..mechanics.support import MovingSupport
-from ..prediction.scene import MovingDeck, Scene
-from ..ros.cdr import NANOSECONDS, diagnostic_array
-from ..ros.messages import DIAGNOSTIC_ARRAY, IMU, ODOMETRY, encode_imu, encode_odometry
-from .deck import Span, Unit
-from .record import FRAME, Message
+from ...mechanics.motion import PlanarState
+from ...mechanics.rocking import End
+from ...mechanics.rocking.flight import in_world
+from ...mechanics.support import MovingSupport
+from ...prediction.scene import MovingDeck, Scene
+from ...ros.cdr import NANOSECONDS, diagnostic_array
+from ...ros.messages import DIAGNOSTIC_ARRAY, IMU, ODOMETRY, encode_imu, encode_odometry
+from ..record import FRAME, Message
+from ..space import ACROSS, Mount
+from ..truth import ONSET_TOPIC, TRUTH_TOPIC, TrueImpact, TrueOnset, encode_true_impact, encode_true_onset
+from .cargo import Span, Unit
 from .sea import Array
 from .sensors import AT_ONCE, NO_NOISE, InertialSensor, Noise, Odometer, stamps_of
-from .space import ACROSS, Mount
-from .truth import ONSET_TOPIC, TRUTH_TOPIC, TrueImpact, TrueOnset, encode_true_impact, encode_true_onset
 
 DECK: Final = "deck"
 """Frame of the support."""
