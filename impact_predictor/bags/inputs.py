@@ -9,6 +9,7 @@ from typing import Final
 from ..errors import InputError
 from ..prediction.inputs import CONTACT_GEOMETRY, IMU, ODOM, Input
 from ..ros import messages
+from .read import listing
 
 TYPES: Final = {ODOM: messages.ODOMETRY, IMU: messages.IMU, CONTACT_GEOMETRY: messages.POLYGON}
 """The types of the messages on each kind of input."""
@@ -36,36 +37,40 @@ def find_topics(
 ) -> tuple[dict[Input, str], tuple[str, ...]]:
     """The topic of each input that the bag has, and sentences about what was chosen or left out without being told.
 
-    A topic is that of the remapping, else that of the input's own name. For the support and for a body without a name
-    it may also be the only one of the type, where no other input looks for one. An input that is needed and has none
-    gets its own name, so that the reader says what there is instead: the support, and the state of at least one body.
+    A topic is that of the remapping, else that of the input's own name. For a body without a name it may also be the
+    only other one of the type. Over a fixed floor a body without any gets its own name, so that the reader says what
+    there is instead.
 
     Raises:
-        InputError: a remapping is of no input, several topics could be an input, or one topic would be two inputs.
+        InputError: a remapping is of no input, several topics could be an input, one topic would be two inputs, or
+            nothing is told to be the support, or none of the bodies on it.
     """
     inputs = sorted(inputs, key=lambda one: one.kind == CONTACT_GEOMETRY)
     found = _remapped(inputs, remap)
     for one in inputs:
         if one not in found and recorded.get(f"/{one.name}") == TYPES[one.kind]:
             found[one] = f"/{one.name}"
-    open_ = [one for one in inputs if one not in found]
+    support = [one for one in inputs if one.body is None]
+    # No topic is ever guessed to be the support: over a wrong one every answer would be wrong, and look right.
+    if any(one not in found for one in support):
+        raise InputError(_untold(path, recorded, support))
     chosen = {}
-    for one in open_:
+    for one in inputs:
         taken = [topic for other, topic in found.items() if other.kind == one.kind]
         free = [topic for topic, kind in recorded.items() if kind == TYPES[one.kind] and topic not in taken]
-        rivals = [other for other in open_ if other.kind == one.kind]
-        if one.body or not free:
+        if one in found or one.body or not free:
             continue
-        if len(free) > 1 or len(rivals) > 1:
-            raise InputError(_ambiguous(path, free, rivals))
+        if len(free) > 1:
+            raise InputError(_ambiguous(path, free, one))
         chosen[one] = free[0]
     found |= chosen
     _check_distinct({one: found[one] for one in inputs if one in found})
     states = [one for one in inputs if one.body is not None and one.kind != CONTACT_GEOMETRY]
     missing = [one for one in states if one not in found]
-    if len(missing) == len(states):
+    if missing and len(missing) == len(states):
+        if support:
+            raise InputError(_untold(path, recorded, missing))
         found |= {one: f"/{one.name}" for one in missing[:1]}
-    found |= {one: f"/{one.name}" for one in inputs if one.body is None and one not in found}
     notes = []
     if chosen:
         took = " and ".join(f"{topic} as {one.name}" for one, topic in chosen.items())
@@ -92,10 +97,20 @@ def _remapped(inputs: Sequence[Input], remap: Mapping[str, str]) -> dict[Input, 
     return found
 
 
-def _ambiguous(path: str | os.PathLike[str], free: Sequence[str], rivals: Sequence[Input]) -> str:
-    names = [one.name for one in rivals]
-    could = f"{len(free)} topic{'s' if len(free) > 1 else ''} that could be {_listing(names, 'or')}"
-    return f"{os.fspath(path)} has {could}: {_listing(free)}; choose one: --remap {names[0]}:={free[0]}"
+def _ambiguous(path: str | os.PathLike[str], free: Sequence[str], one: Input) -> str:
+    could = f"{len(free)} topics that could be {one.name}: {_listing(free)}"
+    return f"{os.fspath(path)} has {could}; choose one: --remap {one.name}:={free[0]}"
+
+
+def _untold(path: str | os.PathLike[str], recorded: Mapping[str, str], inputs: Sequence[Input]) -> str:
+    """That no topic is told to be the support, or none to be any of the bodies on it, and what there is."""
+    names = _listing([one.name for one in inputs], "or")
+    what = "the deck" if inputs[0].body is None else "a unit"
+    there = listing(recorded, TYPES[inputs[0].kind])
+    return (
+        f"nothing in {os.fspath(path)} is told to be {what} ({names}); it has {there}; "
+        f"if {what} is among them, tell which: --remap {inputs[0].name}:=TOPIC"
+    )
 
 
 def _check_distinct(found: Mapping[Input, str]) -> None:

@@ -126,7 +126,7 @@ def _select(path: Path, connections: Collection[Connection], wanted: Mapping[str
     types = _types(connections)
     for topic, type_name in wanted.items():
         if topic not in types:
-            raise InputError(f"{path} has no topic {topic} of type {type_name}; it has {_listing(types, type_name)}")
+            raise InputError(f"{path} has no topic {topic} of type {type_name}; it has {listing(types, type_name)}")
         if not any(one.topic == topic and one.msgtype == type_name for one in connections):
             raise InputError(f"the topic {topic} of {path} has the type {types[topic]}, but {type_name} is needed")
     selected = [one for one in connections if wanted.get(one.topic) == one.msgtype]
@@ -137,7 +137,7 @@ def _select(path: Path, connections: Collection[Connection], wanted: Mapping[str
     return selected
 
 
-def _listing(types: Mapping[str, str], type_name: str) -> str:
+def listing(types: Mapping[str, str], type_name: str) -> str:
     """The topics of a bag for an error message, those of the right type first."""
     if not types:
         return "no topics at all"

@@ -1,4 +1,4 @@
-"""What a replay found of each of several bodies, as a table for the terminal."""
+"""What a replay found of each of several bodies, as tables for the terminal."""
 
 from __future__ import annotations
 
@@ -11,8 +11,12 @@ from .summary import errors_of, row_of
 from .table import NONE, percent, plain_table, small_percent
 
 if TYPE_CHECKING:
-    from ..bags.replay import BodyTruth, Result, Statuses
+    from ..bags.replay import Result, Statuses
+    from ..scenarios.comparison import Truth
     from ..scenarios.warned import Warned
+
+EARLY: Final = Status.NO_SUPPORT
+"""What becomes of samples while the support is not known yet: that they come early is no fault of theirs."""
 
 _STATES: Final = ("odom", "imu")
 
@@ -25,34 +29,47 @@ def bodies_of(result: Result) -> list[str]:
 
 
 def bodies_table(result: Result) -> Table:
-    """One row for each body: what came of its samples and touchdowns, and how that compares with the truth."""
+    """One row for each body: what came of its samples and touchdowns."""
     bodies = bodies_of(result)
     counts = {body: _counts(result, body) for body in bodies}
-    refused = any(set(one) - {Status.ACCEPTED} for one in counts.values())
-    knows_truth = any(one.truth for one in result.truths.values())
-    warns = any(one.warned for one in result.truths.values())
-    headers = ["\n\nsamples", *(["\n\nrefused"] if refused else []), "touch-\ndowns\nscored", "median\nerror\n%"]
-    if knows_truth:
-        headers += ["true\ntouchdowns\nfound", "\nfalse\nalarms", "right\nmode\n%", "wrong\nspeed\n%"]
-    if warns:
-        headers += ["warned\nahead\ns"]
-    table = plain_table()
-    table.add_column("\n\nbody", no_wrap=True)
-    for header in headers:
-        # Where the table is too wide, rich narrows columns below their words; no number shall be cut off.
-        table.add_column(header, justify="right", no_wrap=True, min_width=max(map(len, header.split("\n"))))
+    refused = {
+        body: sum(one.values()) - one.get(Status.ACCEPTED, 0) - one.get(EARLY, 0) for body, one in counts.items()
+    }
+    headers = ["samples", *(["refused"] if any(refused.values()) else []), "touchdowns\nscored", "median\nerror %"]
+    table = _table(headers)
     for body in bodies:
         rows = [row_of(*settled) for settled in result.settled if settled.body == body]
         errors = errors_of(rows)
-        taken = sum(counts[body].values())
-        cells = [body, f"{taken:,}", *([f"{taken - counts[body].get(Status.ACCEPTED, 0):,}"] if refused else [])]
-        cells += [_of(errors.number, len(rows)), percent(errors.median)]
-        compared = result.truths.get(body)
-        if knows_truth:
-            cells += _truth_cells(compared)
-        if warns:
-            cells.append(_warned(None if compared is None else compared.warned))
-        table.add_row(*cells)
+        cells = [body, f"{sum(counts[body].values()):,}", *([f"{refused[body]:,}"] if any(refused.values()) else [])]
+        table.add_row(*cells, _of(errors.number, len(rows)), percent(errors.median))
+    return table
+
+
+def truths_table(result: Result) -> Table | None:
+    """One row for each body: how what was predicted, and warned of, compares with the truth in the bag."""
+    knows_truth = any(one.truth for one in result.truths.values())
+    warns = any(one.warned for one in result.truths.values())
+    if not (knows_truth or warns):
+        return None
+    headers = []
+    if knows_truth:
+        headers += ["touchdowns\nfound", "false\nalarms", "right\nmode %", "wrong\nspeed %"]
+    if warns:
+        headers += ["events\nwarned of", "first one\ns ahead"]
+    table = _table(headers)
+    for body in bodies_of(result):
+        truth, warned = result.truths.get(body, (None, None))
+        table.add_row(body, *(_truth_cells(truth) if knows_truth else []), *(_warned_cells(warned) if warns else []))
+    return table
+
+
+def _table(headers: list[str]) -> Table:
+    table = plain_table()
+    table.add_column("\nbody", no_wrap=True)
+    for header in headers:
+        lines = header if "\n" in header else f"\n{header}"
+        # Where a table is too wide, rich narrows columns below their words; no number shall be cut off.
+        table.add_column(lines, justify="right", no_wrap=True, min_width=max(map(len, lines.split("\n"))))
     return table
 
 
@@ -66,8 +83,7 @@ def _counts(result: Result, body: str) -> Statuses:
     return next((result.inputs[name] for kind in _STATES if (name := f"{body}/{kind}") in result.inputs), {})
 
 
-def _truth_cells(compared: BodyTruth | None) -> list[str]:
-    truth = None if compared is None else compared.truth
+def _truth_cells(truth: Truth | None) -> list[str]:
     if truth is None:
         return [NONE] * 4
     return [
@@ -78,9 +94,9 @@ def _truth_cells(compared: BodyTruth | None) -> list[str]:
     ]
 
 
-def _warned(warned: Warned | None) -> str:
-    """How many seconds before anything happened to a body it was warned of; below 0 where that was too late."""
-    happened = None if warned is None else warned.first_event
-    if warned is None or happened is None:
-        return NONE
-    return "never" if warned.first_warning is None else f"{(happened - warned.first_warning) / 1e9:.1f}"
+def _warned_cells(warned: Warned | None) -> list[str]:
+    """How many events a warning stood before, and since how many seconds at the first one."""
+    if warned is None or warned.first_event is None:
+        return [NONE] * 2
+    ahead = "not" if warned.warned_ahead is None else f"{warned.warned_ahead:.1f}"
+    return [_of(warned.events_warned, warned.events), ahead]

@@ -141,6 +141,11 @@ def quantile(values: Sequence[float], part: float) -> float:
     return ordered[below] + (place - below) * (ordered[above] - ordered[below])
 
 
+def counted(number: int, noun: str) -> str:
+    """A number of things, in words that fit one of them and many."""
+    return f"{number:,} {noun}" if number == 1 else f"{number:,} {noun}s"
+
+
 def words(name: str) -> str:
     """The name of an enum's member as text."""
     return name.lower().replace("_", " ")
@@ -183,10 +188,15 @@ def as_json(result: Result) -> dict[str, Any]:
 def _truth_as_json(truth: Truth, bodies: Mapping[str, BodyTruth]) -> dict[str, Any]:
     """The comparison with the truth, of all bodies and of each; stamps in ns."""
     answer: dict[str, Any] = truth._asdict()
-    warned = [one.warned.before_first_impact for one in bodies.values() if one.warned is not None]
+    warned = [one.warned for one in bodies.values() if one.warned is not None]
     if warned:
-        happened = [one for one in warned if one is not None]
-        answer |= {"bodies_with_slide_or_impact": len(happened), "warned_before_first_impact": sum(happened)}
+        happened = [one.before_first_impact for one in warned if one.before_first_impact is not None]
+        answer |= {
+            "bodies_with_slide_or_impact": len(happened),
+            "warned_before_first_impact": sum(happened),
+            "events": sum(one.events for one in warned),
+            "events_warned": sum(one.events_warned for one in warned),
+        }
     if bodies:
         answer["bodies"] = {body: _body_as_json(*one) for body, one in bodies.items()}
     return answer

@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.table import Table
 
 from ..mechanics.types import Twist
-from .summary import LeadTimeErrors, TouchdownRow, errors_of, reasons, words
+from .summary import LeadTimeErrors, TouchdownRow, counted, errors_of, reasons, words
 
 NONE: Final = "-"
 _WALL_CLOCK: Final = 10**17
@@ -51,9 +51,12 @@ def _touchdown_table(rows: Sequence[TouchdownRow], stacked: bool) -> Table:
     costs = any(row.cost is not None for row in rows)
     notes = [_notes(row) for row in rows]
     table = plain_table()
-    if bodies:
+    time = "since\nfirst\ns" if start else "\ntime\ns"
+    if bodies and stacked:
+        time = "body\nsince\nfirst s" if start else "\nbody\ntime s"
+    elif bodies:
         table.add_column("body", no_wrap=True)
-    table.add_column("since\nfirst\ns" if start else "\ntime\ns", justify="right", no_wrap=True)
+    table.add_column(time, justify="right", no_wrap=True)
     ahead = ("ahead\nfirst\nlast ms",) if stacked else ("ahead\nfirst\nms", "\nlast\nms")
     for header in ahead:
         table.add_column(header, justify="right", no_wrap=True)
@@ -65,11 +68,13 @@ def _touchdown_table(rows: Sequence[TouchdownRow], stacked: bool) -> Table:
     if costs:
         table.add_column("\ncost\nus", justify="right", no_wrap=True)
     if any(notes):
-        table.add_column("\n\nnotes", min_width=min(max(map(len, notes)), 12 if stacked else 24))
+        table.add_column("\n\nnotes", min_width=min(max(map(len, notes)), 11 if stacked else 24))
     for row, note in zip(rows, notes, strict=True):
         predicted, measured = _velocities(row.predicted), _velocities(row.measured)
         cells = [row.body] if bodies else []
         cells.append(f"{(row.stamp - start) / 1e9:.3f}")
+        if stacked:
+            cells = ["\n".join(cells)]
         seen = f"{row.announced * 1e3:.1f}", f"{row.lead_time * 1e3:.1f}"
         if stacked:
             cells.append("\n".join(seen))
@@ -120,10 +125,13 @@ def lead_time_table(errors: Sequence[LeadTimeErrors]) -> Table:
 def conclusions(rows: Sequence[TouchdownRow]) -> list[str]:
     """How wrong the scored touchdowns were, and why the others are not scored, one sentence each."""
     errors = errors_of(rows)
-    said = [f"{errors.number} of {len(rows)} touchdowns scored"]
+    if not rows:
+        return ["No touchdown was predicted."]
+    said = [f"{errors.number:,} of {counted(len(rows), 'touchdown')} scored"]
     if errors.number:
         said[0] += f": relative error {percent(errors.median)} % in the median, 90 % below {percent(errors.p90)} %"
     if unscored := reasons(rows):
-        counts = ", ".join(f"{count} {words(reason)}" for reason, count in unscored.items())
-        said.append(f"{len(rows) - errors.number} not scored, for one or several reasons each: {counts}")
+        counts = ", ".join(f"{count:,} {words(reason)}" for reason, count in unscored.items())
+        several = ", for one or several reasons each" if len(unscored) > 1 else ""
+        said.append(f"{len(rows) - errors.number:,} not scored{several}: {counts}")
     return [f"{sentence}." for sentence in said]

@@ -48,18 +48,22 @@ def test_topics_of_the_names_of_the_inputs_are_taken_whatever_else_there_is() ->
     assert notes == ""
 
 
-def test_the_only_other_topic_of_the_type_is_taken_where_one_input_has_none() -> None:
+def test_the_only_other_topic_of_the_type_is_taken_for_a_body_without_a_name() -> None:
     assert found({"/x": ODOMETRY}, FLOOR) == ({"odom": "/x"}, "in bag, took /x as odom: there is no other of the type")
-    topics, notes = found({"/odom": ODOMETRY, "/deck/odom": ODOMETRY}, ABOARD)
-    assert topics == {"support/odom": "/deck/odom", "odom": "/odom"}
-    assert "took /deck/odom as support/odom" in notes
     assert found({"/x": ODOMETRY, "/support/odom": ODOMETRY}, ABOARD)[0]["odom"] == "/x"
 
 
-def test_of_two_inputs_without_a_topic_neither_takes_the_only_one() -> None:
-    assert refusal({"/x": ODOMETRY}, ABOARD) == (
-        "bag has 1 topic that could be support/odom or odom: /x; choose one: --remap support/odom:=/x"
+def test_nothing_is_taken_for_the_deck_that_is_not_told_to_be_it() -> None:
+    assert refusal({"/cube/odom": ODOMETRY, "/imu": IMU}, ABOARD) == (
+        "nothing in bag is told to be the deck (support/odom); it has /cube/odom (nav_msgs/msg/Odometry), "
+        "/imu (sensor_msgs/msg/Imu); if the deck is among them, tell which: --remap support/odom:=TOPIC"
     )
+    assert "(support/odom); it has no topics at all" in refusal({}, ABOARD)
+    # What is left over may be another unit.
+    for scenes, name in ((ABOARD, "/odom"), ({"crate": DECK}, "/crate/odom")):
+        recorded = {name: ODOMETRY, "/barrel/odom": ODOMETRY}
+        assert "is told to be the deck" in refusal(recorded, scenes)
+        assert found(recorded, scenes, {"support/odom": "/barrel/odom"})[0]["support/odom"] == "/barrel/odom"
     topics, _ = found({"/x": ODOMETRY, "/y": ODOMETRY}, ABOARD, {"support/odom": "/x"})
     assert topics == {"support/odom": "/x", "odom": "/y"}
 
@@ -75,17 +79,24 @@ def test_a_body_with_a_name_takes_no_topic_of_another_name() -> None:
     topics, notes = found(recorded, CARGO)
     assert "drum/odom" not in topics
     assert notes == "bag has no drum/odom: nothing is predicted there"
-    # What is left could be the support or the drum.
+    # What is left is neither the support nor the drum for that.
     del recorded["/support/odom"]
-    assert refusal(recorded, CARGO).startswith("bag has 1 topic that could be support/odom or drum/odom: /barrel/odom")
+    assert refusal(recorded, CARGO).startswith("nothing in bag is told to be the deck (support/odom); it has")
 
 
-def test_without_any_state_the_reader_shall_say_what_there_is() -> None:
-    topics, _ = found({"/support/odom": ODOMETRY}, CARGO)
-    assert topics == {"support/odom": "/support/odom", "crate/odom": "/crate/odom"}
+def test_without_any_unit_it_is_said_what_there_is() -> None:
+    assert refusal({"/drums/odom": ODOMETRY, "/support/odom": ODOMETRY}, CARGO) == (
+        "nothing in bag is told to be a unit (crate/odom, drum/odom or leaning/imu); it has "
+        "/drums/odom (nav_msgs/msg/Odometry), /support/odom (nav_msgs/msg/Odometry); if a unit is among them, "
+        "tell which: --remap crate/odom:=TOPIC"
+    )
+    assert refusal({"/support/odom": ODOMETRY}, ABOARD).startswith("nothing in bag is told to be a unit (odom); it has")
+    # Of units that are not measured the deck is enough.
+    assert found({"/support/odom": ODOMETRY}, {"blind": CARGO["blind"]})[0] == {"support/odom": "/support/odom"}
+
+
+def test_over_a_floor_the_reader_shall_say_what_there_is() -> None:
     assert found({}, FLOOR)[0] == {"odom": "/odom"}
-    topics, _ = found({"/crate/odom": ODOMETRY, "/leaning/imu": IMU}, CARGO)
-    assert topics["support/odom"] == "/support/odom"
 
 
 def test_every_input_may_be_remapped() -> None:

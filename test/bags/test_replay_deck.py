@@ -233,7 +233,7 @@ def test_only_what_the_scene_needs_is_read(tmp_path: Path, bag: Path, scenes: di
 
 def test_a_bag_without_the_deck_is_refused(tmp_path: Path, scenes: dict[str, Scene]) -> None:
     others = [message for message in recorded() if message.topic != "/support/odom"]
-    with pytest.raises(InputError, match="has no topic /support/odom of type nav_msgs/msg/Odometry; it has"):
+    with pytest.raises(InputError, match=r"is told to be the deck \(support/odom\); it has /crate/odom"):
         replay(write_bag(tmp_path / "bag.mcap", others), scenes)
 
 
@@ -286,5 +286,8 @@ def test_the_truth_is_compared_for_each_body_and_says_who_was_warned(
     warned = known.truths["blind"].warned
     assert warned is not None
     assert (warned.first_slide, warned.first_impact) == (stamp_of(560), stamp_of(590))
+    # The slide and the impact 0.3 s after it are one event.
+    assert (warned.events, warned.events_warned) == (1, 0)
     assert falling.warned is not None
     assert falling.warned.first_impact == first
+    assert falling.warned.warned_ahead is not None

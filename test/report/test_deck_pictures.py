@@ -17,7 +17,7 @@ from impact_predictor.prediction.types import Vector3
 from impact_predictor.report.motions.course import Course, Courses, margin_used, moments, outline_of
 from impact_predictor.report.motions.deck_animation import LONGEST, deck_frames, write_deck_animation
 from impact_predictor.report.motions.deck_figure import busiest, title_of, write_deck_figure
-from impact_predictor.scenarios.deck import follow, units_of
+from impact_predictor.scenarios.deck.cargo import follow, units_of
 
 matplotlib.use("agg")
 

@@ -29,7 +29,7 @@ def test_modes_near_a_border_and_wrong_ones_that_no_record_shows_are_told_apart(
     assert clear == (
         "2 of them are farther than 2 % of friction or geometry from another mode; of these 100.0 % have the right one."
     )
-    assert unseen.endswith("from rest; 1 of them were predicted all the same, with another mode.")
+    assert unseen.endswith("from rest; 1 of them was predicted all the same, with another mode.")
 
 
 def printed(result: Result, width: int = 80) -> str:
@@ -44,37 +44,77 @@ CARGO = Result(
     samples=1250,
     seconds=1.0,
     settled=(),
-    statuses={Status.ACCEPTED: 1240, Status.NO_SUPPORT: 10},
+    statuses={Status.ACCEPTED: 1239, Status.NO_SUPPORT: 10, Status.OFF_SUPPORT: 1},
     geometry_statuses={},
     notes=(),
     unpredictable="",
     damaged="",
     truth=TRUTH,
     truths={
-        "crate": BodyTruth(TRUTH, Warned(1, 10**9, None, 3 * 10**9)),
-        "drum": BodyTruth(Truth(0, 0, 0, 0, None, None, None), Warned(1, 2 * 10**9, 10**9, None)),
-        "blind": BodyTruth(None, Warned(1, None, None, 10**9)),
+        "crate": BodyTruth(TRUTH, Warned(1, 10**9, None, 3 * 10**9, warned_ahead=2.0, events=12, events_warned=11)),
+        "drum": BodyTruth(
+            Truth(0, 0, 0, 0, None, None, None), Warned(1, 2 * 10**9, 10**9, None, events=1, events_warned=0)
+        ),
+        "blind": BodyTruth(None, Warned(1, None, None, None, 10**9, warned_ahead=0.5, events=1, events_warned=1)),
         "still": BodyTruth(None, Warned(1, 10**9, None, None)),
     },
     inputs={
         "support/odom": {Status.ACCEPTED: 990, Status.SUPPORT_JUMPED: 10},
         "crate/odom": {Status.ACCEPTED: 1000},
-        "drum/odom": {Status.ACCEPTED: 240, Status.NO_SUPPORT: 10},
+        "drum/odom": {Status.ACCEPTED: 239, Status.NO_SUPPORT: 10, Status.OFF_SUPPORT: 1},
     },
 )
 
 
+def rows_of(text: str, body: str) -> list[list[str]]:
+    """The cells of a body in every table, without its name."""
+    lines = [line.split() for line in text.replace("\u00a0", "_").splitlines()]
+    return [cells[1:] for cells in lines if cells[:1] == [body]]
+
+
 @pytest.mark.parametrize("width", [80, 120])
-def test_several_bodies_have_a_table_of_their_own(width: int) -> None:
+def test_several_bodies_have_tables_of_their_own(width: int) -> None:
     text = printed(CARGO, width)
     assert "…" not in text
-    rows = {line.split()[0]: line.split()[1:] for line in text.replace("\u00a0", "_").splitlines() if line.strip()}
-    assert rows["crate"] == ["1,000", "0", "-", "-", "47_of_50", "1", "98.0", "0.5", "2.0"]
-    assert rows["drum"] == ["250", "10", "-", "-", "-", "0", "-", "-", "-1.0"]
-    assert rows["blind"] == ["0", "0", "-", "-", "-", "-", "-", "-", "never"]
-    assert rows["still"][-1] == "-"
-    assert "3 bodies slid or struck; a warning came before that in 1 of 3 cases." in text
+    assert rows_of(text, "crate") == [
+        ["1,000", "0", "-", "-"],
+        ["47_of_50", "1", "98.0", "0.5", "11_of_12", "2.0"],
+    ]
+    assert rows_of(text, "drum") == [["250", "1", "-", "-"], ["-", "0", "-", "-", "0_of_1", "not"]]
+    assert rows_of(text, "blind")[1] == ["-", "-", "-", "-", "1_of_1", "0.5"]
+    assert rows_of(text, "still")[1][-2:] == ["-", "-"]
+    assert "2 bodies slid or struck; a warning stood before the first time in 1 of 2." in text
+    assert "14 events in all" in text
+    assert "a warning stood before 12 of 14." in text
     assert "Refused messages of support/odom: 10 support jumped." in text
+
+
+def test_the_tables_of_a_long_record_fit_a_narrow_terminal() -> None:
+    truth = Truth(1_234, 100, 123, 0, 1.0, 0.0123, None)
+    warned = Warned(1, 2, 3, 4, warned_ahead=3599.9, events=120, events_warned=100)
+    long = CARGO._replace(
+        truths={"container_7": BodyTruth(truth, warned)},
+        inputs={"container_7/odom": {Status.ACCEPTED: 3_600_000, Status.OFF_SUPPORT: 36_000}},
+    )
+    tables = printed(long).split("No touchdown")[0].splitlines()
+    assert max(map(len, tables)) <= 80
+    assert sum("container_7" in line for line in tables) == 2
+
+
+def test_what_comes_before_the_deck_is_known_is_no_fault_of_the_samples() -> None:
+    text = printed(CARGO)
+    assert "10 samples came before the deck's motion was known." in text
+    assert "Refused samples: 1 off support." in text
+    early = {"crate/odom": {Status.ACCEPTED: 5, Status.NO_SUPPORT: 1}}
+    text = printed(CARGO._replace(statuses=early["crate/odom"], inputs=early))
+    assert "1 sample came before" in text
+    assert "refused" not in text.lower()
+
+
+def test_where_nothing_is_listed_no_empty_lines_follow_each_other() -> None:
+    text = printed(CARGO)
+    assert "\n\n\n" not in text
+    assert "No touchdown was predicted." in text
 
 
 def test_what_no_body_has_takes_no_column() -> None:
@@ -91,5 +131,11 @@ def test_a_body_alone_has_no_such_table() -> None:
 
 def test_of_nothing_found_nothing_more_is_said() -> None:
     assert truth_sentences(Truth(0, 0, 0, 0, None, None, None)) == [
-        "Against the truth in the bag: 0 of 0 touchdowns found, 0 false alarms."
+        "Against the truth in the bag: no touchdown that this rate of samples can show, 0 false alarms."
     ]
+
+
+def test_one_of_a_kind_is_said_as_one() -> None:
+    found, _, unseen = truth_sentences(Truth(1, 0, 1, 1, 1.0, 0.0123, None))
+    assert found.endswith("1 of 1 touchdown found, 1 false alarm.")
+    assert unseen.startswith("1 more impact cannot be seen")

@@ -180,8 +180,8 @@ def test_the_json_of_several_bodies_has_their_inputs_and_how_each_compares_with_
         "",
         truth,
         {
-            "crate": BodyTruth(truth, Warned(5, 10, None, 20)),
-            "blind": BodyTruth(None, Warned(5, None, 15, None)),
+            "crate": BodyTruth(truth, Warned(5, 10, None, 20, warned_ahead=1e-8, events=3, events_warned=2)),
+            "blind": BodyTruth(None, Warned(5, None, 15, None, events=1)),
             "still": BodyTruth(None, Warned(5, 6, None, None)),
         },
         {"support/odom": {Status.ACCEPTED: 9, Status.SUPPORT_JUMPED: 1}, "crate/odom": {Status.ACCEPTED: 4}},
@@ -191,13 +191,19 @@ def test_the_json_of_several_bodies_has_their_inputs_and_how_each_compares_with_
     compared = answer["truth"]
     assert (compared["clear"], compared["clear_mode_accuracy"], compared["unresolved_wrong"]) == (2, 1.0, 1)
     assert (compared["bodies_with_slide_or_impact"], compared["warned_before_first_impact"]) == (2, 1)
+    assert (compared["events"], compared["events_warned"]) == (4, 2)
     assert compared["bodies"]["crate"]["missed"] == 1
+    assert compared["bodies"]["crate"]["warned_ahead"] == 1e-8
     assert compared["bodies"]["crate"]["first_warning"] == 10
     assert compared["bodies"]["blind"] == {
         "first_known": 5,
         "first_warning": None,
         "first_slide": 15,
         "first_impact": None,
+        "first_lift": None,
+        "warned_ahead": None,
+        "events": 1,
+        "events_warned": 0,
         "warned_before_first_impact": False,
     }
     assert compared["bodies"]["still"]["warned_before_first_impact"] is None

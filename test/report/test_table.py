@@ -53,6 +53,14 @@ def test_the_lines_fit_the_terminal(width: int) -> None:
     assert max(map(len, text.splitlines())) <= width
 
 
+def test_the_lines_of_several_bodies_fit_too() -> None:
+    rows = [ROW, UNSCORED._replace(body="container")]
+    lines = printed(touchdown_table(rows, 80), 80).splitlines()
+    assert max(map(len, lines)) <= 80
+    named = next(place for place, line in enumerate(lines) if "container" in line)
+    assert lines[named + 1].split()[0] == "5690.729"
+
+
 def test_a_wide_terminal_has_predicted_beside_measured() -> None:
     (line,) = [line for line in printed(touchdown_table([ROW], 120), 120).splitlines() if "PIVOT_SLIDE" in line]
     assert set(line.split()) >= NUMBERS
@@ -103,4 +111,5 @@ def test_conclusions_count_the_scored_and_explain_the_others() -> None:
         "1 of 3 touchdowns scored: relative error 12.3 % in the median, 90 % below 12.3 %.",
         "2 not scored, for one or several reasons each: 1 out of plane, 1 one corner first, 1 too short.",
     ]
-    assert conclusions([]) == ["0 of 0 touchdowns scored."]
+    assert conclusions([]) == ["No touchdown was predicted."]
+    assert conclusions([UNMEASURED]) == ["0 of 1 touchdown scored.", "1 not scored: 1 too short."]

@@ -3,14 +3,26 @@
 from __future__ import annotations
 
 import random
+from math import inf
 
+import numpy as np
 import pytest
 from rosbags.typesys import Stores, get_typestore
 
+from impact_predictor.mechanics.bodies import plate
+from impact_predictor.mechanics.impact import solve_impact
 from impact_predictor.mechanics.types import Mode
 from impact_predictor.prediction.types import Prediction, Sample, Status
 from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY, MalformedMessage, encode_mode
-from impact_predictor.scenarios.truth import TrueImpact, decode_true_impacts, encode_true_impact
+from impact_predictor.scenarios.truth import (
+    TrueImpact,
+    TrueOnset,
+    border_of,
+    decode_true_impacts,
+    decode_true_onsets,
+    encode_true_impact,
+    encode_true_onset,
+)
 
 
 def an_impact(seed: int) -> TrueImpact:
@@ -29,6 +41,7 @@ def an_impact(seed: int) -> TrueImpact:
         rng.random(),
         rng.random(),
         *(vector(), vector(), vector(), vector()),
+        border=rng.choice([inf, rng.random()]),
     )
 
 
@@ -53,3 +66,44 @@ def test_what_tells_no_impact_is_malformed() -> None:
     for data in (b"", good[:-4], encode_mode(Prediction(Status.ACCEPTED, sample)), good.replace(b"stamp", b"stomp")):
         with pytest.raises(MalformedMessage):
             decode_true_impacts(data)
+
+
+def test_a_bag_without_borders_says_that_none_was_looked_for() -> None:
+    impact = an_impact(2)
+    # The key of another length would be another message.
+    data = encode_true_impact(impact, "world").replace(b"border", b"nobody")
+    assert decode_true_impacts(data) == [impact._replace(border=inf)]
+
+
+def test_numbers_of_numpy_are_written_as_numbers() -> None:
+    impact = an_impact(3)._replace(approach=np.float64(0.1), energy_lost=np.float64(0.3))
+    assert decode_true_impacts(encode_true_impact(impact, "deck")) == [impact]
+
+
+@pytest.mark.parametrize(("slides", "lifts"), [(True, False), (False, True), (True, True)])
+def test_an_onset_reads_back_as_it_was(slides: bool, lifts: bool) -> None:
+    onset = TrueOnset(12_345_678_901, "crate", slides, lifts)
+    data = encode_true_onset(onset, "deck")
+    assert decode_true_onsets(data) == [onset]
+    (status,) = get_typestore(Stores.ROS2_JAZZY).deserialize_cdr(data, DIAGNOSTIC_ARRAY).status
+    assert status.message == " and ".join(["slides"] * slides + ["lifts"] * lifts)
+    for broken in (b"", data[:-4], encode_true_impact(an_impact(1), "world")):
+        with pytest.raises(MalformedMessage):
+            decode_true_onsets(broken)
+
+
+def test_a_border_is_the_nearest_of_friction_and_geometry() -> None:
+    # A plate that turns about its old contact, near the border f = 3 d / (4 d^2 + 1) of d = height / length.
+    border = 3.0 * 0.8 / (4.0 * 0.8**2 + 1.0)
+    for part in (0.5, 0.98, 1.001, 1.5):
+        body = plate(1.0, 0.8, 2.0, part * border)
+        found = border_of(solve_impact(body, body.turning(-1.0)), 0.5)
+        margins = solve_impact(body, body.turning(-1.0)).margins
+        shifts = [abs(one.change) / 0.5 for one in (margins.center, margins.height, margins.reach)]
+        assert found == pytest.approx(min(abs(border / (part * border) - 1.0), *shifts), rel=1e-6)
+    assert found < inf
+
+
+def test_nothing_struck_has_no_border() -> None:
+    body = plate(1.0, 0.8, 2.0, 0.3)
+    assert border_of(solve_impact(body, body.turning(1.0)), 0.5) == inf
