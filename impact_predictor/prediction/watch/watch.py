@@ -25,8 +25,8 @@ __all__ = ["Level", "Report", "Watch"]
 SECOND: Final = 1_000_000_000
 """ns between two reports without news, and how far stamps may go back before time has begun anew."""
 
-JUDGED_EVERY: Final = 4_000_000
-"""ns: a message that comes sooner after the last judgement waits for the next; no deck moves in so short a time."""
+JUDGED_EVERY: Final = 15_000_000
+"""ns: a message that comes sooner after the last judgement waits for the next: margins hardly move."""
 
 FORECAST_EVERY: Final = 250_000_000
 """ns from one look ahead to the next."""
