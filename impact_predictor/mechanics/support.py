@@ -161,14 +161,7 @@ class MovingSupport:
             part = self._fit(number, width)
         if not part:
             return self.felt_exactly(time)
-        s = (time / width - number) * 2.0 - 1.0
-        x = y = w = a = 0.0
-        for cx, cy, cw, ca in part:
-            x = x * s + cx
-            y = y * s + cy
-            w = w * s + cw
-            a = a * s + ca
-        return x, y, w, a
+        return at_place(part, (time / width - number) * 2.0 - 1.0)
 
     def _fit(self, number: int, width: float) -> Part:
         """The polynomials of one part; none where they do not fit."""
@@ -190,6 +183,17 @@ class MovingSupport:
 
 
 Support = FixedSupport | MovingSupport
+
+
+def at_place(part: Part, s: float) -> Felt:
+    """What is felt at a place of a part, where s runs from -1 to 1: its polynomials, the highest power first."""
+    x = y = w = a = 0.0
+    for cx, cy, cw, ca in part:
+        x = x * s + cx
+        y = y * s + cy
+        w = w * s + cw
+        a = a * s + ca
+    return x, y, w, a
 
 
 class Wave(NamedTuple):

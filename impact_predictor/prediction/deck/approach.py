@@ -20,7 +20,7 @@ from ...mechanics.rocking import next_strike
 from ...mechanics.rocking.arcs import Happening
 from ...mechanics.rocking.flight import Flight
 from ...mechanics.rocking.points import Points
-from ...mechanics.support import Felt
+from ...mechanics.support import Felt, at_place
 from ...mechanics.types import Contact, TwoPointBody
 from ..planar import ORIGIN, Plane, Posture
 from ..scene import Scene
@@ -75,14 +75,7 @@ class PlanarSupport:
         part = self._parts.get(number)
         if part is None:
             part = self._parts[number] = self._fit((number + 0.5) * PART)
-        s = 2.0 * (time / PART - number) - 1.0
-        x = y = w = a = 0.0
-        for cx, cy, cw, ca in part:
-            x = x * s + cx
-            y = y * s + cy
-            w = w * s + cw
-            a = a * s + ca
-        return x, y, w, a
+        return at_place(part, (time / PART - number) * 2.0 - 1.0)
 
     def felt_exactly(self, time: float) -> Felt:
         felt = self._later(time - self._age)

@@ -9,10 +9,10 @@ from typing import Final, NamedTuple
 from ...mechanics.types import Mode
 from ...prediction.scene import Scene
 from ...prediction.types import Moment, Quaternion, Touchdown, Vector3
-from ...prediction.vectors import Axes, add, axes_of, combine, cross, dot, mean, times, to_world
+from ...prediction.vectors import Axes, add, axes_of, combine, composed, cross, dot, mean, times, to_world
 from ..cdr import NANOSECONDS
 from .message import ARROW, CUBE, CUBE_LIST, LINE_LIST, NOWHERE, SPHERE_LIST, TEXT, UNTURNED, Colour, Marker
-from .shapes import Shape, Slab, drum_axis, grid_of, product, turn_to
+from .shapes import Shape, Slab, drum_axis, grid_of, turn_to
 
 LEVELS: Final = ("OK", "WARN", "ERROR", "STALE")
 LEVEL_COLOURS: Final[tuple[Colour, ...]] = (
@@ -123,7 +123,7 @@ def draw_unit(unit: Unit, stamp: int, letter: float) -> list[Marker]:
     colour = UNWATCHED if level is None else LEVEL_COLOURS[level]
     axes = axes_of(seen.orientation)
     place = add(seen.position, to_world(axes, shape.position))
-    turned = seen.orientation if shape.orientation == UNTURNED else product(seen.orientation, shape.orientation)
+    turned = seen.orientation if shape.orientation == UNTURNED else composed(seen.orientation, shape.orientation)
     drawn = [Marker("units", unit.number, shape.shape, place, turned, shape.scale, colour, shape.lines)]
     drawn += _points(unit, axes) if unit.scene.radius == 0.0 else _edges(unit)
     words = [unit.name if level is None else f"{unit.name} {LEVELS[level]}".lstrip()]

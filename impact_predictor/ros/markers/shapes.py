@@ -133,18 +133,6 @@ def turn_to(direction: Vector3) -> Quaternion:
     return -y * unit, x * unit, 0.0, (1.0 + z) * unit
 
 
-def product(p: Quaternion, q: Quaternion) -> Quaternion:
-    """The rotation q, then p."""
-    px, py, pz, pw = p
-    qx, qy, qz, qw = q
-    return (
-        pw * qx + px * qw + py * qz - pz * qy,
-        pw * qy - px * qz + py * qw + pz * qx,
-        pw * qz + px * qy - py * qx + pz * qw,
-        pw * qw - px * qx - py * qy - pz * qz,
-    )
-
-
 def deck_of(scene: Scene) -> Slab | None:
     """The whole support, or None where it has no end."""
     if scene.deck is None or not scene.deck.extent:

@@ -20,8 +20,6 @@ from .sea import Array, Waves
 
 Complex = NDArray[np.complex128]
 
-DRIVES: Final = ("surface", "slope", "drift")
-
 
 class SecondOrder(NamedTuple):
     """A damped oscillator: natural frequency (rad/s), part of the critical damping, and its answer to a slow drive.
