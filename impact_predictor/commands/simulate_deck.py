@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import click
+from click.core import ParameterSource
 
 from .examples import examples
 
@@ -119,19 +120,25 @@ def simulate_deck(
     record. Units do not touch each other. The same options and seed make the same bytes.
     """
     from ..parameters.file import read_values
-    from ..prediction.scene import scenes_of
+    from ..prediction.scene import MovingDeck, scenes_of, shared_by
     from ..resources import find
     from ..scenarios.deck.record import Sensors
     from ..scenarios.deck.sensors import Noise
     from ..scenarios.deck.voyage import gravity_of, sail, total
     from .progress import progress
 
+    check_options(recorded=record is not None)
     scenes = scenes_of(read_values(find(SCENE) if params is None else params))
     noise = Noise(*[options.pop(name.removeprefix("--").replace("-", "_")) for name, _ in _NOISE])
     deck, longest = deck_of(record, seed, gravity_of(scenes), **options)
     duration = min(longest, DURATION) if duration is None else duration
     if duration > longest:
         raise click.UsageError(f"the recorded deck ends after {longest:g} s, but --duration is {duration:g}")
+    timeout = (shared_by(scenes).deck or MovingDeck()).timeout
+    if output is not None and 1.0 / timeout > deck_rate > 0.0:
+        raise click.UsageError(
+            f"--deck-rate {deck_rate:g} is too slow: after support.timeout, {timeout:g} s, a message tells nothing more"
+        )
     sensors = Sensors(rate, deck_rate, noise, seed)
     courses = courses_for(plot, animate, duration)
     seen = {} if courses is None else {"seen": courses.taking}
@@ -147,6 +154,21 @@ def simulate_deck(
             if file is not None:
                 click.echo(f"{name}: {file}")
     return 1 if voyage.broke_off else 0
+
+
+def check_options(*, recorded: bool) -> None:
+    """Refuse options that would not change anything: those of a sea beside a recorded deck, or the reverse.
+
+    Raises:
+        UsageError: such an option was given.
+    """
+    context = click.get_current_context()
+    sea = ("spectrum", "rao", *[name.removeprefix("--").replace("-", "_") for name, _, _ in _SEA])
+    for name in sea if recorded else ("record_topic",):
+        if context.get_parameter_source(name) is ParameterSource.COMMANDLINE:
+            option = "--" + name.replace("_", "-")
+            why = "of a sea, but --record takes a recorded deck" if recorded else "of a recorded deck: give --record"
+            raise click.UsageError(f"{option} is {why}")
 
 
 def courses_for(plot: str | None, animate: str | None, duration: float) -> Courses | None:
