@@ -15,6 +15,8 @@ from ..mechanics.impact import LAWS
 from .examples import examples
 from .simulate_deck import EXAMPLES as DECK_EXAMPLES
 from .simulate_deck import simulate_deck
+from .simulate_wheel import EXAMPLES as WHEEL_EXAMPLES
+from .simulate_wheel import simulate_wheel
 
 if TYPE_CHECKING:
     from ..scenarios.rocking import Rocker, Rocking
@@ -95,10 +97,12 @@ def bag_options(command: F) -> F:
 @click.group(
     short_help="Simulate bodies that rock, as a table, a picture or a bag.",
     no_args_is_help=False,
-    epilog=examples(*(line for lines in EXAMPLES.values() for line in lines[:2]), *DECK_EXAMPLES[:1]),
+    epilog=examples(
+        *(line for lines in EXAMPLES.values() for line in lines[:2]), *WHEEL_EXAMPLES[:1], *DECK_EXAMPLES[:1]
+    ),
 )
 def simulate() -> None:
-    """How a body moves from impact to impact: released at rest on one contact until it stays, or on a moving deck.
+    """How a body moves from impact to impact: released at rest until it stays, down a slope, or on a moving deck.
 
     It rocks between two contacts, A behind and B ahead of its mass centre. The plane is x forward, y up, and
     counter-clockwise is positive. SI units; angles in degrees.
@@ -106,6 +110,7 @@ def simulate() -> None:
 
 
 simulate.add_command(simulate_deck)
+simulate.add_command(simulate_wheel)
 
 
 @simulate.command("rod", short_help="A rod over two supports.", epilog=examples(*EXAMPLES["rod"]))

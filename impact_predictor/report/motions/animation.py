@@ -60,8 +60,12 @@ def check_animation(path: str | os.PathLike[str]) -> Path:
 
 
 def speed_of(rockings: Sequence[Rocking]) -> float:
-    """How fast the picture of motions runs: the fastest of `SPEEDS` that is needed to see it within its time."""
-    longest = max(rocking.run.time for rocking in rockings)
+    """How fast the picture of motions runs."""
+    return speed_for(max(rocking.run.time for rocking in rockings))
+
+
+def speed_for(longest: float) -> float:
+    """How fast the picture of a motion of so many s runs: the slowest of `SPEEDS` that shows it within its time."""
     return next((speed for speed in SPEEDS if longest <= speed * _LONGEST), SPEEDS[-1])
 
 
@@ -130,7 +134,7 @@ class _Film:
         speed = speed_of(rockings)
         figure = Figure(figsize=(_WIDTH, _WIDTH), dpi=_DPI)
         FigureCanvasAgg(figure)
-        self._digits = _digits(speed)
+        self._digits = digits_of(speed)
         count = len(rockings)
         axes = [figure.add_axes((0.0, 0.0, 1.0, 1.0)) for _ in rockings]
         self._stages = [Stage(one, rocking, speed) for one, rocking in zip(axes, rockings, strict=True)]
@@ -146,7 +150,7 @@ class _Film:
             one.set_position((k / count, (_FOOT + _TRACE + _BETWEEN) / total, 1.0 / count, height / total))
         traces = _Traces(figure.add_axes((0.06, _FOOT / total, 0.92, _TRACE / total)), rockings)
         corner: dict[str, Any] = {"y": 1.0 - 0.1 / total, "va": "top", "fontsize": 10}
-        figure.text(0.02, s=_pace(speed), color="#555555", **corner)
+        figure.text(0.02, s=pace_of(speed), color="#555555", **corner)
         self._clock = figure.text(0.98, s="", ha="right", family="monospace", **corner)
         self._parts: list[Stage | _Traces] = [*self._stages, traces]
         moving = [self._clock, *(artist for part in self._parts for artist in part.moving)]
@@ -204,12 +208,13 @@ class _Traces:
             dot.set_data([min(time, self._end)], [rocking.run.state(time).omega])
 
 
-def _pace(speed: float) -> str:
+def pace_of(speed: float) -> str:
+    """The speed of a picture in words."""
     if speed == 1.0:
         return "real time"
     return f"slowed down {1.0 / speed:g} times" if speed < 1.0 else f"sped up {speed:g} times"
 
 
-def _digits(speed: float) -> int:
+def digits_of(speed: float) -> int:
     """Decimals of the clock that one can read."""
     return 4 if speed < 0.02 else 3 if speed < 0.2 else 2

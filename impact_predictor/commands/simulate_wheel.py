@@ -1,0 +1,162 @@
+"""`impact-predictor simulate wheel`: a rimless wheel down a slope, as a table, a picture or a bag."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from math import radians
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, TypeVar
+
+import click
+
+from ..mechanics.impact import LAWS
+from .examples import examples
+
+if TYPE_CHECKING:
+    from ..scenarios.walking.wheel import Rolling
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+RATE: Final = 1000.0
+STEPS: Final = 20
+DURATION: Final = 60.0
+STICKS: Final = 100.0
+"""Friction against which no spoke slips; that of config/wheel.yaml, too."""
+
+EXAMPLES: Final = (
+    "impact-predictor simulate wheel --plot wheel.png --animate wheel.gif -o wheel.mcap",
+    "impact-predictor simulate wheel --slope 4.583662361046586 --inertia 1e-12 --gravity 9.8 --steps 40 --json",
+    "impact-predictor simulate wheel --slope 3 --omega 1.5 --animate stop.gif",
+    "impact-predictor simulate wheel --friction 0.35 --plot slips.png",
+)
+"""The second one is the point mass on the slope of 0.08 rad; the fourth one has less friction than it needs."""
+
+_ACUTE: Final = click.FloatRange(-90.0, 90.0, min_open=True, max_open=True)
+_NUMBERS: Final[tuple[tuple[str, Any, float, str], ...]] = (
+    ("--slope", _ACUTE, 5.0, "Slope of the ground, degrees; positive is downhill ahead."),
+    ("--alpha", float, 22.5, "Half the angle between two spokes, degrees: 180 divided by their number."),
+    ("--leg", float, 1.0, "Length of the spokes, m."),
+    ("--mass", float, 1.0, "Mass, kg."),
+    ("--inertia", float, 0.1, "Inertia about the mass centre, kg m^2, above 0; a point mass has hardly any."),
+    ("--omega", float, 0.0, "Rate at which it is let go over its first spoke, rad/s; positive rolls downhill."),
+    ("--gravity", float, 9.81, "Gravity, m/s^2."),
+)
+
+
+def numbers(command: F) -> F:
+    """The options that take one number each."""
+    for name, kind, default, text in reversed(_NUMBERS):
+        metavar = "DEGREES" if name in ("--slope", "--alpha") else None
+        command = click.option(name, type=kind, default=default, metavar=metavar, show_default=True, help=text)(command)
+    return command
+
+
+@click.command("wheel", short_help="A rimless wheel down a slope.", epilog=examples(*EXAMPLES))
+@numbers
+@click.option("--friction", type=float, help="Coulomb friction coefficient (it sticks unless given).")
+@click.option("--law", type=click.Choice(LAWS), default="path", show_default=True, help="Impact law.")
+@click.option(
+    "--steps",
+    type=click.IntRange(min=1),
+    help=f"Steps to make. [default: {STEPS}, or those of --duration]",
+)
+@click.option("--duration", type=float, help=f"Longest time that is simulated, s. [default: {DURATION:g}]")
+@click.option("--plot", metavar="FILE", help="Draw the wheel, its rate and its stance into a .png or .svg file.")
+@click.option("--animate", metavar="FILE", help="Draw a moving picture into a .gif file.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON, rates as magnitudes.")
+@click.option("--rate", type=float, help=f"Samples of the bag for each second. [default: {RATE:g}]")
+@click.option(
+    "-o",
+    "--output",
+    metavar="BAG",
+    help="Write a bag for `replay`, with the true impacts: NAME.mcap is one file, any other name a rosbag2 folder.",
+)
+def simulate_wheel(
+    slope: float,
+    alpha: float,
+    leg: float,
+    mass: float,
+    inertia: float,
+    omega: float,
+    gravity: float,
+    friction: float | None,
+    law: str,
+    steps: int | None,
+    duration: float | None,
+    plot: str | None,
+    animate: str | None,
+    as_json: bool,
+    rate: float | None,
+    output: str | None,
+) -> int:
+    """A rimless wheel: spokes without a rim roll down a slope, one after the other, until they stop.
+
+    It is let go with spoke 0 at right angles to the slope. Each spoke strikes without bouncing; where friction does not
+    hold it, it slips. What is printed tells the steady rolling by its closed form, too.
+    """
+    from ..mechanics.bodies import refuse
+    from ..scenarios.walking.stride import Hub
+    from ..scenarios.walking.wheel import RollEnd, Wheel, roll
+
+    if rate is not None and output is None:
+        raise click.UsageError("--rate is that of a bag: give -o BAG too")
+    rate = RATE if rate is None else rate
+    refuse({"rate": rate}, lambda value: 0.0 < value <= 1e6, "a number above 0, up to 1e6")
+    if plot is not None:
+        from ..report.figure import check_figure
+
+        check_figure(plot)
+    if animate is not None:
+        from ..report.motions.animation import check_animation
+
+        check_animation(animate)
+    if steps is None and duration is None:
+        steps = STEPS
+    hub = Hub(mass, inertia, leg, STICKS if friction is None else friction, radians(slope), gravity)
+    rolling = roll(Wheel(hub, radians(alpha)), omega, steps, DURATION if duration is None else duration, law)
+    if output is not None:
+        write_bag(output, rolling, rate)
+    if plot is not None:
+        from ..report.motions.wheel_figure import write_wheel_figure
+
+        write_wheel_figure(plot, rolling)
+    if animate is not None:
+        draw_animation(animate, rolling)
+    say(rolling, as_json)
+    if not as_json:
+        for what, file in (("Bag", output), ("Picture", plot), ("Animation", animate)):
+            if file is not None:
+                click.echo(f"{what}: {file}")
+    return 1 if rolling.end is RollEnd.LOST else 0
+
+
+def write_bag(output: str, rolling: Rolling, rate: float) -> None:
+    """Write the motion into a bag."""
+    from ..scenarios.walking.record import samples_in, write_wheel
+    from .progress import progress
+
+    with progress(Path(output).name, total=samples_in(rolling, rate)) as tell:
+        write_wheel(output, rolling, rate, tell)
+
+
+def draw_animation(file: str, rolling: Rolling) -> None:
+    """Draw the moving picture."""
+    from ..report.motions.wheel_animation import wheel_frames, write_wheel_animation
+    from .progress import progress
+
+    with progress(Path(file).name, "frames", len(wheel_frames(rolling))) as tell:
+        write_wheel_animation(file, rolling, tell)
+
+
+def say(rolling: Rolling, as_json: bool) -> None:
+    """Print what happened."""
+    from ..report.motions.wheel_words import as_json as fields_of
+    from ..report.motions.wheel_words import print_rolling
+
+    if as_json:
+        click.echo(json.dumps(fields_of(rolling), allow_nan=False))
+        return
+    from rich.console import Console
+
+    print_rolling(Console(), rolling)

@@ -1,0 +1,200 @@
+"""The compass gait: two straight legs that are jointed at the hip walk down a slope, driven by their weight alone.
+
+Goswami, Thuilot and Espiau, "A study of the passive gait of a compass-like biped robot", Int. J. Robotics Research
+17(12), 1998. With all the legs' mass in the feet and hardly any of it this is the simplest walker: Garcia, Chatterjee,
+Ruina and Coleman, "The simplest walking model: stability, complexity, and scaling", J. Biomechanical Engineering
+120(2), 1998.
+"""
+
+from __future__ import annotations
+
+from math import cos, sin
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
+from scipy.optimize import root
+
+from ...errors import InputError
+from ...mechanics.contact_space import ContactOutcome, solve
+
+Array = NDArray[np.float64]
+
+
+class Compass(NamedTuple):
+    """A compass with a point mass at the hip and one in each leg, `to_foot` + `to_hip` long; SI units.
+
+    `slope` in rad, positive downhill ahead.
+    """
+
+    hip_mass: float = 10.0
+    leg_mass: float = 5.0
+    to_foot: float = 0.5
+    to_hip: float = 0.5
+    slope: float = 0.05
+    gravity: float = 9.81
+
+    @property
+    def leg(self) -> float:
+        return self.to_foot + self.to_hip
+
+
+class Gait(NamedTuple):
+    """The compass right after an impact: its legs lean by -`angle` and `angle` (rad), the standing one backwards.
+
+    `stance` and `swing` are the rates (rad/s) of the standing leg and of the other one, forwards.
+    """
+
+    angle: float
+    stance: float
+    swing: float
+
+
+class Step(NamedTuple):
+    """A step: its time (s), angles and rates of standing leg and other leg before the impact, and the gait after it."""
+
+    time: float
+    angles: tuple[float, float]
+    rates: tuple[float, float]
+    after: Gait
+
+
+def step(compass: Compass, start: Gait, duration: float = 10.0) -> Step | None:
+    """Follow a compass whose feet do not slip from one impact to the next; None where it falls.
+
+    The other foot scuffs the ground as it swings past, as with straight legs it must; that is ignored, and it strikes
+    when it comes down ahead. Angles count forwards, from the slope's normal.
+    """
+
+    def slope_of_state(_: float, state: Array) -> list[float]:
+        return [state[2], state[3], *_accelerations(compass, *state)]
+
+    def lands(_: float, state: Array) -> float:
+        # A foot ahead is above the ground while the sum of the angles is negative. Swinging past it may be below.
+        return float(state[0] + state[1]) if state[0] > state[1] else 1.0
+
+    def falls(_: float, state: Array) -> float:
+        return 1.5 - max(abs(float(state[0])), abs(float(state[1])))
+
+    lands.terminal = falls.terminal = True  # type: ignore[attr-defined]
+    lands.direction = 1.0  # type: ignore[attr-defined]
+    first = [-start.angle, start.angle, start.stance, start.swing]
+    found: Any = solve_ivp(
+        slope_of_state, (0.0, duration), first, "DOP853", events=(lands, falls), rtol=3e-14, atol=1e-15
+    )
+    if not len(found.t_events[0]):
+        return None
+    theta, psi, stance, swing = map(float, found.y_events[0][0])
+    after = after_impact(compass, (theta, psi), (stance, swing))
+    return Step(float(found.t_events[0][0]), (theta, psi), (stance, swing), Gait(theta, *after))
+
+
+def fixed_point(compass: Compass, near: Gait) -> Gait:
+    """The gait near another one that each step repeats.
+
+    Raises:
+        InputError: none was found.
+    """
+
+    def change(gait: Array) -> Array:
+        landed = step(compass, Gait(*gait))
+        return np.array(landed.after) - gait if landed is not None else np.full(3, 1.0)
+
+    if step(compass, near) is None:
+        raise InputError("the compass falls from the gait that is given; give one with which it makes a step")
+    found: Any = root(change, np.array(near), tol=1e-13)
+    if float(np.max(np.abs(found.fun))) > 1e-10:
+        raise InputError("the compass has no steady gait near the one that is given; give another one or another slope")
+    return Gait(*map(float, found.x))
+
+
+def multipliers(compass: Compass, gait: Gait, nudge: float = 1e-6) -> NDArray[np.complex128]:
+    """By what each step multiplies a small change of a steady gait: stable where all are below 1; the largest first."""
+    columns = []
+    for k in range(3):
+        ends = []
+        for way in (nudge, -nudge):
+            moved = np.array(gait)
+            moved[k] += way
+            landed = step(compass, Gait(*moved))
+            if landed is None:
+                raise InputError("the compass falls next to its gait; take a smaller nudge")
+            ends.append(np.array(landed.after))
+        columns.append((ends[0] - ends[1]) / (2.0 * nudge))
+    values = np.linalg.eigvals(np.array(columns).T).astype(np.complex128)
+    return np.asarray(values[np.argsort(-np.abs(values))])
+
+
+def after_impact(compass: Compass, angles: tuple[float, float], rates: tuple[float, float]) -> tuple[float, float]:
+    """Rates of the new standing leg and of the old one after an impact without slip, the old foot leaving.
+
+    The angular momentum of the whole about the new foot stays, and that of the old standing leg about the hip. `angles`
+    and `rates` are those of the old standing leg and of the new one right before.
+    """
+    theta, psi = angles
+    inertia = _inertia(compass, theta, psi)
+    momentum = inertia @ _free_rates(compass, theta, *rates)
+    # What the legs do about the new foot, as velocities of the hip and rates of the legs.
+    pinned = np.array([[0.0, compass.leg * cos(psi)], [0.0, -compass.leg * sin(psi)], [1.0, 0.0], [0.0, 1.0]])
+    old, new = np.linalg.solve(pinned.T @ inertia @ pinned, pinned.T @ momentum)
+    return float(new), float(old)
+
+
+def strike(
+    compass: Compass, angles: tuple[float, float], rates: tuple[float, float], friction: float, law: str = "path"
+) -> tuple[ContactOutcome, tuple[float, float]]:
+    """The impact by its contacts: the outcome, and the rates after it of the new standing leg and of the old one.
+
+    Friction may be too small to hold the feet. Arguments as those of `after_impact`; the legs must have mass.
+    """
+    theta, psi = angles
+    inertia = _inertia(compass, theta, psi)
+    velocity = _free_rates(compass, theta, *rates)
+    rows = np.array(
+        [
+            [0.0, 1.0, compass.leg * sin(theta), 0.0],
+            [1.0, 0.0, -compass.leg * cos(theta), 0.0],
+            [0.0, 1.0, 0.0, compass.leg * sin(psi)],
+            [1.0, 0.0, 0.0, -compass.leg * cos(psi)],
+        ]
+    )
+    response = np.linalg.solve(inertia, rows.T)
+    speeds = rows @ velocity
+    outcome = solve(rows @ response, (0.0, 0.0, speeds[2], speeds[3]), (friction, friction), law=law)
+    after = velocity + response @ np.array([*outcome.impulses[0], *outcome.impulses[1]])
+    return outcome, (float(after[3]), float(after[2]))
+
+
+def _inertia(compass: Compass, theta: float, psi: float) -> Array:
+    """Inertia for velocities of the hip, ahead and up, and rates of the legs at two angles."""
+    m, b = compass.leg_mass, compass.to_hip
+    whole = compass.hip_mass + 2.0 * m
+    return np.array(
+        [
+            [whole, 0.0, -m * b * cos(theta), -m * b * cos(psi)],
+            [0.0, whole, m * b * sin(theta), m * b * sin(psi)],
+            [-m * b * cos(theta), m * b * sin(theta), m * b * b, 0.0],
+            [-m * b * cos(psi), m * b * sin(psi), 0.0, m * b * b],
+        ]
+    )
+
+
+def _free_rates(compass: Compass, theta: float, stance: float, swing: float) -> Array:
+    """Velocities of the hip and rates of the legs while the foot of the first one stands."""
+    return np.array([compass.leg * cos(theta) * stance, -compass.leg * sin(theta) * stance, stance, swing])
+
+
+def _accelerations(compass: Compass, theta: float, psi: float, stance: float, swing: float) -> tuple[float, float]:
+    """Angular accelerations of the legs while the foot of the first one stands; the second row is for unit mass."""
+    hip, m, a, b, gamma, g = compass
+    leg = a + b
+    between = theta - psi
+    own, coupling = hip * leg * leg + m * (a * a + leg * leg), -leg * b * cos(between)
+    turning = m * leg * b * sin(between) * swing * swing + (hip * leg + m * (a + leg)) * g * sin(theta + gamma)
+    swinging = -leg * b * sin(between) * stance * stance - b * g * sin(psi + gamma)
+    determinant = own * b * b - m * coupling * coupling
+    return (
+        (b * b * turning - m * coupling * swinging) / determinant,
+        (own * swinging - coupling * turning) / determinant,
+    )

@@ -1,0 +1,109 @@
+"""What the pictures of a rolling wheel show: its rate, its stances, its spokes, and the pace of the moving one."""
+
+from __future__ import annotations
+
+import itertools
+from math import radians
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+import pytest
+
+from impact_predictor.errors import InputError
+from impact_predictor.report.motions.wheel_animation import wheel_frames
+from impact_predictor.report.motions.wheel_figure import (
+    rate_of,
+    spokes_of,
+    stance_of,
+    stances,
+    title_of,
+    write_wheel_figure,
+)
+from impact_predictor.report.motions.wheel_words import as_json, sentences
+from impact_predictor.scenarios.walking.stride import Hub
+from impact_predictor.scenarios.walking.wheel import Rolling, Stand, Wheel, roll
+
+matplotlib.use("agg")
+
+
+@pytest.fixture(scope="module")
+def slips() -> Rolling:
+    return roll(Wheel(Hub(inertia=0.1, friction=0.35, slope=radians(5.0))), 0.0, steps=3)
+
+
+@pytest.fixture(scope="module")
+def stops() -> Rolling:
+    return roll(Wheel(Hub(inertia=0.1, friction=100.0, slope=radians(3.0))), 1.5, steps=None)
+
+
+def test_the_rate_has_a_gap_at_each_impact_and_its_values_on_both_sides(slips: Rolling) -> None:
+    time, rate = rate_of(slips)
+    gaps = np.flatnonzero(np.isnan(time))
+    assert (np.isnan(rate) == np.isnan(time)).all()
+    assert len(gaps) == len(slips.impacts) + 1
+    for gap, impact in zip(gaps, slips.impacts, strict=False):
+        assert rate[gap - 1] == pytest.approx(-impact.strike.before.omega, rel=1e-9)
+        assert rate[gap + 1] == pytest.approx(-impact.strike.after.omega, rel=1e-9)
+
+
+def test_the_stances_follow_each_other_and_say_where_it_slips(slips: Rolling) -> None:
+    found = stances(slips, slips.time)
+    assert [stance_of(one) for one in found] == [
+        "stands on a spoke",
+        *["on a spoke that slips", "stands on a spoke"] * 3,
+    ]
+    assert [one.tips[0][0] for one in found] == [0, 1, 1, 2, 2, 3, 3]
+    assert (found[0].start, found[-1].end) == (0.0, slips.time)
+    assert all(one.end == other.start for one, other in itertools.pairwise(found))
+
+
+def test_a_wheel_that_rests_is_shown_to_stay(stops: Rolling) -> None:
+    last = stances(stops, stops.time + 1.0)[-1]
+    assert (stance_of(last), last.end) == ("rests on two", stops.time + 1.0)
+    assert [tip for tip, _ in last.tips] == [4, 5]
+
+
+@pytest.mark.parametrize(
+    ("tips", "name"),
+    [(((3, "+"), (4, "+")), "slides on two"), (((3, "-"),), "on a spoke that slips"), ((), "")],
+)
+def test_a_stance_is_named(tips: tuple[tuple[int, str], ...], name: str) -> None:
+    assert stance_of(Stand(0.0, 1.0, tips)) == name
+
+
+def test_the_spokes_that_are_drawn_end_where_the_standing_one_touches_the_slope(slips: Rolling) -> None:
+    state = slips.world(1.5)
+    tips = spokes_of(slips.wheel, state)
+    standing = slips.stood(1.5)[0][0]
+    out = np.array([np.sin(radians(5.0)), np.cos(radians(5.0))])
+    assert tips[standing] @ out == pytest.approx(0.0, abs=1e-12)
+    assert np.hypot(*(tips - [state.x, state.y]).T) == pytest.approx(1.0, abs=1e-12)
+
+
+def test_titles_and_sentences_say_what_rolls_and_what_it_needs(slips: Rolling, stops: Rolling) -> None:
+    assert title_of(slips.wheel) == "A rimless wheel of 8 spokes with friction 0.35 on a slope of 5°"
+    assert title_of(stops.wheel) == "A rimless wheel of 8 spokes that does not slip on a slope of 3°"
+    assert "between them 0.375327; it has 0.35" in sentences(slips)[-1]
+    assert sentences(stops)[-1].startswith("On this slope it does not keep rolling")
+    assert as_json(stops)["steady"] is None
+
+
+def test_the_moving_picture_lasts_as_long_as_one_can_look(slips: Rolling, stops: Rolling) -> None:
+    for rolling in (slips, stops):
+        frames = wheel_frames(rolling)
+        assert 10 < len(frames) < 170
+        assert frames[-1] >= rolling.time
+
+
+@pytest.mark.slow
+def test_a_picture_of_any_end_is_written(tmp_path: Path, stops: Rolling) -> None:
+    hub = Hub(inertia=0.1, friction=100.0)
+    for number, rolling in enumerate((stops, roll(Wheel(hub), 3.3), roll(Wheel(hub), 0.0), roll(Wheel(hub), -1.0))):
+        write_wheel_figure(tmp_path / f"{number}.png", rolling)
+        assert (tmp_path / f"{number}.png").stat().st_size > 10_000
+
+
+def test_a_picture_of_another_format_is_refused(tmp_path: Path, slips: Rolling) -> None:
+    with pytest.raises(InputError):
+        write_wheel_figure(tmp_path / "wheel.pdf", slips)

@@ -1,0 +1,127 @@
+"""A rolling wheel as a bag: what stands on each topic, and that the predictor finds every impact of it."""
+
+from __future__ import annotations
+
+from math import cos, radians, sin
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from impact_predictor.bags.read import read_messages, topics
+from impact_predictor.mechanics.types import Mode
+from impact_predictor.parameters.file import read_values
+from impact_predictor.prediction.predictor import Predictor
+from impact_predictor.prediction.scene import Scene, inertia_matrix
+from impact_predictor.prediction.types import Prediction
+from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY, ODOMETRY, POLYGON, decode_odometry, decode_polygon
+from impact_predictor.scenarios.truth import TRUTH_TOPIC, TrueImpact, decode_true_impacts
+from impact_predictor.scenarios.walking.record import samples_in, write_wheel
+from impact_predictor.scenarios.walking.stride import Hub
+from impact_predictor.scenarios.walking.wheel import Rolling, Wheel, roll
+
+CONFIG = Path(__file__).parents[3] / "config/wheel.yaml"
+SHIPPED = Wheel(Hub(inertia=0.1, friction=100.0, slope=radians(5.0)))
+
+
+def scene_of(wheel: Wheel) -> Scene:
+    """The shipped scene with what its comments say to change."""
+    hub, shipped = wheel.hub, Scene.from_parameters(read_values(CONFIG))
+    return shipped._replace(
+        inertia=inertia_matrix([hub.inertia]),
+        friction=hub.friction,
+        normal=(sin(hub.slope), 0.0, cos(hub.slope)),
+        points=tuple((x, 0.0, y) for x, y in wheel.tips),
+    )
+
+
+def predicted(path: Path, rolling: Rolling) -> tuple[list[TrueImpact], list[Prediction]]:
+    """The true impacts of a bag, and the prediction of each sample."""
+    write_wheel(path, rolling, 200.0)
+    truths = [
+        one
+        for message in read_messages(path, {TRUTH_TOPIC: DIAGNOSTIC_ARRAY})
+        for one in decode_true_impacts(message.data)
+    ]
+    predictor = Predictor(scene_of(rolling.wheel))
+    answers = [predictor.update(decode_odometry(message.data)) for message in read_messages(path, {"/odom": ODOMETRY})]
+    return truths, answers
+
+
+def last_before(truth: TrueImpact, answers: list[Prediction]) -> Any:
+    """The last touchdown that was announced before an impact."""
+    return [one.touchdown for one in answers if one.touchdown is not None and one.sample.stamp < truth.stamp][-1]
+
+
+def test_the_shipped_scene_is_that_of_the_simulated_wheel() -> None:
+    shipped = Scene.from_parameters(read_values(CONFIG))
+    made = scene_of(SHIPPED)
+    assert np.array(shipped.points) == pytest.approx(np.array(made.points), abs=1e-15)
+    assert shipped.normal == pytest.approx(made.normal, abs=1e-15)
+    assert shipped._replace(points=made.points, normal=made.normal) == made
+    assert shipped.walking is None
+
+
+def test_the_topics_are_those_of_one_body_whose_tips_are_its_contact_points(tmp_path: Path) -> None:
+    rolling = roll(SHIPPED, 0.5, steps=3)
+    write_wheel(tmp_path / "wheel.mcap", rolling, 200.0)
+    path = tmp_path / "wheel.mcap"
+    assert topics(path) == {"/contact_geometry": POLYGON, "/odom": ODOMETRY, TRUTH_TOPIC: DIAGNOSTIC_ARRAY}
+    geometry = [decode_polygon(message.data) for message in read_messages(path, {"/contact_geometry": POLYGON})]
+    # Points are float32 in that message.
+    assert np.array(geometry[0].points) == pytest.approx(np.array(scene_of(SHIPPED).points), abs=1e-7)
+    samples = [decode_odometry(message.data) for message in read_messages(path, {"/odom": ODOMETRY})]
+    assert len(samples) == samples_in(rolling, 200.0)
+    for sample in samples[::20]:
+        state = rolling.world(sample.stamp * 1e-9)
+        assert sample.position == pytest.approx((state.x, 0.0, state.y), abs=1e-12)
+        # Counter-clockwise in the plane of x and z is negative about y.
+        assert sample.angular == pytest.approx((0.0, -state.omega, 0.0), abs=1e-12)
+
+
+@pytest.mark.parametrize("inertia", [1e-12, 1e-3, 0.1])
+def test_every_impact_of_a_wheel_that_does_not_slip_is_predicted_exactly(tmp_path: Path, inertia: float) -> None:
+    wheel = SHIPPED._replace(hub=SHIPPED.hub._replace(inertia=inertia))
+    truths, answers = predicted(tmp_path / "wheel.mcap", roll(wheel, 0.8, steps=9))
+    assert len(truths) == 9
+    for number, truth in enumerate(truths, 1):
+        touchdown = last_before(truth, answers)
+        assert (touchdown.old, touchdown.new) == (truth.old, truth.new) == (((number - 1) % 8,), (number % 8,))
+        assert touchdown.mode is truth.mode is Mode.PIVOT
+        assert touchdown.before.omega == pytest.approx(truth.angular_before[1] * -1.0, rel=1e-9)
+        assert touchdown.after.omega == pytest.approx(truth.angular_after[1] * -1.0, rel=1e-9)
+        assert np.array(touchdown.angular) == pytest.approx(np.array(truth.angular_after), rel=1e-9, abs=1e-12)
+
+
+@pytest.mark.parametrize(("inertia", "friction"), [(0.1, 0.36), (0.1, 0.3), (1e-3, 0.4), (1.0, 0.18)])
+def test_below_the_limit_the_predictor_says_slip_and_the_simulation_slips(
+    tmp_path: Path, inertia: float, friction: float
+) -> None:
+    wheel = SHIPPED._replace(hub=SHIPPED.hub._replace(inertia=inertia, friction=friction))
+    rolling = roll(wheel, 0.0, steps=5)
+    truths, answers = predicted(tmp_path / "slips.mcap", rolling)
+    for one, truth in zip(rolling.impacts, truths, strict=True):
+        touchdown = last_before(truth, answers)
+        assert touchdown.mode is truth.mode
+        assert touchdown.mode in (Mode.PIVOT_SLIDE, Mode.SLIDE)
+        # The tip that struck moves along the slope right after it, in the simulation and in the prediction.
+        stood = dict(rolling.stood(one.strike.time))
+        assert stood[one.new] in "+-"
+        slip = one.strike.after.vx - one.strike.after.omega * one.strike.outcome.body.new.y  # type: ignore[union-attr]
+        body = wheel.hub.body(wheel.alpha).new
+        # The predictor's plane looks from the old tip to the new one, uphill too.
+        assert abs(touchdown.after.vx - touchdown.after.omega * body.y) == pytest.approx(abs(slip), rel=1e-6)
+        assert abs(slip) > 1e-3
+
+
+def test_a_wheel_that_stops_is_predicted_down_to_its_last_impacts_that_samples_show(tmp_path: Path) -> None:
+    wheel = SHIPPED._replace(hub=SHIPPED.hub._replace(slope=radians(3.0)))
+    truths, answers = predicted(tmp_path / "stops.mcap", roll(wheel, 1.5, steps=None))
+    clear = [one for one in truths if one.approach > 0.05]
+    assert len(clear) > 10
+    for truth in clear:
+        touchdown = last_before(truth, answers)
+        assert (touchdown.new, touchdown.mode) == (truth.new, truth.mode)
+        assert touchdown.angular[1] == pytest.approx(truth.angular_after[1], rel=1e-6)
+    assert answers[-1].touchdown is None

@@ -1,0 +1,157 @@
+"""`impact-predictor simulate wheel`: what it prints and writes, and one sentence for each mistake."""
+
+from __future__ import annotations
+
+import json
+import shlex
+from math import degrees, pi, tan
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import CliRunner, Result
+from PIL import Image
+
+from impact_predictor.bags.read import topics
+from impact_predictor.cli import main
+from impact_predictor.commands.simulate_wheel import EXAMPLES, STICKS
+from impact_predictor.parameters.file import read_values
+from impact_predictor.scenarios.truth import TRUTH_TOPIC
+
+ROOT = Path(__file__).parents[1]
+SCENE = ROOT / "config/wheel.yaml"
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def run(*arguments: str) -> Result:
+    return CliRunner().invoke(main, ("simulate", "wheel", *arguments), terminal_width=100)
+
+
+def simulated(*arguments: str) -> Any:
+    result = run(*arguments, "--json")
+    assert result.exit_code == 0, result.stderr
+    return json.loads(result.stdout)
+
+
+def test_the_example_of_a_point_mass_ends_with_its_known_rates() -> None:
+    answer = simulated(*shlex.split(EXAMPLES[1])[3:-1])
+    assert set(answer) == {"impacts", "steps", "speed", "steady", "impact_friction", "time", "end"}
+    assert (answer["end"], answer["steps"], len(answer["impacts"])) == ("STEPS_DONE", 40, 40)
+    last = answer["impacts"][-1]
+    for found in (last, answer["steady"]):
+        assert found["omega_before"] == pytest.approx(1.548428592, abs=1e-8)
+        assert found["omega_after"] == pytest.approx(1.094904357, abs=1e-8)
+    assert (last["mode"], last["old"], last["new"]) == ("PIVOT", 7, 0)
+    assert answer["impact_friction"] == pytest.approx(tan(pi / 8.0), abs=1e-10)
+    assert answer["steady"]["friction"] == pytest.approx(tan(pi / 8.0), abs=1e-10)
+    # The wheel begins from rest, so that it was slower than it is now.
+    assert 0.9 * answer["steady"]["speed"] < answer["speed"] < answer["steady"]["speed"]
+
+
+def test_on_a_slope_of_005_a_point_mass_stops() -> None:
+    answer = simulated("--slope", str(degrees(0.05)), "--inertia", "1e-12", "--gravity", "9.8", "--omega", "1.5")
+    assert (answer["end"], answer["steps"], answer["steady"]) == ("RESTS", 2, None)
+
+
+def test_below_the_friction_it_needs_every_impact_slips() -> None:
+    answer = simulated("--friction", "0.35", "--steps", "5")
+    assert answer["impact_friction"] > 0.35
+    assert {impact["mode"] for impact in answer["impacts"]} == {"PIVOT_SLIDE"}
+
+
+def test_where_no_friction_is_enough_the_json_has_none() -> None:
+    assert simulated("--slope", "20", "--steps", "2")["steady"]["friction"] is None
+
+
+def test_the_table_tells_the_impacts_and_the_closed_form() -> None:
+    text = run().stdout
+    assert "wheel, 8 spokes 1 m long, slope 5 degrees" in text
+    assert "8 more impacts: read them with --json." in text
+    assert "it is over its last spoke (--steps), 20 steps and 15." in text
+    assert "Steady rolling, closed form: 1.605412029 rad/s before each impact, 1.177944487 after it" in text
+    assert "friction coefficient of 0.370775 in the impacts, between them 0.375327; it has 100." in text
+    assert all(len(line) <= 80 for line in text.splitlines()[:15])
+
+
+def test_the_table_of_a_wheel_that_stops_says_so() -> None:
+    text = run("--slope", "3", "--omega", "1.5").stdout
+    assert "5 > 4" in text
+    assert "it rests on two spokes, 4 steps and 3." in text
+    assert "On this slope it does not keep rolling" in text
+
+
+def test_a_duration_alone_lets_it_make_as_many_steps_as_it_gives() -> None:
+    answer = simulated("--duration", "25")
+    assert (answer["end"], answer["time"]) == ("TIME_UP", 25.0)
+    assert answer["steps"] > 20
+    assert simulated("--duration", "25", "--steps", "3")["steps"] == 3
+
+
+def test_the_replay_of_its_bag_with_the_shipped_scene_finds_every_impact(folder: Path) -> None:
+    result = run("--steps", "6", "--rate", "500", "-o", "wheel.mcap")
+    assert result.exit_code == 0, result.stderr
+    assert "Bag: wheel.mcap" in result.stdout
+    assert TRUTH_TOPIC in topics(folder / "wheel.mcap")
+    replay = CliRunner().invoke(main, ("replay", "wheel.mcap", "--params", str(SCENE), "--json"))
+    assert replay.exit_code == 0, replay.stderr
+    truth = json.loads(replay.stdout)["truth"]
+    assert (truth["touchdowns"], truth["missed"], truth["false"], truth["mode_accuracy"]) == (6, 0, 0, 1.0)
+    # The motion is followed to 1e-11, stamps are whole ns.
+    assert truth["median_velocity_error"] < 1e-8
+    assert truth["median_time_error"] < 2e-9
+
+
+def test_the_defaults_are_those_of_the_shipped_scene() -> None:
+    values = read_values(SCENE)
+    assert values["contact.friction"] == STICKS
+    assert (values["body.mass"], list(values["body.inertia"])) == (1.0, [0.1])
+
+
+@pytest.mark.slow
+def test_its_pictures_are_written(folder: Path) -> None:
+    result = run("--friction", "0.35", "--steps", "2", "--plot", "wheel.svg", "--animate", "wheel.gif")
+    assert result.exit_code == 0, result.stderr
+    assert "rimless wheel" in (folder / "wheel.svg").read_text()
+    with Image.open(folder / "wheel.gif") as moving:
+        assert getattr(moving, "n_frames") > 10  # noqa: B009 - Pillow's own types do not know it
+    assert "Picture: wheel.svg" in result.stdout
+    assert "Animation: wheel.gif" in result.stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (
+            ["--alpha", "23"],
+            "alpha is 23 degrees, half the angle between two spokes; give 180 degrees divided by a whole",
+        ),
+        (["--inertia", "0"], "inertia is 0.0; give a finite number above 0"),
+        (["--friction", "-1"], "friction is -1.0; give a finite number, 0 or above"),
+        (["--leg", "nan"], "leg is nan; give a finite number above 0"),
+        (["--duration", "0"], "duration is 0.0; give a number of seconds"),
+        (["--omega", "inf"], "rate is inf; give a finite number"),
+        (["--rate", "100"], "--rate is that of a bag: give -o BAG too"),
+        (["--rate", "0", "-o", "x.mcap"], "rate is 0.0; give a number above 0"),
+        (["--plot", "x.pdf"], "x.pdf"),
+        (["--animate", "x.png"], "give a name that ends in .gif"),
+    ],
+)
+def test_a_mistake_is_told_in_one_sentence_and_nothing_is_written(
+    folder: Path, arguments: list[str], sentence: str
+) -> None:
+    result = run(*arguments)
+    assert result.exit_code != 0
+    assert sentence in result.stderr
+    assert not list(folder.iterdir())
+
+
+def test_the_examples_of_the_help_name_options_that_exist() -> None:
+    text = run("--help").stdout
+    for line in EXAMPLES:
+        assert line in text
+        assert all(word in text for word in shlex.split(line) if word.startswith("-"))
