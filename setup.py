@@ -57,10 +57,14 @@ setup(
     extras_require={
         "ros": ["ros-jazzy-common-interfaces", "ros-jazzy-rclpy[fastrtps]"],
         "fast": ["numba"],
+        # Pinocchio, for machines with joints.
+        "articulated": ["pin>=3.0"],
         "peers": ["mujoco>=3.2"],
         # Spectra of waves to compare with.
         "spectra": ["wavespectra>=4.4"],
         "browser": ["playwright>=1.45"],
+        # Models of robots, for the tests.
+        "robots": ["example-robot-data>=4.0"],
         "test": ["hypothesis", "pytest", "pytest-xdist"],
     },
     entry_points={

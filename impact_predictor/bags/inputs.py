@@ -3,16 +3,26 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Final
 
 from ..errors import InputError
-from ..prediction.inputs import CONTACT_GEOMETRY, IMU, ODOM, Input
+from ..prediction.inputs import CONTACT_GEOMETRY, IMU, JOINTS, ODOM, SCHEDULE, STATES, WRENCH, Input
 from ..ros import messages
 from .read import listing
 
-TYPES: Final = {ODOM: messages.ODOMETRY, IMU: messages.IMU, CONTACT_GEOMETRY: messages.POLYGON}
+TYPES: Final = {
+    ODOM: messages.ODOMETRY,
+    IMU: messages.IMU,
+    CONTACT_GEOMETRY: messages.POLYGON,
+    JOINTS: messages.JOINT_STATE,
+    WRENCH: messages.WRENCH,
+    SCHEDULE: messages.JOINT_TRAJECTORY,
+}
 """The types of the messages on each kind of input."""
+
+GUESSED: Final = (ODOM, IMU, CONTACT_GEOMETRY, JOINTS)
+"""Kinds of inputs that the only topic of their type is taken for; trajectories and wrenches may be of anything."""
 
 _MOST_NAMED: Final = 20
 
@@ -58,14 +68,16 @@ def find_topics(
     for one in inputs:
         taken = [topic for other, topic in found.items() if other.kind == one.kind]
         free = [topic for topic, kind in recorded.items() if kind == TYPES[one.kind] and topic not in taken]
-        if one in found or one.body or not free:
+        if one in found or one.body or not free or one.kind not in GUESSED:
             continue
         if len(free) > 1:
             raise InputError(_ambiguous(path, free, one))
         chosen[one] = free[0]
     found |= chosen
-    _check_distinct({one: found[one] for one in inputs if one in found})
-    states = [one for one in inputs if one.body is not None and one.kind != CONTACT_GEOMETRY]
+    adapted = _adapted(path, recorded, inputs, found)
+    found |= adapted
+    _check_distinct({one: found[one] for one in inputs if one in found}, adapted_topics(recorded, found))
+    states = [one for one in inputs if one.body is not None and one.kind in STATES]
     missing = [one for one in states if one not in found]
     if missing and len(missing) == len(states):
         if support:
@@ -75,10 +87,50 @@ def find_topics(
     if chosen:
         took = " and ".join(f"{topic} as {one.name}" for one, topic in chosen.items())
         notes.append(f"in {os.fspath(path)}, took {took}: there is no other of the type")
+    if adapted:
+        adapting = [
+            f"{topic} as {_listing([one.name for one in inputs if adapted.get(one) == topic], 'and')}"
+            for topic in dict.fromkeys(adapted.values())
+        ]
+        notes.append(f"in {os.fspath(path)}, took {', '.join(adapting)}: its messages have an adapter")
     if missing and len(missing) < len(states):
         names = _listing([one.name for one in missing], "and")
         notes.append(f"{os.fspath(path)} has no {names}: nothing is predicted there")
     return {one: found[one] for one in inputs if one in found}, tuple(notes)
+
+
+def _adapted(
+    path: str | os.PathLike[str], recorded: Mapping[str, str], inputs: Sequence[Input], found: Mapping[Input, str]
+) -> dict[Input, str]:
+    """Topics whose messages have an adapter, for inputs that have no topic: a message may tell all of a body.
+
+    That is the topic of the body's state, or for a body without a name the only one with such messages.
+    """
+    adapted: dict[Input, str] = {}
+    for state in [one for one in inputs if one.kind == ODOM and one.body is not None]:
+        missing = [one for one in inputs if one.body == state.body and one.kind != IMU and one not in found]
+        if not missing or recorded.get(found.get(state, "")) == TYPES[ODOM]:
+            continue
+        possible = [found[state]] if state in found else [] if state.body else list(recorded)
+        from .adapters.known import known  # only for bags without the usual messages
+
+        adapters = known()
+        topics = [topic for topic in possible if recorded.get(topic, "") in adapters]
+        if len(topics) > 1:
+            raise InputError(_ambiguous(path, topics, state))
+        adapted |= {one: topic for one in missing for topic in topics}
+    return adapted
+
+
+def adapted_topics(recorded: Mapping[str, str], found: Mapping[Input, str]) -> dict[str, str]:
+    """The topics of inputs whose messages have an adapter, with their types."""
+    others = {topic for one, topic in found.items() if topic in recorded and recorded[topic] != TYPES[one.kind]}
+    if not others:
+        return {}
+    from .adapters.known import known
+
+    adapters = known()
+    return {topic: recorded[topic] for topic in sorted(others) if recorded[topic] in adapters}
 
 
 def _remapped(inputs: Sequence[Input], remap: Mapping[str, str]) -> dict[Input, str]:
@@ -113,14 +165,13 @@ def _untold(path: str | os.PathLike[str], recorded: Mapping[str, str], inputs: S
     )
 
 
-def _check_distinct(found: Mapping[Input, str]) -> None:
-    by_topic: dict[str, str] = {}
+def _check_distinct(found: Mapping[Input, str], adapted: Collection[str]) -> None:
+    """Whether each topic is one input, or several of one body if its messages have an adapter."""
+    by_topic: dict[str, Input] = {}
     for one, topic in found.items():
-        if topic in by_topic:
-            raise InputError(
-                f"{by_topic[topic]} and {one.name} cannot both be {topic}; remap one of them to another topic"
-            )
-        by_topic[topic] = one.name
+        first = by_topic.setdefault(topic, one)
+        if first is not one and not (topic in adapted and first.body == one.body):
+            raise InputError(f"{first.name} and {one.name} cannot both be {topic}; remap one of them to another topic")
 
 
 def _listing(names: Sequence[str], last: str = "") -> str:

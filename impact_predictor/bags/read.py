@@ -5,13 +5,15 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import ExitStack, suppress
+from functools import partial
 from pathlib import Path
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
-from rosbags.interfaces import Connection, ConnectionExtRosbag2
+from rosbags.interfaces import Connection, ConnectionExtRosbag2, MessageDefinitionFormat
 from rosbags.rosbag1 import Reader as Ros1Reader
 from rosbags.rosbag2 import Reader as Ros2Reader
-from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+from rosbags.typesys import Stores, get_types_from_idl, get_types_from_msg, get_typestore
+from rosbags.typesys.store import Typestore
 
 from ..errors import InputError
 
@@ -24,6 +26,7 @@ _REPAIRS: Final = {
     ".bag": "repair a copy with `rosbag reindex`",
 }
 _HEADER: Final = "std_msgs/msg/Header"
+_IDL: Final = f"{'=' * 80}\nIDL: "
 _MOST_TOPICS_NAMED: Final = 20
 
 
@@ -152,17 +155,47 @@ Converter = Callable[[bytes, str], memoryview]
 
 def _ros1_converter(path: Path, connections: Collection[Connection]) -> Converter:
     """The conversion with the definitions that the bag itself holds, so it needs no installed message packages."""
+    return _typestore(path, connections, ros1=True).ros1_to_cdr
+
+
+def decoders(path: str | os.PathLike[str], wanted: Mapping[str, str]) -> dict[str, Callable[[bytes], Any]]:
+    """What makes objects of the messages (in CDR) of some topics, by the definitions that the bag itself holds.
+
+    `wanted` has the topics and the types of their messages, as for `read_messages`.
+
+    Raises:
+        InputError: as `read_messages` does before the first message, or the bag holds no definition of a type.
+    """
+    path = Path(path)
+    with ExitStack() as stack:
+        reader = _open(path, stack)
+        connections = _select(path, reader.connections, wanted)
+    typestore = _typestore(path, connections, ros1=isinstance(reader, Ros1Reader))
+    return {one.topic: partial(typestore.deserialize_cdr, typename=one.msgtype) for one in connections}
+
+
+def _typestore(path: Path, connections: Collection[Connection], *, ros1: bool) -> Typestore:
+    """The types of the messages of some connections."""
     typestore = get_typestore(Stores.EMPTY)
     definitions = {}
+    for one in connections:
+        if one.msgdef.format is MessageDefinitionFormat.NONE:
+            raise InputError(f"{path} holds no definition of {one.msgtype} on {one.topic}; record it again as MCAP")
     try:
-        for connection in connections:
-            definitions.update(get_types_from_msg(connection.msgdef.data, connection.msgtype))
-        # The conversion drops the sequence number of ROS 1 headers itself and expects the definition without it.
-        definitions[_HEADER] = get_typestore(Stores.ROS2_JAZZY).fielddefs[_HEADER]
+        for one in connections:
+            if one.msgdef.format is MessageDefinitionFormat.IDL:
+                # One section for each type, under a line with its name.
+                for section in one.msgdef.data.split(_IDL)[1:]:
+                    definitions.update(get_types_from_idl(section.partition("\n")[2]))
+            else:
+                definitions.update(get_types_from_msg(one.msgdef.data, one.msgtype))
+        if ros1:
+            # The conversion drops the sequence number of ROS 1 headers itself, and expects the definition without it.
+            definitions[_HEADER] = get_typestore(Stores.ROS2_JAZZY).fielddefs[_HEADER]
         typestore.register(definitions)
     except Exception as error:
         raise InputError(_unreadable(path, error)) from error
-    return typestore.ros1_to_cdr
+    return typestore
 
 
 def _stream(

@@ -12,23 +12,25 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..errors import InputError
-from ..prediction.inputs import CONTACT_GEOMETRY, Input, inputs_of
+from ..prediction.inputs import CONTACT_GEOMETRY, JOINTS, STATES, Input, inputs_of
 from ..prediction.remedies import REMEDIES
 from ..prediction.scene import Scene
 from ..prediction.types import Status
-from ..ros.messages import DIAGNOSTIC_ARRAY, POLYGON
+from ..ros.messages import DIAGNOSTIC_ARRAY
 from ..scenarios.truth import ONSET_TOPIC, TRUTH_TOPIC
-from .inputs import TYPES, find_topics
+from .inputs import TYPES, adapted_topics, find_topics
 from .inputs import remapping as remapping
 from .read import BagMessage, read_messages, topics
-from .run import NODE as NODE
 from .run import Run
-from .run import Settled as Settled
+from .stream import NODE as NODE
+from .stream import Settled as Settled
 from .write import BagWriter
 
 if TYPE_CHECKING:
+    from ..prediction.monitor import Monitor
     from ..scenarios.comparison import Truth
     from ..scenarios.warned import Warned
+    from .gait import Gait
 
 Statuses = dict[Status, int]
 
@@ -47,7 +49,8 @@ class Result(NamedTuple):
     and `geometry_statuses` say what became of the messages about states and about contact points of all bodies, and
     `inputs` the same for each input by its name. `notes` are sentences about choices that were made; `unpredictable`
     says why nothing could be predicted, and `damaged` what of the bag was lost, or "". `truth` is how the predictions
-    compare with the true impacts, where the bag carries them, and `truths` the same for each body.
+    compare with the truth, where the bag carries it, and `truths` the same for each body. `gaits` are those of the
+    bodies that walk.
     """
 
     bag: str
@@ -62,6 +65,7 @@ class Result(NamedTuple):
     truth: Truth | None = None
     truths: Mapping[str, BodyTruth] = MappingProxyType({})
     inputs: Mapping[str, Statuses] = MappingProxyType({})
+    gaits: Mapping[str, Gait] = MappingProxyType({})
 
 
 def replay(
@@ -71,13 +75,15 @@ def replay(
     output: str | os.PathLike[str] | None = None,
     progress: Callable[[int], None] | None = None,
     markers: bool = False,
+    monitor: Monitor | None = None,
 ) -> Result:
     """Predict every touchdown of recorded bodies, and score it by what was recorded after it.
 
     `scenes` are those of the bodies by their names, or that of a body without one. `remap` gives the topics of the
     inputs, as in {"odom": "/cube/odom"} (see `find_topics`). With an `output` (see `BagWriter`) every message is
     written that the node would publish, `markers` too where they are asked for, with the log time of the input that
-    caused it. `progress` is told now and then how many samples are done.
+    caused it. `progress` is told now and then how many samples are done. `monitor` takes the messages in the place of
+    a new one.
 
     Messages are taken in the order of their log times, those of one log time in that of the recording. The node, which
     takes them as they arrive, gives the same answers to messages that arrive in this order.
@@ -92,18 +98,23 @@ def replay(
     by_name = {"": scenes} if isinstance(scenes, Scene) else scenes
     recorded = topics(path)
     names, notes = find_topics(path, recorded, inputs_of(by_name), remap or {})
-    wanted = {topic: TYPES[one.kind] for one, topic in names.items()}
+    adapted = adapted_topics(recorded, names)
+    wanted = {topic: TYPES[one.kind] for one, topic in names.items()} | adapted
     knows_truth = recorded.get(TRUTH_TOPIC) == DIAGNOSTIC_ARRAY
     if knows_truth:
         wanted |= {one: DIAGNOSTIC_ARRAY for one in (TRUTH_TOPIC, ONSET_TOPIC) if recorded.get(one) == DIAGNOSTIC_ARRAY}
-    messages = read_messages(path, wanted)
+    messages, readers = read_messages(path, wanted), {}
+    if adapted:
+        from .adapters.known import readers as readers_of
+
+        readers = readers_of(path, adapted)
     damage: list[str] = []
     with ExitStack() as stack:
         write = None if output is None else stack.enter_context(BagWriter(output)).write
-        run = Run(by_name, names, write, knows_truth=knows_truth, markers=markers)
+        run = Run(by_name, names, write, readers, knows_truth=knows_truth, markers=markers, monitor=monitor)
         run.take(_readable(messages, damage), progress)
         inputs = {one: _counts(counts) for one, counts in run.statuses.items()}
-        if damage and not any(counts for one, counts in inputs.items() if one.kind != CONTACT_GEOMETRY):
+        if damage and not any(counts for one, counts in inputs.items() if one.kind in STATES):
             raise InputError(damage[0])
         run.finish()
     truth, truths = _compare(run, by_name)
@@ -112,14 +123,15 @@ def replay(
         run.samples,
         perf_counter() - started,
         tuple(run.settled),
-        _sum([counts for one, counts in inputs.items() if one.body is not None and one.kind != CONTACT_GEOMETRY]),
+        _sum([counts for one, counts in inputs.items() if one.body is not None and one.kind in STATES]),
         _sum([counts for one, counts in inputs.items() if one.kind == CONTACT_GEOMETRY]),
         notes,
-        _why_unpredictable(inputs, names),
+        _why_unpredictable(inputs, names, by_name),
         damage[0] if damage else "",
         truth,
         truths,
         {one.name: counts for one, counts in inputs.items()},
+        run.gaits,
     )
 
 
@@ -140,9 +152,11 @@ def _sum(counts: list[Statuses]) -> Statuses:
     return {status: total[status] for status in Status if total[status]}
 
 
-def _why_unpredictable(inputs: Mapping[Input, Statuses], names: Mapping[Input, str]) -> str:
+def _why_unpredictable(
+    inputs: Mapping[Input, Statuses], names: Mapping[Input, str], scenes: Mapping[str, Scene]
+) -> str:
     """Why no state could be used, in one sentence, or ""."""
-    states = {one: counts for one, counts in inputs.items() if one.body is not None and one.kind != CONTACT_GEOMETRY}
+    states = {one: counts for one, counts in inputs.items() if one.body is not None and one.kind in STATES}
     # Bodies of which nothing is measured are watched by the motion of the support alone.
     states = states or dict(inputs)
     if not states:
@@ -157,21 +171,24 @@ def _why_unpredictable(inputs: Mapping[Input, Statuses], names: Mapping[Input, s
     if status is not Status.NO_GEOMETRY:
         refused = f"{counts[status]} of {sum(counts.values())} messages on {where}"
         return f"no sample was accepted, so nothing was predicted: {refused} are {status.name}: {REMEDIES[status]}"
-    topics_of_points = [topic for one, topic in names.items() if one.kind == CONTACT_GEOMETRY]
+    needed = next((one.kind for one in inputs_of(scenes) if one.kind in (CONTACT_GEOMETRY, JOINTS)), CONTACT_GEOMETRY)
+    topics_of_points = [topic for one, topic in names.items() if one.kind == needed]
     told = f"{', '.join(topics_of_points)} told none that can be used"
-    where = told if topics_of_points else f"there is no {POLYGON} in the bag"
-    return (
-        f"no contact points are known, so nothing was predicted: {where}; "
-        "give body.contact_points in the parameter file, or --remap contact_geometry:=TOPIC"
+    where = told if topics_of_points else f"there is no {TYPES[needed]} in the bag"
+    # The points of feet move: they cannot be parameters.
+    or_give = (
+        "" if any(scene.walking for scene in scenes.values()) else "give body.contact_points in the parameter file, or "
     )
+    return f"no contact points are known, so nothing was predicted: {where}; {or_give}--remap {needed}:=TOPIC"
 
 
 def _compare(run: Run, scenes: Mapping[str, Scene]) -> tuple[Truth | None, dict[str, BodyTruth]]:
-    """How the predictions compare with the true impacts, all together and of each body."""
-    if run.announcements is None:
+    """How the predictions compare with the true impacts and landings, all together and of each body."""
+    landings = {} if run.landings is None else run.landings.compared()
+    if run.announcements is None and not landings:
         return None, {}
-    from ..scenarios.comparison import compare
+    from ..scenarios.comparison import Announcements, compare
 
-    together, bodies = compare(run.true_impacts, run.announcements, scenes)
+    together, bodies = compare(run.true_impacts, run.announcements or Announcements(), scenes, landings)
     warned = run.warned({body: scene for body, scene in scenes.items() if scene.watching is not None})
     return together, {body: BodyTruth(bodies.get(body), warned.get(body)) for body in {**bodies, **warned}}

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections import defaultdict, deque
+from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from functools import partial
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Final
 
-from ..prediction.inputs import CONTACT_GEOMETRY, IMU, Input
+from ..prediction.inputs import CONTACT_GEOMETRY, IMU, JOINTS, ODOM, SCHEDULE, WRENCH, Input
 from ..prediction.monitor import Monitor
 from ..prediction.scene import Scene
-from ..prediction.types import Imu, Prediction, Sample, Score, Status
-from ..ros.messages import DIAGNOSTIC_ARRAY, MARKER_ARRAY, OUTPUTS, MalformedMessage, decode_odometry, decode_polygon
+from ..prediction.types import Geometry, Imu, Sample, Status
+from ..ros import messages
+from ..ros.messages import DIAGNOSTIC_ARRAY, MARKER_ARRAY, MalformedMessage, decode_odometry
 from ..scenarios.truth import (
     ONSET_TOPIC,
     TRUTH_TOPIC,
@@ -23,38 +25,37 @@ from ..scenarios.truth import (
     decode_true_onsets,
 )
 from .read import BagMessage
+from .stream import NODE, Settled, Stream, Write
 
 if TYPE_CHECKING:
     from ..ros.markers.scene import MarkerScene
     from ..scenarios.comparison import Announcements
+    from ..scenarios.landings import Landings
     from ..scenarios.warned import Warned, Warnings
+    from .adapters.known import Read
+    from .gait import Gait
 
-Write = Callable[[str, str, int, bytes], None]
-"""Takes topic, type, log time (ns) and bytes of a message."""
+Told = Callable[[Any, int], Status]
+"""Takes a message that asks for no answer, and its log time (ns)."""
 
-NODE: Final = "/impact_predictor"
-"""The name of the node whose topics are written."""
+DECODERS: Final = {
+    ODOM: "decode_odometry",
+    IMU: "decode_imu",
+    CONTACT_GEOMETRY: "decode_polygon",
+    JOINTS: "decode_joints",
+    WRENCH: "decode_wrench",
+    SCHEDULE: "decode_schedule",
+}
+"""What decodes each kind of input, by names: not every scene has them all."""
 
 _TELL_EVERY: Final = 256
-_REMEMBERED: Final = 256
-
-
-class Settled(NamedTuple):
-    """A touchdown that has happened: the body, its score, and what the last prediction of it cost in s.
-
-    The body goes by its name, or where it has none by its frame.
-    """
-
-    body: str
-    score: Score
-    cost: float | None
 
 
 class Run:
     """The messages of one bag, in the order in which they were logged.
 
-    `write` takes what the node would publish, with the log time of the message that caused it. `statuses` say what
-    became of the messages on each input, by its name.
+    `write` takes what the node would publish, with the log time of the message that caused it. `readers` read the
+    topics whose messages have an adapter. `statuses` say what became of the messages on each input, by its name.
     """
 
     def __init__(
@@ -62,9 +63,11 @@ class Run:
         scenes: Mapping[str, Scene],
         topics: Mapping[Input, str],
         write: Write | None,
+        readers: Mapping[str, Read] = MappingProxyType({}),
         *,
         knows_truth: bool,
         markers: bool,
+        monitor: Monitor | None = None,
     ) -> None:
         self.samples = 0
         self.settled: list[Settled] = []
@@ -72,16 +75,30 @@ class Run:
         self.true_impacts: list[TrueImpact] = []
         self.true_onsets: list[TrueOnset] = []
         self.announcements: Announcements | None = None
+        self.landings: Landings | None = None
+        self.gaits: dict[str, Gait] = {}
         self.warnings: Warnings | None = None
-        self.monitor = Monitor(scenes)
+        self.monitor = Monitor(scenes) if monitor is None else monitor
         self._write = write
         self._drawing: MarkerScene | None = None
         self._watches = self.monitor.watch is not None
         self._streams = {
-            body: _Stream(body, partial(self.monitor.update, body) if self._watches else predictor.update, write)
+            body: Stream(body, partial(self.monitor.update, body) if self._watches else predictor.update, write)
             for body, predictor in self.monitor.predictors.items()
         }
-        self._takers = {topic: self._taker(one) for one, topic in topics.items()}
+        self._takers = {topic: self._taker(one) for one, topic in topics.items() if topic not in readers}
+        for topic, read in readers.items():
+            inputs = {one.kind: one for one, its_topic in topics.items() if its_topic == topic}
+            takes = {kind: self._told(one) for kind, one in inputs.items() if kind != ODOM}
+            self._takers[topic] = partial(self._take_adapted, read, inputs, takes)
+        if readers and self.monitor.walkers:
+            from ..scenarios.landings import Landings
+
+            self.landings = Landings(scenes)
+        if self.monitor.walkers:
+            from .gait import Gait
+
+            self.gaits = {body: Gait(one.walking) for body, one in scenes.items() if one.walking is not None}
         if knows_truth:
             from ..scenarios.comparison import Announcements
 
@@ -113,6 +130,8 @@ class Run:
         for body, scores in self.monitor.finish().items():
             stream = self._streams[body]
             self.settled += [stream.end(score) for score in scores]
+            if body in self.gaits:
+                self.gaits[body].end_with(scores)
 
     def warned(self, bodies: Iterable[str]) -> dict[str, Warned]:
         """How bodies were warned of, where the bag tells what happened to them."""
@@ -131,26 +150,37 @@ class Run:
 
     def _taker(self, one: Input) -> Callable[[int, bytes], None]:
         """What takes the messages on an input, as log time in ns and bytes."""
-        counts, monitor = self.statuses[one], self.monitor
-        if one.kind == CONTACT_GEOMETRY:
-            return partial(self._take_geometry, one.body or "", counts)
+        if one.kind == ODOM and one.body is not None:
+            return partial(self._take_sample, self._streams[one.body], self.statuses[one])
+        decode = getattr(messages, DECODERS[one.kind])
+        return partial(self._take_told, decode, self._told(one), self.statuses[one])
+
+    def _told(self, one: Input) -> Told:
+        """What takes a message on an input that asks for no answer."""
+        monitor, body = self.monitor, one.body
+        if body is None:
+            return partial(self._set_support, monitor.update_support_imu if one.kind == IMU else monitor.update_support)
         if one.kind == IMU:
-            from ..ros.messages.imu import decode_imu
+            return partial(self._set_tilt, body)
+        if one.kind == CONTACT_GEOMETRY:
+            return partial(self._set_geometry, body)
+        updates: dict[str, Callable[[str, Any], Status]] = {
+            JOINTS: monitor.set_joints,
+            WRENCH: monitor.set_wrench,
+            SCHEDULE: monitor.set_schedule,
+        }
+        return lambda message, _: updates[one.kind](body, message)
 
-            if one.body is not None:
-                return partial(self._take_tilt, one.body, decode_imu, counts)
-            return partial(self._take_support, decode_imu, monitor.update_support_imu, counts)
-        if one.body is not None:
-            return partial(self._take_sample, self._streams[one.body], counts)
-        return partial(self._take_support, decode_odometry, monitor.update_support, counts)
-
-    def _take_sample(self, stream: _Stream, counts: list[int], log_time: int, data: bytes) -> None:
+    def _take_sample(self, stream: Stream, counts: list[int], log_time: int, data: bytes) -> None:
         self.samples += 1
         try:
             sample = decode_odometry(data)
         except MalformedMessage:
             counts[Status.MALFORMED] += 1
             return
+        self._answer(stream, counts, log_time, sample)
+
+    def _answer(self, stream: Stream, counts: list[int], log_time: int, sample: Sample) -> None:
         began = perf_counter()
         prediction = stream.update(sample)
         cost = perf_counter() - began
@@ -160,50 +190,69 @@ class Run:
         stream.answered(prediction, log_time, cost)
         if self.announcements is not None:
             self.announcements.add(prediction, stream.body)
+        if self.landings is not None:
+            self.landings.add(prediction, stream.body)
+        if stream.body in self.gaits:
+            self.gaits[stream.body].take(prediction)
         if prediction.score is not None:
             self.settled.append(stream.settle(prediction.score))
         if self._drawing is not None:
             self._drawing.take(stream.body, prediction)
             self._draw(sample.stamp, log_time)
 
-    def _take_geometry(self, body: str, counts: list[int], log_time: int, data: bytes) -> None:
-        status = Status.MALFORMED
-        with suppress(MalformedMessage):
-            geometry = decode_polygon(data)
-            status = self.monitor.set_geometry(body, geometry)
-        counts[status] += 1
-        if status is Status.ACCEPTED and self._drawing is not None:
-            self._drawing.set_geometry(body, geometry)
-
-    def _take_support(
-        self,
-        decode: Callable[[bytes], Any],
-        update: Callable[[Any], Status],
-        counts: list[int],
-        log_time: int,
-        data: bytes,
+    def _take_told(
+        self, decode: Callable[[bytes], Any], take: Told, counts: list[int], log_time: int, data: bytes
     ) -> None:
         status = Status.MALFORMED
         with suppress(MalformedMessage):
-            message = decode(data)
-            status = update(message)
+            status = take(decode(data), log_time)
         counts[status] += 1
-        deck = self.monitor.deck
+
+    def _take_adapted(
+        self, read: Read, inputs: Mapping[str, Input], takes: Mapping[str, Told], log_time: int, data: bytes
+    ) -> None:
+        """Take a message that has an adapter as the messages on all inputs that it is told to be."""
+        state = inputs.get(ODOM)
+        self.samples += state is not None
+        try:
+            told = read(data)
+        except MalformedMessage:
+            for one in inputs.values():
+                self.statuses[one][Status.MALFORMED] += 1
+            return
+        about = (CONTACT_GEOMETRY, told.geometry), (JOINTS, told.joints), (SCHEDULE, told.schedule)
+        for kind, message in (*about, *[(WRENCH, wrench) for wrench in told.wrenches]):
+            if message is not None and kind in takes:
+                self.statuses[inputs[kind]][takes[kind](message, log_time)] += 1
+        sample = told.sample
+        if sample is not None and state is not None:
+            stream = self._streams[state.body or ""]
+            if self.landings is not None and stream.body in self.gaits and told.stands:
+                self.landings.tell(stream.body or sample.child_frame_id, sample.stamp, told.stands)
+                self.gaits[stream.body].tell(sample.stamp, told.stands)
+            self._answer(stream, self.statuses[state], log_time, sample)
+
+    def _set_geometry(self, body: str, geometry: Geometry, log_time: int) -> Status:
+        status = self.monitor.set_geometry(body, geometry)
+        if status is Status.ACCEPTED and self._drawing is not None:
+            self._drawing.set_geometry(body, geometry)
+            if body in self.monitor.walkers:
+                self._draw(geometry.stamp, log_time)
+        return status
+
+    def _set_support(self, update: Callable[[Any], Status], message: Sample | Imu, log_time: int) -> Status:
+        status, deck = update(message), self.monitor.deck
         if status is Status.ACCEPTED and self._drawing is not None and deck is not None and deck.last is not None:
             self._drawing.take_support(deck.last)
             self._draw(message.stamp, log_time)
+        return status
 
-    def _take_tilt(
-        self, body: str, decode: Callable[[bytes], Imu], counts: list[int], log_time: int, data: bytes
-    ) -> None:
-        status = Status.MALFORMED
-        with suppress(MalformedMessage):
-            imu = decode(data)
-            status = self.monitor.update_imu(body, imu)
-        counts[status] += 1
+    def _set_tilt(self, body: str, imu: Imu, log_time: int) -> Status:
+        status = self.monitor.update_imu(body, imu)
         if status is Status.ACCEPTED and self._drawing is not None:
             self._drawing.take_tilt(body, imu.stamp, self.monitor.tilts[body])
             self._draw(imu.stamp, log_time)
+        return status
 
     def _take_true_impact(self, log_time: int, data: bytes) -> None:
         # What tells no impact there is another program's.
@@ -234,44 +283,3 @@ class Run:
             data = self._drawing.due(stamp)
             if data is not None:
                 self._write(f"{NODE}/markers", MARKER_ARRAY, log_time, data)
-
-
-class _Stream:
-    """The answers to the samples of one body."""
-
-    def __init__(self, body: str, update: Callable[[Sample], Prediction], write: Write | None) -> None:
-        self.body = body
-        self.update = update
-        prefix = f"{NODE}/{body}/" if body else f"{NODE}/"
-        self._write = write
-        self._outputs = [(prefix + name, *output) for name, output in OUTPUTS.items()]
-        self._last: tuple[Sample, int] | None = None
-        # What the predictions cost whose touchdowns may still be scored.
-        self._costs: deque[tuple[int, float]] = deque(maxlen=_REMEMBERED)
-
-    def answered(self, prediction: Prediction, log_time: int, cost: float) -> None:
-        """Write the answer to a sample of a log time in ns, which took a time in s."""
-        self._last = prediction.sample, log_time
-        if prediction.touchdown is not None:
-            self._costs.append((prediction.sample.stamp, cost))
-        if self._write is not None:
-            for topic, type_name, encode in self._outputs:
-                data = encode(prediction)
-                if data is not None:
-                    self._write(topic, type_name, log_time, data)
-
-    def settle(self, score: Score) -> Settled:
-        """The touchdown of a score."""
-        cost = next((cost for stamp, cost in reversed(self._costs) if stamp <= score.stamp), None)
-        frame = "" if self._last is None else self._last[0].child_frame_id
-        return Settled(self.body or frame, score, cost)
-
-    def end(self, score: Score) -> Settled:
-        """The touchdown of a score that came with the end, written with the time of the last sample."""
-        if self._write is not None and self._last is not None:
-            sample, log_time = self._last
-            topic, type_name, encode = next(one for one in self._outputs if one[0].endswith("/score"))
-            data = encode(Prediction(Status.ACCEPTED, sample, None, score))
-            if data is not None:
-                self._write(topic, type_name, log_time, data)
-        return self.settle(score)

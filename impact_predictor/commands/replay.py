@@ -28,6 +28,7 @@ DAMAGED: Final = 3
         "impact-predictor replay examples/cube_tosses --params config/cube_tosses.yaml",
         "impact-predictor replay run.mcap --params scene.yaml --remap odom:=/cube/odom -o predictions.mcap --json",
         "impact-predictor replay voyage.mcap --params config/deck_many.yaml --remap support/odom:=/deck/odom",
+        "impact-predictor replay examples/hyq/hyq.bag --params config/walker_hyq.yaml --figure gait.png",
         "impact-predictor replay monday.mcap tuesday.mcap --params scene.yaml -o predictions --figure errors.png",
     ),
 )
@@ -38,7 +39,7 @@ DAMAGED: Final = 3
     "--remap",
     multiple=True,
     metavar="FROM:=TO",
-    help="Topic of an input: odom, contact_geometry, crate/odom, support/odom ...; may be repeated.",
+    help="Topic of an input: odom, contact_geometry, joint_states, crate/odom, support/odom ...; may be repeated.",
 )
 @click.option(
     "-o",
@@ -48,7 +49,11 @@ DAMAGED: Final = 3
     "a folder with one file for each.",
 )
 @click.option("--markers", is_flag=True, help="Write the markers for RViz and Foxglove too, into the output.")
-@click.option("--figure", metavar="FILE", help="Draw errors and velocities into a .png or .svg file.")
+@click.option(
+    "--figure",
+    metavar="FILE",
+    help="Draw errors and velocities, of a walking machine its gait, into a .png or .svg file.",
+)
 @click.option("--all", "every", is_flag=True, help="List every touchdown, not only the first scored ones.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON only: an object, or a list for several bags.")
 def replay(
@@ -183,11 +188,10 @@ def print_result(result: Result, every: bool, output: Path | None) -> None:
 
 def print_all_together(results: list[Result]) -> None:
     """Print what several bags say together."""
-    from ..report.summary import row_of
-    from ..report.table import conclusions
+    from ..report.replay import concluded
 
     click.echo(f"\n{len(results)} bags together")
-    for sentence in conclusions([row_of(*settled) for result in results for settled in result.settled]):
+    for sentence in concluded(settled for result in results for settled in result.settled):
         click.echo(sentence)
 
 
@@ -197,6 +201,11 @@ def draw(path: str, results: list[Result]) -> None:
     Raises:
         InputError: it cannot be written.
     """
+    if any(result.gaits for result in results):
+        from ..report.gait import machines_of, write_gait
+
+        write_gait(path, machines_of(results))
+        return
     from ..report.figure import write_figure
     from ..report.summary import error_by_lead_time, row_of
     from ..report.table import conclusions

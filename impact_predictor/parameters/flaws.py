@@ -76,12 +76,19 @@ def extent_flaw(extent: tuple[float, ...]) -> str:
 
 def names_flaw(names: tuple[str, ...]) -> str:
     """Of the names of bodies, which become parts of the names of topics."""
-    for k, name in enumerate(names):
+    for name in names:
         if not _PART_OF_A_NAME.fullmatch(name):
             return (
                 f"{name!r} is no part of a ROS name: take letters, digits and single underscores, and begin and end "
                 "with a letter or a digit, the first one a letter"
             )
-        if name in names[:k]:
-            return f"{name!r} is there twice"
-    return ""
+    return _twice(names)
+
+
+def feet_flaw(names: tuple[str, ...]) -> str:
+    """Of the names of feet or of frames, by which messages and models call them."""
+    return "a name is empty" if "" in names else _twice(names)
+
+
+def _twice(names: tuple[str, ...]) -> str:
+    return next((f"{name!r} is there twice" for k, name in enumerate(names) if name in names[:k]), "")

@@ -7,11 +7,23 @@ from math import copysign, cos, hypot, sin
 from typing import Any
 
 from ..errors import InputError
+from .walking import WALKING_PARAMETERS
 
 Values = Mapping[str, Any]
 
 INCLINED = 1e-6
 """A unit normal that differs from z by more than this is inclined: less is rounding."""
+
+OF_FEET = {
+    "source": ("odom", "its pose and twist must be measured"),
+    "support.motion": ("fixed", "its ground must not move"),
+    "body.radius": (0.0, "it touches the ground with its feet"),
+    "onset.watch": (False, "it is not watched for sliding and tipping"),
+    "margins": (False, "the margins of its impacts are not known"),
+    "uncertainty.samples": (0, "no uncertainty is carried through its impacts"),
+    "odom.twist_window": (0.0, "its twist must be that of the very instant"),
+}
+"""What a parameter must be for a machine that walks, and why."""
 
 OFF = 0.01
 """A body may be placed this part of its size above or below its support: its place was measured with a tape."""
@@ -44,6 +56,7 @@ def check_body(body: str, values: Values, given: Collection[str]) -> None:
         InputError: they do not fit.
     """
     one = _Body(body, values, given)
+    _check_feet(one)
     _check_source(one)
     _check_cylinder(one)
     _check_gravity(one)
@@ -87,6 +100,45 @@ def _check_cylinder(one: _Body) -> None:
     # Points that are common to the other bodies may stand beside the radius of one.
     if one.values[points] and one.is_own(points) >= one.is_own(radius):
         raise InputError(f"{one.named(points)} and {one.named(radius)} are both given: a cylinder has no points")
+
+
+def _check_feet(one: _Body) -> None:
+    values, feet = one.values, "feet.names"
+    if not values[feet]:
+        for name, default in ((parameter.name, parameter.default) for parameter in WALKING_PARAMETERS):
+            if values[name] != default and one.is_own(name):
+                raise InputError(f"{one.named(name)} is for a machine that walks: give the names of its feet as {feet}")
+        return
+    for name, (needed, why) in OF_FEET.items():
+        if values[name] != needed:
+            given, wanted = (str(value).lower() for value in (values[name], needed))
+            raise InputError(
+                f"{one.named(name)} is {given}, but {one.named(feet)} makes the body{one.of} a machine that walks, "
+                f"and {why}: give {wanted}"
+            )
+    # Points that are common to the other bodies may stand beside the feet of one.
+    points = "body.contact_points"
+    if values[points] and one.is_own(points) >= one.is_own(feet):
+        raise InputError(
+            f"{one.named(points)} and {one.named(feet)} are both given: feet move, so their points come with messages"
+        )
+    _check_robot(one)
+
+
+def _check_robot(one: _Body) -> None:
+    """Whether a machine that walks has a model with a frame for each point of its feet, or none."""
+    values = one.values
+    frames = values["robot.frames"]
+    if not values["robot.urdf"]:
+        if frames and one.is_own("robot.frames"):
+            raise InputError(f"{one.named('robot.frames')} are frames of a model: give its file as robot.urdf")
+        return
+    feet, points = len(values["feet.names"]), values["feet.points"]
+    if len(frames) != feet * points:
+        raise InputError(
+            f"{one.named('robot.frames')} has {len(frames)} names{one.of}, but feet.names has {feet} and feet.points "
+            f"is {points}: give one frame for each point of each foot"
+        )
 
 
 def _check_gravity(one: _Body) -> None:

@@ -1,4 +1,4 @@
-"""The parameters of a body, its contacts and its impacts; with those of the support's motion they are all there are."""
+"""The parameters of a body, its contacts and its impacts; with those of decks and of feet they are all there are."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import Final
 from .deck import DECK_PARAMETERS
 from .flaws import inertia_flaw, normal_flaw, points_flaw
 from .types import Parameter
+from .walking import WALKING_PARAMETERS
 
 _BODY_PARAMETERS: Final = (
     Parameter("body.mass", "double", None, "kg", "Mass of the body.", low=1e-9, high=1e12),
@@ -186,6 +187,6 @@ _BODY_PARAMETERS: Final = (
 )
 
 PARAMETERS: Final[dict[str, Parameter]] = {
-    parameter.name: parameter for parameter in (*_BODY_PARAMETERS, *DECK_PARAMETERS)
+    parameter.name: parameter for parameter in (*_BODY_PARAMETERS, *DECK_PARAMETERS, *WALKING_PARAMETERS)
 }
 """Every parameter by its name."""

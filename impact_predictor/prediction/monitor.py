@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING
 
 from .predictor import Predictor
 from .scene import MovingDeck, Scene, shared_by
-from .types import Geometry, Imu, Moment, Prediction, Quaternion, Sample, Score, Status
+from .types import Geometry, Imu, Joints, Moment, Prediction, Quaternion, Sample, Schedule, Score, Status, Wrench
 
 if TYPE_CHECKING:
     from .deck.resting import Resting
     from .deck.tilt import Tilt
     from .deck.tracker import Deck
+    from .walking.walker import Walker
     from .watch.watch import Report, Watch
 
 OF_SUPPORT = frozenset({Status.NO_SUPPORT, Status.SUPPORT_STALE})
@@ -30,9 +31,9 @@ NANOSECONDS = 1e9
 class Monitor:
     """The bodies of some scenes, by their names, over the support that they share.
 
-    It has a `Predictor` for each body whose pose is measured, a tracker of the support if that moves, and a watch over
-    the margins of bodies if their scenes ask for it. It routes between them and computes nothing itself. Messages are
-    taken as they arrive, and each stream in the order of its stamps.
+    It has a `Predictor` for each body whose pose is measured, or a `Walker` for one with feet, a tracker of the support
+    if that moves, and a watch over the margins of bodies if their scenes ask for it. It routes between them and
+    computes nothing itself. Messages are taken as they arrive, and each stream in the order of its stamps.
     """
 
     def __init__(self, scenes: Mapping[str, Scene]) -> None:
@@ -52,8 +53,13 @@ class Monitor:
             from .deck.tracker import Deck
 
             self.deck = Deck(shared.deck, shared.gravity, shared.normal)
-        self.predictors = {
-            body: Predictor(scene) if self.deck is None else Predictor(scene, self.deck)
+        self.walkers: dict[str, Walker] = {}
+        if any(scene.walking is not None for scene in scenes.values()):
+            from .walking.walker import Walker
+
+            self.walkers = {body: Walker(scene) for body, scene in scenes.items() if scene.walking is not None}
+        self.predictors: dict[str, Predictor | Walker] = {
+            body: self.walkers.get(body) or (Predictor(scene) if self.deck is None else Predictor(scene, self.deck))
             for body, scene in scenes.items()
             if scene.source == "odom"
         }
@@ -126,6 +132,18 @@ class Monitor:
         if self.watch is not None and status is Status.ACCEPTED and body in self._watched:
             self.watch.set_points(body, geometry.points)
         return status
+
+    def set_joints(self, body: str, joints: Joints) -> Status:
+        """Take the positions of the joints of a machine that walks."""
+        return self.walkers[body].set_joints(joints)
+
+    def set_wrench(self, body: str, wrench: Wrench) -> Status:
+        """Take what the force sensor of one of its feet measures."""
+        return self.walkers[body].set_wrench(wrench)
+
+    def set_schedule(self, body: str, schedule: Schedule) -> Status:
+        """Take when its feet are to stand."""
+        return self.walkers[body].set_schedule(schedule)
 
     def silent(self, stamp: int) -> None:
         """Know that no message came until a stamp (ns), so that what is too old by then counts as lost."""

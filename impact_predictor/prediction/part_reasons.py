@@ -9,6 +9,10 @@ Values = Mapping[str, Any]
 
 
 def why_friction(values: Values) -> str:
+    if values["feet.names"]:
+        return (
+            f"contact.friction is {values['contact.friction']:g}: what keeps the feet that stand and land from slipping"
+        )
     if values["contact.friction"]:
         return f"contact.friction is {values['contact.friction']:g}: a stance may stick, and then moves in closed form"
     return "contact.friction is 0: every stance slips, and its motion is integrated"
@@ -28,10 +32,16 @@ def why_twist_window(values: Values) -> str:
 
 
 def has_geometry(values: Values) -> bool:
+    if values["feet.names"]:
+        return not values["robot.urdf"]
     return values["source"] == "odom" and not (values["body.contact_points"] or values["body.radius"])
 
 
 def why_geometry(values: Values) -> str:
+    if values["robot.urdf"]:
+        return "robot.urdf is given, so the feet are where joint_states says, and there is no contact_geometry"
+    if values["feet.names"]:
+        return "feet.names makes it a machine that walks, so its points keep coming with the topic contact_geometry"
     if values["body.radius"]:
         return "body.radius makes the body a cylinder, so there is no subscription to contact_geometry"
     if values["body.contact_points"]:
@@ -40,13 +50,16 @@ def why_geometry(values: Values) -> str:
 
 
 def has_transverse(values: Values) -> bool:
-    in_scene = values["transverse_slip"] and values["law"] == "path" and not values["body.radius"]
+    in_scene = values["transverse_slip"] and values["law"] == "path"
+    in_scene = in_scene and not (values["body.radius"] or values["feet.names"])
     return bool(in_scene and values["contact.friction"] > 0.0)
 
 
 def why_transverse(values: Values) -> str:
     if values["body.radius"]:
         return "body.radius makes the body a cylinder: friction acts in the impact plane alone"
+    if values["feet.names"]:
+        return "feet.names makes it a machine that walks: friction acts in the impact plane alone"
     if not values["transverse_slip"]:
         return "transverse_slip is false: friction acts in the impact plane alone"
     if values["law"] != "path":
@@ -106,6 +119,35 @@ def why_tilt(values: Values) -> str:
     if values["source"] == "imu":
         return "source is imu: an inertial sensor tells the tilt of the body, and nothing its place"
     return f"source is {values['source']}: no inertial sensor on a body"
+
+
+def why_feet(values: Values) -> str:
+    if values["feet.names"]:
+        feet = len(values["feet.names"])
+        return f"feet.names has {feet}: the motion of each over the ground tells its stance and landings (in the core)"
+    return "feet.names is not given: the contact points are fixed to the body"
+
+
+def why_articulated(values: Values) -> str:
+    if values["robot.urdf"]:
+        return f"robot.urdf is {values['robot.urdf']}: feet and inertia are those of joint_states, through Pinocchio"
+    if values["feet.names"]:
+        return "robot.urdf is not given: one rigid body on legs without mass"
+    return "robot.urdf is not given: one rigid body, and no topic joint_states"
+
+
+def why_force(values: Values) -> str:
+    if values["feet.names"] and values["feet.force"]:
+        return f"feet.force is {values['feet.force']:g} N: the topic contact_wrench confirms which feet stand"
+    return "feet.force is 0: no force sensors, and no subscription to contact_wrench"
+
+
+def why_schedule(values: Values) -> str:
+    if values["feet.names"] and values["feet.has_schedule"]:
+        return (
+            "feet.has_schedule is true: the topic schedule tells when feet are to stand, so landings are early or late"
+        )
+    return "feet.has_schedule is false: nobody tells when feet are to stand, and there is no such subscription"
 
 
 def why_several(values: Values) -> str:

@@ -11,6 +11,7 @@ from typing import Any, Final, NamedTuple
 
 from ..parameters.types import values_of
 from . import part_reasons as reasons
+from .part_modules import CORE, CORE_OF_NODE, ROCKING, WALKING
 
 Values = Mapping[str, Any]
 """All parameters of a scene, as `impact_predictor.parameters.validation.validate` gives them."""
@@ -22,7 +23,7 @@ class Part(NamedTuple):
     `has` says from the values of a body whether it needs the part, and `reason` why, in words of the scene. `to_have`
     and `to_leave_out` are the parameters that switch it; without them it belongs to what the scene is about, and cannot
     be switched. `modules` of this package are loaded for it alone, or for one of several parts; `of_node` says that the
-    node has the part, not the predictor.
+    node has the part, not the predictor, and `with_feet` that a machine that walks may be with it or without it.
     """
 
     name: str
@@ -32,6 +33,7 @@ class Part(NamedTuple):
     to_leave_out: Mapping[str, Any] = {}
     modules: tuple[str, ...] = ()
     of_node: bool = False
+    with_feet: bool = False
 
     def on(self, values: Values) -> bool:
         """Whether any body of a scene needs the part."""
@@ -49,15 +51,6 @@ def _bodies(values: Values) -> list[dict[str, Any]]:
     return [values_of(values, body) for body in values["bodies"] or ("",)]
 
 
-ROCKING: Final = (
-    *("mechanics.bodies", "mechanics.rocking", "mechanics.rocking.arcs", "mechanics.rocking.bodies"),
-    *("mechanics.rocking.contacts", "mechanics.rocking.course", "mechanics.rocking.disc", "mechanics.rocking.flight"),
-    *("mechanics.rocking.follow", "mechanics.rocking.loop", "mechanics.rocking.motion", "mechanics.rocking.points"),
-    *("mechanics.rocking.run", "mechanics.rocking.shape", "mechanics.rocking.step", "mechanics.rocking.strike"),
-    *("mechanics.rocking.tail", "mechanics.rocking.turn", "mechanics.rocking.wait", "mechanics.support"),
-)
-"""What follows a body until it strikes where no closed form does."""
-
 EVENTS: Final = "events executor"
 
 PARTS: Final = (
@@ -67,6 +60,7 @@ PARTS: Final = (
         reasons.why_friction,
         {"contact.friction": 0.3},
         {"contact.friction": 0.0},
+        with_feet=True,
     ),
     Part(
         "restitution",
@@ -74,6 +68,7 @@ PARTS: Final = (
         reasons.why_restitution,
         {"contact.restitution": 0.3},
         {"contact.restitution": 0.0},
+        with_feet=True,
     ),
     Part(
         "twist window",
@@ -103,7 +98,7 @@ PARTS: Final = (
         reasons.why_geometry,
         {"body.contact_points": ()},
         {"body.contact_points": (1.0, 0.0, 0.0, -1.0, 0.0, 0.0)},
-        ("ros.geometry_topic",),
+        ("ros.latched_topic",),
         of_node=True,
     ),
     Part(
@@ -156,6 +151,36 @@ PARTS: Final = (
         reasons.why_tilt,
         modules=("prediction.deck.tilt", "ros.messages.imu"),
     ),
+    Part(
+        "feet",
+        lambda values: bool(values["feet.names"]),
+        reasons.why_feet,
+        modules=WALKING,
+    ),
+    Part(
+        "articulated inertia",
+        lambda values: bool(values["robot.urdf"]),
+        reasons.why_articulated,
+        to_leave_out={"robot.urdf": "", "robot.frames": ()},
+        modules=("mechanics.articulated", "prediction.walking.legs"),
+        with_feet=True,
+    ),
+    Part(
+        "force sensors",
+        lambda values: bool(values["feet.names"] and values["feet.force"]),
+        reasons.why_force,
+        {"feet.force": 30.0},
+        {"feet.force": 0.0},
+        with_feet=True,
+    ),
+    Part(
+        "schedule",
+        lambda values: bool(values["feet.names"] and values["feet.has_schedule"]),
+        reasons.why_schedule,
+        {"feet.has_schedule": True},
+        {"feet.has_schedule": False},
+        with_feet=True,
+    ),
     Part("several bodies", lambda values: bool(values["bodies"]), reasons.why_several),
     Part(
         "margins",
@@ -186,6 +211,7 @@ PARTS: Final = (
         {"executor": "events"},
         {"executor": "single"},
         of_node=True,
+        with_feet=True,
     ),
 )
 """Every part. Those that others need stand before them."""
@@ -196,29 +222,6 @@ TOGETHER: Final = (
     (lambda values: values["support.motion"] == "fixed" and values["onset.watch"], ("prediction.deck.resting",)),
 )
 """Modules that a part loads only in some scenes, and for which bodies."""
-
-CORE: Final = frozenset(
-    {
-        *("mechanics", "mechanics.answer", "mechanics.first_root", "mechanics.impact"),
-        *("mechanics.motion", "mechanics.one_answer", "mechanics.pair", "mechanics.path_law", "mechanics.path_states"),
-        *("mechanics.problem", "mechanics.radau", "mechanics.sliding_events", "mechanics.sliding_stance"),
-        *("mechanics.sliding_sweep", "mechanics.stretch", "mechanics.total_law"),
-        *("mechanics.turning_stance", "mechanics.types"),
-        *("prediction", "prediction.approach", "prediction.monitor", "prediction.planar", "prediction.predictor"),
-        *("prediction.scene", "prediction.score", "prediction.types", "prediction.vectors"),
-    }
-)
-"""The modules that the predictor loads in every scene."""
-
-CORE_OF_NODE: Final = frozenset(
-    {
-        *("prediction.inputs", "prediction.monitor", "prediction.remedies"),
-        *("ros", "ros.body_topics", "ros.cdr", "ros.diagnostics", "ros.endpoints", "ros.markers.topic", "ros.messages"),
-        *("ros.messages.inputs", "ros.messages.outputs", "ros.node", "ros.node_parameters", "ros.predictor_node"),
-        *("ros.process", "ros.qos", "ros.reporter"),
-    }
-)
-"""Those that the node loads besides."""
 
 
 def modules_of(values: Values, node: bool = False) -> frozenset[str]:
@@ -237,16 +240,19 @@ def ladder(values: Values) -> list[tuple[Part | None, dict[str, Any]]]:
     So the costs of the parts, from one to the next, add up to that of the scene, and on to that of everything that such
     bodies can have.
     """
+    walks = any(one["feet.names"] for one in _bodies(values))
+    possible = [part for part in PARTS if (part.to_have or part.to_leave_out) and (part.with_feet or not walks)]
     everything = dict(values)
-    for part in PARTS:
+    for part in possible:
         everything = _switch(everything, part.to_have)
-    parts = [part for part in PARTS if part.to_have and (part.on(values) or part.on(everything))]
+    parts = [part for part in possible if part.on(values) or part.on(everything)]
     switched = dict(values)
     for part in parts:
         switched = _switch(switched, part.to_leave_out)
     steps: list[tuple[Part | None, dict[str, Any]]] = [(None, switched)]
     for part in sorted(parts, key=lambda part: not part.on(values)):
-        switched = _restore(switched, values, part.to_have) if part.on(values) else _switch(switched, part.to_have)
+        settings = {**part.to_leave_out, **part.to_have}
+        switched = _restore(switched, values, settings) if part.on(values) else _switch(switched, part.to_have)
         steps.append((part, switched))
     return steps
 

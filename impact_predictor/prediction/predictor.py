@@ -128,17 +128,9 @@ class Predictor:
         return scores
 
     def _check(self, sample: Sample) -> Status:
-        position, linear, angular = sample.position, sample.linear, sample.angular
-        size = dot(position, position) + dot(linear, linear) + dot(angular, angular)
-        # False for NaN as well. A sum of finite covariances may overflow: drivers fill in the largest double.
-        if not size < LARGEST or not (
-            isfinite(sum(sample.pose_covariance) + sum(sample.twist_covariance))
-            or all(map(isfinite, sample.pose_covariance + sample.twist_covariance))
-        ):
-            return Status.NOT_FINITE
-        x, y, z, w = sample.orientation
-        if not -UNIT < x * x + y * y + z * z + w * w - 1.0 < UNIT:
-            return Status.BAD_QUATERNION if all(map(isfinite, sample.orientation)) else Status.NOT_FINITE
+        status = check_numbers(sample)
+        if status is not Status.ACCEPTED:
+            return status
         if self._aboard is None and self.scene.frame and sample.frame_id != self.scene.frame:
             return Status.WRONG_FRAME
         if not self._points:
@@ -270,6 +262,22 @@ class Predictor:
             planar,
         )
         return new_tuple(Touchdown, touchdown)
+
+
+def check_numbers(sample: Sample) -> Status:
+    """Whether the numbers of a sample are those of a body."""
+    position, linear, angular = sample.position, sample.linear, sample.angular
+    size = dot(position, position) + dot(linear, linear) + dot(angular, angular)
+    # False for NaN as well. A sum of finite covariances may overflow: drivers fill in the largest double.
+    if not size < LARGEST or not (
+        isfinite(sum(sample.pose_covariance) + sum(sample.twist_covariance))
+        or all(map(isfinite, sample.pose_covariance + sample.twist_covariance))
+    ):
+        return Status.NOT_FINITE
+    x, y, z, w = sample.orientation
+    if not -UNIT < x * x + y * y + z * z + w * w - 1.0 < UNIT:
+        return Status.BAD_QUATERNION if all(map(isfinite, sample.orientation)) else Status.NOT_FINITE
+    return Status.ACCEPTED
 
 
 def check_points(points: tuple[Vector3, ...]) -> Status:

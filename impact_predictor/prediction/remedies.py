@@ -13,7 +13,8 @@ REMEDIES: Final[dict[Status, str]] = {
     Status.STAMP_WENT_BACK: "the stamp is older than the one before; let a single source publish, in order",
     Status.WRONG_FRAME: "its frame is not that of the scene; compare frame_id with support.frame, and child_frame_id "
     "with the frame of the contact points",
-    Status.NO_GEOMETRY: "no contact points are known; publish them on contact_geometry or give body.contact_points",
+    Status.NO_GEOMETRY: "no contact points are known; publish them on contact_geometry or give body.contact_points, or "
+    "where robot.urdf is given publish joint_states",
     Status.TOO_FEW_POINTS: "a body needs at least two contact points",
     Status.COINCIDENT_POINTS: "two of its points coincide",
     Status.MALFORMED: "its bytes are not a message of the topic's type; look at who else publishes there",
@@ -29,5 +30,12 @@ REMEDIES: Final[dict[Status, str]] = {
     Status.BELOW_SUPPORT: "the body lies deeper in the support than noise puts it; compare its frame, its contact "
     "points and support.height",
     Status.BODY_STALE: "no message of the body's source, or none any more; look whether it still publishes",
+    Status.GEOMETRY_STALE: "the last contact points are too old, or were never told; look whether their source still "
+    "publishes, and by the same clock",
+    Status.FEET_CHANGED: "the message has another number of points than feet.names and feet.points of the scene",
+    Status.BELOW_GROUND: "a foot lies deeper in the ground than noise puts it; compare support.height, the contact "
+    "points and the body frame",
+    Status.WRONG_JOINTS: "the joints are not those of robot.urdf; compare their names",
+    Status.SINGULAR_INERTIA: "the robot's inertia matrix has no inverse; look for links without mass in robot.urdf",
 }
 """What to say of each status but ACCEPTED."""

@@ -46,6 +46,33 @@ class Watching(NamedTuple):
     horizon: float = 5.0
 
 
+class Robot(NamedTuple):
+    """The model of an articulated machine: a file `urdf`, and the frame in it of each point of the feet, in order."""
+
+    urdf: str
+    frames: tuple[str, ...]
+
+
+class Walking(NamedTuple):
+    """How a machine's feet are told to stand or to swing; SI units.
+
+    `feet` are their names and each has `points` contact points (1, or 2 for heel and toe), which follow each other in
+    the geometry in this order. Their motion is fitted over `window` s, 0 to let the noise of the feet decide; a change
+    of stance is believed after `dead_time` s; contact points older than `timeout` s tell nothing any more. From `force`
+    (N) on a force sensor says that its foot stands; 0 where there are none. `has_schedule` tells that a planner does
+    publish when the feet are to stand. Without a `robot` the legs have no mass and the body is rigid.
+    """
+
+    feet: tuple[str, ...]
+    points: int = 1
+    window: float = 0.0
+    dead_time: float = 0.02
+    timeout: float = 0.1
+    force: float = 0.0
+    has_schedule: bool = False
+    robot: Robot | None = None
+
+
 class Scene(NamedTuple):
     """A body over a plane; SI units, the body's quantities in the body frame.
 
@@ -62,7 +89,8 @@ class Scene(NamedTuple):
     `gravity` stays in the world's. `source` of the body's state is "odom", "imu" (its tilt alone) or "none"; it stands
     at `place` in the support's frame, turned by `yaw` about the normal, until its source says more. A `radius` above
     zero makes it a cylinder along the line between pairs of `edges` of the support, on which it lies, in the place of
-    `points`: x y z of one point of each edge, in the support's frame. `watching` tells to watch its margins.
+    `points`: x y z of one point of each edge, in the support's frame. `watching` tells to watch its margins. `walking`
+    makes it a machine whose contact points are its feet, which move against the body.
     """
 
     mass: float
@@ -93,13 +121,14 @@ class Scene(NamedTuple):
     radius: float = 0.0
     edges: tuple[Vector3, ...] = ()
     watching: Watching | None = None
+    walking: Walking | None = None
 
     @classmethod
     def from_parameters(cls, values: Mapping[str, Any]) -> Scene:
         """The scene of validated parameters (see `impact_predictor.parameters.validation`)."""
         normal = values["support.normal"]
         length = hypot(*normal)
-        points = () if values["body.radius"] else values["body.contact_points"]
+        points = () if values["body.radius"] or values["feet.names"] else values["body.contact_points"]
         return cls(
             mass=values["body.mass"],
             inertia=inertia_matrix(values["body.inertia"]),
@@ -134,12 +163,13 @@ class Scene(NamedTuple):
             radius=values["body.radius"],
             edges=triples(values["support.edges"]),
             watching=_watching(values) if values["onset.watch"] else None,
+            walking=_walking(values) if values["feet.names"] else None,
         )
 
     @property
     def needs_geometry(self) -> bool:
-        """Whether the contact points come from a topic."""
-        return not (self.points or self.radius)
+        """Whether the contact points come from a topic of their own."""
+        return not (self.points or self.radius or (self.walking is not None and self.walking.robot is not None))
 
 
 def scenes_of(values: Mapping[str, Any]) -> dict[str, Scene]:
@@ -171,6 +201,19 @@ def _watching(values: Mapping[str, Any]) -> Watching:
         hysteresis=values["onset.hysteresis"],
         hold=values["onset.hold"],
         horizon=values["onset.horizon"],
+    )
+
+
+def _walking(values: Mapping[str, Any]) -> Walking:
+    return Walking(
+        feet=tuple(values["feet.names"]),
+        points=values["feet.points"],
+        window=values["feet.window"],
+        dead_time=values["feet.dead_time"],
+        timeout=values["feet.timeout"],
+        force=values["feet.force"],
+        has_schedule=values["feet.has_schedule"],
+        robot=Robot(values["robot.urdf"], tuple(values["robot.frames"])) if values["robot.urdf"] else None,
     )
 
 

@@ -50,6 +50,16 @@ class Status(IntEnum):
     """The body lies deeper in the support than any noise puts it."""
     BODY_STALE = 17
     """No message of the body's source, or none any more."""
+    GEOMETRY_STALE = 18
+    """The body's feet move, and the last message that told where they are is too old."""
+    FEET_CHANGED = 19
+    """The message has another number of points than the feet of the scene."""
+    BELOW_GROUND = 20
+    """A foot lies deeper in the ground than any noise puts it."""
+    WRONG_JOINTS = 21
+    """The names or the number of the joints are not those of the robot's model."""
+    SINGULAR_INERTIA = 22
+    """The robot's inertia matrix has no inverse at these joint positions."""
 
 
 class Leftover(IntFlag):
@@ -66,6 +76,8 @@ class Leftover(IntFlag):
     """The record ends, or pauses, before the velocities after the touchdown are known."""
     TOO_SLOW = 16
     """The approach is too slow against gravity for an impact to be told from rest."""
+    DRIVEN = 32
+    """The feet are driven: what a record shows after the touchdown is not the impact alone."""
 
 
 class Covariance(IntEnum):
@@ -140,11 +152,81 @@ class Moment(NamedTuple):
 
 
 class Geometry(NamedTuple):
-    """The points of a body that can touch the support, in m, in the body frame."""
+    """The points of a body that can touch the support, in m, in the body frame.
+
+    `velocities` in m/s are those of moving points relative to the body, along its axes; () where they are not measured.
+    """
 
     stamp: int
     frame_id: str
     points: tuple[Vector3, ...]
+    velocities: tuple[Vector3, ...] = ()
+
+
+class Joints(NamedTuple):
+    """Positions (rad or m) and velocities (rad/s or m/s) of joints by their names, as in sensor_msgs/JointState."""
+
+    stamp: int
+    names: tuple[str, ...]
+    positions: tuple[float, ...]
+    velocities: tuple[float, ...]
+
+
+class Wrench(NamedTuple):
+    """What the force sensor of a foot measures: `force` in N; `frame_id` is the name of the foot."""
+
+    stamp: int
+    frame_id: str
+    force: Vector3
+
+
+class Schedule(NamedTuple):
+    """When a planner wants feet to stand: from each of the `times` (ns, rising) on they stand as `stands` says."""
+
+    stamp: int
+    feet: tuple[str, ...]
+    times: tuple[int, ...]
+    stands: tuple[tuple[bool, ...], ...]
+
+
+class Foot(NamedTuple):
+    """A foot as one sample shows it.
+
+    `stands` is inferred from gaps and velocities, `since` that stamp in ns (0 where it was so from the beginning);
+    `gap` (m) of its lowest point and how fast that approaches the ground (m/s); `lead_time` in s until it lands and
+    `landing_speed` in m/s then, None where no landing lies within the horizon; `late` in s after the planned landing,
+    negative before it, None without a plan; `confirmed` whether a force sensor agrees, None without one. `position` of
+    its lowest point, and the `place` where it lands, in m, in the frame of the sample.
+    """
+
+    name: str
+    stands: bool
+    since: int
+    gap: float
+    approach: float
+    lead_time: float | None = None
+    landing_speed: float | None = None
+    late: float | None = None
+    confirmed: bool | None = None
+    position: Vector3 | None = None
+    place: Vector3 | None = None
+
+
+class Landing(NamedTuple):
+    """A foot that has come to stand: `stamp` in ns, inferred from its motion; `late` and `confirmed` as in `Foot`.
+
+    `history` has the (lead time in s, error of the announced time in s) of every prediction of it. `speed` in m/s is
+    that of the foot in its last frame in the air, and `impact` the touchdown that it makes with it: a planned foot may
+    brake to rest just as it reaches the ground, a real one has that speed when the ground comes one frame earlier.
+    """
+
+    foot: str
+    stamp: int
+    late: float | None
+    confirmed: bool | None
+    history: tuple[tuple[float, float], ...]
+    speed: float | None = None
+    impact: Touchdown | None = None
 
 
 class Uncertainty(NamedTuple):
@@ -207,7 +289,7 @@ class Score(NamedTuple):
 
     `stamp` in ns, the predicted touchdown; `measured` None when the record ends too early; `relative_error` None
     when there is nothing to compare; `history` the (lead time in s, relative error) of every prediction of it that had
-    the same contacts.
+    the same contacts. Of a walking machine `stamp` is when its foot came to stand, and `landing` tells of that.
     """
 
     stamp: int
@@ -217,6 +299,7 @@ class Score(NamedTuple):
     scored: bool
     leftover: Leftover
     history: tuple[tuple[float, float], ...]
+    landing: Landing | None = None
 
 
 class Prediction(NamedTuple):
@@ -224,6 +307,8 @@ class Prediction(NamedTuple):
 
     `touchdown` is None when none lies within the horizon; `score` is the touchdown that this sample's measurement
     completed, if any. Over a moving `support` both are in its frame, as is `relative`, the sample seen from there.
+    Of a walking machine `feet` has every foot, and `touchdowns` that of each foot ahead, the soonest, which is
+    `touchdown`, first.
     """
 
     status: Status
@@ -232,3 +317,5 @@ class Prediction(NamedTuple):
     score: Score | None = None
     support: Moment | None = None
     relative: Sample | None = None
+    touchdowns: tuple[Touchdown, ...] = ()
+    feet: tuple[Foot, ...] = ()

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 from rich.table import Table
 
+from ..prediction.inputs import STATES
 from ..prediction.types import Status
 from .summary import errors_of, row_of
 from .table import NONE, percent, plain_table, small_percent
@@ -17,8 +18,6 @@ if TYPE_CHECKING:
 
 EARLY: Final = Status.NO_SUPPORT
 """What becomes of samples while the support is not known yet: that they come early is no fault of theirs."""
-
-_STATES: Final = ("odom", "imu")
 
 
 def bodies_of(result: Result) -> list[str]:
@@ -80,7 +79,7 @@ def _of(part: int, whole: int) -> str:
 
 def _counts(result: Result, body: str) -> Statuses:
     """What became of the states of a body."""
-    return next((result.inputs[name] for kind in _STATES if (name := f"{body}/{kind}") in result.inputs), {})
+    return next((result.inputs[name] for kind in STATES if (name := f"{body}/{kind}") in result.inputs), {})
 
 
 def _truth_cells(truth: Truth | None) -> list[str]:

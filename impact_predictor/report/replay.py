@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Final
 
 from rich.console import Console
 
+from ..prediction.inputs import CONTACT_GEOMETRY, STATES
 from ..prediction.types import Status
 from .bodies import EARLY, bodies_of, bodies_table, truths_table
 from .summary import counted, error_by_lead_time, row_of, words
@@ -15,9 +16,10 @@ from .table import conclusions, lead_time_table, percent, show, small_percent, t
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from ..bags.replay import Result
+    from ..bags.replay import Result, Settled
     from ..scenarios.comparison import Truth
     from ..scenarios.warned import Warned
+    from .landings import Landed
 
 MOST_ROWS: Final = 20
 """Touchdowns that are listed unless all are asked for."""
@@ -25,23 +27,52 @@ MOST_ROWS: Final = 20
 
 def print_replay(console: Console, result: Result, every: bool = False) -> None:
     """Print the touchdowns (the first scored ones, or `every` one), the errors and what became of the samples."""
-    rows = sorted([row_of(*settled) for settled in result.settled], key=lambda row: row.stamp)
+    landings = _landings_of(result.settled)
+    others = [settled for settled in result.settled if settled.score.landing is None]
+    rows = sorted([row_of(*settled) for settled in others], key=lambda row: row.stamp)
     listed = rows if every else [row for row in rows if row.scored][:MOST_ROWS]
-    errors = error_by_lead_time(settled.score for settled in result.settled)
+    errors = error_by_lead_time(settled.score for settled in others)
     _say(console, result.bag)
     if bodies_of(result):
         _show(console, bodies_table(result))
         _show(console, truths_table(result))
+    if landings:
+        from .landings import feet_table, landings_table
+
+        shown = landings if every else landings[:MOST_ROWS]
+        _show(console, landings_table(shown, console.width), _hint(len(landings) - len(shown), "more landing"))
+        _show(console, feet_table(landings))
     if listed:
-        more = counted(len(rows) - len(listed), "more touchdown") if len(listed) < len(rows) else ""
-        hint = f"{more}: list them with --all, or read them with --json." if more else ""
+        hint = _hint(len(rows) - len(listed), "more touchdown")
         _show(console, touchdown_table(listed, console.width), hint)
     if any(one.errors.number for one in errors):
         _show(console, lead_time_table(errors))
     compared = [] if result.truth is None else truth_sentences(result.truth)
     compared += _warned([one.warned for one in result.truths.values() if one.warned is not None])
-    for sentence in [*conclusions(rows), *compared, *_costs(result)]:
+    for sentence in [*concluded(result.settled), *compared, *_costs(result)]:
         _say(console, sentence)
+
+
+def concluded(settled: Iterable[Settled]) -> list[str]:
+    """What touchdowns that have happened say all together, one sentence each: landings of feet, and all others."""
+    found = list(settled)
+    rows = [row_of(*one) for one in found if one.score.landing is None]
+    landings = _landings_of(found)
+    if not landings:
+        return conclusions(rows)
+    from .landings import landing_sentences
+
+    return landing_sentences(landings) + (conclusions(rows) if rows else [])
+
+
+def _landings_of(settled: Iterable[Settled]) -> list[Landed]:
+    """The landings among touchdowns; what tells of them is loaded where there are any."""
+    found = [one for one in settled if one.score.landing is not None]
+    if not found:
+        return []
+    from .landings import landings_of
+
+    return landings_of(found)
 
 
 def truth_sentences(truth: Truth) -> list[str]:
@@ -64,7 +95,11 @@ def truth_sentences(truth: Truth) -> list[str]:
             f"another mode; of these {percent(truth.clear_mode_accuracy)} % have the right one"
         )
     if truth.median_time_error is not None:
-        said.append(f"The time told 20 ms ahead is {truth.median_time_error * 1e6:.3g} us wrong in the median")
+        said.append(f"The time told 20 ms ahead is {_short(truth.median_time_error)} wrong in the median")
+        further = truth.time_error_by_lead_time.get("0.05")
+        said[-1] += "" if further is None else f", that told 50 ms ahead {_short(further)}"
+    if truth.least_lead_time is not None:
+        said.append(f"The first prediction of each came {_short(truth.least_lead_time)} ahead of it or earlier")
     if truth.unresolved:
         said.append(
             f"{counted(truth.unresolved, 'more impact')} cannot be seen at this rate of samples: too soon after the "
@@ -74,6 +109,16 @@ def truth_sentences(truth: Truth) -> list[str]:
             were = "was" if truth.unresolved_wrong == 1 else "were"
             said[-1] += f"; {truth.unresolved_wrong:,} of them {were} predicted all the same, with another mode"
     return [f"{sentence}." for sentence in said]
+
+
+def _short(time: float) -> str:
+    """A short time in s, in words."""
+    return f"{time * 1e6:.3g} us" if time < 1e-3 else f"{time * 1e3:.3g} ms"
+
+
+def _hint(number: int, noun: str) -> str:
+    """How the rows can be read that are not listed."""
+    return f"{counted(number, noun)}: list them with --all, or read them with --json." if number else ""
 
 
 def _warned(warned: Sequence[Warned]) -> list[str]:
@@ -104,9 +149,11 @@ def _costs(result: Result) -> list[str]:
         said = [f"{samples} at {cost:.0f} us each, {rate:,.0f} per second, with reading and writing."]
     if early := result.statuses.get(EARLY, 0):
         said.append(f"{counted(early, 'sample')} came before the deck's motion was known.")
-    support = {f"messages of {name}": counts for name, counts in result.inputs.items() if name.startswith("support/")}
-    states = {"samples": result.statuses, "messages of contact_geometry": result.geometry_statuses}
-    for name, counts in {**states, **support}.items():
+    told = {"samples": result.statuses, "messages of contact_geometry": result.geometry_statuses}
+    for name, counts in result.inputs.items():
+        if name.startswith("support/") or name.rpartition("/")[2] not in (*STATES, CONTACT_GEOMETRY):
+            told[f"messages of {name}"] = counts
+    for name, counts in told.items():
         faults = {status: count for status, count in counts.items() if status not in (Status.ACCEPTED, EARLY)}
         if faults:
             refused = ", ".join(f"{count:,} {words(status.name)}" for status, count in faults.items())

@@ -65,10 +65,11 @@ class LeadTimeErrors(NamedTuple):
 def row_of(body: str, score: Score, cost: float | None = None) -> TouchdownRow:
     """The row of a score; `cost` in s."""
     touchdown = score.touchdown
+    history = score.history if score.landing is None else score.landing.history
     return TouchdownRow(
         body,
         score.stamp,
-        score.history[0][0] if score.history else touchdown.lead_time,
+        history[0][0] if history else touchdown.lead_time,
         touchdown.lead_time,
         touchdown.mode,
         touchdown.before,
@@ -159,7 +160,12 @@ def as_json(result: Result) -> dict[str, Any]:
         "bag": result.bag,
         "samples": result.samples,
         "us_per_sample": result.seconds / result.samples * 1e6 if result.samples else None,
-        "touchdowns": [_row_as_json(row) for row in rows],
+        "touchdowns": [
+            _row_as_json(row)
+            | {"old": settled.score.touchdown.old, "new": settled.score.touchdown.new}
+            | _landing_as_json(settled.score)
+            for row, settled in zip(rows, result.settled, strict=True)
+        ],
         "scored": errors.number,
         "median_relative_error": errors.median,
         "p90_relative_error": errors.p90,
@@ -183,6 +189,14 @@ def as_json(result: Result) -> dict[str, Any]:
     if result.damaged:
         answer["damaged"] = result.damaged
     return answer
+
+
+def _landing_as_json(score: Score) -> dict[str, Any]:
+    if score.landing is None:
+        return {}
+    from .landings import landing_as_json  # only where feet have landed
+
+    return landing_as_json(score.landing)
 
 
 def _truth_as_json(truth: Truth, bodies: Mapping[str, BodyTruth]) -> dict[str, Any]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Final
+from typing import Final, Protocol
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
@@ -26,7 +26,7 @@ def plain_table() -> Table:
 
 def show(console: Console, table: Table) -> None:
     """Print a table; the terminal breaks lines that are too long for it, and no number is cut off."""
-    least = _least_width(table)
+    least = least_width(table)
     if least > console.width:
         table.width = least
     console.print(table, crop=False)
@@ -38,15 +38,28 @@ def touchdown_table(rows: Sequence[TouchdownRow], width: int) -> Table:
     `width` is that of the terminal in characters.
     """
     beside = _touchdown_table(rows, stacked=False)
-    return beside if _least_width(beside) <= width else _touchdown_table(rows, stacked=True)
+    return beside if least_width(beside) <= width else _touchdown_table(rows, stacked=True)
 
 
-def _least_width(table: Table) -> int:
+def least_width(table: Table) -> int:
+    """How many characters a table needs."""
     return Console(width=_UNLIMITED).measure(table).minimum
 
 
+class Stamped(Protocol):
+    """What has a stamp in ns."""
+
+    @property
+    def stamp(self) -> int: ...
+
+
+def first_stamp(rows: Sequence[Stamped]) -> int:
+    """The stamp in ns from which times are counted: that of the first of some rows if it is a time of day."""
+    return rows[0].stamp if rows and rows[0].stamp > _WALL_CLOCK else 0
+
+
 def _touchdown_table(rows: Sequence[TouchdownRow], stacked: bool) -> Table:
-    start = rows[0].stamp if rows and rows[0].stamp > _WALL_CLOCK else 0
+    start = first_stamp(rows)
     bodies = len({row.body for row in rows}) > 1
     costs = any(row.cost is not None for row in rows)
     notes = [_notes(row) for row in rows]

@@ -12,14 +12,18 @@ from typing import TYPE_CHECKING, Any, Final
 from rclpy.duration import Duration
 from rclpy.node import Node
 
-from ..prediction.types import Prediction, Sample, Score, Status
+from ..prediction.inputs import IMU as SENSOR
+from ..prediction.inputs import ODOM, SCHEDULE
+from ..prediction.types import Imu, Prediction, Sample, Score, Status
 from .endpoints import publisher, subscription
-from .messages import IMU, ODOMETRY, OUTPUTS, MalformedMessage, decode_odometry, decode_polygon
+from .input_topic import InputTopic
+from .messages import IMU, ODOMETRY, OUTPUTS, POLYGON, MalformedMessage, decode_odometry, decode_polygon
 from .reporter import Reporter
 
 if TYPE_CHECKING:
     from ..prediction.monitor import Monitor
-    from .geometry_topic import GeometryTopic
+    from .latched_topic import LatchedTopic
+    from .markers.scene import MarkerScene
 
 LAST_WORDS: Final = Duration(seconds=1)
 """How long the node waits at its end until its last score is received."""
@@ -34,24 +38,42 @@ class BodyTopics:
     def __init__(self, node: Node, reporter: Reporter, monitor: Monitor, body: str) -> None:
         self.outputs: dict[str, Any] = {}
         self._node, self._reporter, self._monitor, self._body = node, reporter, monitor, body
-        self._geometry: GeometryTopic | None = None
+        self._latched: LatchedTopic | None = None
         self._last_sample: Sample | None = None
 
-    def listen_to_geometry(self, topic: str) -> None:
-        """Take the contact points from a topic."""
-        from .geometry_topic import GeometryTopic
+    def listen(self, topic: str, kind: str) -> Any:
+        """Take messages of a kind from a topic; its subscription where they are to keep coming, else None."""
+        if kind == ODOM:
+            return self._listen_to_odom(topic)
+        if kind == SENSOR:
+            return self._listen_to_imu(topic)
+        if self._monitor.scenes[self._body].walking is None:
+            return self._listen_to_geometry(topic)
+        from .feet_topics import listen_to_feet, listen_to_schedule
+
+        about = self._node, self._reporter, self._monitor, self._body, topic
+        if kind == SCHEDULE:
+            self._latched = listen_to_schedule(*about)
+            return None
+        return listen_to_feet(*about, kind)
+
+    def _listen_to_geometry(self, topic: str) -> None:
+        from .latched_topic import LatchedTopic
 
         self._geometry_name = topic
-        self._geometry = GeometryTopic(self._node, self._on_geometry, topic)
+        self._latched = LatchedTopic(self._node, self._on_geometry, topic, POLYGON)
 
-    def listen_to_imu(self, topic: str) -> Any:
-        """Take the tilt from a topic; its subscription."""
+    def _listen_to_imu(self, topic: str) -> Any:
         from .messages.imu import decode_imu
 
-        self._name, self._decode_imu = topic, decode_imu
-        return subscription(self._node, topic, IMU, self._on_imu, self._reporter.on_lost)
+        def draw(drawing: MarkerScene, imu: Imu) -> None:
+            drawing.take_tilt(self._body, imu.stamp, self._monitor.tilts[self._body])
 
-    def listen_to_odom(self, topic: str) -> Any:
+        update = partial(self._monitor.update_imu, self._body)
+        one = InputTopic(self._reporter, topic, decode_imu, update, draw)
+        return subscription(self._node, topic, IMU, one.take, self._reporter.on_lost)
+
+    def _listen_to_odom(self, topic: str) -> Any:
         """Take the state from a topic, and publish the answers; its subscription."""
         self._name = topic
         self._update = self._monitor.predictors[self._body].update
@@ -63,9 +85,9 @@ class BodyTopics:
         return subscription(self._node, topic, ODOMETRY, self._on_odometry, self._reporter.on_lost)
 
     def look_for_history(self) -> None:
-        """Ask for contact points that were published before, if there may be any."""
-        if self._geometry is not None:
-            self._geometry.look_for_history()
+        """Ask for contact points, or a plan, that were published before, if there may be any."""
+        if self._latched is not None:
+            self._latched.look_for_history()
 
     def _on_geometry(self, data: bytes) -> None:
         status = Status.MALFORMED
@@ -76,19 +98,6 @@ class BodyTopics:
             self._reporter.markers.set_geometry(self._body, geometry)
         else:
             self._reporter.refuse(self._geometry_name, status)
-
-    def _on_imu(self, data: bytes) -> None:
-        try:
-            imu = self._decode_imu(data)
-        except MalformedMessage:
-            self._reporter.refuse(self._name, Status.MALFORMED)
-            return
-        status = self._monitor.update_imu(self._body, imu)
-        markers = self._reporter.markers
-        if markers.drawing is not None and status is Status.ACCEPTED:
-            markers.drawing.take_tilt(self._body, imu.stamp, self._monitor.tilts[self._body])
-            markers.show(imu.stamp)
-        self._reporter.took(self._name, status, imu.stamp)
 
     def _on_odometry(self, data: bytes) -> None:
         began = perf_counter()
@@ -111,6 +120,8 @@ class BodyTopics:
             _publish(output, encode, prediction)
         if prediction.score is not None:
             self._reporter.settled(sample.child_frame_id, prediction.score)
+        if prediction.feet:
+            self._reporter.walked(self._body, prediction)
         markers = self._reporter.markers
         if markers.drawing is not None:
             markers.drawing.take(self._body, prediction)

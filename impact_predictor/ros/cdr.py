@@ -7,15 +7,17 @@ A string is its length with the closing NUL as uint32, the UTF-8 text and the NU
 from __future__ import annotations
 
 import struct
-from collections.abc import Sequence
-from functools import lru_cache
+from collections.abc import Callable, Sequence
+from functools import lru_cache, wraps
 from struct import Struct
-from typing import Final, NamedTuple
+from typing import Final, NamedTuple, TypeVar
 
 HEADER_SIZE: Final = 4
 LITTLE_ENDIAN_HEADER: Final = b"\x00\x01\x00\x00"
 LARGEST_TRAILER: Final = 3
 """Bytes that a middleware may leave behind a message, because it pads to a multiple of four."""
+TRAILER_OF_DOUBLES: Final = 4
+"""Bytes more for each sequence of doubles: rclpy makes room to align them also where there are none."""
 
 NANOSECONDS: Final = 1_000_000_000
 OK, WARN, ERROR, STALE = range(4)
@@ -23,22 +25,27 @@ OK, WARN, ERROR, STALE = range(4)
 _SECONDS_RANGE: Final = (-(2**31), 2**31 - 1)
 
 
+Value = TypeVar("Value")
+
+
 class MalformedMessage(ValueError):
     """The bytes are not a message of the expected type."""
 
 
 class ByteOrder(NamedTuple):
-    """The structures of one byte order, prepared once."""
+    """The structures of one byte order, prepared once, and its mark in a format of `struct`."""
 
+    mark: str
     stamp: Struct
     length: Struct
     odometry_numbers: Struct
     imu_numbers: Struct
+    wrench_numbers: Struct
     point32: Struct
 
 
 def _byte_order(mark: str) -> ByteOrder:
-    return ByteOrder(*[Struct(mark + layout) for layout in ("iI", "I", "85d", "37d", "3f")])
+    return ByteOrder(mark, *[Struct(mark + layout) for layout in ("iI", "I", "85d", "37d", "6d", "3f")])
 
 
 LITTLE_ENDIAN: Final = _byte_order("<")
@@ -86,13 +93,68 @@ def read_string(data: bytes, offset: int, order: ByteOrder) -> tuple[str, int]:
     return str(data[start : end - 1], "utf-8"), end
 
 
-def check_end(data: bytes, end: int) -> None:
-    """Compare the end of the last field with the length of the message.
+def read_header(data: bytes) -> tuple[ByteOrder, int, str, int]:
+    """What begins a message with a std_msgs/Header: its byte order, stamp in ns and frame, and the offset behind it.
+
+    Raises:
+        MalformedMessage, struct.error, UnicodeDecodeError: it does not begin so.
+    """
+    order = byte_order(data)
+    seconds, nanoseconds = order.stamp.unpack_from(data, HEADER_SIZE)
+    frame_id, end = read_string(data, HEADER_SIZE + 8, order)
+    return order, seconds * NANOSECONDS + nanoseconds, frame_id, end
+
+
+def read_strings(data: bytes, offset: int, order: ByteOrder) -> tuple[tuple[str, ...], int]:
+    """The sequence of strings behind an offset, and the offset behind it; raises as `read_string`."""
+    end = align4(offset)
+    (count,) = order.length.unpack_from(data, end)
+    end += 4
+    found = []
+    for _ in range(count):
+        text, end = read_string(data, align4(end), order)
+        found.append(text)
+    return tuple(found), end
+
+
+def read_doubles(data: bytes, offset: int, order: ByteOrder) -> tuple[tuple[float, ...], int]:
+    """The sequence of doubles behind an offset, and the offset behind it.
+
+    Raises:
+        struct.error: it does not end inside the message.
+    """
+    start = align4(offset)
+    (count,) = order.length.unpack_from(data, start)
+    if not count:
+        # Nothing has to be aligned where no double follows.
+        return (), start + 4
+    start = align8(start + 4)
+    return struct.unpack_from(f"{order.mark}{count}d", data, start), start + 8 * count
+
+
+def decoder(type_name: str) -> Callable[[Callable[[bytes], Value]], Callable[[bytes], Value]]:
+    """Makes what a decoder raises where it reads beyond the bytes a MalformedMessage that names their type."""
+
+    def named(decode: Callable[[bytes], Value]) -> Callable[[bytes], Value]:
+        @wraps(decode)
+        def decoded(data: bytes) -> Value:
+            try:
+                return decode(data)
+            except (struct.error, UnicodeDecodeError) as error:
+                raise MalformedMessage(f"not a {type_name}: {error}") from None
+
+        return decoded
+
+    return named
+
+
+def check_end(data: bytes, end: int, sequences: int = 0) -> None:
+    """Compare the end of the last field with the length of a message that has so many sequences of doubles.
 
     Raises:
         MalformedMessage: something is missing or left over.
     """
-    if not end <= len(data) <= end + LARGEST_TRAILER:
+    if not end <= len(data) <= end + LARGEST_TRAILER + sequences * TRAILER_OF_DOUBLES:
         raise MalformedMessage(f"the message has {len(data)} bytes in the place of {end}")
 
 
@@ -113,6 +175,21 @@ def stamp(nanoseconds: int) -> bytes:
     seconds, rest = divmod(nanoseconds, NANOSECONDS)
     lowest, highest = _SECONDS_RANGE
     return _pack_stamp(min(max(seconds, lowest), highest), rest)
+
+
+def add_strings(data: bytearray, texts: Sequence[str]) -> None:
+    """Append a sequence of strings to a message whose end is aligned to four bytes; it is so afterwards, too."""
+    data += _pack_length(len(texts))
+    for text in texts:
+        data += string(text)
+
+
+def add_doubles(data: bytearray, numbers: Sequence[float]) -> None:
+    """Append a sequence of doubles to a message whose end is aligned to four bytes; it is so afterwards, too."""
+    data += _pack_length(len(numbers))
+    if numbers:
+        data += bytes(align8(len(data)) - len(data))
+        data += struct.pack(f"<{len(numbers)}d", *numbers)
 
 
 _ONE_STATUS: Final = tuple(struct.pack("<IBxxx", 1, level) for level in (OK, WARN, ERROR, STALE))
@@ -188,6 +265,7 @@ class Diagnostic(NamedTuple):
     level: int
     message: str
     values: dict[str, str]
+    hardware_id: str
 
 
 def decode_diagnostic_array(data: bytes) -> list[Diagnostic]:
@@ -207,14 +285,14 @@ def decode_diagnostic_array(data: bytes) -> list[Diagnostic]:
             level = data[end]
             name, end = read_string(data, align4(end + 1), order)
             message, end = read_string(data, align4(end), order)
-            _, end = read_string(data, align4(end), order)
+            hardware_id, end = read_string(data, align4(end), order)
             (pairs,) = length(data, align4(end))
             end = align4(end) + 4
             values = {}
             for _ in range(pairs):
                 key, end = read_string(data, align4(end), order)
                 values[key], end = read_string(data, align4(end), order)
-            found.append(Diagnostic(name, level, message, values))
+            found.append(Diagnostic(name, level, message, values, hardware_id))
     except (struct.error, UnicodeDecodeError, IndexError) as error:
         raise MalformedMessage(f"not a diagnostic_msgs/DiagnosticArray: {error}") from None
     check_end(data, end)

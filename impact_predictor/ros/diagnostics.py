@@ -5,12 +5,15 @@ from __future__ import annotations
 import math
 from collections import Counter, deque
 from collections.abc import Sequence
-from typing import Final, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from ..prediction.remedies import REMEDIES
 from ..prediction.score import median
 from ..prediction.types import Score, Status
 from .cdr import ERROR, NANOSECONDS, OK, WARN, DiagnosticForm, StatusBytes
+
+if TYPE_CHECKING:
+    from .feet_report import FeetReport
 
 STALE_AFTER: Final = 1.0
 """Seconds without a sample after which the input counts as stale."""
@@ -57,6 +60,8 @@ class Diagnostics:
         """Whom QoS keeps apart from this node now: topic, node and reason of each."""
         self.publishers = dict.fromkeys(inputs, 0)
         """How many publish on each input."""
+        self.feet: dict[str, FeetReport] = {}
+        """What is counted of the feet of bodies that walk."""
         self._name = name
         self._body = ""
         self._accepted = 0
@@ -94,9 +99,10 @@ class Diagnostics:
         return self._heard(now, name)
 
     def taken(self, now: float, name: str) -> bool:
-        """Count another accepted message: of the support, or a tilt."""
+        """Count another accepted message: of the support, a tilt, what is told about feet."""
         self._others += 1
-        return self._heard(now, name)
+        # A plan need not keep coming, so its silence tells nothing.
+        return name in self.publishers and self._heard(now, name)
 
     def _heard(self, now: float, name: str) -> bool:
         """Note an accepted message; whether it changed the level, which it does when it was waited for."""
@@ -133,6 +139,8 @@ class Diagnostics:
 
     def second_over(self, now: float) -> bool:
         """Sum up the second that ends, and begin the next."""
+        for feet in self.feet.values():
+            feet.second_over()
         changed = self._judge(now, at_its_end=True)
         updates = self._updates
         self._second = _Second(
@@ -181,6 +189,8 @@ class Diagnostics:
         values["touchdowns.scored"] = str(self._scored)
         if self._errors:
             values["touchdowns.median_relative_error"] = f"{median(self._errors):.4f}"
+        for feet in self.feet.values():
+            values |= feet.values()
         return values
 
     def _judge(self, now: float, *, at_its_end: bool = False) -> bool:
@@ -210,7 +220,8 @@ class Diagnostics:
         if age > STALE_AFTER:
             where = "" if len(self._last) == 1 else f" on {min(self._last, key=self._last.__getitem__)}"
             return WARN, f"no sample{where} for {age:.1f} s"
-        return OK, "predicting"
+        flaws = [feet.flaw for feet in self.feet.values() if feet.flaw]
+        return (WARN, flaws[0]) if flaws else (OK, "predicting")
 
     def _missing(self) -> str:
         """Which inputs have never told anything."""

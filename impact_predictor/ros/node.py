@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import sys
 
 from .process import Stop, run, spin
@@ -17,6 +18,8 @@ def _serve(stop: Stop) -> int:
     from .predictor_node import PredictorNode
 
     node = PredictorNode()
+    # All that is loaded now stays: to look at it again would hold the messages up for 20 ms and more, now and then.
+    gc.freeze()
     try:
         spin(node, stop, node.served, node.executor_kind)
         node.finish()

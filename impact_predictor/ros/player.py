@@ -8,6 +8,7 @@ Stamps stay as they are. It waits for subscribers, and ends when they have recei
 from __future__ import annotations
 
 import argparse
+import math
 import sys
 import time
 from collections.abc import Iterable, Iterator
@@ -15,13 +16,19 @@ from typing import Any, Final, NamedTuple
 
 from ..bags.read import BagMessage, read_messages, topics
 from ..errors import InputError
-from .messages import IMU, ODOMETRY, POLYGON
+from .messages import IMU, JOINT_STATE, JOINT_TRAJECTORY, ODOMETRY, POLYGON, WRENCH
 from .process import Stop, message_class, run
 
 NANOSECONDS: Final = 1e9
 
-INPUTS: Final = (ODOMETRY, IMU, POLYGON)
-"""Types of the messages that are played."""
+AWAITED: Final = (ODOMETRY, IMU, POLYGON)
+"""Types of the messages that are played when somebody has subscribed to them."""
+
+INPUTS: Final = (*AWAITED, JOINT_STATE, WRENCH, JOINT_TRAJECTORY)
+"""Types of all messages that are played: not every scene of a robot needs the others that its bag has."""
+
+LATCHED: Final = (POLYGON, JOINT_TRAJECTORY)
+"""Those of messages that stay true until the next, which late subscribers get too."""
 
 LONGEST_GAP: Final = 0.5
 """Seconds without a message after which nothing happens: a run of the recording ends, and the next may begin."""
@@ -30,7 +37,8 @@ SHORTENED_GAP: Final = 0.1
 """Seconds that are left of such a gap."""
 
 GEOMETRY_AHEAD: Final = 0.05
-"""Seconds that a message of contact points has before what follows it: topics are not ordered among themselves."""
+"""Seconds that such a message has before what follows it, unless they keep coming: topics are not ordered among
+themselves."""
 
 DISCOVERY: Final = 20.0
 """Seconds within which subscribers must be found."""
@@ -96,7 +104,7 @@ def _play(options: Options, stop: Stop) -> int:
     node = Node("player")
     try:
         publishers = {topic: _publisher(node, topic, kind) for topic, kind in types.items()}
-        if _await_subscribers(list(publishers.values()), stop):
+        if _await_subscribers([publishers[topic] for topic, kind in types.items() if kind in AWAITED], stop):
             print(PLAYING, flush=True)
             _publish_all(messages, types, publishers, options.rate, stop)
             _await_receipt(list(publishers.values()))
@@ -110,9 +118,8 @@ def _publisher(node: Any, topic: str, kind: str) -> Any:
     from rclpy.qos_overriding_options import QoSOverridingOptions, QoSPolicyKind
 
     overridable = (QoSPolicyKind.DEPTH, QoSPolicyKind.DURABILITY, QoSPolicyKind.HISTORY, QoSPolicyKind.RELIABILITY)
-    qos = QoSProfile(depth=QUEUE)
-    if kind == POLYGON:
-        qos = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    durability = DurabilityPolicy.TRANSIENT_LOCAL if kind in LATCHED else DurabilityPolicy.VOLATILE
+    qos = QoSProfile(depth=QUEUE, durability=durability)
     return node.create_publisher(
         message_class(kind), topic, qos, qos_overriding_options=QoSOverridingOptions(overridable)
     )
@@ -144,13 +151,15 @@ def _publish_all(
     stop: Stop,
 ) -> None:
     due = time.monotonic()
+    last = dict.fromkeys(publishers, -math.inf)
     for pause, message in messages:
         due += pause / rate
         if stop.wait(max(0.0, due - time.monotonic())):
             return
         publishers[message.topic].publish(message.data)
-        if types[message.topic] == POLYGON:
+        if types[message.topic] in LATCHED and message.log_time - last[message.topic] > LONGEST_GAP * NANOSECONDS:
             due = time.monotonic() + GEOMETRY_AHEAD
+        last[message.topic] = message.log_time
 
 
 def _await_receipt(publishers: list[Any]) -> None:

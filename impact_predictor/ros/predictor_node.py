@@ -11,7 +11,7 @@ from rclpy.exceptions import ParameterException
 from rclpy.node import Node
 
 from ..errors import InputError
-from ..prediction.inputs import CONTACT_GEOMETRY, IMU, inputs_of
+from ..prediction.inputs import inputs_of
 from ..prediction.monitor import Monitor
 from ..prediction.scene import Scene, scenes_of
 from .body_topics import BodyTopics
@@ -61,15 +61,11 @@ class PredictorNode(Node):
         # What is subscribed to first is served first when messages wait on several.
         for topic, kind, body in inputs_of(scenes):
             if body is None:
-                from .support_topic import SupportTopic
+                from .support_topic import listen_to_support
 
-                self._inputs[topic] = SupportTopic(self, reporter, self._monitor, topic, kind).input
-            elif kind == CONTACT_GEOMETRY:
-                self._bodies[body].listen_to_geometry(topic)
-            elif kind == IMU:
-                self._inputs[topic] = self._bodies[body].listen_to_imu(topic)
-            else:
-                self._inputs[topic] = self._bodies[body].listen_to_odom(topic)
+                self._inputs[topic] = listen_to_support(self, reporter, self._monitor, topic, kind)
+            elif (expected := self._bodies[body].listen(topic, kind)) is not None:
+                self._inputs[topic] = expected
         reporter.listen(list(self._inputs))
         outputs = chain.from_iterable(body.outputs.values() for body in self._bodies.values())
         self._misfits = Misfits(self, self._inputs.values(), outputs)

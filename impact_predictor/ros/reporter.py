@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from rclpy.node import Node
 
-from ..prediction.types import Score, Status
+from ..prediction.types import Prediction, Score, Status
 from .cdr import NANOSECONDS, diagnostic_array
 from .diagnostics import Diagnostics, Refused
 from .endpoints import publisher
@@ -40,9 +40,18 @@ class Reporter:
         self._support = inputs[0] if self._monitor.deck is not None else ""
         self.diagnostics = Diagnostics(self._name, perf_counter(), inputs)
         self.diagnostics.lost = None if self.on_lost is None else 0
+        walking = [body for body, scene in self._monitor.scenes.items() if scene.walking is not None]
+        if walking:
+            from .feet_report import FeetReport
+
+            self.diagnostics.feet = {body: FeetReport(body) for body in walking}
 
     def _on_lost(self, event: Any) -> None:
         self.diagnostics.lost = (self.diagnostics.lost or 0) + event.total_count_change
+
+    def walked(self, body: str, prediction: Prediction) -> None:
+        """A sample of a body with feet was answered."""
+        self.diagnostics.feet[body].take(prediction)
 
     def settled(self, body: str, score: Score) -> None:
         """A touchdown of a body has happened."""

@@ -3,7 +3,7 @@
 Predictions of one touchdown follow each other: the next sample announces the same contacts again, unless the announced
 moment has passed. Such a row of predictions belongs to the true impact, of those after its last sample, that is nearest
 to what it announced last, if they are within `NEAREST` of each other; a row without one was a false alarm. What was
-announced for a time after the record is not counted.
+announced for a time after the record is not counted. Touchdowns are those of impacts here, or of the landings of feet.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from collections import defaultdict
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from math import dist, hypot
 from statistics import median
+from types import MappingProxyType
 from typing import Final, NamedTuple
 
 from ..prediction.planar import hardly
@@ -24,8 +25,8 @@ from .truth import TrueImpact
 NEAREST: Final = 20_000_000
 """ns between an announced touchdown and the true one that it is taken for."""
 
-AHEAD: Final = 20_000_000
-"""ns before a touchdown at which the prediction is made whose error of time counts."""
+LEAD_TIMES: Final = (0.02, 0.05)
+"""Seconds before a touchdown at which the predictions are made whose errors of time count; the first are the usual."""
 
 BORDER: Final = 0.02
 """Relative change of friction or geometry within which another mode may be as right as the true one."""
@@ -45,6 +46,9 @@ class Truth(NamedTuple):
     median relative error of the velocities after them, all three in the plane; the median error in s of the time that
     was announced 20 ms ahead, or last before that. None where there is none.
 
+    `time_error_by_lead_time` has that error for each of `LEAD_TIMES`, and `least_lead_time` is the shortest time in s
+    from the first prediction of one to it.
+
     `clear` of those found are far enough from another mode to tell it: so small an error as `BORDER` does not change
     theirs; then the part of them whose mode was right. `unresolved_wrong` of the unresolved impacts were predicted all
     the same, with another mode than they had.
@@ -60,6 +64,8 @@ class Truth(NamedTuple):
     clear: int = 0
     clear_mode_accuracy: float | None = None
     unresolved_wrong: int = 0
+    time_error_by_lead_time: Mapping[str, float | None] = {}
+    least_lead_time: float | None = None
 
 
 class Comparison(NamedTuple):
@@ -78,15 +84,41 @@ class Announcement(NamedTuple):
 
 
 class Found(NamedTuple):
-    """A true impact with the last prediction before it, and the last that was made 20 ms before it."""
+    """A true impact with the last prediction before it."""
 
     impact: TrueImpact
     last: Announcement
-    ahead: Announcement | None
+
+
+class Announced(NamedTuple):
+    """The stamp of a true touchdown that was found, in ns, and its predictions in order."""
+
+    stamp: int
+    predictions: Sequence[Announcement]
+
+
+class Rows:
+    """The predictions of what touches down again and again, in rows of one touchdown each."""
+
+    def __init__(self) -> None:
+        self.all: list[list[Announcement]] = []
+        self._goes_on = False
+
+    def add(self, seen: int, touchdown: Touchdown | None) -> None:
+        """Take what a sample of a stamp in ns announces; what has no lead time announces nothing."""
+        if touchdown is None:
+            self._goes_on = False
+        elif touchdown.lead_time > 0.0:
+            announced = Announcement(seen, seen + round(touchdown.lead_time * NANOSECONDS), touchdown)
+            if self._goes_on and follows(announced, self.all[-1][-1]):
+                self.all[-1].append(announced)
+            else:
+                self.all.append([announced])
+            self._goes_on = True
 
 
 class Announcements:
-    """The predictions of each body, in rows of one touchdown each.
+    """The predictions of each body.
 
     A body goes by its name, or where it has none by its frame.
     """
@@ -94,27 +126,17 @@ class Announcements:
     def __init__(self) -> None:
         self.samples: dict[str, list[int]] = defaultdict(list)
         """Stamps in ns."""
-        self.rows: dict[str, list[list[Announcement]]] = defaultdict(list)
+        self.rows: dict[str, Rows] = defaultdict(Rows)
         self.names: dict[str, str] = {}
         """The names of bodies by their frames, by which a truth may call them too."""
-        self._goes_on: dict[str, bool] = {}
 
     def add(self, prediction: Prediction, name: str = "") -> None:
-        """Take the answer to an accepted sample; what has no lead time announces nothing."""
-        sample, touchdown = prediction.sample, prediction.touchdown
+        """Take the answer to an accepted sample."""
+        sample = prediction.sample
         body = name or sample.child_frame_id
         self.names[sample.child_frame_id] = body
         self.samples[body].append(sample.stamp)
-        if touchdown is None:
-            self._goes_on[body] = False
-        elif touchdown.lead_time > 0.0:
-            rows = self.rows[body]
-            announced = Announcement(sample.stamp, sample.stamp + round(touchdown.lead_time * NANOSECONDS), touchdown)
-            if self._goes_on.get(body) and follows(announced, rows[-1][-1]):
-                rows[-1].append(announced)
-            else:
-                rows.append([announced])
-            self._goes_on[body] = True
+        self.rows[body].add(sample.stamp, prediction.touchdown)
 
 
 def follows(announced: Announcement, last: Announcement) -> bool:
@@ -122,69 +144,94 @@ def follows(announced: Announcement, last: Announcement) -> bool:
     return announced.seen <= last.stamp and not set(announced.touchdown.new).isdisjoint(last.touchdown.new)
 
 
-class _Compared(NamedTuple):
-    """What was found of the impacts of one body."""
+class Compared(NamedTuple):
+    """What was found of the touchdowns of one body, and, where the truth tells them, of its impacts.
 
-    found: list[Found]
+    `errors` are those of the velocities after the impacts.
+    """
+
+    announced: Sequence[Announced]
     touchdowns: int
     false: int
-    unresolved: int
-    unresolved_wrong: int
-    errors: list[float]
+    unresolved: int = 0
+    unresolved_wrong: int = 0
+    found: Sequence[Found] = ()
+    errors: Sequence[float] = ()
 
 
-def compare(impacts: Iterable[TrueImpact], announcements: Announcements, scenes: Mapping[str, Scene]) -> Comparison:
+def compare(
+    impacts: Iterable[TrueImpact],
+    announcements: Announcements,
+    scenes: Mapping[str, Scene],
+    others: Mapping[str, Compared] = MappingProxyType({}),
+) -> Comparison:
     """Compare the predictions of all bodies that have samples with the true impacts.
 
-    `scenes` are those of the bodies by their names, or that of bodies without names by "".
+    `scenes` are those of the bodies by their names, or that of bodies without names by "". `others` are bodies that
+    were compared with another truth.
     """
     of_body: dict[str, list[TrueImpact]] = defaultdict(list)
     for impact in impacts:
         of_body[announcements.names.get(impact.body, impact.body)].append(impact)
     compared = {
-        body: _compare(of_body[body], announcements.rows[body], sorted(samples), scenes[body if body in scenes else ""])
+        body: _compare(
+            of_body[body], announcements.rows[body].all, sorted(samples), scenes[body if body in scenes else ""]
+        )
         for body, samples in announcements.samples.items()
-    }
+    } | dict(others)
     return Comparison(_truth(compared.values()), {body: _truth([one]) for body, one in compared.items()})
 
 
 def _compare(
     impacts: Sequence[TrueImpact], announced: Sequence[list[Announcement]], recorded: Sequence[int], scene: Scene
-) -> _Compared:
+) -> Compared:
     happened = sorted((one for one in impacts if one.stamp <= recorded[-1]), key=lambda one: one.stamp)
     rows = [row for row in announced if row[-1].stamp <= recorded[-1]]
-    matched, alarms = match(happened, rows)
+    matched, alarms = match([impact.stamp for impact in happened], rows)
     shown = resolved(happened, recorded, hardly(scene))
-    found = [find(happened[k], matched[k]) for k in shown if k in matched]
-    hidden = [find(happened[k], matched[k]) for k in set(matched) - set(shown)]
-    return _Compared(
-        found,
+    found = [Found(happened[k], matched[k][-1]) for k in shown if k in matched]
+    hidden = [Found(happened[k], matched[k][-1]) for k in set(matched) - set(shown)]
+    return Compared(
+        [Announced(happened[k].stamp, matched[k]) for k in shown if k in matched],
         len(shown),
         alarms,
         len(happened) - len(shown),
         sum(not is_right(one) for one in hidden),
+        found,
         [velocity_error(one, scene.center_of_mass) for one in found],
     )
 
 
-def _truth(bodies: Collection[_Compared]) -> Truth:
+def _truth(bodies: Collection[Compared]) -> Truth:
+    announced = [one for body in bodies for one in body.announced]
     found = [one for body in bodies for one in body.found]
     clear = [one for one in found if one.impact.border > BORDER]
     errors = [error for body in bodies for error in body.errors]
-    times = [abs(one.ahead.stamp - one.impact.stamp) / NANOSECONDS for one in found if one.ahead]
     touchdowns = sum(body.touchdowns for body in bodies)
+    time_errors = {str(lead_time): median_time_error(announced, lead_time) for lead_time in LEAD_TIMES}
     return Truth(
         touchdowns,
-        touchdowns - len(found),
+        touchdowns - len(announced),
         sum(body.false for body in bodies),
         sum(body.unresolved for body in bodies),
         sum(map(is_right, found)) / len(found) if found else None,
         median(errors) if errors else None,
-        median(times) if times else None,
+        time_errors[str(LEAD_TIMES[0])],
         len(clear),
         sum(map(is_right, clear)) / len(clear) if clear else None,
         sum(body.unresolved_wrong for body in bodies),
+        time_errors,
+        min(((one.stamp - one.predictions[0].seen) / NANOSECONDS for one in announced), default=None),
     )
+
+
+def median_time_error(announced: Iterable[Announced], lead_time: float) -> float | None:
+    """Median error in s of the times that were announced a lead time in s ahead, or last before that."""
+    errors = []
+    for stamp, predictions in announced:
+        made = [one for one in predictions if one.seen <= stamp - round(lead_time * NANOSECONDS)]
+        errors += [abs(one.stamp - stamp) / NANOSECONDS for one in made[-1:]]
+    return median(errors) if errors else None
 
 
 def is_right(found: Found) -> bool:
@@ -193,15 +240,17 @@ def is_right(found: Found) -> bool:
 
 
 def match(
-    happened: Sequence[TrueImpact], rows: Iterable[list[Announcement]]
+    stamps: Sequence[int], rows: Iterable[list[Announcement]], late: int = 0
 ) -> tuple[dict[int, list[Announcement]], int]:
-    """The predictions of each true impact by its place, in order, and the number of false alarms."""
-    stamps = [impact.stamp for impact in happened]
+    """The predictions of each true touchdown by its place, from their stamps in order, and the number of false alarms.
+
+    A row may go on for `late` ns after its touchdown.
+    """
     matched: dict[int, list[Announcement]] = defaultdict(list)
     alarms = 0
     for row in rows:
         seen, announced, _ = row[-1]
-        first = bisect_left(stamps, seen)
+        first = bisect_left(stamps, seen - late)
         later = bisect_left(stamps, announced, lo=first)
         near = [k for k in (later - 1, later) if first <= k < len(stamps) and abs(stamps[k] - announced) <= NEAREST]
         if near:
@@ -219,11 +268,6 @@ def resolved(happened: Sequence[TrueImpact], samples: Sequence[int], slowest: fl
         if bisect_right(samples, impact.stamp) - before >= SEEN and impact.approach > slowest:
             shown.append(k)
     return shown
-
-
-def find(impact: TrueImpact, announced: Sequence[Announcement]) -> Found:
-    early = [one for one in announced if one.seen <= impact.stamp - AHEAD]
-    return Found(impact, announced[-1], early[-1] if early else None)
 
 
 def velocity_error(found: Found, center: Vector3) -> float:

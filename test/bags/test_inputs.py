@@ -7,8 +7,8 @@ import pytest
 from impact_predictor.bags.inputs import find_topics
 from impact_predictor.errors import InputError
 from impact_predictor.prediction.inputs import inputs_of
-from impact_predictor.prediction.scene import MovingDeck, Scene
-from impact_predictor.ros.messages import IMU, ODOMETRY, POLYGON
+from impact_predictor.prediction.scene import MovingDeck, Robot, Scene, Walking
+from impact_predictor.ros.messages import IMU, JOINT_STATE, JOINT_TRAJECTORY, ODOMETRY, POLYGON, WRENCH
 
 POINTS = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0))
 SCENE = Scene(1.0, ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), 0.5, points=POINTS)
@@ -122,3 +122,19 @@ def test_no_topic_is_two_inputs() -> None:
     assert refusal(recorded, ABOARD, {"odom": "/support/odom"}) == (
         "support/odom and odom cannot both be /support/odom; remap one of them to another topic"
     )
+
+
+def test_of_feet_the_points_and_joints_may_be_guessed_but_no_wrench_and_no_trajectory() -> None:
+    walker = {"": SCENE._replace(points=(), walking=Walking(("left", "right"), force=30.0, has_schedule=True))}
+    recorded = {"/x": ODOMETRY, "/feet": POLYGON, "/arm": JOINT_TRAJECTORY, "/wrist": WRENCH, "/joints": JOINT_STATE}
+    assert found(recorded, walker)[0] == {"odom": "/x", "contact_geometry": "/feet"}
+    named = {**recorded, "/contact_wrench": WRENCH, "/plan": JOINT_TRAJECTORY}
+    topics, _ = found(named, walker, {"schedule": "/plan"})
+    assert topics == {
+        "odom": "/x",
+        "contact_geometry": "/feet",
+        "contact_wrench": "/contact_wrench",
+        "schedule": "/plan",
+    }
+    modelled = {"": walker[""]._replace(walking=Walking(("left",), robot=Robot("robot.urdf", ("foot",))))}
+    assert found(recorded, modelled)[0] == {"odom": "/x", "joint_states": "/joints"}

@@ -14,7 +14,7 @@ from impact_predictor.prediction.inputs import Input, inputs_of
 from impact_predictor.prediction.monitor import Monitor
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene, scenes_of
-from impact_predictor.prediction.types import Geometry, Imu, Quaternion, Sample, Status, Vector3
+from impact_predictor.prediction.types import Geometry, Imu, Quaternion, Sample, Schedule, Status, Vector3, Wrench
 from impact_predictor.prediction.vectors import axes_of, composed, cross, to_world
 from impact_predictor.prediction.watch.watch import Level, Report
 
@@ -132,7 +132,7 @@ import sys
 from impact_predictor.prediction.monitor import Monitor
 from impact_predictor.prediction.scene import Scene
 Monitor({"": Scene(1.0, ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), 0.5)})
-print(*[name for name in ("deck", "watch", "tilt", "resting") if f"impact_predictor.prediction.{name}" in sys.modules])
+print(*[name for name in ("deck", "watch", "walking") if f"impact_predictor.prediction.{name}" in sys.modules])
 print(*({"numpy"} & set(sys.modules)))
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=True, text=True)
@@ -357,3 +357,45 @@ def test_a_tilt_that_cannot_be_used_has_a_named_status(imu: Imu, status: Status)
         monitor.update_support(deck(time))
     assert monitor.update_imu("leaning", imu) is status
     assert ("leaning" in monitor.tilts) == (status is Status.ACCEPTED)
+
+
+WALKER = {"walker.feet.names": ["left", "right"], "walker.feet.force": 30.0, "walker.feet.has_schedule": True}
+
+
+def walking(**changes: Any) -> dict[str, Scene]:
+    """The scenes of a crate and of a machine that walks, on a floor."""
+    given = {name: CARGO[name] for name in ("body.mass", "body.inertia", "body.contact_points", "contact.friction")}
+    return scenes_of(validate({**given, "bodies": ["crate", "walker"], **WALKER, **changes}))
+
+
+def test_a_machine_that_walks_has_a_walker_in_the_place_of_its_predictor() -> None:
+    monitor = Monitor(walking())
+    assert isinstance(monitor.predictors["crate"], Predictor)
+    assert not isinstance(monitor.predictors["walker"], Predictor)
+    assert monitor.walkers == {"walker": monitor.predictors["walker"]}
+    assert Monitor(scenes()).walkers == {}
+
+
+def test_what_is_told_about_feet_goes_to_the_machine_that_has_them() -> None:
+    monitor = Monitor(walking())
+    feet = Geometry(SECOND, "walker", ((0.0, 0.2, -HEIGHT), (0.0, -0.2, -HEIGHT)))
+    assert monitor.update("walker", standing(0, child_frame_id="walker")).status is Status.NO_GEOMETRY
+    assert monitor.set_geometry("walker", feet) is Status.ACCEPTED
+    assert monitor.set_geometry("walker", feet._replace(points=feet.points[:1])) is Status.FEET_CHANGED
+    assert monitor.set_wrench("walker", Wrench(SECOND, "left", (0.0, 0.0, 50.0))) is Status.ACCEPTED
+    assert monitor.set_schedule("walker", Schedule(SECOND, ("left",), (SECOND,), ((False,),))) is Status.ACCEPTED
+    answer = monitor.update("walker", standing(0, child_frame_id="walker"))
+    assert [(foot.name, foot.stands, foot.confirmed) for foot in answer.feet] == [
+        ("left", True, True),
+        ("right", True, None),
+    ]
+    assert monitor.update("crate", standing(0)).feet == ()
+    assert monitor.finish() == {"crate": (), "walker": ()}
+
+
+def test_the_inputs_of_feet_come_before_the_states_of_their_body() -> None:
+    names = ["walker/contact_geometry", "walker/contact_wrench", "walker/schedule", "crate/odom", "walker/odom"]
+    assert [one.name for one in inputs_of(walking())] == names
+    modelled = {"walker.robot.urdf": "robot.urdf", "walker.robot.frames": ["a", "b"], "walker.feet.force": 0.0}
+    names[:2] = ["walker/joint_states"]
+    assert [one.name for one in inputs_of(walking(**modelled))] == names

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pickle
 import subprocess
 import sys
+from collections.abc import Collection
 from importlib.util import find_spec
 from itertools import pairwise
 from pathlib import Path
@@ -13,6 +14,7 @@ from typing import Any
 import pytest
 
 from impact_predictor.parameters.file import read_values
+from impact_predictor.parameters.types import values_of
 from impact_predictor.parameters.validation import PARAMETERS, validate
 from impact_predictor.prediction.parts import PARTS, Part, ladder, modules_of
 from impact_predictor.prediction.scene import Scene, scenes_of
@@ -47,6 +49,10 @@ CARGO = {
     "drum.support.edges": [0.0, -0.2, 0.0, 0.0, 0.2, 0.0],
     "leaning.source": "imu",
 }
+FEET: dict[str, Any] = {
+    **{name: value for name, value in CRATE.items() if name != "body.contact_points"},
+    "feet.names": ["left", "right"],
+}
 MADE: dict[str, Any] = {
     "crate": validate(CRATE),
     "frictionless": validate({**CRATE, "contact.friction": 0.0}),
@@ -59,10 +65,22 @@ MADE: dict[str, Any] = {
     "drum": validate(DRUM),
     "drum on deck": validate({**DRUM, "support.motion": "odom", "onset.watch": True}),
     "cargo": validate(CARGO),
+    "feet": validate(FEET),
+    "soles": validate({**FEET, "feet.points": 2, "feet.force": 30.0, "feet.has_schedule": True}),
+    "feet and crate": validate(
+        {**CRATE, "transverse_slip": False, "bodies": ["walker", "box"], "walker.feet.names": ["only"]}
+    ),
     "nothing": ladder(validate(CRATE))[0][1],
     "everything": ladder(validate(CRATE))[-1][1],
 }
 SCENES = {**SHIPPED, **MADE}
+
+LEG = """<robot name="hopper"><link name="base">{inertial}</link><link name="leg">{inertial}</link><link name="foot"/>
+<joint name="hip" type="revolute"><parent link="base"/><child link="leg"/><axis xyz="0 1 0"/>
+<limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
+<joint name="end" type="fixed"><parent link="leg"/><child link="foot"/><origin xyz="0 0 -0.8"/></joint></robot>"""
+INERTIAL = '<inertial><mass value="5"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+MODEL = {**FEET, "feet.names": ["only"], "robot.urdf": "hopper.urdf", "robot.frames": ["foot"]}
 
 EXTERNAL = {"matplotlib", "numba", "numpy", "rclpy", "rich", "rosbags", "ruamel", "scipy", "statistics"}
 
@@ -71,7 +89,7 @@ import pickle, sys
 values, body, points, messages = pickle.load(sys.stdin.buffer)
 from impact_predictor.prediction.monitor import Monitor
 from impact_predictor.prediction.scene import scenes_of
-from impact_predictor.prediction.types import Geometry, Imu, Sample
+from impact_predictor.prediction.types import Geometry, Imu, Joints, Sample, Schedule, Wrench
 scenes = scenes_of(values)
 if scenes[body].points:
     scenes[body] = scenes[body]._replace(points=points)
@@ -87,6 +105,12 @@ for of_support, message in messages:
             touchdown.planar.margins
     elif isinstance(message, Geometry) and scenes[body].needs_geometry:
         monitor.set_geometry(body, message)
+    elif isinstance(message, Joints) and scenes[body].walking.robot:
+        monitor.set_joints(body, message)
+    elif isinstance(message, Wrench) and scenes[body].walking.force:
+        monitor.set_wrench(body, message)
+    elif isinstance(message, Schedule) and scenes[body].walking.has_schedule:
+        monitor.set_schedule(body, message)
     monitor.reports()
 assert touchdowns > 10, touchdowns
 print(*sys.modules)
@@ -109,7 +133,19 @@ def of_rooms(modules: set[str]) -> set[str]:
 @pytest.mark.slow
 @pytest.mark.parametrize("name", SCENES)
 def test_a_predictor_loads_the_core_and_the_parts_of_its_scene_and_nothing_else(name: str) -> None:
-    values = SCENES[name]
+    check_what_is_loaded(SCENES[name])
+
+
+@pytest.mark.slow
+@pytest.mark.extras
+def test_a_machine_with_a_model_loads_its_mechanics_too(tmp_path: Path) -> None:
+    pytest.importorskip("pinocchio", reason="needs the extra articulated")
+    file = tmp_path / "hopper.urdf"
+    file.write_text(LEG.format(inertial=INERTIAL))
+    check_what_is_loaded(validate({**MODEL, "robot.urdf": str(file)}), {"pinocchio"})
+
+
+def check_what_is_loaded(values: dict[str, Any], more: Collection[str] = ()) -> None:
     body, scene = measured(values)
     record = made(scene)
     messages = [
@@ -118,30 +154,39 @@ def test_a_predictor_loads_the_core_and_the_parts_of_its_scene_and_nothing_else(
     modules = loaded(PREDICT, values, body, record.points, messages)
     assert of_rooms(modules) == modules_of(values)
     on = {part.name for part in PARTS if part.on(values)}
-    needed = {"numpy"} if on & {"onset watch", "harmonic extrapolation"} else set()
+    needed = {"numpy"} if on & {"onset watch", "harmonic extrapolation", "feet"} else set()
     if "uncertainty" in on:
         needed |= {"numpy", "statistics"} | ({"numba"} if find_spec("numba") else set())
         assert needed <= modules
     else:
-        assert EXTERNAL & modules == needed
+        assert {*EXTERNAL, "pinocchio"} & modules == {*needed, *more}
 
 
 def test_shipped_scenes_and_made_ones_have_and_leave_out_every_part() -> None:
     for part in PARTS:
-        assert {part.on(values) for values in SCENES.values()} == {False, True}, part.name
+        assert {part.on(values) for values in [*SCENES.values(), validate(MODEL)]} == {False, True}, part.name
 
 
 OF_POINTS = {"geometry topic", "transverse slip"}
 """Parts that a cylinder on two edges cannot have."""
+OF_FEET = {"force sensors", "schedule"}
+"""Parts that only a machine that walks can have."""
 SWITCHED = [part for part in PARTS if part.to_have]
+
+
+def impossible(values: dict[str, Any]) -> set[str]:
+    """The parts that cannot be switched in a scene."""
+    if any(values_of(values, body)["feet.names"] for body in values["bodies"] or ("",)):
+        return {part.name for part in SWITCHED if not part.with_feet}
+    return OF_FEET | (OF_POINTS if values["body.radius"] else set())
 
 
 @pytest.mark.parametrize("part", SWITCHED, ids=[part.name for part in SWITCHED])
 @pytest.mark.parametrize("name", [name for name in SCENES if not SCENES[name]["bodies"]])
 def test_a_part_is_switched_by_its_parameters_and_its_reason_names_one_of_them(name: str, part: Part) -> None:
     values = SCENES[name]
-    if part.name in OF_POINTS and values["body.radius"]:
-        pytest.skip("a cylinder cannot have it")
+    if part.name in impossible(values):
+        pytest.skip("such a body cannot have it, or cannot be without it")
     without = {**values, **part.to_leave_out}
     assert not part.on(without)
     needs = {"transverse slip": {"contact.friction": 0.3}, "harmonic extrapolation": {"support.motion": "odom"}}
@@ -169,11 +214,11 @@ def test_the_ladder_leads_from_nothing_over_the_scene_to_everything(name: str) -
     assert [part for part, _ in steps[:1]] == [None]
     on = [{part.name for part in PARTS if part.on(step)} for _, step in steps]
     own = {part.name for part in PARTS if part.on(values)}
-    kept = {part.name for part in PARTS if not part.to_have and part.on(values)}
+    fixed = impossible(values)
+    kept = {part.name for part in PARTS if (not part.to_have or part.name in fixed) and part.on(values)}
     assert on[0] == kept
     assert on[-1] - kept == {part.name for part, _ in steps if part is not None}
-    left = {part.name for part in SWITCHED} - on[-1]
-    assert left == (OF_POINTS if values["body.radius"] else set())
+    assert {part.name for part in SWITCHED} - on[-1] == fixed - kept
     for (part, _), (before, after) in zip(steps[1:], pairwise(on), strict=True):
         assert part is not None
         assert before < after

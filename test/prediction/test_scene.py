@@ -8,7 +8,7 @@ import pytest
 
 from impact_predictor.mechanics.types import Validity
 from impact_predictor.parameters.validation import validate
-from impact_predictor.prediction.scene import MovingDeck, Scene, Watching, inertia_matrix
+from impact_predictor.prediction.scene import MovingDeck, Robot, Scene, Walking, Watching, inertia_matrix
 
 BODY = {"body.mass": 2.0, "body.inertia": [0.1, 0.2, 0.25, 0.01, 0.02, 0.03], "contact.friction": 0.4}
 
@@ -42,6 +42,7 @@ FIELDS: list[tuple[str, Any, str, Any]] = [
     ("body.radius", 0.3, "radius", 0.3),
     ("support.edges", [0.0, -0.2, 0.0, 0.0, 0.2, 0.0], "edges", ((0.0, -0.2, 0.0), (0.0, 0.2, 0.0))),
     ("onset.watch", True, "watching", Watching()),
+    ("feet.names", ["left", "right"], "walking", Walking(("left", "right"))),
 ]
 
 
@@ -71,6 +72,26 @@ def test_no_field_of_the_scene_is_left_to_chance() -> None:
 
 def test_the_defaults_of_the_parameters_are_those_of_the_scene() -> None:
     assert Scene.from_parameters(validate(BODY)) == Scene(2.0, inertia_matrix(BODY["body.inertia"]), 0.4)  # type: ignore[arg-type]
+
+
+def test_the_feet_of_a_machine_and_its_model_reach_the_scene() -> None:
+    given = {
+        "feet.names": ["left", "right"],
+        "feet.points": 2,
+        "feet.window": 0.05,
+        "feet.dead_time": 0.01,
+        "feet.timeout": 0.2,
+        "feet.force": 30.0,
+        "feet.has_schedule": True,
+        "robot.urdf": "robot.urdf",
+        "robot.frames": ["left_heel", "left_toe", "right_heel", "right_toe"],
+    }
+    scene = Scene.from_parameters(validate({**BODY, **given}))
+    robot = Robot("robot.urdf", ("left_heel", "left_toe", "right_heel", "right_toe"))
+    assert scene.walking == Walking(("left", "right"), 2, 0.05, 0.01, 0.2, 30.0, True, robot)
+    assert not scene.needs_geometry  # the joints tell where the feet are
+    without = {name: value for name, value in given.items() if not name.startswith("robot.")}
+    assert Scene.from_parameters(validate({**BODY, **without})).needs_geometry
 
 
 def test_an_inertia_of_six_numbers_has_the_diagonal_before_xy_xz_and_yz() -> None:

@@ -172,6 +172,49 @@ def test_a_cylinder_falls_from_edge_to_edge() -> None:
     assert {(touchdown.old, touchdown.new) for touchdown in touchdowns} == {((0,), (1,)), ((1,), (0,))}
 
 
+@pytest.mark.parametrize("points", [1, 2])
+def test_a_machine_that_walks_steps_from_foot_to_foot_as_it_was_planned(points: int) -> None:
+    given = {"feet.names": ["left", "right"], "feet.points": points, "feet.force": 20.0, "feet.has_schedule": True}
+    tilted = {"support.normal": [0.6, 0.0, 0.8], "support.height": 2.0, "support.frame": "map"}
+    values = validate({"body.mass": 9.0, "body.inertia": [0.5], "contact.friction": 0.4, **tilted, **given})
+    body, scene = measured(values)
+    record = record_of("walker", scene, 100)
+    monitor = monitor_of(values, record)[1]
+    answers = [answer for one in record.messages if (answer := take(monitor, body, one)) is not None]
+    assert Counter(answer.status for answer in answers) == {Status.ACCEPTED: record.samples}
+    landings = [answer.score.landing for answer in answers if answer.score is not None]
+    # Every second stretch of 0.3 s a foot stands; the left one swings first.
+    assert [(landing.foot, landing.confirmed) for landing in landings if landing is not None][:4] == [
+        ("left", True),
+        ("right", True),
+        ("left", True),
+        ("right", True),
+    ]
+    late = [None if landing is None else landing.late for landing in landings]
+    assert all(one is not None and abs(one) < 0.01 for one in late), late
+
+
+@pytest.mark.extras
+def test_a_machine_with_a_model_hops_on_all_feet(tmp_path: Path) -> None:
+    pytest.importorskip("pinocchio", reason="needs the extra articulated")
+    mass = '<inertial><mass value="5"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+    hip = '<joint name="hip" type="revolute"><parent link="base"/><child link="leg"/><axis xyz="0 1 0"/>'
+    limit = '<limit lower="-1" upper="1" effort="1" velocity="1"/></joint>'
+    foot = '<joint name="end" type="fixed"><parent link="leg"/><child link="foot"/><origin xyz="0 0 -0.8"/></joint>'
+    links = f'<link name="base">{mass}</link><link name="leg">{mass}</link><link name="foot"/>'
+    file = tmp_path / "hopper.urdf"
+    file.write_text(f'<robot name="hopper">{links}{hip}{limit}{foot}</robot>')
+    model = {"feet.names": ["foot"], "robot.urdf": str(file), "robot.frames": ["foot"]}
+    values = validate({"body.mass": 9.0, "body.inertia": [0.5], "contact.friction": 0.4, **model})
+    steps = ladder(values)
+    assert [part.name for part, step in steps if part is not None and part.on(values)][-1] == "articulated inertia"
+    for _, step in steps:
+        record = made(measured(values)[1])
+        monitor = monitor_of(step, record)[1]
+        answers = [answer for one in record.messages if (answer := take(monitor, "", one)) is not None]
+        assert sum(answer.touchdown is not None for answer in answers) > 30
+
+
 def test_the_body_of_a_record_is_the_first_whose_pose_is_measured() -> None:
     blind = {"blind.source": "none", "onset.watch": True}
     body, scene = measured(validate({**DECK, **blind, "bodies": ["blind", "crate", "box"], "crate.body.mass": 7.0}))

@@ -9,7 +9,7 @@ import pytest
 
 from impact_predictor.bags.replay import BodyTruth, Result, Settled
 from impact_predictor.mechanics.types import Flag, Mode, Twist
-from impact_predictor.prediction.types import Leftover, Prediction, Sample, Score, Status, Touchdown
+from impact_predictor.prediction.types import Landing, Leftover, Prediction, Sample, Score, Status, Touchdown
 from impact_predictor.report.summary import (
     Errors,
     as_json,
@@ -72,6 +72,13 @@ def test_a_row_of_the_message_is_the_row_of_the_score(score: Score) -> None:
     assert data is not None
     (diagnostic,) = decode_diagnostic_array(data)
     assert row_of_message("cube", diagnostic.values, 1e-4) == row_of("cube", score, 1e-4)
+
+
+def test_a_row_of_the_message_of_a_landing_is_the_row_of_its_score() -> None:
+    data = encode_score(Prediction(Status.ACCEPTED, SAMPLE, None, LANDED))
+    assert data is not None
+    (diagnostic,) = decode_diagnostic_array(data)
+    assert row_of_message("robot", diagnostic.values) == row_of("robot", LANDED)
 
 
 def test_the_flags_of_a_row_say_first_why_it_is_not_scored() -> None:
@@ -146,6 +153,8 @@ def test_the_json_of_a_replay_has_the_promised_keys_and_no_nan() -> None:
         "out_of_plane": 0.125,
         "scored": True,
         "flags": ["REVERSED_SLIP"],
+        "old": [0, 1],
+        "new": [2, 3],
     }
     unmeasured = answer["touchdowns"][1]
     assert (unmeasured["measured_twist"], unmeasured["relative_error"], unmeasured["scored"]) == (None, None, False)
@@ -163,7 +172,41 @@ def test_the_json_of_a_replay_has_the_promised_keys_and_no_nan() -> None:
         "clear": 0,
         "clear_mode_accuracy": None,
         "unresolved_wrong": 0,
+        "time_error_by_lead_time": {},
+        "least_lead_time": None,
     }
+
+
+LANDED = Score(
+    2_000_000_000,
+    TOUCHDOWN._replace(leftover=Leftover.DRIVEN),
+    None,
+    None,
+    False,
+    Leftover.DRIVEN,
+    (),
+    Landing("left", 2_000_000_000, -0.015, True, ((0.2, 0.004), (0.06, 0.002), (0.004, -0.001)), 0.25, TOUCHDOWN),
+)
+
+
+def test_the_json_of_a_landing_has_its_foot_its_impact_and_how_late_it_was() -> None:
+    result = Result("a.mcap", 4, 0.001, (Settled("robot", LANDED, None),), {}, {}, (), "", "")
+    (row,) = json.loads(json.dumps(as_json(result), allow_nan=False))["touchdowns"]
+    assert (row["announced_lead_time"], row["scored"], row["flags"]) == (0.2, False, ["DRIVEN", "REVERSED_SLIP"])
+    assert {name: row[name] for name in list(row)[15:]} == {
+        "foot": "left",
+        "late": -0.015,
+        "confirmed": True,
+        "time_error": -0.001,
+        "landing_speed": 0.25,
+        "landing_mode": TOUCHDOWN.mode.name,
+        "impulse": [0.5, -0.125],
+        "velocity_change": [-0.25, 0.75, 1.0],
+    }
+    unknown = LANDED._replace(landing=Landing("left", 2_000_000_000, None, None, ()))
+    (row,) = as_json(result._replace(settled=(Settled("robot", unknown, None),)))["touchdowns"]
+    names = ("late", "confirmed", "time_error", "landing_speed", "landing_mode", "impulse", "velocity_change")
+    assert {row[name] for name in names} == {None}
 
 
 def test_the_json_of_several_bodies_has_their_inputs_and_how_each_compares_with_the_truth() -> None:

@@ -55,8 +55,8 @@ def main() -> None:
     until(lambda: time.monotonic() > end)
     predictors = node._monitor.predictors
     for topic, _, data in messages:
-        if topic.endswith("contact_geometry"):
-            predictor = predictors[topic[1:].rpartition("/")[0]]
+        predictor = predictors.get(topic[1:].rpartition("/")[0])
+        if topic.endswith("contact_geometry") and predictor.scene.walking is None:
             if topic in topics and not predictor._points:
                 publishers[topic].publish(data)
                 until(lambda predictor=predictor: predictor._points)

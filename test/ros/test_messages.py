@@ -534,9 +534,9 @@ def test_an_array_of_several_statuses_is_read(little_endian: bool) -> None:
     ]
     data = serialize(TYPES[DIAGNOSTIC_ARRAY](header(5, "odom"), statuses), DIAGNOSTIC_ARRAY, little_endian)
     assert decode_diagnostic_array(data) == [
-        ("a", 2, "mé", {"k": "v", "key": ""}),
-        ("", 0, "", {}),
-        ("stale", 3, "!", {"1": "22"}),
+        ("a", 2, "mé", {"k": "v", "key": ""}, "hardware"),
+        ("", 0, "", {}, ""),
+        ("stale", 3, "!", {"1": "22"}, "h"),
     ]
 
 

@@ -1,21 +1,19 @@
 """The node as a process of its own, over real DDS."""
 
 import math
-import os
 import sys
 import time
-from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
 
 from impact_predictor.ros.messages import OUTPUTS, decode_diagnostic_array
-from impact_predictor.ros.processes import Child
 
 pytest.importorskip("rclpy", reason="the node needs ROS 2: source it, or install the extra `ros`")
 
 import rclpy
 from geometry_msgs.msg import Point32, PolygonStamped
+from graph import PATIENCE, peer_of_node, running_node
 from nav_msgs.msg import Odometry
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
@@ -33,68 +31,15 @@ LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 POINTS = [[x, y, z] for x in (-HALF, HALF) for y in (-HALF, HALF) for z in (-HALF, HALF)]
 FIXED_POINTS = ("-p", f"body.contact_points:={[number for point in POINTS for number in point]}")
 
-# A busy machine starts a process within a second or two; a test that waits longer has failed.
-PATIENCE = 20.0
-
-
-class Peer:
-    """The rest of the ROS graph: what publishes to the node and hears it."""
-
-    def __init__(self, context):
-        self.node = rclpy.create_node("peer", context=context)
-        self.executor = SingleThreadedExecutor(context=context)
-        self.executor.add_node(self.node)
-        self.heard = {name: [] for name in (*OUTPUTS, "diagnostics")}
-        for name in OUTPUTS:
-            self.hear(f"/impact_predictor/{name}", OUTPUTS[name].type_name, self.heard[name])
-        self.hear("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray", self.heard["diagnostics"])
-
-    def hear(self, topic, type_name, heard):
-        self.node.create_subscription(message_class(type_name), topic, heard.append, QoSProfile(depth=1000), raw=True)
-
-    def until(self, condition):
-        """Serve the topics until something is so."""
-        patience = time.monotonic() + PATIENCE
-        while not condition():
-            assert time.monotonic() < patience, f"not within {PATIENCE:.0f} s; reported: {self.report()}"
-            self.executor.spin_once(timeout_sec=0.02)
-
-    def publisher(self, message_type, topic, qos):
-        return self.node.create_publisher(message_type, topic, qos)
-
-    def connected(self, publisher):
-        """A publisher that the node has found, and whose subscription has found it."""
-        self.until(publisher.get_subscription_count)
-        end = time.monotonic() + 0.3
-        self.until(lambda: time.monotonic() > end)
-        return publisher
-
-    def report(self):
-        """The latest of the node's reports on itself."""
-        return decode_diagnostic_array(self.heard["diagnostics"][-1])[0] if self.heard["diagnostics"] else None
-
-    def reported(self, key):
-        return None if self.report() is None else self.report().values.get(key)
-
 
 @pytest.fixture
 def peer():
-    context = rclpy.Context()
-    context.init()
-    peer = Peer(context)
-    yield peer
-    peer.executor.shutdown()
-    peer.node.destroy_node()
-    context.shutdown()
+    with peer_of_node() as one:
+        yield one
 
 
-@contextmanager
 def running(*arguments):
-    """The node as a process; it must end in order when asked to."""
-    ros = ("--ros-args", "--params-file", str(SCENE), *arguments)
-    with Child("node", dict(os.environ), "-m", "impact_predictor.ros.node", *ros) as child:
-        yield child
-        child.end()
+    return running_node(SCENE, *arguments)
 
 
 def odometry(k, frame="world", **changes):

@@ -16,18 +16,24 @@ from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction.inputs import inputs_of
 from impact_predictor.prediction.parts import ladder, modules_of
 from impact_predictor.prediction.scene import scenes_of
-from impact_predictor.prediction.types import Geometry, Sample
+from impact_predictor.prediction.types import Geometry, Joints, Sample, Schedule, Wrench
 from impact_predictor.report.parts.measure import measured
 from impact_predictor.report.parts.record import made
 from impact_predictor.report.parts.start import arguments_of
 from impact_predictor.ros.messages import (
     DIAGNOSTIC_ARRAY,
     IMU,
+    JOINT_STATE,
+    JOINT_TRAJECTORY,
     ODOMETRY,
     POLYGON,
+    WRENCH,
     encode_imu,
+    encode_joints,
     encode_odometry,
     encode_polygon,
+    encode_schedule,
+    encode_wrench,
 )
 
 pytest.importorskip("rclpy", reason="the node needs ROS 2: source it, or install the extra `ros`")
@@ -39,11 +45,19 @@ BOX = {
     "contact.friction": 0.4,
     "body.contact_points": [x for a in (-0.3, 0.3) for b in (-0.2, 0.2) for x in (a, b, -0.2)],
 }
+SOLES = {
+    **{name: value for name, value in BOX.items() if name != "body.contact_points"},
+    "feet.names": ["left", "right"],
+    "feet.points": 2,
+    "feet.force": 30.0,
+    "feet.has_schedule": True,
+}
 SCENES: dict[str, Any] = {
     **{path.stem: read_values(path) for path in sorted((ROOT / "config").glob("*.yaml"))},
     "nothing": ladder(validate(BOX))[0][1],
     "everything": ladder(validate(BOX))[-1][1],
     "events": validate({**BOX, "executor": "events"}),
+    "soles": validate(SOLES),
 }
 
 SERVE = Path(__file__).with_name("serve.py")
@@ -62,6 +76,12 @@ def test_the_node_loads_the_core_and_the_parts_of_its_scene_and_nothing_else(nam
             messages.append((f"{prefix}contact_geometry", POLYGON, encode_polygon(message)))
         elif isinstance(message, Sample):
             messages.append((f"{prefix}odom", ODOMETRY, encode_odometry(message)))
+        elif isinstance(message, Joints):
+            messages.append((f"{prefix}joint_states", JOINT_STATE, encode_joints(message)))
+        elif isinstance(message, Wrench):
+            messages.append((f"{prefix}contact_wrench", WRENCH, encode_wrench(message)))
+        elif isinstance(message, Schedule):
+            messages.append((f"{prefix}schedule", JOINT_TRAJECTORY, encode_schedule(message)))
         elif isinstance(message.message, Sample):
             messages.append(("/support/odom", ODOMETRY, encode_odometry(message.message)))
         else:

@@ -1,5 +1,6 @@
 from impact_predictor.bags.read import BagMessage
-from impact_predictor.ros.player import SHORTENED_GAP, timed
+from impact_predictor.ros.messages import ODOMETRY, POLYGON
+from impact_predictor.ros.player import GEOMETRY_AHEAD, SHORTENED_GAP, _publish_all, timed
 
 SECOND = 1_000_000_000
 
@@ -22,3 +23,34 @@ def test_an_excerpt_ends_where_the_last_of_its_runs_ends():
 
 def test_log_times_that_go_back_make_no_negative_pause():
     assert pauses(0, 2.0, 1.0, 1.25) == [0.0, 0.0, 0.25]
+
+
+class Listening:
+    """A stop that is never asked for, which notes how long it is waited for, and a publisher."""
+
+    def __init__(self):
+        self.waits = []
+
+    def wait(self, seconds):
+        self.waits.append(seconds)
+        return False
+
+    def publish(self, data):
+        pass
+
+
+def test_contact_points_are_given_time_where_they_come_now_and_then_but_not_those_of_feet_that_keep_coming():
+    listening = Listening()
+    types = {"/points": POLYGON, "/odom": ODOMETRY}
+    record = [
+        (topic, round(k * 2.5e6 + later * SECOND))
+        for later in (0, 5)
+        for k in range(4)
+        for topic in ("/points", "/odom")
+    ]
+    told = ((0.0, BagMessage(topic, time, b"")) for topic, time in record)
+    _publish_all(told, types, dict.fromkeys(types, listening), 1.0, listening)
+    before = [k for k in range(1, len(record)) if listening.waits[k] > listening.waits[k - 1]]
+    # More time only before what follows the first points, and the first after a pause.
+    assert before == [1, 9]
+    assert all(listening.waits[k] > 0.5 * GEOMETRY_AHEAD for k in before)

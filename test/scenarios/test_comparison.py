@@ -45,7 +45,9 @@ TOUCHDOWN = Touchdown(
 
 
 def compare(impacts: Iterable[TrueImpact], announcements: Announcements, scene: Scene) -> Truth:
-    return compare_all(impacts, announcements, {"": scene}).together
+    """What is said but of times ahead, which have tests of their own."""
+    together = compare_all(impacts, announcements, {"": scene}).together
+    return together._replace(time_error_by_lead_time=NOTHING.time_error_by_lead_time, least_lead_time=None)
 
 
 def impact(at: float, **changes: object) -> TrueImpact:
@@ -93,6 +95,16 @@ def test_the_error_of_time_is_that_of_the_prediction_20_ms_ahead() -> None:
     assert compare([impact(60)], made, SCENE).median_time_error == pytest.approx(0.002)
     late = record(100, dict.fromkeys(range(41, 60), 60.0))
     assert compare([impact(60)], late, SCENE).median_time_error is None
+
+
+def test_the_error_of_time_is_told_by_how_long_ahead_and_how_long_ahead_the_first_prediction_was() -> None:
+    drifting = {at: 60.0 + (60 - at) * 0.1 for at in range(5, 60)} | dict.fromkeys(range(66, 90), 90.0)
+    truth = compare_all([impact(60), impact(90)], record(100, drifting), {"": SCENE}).together
+    assert truth.time_error_by_lead_time == {"0.02": pytest.approx(0.001), "0.05": pytest.approx(0.005)}
+    assert truth.least_lead_time == pytest.approx(0.024)
+    nothing = compare_all([impact(60)], record(100), {"": SCENE}).together
+    assert nothing.time_error_by_lead_time == {"0.02": None, "0.05": None}
+    assert nothing.least_lead_time is None
 
 
 def test_mode_and_velocity_are_those_of_the_last_prediction() -> None:

@@ -13,10 +13,10 @@ from typing import Any, Final
 from ...parameters.file import read_values
 from ...prediction.monitor import Monitor
 from ...prediction.parts import EVENTS, PARTS, Part, Values, ladder
-from ...prediction.scene import Scene, scenes_of
-from ...prediction.types import Geometry, Prediction, Sample
+from ...prediction.scene import Scene, Walking, scenes_of
+from ...prediction.types import Geometry, Joints, Prediction, Sample, Schedule, Wrench
 from ...ros.messages import OUTPUTS
-from .record import OfSupport, Record, record_of
+from .record import Message, OfSupport, Record, record_of
 from .start import Start, Starts, Steps, starts_of
 
 Tell = Callable[[float], None]
@@ -166,7 +166,7 @@ def _run(values: Values, record: Record) -> float:
     return 1e-3 * (process_time_ns() - began) / record.samples
 
 
-def take(monitor: Monitor, body: str, message: Geometry | Sample | OfSupport) -> Prediction | None:
+def take(monitor: Monitor, body: str, message: Message) -> Prediction | None:
     """Hand a message of a record to whom it concerns, if anybody; the answer to a sample."""
     if isinstance(message, OfSupport):
         if monitor.deck is not None:
@@ -180,9 +180,24 @@ def take(monitor: Monitor, body: str, message: Geometry | Sample | OfSupport) ->
             prediction = monitor.update(body, message)
             monitor.reports()
             return prediction
-        if monitor.scenes[body].needs_geometry:
-            monitor.set_geometry(body, message)
+        scene = monitor.scenes[body]
+        if isinstance(message, Geometry):
+            if scene.needs_geometry:
+                monitor.set_geometry(body, message)
+        elif scene.walking is not None:
+            _take_of_feet(monitor, body, scene.walking, message)
     return None
+
+
+def _take_of_feet(monitor: Monitor, body: str, walking: Walking, message: Joints | Wrench | Schedule) -> None:
+    if isinstance(message, Joints):
+        if walking.robot is not None:
+            monitor.set_joints(body, message)
+    elif isinstance(message, Wrench):
+        if walking.force:
+            monitor.set_wrench(body, message)
+    elif walking.has_schedule:
+        monitor.set_schedule(body, message)
 
 
 def us_per_output(values: Values, record: Record) -> dict[str, float]:

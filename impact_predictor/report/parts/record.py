@@ -12,7 +12,7 @@ from ...errors import InputError
 from ...prediction.planar import inertia_about
 from ...prediction.predictor import PAUSE
 from ...prediction.scene import MovingDeck, Scene
-from ...prediction.types import Geometry, Imu, Quaternion, Sample, Vector3
+from ...prediction.types import Geometry, Imu, Joints, Quaternion, Sample, Schedule, Vector3, Wrench
 from ...prediction.vectors import add, axes_of, cross, dot, mean, times, to_body, to_world, turned
 from ...resources import find
 
@@ -49,10 +49,13 @@ class OfSupport(NamedTuple):
     message: Sample | Imu
 
 
+Message = Geometry | Sample | OfSupport | Joints | Wrench | Schedule
+
+
 class Record(NamedTuple):
     """Motions of a body, each after its contact points, and of its support; `origin` says where they are from."""
 
-    messages: tuple[Geometry | Sample | OfSupport, ...]
+    messages: tuple[Message, ...]
     points: tuple[Vector3, ...]
     origin: str
 
@@ -63,7 +66,7 @@ class Record(NamedTuple):
 
 def record_of(name: str, scene: Scene, samples: int) -> Record:
     """About so many samples for the scene of a name: of examples/NAME where that exists, else made ones."""
-    if scene.deck is not None or scene.radius:
+    if scene.deck is not None or scene.radius or scene.walking is not None:
         return made(scene)
     try:
         bag = find(f"examples/{name}")
@@ -83,7 +86,14 @@ def record_of(name: str, scene: Scene, samples: int) -> Record:
 
 
 def made(scene: Scene) -> Record:
-    """The body let fall from what it stands on, to every side, and thrown; its support lies still."""
+    """The body let fall from what it stands on, to every side, and thrown; its support lies still.
+
+    A machine that walks steps on the spot.
+    """
+    if scene.walking is not None:
+        from .steps import steps_of
+
+        return steps_of(scene, scene.walking)
     start = (scene.deck or MovingDeck()).window + LEAD
     motions: list[Motion] = []
     for motion in (*falls(scene), *(() if scene.radius else throws(scene))):
@@ -98,7 +108,7 @@ def _still(scene: Scene, begin: int, end: int) -> list[OfSupport]:
     return [OfSupport(still(scene, stamp)) for stamp in range(begin, end, NANOSECONDS // SUPPORT_RATE)]
 
 
-def _stamp_of(message: Geometry | Sample | OfSupport) -> int:
+def _stamp_of(message: Message) -> int:
     return message.message.stamp if isinstance(message, OfSupport) else message.stamp
 
 
@@ -116,7 +126,7 @@ def frame_of(scene: Scene) -> str:
 
 
 def _record(motions: list[Motion], points: tuple[Vector3, ...], origin: str, support: list[OfSupport]) -> Record:
-    messages: list[Geometry | Sample | OfSupport] = [*support]
+    messages: list[Message] = [*support]
     for motion in motions:
         messages += [Geometry(motion[0].stamp, "", points), *motion]
     # The support comes first where stamps are the same, and the points of the body before its state.
@@ -182,7 +192,7 @@ def _fall(scene: Scene, foot: Vector3, side: Vector3, arm: tuple[float, float], 
     """From a tilt in rad about the foot, against the direction `side`, until the body lies flat, and a bit longer."""
     radius, bearing = hypot(*arm), atan2(arm[1], arm[0])
     stiffness = _pull(scene) * radius / (inertia_about(scene, side, True) / scene.mass + radius * radius)
-    upright, ground = _upright(scene), _ground(scene, foot)
+    upright, ground = upright_of(scene), ground_of(scene, foot)
     states, rate, flat = [], 0.0, 0
     while flat < 5:  # what a touchdown is measured by, and one more
         states.append((tilt, rate))
@@ -196,7 +206,7 @@ def _fall(scene: Scene, foot: Vector3, side: Vector3, arm: tuple[float, float], 
         orientation, spin = turned(upright, times(side, -tilt)), times(side, -rate)
         position = add(ground, to_world(axes_of(orientation), foot), -1.0)
         motion.append((position, orientation, cross(foot, spin), spin))
-    return _stamped(scene, motion)
+    return stamped(scene, motion)
 
 
 def throws(scene: Scene) -> Iterator[Motion]:
@@ -204,12 +214,12 @@ def throws(scene: Scene) -> Iterator[Motion]:
     points, center, random = points_of(scene), scene.center_of_mass, Random(1)
     size, pull, normal = _size(points, center), _pull(scene), scene.normal
     for _ in range(THROWS):
-        orientation = turned(_upright(scene), _any(random, 1.5))
+        orientation = turned(upright_of(scene), _any(random, 1.5))
         spin, velocity = _any(random, 0.3 * sqrt(pull / size)), _any(random, 0.3 * sqrt(pull * size))
         height = random.uniform(0.2, 1.0) * size - min(
             dot(normal, to_world(axes_of(orientation), point)) for point in points
         )
-        place = add(add(_ground(scene), normal, height), to_world(axes_of(orientation), center))
+        place = add(add(ground_of(scene), normal, height), to_world(axes_of(orientation), center))
         motion, gap = [], size
         while gap > 0.0:
             axes = axes_of(orientation)
@@ -219,10 +229,10 @@ def throws(scene: Scene) -> Iterator[Motion]:
             place = add(place, velocity, 1.0 / RATE)
             velocity = add(velocity, normal, -pull / RATE)
             orientation = turned(orientation, times(spin, 1.0 / RATE))
-        yield _stamped(scene, motion[-LONGEST:])
+        yield stamped(scene, motion[-LONGEST:])
 
 
-def _stamped(scene: Scene, motion: list[tuple[Vector3, Quaternion, Vector3, Vector3]]) -> Motion:
+def stamped(scene: Scene, motion: list[tuple[Vector3, Quaternion, Vector3, Vector3]]) -> Motion:
     period = NANOSECONDS // RATE
     return [
         Sample(k * period, frame_of(scene), "", position, orientation, linear, angular, COVARIANCE, COVARIANCE)
@@ -230,7 +240,7 @@ def _stamped(scene: Scene, motion: list[tuple[Vector3, Quaternion, Vector3, Vect
     ]
 
 
-def _ground(scene: Scene, foot: Vector3 | None = None) -> Vector3:
+def ground_of(scene: Scene, foot: Vector3 | None = None) -> Vector3:
     """Where a foot of the body stands on its support: a cylinder on an edge, else where the body is placed."""
     if scene.radius and foot is not None:
         return next(edge for edge, point in zip(scene.edges, points_of(scene), strict=True) if point == foot)
@@ -251,7 +261,7 @@ def _pull(scene: Scene) -> float:
     return pull if pull > 0.0 else 9.81
 
 
-def _upright(scene: Scene) -> Quaternion:
+def upright_of(scene: Scene) -> Quaternion:
     """The orientation that turns z into the support's normal."""
     x, y, z = scene.normal
     if z < -0.999:

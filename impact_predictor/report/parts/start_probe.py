@@ -42,9 +42,10 @@ def make_node() -> Any:
 def take(step: dict[str, Any] | str, node: Any) -> object:
     """Make what a step is about."""
     if step == "geometry topic":
-        from impact_predictor.ros.geometry_topic import GeometryTopic
+        from impact_predictor.ros.latched_topic import LatchedTopic
+        from impact_predictor.ros.messages import POLYGON
 
-        return GeometryTopic(node, print)
+        return LatchedTopic(node, print, "contact_geometry", POLYGON)
     if step == "events executor":
         from impact_predictor.ros.process import executor_of
 

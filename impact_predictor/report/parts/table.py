@@ -80,7 +80,9 @@ def _rest_of_node(answer: Costs, parts: list[Costs]) -> Costs:
         "name": "node",
         "on": True,
         "us_per_sample": node["us_per_message"] - sum(part["us_per_sample"] or 0.0 for part in on),
-        **{cost: node[cost] - answer[cost] - sum(part[cost] for part in on) for cost in ("start_ms", "start_mb")},
+        **{
+            cost: node[cost] - answer[cost] - sum(part[cost] or 0.0 for part in on) for cost in ("start_ms", "start_mb")
+        },
         "why": "ROS: its start, and taking a message from a topic and decoding it",
     }
 

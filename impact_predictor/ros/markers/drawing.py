@@ -8,7 +8,7 @@ from typing import Final, NamedTuple
 
 from ...mechanics.types import Mode
 from ...prediction.scene import Scene
-from ...prediction.types import Moment, Quaternion, Touchdown, Vector3
+from ...prediction.types import Foot, Moment, Quaternion, Touchdown, Vector3
 from ...prediction.vectors import Axes, add, axes_of, combine, composed, cross, dot, mean, times, to_world
 from ..cdr import NANOSECONDS
 from .message import ARROW, CUBE, CUBE_LIST, LINE_LIST, NOWHERE, SPHERE_LIST, TEXT, UNTURNED, Colour, Marker
@@ -25,6 +25,7 @@ LEVEL_COLOURS: Final[tuple[Colour, ...]] = (
 UNWATCHED: Final[Colour] = (0.33, 0.55, 0.83, 0.7)
 """A body without a level."""
 
+LANDING: Final[Colour] = (1.0, 0.72, 0.30, 1.0)
 _STANDING: Final[Colour] = (0.20, 0.45, 1.0, 1.0)
 _STRIKING: Final[Colour] = (0.93, 0.25, 0.80, 1.0)
 _OPEN: Final[Colour] = (0.95, 0.95, 0.95, 1.0)
@@ -62,7 +63,7 @@ class Ahead(NamedTuple):
 
 class Unit(NamedTuple):
     """A body to be drawn: its number among all, its scene, its points and its looks, and what is known of it now;
-    `level` is None where nobody watches it.
+    `level` is None where nobody watches it. `points` of a machine with `feet` are theirs, one of each.
     """
 
     number: int
@@ -74,6 +75,7 @@ class Unit(NamedTuple):
     ahead: Ahead | None
     level: int | None
     message: str
+    feet: tuple[Foot, ...] = ()
 
 
 def draw_support(slab: Slab, scene: Scene, moment: Moment | None, letter: float) -> list[Marker]:
@@ -106,7 +108,7 @@ def draw_support(slab: Slab, scene: Scene, moment: Moment | None, letter: float)
             Marker("support/normal", 0, LINE_LIST, scale=width, colour=_LINES, points=(corner, top)),
         ]
         corner = top
-    drawn.append(_label("support/text", 0, add(corner, normal, 2.0 * letter), letter, words))
+    drawn.append(label("support/text", 0, add(corner, normal, 2.0 * letter), letter, words))
     return drawn
 
 
@@ -126,6 +128,10 @@ def draw_unit(unit: Unit, stamp: int, letter: float) -> list[Marker]:
     turned = seen.orientation if shape.orientation == UNTURNED else composed(seen.orientation, shape.orientation)
     drawn = [Marker("units", unit.number, shape.shape, place, turned, shape.scale, colour, shape.lines)]
     drawn += _points(unit, axes) if unit.scene.radius == 0.0 else _edges(unit)
+    if unit.feet:
+        from .feet import draw_landings  # only where the scene has feet
+
+        drawn += draw_landings(unit, letter)
     words = [unit.name if level is None else f"{unit.name} {LEVELS[level]}".lstrip()]
     if level and unit.message:
         words += unit.message.split("\n")
@@ -135,7 +141,7 @@ def draw_unit(unit: Unit, stamp: int, letter: float) -> list[Marker]:
     high = [abs(dot(axis, unit.scene.normal)) * side for axis, side in zip(axes, shape.scale, strict=True)]
     top = 0.5 * sum(high) if shape.shape == CUBE else shape.reach
     above = add(place, unit.scene.normal, top + (0.6 * len(words) + 0.4) * letter)
-    drawn.append(_label("units/text", unit.number, above, letter, "\n".join(words)))
+    drawn.append(label("units/text", unit.number, above, letter, "\n".join(words)))
     return drawn
 
 
@@ -147,6 +153,10 @@ def _points(unit: Unit, axes: Axes) -> list[Marker]:
     nx, ny, nz = [dot(axis, scene.normal) for axis in axes]
     kinds: tuple[list[Vector3], ...] = [], [], []
     for i, point in enumerate(unit.points):
+        if unit.feet:
+            lands = unit.feet[i].lead_time is not None and not unit.feet[i].stands
+            kinds[1 if lands else 0 if unit.feet[i].stands else 2].append(point)
+            continue
         stands = i in old or height + nx * point[0] + ny * point[1] + nz * point[2] <= scene.tolerance
         kinds[1 if i in new else 0 if stands else 2].append(point)
     width = 0.09 * unit.shape.size
@@ -194,11 +204,17 @@ def _draw_touchdown(unit: Unit, touchdown: Touchdown) -> list[Marker]:
     axes, length, width = axes_of(orientation), _length_of_speed(unit), 0.04 * unit.shape.size
     thin = 0.6 * width, 0.0, 0.0
     drawn = [Marker("touchdown/body", number, LINE_LIST, position, orientation, thin, _GHOST, shape.outline)]
+    if unit.feet:  # legs do not keep their form
+        drawn = []
     center = add(position, to_world(axes, scene.center_of_mass))
     for k, (indices, impulse) in enumerate(zip((touchdown.old, touchdown.new), touchdown.impulses, strict=True)):
-        if not indices or max(indices) >= len(scene.edges if scene.radius > 0.0 else unit.points):
+        if not indices or max(indices) >= contacts_of(unit):
             continue
-        if scene.radius > 0.0:
+        if unit.feet:
+            from .feet import place_of
+
+            place, normal = place_of(unit, indices), scene.normal
+        elif scene.radius > 0.0:
             place = mean([scene.edges[i] for i in indices])
             arm = add(center, place, -1.0)
             arm = add(arm, touchdown.axis, -dot(arm, touchdown.axis))
@@ -217,6 +233,14 @@ def _draw_touchdown(unit: Unit, touchdown: Touchdown) -> list[Marker]:
         arrow = _arrow("touchdown/velocity", number, center, add(center, velocity, length), width)
         drawn.append(arrow._replace(colour=_VELOCITY))
     return drawn
+
+
+def contacts_of(unit: Unit) -> int:
+    """How many contacts there are to which indices may point."""
+    scene = unit.scene
+    if scene.walking is not None:
+        return len(unit.feet) * scene.walking.points
+    return len(scene.edges if scene.radius > 0.0 else unit.points)
 
 
 def _touchdown_in_words(unit: Unit, ahead: Ahead, stamp: int) -> list[str]:
@@ -247,5 +271,6 @@ def _arrow(namespace: str, number: int, start: Vector3, tip: Vector3, width: flo
     return Marker(namespace, number, ARROW, scale=scale, colour=_STRIKING, points=(start, tip))
 
 
-def _label(namespace: str, number: int, place: Vector3, letter: float, words: str) -> Marker:
+def label(namespace: str, number: int, place: Vector3, letter: float, words: str) -> Marker:
+    """Words at a place, so high that a `letter` is so many m high."""
     return Marker(namespace, number, TEXT, place, scale=(0.0, 0.0, letter), colour=_LETTERS, text=words)

@@ -10,8 +10,8 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Final
 
 from ...prediction.scene import Scene
-from ...prediction.types import Geometry, Moment, Prediction, Quaternion, Status
-from ...prediction.vectors import add, axes_of, dot, to_world
+from ...prediction.types import Foot, Geometry, Moment, Prediction, Quaternion, Status
+from ...prediction.vectors import add, axes_of, dot, to_body, to_world
 from ..cdr import NANOSECONDS
 from .drawing import Ahead, Seen, Unit, draw_support, draw_unit
 from .message import DELETE, DELETE_ALL, Marker, encode_markers
@@ -141,9 +141,11 @@ class _Body:
         self._points = scene.points
         self._shape = shape_of(scene, scene.points)
         self._ahead: Ahead | None = None
+        self._feet: tuple[Foot, ...] = ()
 
     def set_points(self, geometry: Geometry) -> None:
-        if geometry.points != self._points:
+        # Feet are drawn where the answers say that they are.
+        if self.scene.walking is None and geometry.points != self._points:
             self._points = geometry.points
             self._shape = shape_of(self.scene, geometry.points)
 
@@ -154,6 +156,7 @@ class _Body:
             return False
         self.seen = Seen(sample.stamp, sample.position, sample.orientation)
         self._name = self._name or sample.child_frame_id
+        self._feet = prediction.feet
         touchdown, score = prediction.touchdown, prediction.score
         if touchdown is not None:
             self._ahead = Ahead(sample.stamp + round(touchdown.lead_time * NANOSECONDS), touchdown)
@@ -179,7 +182,13 @@ class _Body:
 
     def unit(self, number: int, stamp: int) -> Unit | None:
         """The body as it is to be drawn at a stamp in ns, or None where it cannot be."""
-        scene, seen, shape = self.scene, self.seen, self._shape
+        scene, seen = self.scene, self.seen
+        if seen is not None and self._feet:
+            axes = axes_of(seen.orientation)
+            places = [add(foot.position, seen.position, -1.0) for foot in self._feet if foot.position is not None]
+            self._points = tuple(to_body(axes, place) for place in places)
+            self._shape = shape_of(scene, self._points)
+        shape = self._shape
         if seen is None and scene.deck is not None and scene.source != "odom":
             seen = Seen(stamp, scene.place, about(scene.normal, scene.yaw))
         if seen is None or shape is None:
@@ -190,4 +199,4 @@ class _Body:
         ahead = self._ahead
         if ahead is not None and stamp - ahead.stamp > AFTERWARDS:
             ahead = None
-        return Unit(number, self._name, scene, self._points, shape, seen, ahead, level, self.message)
+        return Unit(number, self._name, scene, self._points, shape, seen, ahead, level, self.message, self._feet)

@@ -47,7 +47,7 @@ def shape_of(scene: Scene, points: tuple[Vector3, ...]) -> Shape | None:
     """How a body looks that is known by its contact points and its mass centre, or None where it has no points yet.
 
     A box where the points are corners of one, which reaches beyond the mass centre as far as they lie before it; a
-    cylinder as long as wide where it has a radius; else lines from the mass centre to the points.
+    cylinder as long as wide where it has a radius; else lines from the mass centre to the points, as are legs to feet.
     """
     if scene.radius > 0.0:
         return _cylinder(scene)
@@ -58,7 +58,7 @@ def shape_of(scene: Scene, points: tuple[Vector3, ...]) -> Shape | None:
     low, high = box_of(points, center)
     sides = add(high, low, -1.0)
     near = AT_CORNER * max(sides)
-    if min(sides) > near and all(_at_corner(point, low, high, near) for point in points):
+    if scene.walking is None and min(sides) > near and all(_at_corner(point, low, high, near) for point in points):
         edges = _edges(low, high)
         return Shape(CUBE, times(add(low, high), 0.5), UNTURNED, sides, (), edges, sorted(sides)[1], reach)
     lines = tuple(end for point in points for end in (center, point))

@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-import struct
 from typing import Final
 
 from ...prediction.types import Imu
 from ..cdr import (
-    HEADER_SIZE,
     LITTLE_ENDIAN,
     LITTLE_ENDIAN_HEADER,
-    NANOSECONDS,
-    MalformedMessage,
     align8,
-    byte_order,
     check_end,
-    read_string,
+    decoder,
+    read_header,
     stamp,
     string,
 )
+from .inputs import IMU
 
 _NUMBERS_SIZE: Final = LITTLE_ENDIAN.imu_numbers.size
 _UNKNOWN: Final = (0.0,) * 9
@@ -26,23 +23,19 @@ _ABSENT: Final = (-1.0, *_UNKNOWN[1:])
 """The covariance of what a sensor does not measure, by the definition of the message."""
 
 
+@decoder(IMU)
 def decode_imu(data: bytes) -> Imu:
     """The measurement in the bytes of a sensor_msgs/Imu, of either byte order; its numbers are taken as they are.
 
     Raises:
         MalformedMessage: the bytes are no such message.
     """
-    order = byte_order(data)
-    try:
-        seconds, nanoseconds = order.stamp.unpack_from(data, HEADER_SIZE)
-        frame_id, end = read_string(data, HEADER_SIZE + 8, order)
-        start = align8(end)
-        n = order.imu_numbers.unpack_from(data, start)
-    except (struct.error, UnicodeDecodeError) as error:
-        raise MalformedMessage(f"not a sensor_msgs/Imu: {error}") from None
+    order, nanoseconds, frame_id, end = read_header(data)
+    start = align8(end)
+    n = order.imu_numbers.unpack_from(data, start)
     check_end(data, start + _NUMBERS_SIZE)
     orientation = None if n[4] == -1.0 else n[0:4]
-    return Imu(seconds * NANOSECONDS + nanoseconds, frame_id, orientation, n[13:16], n[25:28])
+    return Imu(nanoseconds, frame_id, orientation, n[13:16], n[25:28])
 
 
 def encode_imu(imu: Imu) -> bytes:

@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-import struct
 from functools import lru_cache
 from typing import Final
 
 from ...prediction.types import Geometry, Sample
 from ..cdr import (
-    HEADER_SIZE,
     LITTLE_ENDIAN,
     LITTLE_ENDIAN_HEADER,
-    NANOSECONDS,
-    MalformedMessage,
     align4,
     align8,
-    byte_order,
     check_end,
+    decoder,
+    read_header,
     read_string,
     stamp,
     string,
@@ -25,29 +22,28 @@ from ..cdr import (
 ODOMETRY: Final = "nav_msgs/msg/Odometry"
 POLYGON: Final = "geometry_msgs/msg/PolygonStamped"
 IMU: Final = "sensor_msgs/msg/Imu"
+JOINT_STATE: Final = "sensor_msgs/msg/JointState"
+WRENCH: Final = "geometry_msgs/msg/WrenchStamped"
+JOINT_TRAJECTORY: Final = "trajectory_msgs/msg/JointTrajectory"
 
 _ODOMETRY_NUMBERS_SIZE: Final = LITTLE_ENDIAN.odometry_numbers.size
 _POINT_SIZE: Final = LITTLE_ENDIAN.point32.size
 
 
+@decoder(ODOMETRY)
 def decode_odometry(data: bytes) -> Sample:
     """The sample in the bytes of a nav_msgs/Odometry, of either byte order; its numbers are taken as they are.
 
     Raises:
         MalformedMessage: the bytes are no such message.
     """
-    order = byte_order(data)
-    try:
-        seconds, nanoseconds = order.stamp.unpack_from(data, HEADER_SIZE)
-        frame_id, end = read_string(data, HEADER_SIZE + 8, order)
-        child_frame_id, end = read_string(data, align4(end), order)
-        start = align8(end)
-        n = order.odometry_numbers.unpack_from(data, start)
-    except (struct.error, UnicodeDecodeError) as error:
-        raise MalformedMessage(f"not a nav_msgs/Odometry: {error}") from None
+    order, nanoseconds, frame_id, end = read_header(data)
+    child_frame_id, end = read_string(data, align4(end), order)
+    start = align8(end)
+    n = order.odometry_numbers.unpack_from(data, start)
     check_end(data, start + _ODOMETRY_NUMBERS_SIZE)
     return Sample(
-        seconds * NANOSECONDS + nanoseconds,
+        nanoseconds,
         frame_id,
         child_frame_id,
         n[0:3],
@@ -59,24 +55,20 @@ def decode_odometry(data: bytes) -> Sample:
     )
 
 
+@decoder(POLYGON)
 def decode_polygon(data: bytes) -> Geometry:
     """The contact points in the bytes of a geometry_msgs/PolygonStamped, of either byte order, as float32 gives them.
 
     Raises:
         MalformedMessage: the bytes are no such message.
     """
-    order = byte_order(data)
-    try:
-        seconds, nanoseconds = order.stamp.unpack_from(data, HEADER_SIZE)
-        frame_id, end = read_string(data, HEADER_SIZE + 8, order)
-        (count,) = order.length.unpack_from(data, align4(end))
-    except (struct.error, UnicodeDecodeError) as error:
-        raise MalformedMessage(f"not a geometry_msgs/PolygonStamped: {error}") from None
+    order, nanoseconds, frame_id, end = read_header(data)
+    (count,) = order.length.unpack_from(data, align4(end))
     start = align4(end) + 4
     end = start + count * _POINT_SIZE
     check_end(data, end)
     points = tuple((x, y, z) for x, y, z in order.point32.iter_unpack(data[start:end]))
-    return Geometry(seconds * NANOSECONDS + nanoseconds, frame_id, points)
+    return Geometry(nanoseconds, frame_id, points)
 
 
 @lru_cache(maxsize=64)

@@ -6,9 +6,9 @@ from collections.abc import Callable
 from functools import cache, lru_cache
 from typing import Final, NamedTuple
 
-from ...mechanics.types import Flag, Mode, Twist
+from ...mechanics.types import Flag, Mode
 from ...prediction.types import Leftover, Prediction, Sample, Score, Status, Touchdown
-from ..cdr import LITTLE_ENDIAN_HEADER, NANOSECONDS, OK, WARN, DiagnosticForm
+from ..cdr import LITTLE_ENDIAN_HEADER, NANOSECONDS, OK, WARN, DiagnosticForm, diagnostic_array
 from .inputs import ODOMETRY, encode_odometry
 
 UINT8: Final = "std_msgs/msg/UInt8"
@@ -97,7 +97,7 @@ def encode_prediction(prediction: Prediction) -> bytes:
     Its keys are the fields of `Touchdown` and have their units; `stamp` is the sample's in ns; contact indices are
     separated by spaces, flags by "|", segments by spaces; every number reads back as the same double. Where the scene
     asks for them, keys of `confidence` follow. Without a touchdown only `status`, `stamp` and `mode` are there. The
-    level is WARN where the answer deserves less trust.
+    level is WARN where the answer deserves less trust. A status for each foot of a walking machine follows.
     """
     sample = prediction.sample
     touchdown = prediction.touchdown
@@ -117,6 +117,11 @@ def encode_prediction(prediction: Prediction) -> bytes:
             from ..confidence import margin_values, uncertainty_values  # only where the scene asks for it
 
             values += uncertainty_values(touchdown) + margin_values(touchdown)
+    if prediction.feet:
+        from .feet import statuses_of  # only where the scene has them
+
+        first = form.status(level, message, sample.child_frame_id, values)
+        return diagnostic_array(sample.stamp, sample.frame_id, [first, *statuses_of(prediction.feet)])
     return form.fill(sample.stamp, sample.frame_id, level, message, sample.child_frame_id, values)
 
 
@@ -148,28 +153,21 @@ def _touchdown_values(touchdown: Touchdown) -> list[str]:
         " ".join(touchdown.segments),
         " ".join(map(str, touchdown.old)),
         " ".join(map(str, touchdown.new)),
-        *[repr(float(number)) for number in numbers],
+        *map(_text, numbers),
     ]
 
 
 _SCORE_KEYS: Final = (
-    *("stamp", "mode", "scored", "leftover", "flags", "law", "announced", "lead_time", "half_distance"),
+    *("stamp", "mode", "scored", "leftover", "flags", "law", "old", "new", "announced", "lead_time", "half_distance"),
     *("off_axis", "lateral", "closing_spread", "offset"),
     *("before.vx", "before.vy", "before.omega", "predicted.vx", "predicted.vy", "predicted.omega"),
 )
 _MEASURED_KEYS: Final = ("measured.vx", "measured.vy", "measured.omega")
 
 
+@cache
 def _score_form(*more_keys: str) -> DiagnosticForm:
     return DiagnosticForm("impact_predictor/score", *_SCORE_KEYS, *more_keys)
-
-
-_SCORES: Final = {
-    (False, False): _score_form(),
-    (True, False): _score_form(*_MEASURED_KEYS),
-    (False, True): _score_form("relative_error"),
-    (True, True): _score_form(*_MEASURED_KEYS, "relative_error"),
-}
 
 
 def encode_score(prediction: Prediction) -> bytes | None:
@@ -177,16 +175,27 @@ def encode_score(prediction: Prediction) -> bytes | None:
 
     Stamped, like its post-impact state, with the predicted touchdown. Keys and units as in `encode_prediction`;
     `announced` is the time in s before the touchdown of the first prediction with its contacts; the measured twist and
-    the relative error are left out where there is none. The level is WARN where it is not scored.
+    the relative error are left out where there is none. More keys tell of a foot that has landed. The level is WARN
+    where it is not scored, or where the force sensor of a foot that has landed does not agree.
     """
     score = prediction.score
     if score is None:
         return None
-    touchdown = score.touchdown
-    measured: Twist | tuple[()] = () if score.measured is None else score.measured
-    error = () if score.relative_error is None else (score.relative_error,)
+    touchdown, landing = score.touchdown, score.landing
+    history, is_trusted, message = score.history, score.scored, _score_message(score)
+    more: dict[str, str] = {}
+    if score.measured is not None:
+        more = dict(zip(_MEASURED_KEYS, map(_text, score.measured), strict=True))
+    if score.relative_error is not None:
+        more["relative_error"] = _text(score.relative_error)
+    if landing is not None:
+        from .feet import landing_in_words, landing_values  # only where the scene has feet
+
+        more |= landing_values(landing)
+        history, is_trusted = landing.history, landing.confirmed is not False
+        message = f"{landing_in_words(landing)}: {message}"
     numbers = (
-        score.history[0][0] if score.history else touchdown.lead_time,
+        history[0][0] if history else touchdown.lead_time,
         touchdown.lead_time,
         touchdown.half_distance,
         touchdown.off_axis,
@@ -195,8 +204,6 @@ def encode_score(prediction: Prediction) -> bytes | None:
         touchdown.offset,
         *touchdown.before,
         *touchdown.after,
-        *measured,
-        *error,
     )
     values = [
         str(score.stamp),
@@ -205,12 +212,18 @@ def encode_score(prediction: Prediction) -> bytes | None:
         _names(score.leftover),
         _names(touchdown.flags),
         touchdown.law,
-        *[repr(float(number)) for number in numbers],
+        " ".join(map(str, touchdown.old)),
+        " ".join(map(str, touchdown.new)),
+        *map(_text, numbers),
+        *more.values(),
     ]
-    form = _SCORES[bool(measured), bool(error)]
-    level = OK if score.scored else WARN
+    level = OK if is_trusted else WARN
     sample = prediction.sample
-    return form.fill(score.stamp, sample.frame_id, level, _score_message(score), sample.child_frame_id, values)
+    return _score_form(*more).fill(score.stamp, sample.frame_id, level, message, sample.child_frame_id, values)
+
+
+def _text(number: float) -> str:
+    return repr(float(number))
 
 
 def _score_message(score: Score) -> str:

@@ -1,4 +1,4 @@
-"""The topic of contact points, from publishers of either durability.
+"""A topic of messages that stay true until the next, such as contact points, from publishers of either durability.
 
 A volatile subscription matches every publisher, but gets nothing that was published before it was there; a
 transient-local one gets that, but does not match volatile publishers, and both sides are warned of the misfit. So the
@@ -16,7 +16,6 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.qos_overriding_options import QoSOverridingOptions
 
-from .messages import POLYGON
 from .process import message_class
 
 LIVE: Final = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
@@ -52,14 +51,14 @@ class Once:
             self._take(data)
 
 
-class GeometryTopic:
-    """Hands every message on a topic of contact points to `take`, as bytes."""
+class LatchedTopic:
+    """Hands every message on a topic to `take`, as bytes."""
 
-    def __init__(self, node: Node, take: Callable[[bytes], None], topic: str = "contact_geometry") -> None:
+    def __init__(self, node: Node, take: Callable[[bytes], None], topic: str, type_name: str) -> None:
         self._node = node
         self._topic = topic
         self._once = Once(take)
-        self._type = message_class(POLYGON)
+        self._type = message_class(type_name)
         self._events = SubscriptionEventCallbacks(use_default_callbacks=False)
         self._has_latched = False
         self.live = node.create_subscription(

@@ -1,0 +1,82 @@
+"""Which types of messages have an adapter.
+
+Only the name of a type is taken from a bag, and looked up among the adapters that are built in or installed: no bag
+decides which code runs.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping
+from functools import partial
+from importlib.metadata import EntryPoint, entry_points
+from typing import Any, Final
+
+from ...errors import InputError
+from ...ros.messages import MalformedMessage
+from ..read import decoders
+from .adapted import Adapted, Adapter
+
+GROUP: Final = "impact_predictor.adapters"
+"""Entry points of this group are adapters, named by the types of their messages."""
+
+BUILT_IN: Final = (EntryPoint("xpp_msgs/msg/RobotStateCartesian", "impact_predictor.bags.adapters.xpp:adapt", GROUP),)
+
+Read = Callable[[bytes], Adapted]
+"""Takes a message in CDR; raises MalformedMessage for one that cannot be used."""
+
+
+def known() -> dict[str, EntryPoint]:
+    """The adapters by the types of their messages; an installed one goes before one that is built in."""
+    return {one.name: one for one in (*BUILT_IN, *entry_points(group=GROUP))}
+
+
+def readers(path: str | os.PathLike[str], adapted: Mapping[str, str]) -> dict[str, Read]:
+    """What reads the messages of some topics of a bag, from the topics and their types, which have adapters.
+
+    Raises:
+        InputError: an adapter cannot be imported, or the bag holds no definition of a type; while reading: an adapter
+            fails.
+    """
+    if not adapted:
+        return {}
+    adapters = known()
+    decode = decoders(path, adapted)
+    return {
+        topic: partial(_read, decode[topic], _load(adapters[type_name]), f"{adapters[type_name].value} of {type_name}")
+        for topic, type_name in adapted.items()
+    }
+
+
+def _load(adapter: EntryPoint) -> Adapter:
+    try:
+        loaded: Adapter = adapter.load()
+    # A module that is imported may raise anything.
+    except Exception as error:
+        raise InputError(
+            f"the adapter {adapter.value} of {adapter.name} cannot be imported ({_reason(error)}); "
+            "install its package again, or remove it"
+        ) from error
+    return loaded
+
+
+def _read(decode: Callable[[bytes], Any], adapt: Adapter, named: str, data: bytes) -> Adapted:
+    try:
+        message = decode(data)
+    # The decoder of damaged bytes may raise anything from its depths.
+    except Exception as error:
+        raise MalformedMessage(_reason(error)) from None
+    try:
+        return adapt(message)
+    except ValueError as error:
+        raise MalformedMessage(_reason(error)) from None
+    # Anything else is no fault of this one message.
+    except Exception as error:
+        raise InputError(
+            f"the adapter {named} fails with {type(error).__name__} ({_reason(error)}); "
+            "compare it with the definition of the message in the bag"
+        ) from error
+
+
+def _reason(error: Exception) -> str:
+    return " ".join(str(error).split()).rstrip(".") or type(error).__name__

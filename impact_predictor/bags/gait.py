@@ -1,0 +1,105 @@
+"""When the feet of a walking machine stand, and how their landings were announced."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from math import hypot
+from typing import Final, NamedTuple
+
+from ..prediction.scene import Walking
+from ..prediction.types import Prediction, Score
+
+AHEAD: Final = 0.05
+"""Seconds before a landing at which the prediction is made that is kept."""
+
+
+class Stance(NamedTuple):
+    """A foot, by its place in feet.names, that stands from `begin` to `end` (stamps in ns)."""
+
+    foot: int
+    begin: int
+    end: int
+
+
+class Landed(NamedTuple):
+    """A foot that has come to stand at `stamp` (ns).
+
+    `announced` is the stamp that the last prediction made `AHEAD` of it told, None where there was none so early;
+    `speed` (m/s) that of the foot in its last sample in the air, and `impulse` (N s) what it gets with that speed.
+    """
+
+    foot: int
+    stamp: int
+    announced: int | None
+    speed: float | None
+    impulse: float | None
+
+
+class Gait:
+    """The stances of one machine as they were inferred, the true ones where they are known, and its landings."""
+
+    def __init__(self, walking: Walking) -> None:
+        self.feet = walking.feet
+        self.landings: list[Landed] = []
+        self.begin = self.end = 0
+        """Stamps of the first and the last sample in ns."""
+        self.samples = 0
+        self._points = walking.points
+        self._inferred, self._true = _Stances(), _Stances()
+        self._announced: dict[int, int] = {}
+
+    @property
+    def stances(self) -> list[Stance]:
+        """As they were inferred."""
+        return self._inferred.until(self.end)
+
+    @property
+    def true_stances(self) -> list[Stance]:
+        """Those that the record tells; none where it tells of none."""
+        return self._true.until(self.end)
+
+    def tell(self, stamp: int, stands: tuple[bool, ...]) -> None:
+        """Take which feet truly stand at a stamp in ns."""
+        for foot, stands_now in enumerate(stands[: len(self.feet)]):
+            self._true.take(foot, stands_now, stamp)
+
+    def take(self, prediction: Prediction) -> None:
+        """Take the answer to an accepted sample."""
+        self.end = prediction.sample.stamp
+        self.begin = self.begin if self.samples else self.end
+        self.samples += 1
+        ahead = {one.new[0] // self._points: one for one in reversed(prediction.touchdowns)}
+        for number, foot in enumerate(prediction.feet):
+            touchdown = ahead.get(number)
+            if touchdown is not None and not foot.stands and touchdown.lead_time >= AHEAD:
+                self._announced[number] = self.end + round(1e9 * touchdown.lead_time)
+            # What stands or swings from the beginning on has not begun at any stamp.
+            self._inferred.take(number, foot.stands, foot.since or self.begin)
+        if prediction.score is not None:
+            self.end_with([prediction.score])
+
+    def end_with(self, scores: Iterable[Score]) -> None:
+        """Take the landings that are settled."""
+        for landing in [score.landing for score in scores if score.landing is not None]:
+            foot = self.feet.index(landing.foot)
+            impulse = None if landing.impact is None else hypot(*landing.impact.impulses[1])
+            told = self._announced.pop(foot, None)
+            self.landings.append(Landed(foot, landing.stamp, told, landing.speed, impulse))
+
+
+class _Stances:
+    """The stances of feet, from whether they stand, sample by sample."""
+
+    def __init__(self) -> None:
+        self._ended: list[Stance] = []
+        self._since: dict[int, int] = {}
+
+    def take(self, foot: int, stands: bool, stamp: int) -> None:
+        """Know that a foot stands, or does not, since a stamp."""
+        if stands:
+            self._since.setdefault(foot, stamp)
+        elif foot in self._since:
+            self._ended.append(Stance(foot, self._since.pop(foot), stamp))
+
+    def until(self, end: int) -> list[Stance]:
+        return [*self._ended, *[Stance(foot, begin, end) for foot, begin in self._since.items()]]

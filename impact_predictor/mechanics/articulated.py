@@ -1,0 +1,129 @@
+"""Whole-body mechanics of a machine with joints, from its URDF through Pinocchio: `WholeBody`.
+
+Its generalized velocities are the linear and the angular velocity of the base, the root link of the URDF, along the
+base's axes, and then one for each joint. An impact is over before joint torques, which are finite, do anything: the
+joints are free in it, so that the mobility of its contacts is W = G M(q)^-1 G^T with the whole-body inertia M.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+
+Array = NDArray[np.float64]
+
+SINGULAR = 1e-12
+"""A pivot of the inertia matrix below this part of its diagonal is rounding: something moves that has no mass."""
+
+
+class WholeBody:
+    """A model of `urdf`, a file, with the points at the origins of its `frames` (links or joints) as contacts.
+
+    `joints` are the names of the joints that move, in the model's order. `place` it before anything else is read:
+    `inertia` (n, n) is then M(q), `points` (k, 3) in m and `jacobians` (k, 3, n) are those of the frames' origins,
+    along the base's axes.
+
+    Raises:
+        InputError: Pinocchio is not installed, there is no such file or frame, or the file is not the URDF of a machine
+            whose joints have one degree of freedom each.
+    """
+
+    def __init__(self, urdf: str, frames: Sequence[str]) -> None:
+        self._pinocchio = _pinocchio()
+        self._model = _model(self._pinocchio, urdf)
+        self._data = self._model.createData()
+        self._frames = [_frame(self._model, name, urdf) for name in frames]
+        # The first joint is the universe, the second the base's.
+        moving = list(self._model.joints)[2:]
+        self.joints: tuple[str, ...] = tuple(self._model.names)[2:]
+        for name, joint in zip(self.joints, moving, strict=True):
+            if joint.nv != 1:
+                raise InputError(
+                    f"{urdf}: joint {name} has {joint.nv} degrees of freedom; give a model whose joints have one each"
+                )
+        self._plain = [(i, joint.idx_q) for i, joint in enumerate(moving) if joint.nq == 1]
+        self._endless = [(i, joint.idx_q) for i, joint in enumerate(moving) if joint.nq == 2]
+        # The base is at the origin and not turned, so that the model's world is its frame.
+        self._q: Array = self._pinocchio.neutral(self._model)
+        self.inertia: Array = np.zeros((self._model.nv, self._model.nv))
+        self.points: Array = np.zeros((len(frames), 3))
+        self.jacobians: Array = np.zeros((len(frames), 3, self._model.nv))
+
+    def place(self, positions: Array) -> bool:
+        """Take the `positions` (rad or m) of `joints`; whether the inertia there has an inverse."""
+        for i, place in self._plain:
+            self._q[place] = positions[i]
+        for i, place in self._endless:
+            self._q[place : place + 2] = np.cos(positions[i]), np.sin(positions[i])
+        pinocchio, model, data = self._pinocchio, self._model, self._data
+        self.inertia = pinocchio.crba(model, data, self._q)
+        pinocchio.computeJointJacobians(model, data, self._q)
+        pinocchio.updateFramePlacements(model, data)
+        aligned = pinocchio.ReferenceFrame.LOCAL_WORLD_ALIGNED
+        for k, frame in enumerate(self._frames):
+            self.points[k] = data.oMf[frame].translation
+            self.jacobians[k] = pinocchio.getFrameJacobian(model, data, frame, aligned)[:3]
+        return _has_inverse(self.inertia)
+
+    def velocities(self, rates: Array) -> Array:
+        """Velocities (k, 3) of the points relative to the base, by the `rates` of `joints` (rad/s or m/s)."""
+        moved: Array = self.jacobians[:, :, 6:] @ rates
+        return moved
+
+    def mobility(self, contacts: Sequence[Sequence[int]], ways: Sequence[Sequence[float]]) -> tuple[Array, Array]:
+        """W = G M^-1 G^T in 1/kg, and M^-1 G^T, the change of the generalized velocities by each unit impulse.
+
+        A row of G is the velocity along one of the `ways`, unit vectors, of one of the `contacts`: of the mean of its
+        points, given by their indices. Rows of one contact follow each other; a contact without points has rows of 0.
+        """
+        means = [
+            self.jacobians[list(those)].mean(axis=0) if those else np.zeros((3, len(self.inertia)))
+            for those in contacts
+        ]
+        rows = np.concatenate([np.asarray(ways) @ mean for mean in means])
+        moved = np.linalg.solve(self.inertia, rows.T)
+        return rows @ moved, moved
+
+
+def _pinocchio() -> Any:
+    try:
+        import pinocchio
+    except ImportError as error:
+        raise InputError(
+            "robot.urdf needs Pinocchio, which is not installed: install it with `pip install pin` or the extra "
+            "`articulated`"
+        ) from error
+    return pinocchio
+
+
+def _model(pinocchio: Any, urdf: str) -> Any:
+    if not Path(urdf).is_file():
+        raise InputError(f"robot.urdf: there is no file {urdf!r}; give the URDF of the machine")
+    try:
+        return pinocchio.buildModelFromUrdf(urdf, pinocchio.JointModelFreeFlyer())
+    except (ValueError, RuntimeError) as error:
+        raise InputError(
+            f"robot.urdf: {urdf} is not a URDF that Pinocchio can read; check it with `check_urdf`"
+        ) from error
+
+
+def _frame(model: Any, name: str, urdf: str) -> int:
+    if not model.existFrame(name):
+        raise InputError(f"robot.frames: {urdf} has no link or joint {name!r}; give one for each contact point")
+    number: int = model.getFrameId(name)
+    return number
+
+
+def _has_inverse(inertia: Array) -> bool:
+    diagonal = np.diagonal(inertia)
+    try:
+        pivots = np.diagonal(np.linalg.cholesky(inertia)) ** 2
+    except np.linalg.LinAlgError:
+        return False
+    return bool(np.all(pivots > SINGULAR * diagonal))

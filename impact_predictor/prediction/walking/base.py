@@ -1,0 +1,91 @@
+"""The base of a machine at instants between and after its samples."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Sequence
+from operator import mul
+
+from ..types import Sample, Vector3
+from ..vectors import add, axes_of, times, to_body, to_world, turned
+from .cubic import NANOSECONDS
+
+SPAN = 50_000_000
+"""ns over which the acceleration of the base is taken to be constant."""
+
+FEWEST = 5
+"""Samples from which an acceleration is told."""
+
+
+class Twists:
+    """The twists of the base in its last samples, and how it goes on from them."""
+
+    def __init__(self) -> None:
+        self._recent: deque[tuple[int, tuple[float, ...]]] = deque()
+
+    def add(self, sample: Sample) -> None:
+        """Take the next sample, in the order of their stamps."""
+        recent, axes = self._recent, axes_of(sample.orientation)
+        recent.append((sample.stamp, to_world(axes, sample.linear) + to_world(axes, sample.angular)))
+        while recent[0][0] < sample.stamp - SPAN:
+            recent.popleft()
+
+    def begin(self, stamp: int) -> None:
+        """Leave out what was before a stamp in ns: an impact has changed the twist."""
+        while self._recent and self._recent[0][0] <= stamp:
+            self._recent.popleft()
+
+    def ahead(self, sample: Sample, time: float) -> Sample:
+        """The base `time` s after the last sample, whose stamp it keeps; twists lie on the line nearest to the last.
+
+        A base that turns about a foot gains speed until the next one lands, and a line averages the noise of twists.
+        """
+        recent = self._recent
+        if len(recent) < FEWEST:
+            return carried(sample, time)._replace(stamp=sample.stamp)
+        last, count = recent[-1][0], len(recent)
+        ages = [(stamp - last) / NANOSECONDS for stamp, _ in recent]
+        middle = sum(ages) / count
+        arms = [age - middle for age in ages]
+        spread = sum(map(mul, arms, arms))
+        columns = list(zip(*[twist for _, twist in recent], strict=True))
+        rates = [sum(map(mul, arms, column)) / spread for column in columns]
+        x, y, z, u, v, w = [sum(column) / count - middle * rate for column, rate in zip(columns, rates, strict=True)]
+        a, b, c, p, q, r = rates
+        half = 0.5 * time
+        glide: Vector3 = x + half * a, y + half * b, z + half * c
+        # Seen from the world a rotation comes first, in the body's axes of now it is the same vector turned back.
+        axes = axes_of(sample.orientation)
+        spin = to_body(axes, (u + half * p, v + half * q, w + half * r))
+        orientation = turned(sample.orientation, times(spin, time))
+        then = axes_of(orientation)
+        return sample._replace(
+            position=add(sample.position, glide, time),
+            orientation=orientation,
+            linear=to_body(then, (x + a * time, y + b * time, z + c * time)),
+            angular=to_body(then, (u + p * time, v + q * time, w + r * time)),
+        )
+
+
+def base_at(samples: Sequence[Sample], stamp: int) -> Sample:
+    """The base at a stamp in ns, from the nearest of its last samples; the older of two that are equally near."""
+    near = samples[-1]
+    for sample in reversed(samples):
+        if abs(sample.stamp - stamp) > abs(near.stamp - stamp):
+            break
+        near = sample
+    return carried(near, (stamp - near.stamp) / NANOSECONDS)
+
+
+def carried(sample: Sample, time: float) -> Sample:
+    """A sample `time` s later, at the velocities that it has."""
+    if time == 0.0:
+        return sample
+    linear = to_world(axes_of(sample.orientation), sample.linear)
+    orientation = turned(sample.orientation, times(sample.angular, time))
+    return sample._replace(
+        stamp=sample.stamp + round(time * NANOSECONDS),
+        position=add(sample.position, linear, time),
+        orientation=orientation,
+        linear=to_body(axes_of(orientation), linear),
+    )

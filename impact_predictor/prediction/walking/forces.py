@@ -1,0 +1,48 @@
+"""What force sensors say of the feet: they confirm a stance, and never decide one."""
+
+from __future__ import annotations
+
+from ..predictor import LARGEST, PAUSE
+from ..scene import Walking
+from ..types import Status, Wrench
+from ..vectors import dot
+from .cubic import NANOSECONDS
+
+
+class Forces:
+    """The last force on each foot of a machine."""
+
+    def __init__(self, walking: Walking) -> None:
+        self._feet = walking.feet
+        self._least = walking.force**2
+        self._timeout = round(walking.timeout * NANOSECONDS)
+        self._pressed: dict[str, tuple[int, bool]] = {}
+
+    def set(self, wrench: Wrench) -> Status:
+        """Take the force on a foot; what became of the message."""
+        foot, square = wrench.frame_id, dot(wrench.force, wrench.force)
+        if foot not in self._feet:
+            return Status.WRONG_FRAME
+        if not square < LARGEST:
+            return Status.NOT_FINITE
+        last = self._pressed[foot][0] if foot in self._pressed else None
+        status = order_of(wrench.stamp, last)
+        if status is Status.ACCEPTED:
+            self._pressed[foot] = wrench.stamp, square >= self._least
+        elif last is not None and last - wrench.stamp > PAUSE:
+            del self._pressed[foot]
+        return status
+
+    def agree(self, foot: str, stands: bool, stamp: int) -> bool | None:
+        """Whether the sensor of a foot shows the same stance near a stamp in ns; None where it shows nothing then."""
+        pressed = self._pressed.get(foot)
+        if pressed is None or abs(stamp - pressed[0]) > self._timeout:
+            return None
+        return pressed[1] is stands
+
+
+def order_of(stamp: int, last: int | None) -> Status:
+    """Whether a stamp follows the last one of its stream."""
+    if last is None or stamp > last:
+        return Status.ACCEPTED
+    return Status.STAMP_REPEATED if stamp == last else Status.STAMP_WENT_BACK

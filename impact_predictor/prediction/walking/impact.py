@@ -1,0 +1,157 @@
+"""The impact that a landing foot makes, through contact space: `touchdown_of`."""
+
+from __future__ import annotations
+
+from math import hypot, inf, sqrt
+
+from ...mechanics.contact_space import ContactOutcome, solve
+from ...mechanics.impact import new_tuple
+from ...mechanics.types import Flag, Mode, Twist
+from ..approach import GRAZES
+from ..planar import ORIGIN, ROUNDING, TINY, edge_of, hardly, off_axis_of
+from ..scene import Scene
+from ..types import Leftover, Sample, Status, Touchdown, Vector3
+from ..vectors import add, any_across, axes_of, cross, dot, mean, times, to_body, to_world
+from .mechanism import Mechanism, Row
+
+USABLE = 0.2
+"""The machine turns about the line of its standing points where the landing one is further from it than this part of
+their distance: else that line says nothing of where the machine goes."""
+
+COLLINEAR = 0.05
+"""Standing points no further from a line than this part of its length stand on it."""
+
+
+def touchdown_of(
+    scene: Scene,
+    mechanism: Mechanism,
+    base: Sample,
+    points: tuple[Vector3, ...],
+    old: tuple[int, ...],
+    new: tuple[int, ...],
+    lead_time: float,
+    velocity: Vector3,
+) -> Touchdown | Status:
+    """The touchdown of the `new` points of one foot while the `old` ones stand, with its impact.
+
+    `base` is the sample with the pose and the twist that the base has at the touchdown, `lead_time` s after its stamp;
+    `points` (m, in its frame) are those of then, and `velocity` (m/s) is that of the new contact relative to the
+    support, along the axes of the frame that the pose is in. The old contact rests; it is that of the same foot where
+    other points of it stand, else the mean of all standing points. Joints are free during an impact, or held by a
+    `mechanism` that has none. A foot that has braked before it lands makes no impact (Mode.NO_IMPACT). A status, where
+    the mechanism has no response.
+    """
+    axes = axes_of(base.orientation)
+    normal = to_body(axes, scene.normal)
+    stands = standing_with(scene, old, new)
+    striking = to_body(axes, velocity)
+    center = scene.center_of_mass
+    struck = mean([points[i] for i in new])
+    stood = [points[i] for i in stands]
+    ahead = ahead_of(scene, normal, stood, struck, striking)
+    axis = cross(normal, ahead)
+
+    response = mechanism.response(stands, new, normal, ahead, points)
+    if isinstance(response, Status):
+        return response
+    approach = dot(normal, striking)
+    c = 0.0 if stands else inf, 0.0, approach if approach < -GRAZES else 0.0, dot(ahead, striking)
+    frictions, restitutions = (scene.friction, scene.friction), (0.0, scene.restitution)
+    outcome = solve(response.W, c, frictions, restitutions, scene.law)
+    (na, ta), (nb, tb) = outcome.impulses
+    impulses = na, ta, nb, tb
+    x, y, z, p, q, r = response.twist
+    linear = add(base.linear, (times_row(x, impulses), times_row(y, impulses), times_row(z, impulses)))
+    angular = add(base.angular, (times_row(p, impulses), times_row(q, impulses), times_row(r, impulses)))
+
+    arms = [add(point, center, -1.0) for point in ((mean(stood), struck) if stands else (struck,))]
+    span = add(arms[-1], arms[0], -1.0)
+    gaps = [dot(normal, points[i]) for i in new]
+    touchdown = (
+        lead_time,
+        outcome.mode,
+        planar_twist(base.linear, base.angular, center, ahead, normal, axis),
+        planar_twist(linear, angular, center, ahead, normal, axis),
+        outcome.impulses,
+        outcome.segments,
+        outcome.energy_lost,
+        outcome.flags | doubts(scene, outcome),
+        outcome.unique,
+        outcome.law,
+        stands,
+        new,
+        to_world(axes, axis),
+        base.position,
+        base.orientation,
+        linear,
+        angular,
+        0.5 * hypot(dot(span, ahead), dot(span, normal)),
+        off_axis_of(base.angular, axis, dot(axis, base.angular)),
+        dot(axis, striking),
+        (max(gaps) - min(gaps)) / -c[2] if c[2] < 0.0 else 0.0,
+        max([abs(dot(axis, arm)) for arm in arms]),
+        Leftover.DRIVEN if stands else Leftover.DRIVEN | Leftover.ONE_POINT,
+        None,
+        None,
+    )
+    return new_tuple(Touchdown, touchdown)
+
+
+def standing_with(scene: Scene, old: tuple[int, ...], new: tuple[int, ...]) -> tuple[int, ...]:
+    """The standing points that make the old contact: those of the landing foot, or else all."""
+    count = 1 if scene.walking is None else scene.walking.points
+    if count == 1:
+        return old
+    foot = new[0] // count
+    return tuple([i for i in old if i // count == foot]) or old
+
+
+def ahead_of(scene: Scene, normal: Vector3, stood: list[Vector3], struck: Vector3, velocity: Vector3) -> Vector3:
+    """The unit vector in the support along which the impact plane lies, in the body frame.
+
+    It leads from the old contact to the new one, across the line of standing points about which the machine turns.
+    Where nothing stands it is the direction of the slip, which friction opposes.
+    """
+    slow = hardly(scene) ** 2
+    ways = [(velocity, slow), (add(struck, scene.center_of_mass, -1.0), 0.0)]
+    if stood:
+        arm = add(struck, mean(stood), -1.0)
+        square = dot(arm, arm)
+        line = edge_of(stood) if len(stood) > 1 else ORIGIN
+        across = cross(cross(line, arm), line)
+        ways = [(arm, ROUNDING * square), (velocity, slow)]
+        if is_line(stood, line) and dot(across, across) > USABLE**2 * dot(line, line) ** 2 * square:
+            ways.insert(0, (across, 0.0))
+    for way, least in (*ways, (any_across(normal), 0.0)):
+        flat = add(way, normal, -dot(normal, way))
+        square = dot(flat, flat)
+        if square > least + TINY:
+            break
+    return times(flat, 1.0 / sqrt(square))
+
+
+def is_line(stood: list[Vector3], line: Vector3) -> bool:
+    """Whether two or more standing points lie on one `line`, which leads from one end of them to the other."""
+    least = (COLLINEAR * dot(line, line)) ** 2
+    offsets = [cross(line, add(point, stood[0], -1.0)) for point in stood]
+    return len(stood) > 1 and all(dot(offset, offset) <= least for offset in offsets)
+
+
+def planar_twist(
+    linear: Vector3, angular: Vector3, center: Vector3, ahead: Vector3, normal: Vector3, axis: Vector3
+) -> Twist:
+    """The twist of the mass centre in the impact plane, from that of the base."""
+    velocity = add(linear, cross(angular, center))
+    return Twist(dot(ahead, velocity), dot(normal, velocity), -dot(axis, angular))
+
+
+def doubts(scene: Scene, outcome: ContactOutcome) -> Flag:
+    """Whether gravity matters while the impact lasts (see `Validity`)."""
+    gravity, contact_time, share = scene.validity[1:]
+    impulse = outcome.impulses[1][0]
+    slow = outcome.mode is not Mode.NO_IMPACT and share * impulse < scene.mass * gravity * contact_time
+    return Flag.SLOW_IMPACT if slow else Flag.NONE
+
+
+def times_row(row: Row, impulses: Row) -> float:
+    return row[0] * impulses[0] + row[1] * impulses[1] + row[2] * impulses[2] + row[3] * impulses[3]

@@ -1,0 +1,42 @@
+"""Start the predictor for a walking machine, with the topics of its trunk and of its feet.
+
+ros2 launch impact_predictor walker.launch.py odom:=/robot/odom contact_geometry:=/robot/feet
+ros2 launch impact_predictor walker.launch.py params_file:=my_robot.yaml joint_states:=/robot/joint_states
+"""
+
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
+from launch_ros.actions import Node
+from launch_ros.substitutions import FindPackageShare
+
+INPUTS = {
+    "odom": "Topic of the trunk's state.",
+    "contact_geometry": "Topic of the feet's points in the trunk's frame, for a machine without robot.urdf.",
+    "joint_states": "Topic of the joints, for a machine with robot.urdf.",
+    "contact_wrench": "Topic of the forces at the feet, where feet.force is above 0.",
+    "schedule": "Topic of the planned contacts, where feet.has_schedule is true.",
+}
+
+
+def generate_launch_description() -> LaunchDescription:
+    scene = PathJoinSubstitution([FindPackageShare("impact_predictor"), "config", LaunchConfiguration("scene")])
+    return LaunchDescription(
+        [
+            DeclareLaunchArgument("scene", default_value="walker", description="Name of a shipped scene."),
+            DeclareLaunchArgument(
+                "params_file", default_value=[scene, ".yaml"], description="ROS 2 parameter file of a scene."
+            ),
+            DeclareLaunchArgument("namespace", default_value="", description="Namespace of the node and its topics."),
+            *[DeclareLaunchArgument(name, default_value=name, description=text) for name, text in INPUTS.items()],
+            Node(
+                package="impact_predictor",
+                executable="predictor",
+                name="impact_predictor",
+                namespace=LaunchConfiguration("namespace"),
+                output="screen",
+                parameters=[LaunchConfiguration("params_file")],
+                remappings=[(name, LaunchConfiguration(name)) for name in INPUTS],
+            ),
+        ]
+    )

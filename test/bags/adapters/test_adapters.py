@@ -1,0 +1,262 @@
+"""Robots with messages of their own: which types are known, and what becomes of bags that have them."""
+
+from __future__ import annotations
+
+import re
+import sqlite3
+import subprocess
+import sys
+from importlib.metadata import EntryPoint
+from math import sqrt
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+from rosbags.rosbag1 import Writer as Ros1Writer
+from rosbags.rosbag2 import StoragePlugin, Writer
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+from rosbags.typesys.store import Typestore
+
+from impact_predictor.bags.adapters import Adapted, known, of_world
+from impact_predictor.bags.inputs import adapted_topics, find_topics
+from impact_predictor.bags.read import read_messages
+from impact_predictor.errors import InputError
+from impact_predictor.prediction.inputs import CONTACT_GEOMETRY, ODOM, Input
+from impact_predictor.ros.messages import ODOMETRY, MalformedMessage
+
+DOCUMENT = (Path(__file__).parents[3] / "docs/adapters.md").read_text()
+TYPE = "my_robot_msgs/msg/State"
+XPP = "xpp_msgs/msg/RobotStateCartesian"
+ODOM_INPUT, FEET_INPUT = Input("odom", ODOM, ""), Input("contact_geometry", CONTACT_GEOMETRY, "")
+INPUTS = (ODOM_INPUT, FEET_INPUT)
+
+
+@pytest.fixture
+def documented(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The robot of the document, as if its package were installed."""
+    source = re.search(r"```python\n(.*?)```", DOCUMENT, re.S)
+    entry = re.search(r'"(\S+)" = "(\S+):adapt"', DOCUMENT)
+    assert source is not None
+    assert entry is not None
+    assert entry[1] == TYPE
+    module = ModuleType(entry[2])
+    exec(source[1], module.__dict__)
+    monkeypatch.setitem(sys.modules, "my_robot", ModuleType("my_robot"))
+    monkeypatch.setitem(sys.modules, entry[2], module)
+    install(monkeypatch, EntryPoint(entry[1], f"{entry[2]}:adapt", known.GROUP))
+
+
+def install(monkeypatch: pytest.MonkeyPatch, *installed: EntryPoint) -> None:
+    monkeypatch.setattr(known, "entry_points", lambda group: installed if group == known.GROUP else ())
+
+
+def typestore() -> Typestore:
+    """The messages of the document's robot, beside those of ROS."""
+    definition = re.search(r"`my_robot_msgs/msg/State`:\n\n(.*?)\n\n\w", DOCUMENT, re.S)
+    assert definition is not None
+    store = get_typestore(Stores.ROS2_JAZZY)
+    store.register(get_types_from_msg(definition[1], TYPE))
+    return store
+
+
+def states(store: Typestore, count: int = 3) -> list[bytes]:
+    """Messages of a robot whose trunk is turned by 90 degrees about z, and which moves along its x, the world's y."""
+    of = store.types
+    vector, point = of["geometry_msgs/msg/Vector3"], of["geometry_msgs/msg/Point"]
+    turn = of["geometry_msgs/msg/Quaternion"](0.0, 0.0, sqrt(0.5), sqrt(0.5))
+    return [
+        bytes(
+            store.serialize_cdr(
+                of[TYPE](
+                    of["builtin_interfaces/msg/Time"](12, 500 * k),
+                    of["geometry_msgs/msg/Pose"](point(1.0, 2.0, 0.5), turn),
+                    of["geometry_msgs/msg/Twist"](vector(0.0, 3.0, 0.0), vector(0.0, 0.0, 0.0)),
+                    [point(1.0, 2.3, 0.0), point(1.0, 1.7, 0.0)],
+                    [vector(0.0, 0.0, 0.0), vector(0.0, 3.0, -1.0)],
+                    np.array([True, False]),
+                ),
+                TYPE,
+            )
+        )
+        for k in range(count)
+    ]
+
+
+def write(path: Path, store: Typestore, messages: list[bytes], topic: str = "/state", ros1: bool = False) -> Path:
+    if ros1:
+        with Ros1Writer(path) as writer:
+            connection = writer.add_connection(topic, TYPE, typestore=store)
+            for k, data in enumerate(messages):
+                writer.write(connection, k, store.cdr_to_ros1(data, TYPE))
+    else:
+        with Writer(path, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
+            connection = writer.add_connection(topic, TYPE, typestore=store)
+            for k, data in enumerate(messages):
+                writer.write(connection, k, data)
+    return path
+
+
+def read(path: Path) -> list[Adapted]:
+    reader = known.readers(path, {"/state": TYPE})["/state"]
+    return [reader(message.data) for message in read_messages(path, {"/state": TYPE})]
+
+
+@pytest.mark.usefixtures("documented")
+@pytest.mark.parametrize("ros1", [False, True])
+def test_the_documented_robot_is_read_from_ros_1_and_ros_2(tmp_path: Path, ros1: bool) -> None:
+    store = typestore()
+    first, *_, last = read(write(tmp_path / "robot.bag", store, states(store), ros1=ros1))
+    assert last.sample.stamp == last.geometry.stamp == 12_000_001_000
+    assert first.sample.linear == pytest.approx((3.0, 0.0, 0.0))
+    assert first.geometry.points[0] == pytest.approx((0.3, 0.0, -0.5))
+    assert first.geometry.velocities == (pytest.approx((-3.0, 0.0, 0.0)), pytest.approx((0.0, 0.0, -1.0)))
+    assert first.stands == (True, False)
+
+
+@pytest.mark.usefixtures("documented")
+def test_the_only_topic_with_an_adapter_is_odom_and_contact_geometry() -> None:
+    recorded = {"/camera": "sensor_msgs/msg/Image", "/state": TYPE}
+    found, notes = find_topics("robot.bag", recorded, INPUTS, {})
+    assert found == {ODOM_INPUT: "/state", FEET_INPUT: "/state"}
+    assert notes == ("in robot.bag, took /state as odom and contact_geometry: its messages have an adapter",)
+    assert adapted_topics(recorded, found) == {"/state": TYPE}
+
+
+@pytest.mark.usefixtures("documented")
+def test_of_two_topics_with_adapters_one_must_be_chosen() -> None:
+    recorded = {"/state": TYPE, "/plan": XPP}
+    with pytest.raises(
+        InputError, match="2 topics that could be odom: /state, /plan; choose one: --remap odom:=/state"
+    ):
+        find_topics("robot.bag", recorded, INPUTS, {})
+    found, notes = find_topics("robot.bag", recorded, INPUTS, {"odom": "/plan"})
+    assert found == {ODOM_INPUT: "/plan", FEET_INPUT: "/plan"}
+
+
+def test_a_recorded_odom_goes_before_any_adapter(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(known, "known", lambda: pytest.fail("looked for adapters"))
+    recorded = {"/anything/odom": ODOMETRY, "/state": XPP}
+    found, _ = find_topics("robot.bag", recorded, INPUTS, {})
+    assert found == {ODOM_INPUT: "/anything/odom"}
+    assert adapted_topics(recorded, found) == {}
+
+
+def test_a_bag_that_needs_no_adapter_imports_none() -> None:
+    script = f"""
+import sys
+from impact_predictor.bags.inputs import adapted_topics, find_topics
+from impact_predictor.bags.replay import replay
+from impact_predictor.prediction.inputs import Input
+inputs = [Input("odom", "odom", "")]
+recorded = {{"/odom": {ODOMETRY!r}, "/state": {XPP!r}}}
+adapted_topics(recorded, find_topics("robot.bag", recorded, inputs, {{}})[0])
+print([name for name in sys.modules if "bags.adapters" in name or name == "impact_predictor.bags.gait"])
+"""
+    result = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert result.stdout == "[]\n"
+
+
+def test_a_type_without_an_adapter_is_no_input() -> None:
+    recorded = {"/state": "my_robot_msgs/msg/Unheard"}
+    found, notes = find_topics("robot.bag", recorded, INPUTS, {"odom": "/state"})
+    assert (found, notes) == ({ODOM_INPUT: "/state"}, ())
+    assert adapted_topics(recorded, found) == {}
+
+
+def test_an_installed_adapter_goes_before_the_one_that_is_built_in(monkeypatch: pytest.MonkeyPatch) -> None:
+    mine = EntryPoint(XPP, "mine:adapt", known.GROUP)
+    assert known.known()[XPP] in known.BUILT_IN
+    install(monkeypatch, mine)
+    assert known.known()[XPP] is mine
+
+
+def test_an_adapter_that_cannot_be_imported_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    store = typestore()
+    bag = write(tmp_path / "robot", store, states(store))
+    install(monkeypatch, EntryPoint(TYPE, "nowhere.at_all:adapt", known.GROUP))
+    with pytest.raises(InputError, match=rf"the adapter nowhere.at_all:adapt of {TYPE} cannot be imported \(No module"):
+        known.readers(bag, {"/state": TYPE})
+
+
+@pytest.mark.usefixtures("documented")
+def test_damaged_bytes_are_malformed(tmp_path: Path) -> None:
+    store = typestore()
+    whole = states(store)[0]
+    reader = known.readers(write(tmp_path / "robot", store, [whole]), {"/state": TYPE})["/state"]
+    for size in range(0, len(whole) - 4, 7):
+        with pytest.raises(MalformedMessage):
+            reader(whole[:size])
+
+
+def test_what_an_adapter_raises_says_whose_fault_it_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    module = ModuleType("faulty")
+    monkeypatch.setitem(sys.modules, "faulty", module)
+    install(monkeypatch, EntryPoint(TYPE, "faulty:adapt", known.GROUP))
+    store = typestore()
+    bag = write(tmp_path / "robot", store, states(store))
+
+    def refuse(message: object) -> Adapted:
+        raise ValueError("no fix yet")
+
+    module.adapt = refuse  # type: ignore[attr-defined]
+    with pytest.raises(MalformedMessage, match="no fix yet"):
+        read(bag)
+    module.adapt = lambda message: Adapted(message.odometry)  # type: ignore[attr-defined]
+    with pytest.raises(InputError, match=rf"the adapter faulty:adapt of {TYPE} fails with AttributeError \(.*odometry"):
+        read(bag)
+
+
+def test_a_zero_quaternion_and_velocities_of_other_points_are_refused() -> None:
+    still = (0.0, 0.0, 0.0)
+    with pytest.raises(ValueError, match="zero quaternion"):
+        of_world(1, still, (0.0, 0.0, 0.0, 0.0), still, still, [still])
+    with pytest.raises(ValueError, match="shorter"):
+        of_world(1, still, (0.0, 0.0, 0.0, 1.0), still, still, [still, still], [still])
+
+
+def test_points_without_velocities_have_none() -> None:
+    still = (0.0, 0.0, 0.0)
+    _, geometry = of_world(1, still, (0.0, 0.0, 0.0, 1.0), still, still, [(1.0, 2.0, 3.0)])
+    assert geometry.points == ((1.0, 2.0, 3.0),)
+    assert geometry.velocities == ()
+
+
+def test_a_bag_without_definitions_is_told_apart(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    install(monkeypatch)
+    store = typestore()
+    path = tmp_path / "robot"
+    with Writer(path, version=9, storage_plugin=StoragePlugin.SQLITE3) as writer:
+        connection = writer.add_connection("/state", TYPE, typestore=store)
+        writer.write(connection, 0, states(store)[0])
+    # As the distributions before Iron recorded.
+    with sqlite3.connect(path / "robot.db3") as database:
+        database.execute("DELETE FROM message_definitions")
+    with pytest.raises(InputError, match=r"holds no definition of my_robot_msgs/msg/State on /state; record it again"):
+        known.readers(path, {"/state": TYPE})
+
+
+def test_definitions_may_be_in_idl(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "places", places := ModuleType("places"))
+    places.adapt = lambda message: Adapted(stands=(message.where.z == 3.0,))  # type: ignore[attr-defined]
+    install(monkeypatch, EntryPoint("places_msgs/msg/Place", "places:adapt", known.GROUP))
+    line = "=" * 80
+    idl = (
+        f"{line}\nIDL: places_msgs/msg/Place\n"
+        "module places_msgs { module msg { struct Place { geometry_msgs::msg::Point where; }; }; };\n"
+        f"{line}\nIDL: geometry_msgs/msg/Point\n"
+        "module geometry_msgs { module msg { struct Point { double x; double y; double z; }; }; };\n"
+    )
+    store = get_typestore(Stores.ROS2_JAZZY)
+    point = store.types["geometry_msgs/msg/Point"](1.0, 2.0, 3.0)
+    data = bytes(store.serialize_cdr(point, "geometry_msgs/msg/Point"))
+    with Writer(tmp_path / "places", version=9, storage_plugin=StoragePlugin.MCAP) as writer:
+        connection = writer.add_connection("/place", "places_msgs/msg/Place", msgdef=idl, rihs01="RIHS01_0")
+        writer.write(connection, 0, data)
+    reader = known.readers(tmp_path / "places", {"/place": "places_msgs/msg/Place"})["/place"]
+    assert reader(data) == Adapted(stands=(True,))
+
+
+def test_the_document_names_every_adapter_that_is_built_in() -> None:
+    for one in known.BUILT_IN:
+        assert f"| {one.name} |" in DOCUMENT

@@ -1,0 +1,229 @@
+"""Whole-body mechanics through Pinocchio, beside its own algorithms and a rigid body written out."""
+
+import sys
+from importlib.metadata import PackageNotFoundError, files
+
+import numpy as np
+import pytest
+
+from impact_predictor.errors import InputError
+from impact_predictor.mechanics.articulated import WholeBody
+from impact_predictor.mechanics.contact_space import solve
+
+FEET = ("lf_foot", "rf_foot", "lh_foot", "rh_foot")
+WAYS = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
+
+INERTIAL = '<inertial><mass value="{}"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+LIMIT = '<limit lower="-1" upper="1" effort="1" velocity="1"/>'
+
+
+def needs_pinocchio():
+    return pytest.importorskip("pinocchio", reason="needs the extra articulated")
+
+
+def model_of(name):
+    """The path of a robot's URDF in the package of examples."""
+    try:
+        listed = files("example-robot-data") or []
+    except PackageNotFoundError:
+        pytest.skip("needs the extra robots")
+    return next(str(path.locate()) for path in listed if path.name == name)
+
+
+def hyq():
+    """The quadruped HyQ, with its feet as contacts."""
+    needs_pinocchio()
+    return WholeBody(model_of("hyq_no_sensors.urdf"), FEET)
+
+
+def random_posture(source):
+    """Joint positions of a quadruped whose knees are bent."""
+    return source.uniform(-0.5, 0.5, 12) + np.tile([0.0, 0.6, -1.2, 0.0, -0.6, 1.2], 2)
+
+
+def one_link(tmp_path, inertial, child="", kind="revolute"):
+    path = tmp_path / "robot.urdf"
+    path.write_text(
+        f'<robot name="r"><link name="base">{inertial}</link><link name="arm">{child}</link>'
+        f'<joint name="shoulder" type="{kind}"><parent link="base"/><child link="arm"/>{LIMIT}'
+        '<axis xyz="0 1 0"/></joint></robot>'
+    )
+    return str(path)
+
+
+@pytest.mark.extras
+def test_sticking_feet_change_the_velocities_as_in_pinocchio():
+    pinocchio, body = needs_pinocchio(), hyq()
+    model = pinocchio.buildModelFromUrdf(model_of("hyq_no_sensors.urdf"), pinocchio.JointModelFreeFlyer())
+    source = np.random.default_rng(1)
+    for _ in range(50):
+        positions, motion = random_posture(source), source.normal(size=model.nv)
+        assert body.place(positions)
+        sticking = np.concatenate([body.jacobians[k] for k in (0, 3)])
+        data = model.createData()
+        q = np.concatenate([[0, 0, 0, 0, 0, 0, 1], positions])
+        expected = pinocchio.impulseDynamics(model, data, q, motion, sticking, 0.0, 0.0)
+
+        across = (0.0, 1.0, 0.0)
+        W, moved = body.mobility([[0], [3]], [*WAYS, across])
+        rows = np.concatenate([np.array([*WAYS, across]) @ body.jacobians[k] for k in (0, 3)])
+        after = motion - moved @ np.linalg.solve(W, rows @ motion)
+        # Rates of about 10 rad/s, and a condition number of about 1e4.
+        assert after == pytest.approx(expected, abs=1e-10)
+
+
+@pytest.mark.extras
+def test_a_sticking_impact_of_contact_space_is_that_of_pinocchio_in_the_plane():
+    pinocchio, body = needs_pinocchio(), hyq()
+    model = pinocchio.buildModelFromUrdf(model_of("hyq_no_sensors.urdf"), pinocchio.JointModelFreeFlyer())
+    source = np.random.default_rng(2)
+    stops = 0
+    for _ in range(60):
+        positions = random_posture(source)
+        body.place(positions)
+        W, moved = body.mobility([[1], [2]], WAYS)
+        rows = np.concatenate([np.array(WAYS) @ body.jacobians[k] for k in (1, 2)])
+        motion = source.normal(size=model.nv)
+        motion -= moved @ np.linalg.solve(W, rows @ motion - [0.0, 0.0, -0.3, 0.05])
+        c = rows @ motion
+        outcome = solve(W, [0.0, 0.0, *c[2:]], (9.0, 9.0))
+        if outcome.mode.name != "STOP":
+            continue
+        q = np.concatenate([[0, 0, 0, 0, 0, 0, 1], positions])
+        expected = pinocchio.impulseDynamics(model, model.createData(), q, motion, rows, 0.0, 0.0)
+        assert motion + moved @ np.array(outcome.impulses).ravel() == pytest.approx(expected, abs=1e-10)
+        stops += 1
+    assert stops > 10
+
+
+def of_links(pinocchio, model, positions, motion):
+    """Kinetic energy and both momenta about the base's origin, summed link by link from their own velocities."""
+    data = model.createData()
+    pinocchio.forwardKinematics(model, data, np.concatenate([[0, 0, 0, 0, 0, 0, 1], positions]), motion)
+    energy, momentum = 0.0, np.zeros(6)
+    for link in range(1, model.njoints):
+        inertia, twist = model.inertias[link], data.v[link]
+        centre, spin = inertia.lever, twist.angular
+        velocity = twist.linear + np.cross(spin, centre)
+        turned = inertia.inertia @ spin
+        energy += 0.5 * (inertia.mass * velocity @ velocity + spin @ turned)
+        axes, origin = data.oMi[link].rotation, data.oMi[link].translation
+        push = axes @ velocity * inertia.mass
+        momentum += np.concatenate([push, axes @ turned + np.cross(origin + axes @ centre, push)])
+    return energy, momentum
+
+
+@pytest.mark.extras
+def test_the_whole_inertia_holds_the_kinetic_energy_and_both_momenta_of_the_links():
+    pinocchio, body = needs_pinocchio(), hyq()
+    model = pinocchio.buildModelFromUrdf(model_of("hyq_no_sensors.urdf"), pinocchio.JointModelFreeFlyer())
+    source = np.random.default_rng(3)
+    for _ in range(20):
+        positions, motion = random_posture(source), source.normal(size=model.nv)
+        body.place(positions)
+        energy, momentum = of_links(pinocchio, model, positions, motion)
+        assert 0.5 * motion @ body.inertia @ motion == pytest.approx(energy, rel=1e-12)
+        assert (body.inertia @ motion)[:6] == pytest.approx(momentum, abs=1e-11)
+
+
+@pytest.mark.extras
+@pytest.mark.parametrize("law", ["path", "total"])
+def test_an_impact_changes_the_momentum_of_the_links_by_its_impulses_and_their_energy_by_what_it_says(law):
+    pinocchio, body = needs_pinocchio(), hyq()
+    model = pinocchio.buildModelFromUrdf(model_of("hyq_no_sensors.urdf"), pinocchio.JointModelFreeFlyer())
+    source = np.random.default_rng(5)
+    modes = set()
+    for _ in range(100):
+        positions, friction = random_posture(source), source.uniform(0.1, 1.0)
+        body.place(positions)
+        W, moved = body.mobility([[0, 3], [1]], WAYS)
+        middle = body.jacobians[[0, 3]].mean(axis=0), body.jacobians[1]
+        rows = np.concatenate([np.array(WAYS) @ jacobian for jacobian in middle])
+        motion = source.normal(size=model.nv)
+        c = [0.0, 0.0, -source.uniform(0.1, 1.0), source.normal()]
+        motion -= moved @ np.linalg.solve(W, rows @ motion - c)
+        outcome = solve(W, c, (friction, friction), law=law)
+        after = motion + moved @ np.array(outcome.impulses).ravel()
+
+        (energy, momentum), (less, changed) = (of_links(pinocchio, model, positions, one) for one in (motion, after))
+        wrench = np.zeros(6)
+        places = body.points[[0, 3]].mean(axis=0), body.points[1]
+        for place, (normal, tangent) in zip(places, outcome.impulses, strict=True):
+            push = np.array([tangent, 0.0, normal])
+            wrench += np.concatenate([push, np.cross(place, push)])
+            assert normal >= 0.0
+            assert abs(tangent) <= friction * normal + 1e-10
+        # Rounding of energies of about 100 J and momenta of about 100 N s.
+        assert changed - momentum == pytest.approx(wrench, abs=1e-11)
+        assert outcome.energy_lost == pytest.approx(energy - less, abs=1e-11)
+        assert outcome.energy_lost >= 0.0
+        for jacobian in middle:
+            assert (jacobian @ after)[2] >= -1e-11
+        modes.add(outcome.mode)
+    assert len(modes) > 2
+
+
+@pytest.mark.extras
+def test_points_and_their_velocities_are_those_of_the_frames():
+    body = hyq()
+    source = np.random.default_rng(4)
+    positions, rates, step = random_posture(source), source.normal(size=12), 1e-6
+    places = []
+    for side in (-step, step):
+        body.place(positions + side * rates)
+        places.append(body.points.copy())
+    body.place(positions)
+    # The error of a central difference is of the order of its step squared, and of rounding over the step.
+    assert body.velocities(rates) == pytest.approx((places[1] - places[0]) / (2.0 * step), abs=1e-8)
+
+
+@pytest.mark.extras
+def test_an_endless_joint_is_placed_by_its_angle():
+    needs_pinocchio()
+    path = model_of("double_pendulum_continuous.urdf")
+    simple = model_of("double_pendulum_simple.urdf")
+    endless, plain = (WholeBody(name, ("link2",)) for name in (path, simple))
+    for angles in ([0.3, -2.0], [7.0, 1.0]):
+        endless.place(np.array(angles))
+        turned = endless.points.copy(), endless.inertia.copy()
+        endless.place(np.array(angles) + 2.0 * np.pi)
+        assert endless.points == pytest.approx(turned[0], abs=1e-12)
+        assert endless.inertia == pytest.approx(turned[1], abs=1e-12)
+    assert plain.joints == endless.joints
+
+
+@pytest.mark.extras
+def test_a_link_that_moves_without_mass_leaves_the_inertia_without_an_inverse(tmp_path):
+    needs_pinocchio()
+    whole = INERTIAL.format(1.0)
+    assert WholeBody(one_link(tmp_path, whole, whole), ("arm",)).place(np.zeros(1))
+    assert not WholeBody(one_link(tmp_path, whole, ""), ("arm",)).place(np.zeros(1))
+    assert not WholeBody(one_link(tmp_path, "", ""), ("arm",)).place(np.zeros(1))
+
+
+@pytest.mark.extras
+@pytest.mark.parametrize(
+    ("urdf", "frames", "sentence"),
+    [
+        ("missing.urdf", ("arm",), "there is no file 'missing.urdf'"),
+        ("no xml", ("arm",), "is not a URDF that Pinocchio can read"),
+        ("floating", ("arm",), "joint shoulder has 6 degrees of freedom"),
+        ("revolute", ("arm", "toe"), "has no link or joint 'toe'"),
+    ],
+)
+def test_what_is_no_model_of_a_machine_is_said_in_one_sentence(tmp_path, urdf, frames, sentence):
+    needs_pinocchio()
+    if urdf == "no xml":
+        (tmp_path / "robot.urdf").write_text("a robot")
+        urdf = str(tmp_path / "robot.urdf")
+    elif urdf != "missing.urdf":
+        urdf = one_link(tmp_path, INERTIAL.format(1.0), INERTIAL.format(1.0), urdf)
+    with pytest.raises(InputError, match=sentence) as error:
+        WholeBody(urdf, frames)
+    assert "\n" not in str(error.value)
+
+
+def test_a_model_without_pinocchio_says_what_to_install(monkeypatch):
+    monkeypatch.setitem(sys.modules, "pinocchio", None)
+    with pytest.raises(InputError, match="needs Pinocchio, which is not installed"):
+        WholeBody("robot.urdf", ())

@@ -1,0 +1,86 @@
+"""The base between, at and after its samples."""
+
+from __future__ import annotations
+
+from math import cos, cosh, sin, sqrt
+
+import pytest
+
+from impact_predictor.prediction.types import Sample
+from impact_predictor.prediction.vectors import axes_of, to_body, to_world
+from impact_predictor.prediction.walking.base import FEWEST, Twists, base_at
+
+PERIOD = 2_500_000
+ZEROS = (0.0,) * 36
+RAMP = ((0.4, -0.2, 0.1), (3.0, 1.0, -2.0))
+"""A velocity in m/s and its acceleration in m/s^2, along the world's axes."""
+
+
+def sample(stamp: int, yaw: float = 0.7, shift: float = 0.0) -> Sample:
+    """A base that moves as `RAMP` tells, faster by a `shift`, and spins about z at 2 + 5 t rad/s."""
+    time = stamp * 1e-9
+    (x, y, z), (a, b, c) = RAMP
+    angle = yaw + 2.0 * time + 2.5 * time * time
+    orientation = (0.0, 0.0, sin(0.5 * angle), cos(0.5 * angle))
+    linear = to_body(axes_of(orientation), (x + a * time + shift, y + b * time, z + c * time))
+    half = 0.5 * time * time
+    position = (x * time + a * half, y * time + b * half, z * time + c * half)
+    return Sample(stamp, "world", "base", position, orientation, linear, (0.0, 0.0, 2.0 + 5.0 * time), ZEROS, ZEROS)
+
+
+def twists_of(samples: list[Sample]) -> Twists:
+    twists = Twists()
+    for one in samples:
+        twists.add(one)
+    return twists
+
+
+@pytest.mark.parametrize("lead_time", [0.0, 0.02, 0.1])
+def test_a_base_goes_on_at_the_acceleration_that_its_twists_show(lead_time: float) -> None:
+    samples = [sample(k * PERIOD) for k in range(41)]
+    then = twists_of(samples).ahead(samples[-1], lead_time)
+    true = sample(samples[-1].stamp + round(lead_time * 1e9))
+    assert then.stamp == samples[-1].stamp
+    # Motion of constant acceleration is followed exactly, up to rounding of 1 m and 4 rad/s.
+    assert then.position == pytest.approx(true.position, abs=1e-12)
+    assert then.orientation == pytest.approx(true.orientation, abs=1e-12)
+    assert then.linear == pytest.approx(true.linear, abs=1e-12)
+    assert then.angular == pytest.approx(true.angular, abs=1e-12)
+
+
+def test_a_body_that_falls_over_a_foot_is_told_far_better_than_at_its_twist_of_now() -> None:
+    # A pendulum of 1 m upside down, 0.2 s after it stood upright; it strikes 0.1 s later.
+    rates = [1.2 * cosh(sqrt(9.81) * (0.1 + k * PERIOD * 1e-9)) for k in range(41)]
+    samples = [sample(k * PERIOD)._replace(angular=(0.0, 0.0, rate)) for k, rate in enumerate(rates)]
+    true = 1.2 * cosh(sqrt(9.81) * 0.3)
+    told = twists_of(samples).ahead(samples[-1], 0.1).angular[2]
+    assert abs(told - true) < 0.4 * abs(rates[-1] - true)
+
+
+def test_what_was_before_an_impact_does_not_count() -> None:
+    samples = [sample(k * PERIOD, shift=0.0 if k <= 20 else 1.0) for k in range(20 + 2 * FEWEST)]
+    twists = twists_of(samples)
+    twists.begin(samples[20].stamp)
+    true = sample(samples[-1].stamp + 50_000_000, shift=1.0)
+    assert twists.ahead(samples[-1], 0.05).linear == pytest.approx(true.linear, abs=1e-12)
+
+
+def test_from_fewer_samples_the_twist_of_now_is_kept() -> None:
+    samples = [sample(k * PERIOD) for k in range(FEWEST - 1)]
+    last = samples[-1]
+    then = twists_of(samples).ahead(last, 0.1)
+    kept = to_world(axes_of(then.orientation), then.linear)
+    assert kept == pytest.approx(to_world(axes_of(last.orientation), last.linear), abs=1e-15)
+    assert then.angular == last.angular
+
+
+@pytest.mark.parametrize(("offset", "nearest"), [(0, 4), (-1_000_000, 4), (-1_500_000, 3), (1_000_000, 4)])
+def test_between_samples_the_nearest_one_is_carried_on(offset: int, nearest: int) -> None:
+    samples = [sample(k * PERIOD) for k in range(5)]
+    stamp = samples[-1].stamp + offset
+    found = base_at(samples, stamp)
+    assert found.stamp == stamp
+    age = (stamp - samples[nearest].stamp) * 1e-9
+    velocity = to_world(axes_of(samples[nearest].orientation), samples[nearest].linear)
+    expected = [p + v * age for p, v in zip(samples[nearest].position, velocity, strict=True)]
+    assert found.position == pytest.approx(expected, abs=1e-15)

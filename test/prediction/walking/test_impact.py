@@ -1,0 +1,262 @@
+"""The impact of a landing foot: the laws of mechanics, in any frame, and the planar impact where it is one."""
+
+from math import cos, sin
+
+import numpy as np
+import pytest
+
+from impact_predictor import Mode, solve_impact
+from impact_predictor.mechanics.types import Contact, Flag, Twist, TwoPointBody
+from impact_predictor.prediction.scene import Scene, Walking
+from impact_predictor.prediction.types import Leftover, Sample, Status
+from impact_predictor.prediction.vectors import axes_of, composed, cross
+from impact_predictor.prediction.walking.impact import touchdown_of
+from impact_predictor.prediction.walking.mechanism import Trunk
+
+FEET = ((0.31, 0.29, -0.58), (0.31, -0.29, -0.58), (-0.31, 0.29, -0.58), (-0.31, -0.29, -0.58))
+LEVEL = (0.0, 0.0, 0.0, 1.0)
+
+
+def scene_of(**changes):
+    inertia = (4.3, -0.2, 0.5), (-0.2, 9.0, 0.1), (0.5, 0.1, 8.3)
+    given = {"mass": 83.0, "inertia": inertia, "friction": 0.6, "center_of_mass": (0.03, 0.01, -0.04)}
+    walking = Walking(("LF", "RF", "LH", "RH"))
+    return Scene(**{**given, "walking": walking, **changes})
+
+
+def base_of(linear=(0.4, 0.1, -0.2), angular=(0.1, 0.2, -0.3), position=(0.0, 0.0, 0.58), orientation=LEVEL):
+    return Sample(5, "world", "base", position, orientation, linear, angular, (), ())
+
+
+def random_landing(source, **changes):
+    """A scene, its base, its feet and the contacts of a landing, with the velocity that the base gives the foot.
+
+    Where feet stand, the mean of them does not move. The base turns about it.
+    """
+    scene = scene_of(friction=source.uniform(0.1, 1.0), **changes)
+    feet = tuple(tuple(foot) for foot in (np.array(FEET) + source.uniform(-0.1, 0.1, (4, 3)) * [1, 1, 0]).tolist())
+    new = int(source.integers(4))
+    others = [i for i in range(4) if i != new]
+    old = tuple(sorted(source.permutation(others)[: source.integers(0, 4)].tolist()))
+    angular = source.normal(size=3)
+    linear = source.normal(size=3)
+    if old:
+        linear = -np.cross(angular, np.mean([feet[i] for i in old], axis=0))
+    velocity = linear + np.cross(angular, feet[new])
+    if velocity[2] > 0.0:
+        linear, angular, velocity = -linear, -angular, -velocity
+    orientation = source.normal(size=4)
+    orientation = tuple((orientation / np.linalg.norm(orientation)).tolist())
+    axes = np.array(axes_of(orientation))
+    base = base_of(tuple(linear.tolist()), tuple(angular.tolist()), tuple(source.normal(size=3)), orientation)
+    # The ground is the body's own xy plane, wherever that is turned.
+    scene = scene._replace(normal=tuple(axes[2].tolist()))
+    return scene, base, feet, old, (new,), tuple((velocity @ axes).tolist())
+
+
+def landing(scene, base, feet, old, new, velocity):
+    return touchdown_of(scene, Trunk(scene), base, feet, old, new, 0.05, velocity)
+
+
+def motion_of_mass_centre(scene, linear, angular):
+    return np.array(linear) + np.cross(angular, scene.center_of_mass), np.array(angular)
+
+
+def impulse_vectors(scene, base, touchdown):
+    """The impulses (old, new) as vectors of the body frame."""
+    axes = np.array(axes_of(base.orientation))
+    ahead = np.cross(touchdown.axis, scene.normal)
+    return [axes @ (n * np.array(scene.normal) + t * ahead) for n, t in touchdown.impulses]
+
+
+def landings(count, seed, **changes):
+    source = np.random.default_rng(seed)
+    for _ in range(count):
+        case = random_landing(source, **changes)
+        yield case, landing(*case)
+
+
+def test_a_landing_keeps_the_momentum_balance_about_any_point():
+    source = np.random.default_rng(1)
+    for (scene, base, feet, old, new, _), touchdown in landings(200, seed=2):
+        before = motion_of_mass_centre(scene, base.linear, base.angular)
+        after = motion_of_mass_centre(scene, touchdown.linear, touchdown.angular)
+        pushes = impulse_vectors(scene, base, touchdown)
+        places = [np.mean([feet[i] for i in those], axis=0) if those else np.zeros(3) for those in (old, new)]
+        momentum = scene.mass * (after[0] - before[0])
+        assert momentum == pytest.approx(sum(pushes), abs=1e-11)  # rounding of momenta of about 100 N s
+        about = source.normal(size=3)
+        turned = np.array(scene.inertia) @ (after[1] - before[1])
+        turned += np.cross(np.array(scene.center_of_mass) - about, momentum)
+        assert turned == pytest.approx(
+            sum(np.cross(place - about, push) for place, push in zip(places, pushes, strict=True)), abs=1e-11
+        )
+
+
+def test_a_landing_leaves_no_approach_and_its_impulses_are_in_their_cones():
+    modes = set()
+    for (scene, _, feet, old, new, _), touchdown in landings(400, seed=3):
+        for normal, tangent in touchdown.impulses:
+            assert normal >= 0.0
+            assert abs(tangent) <= scene.friction * normal + 1e-10
+        for those in (old, new):
+            if those:
+                place = np.mean([feet[i] for i in those], axis=0)
+                rate = touchdown.linear[2] + np.cross(touchdown.angular, place)[2]
+                assert rate >= -1e-12
+        modes.add(touchdown.mode)
+    assert {Mode.SLIDE, Mode.PIVOT, Mode.PIVOT_SLIDE} <= modes
+
+
+@pytest.mark.parametrize("restitution", [0.0, 0.5])
+def test_a_landing_loses_the_kinetic_energy_that_it_says_it_loses(restitution):
+    for (scene, base, *_), touchdown in landings(200, seed=4, restitution=restitution):
+        energies = []
+        for state in (base, touchdown):
+            velocity, spin = motion_of_mass_centre(scene, state.linear, state.angular)
+            energies.append(0.5 * (scene.mass * velocity @ velocity + spin @ np.array(scene.inertia) @ spin))
+        assert touchdown.energy_lost == pytest.approx(energies[0] - energies[1], abs=1e-11)
+        assert touchdown.energy_lost >= -1e-12
+
+
+def test_a_landing_does_not_depend_on_where_the_world_is_and_how_it_is_turned():
+    source = np.random.default_rng(5)
+    for (scene, base, feet, old, new, velocity), touchdown in landings(100, seed=6):
+        turn = source.normal(size=4)
+        turn = tuple((turn / np.linalg.norm(turn)).tolist())
+        turned = np.array(axes_of(turn)).T  # takes the old world's vectors to the new one's
+        moved = base._replace(orientation=composed(turn, base.orientation), position=(7.0, -3.0, 1.0))
+        elsewhere = scene._replace(normal=tuple((turned @ scene.normal).tolist()))
+        other = landing(elsewhere, moved, feet, old, new, tuple((turned @ velocity).tolist()))
+        assert other.mode is touchdown.mode
+        assert other.linear == pytest.approx(touchdown.linear, abs=1e-11)
+        assert other.angular == pytest.approx(touchdown.angular, abs=1e-11)
+        assert other.after == pytest.approx(touchdown.after, abs=1e-11)
+        assert np.array(other.axis) == pytest.approx(turned @ touchdown.axis, abs=1e-11)
+
+
+def test_a_landing_in_the_mirror_is_the_landing_mirrored():
+    flip = np.array([1.0, -1.0, 1.0])
+    for (scene, base, feet, old, new, velocity), touchdown in landings(100, seed=7):
+        axes = np.array(axes_of(base.orientation))
+        level = base._replace(orientation=LEVEL)
+        mirrored = scene._replace(
+            normal=(0.0, 0.0, 1.0),
+            center_of_mass=tuple(flip * scene.center_of_mass),
+            inertia=tuple(map(tuple, (np.array(scene.inertia) * np.outer(flip, flip)).tolist())),
+        )
+        level = level._replace(linear=tuple(flip * base.linear), angular=tuple(-flip * base.angular))
+        other = landing(mirrored, level, tuple(map(tuple, flip * feet)), old, new, tuple(flip * (axes @ velocity)))
+        assert other.mode is touchdown.mode
+        assert np.array(other.linear) == pytest.approx(flip * touchdown.linear, abs=1e-11)
+        assert np.array(other.angular) == pytest.approx(-flip * touchdown.angular, abs=1e-11)
+        assert other.after == pytest.approx(touchdown.after, abs=1e-11)
+
+
+@pytest.mark.parametrize("friction", [0.1, 0.4, 2.0])
+@pytest.mark.parametrize("law", ["path", "total"])
+def test_a_wheel_in_its_plane_lands_as_the_planar_body(friction, law):
+    angle, length, rate = np.pi / 8, 1.0, 1.5
+    x, y = length * sin(angle), -length * cos(angle)
+    scene = scene_of(
+        mass=2.0,
+        inertia=((0.3, 0, 0), (0, 0.5, 0), (0, 0, 0.3)),
+        friction=friction,
+        law=law,
+        center_of_mass=(0.0, 0.0, 0.0),
+    )
+    body = TwoPointBody(2.0, 0.5, Contact(-x, y, friction), Contact(x, y, friction))
+    twist = body.turning(-rate)
+    expected = solve_impact(body, twist, law)
+    base = base_of((twist.vx, 0.0, twist.vy), (0.0, rate, 0.0))
+    velocity = twist.vx + rate * y, 0.0, twist.vy - rate * x
+    touchdown = landing(scene, base, ((x, 0.0, y), (-x, 0.0, y)), (1,), (0,), velocity)
+    assert touchdown.mode is expected.mode
+    assert touchdown.before == pytest.approx(twist, abs=1e-15)
+    assert touchdown.after == pytest.approx(expected.twist, abs=1e-13)
+    assert touchdown.energy_lost == pytest.approx(expected.energy_lost, abs=1e-13)
+    assert touchdown.axis == pytest.approx((0.0, 1.0, 0.0))
+    assert touchdown.linear == pytest.approx((expected.twist.vx, 0.0, expected.twist.vy), abs=1e-13)
+    assert touchdown.angular == pytest.approx((0.0, -expected.twist.omega, 0.0), abs=1e-13)
+    assert (touchdown.old, touchdown.new, touchdown.lead_time) == ((1,), (0,), 0.05)
+
+
+def test_a_machine_turns_about_the_line_of_two_standing_feet_towards_the_third():
+    touchdown = landing(scene_of(), base_of(), FEET, (1, 2), (0,), (0.0, 0.0, -0.2))
+    line = np.array(FEET[1]) - FEET[2]
+    assert np.cross(touchdown.axis, line) == pytest.approx((0.0, 0.0, 0.0), abs=1e-12)
+    assert np.dot(cross(touchdown.axis, (0.0, 0.0, 1.0)), FEET[0]) > 0.0
+
+
+@pytest.mark.parametrize("old", [(2,), (2, 3, 0)])
+def test_otherwise_it_turns_across_the_arm_from_the_middle_of_the_standing_feet(old):
+    touchdown = landing(scene_of(), base_of(), FEET, old, (1,), (0.0, 0.0, -0.2))
+    arm = np.array(FEET[1]) - np.mean([FEET[i] for i in old], axis=0)
+    assert np.dot(touchdown.axis, arm) == pytest.approx(0.0, abs=1e-12)
+    assert np.dot(cross(touchdown.axis, (0.0, 0.0, 1.0)), arm) > 0.0
+    assert touchdown.old == old
+
+
+def test_a_foot_on_the_line_of_the_standing_ones_is_struck_along_it():
+    feet = (*FEET[:2], (0.31, 0.0, -0.58))
+    touchdown = landing(scene_of(), base_of(), feet, (0, 1), (2,), (0.3, 0.0, -0.2))
+    assert touchdown.axis == pytest.approx((0.0, 1.0, 0.0))
+
+
+def test_a_toe_strikes_about_the_heel_of_its_own_foot_whatever_else_stands():
+    scene = scene_of(walking=Walking(("left", "right"), points=2))
+    touchdown = landing(scene, base_of(), FEET, (0, 1, 2), (3,), (0.0, 0.0, -0.2))
+    assert touchdown.old == (2,)
+    touchdown = landing(scene, base_of(), FEET, (0, 1), (3,), (0.0, 0.0, -0.2))
+    assert touchdown.old == (0, 1)
+
+
+def test_the_corners_of_a_sole_that_strike_together_tell_how_far_apart_they_close():
+    scene = scene_of(walking=Walking(("left", "right"), points=2))
+    feet = (*FEET[:2], (-0.2, 0.3, -0.58), (-0.4, 0.3, -0.579))
+    touchdown = landing(scene, base_of(), feet, (0, 1), (2, 3), (0.0, 0.0, -0.2))
+    assert touchdown.closing_spread == pytest.approx(0.001 / 0.2)
+
+
+def test_where_nothing_stands_one_foot_is_struck_in_the_plane_of_its_slip():
+    touchdown = landing(scene_of(), base_of(), FEET, (), (1,), (0.0, -0.3, -0.2))
+    assert touchdown.leftover == Leftover.DRIVEN | Leftover.ONE_POINT
+    assert cross(touchdown.axis, (0.0, 0.0, 1.0)) == pytest.approx((0.0, -1.0, 0.0))
+    assert touchdown.lateral == pytest.approx(0.0)
+    assert touchdown.impulses[0] == (0.0, 0.0)
+    assert touchdown.half_distance == 0.0
+
+
+@pytest.mark.parametrize("speed", [0.0, 1e-14, -0.1])
+def test_a_foot_that_has_braked_makes_no_impact(speed):
+    touchdown = landing(scene_of(), base_of(), FEET, (1, 2), (0,), (0.1, 0.0, -speed))
+    assert touchdown.mode is Mode.NO_IMPACT
+    assert (touchdown.linear, touchdown.angular) == (base_of().linear, base_of().angular)
+    assert touchdown.before == touchdown.after
+    assert touchdown.energy_lost == 0.0
+
+
+def test_a_landing_that_gravity_matters_in_is_flagged():
+    slow, fast = (landing(scene_of(), base_of(), FEET, (1, 2), (0,), (0.0, 0.0, -v)) for v in (0.1, 5.0))
+    assert slow.flags & Flag.SLOW_IMPACT
+    assert not fast.flags & Flag.SLOW_IMPACT
+
+
+def test_what_a_mechanism_cannot_answer_is_handed_on():
+    class Unknown:
+        def response(self, old, new, normal, ahead, points):
+            return Status.SINGULAR_INERTIA
+
+    found = touchdown_of(scene_of(), Unknown(), base_of(), FEET, (1, 2), (0,), 0.05, (0.0, 0.0, -0.2))
+    assert found is Status.SINGULAR_INERTIA
+
+
+def test_the_twists_in_the_plane_are_those_of_the_mass_centre():
+    (case, touchdown) = next(landings(1, seed=8))
+    scene, base = case[:2]
+    axes = np.array(axes_of(base.orientation))
+    axis, normal = axes @ touchdown.axis, axes @ scene.normal
+    for state, twist in ((base, touchdown.before), (touchdown, touchdown.after)):
+        velocity, spin = motion_of_mass_centre(scene, state.linear, state.angular)
+        ahead = np.cross(axis, normal)
+        assert twist == pytest.approx(Twist(velocity @ ahead, velocity @ normal, -spin @ axis), abs=1e-13)

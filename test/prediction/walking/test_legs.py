@@ -1,0 +1,101 @@
+"""A machine with joints: its feet from the messages of its joints, and what is wrong with those."""
+
+from math import inf, nan
+
+import numpy as np
+import pytest
+
+from impact_predictor.prediction.scene import Robot
+from impact_predictor.prediction.types import Joints, Status
+from impact_predictor.prediction.walking.mechanism import Response
+
+pytestmark = pytest.mark.extras
+
+LINK = """<link name="{name}"><inertial><origin xyz="{place}"/><mass value="{mass}"/>
+    <inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial></link>"""
+URDF = """<robot name="frog">
+  {body} {left} {right}
+  <joint name="left_hip" type="revolute"><parent link="body"/><child link="left"/><axis xyz="0 1 0"/>{limit}</joint>
+  <joint name="right_hip" type="revolute"><parent link="body"/><child link="right"/><axis xyz="0 1 0"/>{limit}</joint>
+  <link name="left_foot"/><link name="right_foot"/>
+  <joint name="left_end" type="fixed"><parent link="left"/><child link="left_foot"/><origin xyz="0 0.1 -1"/></joint>
+  <joint name="right_end" type="fixed"><parent link="right"/><child link="right_foot"/><origin xyz="0 -0.1 -1"/></joint>
+</robot>
+"""
+LIMIT = '<limit lower="-1" upper="1" effort="1" velocity="1"/>'
+NAMES = ("left_hip", "right_hip")
+UP, AHEAD = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
+
+
+@pytest.fixture
+def frog(tmp_path):
+    return articulated(tmp_path)
+
+
+def articulated(tmp_path, massless=False):
+    pytest.importorskip("pinocchio", reason="needs the extra articulated")
+    from impact_predictor.prediction.walking.legs import Articulated
+
+    path = tmp_path / "frog.urdf"
+    body = LINK.format(name="body", place="0 0 0", mass=10.0)
+    left, right = (LINK.format(name=name, place="0 0 -0.5", mass=1.0) for name in ("left", "right"))
+    path.write_text(URDF.format(body=body, left='<link name="left"/>' if massless else left, right=right, limit=LIMIT))
+    return Articulated(Robot(str(path), ("left_foot", "right_foot")))
+
+
+def test_the_feet_follow_the_joints_in_whatever_order_their_names_come(frog):
+    found = frog.geometry_of(Joints(7, NAMES, (0.3, -0.2), (1.0, 2.0)))
+    assert found.stamp == 7
+    # A leg of 1 m that has turned by q about y, and turns on.
+    expected = [(-np.sin(q), y, -np.cos(q)) for q, y in ((0.3, 0.1), (-0.2, -0.1))]
+    assert np.array(found.points) == pytest.approx(np.array(expected), abs=1e-15)
+    moving = [(-rate * np.cos(q), 0.0, rate * np.sin(q)) for q, rate in ((0.3, 1.0), (-0.2, 2.0))]
+    assert np.array(found.velocities) == pytest.approx(np.array(moving), abs=1e-15)
+    assert frog.geometry_of(Joints(7, NAMES[::-1], (-0.2, 0.3), (2.0, 1.0))) == found
+
+
+def test_joints_without_velocities_give_points_without(frog):
+    assert frog.geometry_of(Joints(0, NAMES, (0.0, 0.0), ())).velocities == ()
+
+
+@pytest.mark.parametrize(
+    ("names", "positions", "velocities", "status"),
+    [
+        (("left_hip",), (0.0,), (), Status.WRONG_JOINTS),
+        (("left_hip", "knee"), (0.0, 0.0), (), Status.WRONG_JOINTS),
+        (("left_hip", "left_hip"), (0.0, 0.0), (), Status.WRONG_JOINTS),
+        ((*NAMES, "knee"), (0.0, 0.0, 0.0), (), Status.WRONG_JOINTS),
+        (("left_hip", "left_hip", "right_hip"), (0.0, 0.0, 0.0), (), Status.WRONG_JOINTS),
+        ((), (), (), Status.WRONG_JOINTS),
+        (NAMES, (0.0,), (), Status.WRONG_JOINTS),
+        (NAMES, (0.0, 0.0), (1.0,), Status.WRONG_JOINTS),
+        (NAMES, (0.0, nan), (), Status.NOT_FINITE),
+        (NAMES, (0.0, 0.0), (inf, 0.0), Status.NOT_FINITE),
+    ],
+)
+def test_joints_that_are_not_the_models_are_a_status_and_leave_the_last_ones(
+    frog, names, positions, velocities, status
+):
+    frog.geometry_of(Joints(0, NAMES, (0.3, -0.2), ()))
+    before = frog.response((0,), (1,), UP, AHEAD, ())
+    assert frog.geometry_of(Joints(1, names, positions, velocities)) is status
+    assert frog.response((0,), (1,), UP, AHEAD, ()) == before
+    assert frog.geometry_of(Joints(2, NAMES, (0.3, -0.2), ())).stamp == 2
+
+
+def test_before_any_joints_there_is_no_response_but_a_status(frog):
+    assert frog.response((0,), (1,), UP, AHEAD, ()) is Status.NO_GEOMETRY
+
+
+def test_a_leg_without_mass_is_a_status_and_never_a_number(tmp_path):
+    frog = articulated(tmp_path, massless=True)
+    assert frog.geometry_of(Joints(0, NAMES, (0.3, -0.2), ())) is Status.SINGULAR_INERTIA
+    assert frog.response((0,), (1,), UP, AHEAD, ()) is Status.SINGULAR_INERTIA
+
+
+def test_in_flight_the_rows_of_the_old_contact_are_zero(frog):
+    frog.geometry_of(Joints(0, NAMES, (0.3, -0.2), ()))
+    response = frog.response((), (1,), UP, AHEAD, ())
+    assert isinstance(response, Response)
+    assert np.array(response.W)[:2].any() == np.array(response.W)[:, :2].any() == np.array(response.twist)[:, :2].any()
+    assert not np.array(response.W)[:2].any()

@@ -1,0 +1,100 @@
+"""One rigid body as a mechanism, beside its six by six mass matrix."""
+
+import numpy as np
+import pytest
+
+from impact_predictor.errors import InputError
+from impact_predictor.prediction.scene import Robot, Scene, inertia_matrix
+from impact_predictor.prediction.types import Joints
+from impact_predictor.prediction.walking.mechanism import Trunk
+
+URDF = """<robot name="block">
+  <link name="body"><inertial><origin xyz="{place}"/><mass value="{mass:.17g}"/>
+    <inertia ixx="{xx:.17g}" iyy="{yy:.17g}" izz="{zz:.17g}" ixy="{xy:.17g}" ixz="{xz:.17g}" iyz="{yz:.17g}"/>
+  </inertial></link>
+  {feet}
+</robot>
+"""
+FOOT = """<link name="foot_{k}"/><joint name="leg_{k}" type="fixed"><parent link="body"/><child link="foot_{k}"/>
+    <origin xyz="{place}"/></joint>"""
+
+
+def across(x):
+    """The matrix of a cross product."""
+    return np.array([[0.0, -x[2], x[1]], [x[2], 0.0, -x[0]], [-x[1], x[0], 0.0]])
+
+
+def random_body(source):
+    """A rigid body with its mass centre off the origin, and four feet."""
+    parts = source.normal(size=(3, 8))
+    moments = parts @ parts.T
+    inertia = np.trace(moments) * np.eye(3) - moments
+    scene = Scene(
+        mass=source.uniform(1.0, 100.0),
+        inertia=tuple(map(tuple, inertia.tolist())),
+        friction=0.6,
+        center_of_mass=tuple(source.uniform(-0.2, 0.2, 3).tolist()),
+    )
+    return scene, tuple(map(tuple, source.uniform(-0.5, 0.5, (4, 3)).tolist()))
+
+
+def mass_matrix(scene):
+    """Of the velocity of the origin and the angular velocity."""
+    center, inertia = across(scene.center_of_mass), np.array(scene.inertia)
+    upper = np.hstack([scene.mass * np.eye(3), -scene.mass * center])
+    return np.vstack([upper, np.hstack([scene.mass * center, inertia - scene.mass * center @ center])])
+
+
+def random_plane(source):
+    normal, ahead = np.linalg.qr(source.normal(size=(3, 3)))[0].T[:2]
+    return tuple(normal.tolist()), tuple(ahead.tolist())
+
+
+@pytest.mark.parametrize("old", [(1,), (1, 2), (0, 1, 2), ()])
+def test_the_response_of_a_trunk_is_that_of_its_mass_matrix(old):
+    source = np.random.default_rng(1)
+    for _ in range(20):
+        scene, points = random_body(source)
+        normal, ahead = random_plane(source)
+        rows = np.zeros((4, 6))
+        for first, those in ((0, old), (2, (3,))):
+            for k, way in enumerate((normal, ahead)):
+                if those:
+                    middle = np.mean([points[i] for i in those], axis=0)
+                    rows[first + k] = [*way, *np.cross(middle, way)]
+        moved = np.linalg.solve(mass_matrix(scene), rows.T)
+        W, twist = Trunk(scene).response(old, (3,), normal, ahead, points)
+        # Rounding of numbers of about 1.
+        assert np.array(W) == pytest.approx(rows @ moved, abs=1e-13)
+        assert np.array(twist) == pytest.approx(moved, abs=1e-13)
+
+
+def test_a_body_whose_inertia_has_no_inverse_is_refused_in_one_sentence():
+    needle = Scene(mass=1.0, inertia=inertia_matrix((0.0, 1.0, 1.0, 0.0, 0.0, 0.0)), friction=0.5)
+    with pytest.raises(InputError, match="has no inverse"):
+        Trunk(needle)
+
+
+@pytest.mark.extras
+def test_a_machine_without_joints_is_a_trunk(tmp_path):
+    pytest.importorskip("pinocchio", reason="needs the extra articulated")
+    from impact_predictor.prediction.walking.legs import Articulated
+
+    source = np.random.default_rng(2)
+    path = tmp_path / "block.urdf"
+    for _ in range(20):
+        scene, points = random_body(source)
+        normal, ahead = random_plane(source)
+        (xx, xy, xz), (_, yy, yz), (_, _, zz) = scene.inertia
+        feet = [FOOT.format(k=k, place="{:.17g} {:.17g} {:.17g}".format(*point)) for k, point in enumerate(points)]
+        place = "{:.17g} {:.17g} {:.17g}".format(*scene.center_of_mass)
+        numbers = {"xx": xx, "yy": yy, "zz": zz, "xy": xy, "xz": xz, "yz": yz}
+        path.write_text(URDF.format(place=place, mass=scene.mass, feet="\n".join(feet), **numbers))
+        machine = Articulated(Robot(str(path), tuple(f"foot_{k}" for k in range(4))))
+        geometry = machine.geometry_of(Joints(0, (), (), ()))
+        assert np.array(geometry.points) == pytest.approx(np.array(points), abs=1e-15)
+        for old in ((0,), (0, 2), ()):
+            one = Trunk(scene).response(old, (1,), normal, ahead, points)
+            other = machine.response(old, (1,), normal, ahead, geometry.points)
+            assert np.array(other.W) == pytest.approx(np.array(one.W), abs=1e-12)
+            assert np.array(other.twist) == pytest.approx(np.array(one.twist), abs=1e-12)

@@ -1,0 +1,52 @@
+"""When feet are planned to land, and how late they are."""
+
+from __future__ import annotations
+
+import pytest
+
+from impact_predictor.prediction.types import Schedule, Status
+from impact_predictor.prediction.walking.plan import Plan
+
+MS = 1_000_000
+
+
+def test_a_landing_is_compared_with_the_nearest_planned_one() -> None:
+    plan = Plan(("left", "right"))
+    assert plan.late("left", 5) is None
+    times = tuple(k * 100 * MS for k in range(5))
+    stands = ((True, True), (False, True), (True, True), (False, True), (True, True))
+    assert plan.set(Schedule(0, ("left", "right"), times, stands)) is Status.ACCEPTED
+    assert plan.late("left", 210 * MS) == pytest.approx(0.01)
+    assert plan.late("left", 380 * MS) == pytest.approx(-0.02)
+    assert plan.late("right", 210 * MS) is None
+
+
+def test_a_new_schedule_replaces_what_is_ahead_and_keeps_what_was_before() -> None:
+    plan = Plan(("left",))
+    plan.set(Schedule(0, ("left",), (0, 200 * MS, 400 * MS, 600 * MS), ((False,), (True,), (False,), (True,))))
+    plan.set(Schedule(0, ("left",), (300 * MS, 500 * MS, 700 * MS), ((True,), (False,), (True,))))
+    assert plan.late("left", 200 * MS) == 0.0
+    assert plan.late("left", 600 * MS) == pytest.approx(-0.1)
+
+
+def test_a_foot_that_stands_from_the_first_time_on_is_not_planned_to_land_then() -> None:
+    plan = Plan(("left",))
+    plan.set(Schedule(0, ("left",), (100 * MS,), ((True,),)))
+    assert plan.late("left", 100 * MS) is None
+
+
+@pytest.mark.parametrize(
+    ("schedule", "status"),
+    [
+        (Schedule(0, ("nose",), (0,), ((True,),)), Status.FEET_CHANGED),
+        (Schedule(0, ("left",), (5, 5), ((True,), (False,))), Status.MALFORMED),
+        (Schedule(0, ("left",), (5,), ()), Status.MALFORMED),
+        (Schedule(0, ("left",), (5,), ((True, False),)), Status.MALFORMED),
+        (Schedule(0, ("left",), (), ()), Status.ACCEPTED),
+    ],
+)
+def test_a_schedule_that_is_none_is_refused(schedule: Schedule, status: Status) -> None:
+    plan = Plan(("left",))
+    plan.set(Schedule(0, ("left",), (0, 200 * MS), ((False,), (True,))))
+    assert plan.set(schedule) is status
+    assert plan.late("left", 200 * MS) == 0.0

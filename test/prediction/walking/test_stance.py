@@ -1,0 +1,72 @@
+"""Which points stand, and what standing ones tell of the ground."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from impact_predictor.prediction.scene import Scene, Walking
+from impact_predictor.prediction.walking.cubic import Frame
+from impact_predictor.prediction.walking.point import Point
+from impact_predictor.prediction.walking.stance import Ground, Stance
+
+MS = 1_000_000
+SCENE = Scene(1.0, ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), 0.5, walking=Walking(("foot",)))
+"""Contact tolerance 5 mm, dead time 20 ms."""
+
+
+def frame(milliseconds: float, gap: float, rate: float | None = 0.0) -> Frame:
+    velocity = None if rate is None else (0.0, 0.0, rate)
+    return Frame(round(milliseconds * MS), gap, rate, (0.0, 0.0, gap), velocity)
+
+
+def changes(
+    gap: Callable[[float], float], rate: Callable[[float], float | None], end: float
+) -> list[tuple[float, bool]]:
+    """When a point is seen to stand or to swing (ms), at 400 Hz."""
+    stance, ground, frames = Stance(SCENE), Ground(SCENE), []
+    found = []
+    for time in np.arange(0.0, end, 2.5).tolist():
+        frames.append(frame(time, gap(time), rate(time)))
+        if stance.update(frames, ground):
+            found.append((time, stance.stands))
+    return found
+
+
+@pytest.mark.parametrize("measured", [True, False])
+def test_a_stance_is_believed_after_the_dead_time_and_not_before(measured: bool) -> None:
+    def rate(_: float) -> float | None:
+        return 0.0 if measured else None
+
+    assert changes(lambda t: 0.05 if t < 50 else 0.0, rate, 100) == [(70.0, True)]
+    assert changes(lambda t: 0.0 if t < 50 else 0.05, rate, 100) == [(70.0, False)]
+    assert changes(lambda t: 0.0 if t % 10 else 0.05, rate, 200) == []
+
+
+def test_a_foot_close_to_the_ground_does_not_stand_while_it_sinks() -> None:
+    assert changes(lambda t: 0.05 - 1e-4 * t, lambda _: -0.1, 545) == []
+    assert changes(lambda t: 0.05 - 3e-4 * t, lambda _: None, 180) == []
+
+
+def test_standing_feet_tell_the_level_and_the_noise() -> None:
+    rng = np.random.default_rng(0)
+    point, ground = Point(SCENE), Ground(SCENE)
+    for k in range(600):
+        gap, rate = rng.normal(0.002, 1e-3), rng.normal(0.0, 0.03)
+        point.add(frame(2.5 * k, gap, rate), ground)
+    # A hundred frames: their mean is good to 0.1 mm, their deviations to 10 %.
+    assert ground.level == pytest.approx(0.002, abs=3e-4)
+    assert ground.noise.gap == pytest.approx(1e-3, rel=0.3)
+    assert ground.noise.rate == pytest.approx(0.03, rel=0.3)
+
+
+def test_a_foot_that_lifts_slowly_is_not_taken_for_the_ground() -> None:
+    point, ground = Point(SCENE), Ground(SCENE)
+    for k in range(400):
+        time = max(0.0, 2.5e-3 * k - 0.5)
+        point.add(frame(2.5 * k, 2.0 * time**2, 4.0 * time), ground)
+    assert not point.stands
+    assert ground.level == 0.0
+    assert ground.noise.gap < 1e-6

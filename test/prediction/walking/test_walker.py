@@ -1,0 +1,437 @@
+"""Landings of feet that are driven along known courses: found, in time, once, and never where there are none."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+
+from impact_predictor.prediction.predictor import PAUSE
+from impact_predictor.prediction.scene import Scene, Walking
+from impact_predictor.prediction.types import (
+    Geometry,
+    Leftover,
+    Prediction,
+    Sample,
+    Schedule,
+    Score,
+    Status,
+    Vector3,
+    Wrench,
+)
+from impact_predictor.prediction.vectors import add, axes_of, cross, to_body, turned
+from impact_predictor.prediction.walking.walker import Walker
+
+MS = 1_000_000
+RATE = 400
+START = 10**9
+ZEROS = (0.0,) * 36
+FEET = ("LF", "RF", "LH", "RH")
+HIPS: tuple[Vector3, ...] = ((0.3, 0.3, 0.0), (0.3, -0.3, 0.0), (-0.3, 0.3, 0.0), (-0.3, -0.3, 0.0))
+INERTIA = ((4.3, 0.0, 0.0), (0.0, 9.0, 0.0), (0.0, 0.0, 9.9))
+
+Height = Callable[[float], tuple[float, float]]
+"""Gap in m and its rate in m/s, at a time in s."""
+
+
+class Message(NamedTuple):
+    sample: Sample
+    geometry: Geometry
+
+
+def machine(feet: tuple[str, ...] = FEET, **walking: Any) -> Scene:
+    return Scene(83.0, INERTIA, 0.8, frame="world", walking=Walking(feet, **walking))
+
+
+def swing(lift: float, land: float, height: float = 0.08, speed: float = 0.0) -> Height:
+    """A foot that is lifted and lowered by two cubics, between them at rest; it lands with a speed."""
+    top = 0.5 * (lift + land)
+
+    def at(time: float) -> tuple[float, float]:
+        if not lift < time < land:
+            return 0.0, 0.0
+        begin, span = (lift, top - lift) if time < top else (top, land - top)
+        s = (time - begin) / span
+        if time < top:
+            return height * s * s * (3.0 - 2.0 * s), height * 6.0 * s * (1.0 - s) / span
+        fall = speed * span
+        gap = height * (1.0 - s * s * (3.0 - 2.0 * s)) + fall * s * s * (1.0 - s)
+        return gap, (-height * 6.0 * s * (1.0 - s) + fall * s * (2.0 - 3.0 * s)) / span
+
+    return at
+
+
+def stands(time: float) -> tuple[float, float]:
+    return 0.0, 0.0
+
+
+def record(
+    courses: Iterable[Height],
+    duration: float,
+    rate: float = RATE,
+    noise: tuple[float, float] = (0.0, 0.0),
+    seed: int = 0,
+    places: tuple[Vector3, ...] = HIPS,
+) -> list[Message]:
+    """A base that drifts ahead and sways, over feet with known gaps; noise on every position and velocity."""
+    rng = np.random.default_rng(seed)
+    messages = []
+    courses = list(courses)
+    for k in range(round(duration * rate)):
+        time = k / rate
+        stamp = START + round(time * 1e9)
+        position = (0.2 * time, 0.0, 0.5 + 0.01 * math.sin(5.0 * time))
+        linear = (0.2, 0.0, 0.05 * math.cos(5.0 * time))
+        orientation = turned((0.0, 0.0, 0.0, 1.0), (0.02 * math.sin(4.0 * time), 0.0, 0.0))
+        angular = (0.08 * math.cos(4.0 * time), 0.0, 0.0)
+        axes = axes_of(orientation)
+        points, velocities = [], []
+        for (x, y, _), course in zip(places, courses, strict=True):
+            gap, fall = course(time)
+            point = to_body(axes, add((x, y, gap), position, -1.0))
+            velocity = add(to_body(axes, add((0.0, 0.0, fall), linear, -1.0)), cross(angular, point), -1.0)
+            points.append(shaken(point, noise[0], rng))
+            velocities.append(shaken(velocity, noise[1], rng))
+        base = shaken(position, noise[0], rng)
+        twist = shaken(to_body(axes, linear), noise[1], rng)
+        sample = Sample(stamp, "world", "base", base, orientation, twist, angular, ZEROS, ZEROS)
+        messages.append(Message(sample, Geometry(stamp, "base", tuple(points), tuple(velocities))))
+    return messages
+
+
+def shaken(vector: Vector3, deviation: float, rng: np.random.Generator) -> Vector3:
+    if deviation == 0.0:
+        return vector
+    x, y, z = rng.normal(vector, deviation).tolist()
+    return x, y, z
+
+
+class Seen(NamedTuple):
+    predictions: list[Prediction]
+    scores: list[Score]
+
+    def announced(self, point: int) -> list[tuple[float, float]]:
+        """Times in s at which a landing of a point was announced, and when it was to be."""
+        return [
+            ((one.sample.stamp - START) * 1e-9, (one.sample.stamp - START) * 1e-9 + touchdown.lead_time)
+            for one in self.predictions
+            for touchdown in one.touchdowns
+            if point in touchdown.new
+        ]
+
+
+def walk(scene: Scene, messages: Iterable[Message]) -> Seen:
+    walker = Walker(scene)
+    predictions = []
+    for sample, geometry in messages:
+        assert walker.set_geometry(geometry) is Status.ACCEPTED
+        predictions.append(walker.update(sample))
+    scores = [one.score for one in predictions if one.score is not None]
+    return Seen(predictions, [*scores, *walker.finish()])
+
+
+@pytest.mark.parametrize("speed", [0.0, 0.05, 0.4])
+@pytest.mark.parametrize("measured", [True, False])
+def test_a_landing_is_announced_in_time_whether_the_foot_brakes_or_strikes(speed: float, measured: bool) -> None:
+    messages = record([swing(0.3, 0.6, speed=speed), stands, stands, stands], 0.8)
+    if not measured:
+        messages = [one._replace(geometry=one.geometry._replace(velocities=())) for one in messages]
+    seen = walk(machine(), messages)
+    told = seen.announced(0)
+    assert told[0][0] < 0.6 - 0.08
+    # From a few frames, 0.1 s ahead, a slow strike cannot be told from a foot that brakes to rest 2.5 ms later.
+    assert max(abs(stamp - 0.6) for _, stamp in told) < 3e-3
+    # The two cubics meet between frames; what that leaves is far below a frame (2.5 ms).
+    assert max(abs(stamp - 0.6) for seen, stamp in told if seen > 0.52) < 5e-4
+    (score,) = seen.scores
+    assert score.landing is not None
+    assert score.landing.foot == "LF"
+    assert score.landing.stamp == pytest.approx(START + 600 * MS, abs=0.5 * MS)
+    told_speeds = [one.feet[0].landing_speed for one in seen.predictions if one.feet[0].landing_speed is not None]
+    assert told_speeds[-1] == pytest.approx(speed, abs=0.02)
+    # Up to 2.5 ms before, or in the mean of the 2.5 ms before that, it still brakes at 20 m/s^2.
+    assert score.landing.speed == pytest.approx(speed, abs=0.1)
+    assert score.landing.impact is not None
+    assert score.landing.impact.impulses[1][0] > 0.0
+    assert score.touchdown.old == (1, 2, 3)
+    assert Leftover.DRIVEN in score.leftover
+    assert not score.scored
+    assert not any(seen.announced(point) for point in (1, 2, 3))
+
+
+def test_the_landing_error_of_every_prediction_is_told_with_it() -> None:
+    (score,) = walk(machine(), record([swing(0.3, 0.6), stands, stands, stands], 0.8)).scores
+    assert score.landing is not None
+    leads = [lead for lead, _ in score.landing.history]
+    assert leads == sorted(leads, reverse=True)
+    assert leads[0] > 0.08
+    assert max(abs(error) for _, error in score.landing.history) < 5e-4
+
+
+def test_a_foot_that_only_comes_down_a_little_lands_nowhere() -> None:
+    def dips(time: float) -> tuple[float, float]:
+        return 0.06 + 0.03 * math.cos(12.0 * time), -0.36 * math.sin(12.0 * time)
+
+    seen = walk(machine(), record([dips, stands, stands, stands], 2.0))
+    assert seen.announced(0) == []
+    assert not any(one.feet[0].stands for one in seen.predictions)
+    assert seen.scores == []
+
+
+def test_no_landing_is_announced_before_the_foot_descends() -> None:
+    told = walk(machine(), record([swing(0.3, 0.7), stands, stands, stands], 0.9)).announced(0)
+    assert min(seen for seen, _ in told) > 0.5
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_with_noise_on_everything_all_landings_are_found_and_no_other(seed: int) -> None:
+    lands = [0.7, 1.3, 1.9, 2.5]
+
+    def steps(first: float) -> Height:
+        swings = [swing(land - 0.3 + first, land + first) for land in lands]
+        return lambda time: max((one(time) for one in swings), key=lambda course: course[0])
+
+    courses = [steps(0.0), steps(0.3), steps(0.3), steps(0.0)]
+    seen = walk(machine(), record(courses, 3.1, noise=(1e-3, 0.02), seed=seed))
+    landings = [score.landing for score in seen.scores if score.landing is not None]
+    assert sorted(one.foot for one in landings) == sorted(FEET * len(lands))
+    for point, first in enumerate((0.0, 0.3, 0.3, 0.0)):
+        told = seen.announced(point)
+        # 20 ms is what an announced landing may be off to be that of a true one.
+        assert all(min(abs(stamp - land - first) for land in lands) < 0.02 for _, stamp in told)
+        for land in lands:
+            assert any(abs(stamp - land - first) < 0.02 and seen <= land + first - 0.03 for seen, stamp in told)
+
+
+def test_a_wider_window_is_obeyed() -> None:
+    messages = record([swing(0.3, 0.6), stands, stands, stands], 0.8)
+    for window in (0.0125, 0.05):
+        told = walk(machine(window=window), messages).announced(0)
+        late = [abs(stamp - 0.6) for seen, stamp in told if seen > 0.45 + window + 0.01]
+        assert late
+        assert max(late) < 5e-4
+
+
+def test_a_foot_that_lifts_for_less_than_the_dead_time_has_stood_all_along() -> None:
+    def hops(time: float) -> tuple[float, float]:
+        return (0.008, 0.0) if 0.3 <= time < 0.31 else (0.0, 0.0)
+
+    seen = walk(machine(), record([hops, stands, stands, stands], 0.6))
+    assert all(one.feet[0].stands for one in seen.predictions)
+    assert all(one.feet[0].since == 0 for one in seen.predictions)
+
+
+def test_feet_that_start_in_the_air_swing_from_the_first_sample_and_land() -> None:
+    seen = walk(machine(), record([swing(-0.15, 0.15), stands, stands, swing(-0.15, 0.15)], 0.4))
+    first, last = seen.predictions[0].feet, seen.predictions[-1].feet
+    assert [foot.stands for foot in first] == [False, True, True, False]
+    assert all(foot.stands for foot in last)
+    assert sorted(score.landing.foot for score in seen.scores if score.landing) == ["LF", "RH"]
+    # Feet that land together are two touchdowns; the one is not the other's old contact.
+    assert {score.touchdown.old for score in seen.scores} == {(1, 2)}
+
+
+def test_the_soonest_landing_comes_first() -> None:
+    messages = record([swing(0.3, 0.62), swing(0.28, 0.6), stands, stands], 0.8)
+    both = [one for one in walk(machine(), messages).predictions if len(one.touchdowns) == 2]
+    assert both
+    for one in both:
+        assert one.touchdown is one.touchdowns[0]
+        assert one.touchdowns[0].new == (1,)
+        assert [foot.lead_time is not None for foot in one.feet] == [True, True, False, False]
+
+
+def test_heel_and_toe_strike_one_after_the_other_and_the_foot_stands_from_the_first() -> None:
+    places = ((-0.1, 0.1, 0.0), (0.1, 0.1, 0.0), (-0.1, -0.1, 0.0), (0.1, -0.1, 0.0))
+    courses = [swing(0.3, 0.6), swing(0.3, 0.68, height=0.12), stands, stands]
+    seen = walk(machine(("left", "right"), points=2), record(courses, 0.9, places=places))
+    heel, toe = seen.scores
+    assert heel.touchdown.new == (0,)
+    assert heel.touchdown.old == (2, 3)
+    assert toe.touchdown.new == (1,)
+    assert toe.touchdown.old == (0,)
+    foot = seen.predictions[-1].feet[0]
+    assert foot.stands
+    assert foot.since == pytest.approx(START + 600 * MS, abs=MS)
+
+
+def test_a_flat_foot_lands_once_with_both_its_points() -> None:
+    places = ((-0.1, 0.1, 0.0), (0.1, 0.1, 0.0), (-0.1, -0.1, 0.0), (0.1, -0.1, 0.0))
+    courses = [swing(0.3, 0.6), swing(0.3, 0.603), stands, stands]
+    seen = walk(machine(("left", "right"), points=2), record(courses, 0.9, places=places))
+    (score,) = seen.scores
+    assert score.touchdown.new == (0, 1)
+    assert {touchdown.new for one in seen.predictions for touchdown in one.touchdowns} == {(0, 1)}
+
+
+def test_a_foot_that_meets_the_ground_early_stands_from_then() -> None:
+    def stopped(time: float) -> tuple[float, float]:
+        gap, rate = swing(0.3, 0.6)(time)
+        return (0.0, 0.0) if time > 0.57 else (gap, rate)
+
+    seen = walk(machine(), record([stopped, stands, stands, stands], 0.8))
+    foot = seen.predictions[-1].feet[0]
+    assert foot.stands
+    assert foot.since == pytest.approx(START + 571 * MS, abs=5 * MS)
+
+
+def test_landings_are_told_late_or_early_against_the_plan() -> None:
+    walker = Walker(machine(has_schedule=True))
+    swings, stance = (False, True, True, True), (True,) * 4
+    times = (START + 300 * MS, START + 580 * MS)
+    assert walker.set_schedule(Schedule(START, FEET, times, (swings, stance))) is Status.ACCEPTED
+    late, scores = [], []
+    for sample, geometry in record([swing(0.3, 0.6), stands, stands, stands], 0.8):
+        walker.set_geometry(geometry)
+        prediction = walker.update(sample)
+        late += [foot.late for foot in prediction.feet[:1] if foot.lead_time is not None]
+        scores += [prediction.score] if prediction.score else []
+    assert late == pytest.approx([0.02] * len(late), abs=1e-3)
+    assert scores[0].landing is not None
+    assert scores[0].landing.late == pytest.approx(0.02, abs=1e-3)
+    assert all(foot.late is None for foot in prediction.feet[1:])
+
+
+def test_a_force_sensor_confirms_and_never_decides() -> None:
+    messages = record([swing(0.3, 0.6), stands, stands, stands], 0.8)
+    walker, blind = Walker(machine(force=20.0)), Walker(machine())
+    for sample, geometry in messages:
+        pressed = (0.0, 0.0, 0.0 if 300 * MS < sample.stamp - START < 600 * MS else 200.0)
+        assert walker.set_wrench(Wrench(sample.stamp, "LF", pressed)) is Status.ACCEPTED
+        assert walker.set_wrench(Wrench(sample.stamp, "RF", (0.0, 0.0, 1.0))) is Status.ACCEPTED
+        walker.set_geometry(geometry)
+        blind.set_geometry(geometry)
+        left, right, *others = walker.update(sample).feet
+        assert [foot.stands for foot in (left, right, *others)] == [foot.stands for foot in blind.update(sample).feet]
+        assert right.confirmed is False
+        assert [foot.confirmed for foot in others] == [None, None]
+    assert left.confirmed is True
+    assert walker.set_wrench(Wrench(START, "nose", (0.0, 0.0, 1.0))) is Status.WRONG_FRAME
+    assert walker.set_wrench(Wrench(START + 10**10, "LF", (math.nan, 0.0, 1.0))) is Status.NOT_FINITE
+
+
+def test_geometry_may_follow_the_sample_of_its_stamp() -> None:
+    messages = record([swing(0.3, 0.6), stands, stands, stands], 0.8)
+    walker = Walker(machine())
+    walker.set_geometry(messages[0].geometry)
+    told = []
+    for sample, geometry in messages[1:]:
+        prediction = walker.update(sample)
+        told += [sample.stamp + round(one.lead_time * 1e9) - START for one in prediction.touchdowns]
+        assert walker.set_geometry(geometry) is Status.ACCEPTED
+    assert len(told) > 30
+    assert told == pytest.approx([600 * MS] * len(told), abs=0.5 * MS)
+
+
+@pytest.mark.parametrize("offset", [-1.1, 0.7])
+def test_geometry_between_the_samples_is_carried_with_the_base(offset: float) -> None:
+    courses = [swing(0.3, 0.6), stands, stands, stands]
+    fast = record(courses, 0.8, rate=RATE * 25)
+    samples, feet = fast[500::25], fast[500 + round(10 * offset) :: 25]
+    walker, told = Walker(machine()), []
+    messages = sorted([one.sample for one in samples] + [one.geometry for one in feet], key=lambda one: one.stamp)
+    for message in messages:
+        if isinstance(message, Geometry):
+            walker.set_geometry(message)
+        else:
+            told += [message.stamp + round(one.lead_time * 1e9) for one in walker.update(message).touchdowns]
+    assert len(told) > 30
+    # A base that is carried 1 ms at constant velocity is wrong by 0.1 um; 0.1 s ahead that makes 3 ms.
+    assert told == pytest.approx([START + 600 * MS] * len(told), abs=4 * MS)
+
+
+def test_odd_messages_get_a_named_status_and_the_walker_goes_on() -> None:
+    messages = record([swing(0.3, 0.6), stands, stands, stands], 0.8)
+    walker = Walker(machine())
+    sample, geometry = messages[0]
+    assert walker.update(sample).status is Status.NO_GEOMETRY
+    assert walker.set_geometry(geometry._replace(points=geometry.points[:3])) is Status.FEET_CHANGED
+    assert walker.set_geometry(geometry._replace(velocities=geometry.velocities[:3])) is Status.FEET_CHANGED
+    broken = ((math.nan, 0.0, 0.0), *geometry.points[1:])
+    assert walker.set_geometry(geometry._replace(points=broken)) is Status.NOT_FINITE
+    told = []
+    for k, (sample, geometry) in enumerate(messages):
+        assert walker.set_geometry(geometry) is Status.ACCEPTED
+        assert walker.set_geometry(geometry) is Status.STAMP_REPEATED
+        assert walker.set_geometry(geometry._replace(stamp=geometry.stamp - MS)) is Status.STAMP_WENT_BACK
+        assert walker.set_geometry(geometry._replace(stamp=geometry.stamp + 1, points=broken)) is Status.NOT_FINITE
+        assert walker.update(sample._replace(frame_id="map")).status is Status.WRONG_FRAME
+        assert walker.update(sample._replace(child_frame_id="cube")).status is Status.WRONG_FRAME
+        assert walker.update(sample._replace(linear=(math.inf, 0.0, 0.0))).status is Status.NOT_FINITE
+        assert walker.update(sample._replace(orientation=(0.0,) * 4)).status is Status.BAD_QUATERNION
+        prediction = walker.update(sample)
+        assert prediction.status is Status.ACCEPTED
+        assert walker.update(sample).status is Status.STAMP_REPEATED
+        assert k == 0 or walker.update(messages[k - 1].sample).status is Status.STAMP_WENT_BACK
+        told += [sample.stamp + round(one.lead_time * 1e9) - START for one in prediction.touchdowns]
+    assert told == pytest.approx([600 * MS] * len(told), abs=0.5 * MS)
+
+
+def test_feet_far_below_the_ground_are_refused() -> None:
+    messages = record([stands] * 4, 0.2)
+    walker = Walker(machine())
+    sunk = [
+        one._replace(sample=one.sample._replace(position=add(one.sample.position, (0.0, 0.0, -0.2))))
+        for one in messages
+    ]
+    for sample, geometry in sunk[:20]:
+        walker.set_geometry(geometry)
+        prediction = walker.update(sample)
+        assert prediction.status is Status.BELOW_GROUND
+        assert prediction.feet == ()
+    for sample, geometry in messages[20:]:
+        walker.set_geometry(geometry)
+        assert walker.update(sample).status is Status.ACCEPTED
+
+
+def test_feet_that_are_told_no_more_are_stale() -> None:
+    messages = record([stands] * 4, 0.4)
+    walker = Walker(machine(timeout=0.1))
+    walker.set_geometry(messages[0].geometry)
+    statuses = [walker.update(one.sample).status for one in messages]
+    assert statuses == [Status.ACCEPTED] * 41 + [Status.GEOMETRY_STALE] * (len(messages) - 41)
+    walker.set_geometry(messages[-1].geometry)
+    assert walker.update(messages[-1].sample).status is Status.ACCEPTED
+
+
+def test_after_a_pause_or_a_new_clock_the_feet_are_learnt_anew() -> None:
+    messages = record([swing(0.3, 0.6), stands, stands, stands], 0.8)
+    later = PAUSE + 10**9
+    shifted = [Message(s._replace(stamp=s.stamp + later), g._replace(stamp=g.stamp + later)) for s, g in messages]
+    seen = walk(machine(), messages[:200] + shifted)
+    assert len(seen.scores) == 1
+    walker = Walker(machine())
+    for sample, geometry in messages:
+        walker.set_geometry(geometry)
+        walker.update(sample)
+    assert walker.set_geometry(messages[0].geometry) is Status.STAMP_WENT_BACK
+    scores = []
+    for sample, geometry in messages[1:]:
+        walker.set_geometry(geometry)
+        prediction = walker.update(sample)
+        assert prediction.status is Status.ACCEPTED
+        scores += [prediction.score] if prediction.score else []
+    assert len(scores) == 1
+
+
+def test_a_record_that_ends_at_the_landing_still_tells_of_it() -> None:
+    messages = record([swing(0.3, 0.6), stands, stands, stands], 0.8, rate=50.0)
+    seen = walk(machine(), messages[:33])
+    (score,) = seen.scores
+    assert score.landing is not None
+    assert score.measured is None
+    assert Leftover.TOO_SHORT in score.leftover
+
+
+def test_stamps_of_one_instant_break_no_fit() -> None:
+    messages = record([swing(0.3, 0.6), stands, stands, stands], 0.8)
+    crowded = []
+    for k, (sample, geometry) in enumerate(messages):
+        stamp = START + k // 6 * 15 * MS + k % 6
+        crowded.append(Message(sample._replace(stamp=stamp), geometry._replace(stamp=stamp)))
+    for one in walk(machine(), crowded).predictions:
+        assert one.status is Status.ACCEPTED
+        assert all(math.isfinite(touchdown.lead_time) for touchdown in one.touchdowns)

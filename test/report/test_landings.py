@@ -1,0 +1,161 @@
+"""Landings of feet as a person reads them: whole at any width, and in words."""
+
+from __future__ import annotations
+
+import io
+
+import pytest
+from rich.console import Console
+from rich.table import Table
+
+from impact_predictor.bags.replay import Result, Settled
+from impact_predictor.mechanics.types import Flag, Mode, Twist
+from impact_predictor.prediction.types import Landing, Leftover, Score, Touchdown
+from impact_predictor.report.landings import error_ahead, feet_table, landing_sentences, landings_of, landings_table
+from impact_predictor.report.replay import print_replay
+from impact_predictor.report.table import show
+
+TOUCHDOWN = Touchdown(
+    lead_time=0.002,
+    mode=Mode.PIVOT_SLIDE,
+    before=Twist(0.5, 0.0, 0.0),
+    after=Twist(0.47, 0.04, 0.1),
+    impulses=((1.0, 0.5), (3.0, -4.0)),
+    segments=("OS",),
+    energy_lost=0.1,
+    flags=Flag.NONE,
+    unique=True,
+    law="path",
+    old=(1,),
+    new=(0,),
+    axis=(0.0, 1.0, 0.0),
+    position=(0.0, 0.0, 0.5),
+    orientation=(0.0, 0.0, 0.0, 1.0),
+    linear=(0.5, 0.0, 0.0),
+    angular=(0.0, 0.0, 0.0),
+    half_distance=0.3,
+    off_axis=0.0,
+    lateral=0.0,
+    closing_spread=0.0,
+    offset=0.0,
+    leftover=Leftover.DRIVEN,
+)
+HISTORY = ((0.1, 0.004), (0.06, -0.0123), (0.05, 0.0034), (0.03, 0.002), (0.01, 0.001))
+
+
+def landed(at: float, foot: str = "LF", body: str = "robot", **changes: object) -> Settled:
+    """A landing at a time in s."""
+    stamp = round(at * 1e9)
+    landing = Landing(foot, stamp, None, None, HISTORY, 0.123, TOUCHDOWN)._replace(**changes)  # type: ignore[arg-type]
+    return Settled(body, Score(stamp, TOUCHDOWN, None, None, False, Leftover.DRIVEN, (), landing), None)
+
+
+KNOWN = {"late": -0.0123, "confirmed": False}
+
+
+def printed(table: Table, width: int) -> str:
+    text = io.StringIO()
+    show(Console(file=text, width=width), table)
+    return text.getvalue()
+
+
+def replayed(settled: list[Settled], width: int = 80) -> str:
+    text = io.StringIO()
+    result = Result("walk.bag", 100, 0.1, tuple(settled), {}, {}, (), "", "")
+    print_replay(Console(file=text, width=width), result)
+    return text.getvalue()
+
+
+def test_the_error_of_time_is_that_of_the_last_prediction_made_so_long_ahead() -> None:
+    landing = landed(1.0).score.landing
+    assert landing is not None
+    assert [error_ahead(landing, ahead) for ahead in (0.2, 0.1, 0.05, 0.02, 0.0)] == [None, 0.004, 0.0034, 0.002, 0.001]
+
+
+@pytest.mark.parametrize("width", [80, 120])
+@pytest.mark.parametrize("changes", [{}, KNOWN])
+def test_the_tables_fit_the_terminal_and_no_number_is_cut_off(width: int, changes: dict[str, object]) -> None:
+    landings = landings_of([landed(12.5, **changes), landed(123.456, "RF")])
+    text = printed(landings_table(landings, width), width)
+    assert "…" not in text
+    assert max(map(len, text.splitlines())) <= width
+    assert set(text.split()) >= {"123.456", "LF", "100", "+2.0", "+3.4", "0.123", "PIVOT_SLIDE", "5.00", "0.050"}
+    assert ({"-12.3", "no"} <= set(text.split())) == bool(changes)
+    text = printed(feet_table(landings), width)
+    assert max(map(len, text.splitlines())) <= width
+
+
+def test_the_table_of_feet_has_the_worst_of_impacts_and_the_middle_of_times() -> None:
+    first, second = landed(1.0), landed(2.0, history=((0.07, -0.001),), speed=0.5, **KNOWN)
+    lines = printed(feet_table(landings_of([second, first, landed(1.5, "RH")])), 80).splitlines()
+    (left,) = [line.split() for line in lines if line.startswith("LF")]
+    assert left == [
+        "LF",
+        "2",
+        "70",
+        "1.5",
+        "2.2",
+        "0.500",
+        "5.00",
+        "0.050",
+        "-12.3",
+        "0/1",
+    ]
+    (together,) = [line.split() for line in lines if line.startswith("all")]
+    assert together[:3] == ["all", "3", "70"]
+
+
+def test_what_rounds_to_nothing_has_no_sign() -> None:
+    (line,) = [
+        line
+        for line in printed(
+            landings_table(landings_of([landed(1.0, history=((0.1, -1e-9),), speed=-1e-9)]), 80), 80
+        ).splitlines()
+        if "LF" in line
+    ]
+    assert "-0" not in line
+    assert line.split()[3:6] == ["0.0", "0.0", "PIVOT_SLIDE"]
+    assert line.split()[6] == "0.000"
+
+
+def test_feet_are_named_with_their_bodies_where_there_are_several() -> None:
+    landings = landings_of([landed(1.0), landed(2.0, body="other")])
+    for table in (landings_table(landings, 120), feet_table(landings)):
+        assert {"robot/LF", "other/LF"} <= set(printed(table, 120).split())
+
+
+def test_times_of_day_are_counted_from_the_first_landing() -> None:
+    start = 1_605_971_434.0
+    text = printed(landings_table(landings_of([landed(start), landed(start + 1.5)]), 80), 80)
+    assert {"0.000", "1.500", "since"} <= set(text.split())
+
+
+def test_what_landings_say_together() -> None:
+    one = landings_of([landed(1.0)])
+    assert landing_sentences(one)[0].startswith("1 landing of 1 foot, each told 100 ms ahead or earlier; ")
+    assert landing_sentences(one)[1] == "Predicted modes: 1 PIVOT_SLIDE."
+    assert landing_sentences(one)[2] == (
+        "Speeds are those of the last sample in the air, 0.123 m/s in the median, at most 0.123 m/s: a foot that lands "
+        "with it gets at most 5.00 N s, and changes the body's velocity by at most 0.050 m/s."
+    )
+    several = [landed(1.0, **KNOWN), landed(2.0, "RF", late=0.02), landed(3.0)]
+    assert landing_sentences(landings_of(several))[-1] == (
+        "Against the plan 2 landings came +3.9 ms late in the median, from -12.3 to +20.0 ms."
+    )
+    assert landing_sentences([]) == []
+    soft = [one._replace(mode=Mode.NO_IMPACT, speed=None) for one in one + one]
+    assert landing_sentences(soft)[1:] == [
+        "Predicted modes: 2 NO_IMPACT: every foot brakes to rest as it reaches the ground."
+    ]
+
+
+def test_a_replay_lists_landings_apart_from_other_touchdowns() -> None:
+    text = replayed([landed(0.1 * k, "LF" if k % 2 else "RF") for k in range(30)])
+    assert "10 more landings: list them with --all, or read them with --json." in text
+    assert "30 landings of 2 feet" in text
+    assert "scored" not in text  # driven feet tell no impact by itself
+    assert "\n\n\n" not in text
+    mixed = replayed([landed(1.0), landed(2.0)._replace(score=landed(2.0).score._replace(landing=None))])
+    assert "1 landing of 1 foot" in mixed
+    assert "0 of 1 touchdown scored." in mixed
+    assert "No touchdown was predicted." in replayed([])

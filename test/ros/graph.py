@@ -1,0 +1,76 @@
+"""The rest of the ROS graph of a test: the node as a process of its own, and a peer that talks with it over DDS."""
+
+import os
+import time
+from contextlib import contextmanager
+
+import rclpy
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.qos import QoSProfile
+
+from impact_predictor.ros.messages import OUTPUTS, decode_diagnostic_array
+from impact_predictor.ros.process import message_class
+from impact_predictor.ros.processes import Child
+
+# A busy machine starts a process within a second or two; a test that waits longer has failed.
+PATIENCE = 20.0
+
+
+class Peer:
+    """The rest of the ROS graph: what publishes to the node and hears it."""
+
+    def __init__(self, context):
+        self.node = rclpy.create_node("peer", context=context)
+        self.executor = SingleThreadedExecutor(context=context)
+        self.executor.add_node(self.node)
+        self.heard = {name: [] for name in (*OUTPUTS, "diagnostics")}
+        for name in OUTPUTS:
+            self.hear(f"/impact_predictor/{name}", OUTPUTS[name].type_name, self.heard[name])
+        self.hear("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray", self.heard["diagnostics"])
+
+    def hear(self, topic, type_name, heard):
+        self.node.create_subscription(message_class(type_name), topic, heard.append, QoSProfile(depth=1000), raw=True)
+
+    def until(self, condition):
+        """Serve the topics until something is so."""
+        patience = time.monotonic() + PATIENCE
+        while not condition():
+            assert time.monotonic() < patience, f"not within {PATIENCE:.0f} s; reported: {self.report()}"
+            self.executor.spin_once(timeout_sec=0.02)
+
+    def publisher(self, message_type, topic, qos):
+        return self.node.create_publisher(message_type, topic, qos)
+
+    def connected(self, publisher):
+        """A publisher that the node has found, and whose subscription has found it."""
+        self.until(publisher.get_subscription_count)
+        end = time.monotonic() + 0.3
+        self.until(lambda: time.monotonic() > end)
+        return publisher
+
+    def report(self):
+        """The latest of the node's reports on itself."""
+        return decode_diagnostic_array(self.heard["diagnostics"][-1])[0] if self.heard["diagnostics"] else None
+
+    def reported(self, key):
+        return None if self.report() is None else self.report().values.get(key)
+
+
+@contextmanager
+def peer_of_node():
+    context = rclpy.Context()
+    context.init()
+    peer = Peer(context)
+    yield peer
+    peer.executor.shutdown()
+    peer.node.destroy_node()
+    context.shutdown()
+
+
+@contextmanager
+def running_node(scene, *arguments):
+    """The node as a process, with a parameter file and more arguments; it must end in order when asked to."""
+    ros = ("--ros-args", "--params-file", str(scene), *arguments)
+    with Child("node", dict(os.environ), "-m", "impact_predictor.ros.node", *ros) as child:
+        yield child
+        child.end()

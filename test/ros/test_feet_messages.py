@@ -1,0 +1,151 @@
+"""What `~/prediction`, `~/score` and /diagnostics tell of the feet of a walking machine."""
+
+import json
+from typing import Any
+
+import pytest
+from rosbags.typesys import Stores, get_typestore
+
+from impact_predictor.mechanics.types import Flag, Mode, Twist
+from impact_predictor.prediction.types import (
+    Foot,
+    Landing,
+    Leftover,
+    Prediction,
+    Sample,
+    Score,
+    Status,
+    Touchdown,
+)
+from impact_predictor.ros.cdr import OK, WARN, Diagnostic
+from impact_predictor.ros.feet_report import FeetReport
+from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY, decode_diagnostic_array, encode_prediction, encode_score
+
+NOTHING, LEVEL, UNKNOWN = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), (0.0,) * 36
+SAMPLE = Sample(2_000_000_000, "world", "base", NOTHING, LEVEL, NOTHING, NOTHING, UNKNOWN, UNKNOWN)
+STANDING = Foot("LF", True, 1_250_000_000, 1e-4, 0.0, confirmed=True, late=0.012)
+SWINGING = Foot(
+    "RF", False, 1_900_000_000, 0.031, 0.4, 0.0625, 0.25, -0.01, None, (0.5, -0.3, 0.031), (0.625, -0.3, 0.0)
+)
+ALONE = Foot("LH", False, 0, 0.05, -0.1)
+TWIST = Twist(0.1, -0.2, 0.3)
+TOUCHDOWN = Touchdown(
+    *(0.0625, Mode.STOP, TWIST, TWIST, ((1.0, 0.0), (2.0, 0.0)), ("OO",), 0.5, Flag.NONE, True, "path", (0,), (1,)),
+    *(NOTHING, NOTHING, LEVEL, NOTHING, NOTHING, 0.3, 0.0, 0.0, 0.0, 0.0, Leftover.DRIVEN),
+)
+LANDING = Landing("RF", 2_062_000_000, -0.003, True, ((0.11, 0.004), (0.002, -0.0005)))
+SCORE = Score(LANDING.stamp, TOUCHDOWN, None, None, False, Leftover.DRIVEN, (), LANDING)
+
+
+def told(*feet: Foot, **changes: Any) -> list[Diagnostic]:
+    prediction = Prediction(Status.ACCEPTED, SAMPLE, TOUCHDOWN, touchdowns=(TOUCHDOWN,), feet=feet)
+    return decode_diagnostic_array(encode_prediction(prediction._replace(**changes)))
+
+
+@pytest.mark.parametrize("touchdown", [TOUCHDOWN, None])
+def test_a_status_for_each_foot_follows_that_of_the_prediction_which_stays_as_it_is(
+    touchdown: Touchdown | None,
+) -> None:
+    feet = STANDING, SWINGING, ALONE
+    first, *others = told(*feet, touchdown=touchdown)
+    assert [first] == told(touchdown=touchdown)
+    assert [one.name for one in others] == ["impact_predictor/foot"] * 3
+    for foot, status in zip(feet, others, strict=True):
+        places = dict(zip(("place.x", "place.y", "place.z"), foot.place or (), strict=False))
+        known = {name: value for name, value in foot._asdict().items() if value is not None} | places
+        known = {name: value for name, value in known.items() if name not in ("position", "place")}
+        texts = {name: value if name == "name" else json.loads(value) for name, value in status.values.items()}
+        assert texts == known
+
+
+def test_feet_are_the_bytes_that_rosbags_writes_and_their_hardware_is_the_foot() -> None:
+    typestore = get_typestore(Stores.ROS2_JAZZY)
+    # Names of every length modulo four meet every alignment.
+    feet = [SWINGING._replace(name="f" * length) for length in range(9)]
+    data = encode_prediction(Prediction(Status.ACCEPTED, SAMPLE, TOUCHDOWN, feet=tuple(feet)))
+    message: Any = typestore.deserialize_cdr(data, DIAGNOSTIC_ARRAY)
+    again = bytes(typestore.serialize_cdr(message, DIAGNOSTIC_ARRAY))
+    assert again + bytes(-len(again) % 4) == data
+    assert [one.hardware_id for one in message.status] == ["base", *[foot.name for foot in feet]]
+
+
+def test_a_foot_says_what_it_does_and_warns_where_its_force_sensor_does_not_agree() -> None:
+    doubted = STANDING._replace(confirmed=False)
+    said = [(one.level, one.message) for one in told(STANDING, SWINGING, ALONE, doubted)[1:]]
+    assert said == [
+        (OK, "stands"),
+        (OK, "swings, lands in 62.5 ms"),
+        (OK, "swings"),
+        (WARN, "stands, but its force sensor does not agree"),
+    ]
+
+
+def score(landing: Landing) -> Diagnostic:
+    data = encode_score(Prediction(Status.ACCEPTED, SAMPLE, None, SCORE._replace(landing=landing)))
+    assert data is not None
+    (status,) = decode_diagnostic_array(data)
+    return status
+
+
+def test_a_score_tells_which_foot_landed_how_late_and_how_well_that_was_foretold() -> None:
+    status = score(LANDING)
+    told = {key: status.values[key] for key in ("foot", "late", "confirmed", "time_error", "announced", "stamp")}
+    assert told == {
+        "foot": "RF",
+        "late": "-0.003",
+        "confirmed": "true",
+        "time_error": "-0.0005",
+        "announced": "0.11",
+        "stamp": str(LANDING.stamp),
+    }
+    assert status.level == OK
+    assert status.message.startswith("RF has landed, time error -0.5 ms: STOP predicted 62.5 ms ahead")
+
+
+def test_a_score_leaves_out_what_nobody_knows_of_a_landing_and_warns_of_a_sensor_that_does_not_agree() -> None:
+    status = score(LANDING._replace(late=None, confirmed=None, history=()))
+    assert not {"late", "confirmed", "time_error"} & status.values.keys()
+    assert (status.level, status.values["foot"]) == (OK, "RF")
+    assert score(LANDING._replace(confirmed=False)).level == WARN
+
+
+def answer(*feet: Foot, landing: Landing | None = None) -> Prediction:
+    settled = None if landing is None else SCORE._replace(landing=landing)
+    return Prediction(Status.ACCEPTED, SAMPLE, None, settled, feet=feet)
+
+
+def test_diagnostics_count_the_landings_of_each_foot_and_how_late_they_were() -> None:
+    report = FeetReport("")
+    report.take(answer(STANDING, SWINGING))
+    assert report.values() == {"feet.standing": "LF", "feet.landings": "0"}
+    for late, foot in ((-0.003, "RF"), (0.001, "RF"), (0.007, "LF")):
+        report.take(answer(STANDING, STANDING._replace(name="RF"), landing=LANDING._replace(late=late, foot=foot)))
+    assert report.values() == {
+        "feet.standing": "LF RF",
+        "feet.landings": "3",
+        "feet.landings.LF": "1",
+        "feet.landings.RF": "2",
+        "feet.landings.median_time_error": "0.0005",
+        "feet.landings.early": "1",
+        "feet.landings.late": "2",
+        "feet.landings.median_late": "0.0010",
+    }
+
+
+def test_a_machine_with_a_name_has_it_before_its_feet_and_one_in_the_air_stands_on_none() -> None:
+    report = FeetReport("dog")
+    report.take(answer(SWINGING))
+    assert report.values() == {"dog/feet.standing": "none", "dog/feet.landings": "0"}
+
+
+def test_a_force_sensor_disagrees_when_it_does_for_most_of_a_second_not_while_its_foot_lands() -> None:
+    report = FeetReport("")
+    for k in range(500):
+        landing = 200 <= k < 230
+        report.take(answer(STANDING._replace(confirmed=not landing), SWINGING._replace(confirmed=False)))
+    report.second_over()
+    assert report.flaw == "feet: the force sensor of RF does not agree"
+    for _ in range(500):
+        report.take(answer(STANDING, SWINGING))
+    report.second_over()
+    assert not report.flaw
