@@ -26,6 +26,7 @@ setup(
     maintainer_email="maintainers@users.noreply.github.com",
     license="Apache-2.0",
     classifiers=[
+        "Framework :: Pytest",
         "Intended Audience :: Science/Research",
         "Operating System :: POSIX :: Linux",
         "Programming Language :: Python :: 3",
@@ -72,6 +73,7 @@ setup(
             "impact-predictor = impact_predictor.cli:main",
             "predictor = impact_predictor.ros.node:main",
         ],
+        "pytest11": ["impact_predictor = impact_predictor.testing.plugin"],
     },
     zip_safe=False,
 )

@@ -24,25 +24,29 @@ LIMIT: Final = 150.0
 
 NODE: Final = "impact_predictor.prediction.predictor, impact_predictor.ros.messages"
 IMPORTS: Final = {
-    "the library": "impact_predictor",
+    "the library": "impact_predictor, impact_predictor.mechanics.impact",
     "what the node needs besides ROS": NODE,
     **{
         f"... with {part.name}": ", ".join([NODE, *[f"impact_predictor.{module}" for module in part.modules]])
         for part in PARTS
         if part.modules and not part.of_node
     },
+    "the plugin, after pytest itself": "impact_predictor.testing.plugin",
     "impact-predictor --help": "impact_predictor.cli",
     "impact-predictor solve": "impact_predictor.cli, impact_predictor.report.outcome",
     "impact-predictor replay": "impact_predictor.cli, impact_predictor.bags.replay, impact_predictor.report.replay",
     "... --figure": "impact_predictor.cli, impact_predictor.report.figure",
     "impact-predictor explain": "impact_predictor.cli, impact_predictor.report.parts.measure",
 }
-TIMED: Final = "import time; begin = time.perf_counter(); import {}; print(1e3 * (time.perf_counter() - begin))"
+LOADED: Final = {"the plugin, after pytest itself": "pytest"}
+"""What is loaded before the clock starts."""
+
+TIMED: Final = "import time, {}; begin = time.perf_counter(); import {}; print(1e3 * (time.perf_counter() - begin))"
 
 
-def milliseconds(modules: str) -> list[float]:
+def milliseconds(modules: str, loaded: str = "sys") -> list[float]:
     """How long an import takes, one number for each run; the first, which fills the caches, is left out."""
-    command = [sys.executable, "-c", TIMED.format(modules)]
+    command = [sys.executable, "-c", TIMED.format(loaded, modules)]
     runs = [subprocess.run(command, check=True, capture_output=True, text=True) for _ in range(RUNS + 1)]
     return [float(run.stdout) for run in runs[1:]]
 
@@ -52,7 +56,7 @@ def main() -> int:
     table = Table("import of", "median", "5 to 95 %", "worst", title=f"Import times in ms, {RUNS} runs each")
     medians = {}
     for name, modules in IMPORTS.items():
-        times = milliseconds(modules)
+        times = milliseconds(modules, LOADED.get(name, "sys"))
         low, *_, high = statistics.quantiles(times, n=20)
         medians[name] = statistics.median(times)
         table.add_row(name, f"{medians[name]:.0f}", f"{low:.0f} to {high:.0f}", f"{max(times):.0f}")

@@ -3,15 +3,15 @@
 from typing import TYPE_CHECKING
 
 from .errors import InputError
-from .mechanics.impact import solve_impact
-from .mechanics.types import Alternative, Contact, Flag, Mode, Outcome, Twist, TwoPointBody, Validity
 
 if TYPE_CHECKING:
     from .mechanics.batch import Outcomes, solve_impacts
     from .mechanics.bodies import cylinder, plate, rod
+    from .mechanics.impact import solve_impact
     from .mechanics.margins import Margin, Margins
     from .mechanics.sensitivity import Sensitivity, sensitivity
     from .mechanics.transverse import Transverse, TransverseOutcome, solve_transverse_impact
+    from .mechanics.types import Alternative, Contact, Flag, Mode, Outcome, Twist, TwoPointBody, Validity
 
 __all__ = [
     "Alternative",
@@ -41,6 +41,9 @@ __version__ = "0.1.0"
 
 
 LATER = {
+    **dict.fromkeys(
+        ("Alternative", "Contact", "Flag", "Mode", "Outcome", "Twist", "TwoPointBody", "Validity"), "types"
+    ),
     "Margin": "margins",
     "Margins": "margins",
     "Outcomes": "batch",
@@ -51,15 +54,18 @@ LATER = {
     "plate": "bodies",
     "rod": "bodies",
     "sensitivity": "sensitivity",
+    "solve_impact": "impact",
     "solve_impacts": "batch",
     "solve_transverse_impact": "transverse",
 }
-"""Names that are loaded when they are asked for, and their modules: the node needs none, and some need numpy."""
+"""Names that are loaded when they are asked for, and their modules: every start of pytest loads this package for its
+plugin, the node needs none of them, and some need numpy."""
 
 
 def __getattr__(name: str) -> object:
     if name in LATER:
         from importlib import import_module
 
-        return getattr(import_module(f".mechanics.{LATER[name]}", __name__), name)
+        globals()[name] = found = getattr(import_module(f".mechanics.{LATER[name]}", __name__), name)
+        return found
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

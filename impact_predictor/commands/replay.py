@@ -16,6 +16,10 @@ from .examples import examples
 if TYPE_CHECKING:
     from ..bags.replay import Result
     from ..prediction.scene import Scene
+    from .baseline import Baseline
+
+CHANGED: Final = 1
+"""Exit status where something has changed against a baseline."""
 
 FAILED: Final = 2
 DAMAGED: Final = 3
@@ -30,6 +34,7 @@ DAMAGED: Final = 3
         "impact-predictor replay voyage.mcap --params config/deck_many.yaml --remap support/odom:=/deck/odom",
         "impact-predictor replay examples/hyq/hyq.bag --params config/walker_hyq.yaml --figure gait.png",
         "impact-predictor replay monday.mcap tuesday.mcap --params scene.yaml -o predictions --figure errors.png",
+        "impact-predictor replay run.mcap --params scene.yaml --baseline predictions.mcap",
     ),
 )
 @click.argument("bags", nargs=-1, required=True, metavar="BAG...")
@@ -56,6 +61,25 @@ DAMAGED: Final = 3
 )
 @click.option("--all", "every", is_flag=True, help="List every touchdown, not only the first scored ones.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON only: an object, or a list for several bags.")
+@click.option(
+    "--baseline",
+    metavar="RUN",
+    help="Tell what has changed against an earlier run: what it wrote with -o, or printed with --json.",
+)
+@click.option(
+    "--baseline-time",
+    type=click.FloatRange(min=0.0),
+    default=1e-3,
+    show_default=True,
+    help="Times that differ by up to so many s have not changed.",
+)
+@click.option(
+    "--baseline-error",
+    type=click.FloatRange(min=0.0),
+    default=0.01,
+    show_default=True,
+    help="Errors and velocities that differ by up to this part of 1 have not changed.",
+)
 def replay(
     bags: tuple[str, ...],
     params: str,
@@ -65,12 +89,17 @@ def replay(
     figure: str | None,
     every: bool,
     as_json: bool,
+    baseline: str | None,
+    baseline_time: float,
+    baseline_error: float,
 ) -> int:
     """Predict the touchdowns in recorded bags as the node would, and score them by what was recorded after them.
 
     A BAG is an .mcap file, a rosbag2 folder or a ROS 1 .bag file. Topics are found by the names of the inputs; for a
-    body without a name the only other topic of the right type is taken too, and where there are several, --remap says
-    which. What is the deck is never guessed. The exit status is 3 where only a part of a bag could be read.
+    body without a name the only other topic of the right type is taken too, or the only one whose messages have an
+    adapter (docs/adapters.md), and where there are several, --remap says which. What is the deck is never guessed, nor
+    a plan or a force of feet. The exit status is 3 where only a part of a bag could be read, and 1 where something has
+    changed against a baseline.
     """
     from ..bags.replay import remapping
 
@@ -79,6 +108,11 @@ def replay(
     scenes = read_scenes(params)
     topics = remapping(remap)
     outputs = outputs_of(bags, output)
+    earlier: Baseline | None = None
+    if baseline is not None:
+        from .baseline import Baseline
+
+        earlier = Baseline(baseline, bags, baseline_time, baseline_error)
     if figure is not None:
         from ..report.figure import check_figure
 
@@ -101,6 +135,10 @@ def replay(
             answers.append(fields_of(result))
         else:
             print_result(result, every, its_output)
+        if earlier is not None:
+            told = earlier.judge(result, every, as_json)
+            if as_json:
+                answers[-1] |= told
     if as_json:
         click.echo(json.dumps(answers if len(bags) > 1 else answers[0], allow_nan=False))
     elif len(results) > 1:
@@ -111,7 +149,9 @@ def replay(
             click.echo(f"Picture: {figure}")
     if len(results) < len(bags) or any(result.unpredictable for result in results):
         return FAILED
-    return DAMAGED if any(result.damaged for result in results) else 0
+    if any(result.damaged for result in results):
+        return DAMAGED
+    return CHANGED if earlier is not None and earlier.has_changed else 0
 
 
 def read_scenes(params: str) -> dict[str, Scene]:
@@ -139,7 +179,9 @@ def outputs_of(bags: tuple[str, ...], output: str | None) -> list[Path | None]:
     folder = Path(output)
     if folder.suffix == ".mcap":
         raise InputError(f"{output} is one file, but {len(bags)} bags are given; give the name of a folder")
-    files = [folder / f"{_name_of(bag)}.mcap" for bag in bags]
+    from ..report.earlier import name_of
+
+    files = [folder / f"{name_of(bag)}.mcap" for bag in bags]
     twice = [file for file, count in Counter(files).items() if count > 1]
     if twice:
         raise InputError(f"{twice[0]} would be written for two bags; replay bags of one name one after the other")
@@ -148,11 +190,6 @@ def outputs_of(bags: tuple[str, ...], output: str | None) -> list[Path | None]:
     except OSError as error:
         raise InputError(f"the folder {output} cannot be made: {error.strerror}") from error
     return list(files)
-
-
-def _name_of(bag: str) -> str:
-    path = Path(bag).resolve()
-    return path.stem if path.suffix in (".mcap", ".db3", ".bag") else path.name
 
 
 def replay_one(

@@ -1,0 +1,171 @@
+"""What is checked of a replayed run: each of its touchdowns, and the run as a whole."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from os import PathLike
+from typing import TYPE_CHECKING, NamedTuple
+
+from ..errors import InputError
+from ..mechanics.types import Twist
+from ..report.landings import error_ahead
+from ..report.summary import counted, errors_of, reasons, row_of, words
+from ..report.table import first_stamp, percent
+from .tolerances import Tolerances
+
+if TYPE_CHECKING:
+    from ..bags.replay import Result, Settled
+    from ..prediction.types import Landing
+    from ..report.summary import TouchdownRow
+    from ..scenarios.comparison import Truth
+
+AHEAD = 0.02
+"""Seconds before a landing at which the prediction is made whose error of time counts."""
+
+MOST_LISTED = 20
+"""Changes against a baseline that are listed."""
+
+
+class Check(NamedTuple):
+    """A check and how it ended: `flaw` says what is wrong, `skipped` why it cannot be judged; else it has passed.
+
+    `figures` were measured, by their names.
+    """
+
+    name: str
+    flaw: str = ""
+    skipped: str = ""
+    figures: Mapping[str, float] = {}
+
+
+def checks_of(result: Result, tolerances: Tolerances) -> list[Check]:
+    """All checks of a run but that against a baseline; first those of the run, then one for each touchdown."""
+    touchdowns = list(_touchdowns(result, tolerances))
+    return [*_run_checks(result, tolerances), *touchdowns]
+
+
+def _run_checks(result: Result, tolerances: Tolerances) -> Iterator[Check]:
+    yield Check("samples", result.unpredictable or result.damaged, figures={"samples": result.samples})
+    number, wanted = len(result.settled), tolerances.touchdowns
+    flaw = "" if wanted.has(number) else f"{counted(number, 'touchdown')}, not {wanted} (impact_touchdowns)"
+    yield Check("number of touchdowns", flaw, figures={"touchdowns": number})
+    rows = [row_of(*settled) for settled in result.settled if settled.score.landing is None]
+    if rows:
+        yield _median_check(rows, tolerances.median_error)
+    if result.truth is not None:
+        yield from _truth_checks(result.truth, tolerances)
+
+
+def _median_check(rows: list[TouchdownRow], tolerance: float) -> Check:
+    median = errors_of(rows).median
+    if median is None:
+        why = ", ".join(f"{count:,} {words(reason)}" for reason, count in reasons(rows).items())
+        return Check("median error", skipped=f"no touchdown is scored: {why}")
+    return _at_most("median error", median, tolerance, "median_error", "the median error")
+
+
+def _truth_checks(truth: Truth, tolerances: Tolerances) -> Iterator[Check]:
+    missed = f"{truth.missed:,} of {counted(truth.touchdowns, 'true touchdown')} missed"
+    flaw = f"{missed}, more than {tolerances.missed} (impact_missed)" if truth.missed > tolerances.missed else ""
+    yield Check("missed touchdowns", flaw, figures={"missed": truth.missed})
+    false = counted(truth.false, "false alarm")
+    flaw = f"{false}, more than {tolerances.false} (impact_false)" if truth.false > tolerances.false else ""
+    yield Check("false alarms", flaw, figures={"false": truth.false})
+    if truth.clear_mode_accuracy is not None:
+        accuracy, least = truth.clear_mode_accuracy, tolerances.mode_accuracy
+        of = f"of {counted(truth.clear, 'clear mode')}"
+        flaw = f"{percent(accuracy)} % {of} are right, less than {percent(least)} % (impact_mode_accuracy)"
+        yield Check("modes", flaw if accuracy < least else "", figures={"mode_accuracy": accuracy})
+    error = truth.median_velocity_error
+    if error is not None:
+        name = "median error against the truth"
+        yield _at_most(name, error, tolerances.median_error, "median_error", f"the {name}")
+    if truth.median_time_error is not None:
+        wrong, most_wrong = truth.median_time_error, tolerances.time_error
+        said = f"the times told 20 ms ahead are {wrong * 1e3:.3g} ms wrong in the median"
+        flaw = f"{said}, more than {most_wrong * 1e3:.3g} ms (impact_time_error)" if wrong > most_wrong else ""
+        yield Check("median error of time", flaw, figures={"time_error": wrong})
+
+
+def _at_most(name: str, error: float, tolerance: float, key: str, said: str) -> Check:
+    flaw = f"{said} is {percent(error)} %, more than {percent(tolerance)} % (impact_{key})"
+    return Check(name, flaw if error > tolerance else "", figures={"relative_error": error})
+
+
+def _touchdowns(result: Result, tolerances: Tolerances) -> Iterator[Check]:
+    """A check for each touchdown, numbered in the order of time; times are those of the tables of `replay`."""
+    settled = sorted(result.settled, key=lambda one: one.score.stamp)
+    rows = [row_of(*one) for one in settled]
+    start = first_stamp(rows)
+    several = len({one.body for one in settled}) > 1
+    for number, (one, row) in enumerate(zip(settled, rows, strict=True), 1):
+        landing = one.score.landing
+        who = " ".join([*([one.body] if several else []), *([] if landing is None else [landing.foot])])
+        name = f"touchdown {number} at {(row.stamp - start) / 1e9:.2f} s" + (f" ({who})" if who else "")
+        if landing is None:
+            yield _impact_check(name, row, tolerances.error)
+        else:
+            yield _landing_check(name, one, landing, tolerances.time_error)
+
+
+def _impact_check(name: str, row: TouchdownRow, tolerance: float) -> Check:
+    error = row.relative_error
+    if not row.scored or error is None:
+        return Check(name, skipped=f"not scored: {', '.join(map(words, reasons([row])))}")
+    figures = {"relative_error": error}
+    if error <= tolerance:
+        return Check(name, figures=figures)
+    said = f"the error is {percent(error)} %, more than {percent(tolerance)} % (impact_error)"
+    return Check(name, f"{said}\n{_velocities(row)}", figures=figures)
+
+
+def _velocities(row: TouchdownRow) -> str:
+    """What was predicted and what was measured, line by line."""
+    lines = [
+        f"{row.mode.name} was predicted {row.lead_time * 1e3:.1f} ms ahead, first {row.announced * 1e3:.1f} ms ahead",
+        f"{'':12}{'vx m/s':>10}{'vy m/s':>10}{'omega rad/s':>13}",
+    ]
+    twists = {"before": row.before, "predicted": row.predicted, "measured": row.measured or Twist(0.0, 0.0, 0.0)}
+    lines += [f"{name:12}{vx:10.4f}{vy:10.4f}{omega:13.3f}" for name, (vx, vy, omega) in twists.items()]
+    if row.flags:
+        lines.append(f"flags: {', '.join(map(words, row.flags))}")
+    return "\n".join(lines)
+
+
+def _landing_check(name: str, settled: Settled, landing: Landing, tolerance: float) -> Check:
+    error = error_ahead(landing, AHEAD)
+    if error is None:
+        first = (
+            f"the first time was told {landing.history[0][0] * 1e3:.1f} ms ahead" if landing.history else "nor later"
+        )
+        return Check(name, f"no time was told {AHEAD * 1e3:.0f} ms ahead of {landing.foot}'s landing, {first}")
+    figures = {"time_error": error}
+    if abs(error) <= tolerance:
+        return Check(name, figures=figures)
+    at, side = landing.stamp, "late" if error > 0.0 else "early"
+    said = f"the time told {AHEAD * 1e3:.0f} ms ahead was {abs(error) * 1e3:.1f} ms too {side}"
+    lines = [
+        f"{said}, more than {tolerance * 1e3:.3g} ms (impact_time_error)",
+        f"{settled.score.touchdown.mode.name} predicted; by its motion {landing.foot} stood at {at / 1e9:.4f} s",
+    ]
+    for ahead, wrong in (landing.history[0], landing.history[-1]):
+        lines.append(f"told {ahead * 1e3:5.1f} ms ahead: {at / 1e9 + wrong:.4f} s, {wrong * 1e3:+.1f} ms")
+    return Check(name, "\n".join(lines), figures=figures)
+
+
+def baseline_check(result: Result, baseline: str | PathLike[str]) -> Check:
+    """Whether a run is as an earlier one, which may be of several bags."""
+    from ..report.baseline import compare_runs, run_of
+    from ..report.changes import concluded, sentences
+    from ..report.earlier import read_earlier
+
+    try:
+        compared = compare_runs(read_earlier(baseline, result.bag), run_of(result))
+    except InputError as error:
+        return Check("baseline", str(error))
+    if not compared.changes:
+        return Check("baseline")
+    lines = [concluded(compared, baseline), *sentences(compared)[:MOST_LISTED]]
+    more = len(compared.changes) - MOST_LISTED
+    lines += [f"and {more:,} more"] if more > 0 else []
+    return Check("baseline", "\n".join(lines), figures={"changes": len(compared.changes)})

@@ -1,0 +1,174 @@
+"""An earlier run is read from the bag it wrote and from its JSON alike; what is none is refused in one sentence."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from impact_predictor.bags.replay import Result, Settled
+from impact_predictor.bags.stream import Stream
+from impact_predictor.bags.write import BagWriter
+from impact_predictor.errors import InputError
+from impact_predictor.mechanics.types import Flag, Mode, Twist
+from impact_predictor.prediction.types import Landing, Leftover, Prediction, Sample, Score, Status, Touchdown
+from impact_predictor.report.baseline import Happened, happened
+from impact_predictor.report.earlier import read_earlier
+from impact_predictor.report.summary import as_json
+from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY
+
+SAMPLE = Sample(
+    10**9, "world", "cube", (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), (0.0,) * 3, (0.0,) * 3, (0.0,) * 36, (0.0,) * 36
+)
+TOUCHDOWN = Touchdown(
+    lead_time=0.004,
+    mode=Mode.PIVOT_SLIDE,
+    before=Twist(1.0, -0.5, -4.0),
+    after=Twist(0.1 + 0.2, 0.25, -3.0),
+    impulses=((0.0, 0.0), (0.5, -0.125)),
+    segments=("++", "O+"),
+    energy_lost=0.25,
+    flags=Flag.REVERSED_SLIP,
+    unique=True,
+    law="path",
+    old=(),
+    new=(2, 3),
+    axis=(0.0, 1.0, 0.0),
+    position=(0.0, 0.0, 0.0),
+    orientation=(0.0, 0.0, 0.0, 1.0),
+    linear=(0.0, 0.0, 0.0),
+    angular=(0.0, 0.0, 0.0),
+    half_distance=0.05,
+    off_axis=0.125,
+    lateral=0.0,
+    closing_spread=0.001,
+    offset=0.0,
+    leftover=Leftover.NONE,
+)
+SCORED = Score(1_004_000_000, TOUCHDOWN, Twist(0.5, 0.125, -2.0), 0.25, True, Leftover.NONE, ((0.004, 0.25),))
+UNSCORED = SCORED._replace(stamp=2_000_000_000, scored=False, leftover=Leftover.OUT_OF_PLANE)
+UNMEASURED = SCORED._replace(stamp=3_000_000_000, measured=None, relative_error=None, scored=False, history=())
+LANDED = UNMEASURED._replace(
+    stamp=4_000_000_000,
+    leftover=Leftover.DRIVEN,
+    landing=Landing("LF", 4_000_000_000, None, None, ((0.02, 0.001),), 0.2),
+)
+SCORES = (SCORED, UNSCORED, UNMEASURED, LANDED)
+
+
+def run(body: str, scores: tuple[Score, ...] = SCORES) -> dict[str, Any]:
+    settled = tuple(Settled(body, score, None) for score in scores)
+    return as_json(Result("run.mcap", 4, 0.001, settled, {}, {}, (), "", ""))
+
+
+def write_run(path: Path, body: str = "", scores: tuple[Score, ...] = SCORES, namespace: str = "") -> Path:
+    answers = iter([Prediction(Status.ACCEPTED, SAMPLE, None, score) for score in scores])
+    with BagWriter(path) as writer:
+
+        def write(topic: str, type_name: str, log_time: int, data: bytes) -> None:
+            writer.write(namespace + topic, type_name, log_time, data)
+
+        stream = Stream(body, lambda _: next(answers), write)
+        stream.answered(Prediction(Status.ACCEPTED, SAMPLE), 1, 0.0)
+        for _ in scores:
+            stream.answered(stream.update(SAMPLE), 1, 0.0)
+    return path
+
+
+@pytest.fixture
+def json_of(tmp_path: Path) -> Any:
+    def write(answer: Any) -> Path:
+        path = tmp_path / "run.json"
+        path.write_text(json.dumps(answer))
+        return path
+
+    return write
+
+
+def test_bag_and_json_of_a_run_tell_the_same_to_the_last_bit(tmp_path: Path, json_of: Any) -> None:
+    for body, name in (("", "cube"), ("crate", "crate")):
+        told = read_earlier(json_of(run(name)), "run.mcap")
+        assert told == read_earlier(write_run(tmp_path / f"{name}.mcap", body), "run.mcap")
+        assert told == tuple(map(happened, run(name)["touchdowns"]))
+        first, unscored, _, landed = told
+        assert first == Happened(
+            name,
+            "",
+            1_004_000_000,
+            ((), (2, 3)),
+            "PIVOT_SLIDE",
+            TOUCHDOWN.before,
+            TOUCHDOWN.after,
+            0.05,
+            True,
+            0.25,
+            None,
+        )
+        assert (unscored.scored, unscored.error) == (False, None)
+        assert (landed.foot, landed.time_error) == ("LF", 0.001)
+
+
+def test_a_recording_of_a_node_in_a_namespace_is_a_run(tmp_path: Path, json_of: Any) -> None:
+    for body, name in (("", "cube"), ("crate", "crate")):
+        recorded = write_run(tmp_path / f"{name}.mcap", body, namespace="/robot")
+        assert read_earlier(recorded, "run.mcap") == read_earlier(json_of(run(name)), "run.mcap")
+
+
+def test_a_run_without_a_touchdown_is_a_run(tmp_path: Path) -> None:
+    assert read_earlier(write_run(tmp_path / "none.mcap", scores=()), "run.mcap") == ()
+
+
+def test_a_run_from_before_contacts_were_told_is_read(json_of: Any) -> None:
+    answer = run("cube")
+    for one in answer["touchdowns"]:
+        del one["old"], one["new"]
+    assert {one.contacts for one in read_earlier(json_of(answer), "run.mcap")} == {None}
+
+
+def test_of_several_bags_the_run_of_this_one_is_read(tmp_path: Path, json_of: Any) -> None:
+    folder = tmp_path / "runs"
+    folder.mkdir()
+    write_run(folder / "monday.mcap", scores=(SCORED,))
+    write_run(folder / "tuesday.mcap", scores=(SCORED, UNSCORED))
+    assert len(read_earlier(folder, "bags/tuesday.bag")) == 2
+    runs = [run("cube", SCORES[:k]) | {"bag": f"bags/{name}"} for k, name in ((1, "monday.mcap"), (2, "tuesday.mcap"))]
+    assert len(read_earlier(json_of(runs), "bags/tuesday.mcap")) == 2
+    assert len(read_earlier(json_of(runs), "elsewhere/monday.mcap")) == 1
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        ("not json", "is not JSON"),
+        ("3", "is not the JSON of a replay"),
+        ("[1, 2]", "is not the JSON of a replay"),
+        ('{"touchdowns": [{"stamp": 1}]}', "is not the JSON of a replay"),
+        ("[]", "has no run of bags/run.mcap"),
+        ('[{"bag": "bags/run.mcap", "error": "damaged"}]', "has no run of bags/run.mcap"),
+    ],
+)
+def test_json_that_is_no_run_of_the_bag_is_refused_in_one_sentence(tmp_path: Path, content: str, said: str) -> None:
+    path = tmp_path / "old.json"
+    path.write_text(content)
+    with pytest.raises(InputError, match=said) as caught:
+        read_earlier(path, "bags/run.mcap")
+    assert "\n" not in str(caught.value)
+
+
+def test_what_is_not_there_or_is_no_run_is_refused(tmp_path: Path) -> None:
+    for name in ("none.json", "none.mcap"):
+        with pytest.raises(InputError, match=name):
+            read_earlier(tmp_path / name, "run.mcap")
+    with pytest.raises(InputError, match=r"has no run\.mcap; write it"):
+        read_earlier(tmp_path, "run.mcap")
+    with BagWriter(tmp_path / "other.mcap") as writer:
+        writer.write("/odom", DIAGNOSTIC_ARRAY, 1, b"")
+    with pytest.raises(InputError, match="has no predictions"):
+        read_earlier(tmp_path / "other.mcap", "run.mcap")
+    with BagWriter(tmp_path / "damaged.mcap") as writer:
+        for name in ("prediction", "score"):
+            writer.write(f"/impact_predictor/{name}", DIAGNOSTIC_ARRAY, 1, bytes(8))
+    with pytest.raises(InputError, match="a message on /impact_predictor/score that is no score"):
+        read_earlier(tmp_path / "damaged.mcap", "run.mcap")

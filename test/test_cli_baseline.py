@@ -1,0 +1,72 @@
+"""`impact-predictor replay --baseline`: silent on the same, and what has changed with exit status 1."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from impact_predictor.cli import main
+
+SCENE = Path(__file__).parents[1] / "config/rocking_plate.yaml"
+
+
+@pytest.fixture(scope="module")
+def bag(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Two impacts of a plate on the floor, and the way to a third."""
+    path = tmp_path_factory.mktemp("plate") / "plate.mcap"
+    options = ["--friction", "0.4", "--restitution", "0.1", "--duration", "0.7", "-o", str(path)]
+    assert CliRunner().invoke(main, ["simulate", "plate", *options]).exit_code == 0
+    return path
+
+
+@pytest.fixture
+def other_scene(tmp_path: Path) -> Path:
+    path = tmp_path / "other.yaml"
+    path.write_text(SCENE.read_text().replace("restitution: 0.1", "restitution: 0.3"))
+    return path
+
+
+def replay(bag: Path, scene: Path, *options: str | Path) -> Result:
+    return CliRunner().invoke(main, ["replay", str(bag), "--params", str(scene), *map(str, options)])
+
+
+def test_a_run_compared_with_itself_says_that_nothing_has_changed(tmp_path: Path, bag: Path) -> None:
+    old = tmp_path / "old.mcap"
+    assert replay(bag, SCENE, "-o", old).exit_code == 0
+    # The new run takes the place of the baseline, which was read before.
+    same = replay(bag, SCENE, "--baseline", old, "--baseline-time", "0", "--baseline-error", "0", "-o", old)
+    assert (same.exit_code, same.stdout.splitlines()[-1]) == (0, f"Nothing has changed against {old}: 3 touchdowns.")
+    told = tmp_path / "old.json"
+    told.write_text(replay(bag, SCENE, "--json").stdout)
+    assert replay(bag, SCENE, "--baseline", told).exit_code == 0
+
+
+def test_another_scene_changes_the_run(tmp_path: Path, bag: Path, other_scene: Path) -> None:
+    old = tmp_path / "old.mcap"
+    replay(bag, SCENE, "-o", old)
+    other = replay(bag, other_scene, "--baseline", old)
+    assert other.exit_code == 1
+    assert other.stdout.splitlines()[-1] == f"Against {old} 1 of 3 touchdowns are as they were: 2 worse."
+    assert replay(bag, other_scene, "--baseline", old, "--baseline-error", "1").exit_code == 0
+
+
+def test_the_json_carries_the_comparison_and_the_exit_status_is_the_same(
+    tmp_path: Path, bag: Path, other_scene: Path
+) -> None:
+    old = tmp_path / "old.mcap"
+    replay(bag, SCENE, "-o", old)
+    other = replay(bag, other_scene, "--baseline", old, "--json")
+    answer = json.loads(other.stdout)["baseline"]
+    assert (other.exit_code, answer["unchanged"], [one["change"] for one in answer["changes"]]) == (1, 1, ["worse"] * 2)
+    same = json.loads(replay(bag, SCENE, "--baseline", old, "--json").stdout)["baseline"]
+    assert same == {"file": str(old), "touchdowns_before": 3, "touchdowns": 3, "unchanged": 3, "changes": []}
+
+
+def test_a_baseline_that_is_no_run_is_refused_before_anything_is_replayed(tmp_path: Path, bag: Path) -> None:
+    refused = replay(bag, SCENE, "--baseline", bag, "-o", tmp_path / "new.mcap")
+    assert refused.exit_code == 2
+    assert refused.stderr.startswith(f"error: the baseline {bag} has no predictions")
+    assert not (tmp_path / "new.mcap").exists()
