@@ -10,6 +10,7 @@ import click
 
 from . import __version__
 from .commands.bench import bench
+from .commands.calibrate import calibrate
 from .commands.demo import demo
 from .commands.examples import examples
 from .commands.explain import explain
@@ -74,5 +75,5 @@ def main() -> None:
     """Predict the next touchdown of a body that turns about one contact, and what the impact does to it."""
 
 
-for _command in (demo, solve, map_, simulate, replay, explain, report, bench):
+for _command in (demo, solve, map_, simulate, replay, calibrate, explain, report, bench):
     main.add_command(_command)

@@ -1,0 +1,1 @@
+"""Friction, restitution and inertia from recorded touchdowns."""

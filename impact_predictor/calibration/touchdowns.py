@@ -1,0 +1,214 @@
+"""Touchdowns that a record scores, each with the impact behind its prediction, so that it can be solved anew."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Mapping
+from math import hypot, inf
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from ..mechanics.impact import solve_impact
+from ..mechanics.types import Twist, TwoPointBody
+from ..prediction.approach import Approach, approach_of
+from ..prediction.monitor import Monitor
+from ..prediction.planar import Across, Plane, Posture, across_of
+from ..prediction.predictor import Predictor
+from ..prediction.scene import Matrix3, Scene
+from ..prediction.score import MEASURED, NANOSECONDS
+from ..prediction.transverse import impact_across
+from ..prediction.types import Prediction, Sample, Score, Touchdown, Vector3
+from ..prediction.vectors import add, axes_of, cross, dot, to_world
+
+if TYPE_CHECKING:
+    from ..prediction.deck.tracker import Deck
+
+_REMEMBERED: Final = 64
+"""Predictions behind whose touchdowns the impact is kept; a touchdown is settled a few samples after its last one."""
+
+
+class Coefficients(NamedTuple):
+    """What is fitted: friction, restitution, and the factor on the scene's inertia."""
+
+    friction: float
+    restitution: float
+    inertia: float = 1.0
+
+
+class Impact(NamedTuple):
+    """The impact behind a prediction, as `Predictor` solves it: its plane, the support normal in the body frame, the
+    body with its contacts, the twist before it in the plane and the motion across, the angle turned until then, and
+    whether the contacts are edges that block the roll.
+    """
+
+    plane: Plane
+    normal: Vector3
+    body: TwoPointBody
+    before: Twist
+    across: Across
+    angle: float
+    blocked: bool
+
+
+class Start(NamedTuple):
+    """What a prediction was made from: the sample, its posture, and the contact points in the body frame."""
+
+    sample: Sample
+    posture: Posture
+    points: tuple[Vector3, ...]
+
+
+class ScoredTouchdown(NamedTuple):
+    """A scored touchdown.
+
+    `body` is the name of the body, `stamp` (ns) that of its score, `measured` the twist of the mass centre right after
+    it, in the impact plane, and `half_distance` that of the contacts in m. `bend` is by how much, relative to `speed`,
+    the twists after it leave the straight line on which they were followed back to it: 0 where none was needed.
+    `start` is None where the support moves.
+    """
+
+    body: str
+    stamp: int
+    scene: Scene
+    impact: Impact
+    measured: Twist
+    half_distance: float
+    bend: float = 0.0
+    start: Start | None = None
+
+    @property
+    def speed(self) -> float:
+        """What errors are relative to: the length of (vx, omega s) before the impact, in m/s."""
+        return hypot(self.impact.before.vx, self.impact.before.omega * self.half_distance)
+
+    def approached(self, coefficients: Coefficients) -> ScoredTouchdown:
+        """The same touchdown where friction and inertia of the motion before it, too, are those of the coefficients."""
+        if self.start is None:
+            return self
+        friction, restitution, factor = coefficients
+        inertia = scaled(self.scene.inertia, factor)
+        scene = self.scene._replace(friction=friction, restitution=restitution, inertia=inertia)
+        sample, posture, points = self.start
+        approach = approach_of(scene, points, sample, posture)
+        body = self.impact.body
+        if approach is None or (approach.body.old is None) != (body.old is None):
+            return self
+        impact = impact_of(sample, posture, approach)
+        # The inertia is that of the scene as it was given: `solve` scales it.
+        return self._replace(impact=impact._replace(body=impact.body._replace(inertia=body.inertia)))
+
+    def after(self, coefficients: Coefficients) -> Twist:
+        """The twist after the impact with other coefficients, by the law of the scene."""
+        return solve(self.scene, self.impact, coefficients)
+
+
+def solve(scene: Scene, impact: Impact, coefficients: Coefficients) -> Twist:
+    """The twist after an impact with other coefficients, by the law and with the transverse slip of the scene."""
+    friction, restitution, factor = coefficients
+    plane, normal, body, before, across, angle, blocked = impact
+    body = body._replace(
+        inertia=factor * body.inertia,
+        old=None if body.old is None else body.old._replace(friction=friction),
+        new=body.new._replace(friction=friction, restitution=restitution),
+    )
+    if scene.transverse_slip and scene.law == "path" and friction > 0.0 and not scene.radius:
+        scene = scene._replace(inertia=scaled(scene.inertia, factor))
+        slipped = impact_across(scene, plane, normal, body, before, across, angle, blocked)
+        if slipped is not None:
+            return slipped[0].twist
+    return solve_impact(body, before, scene.law, scene.validity).twist
+
+
+def impact_of(sample: Sample, posture: Posture, approach: Approach) -> Impact:
+    """The impact at the end of an approach."""
+    _, plane, body, before, moved, lead_time, blocked, _, _ = approach
+    across = across_of(sample, posture, plane, lead_time)
+    return Impact(plane, posture.normal, body, before, across, moved.angle, blocked)
+
+
+def scaled(inertia: Matrix3, factor: float) -> Matrix3:
+    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = inertia
+    return (
+        (factor * xx, factor * xy, factor * xz),
+        (factor * yx, factor * yy, factor * yz),
+        (factor * zx, factor * zy, factor * zz),
+    )
+
+
+class Observer(Predictor):
+    """A predictor that also collects the `touchdowns` that it scores, under the name of its body."""
+
+    def __init__(self, name: str, scene: Scene, deck: Deck | None = None) -> None:
+        super().__init__(scene, deck)
+        self.name = name
+        self.touchdowns: list[ScoredTouchdown] = []
+        self._impacts: deque[tuple[Impact, Start | None]] = deque(maxlen=_REMEMBERED)
+        self._samples: deque[Sample] = deque(maxlen=_REMEMBERED)
+
+    def update(self, sample: Sample) -> Prediction:
+        prediction = super().update(sample)
+        self._samples.append(sample)
+        if prediction.score is not None:
+            self._collect(prediction.score)
+        return prediction
+
+    def finish(self) -> tuple[Score, ...]:
+        scores = super().finish()
+        for score in scores:
+            self._collect(score)
+        return scores
+
+    def _touchdown(self, sample: Sample, posture: Posture, approach: Approach) -> Touchdown:
+        start = Start(sample, posture, self._points) if self.scene.deck is None and self._drum is None else None
+        self._impacts.append((impact_of(sample, posture, approach), start))
+        return super()._touchdown(sample, posture, approach)
+
+    def _collect(self, score: Score) -> None:
+        touchdown = score.touchdown
+        behind = [one for one in self._impacts if one[0].before == touchdown.before]
+        if score.scored and score.measured is not None and behind:
+            impact, start = behind[-1]
+            one = ScoredTouchdown(
+                self.name, score.stamp, self.scene, impact, score.measured, touchdown.half_distance, start=start
+            )
+            if self.scene.deck is None and not self.scene.twist_window:
+                one = self._followed_back(one, touchdown.axis)
+            self.touchdowns.append(one)
+
+    def _followed_back(self, one: ScoredTouchdown, axis: Vector3) -> ScoredTouchdown:
+        """With the twist at the touchdown itself, on the straight line through the samples after it.
+
+        Twists of the very instant are as sharp as that: what gravity adds in three samples would count as friction.
+        Where gravity adds as much as the whole approach the samples are of another motion already.
+        """
+        normal, body = self.scene.normal, one.impact.body
+        ahead = cross(axis, normal)
+        times, twists = [], []
+        for sample in [each for each in self._samples if each.stamp > one.stamp][: MEASURED.stop]:
+            axes = axes_of(sample.orientation)
+            velocity = to_world(axes, add(sample.linear, cross(sample.angular, self.scene.center_of_mass)))
+            times.append((sample.stamp - one.stamp) / NANOSECONDS)
+            twists.append((dot(ahead, velocity), dot(normal, velocity), -dot(axis, to_world(axes, sample.angular))))
+        line = np.polynomial.polynomial.polyfit(times, np.array(twists), 1)
+        bends = (np.array(twists) - line[0] - np.outer(times, line[1]))[:, (0, 2)] * (1.0, one.half_distance)
+        _, vy, omega = one.impact.before
+        if -(vy + omega * body.new.x) < hypot(*self.scene.gravity) * times[-1]:
+            bends[:] = inf
+        return one._replace(measured=Twist(*line[0].tolist()), bend=float(np.abs(bends).max()) / one.speed)
+
+
+class ObservingMonitor(Monitor):
+    """A monitor whose predictors collect the touchdowns that they score; the feet of walking machines are driven."""
+
+    def __init__(self, scenes: Mapping[str, Scene]) -> None:
+        super().__init__(scenes)
+        self._observers = {
+            body: Observer(body, scenes[body], self.deck) for body in self.predictors if scenes[body].walking is None
+        }
+        self.predictors = {**self.predictors, **self._observers}
+
+    @property
+    def touchdowns(self) -> list[ScoredTouchdown]:
+        """Those of each body in the order of time, one body after the other."""
+        return [one for observer in self._observers.values() for one in observer.touchdowns]

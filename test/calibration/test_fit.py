@@ -1,0 +1,187 @@
+"""Coefficients from made touchdowns whose own are known."""
+
+from __future__ import annotations
+
+from math import inf
+
+import numpy as np
+import pytest
+
+from impact_predictor.calibration.fit import NEEDED, Calibration, calibrate
+from impact_predictor.calibration.inertia import KNOWN
+from impact_predictor.calibration.touchdowns import Coefficients, Impact, ScoredTouchdown
+from impact_predictor.errors import InputError
+from impact_predictor.mechanics.bodies import plate
+from impact_predictor.mechanics.types import Twist
+from impact_predictor.prediction.planar import Across, Plane
+from impact_predictor.prediction.scene import Scene, inertia_matrix
+
+LENGTH, HEIGHT, MASS = 1.0, 0.4, 1.0
+PLANE = Plane((0.0, -1.0, 0.0), (1.0, 0.0, 0.0), None, (0.0, 0.0), Twist(0.0, 0.0, 0.0), (0.0,) * 3, 0.0, 0.0, 0.0, 0.0)
+
+
+def touchdowns(
+    truth: Coefficients,
+    number: int = 40,
+    noise: float = 0.0,
+    given: tuple[float, float] = (0.4, 0.0),
+    slip: float = 0.5,
+    seed: int = 0,
+    height: float = HEIGHT,
+) -> list[ScoredTouchdown]:
+    """Plates with the mass centre at several places that land turning and slipping, as a record tells them.
+
+    `noise` is the standard deviation of the measured vx and omega s, relative to the speed before.
+    """
+    rng = np.random.default_rng(seed)
+    inertia = MASS * (LENGTH**2 + height**2) / 12.0
+    scene = Scene(MASS, inertia_matrix([inertia]), friction=given[0], restitution=given[1], transverse_slip=False)
+    made = []
+    for k in range(number):
+        ahead = rng.uniform(0.3, 0.7)
+        body = plate(length=LENGTH, height=height, mass=MASS, friction=0.0, a=1.0 - ahead, b=ahead, inertia=inertia)
+        before = body.turning(omega=-rng.uniform(1.0, 3.0))
+        before = before._replace(vx=before.vx + slip * rng.uniform(-1.0, 1.0))
+        impact = Impact(PLANE, (0.0, 0.0, 1.0), body, before, Across(0.0, 0.0, 0.0), 0.0, True)
+        one = ScoredTouchdown("", k * 10**10, scene, impact, before, 0.5 * LENGTH)
+        after = one.after(truth)
+        error = rng.normal(0.0, noise * one.speed, 2) if noise else (0.0, 0.0)
+        made.append(
+            one._replace(measured=Twist(after.vx + error[0], after.vy, after.omega + error[1] / (0.5 * LENGTH)))
+        )
+    return made
+
+
+def within(calibration: Calibration, truth: Coefficients) -> list[bool]:
+    """Whether the intervals of friction and restitution hold the truth."""
+    return [
+        (one.low or 0.0) <= value <= (np.inf if one.high is None else one.high)
+        for one, value in ((calibration.friction, truth.friction), (calibration.restitution, truth.restitution))
+    ]
+
+
+@pytest.mark.parametrize("friction", [0.08, 0.2, 0.35])
+def test_friction_and_restitution_of_exact_touchdowns_come_back(friction: float) -> None:
+    truth = Coefficients(friction, 0.2)
+    fitted = calibrate([touchdowns(truth)])
+    assert within(fitted, truth) == [True, True]
+    # A thousandth is where the tables stop to zoom in.
+    assert fitted.friction.value == pytest.approx(friction, abs=2e-3)
+    assert fitted.restitution.value == pytest.approx(0.2, abs=2e-3)
+    assert fitted.held_out.max() < 0.01 < np.median(fitted.given_errors)
+
+
+@pytest.mark.slow
+def test_the_intervals_hold_the_truth_about_as_often_as_they_say() -> None:
+    truth = Coefficients(0.2, 0.15)
+    held = [within(calibrate([touchdowns(truth, noise=0.05, seed=seed)]), truth) for seed in range(8)]
+    # Of 16 intervals with 95 % at most 3 miss in 99 % of all cases.
+    assert np.sum(held) >= 13
+
+
+def test_the_held_out_error_is_that_of_the_noise() -> None:
+    fitted = calibrate([touchdowns(Coefficients(0.2, 0.15), number=80, noise=0.05)])
+    # The mean length of two normal errors is 1.25 deviations; 80 of them scatter by 6 %, and a fit costs a little.
+    assert fitted.held_out.mean() == pytest.approx(1.25 * 0.05, rel=0.2)
+
+
+def test_where_nothing_slips_only_a_lower_bound_of_the_friction_is_told() -> None:
+    fitted = calibrate([touchdowns(Coefficients(5.0, 0.1), slip=0.0, given=(0.9, 0.3))])
+    assert fitted.friction.high is None
+    assert not fitted.friction.told
+    assert fitted.friction.value == 0.9
+    assert 0.1 < (fitted.friction.low or 0.0) < 0.9
+    assert fitted.restitution.value == pytest.approx(0.1, abs=2e-3)
+
+
+def test_a_given_friction_below_the_lower_bound_is_raised_to_it() -> None:
+    fitted = calibrate([touchdowns(Coefficients(5.0, 0.1), slip=0.0, given=(0.05, 0.1))])
+    assert fitted.friction.value == fitted.friction.low
+    assert fitted.friction.value > 0.05
+
+
+def test_an_inertia_that_the_touchdowns_tell_is_fitted() -> None:
+    """Tall bodies turn about the new contact in many ways, which no friction and no restitution stand in for."""
+    truth = Coefficients(0.3, 0.1, 1.3)
+    fitted = calibrate([touchdowns(truth, height=1.6)])
+    inertia = fitted.inertia
+    assert inertia.told
+    assert inertia.low is not None
+    assert inertia.high is not None
+    assert inertia.low <= 1.3 <= inertia.high <= KNOWN * inertia.low
+    # The nearest factor that was looked at is within the interval, 5 % or so; friction makes up for it.
+    assert fitted.friction.value == pytest.approx(0.3, abs=0.02)
+
+
+def test_low_plates_do_not_tell_their_inertia_even_without_noise() -> None:
+    fitted = calibrate([touchdowns(Coefficients(0.2, 0.15, 1.3))])
+    assert not fitted.inertia.told
+    assert fitted.inertia.value == 1.0
+    assert np.median(fitted.held_out) < 1e-3
+
+
+def test_an_inertia_that_agrees_with_the_given_one_stays_as_it_is() -> None:
+    fitted = calibrate([touchdowns(Coefficients(0.2, 0.15))])
+    assert fitted.inertia.value == 1.0
+
+
+def test_an_inertia_is_not_told_by_touchdowns_of_one_kind() -> None:
+    """All bodies alike, all turning about one edge at rest: two numbers cannot tell three."""
+    alike = touchdowns(Coefficients(0.1, 0.15), number=1, slip=0.0) * 20
+    alike = [one._replace(stamp=k * 10**10) for k, one in enumerate(alike)]
+    fitted = calibrate([alike])
+    assert not fitted.inertia.told
+    assert fitted.inertia.value == 1.0
+
+
+def test_outliers_hardly_move_the_fit() -> None:
+    truth = Coefficients(0.2, 0.15)
+    some = touchdowns(truth, noise=0.01)
+    wrong = [one._replace(measured=Twist(2.0, 0.0, 2.0)) if k % 10 == 0 else one for k, one in enumerate(some)]
+    fitted = calibrate([wrong])
+    assert fitted.friction.value == pytest.approx(0.2, abs=0.02)
+    assert fitted.restitution.value == pytest.approx(0.15, abs=0.02)
+
+
+def test_what_is_left_out_was_not_fitted_to() -> None:
+    """Two kinds of touchdowns in two records: in equal parts, so that each is wrong about the other."""
+    slippery, rough = touchdowns(Coefficients(0.05, 0.1), number=20), touchdowns(Coefficients(0.35, 0.1), number=20)
+    fitted = calibrate([slippery, rough])
+    alone = calibrate([slippery])
+    assert np.median(alone.held_out) < 1e-3 < np.median(fitted.held_out)
+
+
+def test_the_same_seed_gives_the_same_answer() -> None:
+    some = touchdowns(Coefficients(0.2, 0.15), number=20, noise=0.05)
+    one, other = calibrate([some], seed=3), calibrate([some], seed=3)
+    assert one[2:5] == other[2:5]
+    assert np.array_equal(one.held_out, other.held_out)
+
+
+@pytest.mark.parametrize(
+    ("number", "said"), [(0, "no touchdowns can"), (1, "1 touchdown can"), (9, "9 touchdowns can")]
+)
+def test_too_few_touchdowns_are_refused_with_both_numbers(number: int, said: str) -> None:
+    with pytest.raises(InputError, match=f"^{said}.*{NEEDED} are needed"):
+        calibrate([touchdowns(Coefficients(0.2, 0.1), number=number)])
+
+
+def test_bodies_with_frictions_of_their_own_are_refused() -> None:
+    one = touchdowns(Coefficients(0.2, 0.1), number=10)
+    other = [each._replace(body="b", scene=each.scene._replace(friction=0.7)) for each in one]
+    with pytest.raises(InputError, match="frictions or restitutions of their own"):
+        calibrate([one, other])
+
+
+def test_mostly_slow_touchdowns_are_left_out_all_the_same() -> None:
+    some = touchdowns(Coefficients(0.2, 0.15), number=30)
+    slow = [one._replace(bend=inf, measured=Twist(9.0, 0.0, 9.0)) if k % 3 else one for k, one in enumerate(some)]
+    assert calibrate([slow]).left_out == 20
+
+
+def test_touchdowns_that_another_impact_spoils_are_left_out() -> None:
+    some = touchdowns(Coefficients(0.2, 0.15), number=20)
+    spoilt = [one._replace(bend=0.2, measured=Twist(9.0, 0.0, 9.0)) if k < 3 else one for k, one in enumerate(some)]
+    fitted = calibrate([spoilt])
+    assert fitted.left_out == 3
+    assert fitted.held_out.max() < 0.01

@@ -1,0 +1,79 @@
+"""What a calibration says of coefficients that are told and of those that are not."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from impact_predictor.calibration.fit import Calibration
+from impact_predictor.calibration.search import Estimate
+from impact_predictor.prediction.scene import Scene, inertia_matrix
+from impact_predictor.report.calibration import changes_of, interval, sentences
+
+TOLD = Estimate(0.4, 0.2, 0.15, 0.25, told=True)
+AS_GIVEN = Estimate(1.0, 1.0, None, None, told=False)
+
+
+class One:
+    scene = Scene(1.0, inertia_matrix([0.5, 1.0, 2.0, 0.0, 0.0, 0.1]), 0.4)
+
+
+def calibration(friction: Estimate = TOLD, inertia: Estimate = AS_GIVEN, better: bool = True) -> Calibration:
+    touchdowns: Any = (One(),) * 20
+    errors = np.full((20, 2), 0.1)
+    nothing: Any = None
+    return Calibration(
+        touchdowns,
+        np.arange(20),
+        friction,
+        TOLD._replace(given=0.2),
+        inertia,
+        errors,
+        0.5 * errors if better else 2.0 * errors,
+        nothing,
+        (),
+        0,
+    )
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "said"),
+    [
+        (None, None, "any"),
+        (0.0, None, "any"),
+        (0.32, None, "at least 0.32"),
+        (None, 1.05, "at most 1.05"),
+        (0.29999, 0.30001, "0.29999 to 0.30001"),
+    ],
+)
+def test_an_interval_in_words(low: float | None, high: float | None, said: str) -> None:
+    assert interval(Estimate(1.0, 1.0, low, high, told=False)) == said
+
+
+def test_a_lower_bound_is_told_with_its_reason() -> None:
+    bound = Estimate(0.4, 0.4, 0.32, None, told=False)
+    assert sentences(calibration(bound), [])[-2] == (
+        "Of the friction only a lower bound is told, 0.32, because nothing slips beyond: it stays 0.4."
+    )
+
+
+def test_a_fit_that_is_worth_nothing_says_so() -> None:
+    assert any("not better than the given ones" in said for said in sentences(calibration(better=False), []))
+    assert not any("not better than the given ones" in said for said in sentences(calibration(), []))
+
+
+def test_a_contradicted_inertia_is_not_hidden() -> None:
+    one = Estimate(1.0, 1.0, 1.17, None, told=False)
+    assert sentences(calibration(inertia=one), [])[-1] == (
+        "The inertia cannot be told: at least 1.17 times the given one predicts as well; the given one predicts "
+        "worse, but stays."
+    )
+
+
+def test_only_what_changed_is_written_and_an_inertia_as_a_whole() -> None:
+    assert changes_of(calibration()).keys() == {"contact.friction"}
+    inertia = Estimate(1.0, 1.5, 1.4, 1.6, told=True)
+    change = changes_of(calibration(inertia=inertia))["body.inertia"]
+    assert change.text == "[0.75, 1.5, 3.0, 0.0, 0.0, 0.15]"
