@@ -22,7 +22,7 @@ class Stance(NamedTuple):
 
 
 class Landed(NamedTuple):
-    """A foot that has come to stand at `stamp` (ns).
+    """A foot that has come to stand at `stamp` (ns), with the first of its points.
 
     `announced` is the stamp that the last prediction made `AHEAD` of it told, None where there was none so early;
     `speed` (m/s) that of the foot in its last sample in the air, and `impulse` (N s) what it gets with that speed.
@@ -44,9 +44,7 @@ class Gait:
         self.begin = self.end = 0
         """Stamps of the first and the last sample in ns."""
         self.samples = 0
-        self._points = walking.points
         self._inferred, self._true = _Stances(), _Stances()
-        self._announced: dict[int, int] = {}
 
     @property
     def stances(self) -> list[Stance]:
@@ -68,11 +66,7 @@ class Gait:
         self.end = prediction.sample.stamp
         self.begin = self.begin if self.samples else self.end
         self.samples += 1
-        ahead = {one.new[0] // self._points: one for one in reversed(prediction.touchdowns)}
         for number, foot in enumerate(prediction.feet):
-            touchdown = ahead.get(number)
-            if touchdown is not None and not foot.stands and touchdown.lead_time >= AHEAD:
-                self._announced[number] = self.end + round(1e9 * touchdown.lead_time)
             # What stands or swings from the beginning on has not begun at any stamp.
             self._inferred.take(number, foot.stands, foot.since or self.begin)
         if prediction.score is not None:
@@ -82,8 +76,11 @@ class Gait:
         """Take the landings that are settled."""
         for landing in [score.landing for score in scores if score.landing is not None]:
             foot = self.feet.index(landing.foot)
+            if landing.point is not None and self._inferred.since(foot, landing.stamp) < landing.stamp:
+                continue  # More of a foot that stands already.
             impulse = None if landing.impact is None else hypot(*landing.impact.impulses[1])
-            told = self._announced.pop(foot, None)
+            errors = [error for ahead, error in landing.history if ahead >= AHEAD]
+            told = landing.stamp + round(1e9 * errors[-1]) if errors else None
             self.landings.append(Landed(foot, landing.stamp, told, landing.speed, impulse))
 
 
@@ -100,6 +97,10 @@ class _Stances:
             self._since.setdefault(foot, stamp)
         elif foot in self._since:
             self._ended.append(Stance(foot, self._since.pop(foot), stamp))
+
+    def since(self, foot: int, stamp: int) -> int:
+        """When the stance of a foot began that lasts; the stamp given where it does not stand."""
+        return self._since.get(foot, stamp)
 
     def until(self, end: int) -> list[Stance]:
         return [*self._ended, *[Stance(foot, begin, end) for foot, begin in self._since.items()]]

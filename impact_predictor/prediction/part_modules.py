@@ -37,10 +37,12 @@ ROCKING: Final = (
 """What follows a body until it strikes where no closed form does."""
 
 WALKING: Final = (
-    *("mechanics.contact_space", "mechanics.mobility", "mechanics.mobility_total", "prediction.walking.base"),
+    *("mechanics.contact_space", "mechanics.mobility", "mechanics.mobility_total"),
+    *("prediction.walking.ahead", "prediction.walking.arrival", "prediction.walking.base"),
     *("prediction.walking.course", "prediction.walking.cubic", "prediction.walking.forces"),
-    *("prediction.walking.impact", "prediction.walking.mechanism", "prediction.walking.plan"),
-    *("prediction.walking.point", "prediction.walking.stance", "prediction.walking.walker"),
+    *("prediction.walking.habit", "prediction.walking.impact", "prediction.walking.mechanism"),
+    *("prediction.walking.plan", "prediction.walking.point", "prediction.walking.stance", "prediction.walking.sums"),
+    *("prediction.walking.walker",),
     *("ros.feet_report", "ros.feet_topics", "ros.latched_topic", "ros.messages.feet", "ros.messages.walking"),
 )
 """What follows feet over the ground."""

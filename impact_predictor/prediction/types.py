@@ -57,7 +57,7 @@ class Status(IntEnum):
     BELOW_GROUND = 20
     """A foot lies deeper in the ground than any noise puts it."""
     WRONG_JOINTS = 21
-    """The names or the number of the joints are not those of the robot's model."""
+    """A joint of the robot's model is missing, or is there twice."""
     SINGULAR_INERTIA = 22
     """The robot's inertia matrix has no inverse at these joint positions."""
 
@@ -218,6 +218,8 @@ class Landing(NamedTuple):
     `history` has the (lead time in s, error of the announced time in s) of every prediction of it. `speed` in m/s is
     that of the foot in its last frame in the air, and `impact` the touchdown that it makes with it: a planned foot may
     brake to rest just as it reaches the ground, a real one has that speed when the ground comes one frame earlier.
+    `point` names what of a foot with several points has landed, "heel" or "toe" of two; None for all of it. A landing
+    that was not announced has no `history`.
     """
 
     foot: str
@@ -227,6 +229,7 @@ class Landing(NamedTuple):
     history: tuple[tuple[float, float], ...]
     speed: float | None = None
     impact: Touchdown | None = None
+    point: str | None = None
 
 
 class Uncertainty(NamedTuple):

@@ -24,10 +24,15 @@ IMPACT: Final = ("\nimpulse\nN s", "body's\nchange\nm/s")
 ERRORS: Final = ("error\nms, told\n20 ms", "error\nms, told\n50 ms")
 
 
+NOISY: Final = "a foot came down too suddenly, or the noise of base and feet hides how it comes down"
+
+
 class Landed(NamedTuple):
     """A foot that has landed, as it is shown; SI units.
 
-    `stamp` in ns, when it came to stand; `announced` how long before in s the first prediction was made; the errors of
+    `foot` with the part of it that has landed, where not all of it did at once; `second` where another part stood
+    already. `stamp` in ns, when it came to stand, as its motion shows; `announced` how long before in s the first
+    prediction was made, None where there was none; the errors of
     the times that were told `LEAD_TIMES` before, None where nothing was told yet; `mode` of the last prediction;
     `speed` of the foot in its last sample in the air, and the `impulse` at the foot and the change of the mass centre's
     `velocity` in the impact plane that it makes with that speed; `late` in s after the plan, `confirmed` by a force
@@ -37,7 +42,8 @@ class Landed(NamedTuple):
     body: str
     foot: str
     stamp: int
-    announced: float
+    second: bool
+    announced: float | None
     time_errors: tuple[float | None, ...]
     mode: Mode
     speed: float | None
@@ -57,9 +63,10 @@ def _landed(body: str, score: Score, landing: Landing) -> Landed:
     touchdown = score.touchdown
     return Landed(
         body,
-        landing.foot,
+        f"{landing.foot} {landing.point or ''}".rstrip(),
         landing.stamp,
-        landing.history[0][0] if landing.history else touchdown.lead_time,
+        landing.point is not None and any(one // 2 == touchdown.new[0] // 2 for one in touchdown.old),
+        landing.history[0][0] if landing.history else None,
         tuple(error_ahead(landing, lead_time) for lead_time in LEAD_TIMES),
         touchdown.mode,
         landing.speed,
@@ -87,6 +94,7 @@ def landing_as_json(landing: Landing) -> dict[str, Any]:
     impact = landing.impact
     return {
         "foot": landing.foot,
+        "point": landing.point,
         "late": landing.late,
         "confirmed": landing.confirmed,
         "time_error": landing.history[-1][1] if landing.history else None,
@@ -118,7 +126,7 @@ def _landings_table(landings: Sequence[Landed], stacked: bool) -> Table:
         table.add_row(
             f"{(one.stamp - start) / 1e9:.3f}",
             names[one.body, one.foot],
-            f"{one.announced * 1e3:.0f}",
+            _number(one.announced, 1e3, 0),
             *(["\n".join(told)] if stacked else told),
             one.mode.name,
             _number(one.speed, 1.0, 3),
@@ -179,7 +187,7 @@ def _are_felt(landings: Sequence[Landed]) -> bool:
 def _cells(own: Sequence[Landed], landings: Sequence[Landed]) -> list[str]:
     """The cells of some landings in the table of all."""
     errors = [[abs(error) for one in own if (error := one.time_errors[k]) is not None] for k in range(len(LEAD_TIMES))]
-    cells = [f"{len(own):,}", f"{min(one.announced for one in own) * 1e3:.0f}"]
+    cells = [f"{len(own):,}", _number(_least(own), 1e3, 0)]
     cells += [_number(_median(some), 1e3, 1) for some in errors]
     cells.append(_number(_most(one.speed for one in own), 1.0, 3))
     cells += [_number(_most(one.impulse for one in own), 1.0, 2), _number(_most(one.velocity for one in own), 1.0, 3)]
@@ -189,6 +197,11 @@ def _cells(own: Sequence[Landed], landings: Sequence[Landed]) -> list[str]:
         felt = [one.confirmed for one in own if one.confirmed is not None]
         cells.append(f"{sum(felt):,}/{len(felt):,}" if felt else NONE)
     return cells
+
+
+def _least(landings: Iterable[Landed]) -> float | None:
+    """The shortest time ahead of a first prediction, in s."""
+    return min((one.announced for one in landings if one.announced is not None), default=None)
 
 
 def _most(numbers: Iterable[float | None]) -> float | None:
@@ -210,16 +223,26 @@ def landing_sentences(landings: Sequence[Landed]) -> list[str]:
     """What the landings say all together, one sentence each."""
     if not landings:
         return []
-    feet = len({(one.body, one.foot) for one in landings})
-    least = min(one.announced for one in landings) * 1e3
+    firsts = [one for one in landings if not one.second]
+    feet = len({(one.body, one.foot.split()[0]) for one in landings})
+    there = f"{counted(len(firsts), 'landing')} of {'1 foot' if feet == 1 else f'{feet} feet'}"
+    missing = sum(one.announced is None for one in firsts)
+    more = len(landings) - len(firsts)
+    besides = f", besides {counted(more, 'second contact')} of feet that stood already" if more else ""
+    least = _least(firsts)
+    if least is None:
+        said = [f"{there}, none of them announced{besides}: {NOISY}"]
+    else:
+        who = "each" if not missing else f"{len(firsts) - missing:,} of them"
+        told = f"{who} told {least * 1e3:.0f} ms ahead or earlier{besides}"
+        said = [f"{there}, {told}; errors are of that time, by when the foot's motion ends"]
+        if missing:
+            stances = "1 landing was" if missing == 1 else f"{missing:,} landings were"
+            said.append(f"{stances} not announced: {NOISY}")
     modes = Counter(one.mode for one in landings)
     counts = ", ".join(f"{modes[mode]:,} {mode.name}" for mode in sorted(modes))
-    there = f"{counted(len(landings), 'landing')} of {'1 foot' if feet == 1 else f'{feet} feet'}"
     braked = ": every foot brakes to rest as it reaches the ground" if set(modes) == {Mode.NO_IMPACT} else ""
-    said = [
-        f"{there}, each told {least:.0f} ms ahead or earlier; errors are of that time, by when the foot's motion ends",
-        f"Predicted modes: {counts}{braked}",
-    ]
+    said.append(f"Predicted modes: {counts}{braked}")
     seen = [one for one in landings if one.speed is not None]
     if seen:
         typical, most = _median([one.speed for one in seen if one.speed is not None]), _most(one.speed for one in seen)

@@ -29,8 +29,8 @@ def answer(
     return Prediction(Status.ACCEPTED, sample(stamp), score=score, touchdowns=ahead, feet=feet)
 
 
-def landed(foot: str, stamp: int) -> Score:
-    landing = Landing(foot, stamp, None, None, (), 0.3, touchdown(1, 0.0, (6.0, 8.0)))
+def landed(foot: str, stamp: int, history: tuple[tuple[float, float], ...] = (), point: str | None = None) -> Score:
+    landing = Landing(foot, stamp, None, None, history, 0.3, touchdown(1, 0.0, (6.0, 8.0)), point)
     return Score(stamp, touchdown(1, 0.0), None, None, False, Leftover.DRIVEN, (), landing)
 
 
@@ -38,15 +38,18 @@ def test_a_gait_has_the_stances_and_each_landing_as_it_was_announced_50_ms_ahead
     gait = Gait(Walking(("left", "right"), points=2))
     begin = 10 * MS
     gait.take(answer(begin, (True, False), 0))
-    # Heel and toe of the right foot are the points 2 and 3; what the foot does sooner counts.
+    # Heel and toe of the right foot are the points 2 and 3.
     gait.take(answer(100 * MS, (True, False), 0, (touchdown(2, 0.08), touchdown(3, 0.09))))
     gait.take(answer(120 * MS, (True, False), 0, (touchdown(2, 0.061),)))
     gait.take(answer(140 * MS, (True, False), 0, (touchdown(2, 0.042),)))
     gait.take(answer(190 * MS, (True, True), 182 * MS))
-    gait.take(answer(195 * MS, (True, True), 182 * MS, score=landed("right", 182 * MS)))
+    history = ((0.082, -0.002), (0.062, -0.001), (0.042, 0.0))
+    gait.take(answer(195 * MS, (True, True), 182 * MS, score=landed("right", 182 * MS, history, "heel")))
+    # The toe of a foot that stands is no other landing.
+    gait.take(answer(230 * MS, (True, True), 182 * MS, score=landed("right", 220 * MS, history, "toe")))
     gait.take(answer(400 * MS, (True, False), 390 * MS))
     gait.take(answer(500 * MS, (True, False), 390 * MS))
-    assert (gait.begin, gait.end, gait.samples) == (begin, 500 * MS, 8)
+    assert (gait.begin, gait.end, gait.samples) == (begin, 500 * MS, 9)
     assert gait.stances == [Stance(1, 182 * MS, 390 * MS), Stance(0, begin, 500 * MS)]
     assert gait.landings == [Landed(1, 182 * MS, 181 * MS, 0.3, 10.0)]
     assert gait.true_stances == []
@@ -56,7 +59,7 @@ def test_a_landing_that_the_end_settles_is_kept_and_one_that_came_too_late_is_no
     gait = Gait(Walking(("left", "right")))
     gait.take(answer(0, (True, False), 0, (touchdown(1, 0.04),)))
     gait.take(answer(50 * MS, (True, True), 41 * MS))
-    gait.end_with([landed("right", 41 * MS)])
+    gait.end_with([landed("right", 41 * MS, ((0.041, -0.001),))])
     assert gait.landings == [Landed(1, 41 * MS, None, 0.3, 10.0)]
     assert gait.begin == 0
 

@@ -11,7 +11,14 @@ from rich.table import Table
 from impact_predictor.bags.replay import Result, Settled
 from impact_predictor.mechanics.types import Flag, Mode, Twist
 from impact_predictor.prediction.types import Landing, Leftover, Score, Touchdown
-from impact_predictor.report.landings import error_ahead, feet_table, landing_sentences, landings_of, landings_table
+from impact_predictor.report.landings import (
+    error_ahead,
+    feet_table,
+    landing_as_json,
+    landing_sentences,
+    landings_of,
+    landings_table,
+)
 from impact_predictor.report.replay import print_replay
 from impact_predictor.report.table import show
 
@@ -159,3 +166,28 @@ def test_a_replay_lists_landings_apart_from_other_touchdowns() -> None:
     assert "1 landing of 1 foot" in mixed
     assert "0 of 1 touchdown scored." in mixed
     assert "No touchdown was predicted." in replayed([])
+
+
+def test_landings_that_nobody_announced_are_said_and_never_silent() -> None:
+    missed = landed(1.0, history=())
+    table = printed(landings_table(landings_of([missed]), 120), 120)
+    assert table.split()[table.split().index("LF") + 1] == "-"
+    assert "1 landing of 1 foot, none of them announced" in landing_sentences(landings_of([missed]))[0]
+    said = landing_sentences(landings_of([missed, landed(2.0), landed(3.0, "RF")]))
+    assert said[0].startswith("3 landings of 2 feet, 2 of them told 100 ms ahead or earlier")
+    assert said[1].startswith("1 landing was not announced")
+
+
+def test_the_parts_of_a_foot_are_named_and_a_second_contact_hides_no_lead_time_of_the_first() -> None:
+    heel = landed(1.0, point="heel")
+    heel = heel._replace(score=heel.score._replace(touchdown=TOUCHDOWN._replace(old=(2,), new=(0,))))
+    toe = landed(1.04, point="toe", history=((0.02, 0.001),))
+    toe = toe._replace(score=toe.score._replace(touchdown=TOUCHDOWN._replace(old=(0,), new=(1,))))
+    landings = landings_of([heel, toe])
+    assert [one.foot for one in landings] == ["LF heel", "LF toe"]
+    assert "LF heel" in printed(feet_table(landings), 120)
+    said = landing_sentences(landings)[0]
+    assert said.startswith(
+        "1 landing of 1 foot, each told 100 ms ahead or earlier, besides 1 second contact of feet that stood already; "
+    )
+    assert landing_as_json(toe.score.landing)["point"] == "toe"  # type: ignore[arg-type]

@@ -13,8 +13,14 @@ from .cubic import NANOSECONDS
 SPAN = 50_000_000
 """ns over which the acceleration of the base is taken to be constant."""
 
+LEAST_SPAN = 10_000_000
+"""ns from which on it can be told: noise of 0.02 m/s makes 1 m/s^2 of 50 ms, and 10 m/s^2 of 10 ms."""
+
 FEWEST = 5
-"""Samples from which an acceleration is told."""
+"""Samples from which it is told; of a slow source they reach further back."""
+
+Line = tuple[tuple[float, ...], tuple[float, ...]]
+"""Twist of now and its rate."""
 
 
 class Twists:
@@ -22,18 +28,21 @@ class Twists:
 
     def __init__(self) -> None:
         self._recent: deque[tuple[int, tuple[float, ...]]] = deque()
+        self._line: Line | None = None
 
     def add(self, sample: Sample) -> None:
         """Take the next sample, in the order of their stamps."""
         recent, axes = self._recent, axes_of(sample.orientation)
         recent.append((sample.stamp, to_world(axes, sample.linear) + to_world(axes, sample.angular)))
-        while recent[0][0] < sample.stamp - SPAN:
+        while len(recent) > FEWEST and recent[0][0] < sample.stamp - SPAN:
             recent.popleft()
+        self._line = None
 
     def begin(self, stamp: int) -> None:
         """Leave out what was before a stamp in ns: an impact has changed the twist."""
         while self._recent and self._recent[0][0] <= stamp:
             self._recent.popleft()
+        self._line = None
 
     def ahead(self, sample: Sample, time: float) -> Sample:
         """The base `time` s after the last sample, whose stamp it keeps; twists lie on the line nearest to the last.
@@ -41,20 +50,11 @@ class Twists:
         A base that turns about a foot gains speed until the next one lands, and a line averages the noise of twists.
         """
         recent = self._recent
-        if len(recent) < FEWEST:
+        if len(recent) < FEWEST or recent[-1][0] - recent[0][0] < LEAST_SPAN:
             return carried(sample, time)._replace(stamp=sample.stamp)
-        last, count = recent[-1][0], len(recent)
-        ages = [(stamp - last) / NANOSECONDS for stamp, _ in recent]
-        middle = sum(ages) / count
-        arms = [age - middle for age in ages]
-        spread = sum(map(mul, arms, arms))
-        columns = list(zip(*[twist for _, twist in recent], strict=True))
-        rates = [sum(map(mul, arms, column)) / spread for column in columns]
-        x, y, z, u, v, w = [sum(column) / count - middle * rate for column, rate in zip(columns, rates, strict=True)]
-        a, b, c, p, q, r = rates
+        (x, y, z, u, v, w), (a, b, c, p, q, r) = self._line = self._line or line_of(recent)
         half = 0.5 * time
         glide: Vector3 = x + half * a, y + half * b, z + half * c
-        # Seen from the world a rotation comes first, in the body's axes of now it is the same vector turned back.
         axes = axes_of(sample.orientation)
         spin = to_body(axes, (u + half * p, v + half * q, w + half * r))
         orientation = turned(sample.orientation, times(spin, time))
@@ -65,6 +65,19 @@ class Twists:
             linear=to_body(then, (x + a * time, y + b * time, z + c * time)),
             angular=to_body(then, (u + p * time, v + q * time, w + r * time)),
         )
+
+
+def line_of(recent: Sequence[tuple[int, tuple[float, ...]]]) -> Line:
+    """The line nearest to some twists (least squares), at the last of them."""
+    last, count = recent[-1][0], len(recent)
+    ages = [(stamp - last) / NANOSECONDS for stamp, _ in recent]
+    middle = sum(ages) / count
+    arms = [age - middle for age in ages]
+    spread = sum(map(mul, arms, arms))
+    columns = list(zip(*[twist for _, twist in recent], strict=True))
+    rates = [sum(map(mul, arms, column)) / spread for column in columns]
+    now = [sum(column) / count - middle * rate for column, rate in zip(columns, rates, strict=True)]
+    return tuple(now), tuple(rates)
 
 
 def base_at(samples: Sequence[Sample], stamp: int) -> Sample:

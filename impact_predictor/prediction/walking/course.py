@@ -11,7 +11,9 @@ from math import sqrt
 
 from ..types import Vector3
 from ..vectors import add, times
-from .cubic import NANOSECONDS, SCALE, Fit, Frame, Noise, Sums, factored, solved
+from .cubic import NANOSECONDS, SCALE, Fit, Frame, Noise, factored, solved
+from .habit import Habit
+from .sums import Sums
 
 FEWEST = 5
 """Frames that a cubic is fitted to at least: four would leave nothing to tell how well it fits."""
@@ -25,6 +27,9 @@ SHORTER = 3
 MISFIT = 4.0
 """A cubic does not fit where the mean square of its residuals is further above that of the noise than so many standard
 deviations of it."""
+
+BROKE = 2.0
+"""The last frame did not follow the others where it makes them scatter so many times more about their cubic."""
 
 TURNED = 3.0
 """A rate is surely not zero when it is so many standard deviations from it."""
@@ -42,6 +47,7 @@ class Course:
         self._normal = normal
         self._sums: Sums | None = None
         self._falls = False
+        self._deviation = 0.0
         self.top = 0
         """Stamp in ns of the highest place that the point descends from."""
         self.broke = False
@@ -79,8 +85,9 @@ class Course:
         """Follow the point no more; what comes later is another course."""
         self._sums = None
         self._falls = False
+        self._deviation = 0.0
 
-    def fit(self, noise: Noise) -> Fit | None:
+    def fit(self, noise: Noise, habit: Habit) -> Fit | None:
         """The cubic of the last frames once the point descends; None before, and while there are too few of them."""
         sums = self._sums
         if sums is None or sums.count < FEWEST:
@@ -93,21 +100,26 @@ class Course:
             sums = self._again(max(FEWEST, sum([frame.stamp >= begin for frame in islice(self.frames, MOST)])))
         elif sums.count >= MOST:
             sums = self._again(SHORTER * MOST // 4)
-        fit = self._fit_of(sums, noise)
-        self.broke = fit is not None and not fit.fits
+        fit = self._fit_of(sums, noise, habit)
+        self.broke = fit is not None and not fit.fits and fit.deviation > BROKE * self._deviation
         while fit is not None and not (fit.fits or self._window or sums.count == FEWEST):
             sums = self._again(max(FEWEST, SHORTER * sums.count // 4))
-            fit = self._fit_of(sums, noise)
-        return fit if fit is not None and self._descends(fit) else None
+            fit = self._fit_of(sums, noise, habit)
+        if fit is None:
+            return None
+        self._deviation = fit.deviation
+        return fit if self._descends(fit) else None
 
     def motion(self, fit: Fit, time: float) -> tuple[Vector3, Vector3]:
         """Position and velocity of the point `time` s after the fit's stamp, by the cubic through the same frames."""
         sums = self._sums
         assert sums is not None
         s = fit.end + time / SCALE
+        # What is usual of the gap says nothing of the motion along the ground.
+        factor = factored(sums.normal(fit.ratio)) or fit.factor
         places, speeds = [], []
         for axis in range(3):
-            a, b, c, d = solved(fit.factor, sums.along(axis, fit.ratio))
+            a, b, c, d = solved(factor, sums.along(axis, fit.ratio))
             places.append(sums.first.position[axis] + a + s * (b + s * (c + s * d)))
             speeds.append((b + s * (2.0 * c + 3.0 * d * s)) / SCALE)
         return (places[0], places[1], places[2]), (speeds[0], speeds[1], speeds[2])
@@ -121,27 +133,21 @@ class Course:
             sums.add(frame)
         return sums
 
-    def _fit_of(self, sums: Sums, noise: Noise) -> Fit | None:
+    def _fit_of(self, sums: Sums, noise: Noise, habit: Habit) -> Fit | None:
         """The cubic nearest to the gaps, and to their rates where all are measured (weighted least squares)."""
         # A rate in units of the scale weighs as the square of how much surer it is than a gap.
         ratio = (noise.gap / (noise.rate * SCALE)) ** 2 if sums.measured else 0.0
-        p0, p1, p2, p3, p4, p5, p6 = sums.powers
-        n11, n12, n13 = p2 + ratio * p0, p3 + 2.0 * ratio * p1, p4 + 3.0 * ratio * p2
-        n22, n23, n33 = p4 + 4.0 * ratio * p2, p5 + 6.0 * ratio * p3, p6 + 9.0 * ratio * p4
-        factor = factored((p0, p1, n11, p2, n12, n22, p3, n13, n23, n33))
+        weight, usual = habit.prior(noise.gap)
+        n00, n10, n11, n20, n21, n22, n30, n31, n32, n33 = sums.normal(ratio)
+        factor = factored((n00, n10, n11, n20, n21, n22, n30, n31, n32, n33 + weight))
         if factor is None:
             return None
-        nx, ny, nz = self._normal
-        x, y, z = sums.along(0, ratio), sums.along(1, ratio), sums.along(2, ratio)
-        b = (
-            nx * x[0] + ny * y[0] + nz * z[0],
-            nx * x[1] + ny * y[1] + nz * z[1],
-            nx * x[2] + ny * y[2] + nz * z[2],
-            nx * x[3] + ny * y[3] + nz * z[3],
-        )
+        b0, b1, b2, b3 = sums.right(ratio)
+        b = b0, b1, b2, b3 + weight * usual
         c = solved(factor, b)
-        left = max(0.0, sums.square + ratio * sums.square_rate - c[0] * b[0] - c[1] * b[1] - c[2] * b[2] - c[3] * b[3])
-        free = (2 if sums.measured else 1) * sums.count - 4
+        square = sums.square + ratio * sums.square_rate + weight * usual * usual
+        left = max(0.0, square - c[0] * b[0] - c[1] * b[1] - c[2] * b[2] - c[3] * b[3])
+        free = (2 if sums.measured else 1) * sums.count - 3
         share = left / (free * noise.gap * noise.gap)
         fits = share <= 1.0 + MISFIT * sqrt(2.0 / free)
         stamp = self.frames[-1].stamp
@@ -153,6 +159,7 @@ class Course:
             ratio,
             noise.gap if fits else noise.gap * sqrt(share),
             fits,
+            (weight, usual),
         )
 
     def _descends(self, fit: Fit) -> bool:

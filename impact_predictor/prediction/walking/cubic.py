@@ -13,11 +13,14 @@ SCALE = 0.1
 DOUBT = 2.0
 """Standard deviations within which the lowest point of a course may be a foot that brakes to rest on the ground."""
 
-SURE = 4.0
+SURE = 2.5
 """A landing is sure when so many standard deviations of the course ..."""
 
 SPREAD = 0.03
 """... leave no doubt that so many s after the announced time the foot would be through the ground, or rise again."""
+
+PRECISE = 0.01
+"""A time is known well when its standard deviation is below so many s."""
 
 SINGULAR = 1e-12
 """A pivot below this part of its diagonal is rounding: the frames are too few instants for a cubic."""
@@ -52,74 +55,24 @@ class Frame(NamedTuple):
 
 
 class Landing(NamedTuple):
-    """Where a course comes down: `time` in s from the fit's stamp, its standard deviation, and the rate then in m/s."""
+    """Where a course comes down: `time` in s from the fit's stamp, and the `rate` (m/s) of the gap then.
 
-    time: float
-    sure: bool
-    rate: float
-
-
-class Sums:
-    """Sums over frames that follow each other, from which the cubic nearest to them is found without going over them.
-
-    Times are counted from the first frame in units of `SCALE`, positions and gaps from the first frame's.
+    `sure` where the foot has surely come through the level, or turned, soon after it; `precise` where at least the time
+    is known well if it lands at all.
     """
 
-    def __init__(self, first: Frame) -> None:
-        self.first = first
-        self.count = 0
-        self.measured = True
-        """Whether every frame has a velocity."""
-        self.powers = [0.0] * 7
-        self.places = [[0.0] * 4 for _ in range(3)]
-        self.speeds = [[0.0] * 4 for _ in range(3)]
-        self.square = self.square_rate = 0.0
-        self.add(first)
-
-    def add(self, frame: Frame) -> None:
-        """Take the next frame."""
-        first = self.first
-        s = (frame.stamp - first.stamp) / (SCALE * NANOSECONDS)
-        s2 = s * s
-        s3 = s * s2
-        self.count += 1
-        powers = self.powers
-        powers[0] += 1.0
-        powers[1] += s
-        powers[2] += s2
-        powers[3] += s3
-        powers[4] += s2 * s2
-        powers[5] += s2 * s3
-        powers[6] += s3 * s3
-        for sums, now, then in zip(self.places, frame.position, first.position, strict=True):
-            value = now - then
-            sums[0] += value
-            sums[1] += s * value
-            sums[2] += s2 * value
-            sums[3] += s3 * value
-        self.square += (frame.gap - first.gap) ** 2
-        if frame.velocity is None or frame.rate is None:
-            self.measured = False
-            return
-        for sums, speed in zip(self.speeds, frame.velocity, strict=True):
-            speed *= SCALE
-            sums[1] += speed
-            sums[2] += 2.0 * s * speed
-            sums[3] += 3.0 * s2 * speed
-        self.square_rate += (SCALE * frame.rate) ** 2
-
-    def along(self, axis: int, ratio: float) -> Cubic:
-        """The right-hand side of the least squares of a coordinate, with `ratio` the weight of its rates."""
-        a, b, c, d = self.places[axis]
-        _, q, r, t = self.speeds[axis]
-        return a, b + ratio * q, c + ratio * r, d + ratio * t
+    time: float
+    rate: float
+    sure: bool
+    precise: bool
 
 
 class Fit(NamedTuple):
     """The cubic nearest to the last frames of a point, in units of `SCALE` s from the first of them.
 
     `gap` has the coefficients of the gap in m, `end` the time in those units of the last frame, whose stamp is `stamp`;
-    `deviation` (m) is what the gaps scatter about it, and `fits` whether that is their noise.
+    `deviation` (m) is what the gaps scatter about it, and `fits` whether that is their noise. `prior` has the weight
+    and the value with which the third power's coefficient went into it.
     """
 
     stamp: int
@@ -129,16 +82,27 @@ class Fit(NamedTuple):
     ratio: float
     deviation: float
     fits: bool
+    prior: tuple[float, float] = (0.0, 0.0)
+
+    @property
+    def begin(self) -> int:
+        """Stamp in ns of the first of the frames."""
+        return self.stamp - round(self.end * SCALE * NANOSECONDS)
 
     def gap_deviation(self, time: float) -> float:
         """Standard deviation in m of the gap `time` s after the stamp."""
         s = self.end + time / SCALE
-        return self.deviation * sqrt(_square(self.factor, (1.0, s, s * s, s * s * s)))
+        return self.deviation * sqrt(square_of(self.factor, (1.0, s, s * s, s * s * s)))
 
     def rate_deviation(self, time: float) -> float:
         """Standard deviation in m/s of the gap's rate `time` s after the stamp."""
         s = self.end + time / SCALE
-        return self.deviation / SCALE * sqrt(_square(self.factor, (0.0, 1.0, 2.0 * s, 3.0 * s * s)))
+        return self.deviation / SCALE * sqrt(square_of(self.factor, (0.0, 1.0, 2.0 * s, 3.0 * s * s)))
+
+    def bend_deviation(self, time: float) -> float:
+        """Standard deviation in m/s^2 of the gap's acceleration `time` s after the stamp."""
+        s = self.end + time / SCALE
+        return self.deviation / SCALE**2 * sqrt(square_of(self.factor, (0.0, 0.0, 2.0, 6.0 * s)))
 
     def now(self) -> Cubic:
         """Coefficients of the gap over the time in s since the stamp."""
@@ -154,9 +118,9 @@ class Fit(NamedTuple):
     def landing(self, level: float, tolerance: float, horizon: float) -> Landing | None:
         """When the gap first descends through a `level`, or comes to its lowest point within the `tolerance` above it.
 
-        A lowest point so near to the level that the noise could put it there is one of a foot that brakes to rest:
-        the time of that is known far better than that at which a curve nearly touches. None where it does not come
-        down within the `horizon`.
+        A lowest point so near to the level that the noise could put it there is one of a foot that brakes to rest,
+        unless the time at which the curve, which nearly touches, comes through is known better. None where it does not
+        come down within the `horizon`.
         """
         a, b, c, d = self.now()
         a -= level
@@ -170,10 +134,15 @@ class Fit(NamedTuple):
             depth = a + lowest * (b + lowest * (c + lowest * d))
             if depth > tolerance:
                 return None
-            doubt = DOUBT * self.gap_deviation(lowest)
-            if depth > -doubt:
+            rests = depth >= 0.0
+            if not rests:
+                time = first_below(a, b, c, d, lowest)
+                if depth > -DOUBT * self.gap_deviation(lowest):
+                    rate = b + time * (2.0 * c + 3.0 * d * time)
+                    bend = 2.0 * c + 6.0 * d * lowest
+                    rests = self.gap_deviation(time) * bend > -rate * self.rate_deviation(lowest)
+            if rests:
                 return self._told(a, b, c, d, lowest, 0.0)
-            time = first_below(a + doubt * doubt / -depth, b, c, d, lowest)
         elif a + horizon * (b + horizon * (c + horizon * d)) < 0.0:
             time = first_below(a, b, c, d, horizon)
         else:
@@ -181,11 +150,16 @@ class Fit(NamedTuple):
         return self._told(a, b, c, d, time, min(0.0, b + time * (2.0 * c + 3.0 * d * time)))
 
     def _told(self, a: float, b: float, c: float, d: float, time: float, rate: float) -> Landing:
-        """A landing, and whether the foot has surely come through the level, or turned, soon after it."""
+        """A landing, and how well it is known; speed and braking are taken to be less by their standard deviations."""
         later = time + SPREAD
         below = a + later * (b + later * (c + later * d)) < -SURE * self.gap_deviation(later)
         turned = b + later * (2.0 * c + 3.0 * d * later) > SURE * self.rate_deviation(later)
-        return Landing(time, below or turned, rate)
+        if rate < 0.0:
+            precise = self.gap_deviation(time) < PRECISE * (-rate - self.rate_deviation(time))
+        else:
+            bend = 2.0 * c + 6.0 * d * time
+            precise = self.rate_deviation(time) < PRECISE * (bend - self.bend_deviation(time))
+        return Landing(time, rate, below or turned, precise)
 
 
 def first_below(a: float, b: float, c: float, d: float, end: float) -> float:
@@ -239,7 +213,7 @@ def _halfway(factor: Factor, b: Cubic) -> Cubic:
     return y0, y1, y2, (b[3] - l30 * y0 - l31 * y1 - l32 * y2) * i3
 
 
-def _square(factor: Factor, b: Cubic) -> float:
+def square_of(factor: Factor, b: Cubic) -> float:
     """b^T N^-1 b."""
     y0, y1, y2, y3 = _halfway(factor, b)
     return y0 * y0 + y1 * y1 + y2 * y2 + y3 * y3

@@ -12,7 +12,7 @@ from ..planar import ORIGIN, ROUNDING, TINY, edge_of, hardly, off_axis_of
 from ..scene import Scene
 from ..types import Leftover, Sample, Status, Touchdown, Vector3
 from ..vectors import add, any_across, axes_of, cross, dot, mean, times, to_body, to_world
-from .mechanism import Mechanism, Row
+from .mechanism import Mechanism, Response
 
 USABLE = 0.2
 """The machine turns about the line of its standing points where the landing one is further from it than this part of
@@ -43,26 +43,32 @@ def touchdown_of(
     """
     axes = axes_of(base.orientation)
     normal = to_body(axes, scene.normal)
-    stands = standing_with(scene, old, new)
     striking = to_body(axes, velocity)
+    approach = dot(normal, striking)
     center = scene.center_of_mass
     struck = mean([points[i] for i in new])
-    stood = [points[i] for i in stands]
-    ahead = ahead_of(scene, normal, stood, struck, striking)
+    stands = standing = standing_with(scene, old, new)
+    leftover = Leftover.DRIVEN if stands else Leftover.DRIVEN | Leftover.ONE_POINT
+    while True:
+        stood = [points[i] for i in stands]
+        ahead = ahead_of(scene, normal, stood, struck, striking)
+        response = mechanism.response(stands, new, normal, ahead, points)
+        if isinstance(response, Status):
+            return response
+        c = 0.0 if stands else inf, 0.0, approach if approach < -GRAZES else 0.0, dot(ahead, striking)
+        outcome = solve(response.W, c, (scene.friction, scene.friction), (0.0, scene.restitution), scene.law)
+        kick, spin = changes(response, outcome)
+        rates = [dot(normal, add(kick, cross(spin, points[i]))) for i in standing]
+        if not mechanism.is_rigid or min(rates, default=0.0) > -GRAZES:
+            break
+        # The mean of several feet rolls freely, into the ground on one side: those that are pressed prevent it alone.
+        held = tuple([i for i, rate in zip(standing, rates, strict=True) if rate < -GRAZES and i in stands])
+        if not held:
+            leftover |= Leftover.OUT_OF_PLANE
+            break
+        stands = held
+    linear, angular = add(base.linear, kick), add(base.angular, spin)
     axis = cross(normal, ahead)
-
-    response = mechanism.response(stands, new, normal, ahead, points)
-    if isinstance(response, Status):
-        return response
-    approach = dot(normal, striking)
-    c = 0.0 if stands else inf, 0.0, approach if approach < -GRAZES else 0.0, dot(ahead, striking)
-    frictions, restitutions = (scene.friction, scene.friction), (0.0, scene.restitution)
-    outcome = solve(response.W, c, frictions, restitutions, scene.law)
-    (na, ta), (nb, tb) = outcome.impulses
-    impulses = na, ta, nb, tb
-    x, y, z, p, q, r = response.twist
-    linear = add(base.linear, (times_row(x, impulses), times_row(y, impulses), times_row(z, impulses)))
-    angular = add(base.angular, (times_row(p, impulses), times_row(q, impulses), times_row(r, impulses)))
 
     arms = [add(point, center, -1.0) for point in ((mean(stood), struck) if stands else (struck,))]
     span = add(arms[-1], arms[0], -1.0)
@@ -90,7 +96,7 @@ def touchdown_of(
         dot(axis, striking),
         (max(gaps) - min(gaps)) / -c[2] if c[2] < 0.0 else 0.0,
         max([abs(dot(axis, arm)) for arm in arms]),
-        Leftover.DRIVEN if stands else Leftover.DRIVEN | Leftover.ONE_POINT,
+        leftover,
         None,
         None,
     )
@@ -104,6 +110,13 @@ def standing_with(scene: Scene, old: tuple[int, ...], new: tuple[int, ...]) -> t
         return old
     foot = new[0] // count
     return tuple([i for i in old if i // count == foot]) or old
+
+
+def changes(response: Response, outcome: ContactOutcome) -> tuple[Vector3, Vector3]:
+    """The changes of linear and angular velocity of the base by an impact, along its axes."""
+    (na, ta), (nb, tb) = outcome.impulses
+    x, y, z, p, q, r = [row[0] * na + row[1] * ta + row[2] * nb + row[3] * tb for row in response.twist]
+    return (x, y, z), (p, q, r)
 
 
 def ahead_of(scene: Scene, normal: Vector3, stood: list[Vector3], struck: Vector3, velocity: Vector3) -> Vector3:
@@ -151,7 +164,3 @@ def doubts(scene: Scene, outcome: ContactOutcome) -> Flag:
     impulse = outcome.impulses[1][0]
     slow = outcome.mode is not Mode.NO_IMPACT and share * impulse < scene.mass * gravity * contact_time
     return Flag.SLOW_IMPACT if slow else Flag.NONE
-
-
-def times_row(row: Row, impulses: Row) -> float:
-    return row[0] * impulses[0] + row[1] * impulses[1] + row[2] * impulses[2] + row[3] * impulses[3]

@@ -19,8 +19,12 @@ class Articulated:
         InputError: see `WholeBody`.
     """
 
+    is_rigid = False
+
     def __init__(self, robot: Robot) -> None:
         self.body = WholeBody(robot.urdf, robot.frames)
+        self.left_out: tuple[str, ...] = ()
+        """Joints that were told last and that the model does not know."""
         self._names: tuple[str, ...] = ()
         self._order: list[int] = []
         self._status = Status.NO_GEOMETRY
@@ -28,18 +32,22 @@ class Articulated:
     def geometry_of(self, joints: Joints) -> Geometry | Status:
         """The contact points of the robot with such joints, and their velocities where the joints have theirs.
 
-        Their names are those of all joints of the model that move, in any order. Wrong ones, which a status tells,
-        leave the last; where the inertia has no inverse there is no response until the next.
+        All joints of the model that move must be among them, in any order; others, of an arm or a gripper, are left
+        out. Wrong ones, which a status tells, leave the last; where the inertia has no inverse there is no response
+        until the next.
         """
-        status = self._check(joints)
-        if status is not Status.ACCEPTED:
-            return status
-        body, order = self.body, self._order
-        self._status = status if body.place(np.array(joints.positions)[order]) else Status.SINGULAR_INERTIA
+        names, positions, velocities = joints.names, joints.positions, joints.velocities
+        if len(positions) != len(names) or len(velocities) not in (0, len(names)) or not self._know(names):
+            return Status.WRONG_JOINTS
+        angles, rates = ([values[i] for i in self._order] for values in (positions, velocities or positions))
+        if not all(map(isfinite, (*angles, *rates))):
+            return Status.NOT_FINITE
+        body = self.body
+        self._status = Status.ACCEPTED if body.place(np.array(angles)) else Status.SINGULAR_INERTIA
         if self._status is not Status.ACCEPTED:
             return self._status
-        velocities = body.velocities(np.array(joints.velocities)[order]).tolist() if joints.velocities else ()
-        return Geometry(joints.stamp, "", tuple(map(tuple, body.points.tolist())), tuple(map(tuple, velocities)))
+        moving = body.velocities(np.array(rates)).tolist() if velocities else ()
+        return Geometry(joints.stamp, "", tuple(map(tuple, body.points.tolist())), tuple(map(tuple, moving)))
 
     def response(
         self,
@@ -55,12 +63,11 @@ class Articulated:
         W, moved = self.body.mobility((old, new), (normal, ahead))
         return Response(tuple(map(tuple, W.tolist())), tuple(map(tuple, moved[:6].tolist())))
 
-    def _check(self, joints: Joints) -> Status:
-        names, positions, velocities = joints.names, joints.positions, joints.velocities
-        if len(positions) != len(names) or len(velocities) not in (0, len(names)):
-            return Status.WRONG_JOINTS
+    def _know(self, names: tuple[str, ...]) -> bool:
+        """Whether each joint of the model is once among the names; then their order is known."""
         if names != self._names:
-            if sorted(names) != sorted(self.body.joints):
-                return Status.WRONG_JOINTS
+            if any(names.count(name) != 1 for name in self.body.joints):
+                return False
             self._names, self._order = names, [names.index(name) for name in self.body.joints]
-        return Status.ACCEPTED if all(map(isfinite, (*positions, *velocities))) else Status.NOT_FINITE
+            self.left_out = tuple([name for name in names if name not in self.body.joints])
+        return True

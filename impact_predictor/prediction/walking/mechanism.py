@@ -31,7 +31,9 @@ class Response(NamedTuple):
 
 
 class Mechanism(Protocol):
-    """A machine with contact points, as its impulses see it."""
+    """A machine with contact points, as its impulses see it; `is_rigid` where its feet move with its base alone."""
+
+    is_rigid: bool
 
     def response(
         self,
@@ -54,6 +56,8 @@ class Trunk:
     Raises:
         InputError: the inertia of the scene has no inverse.
     """
+
+    is_rigid = True
 
     def __init__(self, scene: Scene) -> None:
         inertia = np.array(scene.inertia)

@@ -11,6 +11,9 @@ from .cubic import NANOSECONDS
 LONGEST = 10_000_000_000
 """ns for which what was planned is remembered."""
 
+FURTHEST = 1_000_000_000
+"""ns from a planned landing beyond which a landing is another one, which nobody planned."""
+
 
 class Plan:
     """The planned landings of some feet; a schedule replaces what was planned from its first time on."""
@@ -33,13 +36,16 @@ class Plan:
         for number, foot in enumerate(schedule.feet):
             kept = [one for one in self._stances[foot] if times[0] - LONGEST < one[0] < times[0]]
             following = [(time, stands[number]) for time, stands in zip(times, schedule.stands, strict=True)]
-            planned = self._stances[foot] = kept + following
+            # Planners tell the same stance again and again: only its changes are kept.
+            told = [*kept, *following]
+            planned = told[:1] + [one for before, one in pairwise(told) if one[1] is not before[1]]
+            self._stances[foot] = planned
             self._landings[foot] = [time for (_, before), (time, now) in pairwise(planned) if now and not before]
         return Status.ACCEPTED
 
     def late(self, foot: str, stamp: int) -> float | None:
-        """How much later than planned, in s, a foot lands at a stamp in ns; None where no landing is planned."""
-        landings = self._landings[foot]
-        if not landings:
+        """How much later than planned, in s, a foot lands at a stamp in ns; None where none is planned near it."""
+        planned = min(self._landings[foot], key=lambda planned: abs(planned - stamp), default=None)
+        if planned is None or abs(stamp - planned) > FURTHEST:
             return None
-        return (stamp - min(landings, key=lambda planned: abs(planned - stamp))) / NANOSECONDS
+        return (stamp - planned) / NANOSECONDS

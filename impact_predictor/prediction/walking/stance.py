@@ -8,12 +8,13 @@ from math import sqrt
 from ..planar import hardly
 from ..scene import Scene
 from .cubic import NANOSECONDS, Frame, Noise
+from .habit import Habit
 
-LEAST = 1e-7
-"""Noise of a gap in m below which no record is: what a float32 leaves of a leg."""
+LEAST = 1e-5
+"""Noise of a gap in m below which none counts: by so much a planned course differs from a cubic over few frames ..."""
 
-LEAST_RATE = 1e-6
-"""... and that of its rate, in m/s."""
+LEAST_RATE = 2e-4
+"""... and its rate by so much, in m/s."""
 
 GUESS = 0.2
 """Until feet have stood their gaps are taken to scatter by this part of the contact tolerance ..."""
@@ -21,14 +22,17 @@ GUESS = 0.2
 GUESS_RATE = 0.02
 """... and the rates of those by so much, in m/s."""
 
+DRIFT = 1.0
+"""Contact tolerances in a second by which a standing foot may shift the level, which follows an estimator's drift."""
+
 MEMORY = 100
 """Frames of standing feet over which level and noise are averaged."""
 
 FEWEST = 10
 """... and from how many on that is believed."""
 
-STILL = 0.1
-"""A gap is the same when it differs by less than this part of the contact tolerance, besides its noise."""
+FAR = 3.0
+"""A point was off the ground when its gap was so many standard deviations above it."""
 
 
 class Ground:
@@ -37,6 +41,7 @@ class Ground:
     def __init__(self, scene: Scene) -> None:
         self.level = 0.0
         self.noise = Noise(GUESS * scene.tolerance, GUESS_RATE)
+        self.habit = Habit()
         self._tolerance = scene.tolerance
         self._seen = 0
         self._square = self._square_rate = 0.0
@@ -45,8 +50,11 @@ class Ground:
         """Take two frames of a standing point that follow each other."""
         self._seen = min(self._seen + 1, MEMORY)
         share = 1.0 / self._seen
-        level = self.level + share * (frame.gap - self.level)
-        self.level = max(-self._tolerance, min(level, self._tolerance))
+        # The height of a base drifts, and the ground that its feet show with it.
+        limit = self._tolerance
+        if self._seen > FEWEST:
+            limit *= DRIFT * abs(frame.stamp - before.stamp) / NANOSECONDS
+        self.level += max(-limit, min(share * (frame.gap - self.level), limit))
         # Differences of two frames leave the motion of the base's drift out, and have twice the square of the noise.
         self._square += share * (0.5 * (frame.gap - before.gap) ** 2 - self._square)
         rate = self.noise.rate
@@ -89,17 +97,17 @@ class Stance:
             self._other = frame.stamp
         if frame.stamp - self._other < self._dead_time or (near and (awaited or not self._rests(frames, ground.noise))):
             return False
-        self.stands, self.since, self._other = near, self._came(frames, ground.noise) if near else self._other, None
+        self.stands, self.since, self._other = near, self._other if near else self._left(frames, ground), None
         return True
 
-    def _came(self, frames: Sequence[Frame], noise: Noise) -> int:
-        """The stamp in ns from which on the gap is what it is now."""
-        gap, since = frames[-1].gap, frames[-1].stamp
+    def _left(self, frames: Sequence[Frame], ground: Ground) -> int:
+        """The stamp in ns of the last frame in which the point was on the ground: the tolerance is left later."""
+        since = frames[-1].stamp
         for frame in reversed(frames):
-            if abs(frame.gap - gap) > STILL * self._tolerance + 3.0 * noise.gap:
-                break
             since = frame.stamp
-        return since
+            if since < self.since or frame.gap - ground.level <= FAR * ground.noise.gap:
+                break
+        return max(since, self.since)
 
     def _rests(self, frames: Sequence[Frame], noise: Noise) -> bool:
         """Whether the point has hardly moved along the normal within the dead time."""

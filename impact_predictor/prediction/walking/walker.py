@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Sequence
 from math import hypot, sqrt
 from typing import TYPE_CHECKING
 
@@ -22,14 +21,14 @@ from ..types import (
     Score,
     Status,
     Touchdown,
-    Vector3,
     Wrench,
 )
-from ..vectors import add, axes_of, cross, dot, mean, to_body, to_world
+from ..vectors import add, axes_of, cross, dot, to_world
+from .ahead import Ahead, point_of
+from .arrival import Arrival
 from .base import Twists, base_at
 from .cubic import Frame
 from .forces import Forces, order_of
-from .impact import touchdown_of
 from .mechanism import Mechanism, Trunk
 from .plan import Plan
 from .point import Due, Point
@@ -68,6 +67,7 @@ class Walker:
             from .legs import Articulated
 
             self._articulated = Articulated(self._walking.robot)
+            self.scene = scene = scene._replace(mass=self._articulated.body.mass)
         self._mechanism: Mechanism = self._articulated or Trunk(scene)
         self._timeout = round(self._walking.timeout * NANOSECONDS)
         self._count = len(self._walking.feet) * self._walking.points
@@ -78,6 +78,16 @@ class Walker:
         self._scores: deque[Score] = deque()
         self._recent: deque[Sample] = deque(maxlen=REMEMBERED)
         self._begin()
+
+    @property
+    def geometry(self) -> Geometry | None:
+        """Where the feet are, as it was told last."""
+        return self._geometry
+
+    @property
+    def articulated(self) -> Articulated | None:
+        """The model of the robot; None where the feet are told of themselves."""
+        return self._articulated
 
     def set_geometry(self, geometry: Geometry) -> Status:
         """Take where the points of the feet are; what became of the message. A refused one leaves the last."""
@@ -119,7 +129,8 @@ class Walker:
             return Prediction(status, sample)
         self._recent.append(sample)
         self._twists.add(sample)
-        status = self._see()
+        self._see()
+        status = self._found
         if status is Status.ACCEPTED and not self._points[0].course.frames:
             status = Status.NO_GEOMETRY
         if status is not Status.ACCEPTED:
@@ -130,7 +141,7 @@ class Walker:
             done, landing = self._pending.pop(0)
             self._scores.append(done.score(self.scene)._replace(landing=landing))
         dues = [point.revise(sample.stamp, self._ground) for point in self._points]
-        touchdowns = self._touchdowns(sample, dues)
+        touchdowns = self._ahead.touchdowns(sample, dues)
         if isinstance(touchdowns, Status):
             return Prediction(touchdowns, sample)
         feet = tuple([self._foot(number, sample.stamp, dues) for number in range(len(self._walking.feet))])
@@ -147,10 +158,10 @@ class Walker:
     def _begin(self) -> None:
         self._points = [Point(self.scene) for _ in range(self._count)]
         self._ground = Ground(self.scene)
-        self._tracks: dict[int, Track] = {}
-        self._joined: dict[int, int] = {}
         self._pending: list[tuple[Pending, Landing]] = []
         self._twists = Twists()
+        self._found = Status.ACCEPTED  # what became of the last geometry that met a sample
+        self._ahead = Ahead(self.scene, self._mechanism, self._points, self._twists)
 
     def _forget(self) -> None:
         """Begin anew; what waits for its measurement will not get it."""
@@ -184,12 +195,13 @@ class Walker:
             geometry = waiting.popleft()
             found = self._frames(geometry, base_at(self._recent, geometry.stamp))
             if isinstance(found, Status):
-                status = found
+                status = self._found = found
                 continue
+            status = self._found = Status.ACCEPTED
             for i, (point, frame) in enumerate(zip(self._points, found, strict=True)):
                 stood = point.stands
-                due = point.add(frame, self._ground)
-                if point.stands and not stood and due is not None:
+                point.add(frame, self._ground)
+                if point.stands and not stood and point.arrival is not None:
                     self._land(i)
         return status
 
@@ -212,117 +224,57 @@ class Walker:
         return frames
 
     def _land(self, i: int) -> None:
-        """Settle the touchdown that a point which has come to stand has made, alone or as the first of its foot."""
-        track, stamp = self._tracks.pop(i, None), self._points[i].stance.since
-        if track is None or self._joined.pop(i, None) is not None:
+        """Settle the landing of a point that has come to stand, alone or as the first of its foot.
+
+        The first contact of a foot is told even where it was not announced.
+        """
+        point, each = self._points[i], self._walking.points
+        stamp, arrival = point.stance.since, point.arrival
+        track = self._ahead.settle(i, stamp)
+        first = i - i % each
+        if track is None and any(one.stands for one in self._points[first : first + each] if one is not point):
             return
-        for j in track.last.new:
-            if j != i:
-                self._joined[j] = stamp + round(self.scene.contact_time * NANOSECONDS)
-        foot = self._walking.feet[i // self._walking.points]
-        history = tuple(
-            [
-                ((stamp - seen) / NANOSECONDS, (seen - stamp) / NANOSECONDS + told.lead_time)
-                for seen, told in track.answers
-                if seen <= stamp
-            ]
-        )
+        new = (i,) if track is None else track.last.new
+        seen = self._last_seen(new, arrival)
+        history: tuple[tuple[float, float], ...] = ()
+        if track is not None:
+            history = tuple(
+                [
+                    ((stamp - made) / NANOSECONDS, (made - stamp) / NANOSECONDS + told.lead_time)
+                    for made, told in track.answers
+                    if made <= stamp
+                ]
+            )
+        elif seen is None:
+            return
+        else:
+            track = Track()
+            track.add(stamp, seen[1], 0.0)
+        foot = self._walking.feet[i // each]
         late, confirmed = self._plan.late(foot, stamp), self._forces.agree(foot, True, self._recent[-1].stamp)
         pending = Pending(track, stamp)
-        landing = Landing(foot, stamp, late, confirmed, history, *self._last_seen(track.last.new, stamp))
+        speed, impact = seen or (None, None)
+        landing = Landing(foot, stamp, late, confirmed, history, speed, impact, point_of(new, each))
         self._pending.append((pending, landing))
         self._twists.begin(stamp)
         for sample in self._recent:
             self._measure(pending, sample)
 
-    def _last_seen(self, new: tuple[int, ...], stamp: int) -> tuple[float, Touchdown] | tuple[()]:
+    def _last_seen(self, new: tuple[int, ...], arrival: Arrival | None) -> tuple[float, Touchdown] | None:
         """The speed of points of a foot in their last frame in the air, and the touchdown that they make with it."""
-        frames = self._points[new[0]].course.frames
-        k = next((k for k in range(-1, -len(frames), -1) if frames[k].stamp < stamp), None)
-        if k is None:
-            return ()
-        velocity = mean([self._points[i].course.velocity(k) for i in new])
-        seen = frames[k].stamp
-        base = base_at(self._recent, seen)
+        if arrival is None or arrival.velocity is None:
+            return None
+        k = -arrival.age
+        seen = self._points[new[0]].course.frames[k].stamp
         others = tuple([i for i, point in enumerate(self._points) if point.stands and point.stance.since <= seen])
-        touchdown = self._impact(
-            base, others, new, 0.0, [point.course.frames[k].position for point in self._points], velocity
-        )
-        return () if isinstance(touchdown, Status) else (hypot(*velocity), touchdown)
-
-    def _impact(
-        self,
-        base: Sample,
-        standing: tuple[int, ...],
-        new: tuple[int, ...],
-        lead_time: float,
-        places: Sequence[Vector3],
-        velocity: Vector3,
-    ) -> Touchdown | Status:
-        """The touchdown of the `new` points at some `velocity`, all points being at `places` in the world then."""
-        axes = axes_of(base.orientation)
-        points = tuple([to_body(axes, add(place, base.position, -1.0)) for place in places])
-        return touchdown_of(self.scene, self._mechanism, base, points, standing, new, lead_time, velocity)
+        places = [point.course.frames[k].position for point in self._points]
+        touchdown = self._ahead.impact(base_at(self._recent, seen), others, new, 0.0, places, arrival.velocity)
+        return None if isinstance(touchdown, Status) else (hypot(*arrival.velocity), touchdown)
 
     def _measure(self, pending: Pending, sample: Sample) -> None:
         """Hand a sample to a touchdown that waits for those after it."""
         if sample.stamp > pending.stamp and not pending.complete:
             pending.add(sample, posture_of(self.scene, (), sample))
-
-    def _touchdowns(self, sample: Sample, dues: list[Due | None]) -> tuple[Touchdown, ...] | Status:
-        """The touchdowns of the feet, the soonest first; points of one foot that land together make one."""
-        each = self._walking.points
-        found: list[Touchdown] = []
-        for i, point in enumerate(self._points):
-            if point.stands or point.due is None:
-                self._joined.pop(i, None)
-            if point.due is None:
-                self._tracks.pop(i, None)
-        for first in range(0, self._count, each):
-            own = [(due, i) for i in range(first, first + each) if (due := dues[i]) and not self._has_joined(i, due)]
-            if own and each > 1:
-                own = self._without_joining(own, range(first, first + each), sample.stamp)
-            if own:
-                touchdown = self._touchdown(sample, own)
-                if isinstance(touchdown, Status):
-                    return touchdown
-                found.append(touchdown)
-        return tuple(sorted(found, key=lambda one: one.lead_time))
-
-    def _has_joined(self, i: int, due: Due) -> bool:
-        """Whether the landing of a point belongs to one that its foot has made already."""
-        last = self._joined.get(i)
-        if last is None or due.stamp <= last:
-            return last is not None
-        del self._joined[i]
-        return False
-
-    def _without_joining(self, own: list[tuple[Due, int]], foot: range, stamp: int) -> list[tuple[Due, int]]:
-        """The landings ahead that do not belong to one that another point of the foot makes at this moment."""
-        now = [due.stamp for i in foot if (due := self._points[i].due) is not None and due.stamp <= stamp]
-        last = min(now, default=stamp) + round(self.scene.contact_time * NANOSECONDS)
-        return [one for one in own if one[0].stamp > last] if now else own
-
-    def _touchdown(self, sample: Sample, own: list[tuple[Due, int]]) -> Touchdown | Status:
-        """The touchdown that a foot makes with the first of its points, and with those that close soon after it."""
-        stamp = min([due.stamp for due, _ in own])
-        last = stamp + round(self.scene.contact_time * NANOSECONDS)
-        landing = [(due, i) for due, i in own if due.stamp <= last]
-        new = tuple([i for _, i in landing])
-        lead_time = (stamp - sample.stamp) / NANOSECONDS
-        base = self._twists.ahead(sample, lead_time)
-        places = [point.course.frames[-1].position for point in self._points]
-        for due, i in landing:
-            places[i] = due.position
-        standing = tuple([i for i, point in enumerate(self._points) if point.stands])
-        velocity = mean([due.velocity for due, _ in landing])
-        touchdown = self._impact(base, standing, new, lead_time, places, velocity)
-        if isinstance(touchdown, Touchdown):
-            track = next((self._tracks[i] for i in new if i in self._tracks), None) or Track()
-            track.add(sample.stamp, touchdown, -dot(self.scene.normal, velocity))
-            for i in new:
-                self._tracks[i] = track
-        return touchdown
 
     def _foot(self, number: int, stamp: int, dues: list[Due | None]) -> Foot:
         """A foot as the sample of a stamp in ns shows it."""

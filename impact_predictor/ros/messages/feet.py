@@ -47,7 +47,7 @@ def landing_values(landing: Landing) -> dict[str, str]:
     `foot`; `late` in s after the plan; `confirmed` by a force sensor; `time_error` in s of the last announcement. What
     nobody knows is left out.
     """
-    values = _texts(landing._replace(history=()))
+    values = _texts(landing._replace(history=(), impact=None))
     del values["stamp"], values["history"]
     if landing.history:
         values["time_error"] = repr(float(landing.history[-1][1]))
@@ -56,9 +56,10 @@ def landing_values(landing: Landing) -> dict[str, str]:
 
 def landing_in_words(landing: Landing) -> str:
     """Which foot has landed, and how well that was foretold."""
+    name = f"{landing.foot} {landing.point or ''}".rstrip()
     if not landing.history:
-        return f"{landing.foot} has landed"
-    return f"{landing.foot} has landed, time error {landing.history[-1][1] * 1e3:.1f} ms"
+        return f"{name} has landed, which was not announced"
+    return f"{name} has landed, time error {landing.history[-1][1] * 1e3:.1f} ms"
 
 
 def _texts(fields: Foot | Landing) -> dict[str, str]:

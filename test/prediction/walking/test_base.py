@@ -74,6 +74,18 @@ def test_from_fewer_samples_the_twist_of_now_is_kept() -> None:
     assert then.angular == last.angular
 
 
+def test_of_samples_that_come_at_once_no_acceleration_is_told() -> None:
+    samples = [sample(k * 100_000) for k in range(2 * FEWEST)]
+    then = twists_of(samples).ahead(samples[-1], 0.1)
+    assert then.angular == samples[-1].angular
+
+
+def test_a_slow_source_is_followed_over_a_longer_time() -> None:
+    samples = [sample(k * 20_000_000) for k in range(2 * FEWEST)]
+    true = sample(samples[-1].stamp + 100_000_000)
+    assert twists_of(samples).ahead(samples[-1], 0.1).linear == pytest.approx(true.linear, abs=1e-12)
+
+
 @pytest.mark.parametrize(("offset", "nearest"), [(0, 4), (-1_000_000, 4), (-1_500_000, 3), (1_000_000, 4)])
 def test_between_samples_the_nearest_one_is_carried_on(offset: int, nearest: int) -> None:
     samples = [sample(k * PERIOD) for k in range(5)]

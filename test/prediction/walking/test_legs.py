@@ -64,7 +64,6 @@ def test_joints_without_velocities_give_points_without(frog):
         (("left_hip",), (0.0,), (), Status.WRONG_JOINTS),
         (("left_hip", "knee"), (0.0, 0.0), (), Status.WRONG_JOINTS),
         (("left_hip", "left_hip"), (0.0, 0.0), (), Status.WRONG_JOINTS),
-        ((*NAMES, "knee"), (0.0, 0.0, 0.0), (), Status.WRONG_JOINTS),
         (("left_hip", "left_hip", "right_hip"), (0.0, 0.0, 0.0), (), Status.WRONG_JOINTS),
         ((), (), (), Status.WRONG_JOINTS),
         (NAMES, (0.0,), (), Status.WRONG_JOINTS),
@@ -81,6 +80,14 @@ def test_joints_that_are_not_the_models_are_a_status_and_leave_the_last_ones(
     assert frog.geometry_of(Joints(1, names, positions, velocities)) is status
     assert frog.response((0,), (1,), UP, AHEAD, ()) == before
     assert frog.geometry_of(Joints(2, NAMES, (0.3, -0.2), ())).stamp == 2
+
+
+def test_joints_that_the_model_does_not_know_are_left_out_whatever_they_are(frog):
+    plain = frog.geometry_of(Joints(7, NAMES, (0.3, -0.2), (1.0, 2.0)))
+    assert frog.left_out == ()
+    names = ("arm", "left_hip", "gripper", "right_hip", "arm")
+    assert frog.geometry_of(Joints(7, names, (nan, 0.3, 4.0, -0.2, 0.0), (0.0, 1.0, inf, 2.0, 0.0))) == plain
+    assert frog.left_out == ("arm", "gripper", "arm")
 
 
 def test_before_any_joints_there_is_no_response_but_a_status(frog):

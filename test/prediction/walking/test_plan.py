@@ -50,3 +50,19 @@ def test_a_schedule_that_is_none_is_refused(schedule: Schedule, status: Status) 
     plan.set(Schedule(0, ("left",), (0, 200 * MS), ((False,), (True,))))
     assert plan.set(schedule) is status
     assert plan.late("left", 200 * MS) == 0.0
+
+
+def test_a_plan_that_is_told_again_and_again_does_not_grow() -> None:
+    plan = Plan(("LF",))
+    for k in range(1000):
+        times = tuple((k + j) * 10_000_000 for j in range(50))
+        assert plan.set(Schedule(0, ("LF",), times, tuple((time % 500_000_000 > 250_000_000,) for time in times))) == 0
+    # 10 s that are remembered and the half second ahead, with a change each quarter of a second.
+    assert len(plan._stances["LF"]) < 50
+
+
+def test_a_landing_far_from_every_planned_one_is_not_late() -> None:
+    plan = Plan(("LF",))
+    plan.set(Schedule(0, ("LF",), (0, 1_000_000_000), ((False,), (True,))))
+    assert plan.late("LF", 1_900_000_000) == 0.9
+    assert plan.late("LF", 60_000_000_000) is None
