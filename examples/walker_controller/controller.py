@@ -2,7 +2,7 @@
 
 Two controllers with the same actuators and measurements. `Feedback` answers what it measures with tuned gains.
 `Predictive` besides listens to the predictor, and changes the step that is about to end by what its impact will do.
-Both are told the same estimates of the ground: its slope and its friction.
+Both know the machine with its load, and are told the same estimates of the ground: its slope and its friction.
 """
 
 from __future__ import annotations
@@ -15,7 +15,11 @@ from values import Command, Machine, Seen
 from impact_predictor import Mode
 
 STILL: Final = 14
-"""Ticks that the leg is held before a prediction of its landing is believed: the predictor looks at its last frames."""
+"""Ticks that the leg is held before a prediction of its landing is believed.
+
+No less than the predictor's window, its dead time, for which an announcement is kept, and the tick that it takes to
+arrive: 28 ms.
+"""
 
 USUAL_RATE: Final = 1.2
 """rad/s."""
@@ -50,7 +54,8 @@ class Controller(Protocol):
 class FeedbackGains(NamedTuple):
     """Gains of `Feedback`; angles are half the angle between the legs, rates are against 1.2 rad/s.
 
-    The first seven need nothing but what is measured; the last three use the estimates of the ground.
+    The first seven need nothing but what is measured. The others use what the robot is told: the slope, the friction,
+    and its inertia about the hub as a part of mass times leg squared.
     """
 
     angle: float = 0.24
@@ -65,6 +70,7 @@ class FeedbackGains(NamedTuple):
     push_by_slope: float = 0.0
     grip: float = 1e6
     """Part of the estimated friction that the legs may lean by."""
+    grip_by_inertia: float = 0.0
 
 
 class Feedback:
@@ -72,8 +78,9 @@ class Feedback:
 
     def __init__(self, machine: Machine, estimate: Estimate, gains: FeedbackGains) -> None:
         self._gains = gains
+        inertia = machine.inertia / (machine.mass * machine.leg**2)
         self._angle = gains.angle + gains.angle_by_slope * estimate.slope
-        self._longest = atan(gains.grip * estimate.friction)
+        self._longest = atan((gains.grip + gains.grip_by_inertia * inertia) * estimate.friction)
         self._push = gains.push - gains.push_by_slope * estimate.slope
         self._steps, self._slipped, self._past, self._last = 0, False, 0.0, USUAL_RATE
 
@@ -94,27 +101,25 @@ class Feedback:
 class PredictiveGains(NamedTuple):
     """Gains of `Predictive`; angles are half the angle between the legs."""
 
-    angle: float = 0.33
-    """With which the first step begins."""
-    trust: float = 0.9
+    angle: float = 0.3
+    """With which the first step begins, and the smallest as long as the push-off is strong enough."""
+    trust: float = 0.85
     """Part of the estimated friction that the scene of the predictor is given."""
     rate: float = 1.0
     """The rate that the machine is to have over its next leg, rad/s."""
-    retract: float = 0.03
-    """By how much a step is shortened at a time, rad."""
-    shorten: float = 0.0
-    """The same where no push-off is strong enough."""
+    retract: float = 0.015
+    """By how much a step is shortened at a time while a slip is announced, rad."""
     extend: float = 0.2
     """By how much it is lengthened for each rad/s by which the machine would be too fast."""
-    lead_time: float = 0.06
+    lead_time: float = 0.1
     """From how long before the touchdown on, in s, the announced rate changes the step."""
 
 
 class Predictive:
     """Changes the step that is about to end by what the predictor announces of its impact.
 
-    It retracts the foot while a slip is announced, puts it further ahead where the machine would go on too fast, and
-    pushes off by as much as the announced rate is short of what carries the machine over its next leg.
+    It retracts the foot while a slip is announced; it puts it further ahead where the machine would go on too fast,
+    nearer where too slowly; and it pushes off by what is missing to carry the machine over its next leg.
     """
 
     def __init__(self, machine: Machine, estimate: Estimate, gains: PredictiveGains) -> None:
@@ -140,10 +145,9 @@ class Predictive:
             angle -= gains.retract
             self._longest = angle
         elif lead_time < gains.lead_time:
-            if self._push > machine.largest_push:
-                angle = min(angle - gains.shorten, self._longest)
-            elif excess > 0.0:
-                angle = min(angle + gains.extend * excess, self._longest)
+            # A short step costs least, but it brakes least too.
+            shortest = min(gains.angle, angle) if self._push < machine.largest_push else 0.0
+            angle = min(max(angle + gains.extend * excess, shortest), self._longest)
         self._angle = max(angle, 0.5 * machine.least_angle)
 
     def _rate_to_arrive(self, rate: float) -> float:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 from collections import Counter
+from multiprocessing import Pool
 from pathlib import Path
 from typing import Any, Final
 
@@ -23,7 +24,7 @@ from values import Failure
 
 NAMES: Final = {
     "feedback": "feedback without the predictor",
-    "informed": "the same, told slope and friction",
+    "informed": "the same, told ground and load",
     "predictive": "with the predictor",
 }
 """Of the controllers, as a reader sees them."""
@@ -32,29 +33,30 @@ CONFIDENCE: Final = 0.95
 
 
 def run(seeds: range) -> list[dict[str, Any]]:
-    """The walks of all controllers over the grounds of some seeds."""
-    gains = json.loads(GAINS.read_text())
-    walks = []
-    for seed in track(seeds, "walking", transient=True):
-        one = trial(seed)
-        ends = {name: WALKS[name](one, gains[name]["gains"], 1) for name in NAMES}
-        walks.append(
-            {
-                "seed": seed,
-                "slope": round(one.ground.slope, 5),
-                "friction": round(max(one.ground.frictions), 5),
-                **{
-                    name: {
-                        "failure": end.failure.value if end.failure else None,
-                        "distance": round(end.distance, 3),
-                        "time": round(end.time, 3),
-                        "steps": end.steps,
-                    }
-                    for name, end in ends.items()
-                },
+    """The walks of all controllers over the grounds of some seeds, on all processors."""
+    with Pool() as pool:
+        return list(track(pool.imap(walks_of, seeds), "walking", len(seeds), transient=True))
+
+
+def walks_of(seed: int) -> dict[str, Any]:
+    """The walks of all controllers over the ground of a seed."""
+    gains, one = json.loads(GAINS.read_text()), trial(seed)
+    ends = {name: WALKS[name](one, gains[name]["gains"]) for name in NAMES}
+    return {
+        "seed": seed,
+        "slope": round(one.ground.slope, 5),
+        "friction": round(max(one.ground.frictions), 5),
+        "inertia": round(one.machine.inertia, 5),
+        **{
+            name: {
+                "failure": end.failure.value if end.failure else None,
+                "distance": round(end.distance, 3),
+                "time": round(end.time, 3),
+                "steps": end.steps,
             }
-        )
-    return walks
+            for name, end in ends.items()
+        },
+    }
 
 
 def summary(walks: list[dict[str, Any]]) -> dict[str, Any]:

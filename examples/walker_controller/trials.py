@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import cos, sin
-from typing import Final, NamedTuple, Protocol
+from typing import Final, NamedTuple
 
 import numpy as np
 from controller import Announcement, Controller, Estimate
@@ -12,7 +13,7 @@ from sensors import FEET, FRAME, geometry_of, sample_of
 from values import Failure, Ground, Gust, Machine
 
 from impact_predictor.prediction.scene import Scene, Walking
-from impact_predictor.prediction.types import Geometry, Prediction, Sample, Status
+from impact_predictor.prediction.types import Prediction
 from impact_predictor.ros.messages import decode_polygon, encode_polygon
 
 TRACK: Final = 6.0
@@ -21,24 +22,28 @@ TRACK: Final = 6.0
 TIME: Final = 12.0
 """Seconds for it; a machine that needs more has stopped."""
 
-SLOPES: Final = (-0.05, 0.12)
+SLOPES: Final = (-0.025, 0.12)
 """rad, positive downhill."""
 
-FRICTIONS: Final = (0.22, 0.7)
+FRICTIONS: Final = (0.24, 0.7)
+"""The lower limit on level ground and uphill; it grows with half the slope downhill, where only long steps brake."""
+
+INERTIAS: Final = (0.5, 7.0)
+"""kg m^2, of the hub with what it carries."""
+
+GUST: Final = 60.0
+"""N, standard deviation; about 0.3 rad/s in its 0.1 s."""
 
 
-class Predictor(Protocol):
-    """What the loop needs of the library's `Walker`."""
-
-    def set_geometry(self, geometry: Geometry) -> Status: ...
-
-    def update(self, sample: Sample) -> Prediction: ...
+Announce = Callable[[Walk], Announcement | None]
+"""Tells what the next touchdown will be, from the machine's sensors at every tick."""
 
 
 class Trial(NamedTuple):
     """One walk to make: the ground and the gusts, which only the simulation knows, and what the robot takes it for."""
 
     seed: int
+    machine: Machine
     ground: Ground
     gusts: tuple[Gust, ...]
     estimate: Estimate
@@ -53,24 +58,26 @@ class Result(NamedTuple):
     steps: int
 
 
-def trial(seed: int) -> Trial:
-    """The walk of a seed.
+def trial(seed: int, gust: float = GUST) -> Trial:
+    """The walk of a seed, in gusts of a standard deviation in N.
 
     The paving has slabs of 0.25 m which stand up to 3 mm off the plane; one in ten of them is worn and has 0.8 times
-    the friction. About every 1.5 s a gust pushes for 0.1 s. The robot knows slope and friction of the ground as a
-    whole, to 0.3 degrees and 5 % (standard deviations), but neither single slabs nor gusts.
+    the friction. About every 1.5 s a gust pushes for 0.1 s. The robot knows its load, and slope and friction of the
+    ground as a whole, to 0.3 degrees and 5 % (standard deviations), but neither single slabs nor gusts.
     """
-    random = np.random.default_rng([2024, seed])
-    slope, friction = random.uniform(*SLOPES), random.uniform(*FRICTIONS)
+    random = np.random.default_rng([2025, seed])
+    slope = random.uniform(*SLOPES)
+    friction = random.uniform(FRICTIONS[0] + 0.5 * max(slope, 0.0), FRICTIONS[1])
+    machine = Machine(inertia=random.uniform(*INERTIAS))
     count = 60
     worn = np.where(random.random(count) < 0.1, 0.8, 1.0)
     heights = random.uniform(-0.003, 0.003, count)
     starts = np.cumsum(random.exponential(1.5, 40))
-    forces = random.normal(0.0, 35.0, 40)
+    forces = random.normal(0.0, gust, 40)
     gusts = [Gust(start, start + 0.1, force) for start, force in zip(starts.tolist(), forces.tolist(), strict=True)]
     estimate = Estimate(slope + random.normal(0.0, 0.005), friction * (1.0 + random.normal(0.0, 0.05)))
     ground = Ground(slope, tuple((friction * worn).tolist()), tuple(heights.tolist()))
-    return Trial(seed, ground, tuple(gust for gust in gusts if gust.start < TIME), estimate)
+    return Trial(seed, machine, ground, tuple(gust for gust in gusts if gust.start < TIME), estimate)
 
 
 def scene_of(machine: Machine, estimate: Estimate, trust: float) -> Scene:
@@ -98,17 +105,28 @@ def announced(prediction: Prediction) -> Announcement | None:
     return Announcement(stamp, touchdown.mode, touchdown.angular[1])
 
 
-def walk(trial: Trial, controller: Controller, predictor: Predictor | None = None, every: int = 1) -> Result:
-    """Make a walk; what the predictor says of a sample, one in `every`, reaches the controller with the next tick."""
-    made = Walk(Machine(), trial.ground, trial.gusts)
+def predicted(scene: Scene) -> Announce:
+    """What the predictor of a scene announces."""
+    from impact_predictor.prediction.walking.walker import Walker
+
+    predictor = Walker(scene)
+
+    def announce(made: Walk) -> Announcement | None:
+        # Through the bytes of the message, which has float32.
+        predictor.set_geometry(decode_polygon(encode_polygon(geometry_of(made))))
+        return announced(predictor.update(sample_of(made)))
+
+    return announce
+
+
+def walk(trial: Trial, controller: Controller, announce: Announce | None = None) -> Result:
+    """Make a walk; what is announced at a tick reaches the controller with the next one."""
+    made = Walk(trial.machine, trial.ground, trial.gusts)
     ahead: Announcement | None = None
     goal = made.x + TRACK
     while made.failure is None and made.x < goal and made.ticks < TIME * RATE:
         command = controller.command(made.seen, ahead)
-        if predictor is not None and made.ticks % every == 0:
-            # Through the bytes of the message, which has float32.
-            predictor.set_geometry(decode_polygon(encode_polygon(geometry_of(made))))
-            ahead = announced(predictor.update(sample_of(made)))
+        ahead = announce(made) if announce else None
         made.tick(command)
     late = Failure.STOP if made.x < goal else None
     return Result(made.failure or late, made.x + TRACK - goal, made.ticks / RATE, made.steps)

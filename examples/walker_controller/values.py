@@ -11,7 +11,7 @@ class Machine(NamedTuple):
 
     mass: float = 20.0
     inertia: float = 1.2
-    """About the hub, where the mass centre is."""
+    """About the hub, where the mass centre is, with what it carries there."""
     leg: float = 1.0
     swing_rate: float = 8.0
     """The fastest that the leg turns against the hub while it swings, rad/s."""
@@ -21,7 +21,7 @@ class Machine(NamedTuple):
     """Part of its length by which the leg is shortened while it swings."""
     stretch_time: float = 0.06
     """Time in s to shorten it, and to stretch it again."""
-    largest_push: float = 15.0
+    largest_push: float = 20.0
     """N s."""
     least_angle: float = 0.3
     largest_angle: float = 1.0
