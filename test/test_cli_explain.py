@@ -20,7 +20,7 @@ ANSWER: dict[str, Any] = {
     "us_per_sample": 60.0,
     "start_ms": 45.0,
     "start_mb": 2.0,
-    "all_on": {"us_per_sample": 60.0, "start_ms": 45.0, "start_mb": 2.0},
+    "all_on": {"us_per_sample": 60.0, "us_scatter": 0.0, "start_ms": 45.0, "start_mb": 2.0},
     "node": None,
     "why_no_node": "ROS 2 is not here",
     "outputs": {"mode": 0.2},

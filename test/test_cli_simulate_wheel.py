@@ -64,8 +64,31 @@ def test_below_the_friction_it_needs_every_impact_slips() -> None:
     assert {impact["mode"] for impact in answer["impacts"]} == {"PIVOT_SLIDE"}
 
 
-def test_where_no_friction_is_enough_the_json_has_none() -> None:
-    assert simulated("--slope", "20", "--steps", "2")["steady"]["friction"] is None
+def test_where_no_friction_is_enough_for_steady_rolling_its_rates_are_not_told() -> None:
+    assert simulated("--slope", "20", "--steps", "2")["steady"] is None
+    text = run("--alpha", "1", "--slope", "2").stdout
+    said = "Without slip it cannot roll steadily: no friction is enough, the ground would have to hold its spokes down"
+    assert text.endswith(f"{said} (closed form).\n")
+    assert "teady rolling" not in text
+    slips = run("--slope", "20").stdout
+    assert said in slips
+    assert "Its spokes slip: in its last impact it slows down from 3.06" in slips
+
+
+def test_on_a_slope_that_rises_ahead_it_makes_its_steps_backwards() -> None:
+    text = run("--slope", "-5").stdout
+    assert "it is over its last spoke (--steps), 20 steps and 15.307 m backwards, down the slope." in text
+    assert "Steady rolling backwards, closed form: 1.605412029 rad/s before each impact" in text
+    answer = simulated("--slope", "-5", "--steps", "7")
+    assert (answer["end"], answer["steps"], len(answer["impacts"])) == ("STEPS_DONE", -7, 7)
+    assert answer["steady"]["omega_before"] == pytest.approx(1.605412029, abs=1e-9)
+
+
+def test_a_wheel_that_slips_is_told_with_its_own_rates() -> None:
+    text = run("--friction", "0.35").stdout
+    assert "Its spokes slip: in its last impact it slows down from 1.564424314 to 0.985513828 rad/s." in text
+    assert "Without slip it would come to steady rolling, closed form: 1.605412029 rad/s" in text
+    assert "This needs a friction coefficient of 0.370775 in the impacts, between them 0.375327; it has 0.35." in text
 
 
 def test_the_table_tells_the_impacts_and_the_closed_form() -> None:

@@ -17,6 +17,7 @@ from .simulate_deck import EXAMPLES as DECK_EXAMPLES
 from .simulate_deck import simulate_deck
 from .simulate_wheel import EXAMPLES as WHEEL_EXAMPLES
 from .simulate_wheel import simulate_wheel
+from .simulated_files import RATE, check_pictures, rate_of_bag, say_files
 
 if TYPE_CHECKING:
     from ..scenarios.rocking import Rocker, Rocking
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
 F = TypeVar("F", bound=Callable[..., Any])
 
 ACUTE: dict[str, Any] = {"type": click.FloatRange(-90.0, 90.0, min_open=True, max_open=True), "metavar": "DEGREES"}
-RATE = 1000.0
 
 EXAMPLES = {
     "rod": (
@@ -216,18 +216,8 @@ def answer(
     rate: float | None = None,
 ) -> int:
     """Simulate the bodies, write what is asked for and say what happened; the exit status, 1 where it broke off."""
-    if rate is not None and output is None:
-        raise click.UsageError("--rate is that of a bag: give -o BAG too")
-    rate = RATE if rate is None else rate
-    refuse({"rate": rate}, lambda value: 0.0 < value <= 1e6, "a number above 0, up to 1e6")
-    if plot is not None:
-        from ..report.figure import check_figure
-
-        check_figure(plot)
-    if animate is not None:
-        from ..report.motions.animation import check_animation
-
-        check_animation(animate)
+    rate = rate_of_bag(rate, output)
+    check_pictures(plot, animate)
     from ..scenarios.rocking import release
 
     rockings = [release(rocker, radians(angle), radians(slope), gravity, law, duration) for rocker in rockers]
@@ -241,9 +231,7 @@ def answer(
         draw_animation(animate, rockings)
     say(rockings, as_json)
     if not as_json:
-        for what, file in (("Bag", output), ("Picture", plot), ("Animation", animate)):
-            if file is not None:
-                click.echo(f"{what}: {file}")
+        say_files(output, plot, animate)
     return 1 if any(rocking.broke_off for rocking in rockings) else 0
 
 

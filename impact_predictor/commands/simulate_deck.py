@@ -12,6 +12,7 @@ import click
 from click.core import ParameterSource
 
 from .examples import examples
+from .simulated_files import check_pictures
 
 if TYPE_CHECKING:
     from ..mechanics.support import MovingSupport
@@ -181,14 +182,7 @@ def courses_for(plot: str | None, animate: str | None, duration: float) -> Cours
         return None
     from ..report.motions.course import Courses
 
-    if plot is not None:
-        from ..report.figure import check_figure
-
-        check_figure(plot)
-    if animate is not None:
-        from ..report.motions.animation import check_animation
-
-        check_animation(animate)
+    check_pictures(plot, animate)
     return Courses(duration)
 
 

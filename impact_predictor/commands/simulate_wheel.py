@@ -12,13 +12,13 @@ import click
 
 from ..mechanics.impact import LAWS
 from .examples import examples
+from .simulated_files import RATE, check_pictures, rate_of_bag, say_files
 
 if TYPE_CHECKING:
     from ..scenarios.walking.wheel import Rolling
 
 F = TypeVar("F", bound=Callable[..., Any])
 
-RATE: Final = 1000.0
 STEPS: Final = 20
 DURATION: Final = 60.0
 STICKS: Final = 100.0
@@ -39,7 +39,7 @@ _NUMBERS: Final[tuple[tuple[str, Any, float, str], ...]] = (
     ("--leg", float, 1.0, "Length of the spokes, m."),
     ("--mass", float, 1.0, "Mass, kg."),
     ("--inertia", float, 0.1, "Inertia about the mass centre, kg m^2, above 0; a point mass has hardly any."),
-    ("--omega", float, 0.0, "Rate at which it is let go over its first spoke, rad/s; positive rolls downhill."),
+    ("--omega", float, 0.0, "Rate at which it is let go over its first spoke, rad/s; positive rolls ahead."),
     ("--gravity", float, 9.81, "Gravity, m/s^2."),
 )
 
@@ -59,7 +59,7 @@ def numbers(command: F) -> F:
 @click.option(
     "--steps",
     type=click.IntRange(min=1),
-    help=f"Steps to make. [default: {STEPS}, or those of --duration]",
+    help=f"Steps to make, ahead or backwards. [default: {STEPS}, or those of --duration]",
 )
 @click.option("--duration", type=float, help=f"Longest time that is simulated, s. [default: {DURATION:g}]")
 @click.option("--plot", metavar="FILE", help="Draw the wheel, its rate and its stance into a .png or .svg file.")
@@ -95,22 +95,11 @@ def simulate_wheel(
     It is let go with spoke 0 at right angles to the slope. Each spoke strikes without bouncing; where friction does not
     hold it, it slips. What is printed tells the steady rolling by its closed form, too.
     """
-    from ..mechanics.bodies import refuse
     from ..scenarios.walking.stride import Hub
     from ..scenarios.walking.wheel import RollEnd, Wheel, roll
 
-    if rate is not None and output is None:
-        raise click.UsageError("--rate is that of a bag: give -o BAG too")
-    rate = RATE if rate is None else rate
-    refuse({"rate": rate}, lambda value: 0.0 < value <= 1e6, "a number above 0, up to 1e6")
-    if plot is not None:
-        from ..report.figure import check_figure
-
-        check_figure(plot)
-    if animate is not None:
-        from ..report.motions.animation import check_animation
-
-        check_animation(animate)
+    rate = rate_of_bag(rate, output)
+    check_pictures(plot, animate)
     if steps is None and duration is None:
         steps = STEPS
     hub = Hub(mass, inertia, leg, STICKS if friction is None else friction, radians(slope), gravity)
@@ -125,9 +114,7 @@ def simulate_wheel(
         draw_animation(animate, rolling)
     say(rolling, as_json)
     if not as_json:
-        for what, file in (("Bag", output), ("Picture", plot), ("Animation", animate)):
-            if file is not None:
-                click.echo(f"{what}: {file}")
+        say_files(output, plot, animate)
     return 1 if rolling.end is RollEnd.LOST else 0
 
 

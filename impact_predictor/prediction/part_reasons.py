@@ -124,7 +124,7 @@ def why_tilt(values: Values) -> str:
 def why_feet(values: Values) -> str:
     if values["feet.names"]:
         feet = len(values["feet.names"])
-        return f"feet.names has {feet}: the motion of each over the ground tells its stance and landings (in the core)"
+        return f"feet.names has {feet}: the motion of each over the ground tells its stance and landings"
     return "feet.names is not given: the contact points are fixed to the body"
 
 

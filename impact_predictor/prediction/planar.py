@@ -98,7 +98,7 @@ def contacts_of(scene: Scene, posture: Posture) -> Contacts | None:
     """Which points stand and which strike next; None where no point approaches.
 
     A point approaches faster than gravity moves it within the contact time; points that close within the contact time
-    after the first one strike together with it.
+    after the first one strike together with it. Where the first one hardly moves yet, none is known to strike next.
     """
     gaps, rates = posture.gaps, posture.rates
     slowest, tolerance = -hardly(scene), scene.tolerance
@@ -107,13 +107,18 @@ def contacts_of(scene: Scene, posture: Posture) -> Contacts | None:
         return None
     limit = STANDING * max(max(rates), -fastest)
     old = [i for i, gap in enumerate(gaps) if gap <= tolerance and -limit <= rates[i] <= limit]
-    closing = [i for i, rate in enumerate(rates) if rate < slowest and i not in old]
+    # A point that hardly moves may still come first; one that is down counts as resting there.
+    closing = [
+        i for i, rate in enumerate(rates) if rate < 0.0 and i not in old and (rate < slowest or gaps[i] > tolerance)
+    ]
     if not closing:
         return None
     base = sum([gaps[i] for i in old]) / len(old) if old else 0.0
     due = [(base - gaps[i]) / rates[i] for i in closing]
     last = max(0.0, min(due)) + scene.contact_time
     new = [i for i, time in zip(closing, due, strict=True) if time <= last]
+    if min([rates[i] for i in new]) >= slowest:
+        return None
     return new_tuple(Contacts, (tuple(old), tuple(new), base))
 
 

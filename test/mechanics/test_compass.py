@@ -6,7 +6,6 @@ momentum of the machine about the striking foot and that of the trailing leg abo
 """
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -14,23 +13,9 @@ import pytest
 from impact_predictor import Mode
 from impact_predictor.mechanics.articulated import WholeBody
 from impact_predictor.mechanics.contact_space import solve
+from impact_predictor.scenarios.walking.compass import Compass, after_impact, contact_rows, inertia_of, strike
 
 LAWS = ("path", "total")
-
-
-class Compass(NamedTuple):
-    """A hip and two equal legs: `leg` and `hip` masses in kg, `low` the distance of a leg's mass centre from its foot
-    and `high` from the hip in m, `inertia` of a leg about its mass centre in kg m^2."""
-
-    leg: float
-    hip: float
-    low: float
-    high: float
-    inertia: float = 0.0
-
-    @property
-    def length(self) -> float:
-        return self.low + self.high
 
 
 def point_mass_map(compass, half_angle):
@@ -38,7 +23,7 @@ def point_mass_map(compass, half_angle):
 
     `half_angle` is half the angle between the legs. After the impact the legs have changed their roles.
     """
-    beta, mu = compass.high / compass.low, compass.hip / compass.leg
+    beta, mu = compass.to_hip / compass.to_foot, compass.hip_mass / compass.leg_mass
     cos = math.cos(2.0 * half_angle)
     before = [[-beta, -beta + (mu * (1 + beta) ** 2 + 2 * (1 + beta)) * cos], [0.0, -beta]]
     after = [
@@ -48,110 +33,42 @@ def point_mass_map(compass, half_angle):
     return np.linalg.solve(after, before)
 
 
-def momentum_map(compass, half_angle):
-    """The same for legs with inertia, from the two angular momenta: rates (old leg, new leg) before to those after.
-
-    The new leg leads: it leans back by `half_angle`, the old one forward.
-    """
-    new_foot = np.array([compass.length * math.sin(half_angle), 0.0])
-    old_foot = -new_foot
-    hip = np.array([0.0, compass.length * math.cos(half_angle)])
-    rows = []
-    for stance in (old_foot, new_foot):
-        momenta = np.zeros((2, 2))
-        for leg in range(2):
-            rates = np.eye(2)[leg]
-            # Angles grow counter-clockwise: the velocity by a rate w over an arm (x, y) is w (-y, x).
-            stance_rate = rates[0] if stance is old_foot else rates[1]
-            at_hip = turning(stance_rate, hip - stance)
-            about_new = compass.hip * moment(hip - new_foot, at_hip)
-            about_hip = 0.0
-            for k, foot in enumerate((old_foot, new_foot)):
-                centre = hip + (foot - hip) * compass.high / compass.length
-                velocity = at_hip + turning(rates[k], centre - hip)
-                spin = compass.inertia * rates[k]
-                about_new += compass.leg * moment(centre - new_foot, velocity) + spin
-                if k == 0:
-                    about_hip = compass.leg * moment(centre - hip, velocity) + spin
-            momenta[:, leg] = about_new, about_hip
-        rows.append(momenta)
-    before, after = rows
-    return np.linalg.solve(after, before)
-
-
-def turning(rate, arm):
-    return rate * np.array([-arm[1], arm[0]])
-
-
-def moment(arm, velocity):
-    return arm[0] * velocity[1] - arm[1] * velocity[0]
-
-
-def by_hand(compass, half_angle):
-    """Mass matrix and contact rows (n_old, t_old, n_new, t_new) in the velocities of the hip (x, y) and both rates.
-
-    The floor is level: n = (0, 1), t = (1, 0). A point of a leg at the arm (x, y) from the hip moves with the hip and
-    by its leg's rate (-y, x).
-    """
-    arms = [
-        np.array([side * compass.length * math.sin(half_angle), -compass.length * math.cos(half_angle)])
-        for side in (-1.0, 1.0)
-    ]
-    total = compass.hip + 2.0 * compass.leg
-    mass = np.diag([total, total, 0.0, 0.0])
-    rows = []
-    for k, arm in enumerate(arms):
-        x, y = arm * compass.high / compass.length
-        mass[0, 2 + k] = mass[2 + k, 0] = -compass.leg * y
-        mass[1, 2 + k] = mass[2 + k, 1] = compass.leg * x
-        mass[2 + k, 2 + k] = compass.leg * (x * x + y * y) + compass.inertia
-        normal, tangent = np.zeros(4), np.zeros(4)
-        normal[1], normal[2 + k] = 1.0, arm[0]
-        tangent[0], tangent[2 + k] = 1.0, -arm[1]
-        rows += [normal, tangent]
-    return mass, np.array(rows)
-
-
-def motion_before(compass, half_angle, old_rate, new_rate):
-    """Velocities of the hip (x, y) and the rates of a compass whose old foot stands."""
-    x, y = compass.length * math.sin(half_angle), compass.length * math.cos(half_angle)
-    return np.array([-old_rate * y, old_rate * x, old_rate, new_rate])
-
-
 def random_compasses(count, seed):
+    """Compasses, half the angle between their legs, and the rates (old leg, new leg) of a passive gait."""
     source = np.random.default_rng(seed)
     for _ in range(count):
-        compass = Compass(*source.uniform((0.5, 1.0, 0.2, 0.2, 0.0), (10.0, 40.0, 0.8, 0.8, 0.2)).tolist())
-        # A passive gait: both legs turn forward (clockwise), the swing leg slower or faster.
-        rates = -source.uniform(0.5, 2.0), -source.uniform(-0.5, 2.0)
-        yield compass, source.uniform(0.1, 0.4), rates
+        hip, leg, low, high, inertia = source.uniform((1.0, 0.5, 0.2, 0.2, 0.0), (40.0, 10.0, 0.8, 0.8, 0.2)).tolist()
+        # Both legs turn forward, the swing leg slower or faster.
+        rates = source.uniform(0.5, 2.0), source.uniform(-0.5, 2.0)
+        yield Compass(hip, leg, low, high, leg_inertia=inertia), source.uniform(0.1, 0.4), rates
 
 
 def test_the_momenta_of_the_closed_form_are_those_of_goswami():
-    for compass, half_angle, _ in random_compasses(50, seed=1):
-        points = compass._replace(inertia=0.0)
-        swap = np.array([[0.0, 1.0], [1.0, 0.0]])  # (old, new) is (stance, swing) before and (swing, stance) after
-        assert momentum_map(points, half_angle) == pytest.approx(point_mass_map(points, half_angle) @ swap, abs=1e-12)
+    for compass, half_angle, (old, new) in random_compasses(50, seed=1):
+        points = compass._replace(leg_inertia=0.0)
+        swing, stance = point_mass_map(points, half_angle) @ (new, old)
+        found = after_impact(points, (half_angle, -half_angle), (old, new))
+        assert found == pytest.approx((stance, swing), abs=1e-12)
 
 
 @pytest.mark.parametrize("law", LAWS)
 def test_a_compass_gait_by_hand_in_contact_space_follows_the_closed_form(law):
     pivots = 0
     for compass, half_angle, rates in random_compasses(300, seed=2):
-        mass, rows = by_hand(compass, half_angle)
-        motion = motion_before(compass, half_angle, *rates)
-        c = rows @ motion
-        if c[2] > -0.05:
+        angles = half_angle, -half_angle
+        if closing(compass, half_angle, rates) > -0.05:
             continue  # the swing leg does not strike
-        W = rows @ np.linalg.solve(mass, rows.T)
-        outcome = solve(W, [0.0, 0.0, *c[2:]], (5.0, 5.0), law=law)
+        outcome, after = strike(compass, angles, rates, 5.0, law)
         if outcome.mode is not Mode.PIVOT or outcome.impulses[0][0] != 0.0:
             continue
-        after = motion + np.linalg.solve(mass, rows.T @ np.array(outcome.impulses).ravel())
-        expected = momentum_map(compass, half_angle) @ rates
-        assert after[2:] == pytest.approx(expected, abs=1e-10)  # the accuracy that is promised
+        assert after == pytest.approx(after_impact(compass, angles, rates), abs=1e-10)  # the accuracy that is promised
         pivots += 1
     assert pivots > 100
+
+
+def closing(compass, half_angle, rates):
+    """How fast the new foot rises, in m/s."""
+    return -compass.leg * math.sin(half_angle) * sum(rates)
 
 
 URDF = """<robot name="compass">
@@ -181,9 +98,9 @@ INERTIAL = """<inertial><origin xyz="0 0 {place}"/><mass value="{mass}"/>
 
 def urdf_of(compass):
     """The compass as a machine in space. What turns its legs off their plane, and the hip at all, is any inertia."""
-    hip = INERTIAL.format(place=0.0, mass=compass.hip, across=0.3, inertia=0.2)
-    leg = INERTIAL.format(place=-compass.high, mass=compass.leg, across=0.3, inertia=compass.inertia)
-    return URDF.format(hip=hip, leg=leg, foot=-compass.length)
+    hip = INERTIAL.format(place=0.0, mass=compass.hip_mass, across=0.3, inertia=0.2)
+    leg = INERTIAL.format(place=-compass.to_hip, mass=compass.leg_mass, across=0.3, inertia=compass.leg_inertia)
+    return URDF.format(hip=hip, leg=leg, foot=-compass.leg)
 
 
 @pytest.mark.extras
@@ -198,18 +115,20 @@ def test_a_compass_gait_from_its_urdf_follows_the_closed_form(tmp_path):
         # About -y angles grow counter-clockwise in the plane of x and z.
         assert body.place(np.array([half_angle, -half_angle]))
         W, moved = body.mobility([[0], [1]], [(0.0, 0.0, 1.0), (1.0, 0.0, 0.0)])
-        mass, rows = by_hand(compass, half_angle)
-        assert pytest.approx(rows @ np.linalg.solve(mass, rows.T), abs=1e-12) == W
-        motion = motion_before(compass, half_angle, *rates)
-        c = rows @ motion
-        if c[2] > -0.05:
+        rows, inertia = (found(compass, half_angle, -half_angle) for found in (contact_rows, inertia_of))
+        assert pytest.approx(rows @ np.linalg.solve(inertia, rows.T), abs=1e-12) == W
+        rise = closing(compass, half_angle, rates)
+        if rise > -0.05:
             continue
-        outcome = solve(W, [0.0, 0.0, *c[2:]], (5.0, 5.0))
+        # The new foot goes round with the hip, and back with its own leg.
+        ahead = compass.leg * math.cos(half_angle) * (rates[0] - rates[1])
+        outcome = solve(W, [0.0, 0.0, rise, ahead], (5.0, 5.0))
         if outcome.mode is not Mode.PIVOT or outcome.impulses[0][0] != 0.0:
             continue
         change = moved @ np.array(outcome.impulses).ravel()
-        # A leg turns with the hip, about -y too, and in its joint.
-        turned = np.array([change[7], change[6]]) - change[4]
-        assert rates + turned == pytest.approx(momentum_map(compass, half_angle) @ rates, abs=1e-10)
+        # A leg turns with the hip, about -y too, and in its joint; forward is clockwise.
+        turned = change[4] - np.array([change[7], change[6]])
+        new, old = after_impact(compass, (half_angle, -half_angle), rates)
+        assert rates + turned == pytest.approx((old, new), abs=1e-10)
         pivots += 1
     assert pivots > 20

@@ -112,6 +112,15 @@ def test_the_approach_must_beat_gravity_within_the_contact_time() -> None:
     assert who([0.0, 0.01], [0.0, -1.01 * SLOW]) == ((0,), (1,))
 
 
+def test_while_the_point_that_comes_first_hardly_moves_no_later_one_is_taken_for_it() -> None:
+    # A body at the top of its rocking on point 0: point 1 is 3 mm up, and point 2, further out, closes a little faster.
+    low, far = 1.2 * FLOOR.tolerance, 100.0 * FLOOR.tolerance
+    assert who([0.0, low, far], [0.0, -0.9 * SLOW, -1.5 * SLOW]) is None
+    assert who([0.0, low, far], [0.0, -1.1 * SLOW, -1.8 * SLOW]) == ((0,), (1,))
+    # One that comes later than the fast one does not matter.
+    assert who([0.0, far, low], [0.0, -0.9 * SLOW, -1.5 * SLOW]) == ((0,), (2,))
+
+
 def test_points_that_close_within_the_contact_time_strike_together() -> None:
     assert who([0.100, 0.104, 0.106], [-1.0, -1.0, -1.0]) == ((), (0, 1))
 

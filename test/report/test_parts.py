@@ -14,12 +14,22 @@ from rich.console import Console
 from impact_predictor.errors import InputError
 from impact_predictor.parameters.file import read_values
 from impact_predictor.parameters.validation import validate
-from impact_predictor.prediction.parts import PARTS, ladder
+from impact_predictor.prediction.parts import EVENTS, PARTS, ladder
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.prediction.types import Sample, Status
 from impact_predictor.report.parts import start
-from impact_predictor.report.parts.measure import COSTS, measure_parts, measured, monitor_of, take, us_per_sample
+from impact_predictor.report.parts.measure import (
+    COSTS,
+    FEET,
+    added_by,
+    measure_parts,
+    measured,
+    monitor_of,
+    steps_of,
+    take,
+    us_per_sample,
+)
 from impact_predictor.report.parts.record import OfSupport, Record, made, record_of
 from impact_predictor.report.parts.start import NO_ROS, starts_of
 from impact_predictor.report.parts.table import print_parts
@@ -74,6 +84,7 @@ ANSWER: dict[str, Any] = {
             "on": True,
             "why": "contact.friction is 0.4",
             "us_per_sample": -20.0,
+            "us_scatter": 25.0,
             "start_ms": None,
             "start_mb": None,
         },
@@ -82,6 +93,7 @@ ANSWER: dict[str, Any] = {
             "on": False,
             "why": "margins is false: nobody asks how far an impact is from another mode",
             "us_per_sample": 1500.0,
+            "us_scatter": 25.0,
             "start_ms": 4.0,
             "start_mb": 0.5,
         },
@@ -90,6 +102,7 @@ ANSWER: dict[str, Any] = {
             "on": False,
             "why": "executor is single",
             "us_per_sample": -150.0,
+            "us_scatter": 25.0,
             "start_ms": 0.5,
             "start_mb": 0.0,
         },
@@ -97,7 +110,7 @@ ANSWER: dict[str, Any] = {
     "us_per_sample": 40.0,
     "start_ms": 45.0,
     "start_mb": 2.25,
-    "all_on": {"us_per_sample": 1540.0, "start_ms": 49.0, "start_mb": 2.75},
+    "all_on": {"us_per_sample": 1540.0, "us_scatter": 30.0, "start_ms": 49.0, "start_mb": 2.75},
     "node": {
         "us_per_message": 210.0,
         "start_ms": 400.0,
@@ -246,9 +259,52 @@ def test_parts_that_are_about_what_the_scene_has_are_told_without_costs(tmp_path
 def test_what_is_switched_on_costs_time() -> None:
     steps = ladder(CRATE)
     steps = steps[: 1 + [part.name if part else "" for part, _ in steps].index("margins")]
-    *_, before, with_margins = us_per_sample(steps, made(Scene.from_parameters(CRATE)), 1)
+    *_, (before,), (with_margins,) = us_per_sample(steps, made(Scene.from_parameters(CRATE)), 1)
     # A search in five directions, with several impacts in each, against one.
     assert with_margins > 3.0 * before > 0.0
+
+
+def test_what_a_part_adds_is_told_with_the_scatter_of_its_repetitions() -> None:
+    # The machine was slower in the third and fourth run, for both.
+    before, after = [50.0, 51.0, 70.0, 80.0, 50.0], [60.0, 62.0, 79.0, 91.0, 60.0]
+    assert added_by(before, after) == (11.0, 1.0)
+    assert added_by([50.0], [900.0]) == (850.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("us", "scatter", "name", "told"),
+    [
+        (-54.0, 60.0, "friction", "~0"),
+        (8.0, 8.5, "friction", "~0"),
+        (9.0, 8.5, "friction", "9.0"),
+        (-8.4, 3.0, "friction", "~0"),  # a part saves nothing: its scatter was larger than what the runs showed
+        (-20.0, 30.0, EVENTS, "~0"),
+        (-150.0, 30.0, EVENTS, "-150"),
+    ],
+)
+def test_a_cost_within_its_scatter_is_about_none_and_only_an_executor_saves(
+    us: float, scatter: float, name: str, told: str
+) -> None:
+    part = {**ANSWER["parts"][1], "name": name, "us_per_sample": us, "us_scatter": scatter}
+    rows = [line.split() for line in printed({**ANSWER, "node": None, "parts": [part]}, 100).splitlines()]
+    assert [row[row.index("on") + 1] for row in rows if row[:1] == name.split()[:1]] == [told]
+
+
+def test_the_feet_of_a_scene_have_a_row_of_their_own_beside_what_a_body_costs() -> None:
+    given = {"body.mass": 9.0, "body.inertia": [0.5], "contact.friction": 0.4, "feet.names": ["left", "right"]}
+    values = validate(given)
+    (core, fixed), (feet, first), *_ = steps = steps_of(values)
+    assert (core, feet, first) == (None, FEET, ladder(values)[0][1])
+    assert fixed == {**first, "feet.names": ()}
+    body, scene = measured(values)
+    record = made(scene)
+    assert measured(fixed)[1].walking is None
+    (alone,), (with_feet,) = us_per_sample(steps[:2], record, 1)
+    # A curve for each foot and its landing, against a body that stands.
+    assert with_feet > 1.5 * alone > 0.0
+    monitor = monitor_of(fixed, record)[1]
+    answers = [answer for one in record.messages if (answer := take(monitor, body, one)) is not None]
+    assert Counter(answer.status for answer in answers) == {Status.ACCEPTED: record.samples}
 
 
 @pytest.mark.slow
@@ -306,7 +362,7 @@ def test_the_table_says_what_each_part_costs_and_what_is_saved(width: int) -> No
     assert "…" not in text
     rows = {line[:15].strip(): line[15:].split() for line in text.splitlines()}
     assert rows["core"][:4] == ["on", "60", "45", "2.2"]
-    assert rows["friction"][:2] == ["on", "-20"]
+    assert rows["friction"][:2] == ["on", "~0"]
     assert rows["this scene"][:3] == ["40", "45", "2.2"]
     assert rows["margins"][:4] == ["off", "+1,500", "+4.0", "+0.5"]
     assert rows["everything on"][:3] == ["1,540", "49", "2.8"]
@@ -314,6 +370,13 @@ def test_the_table_says_what_each_part_costs_and_what_is_saved(width: int) -> No
     assert rows["events executor"][:4] == ["off", "-150", "+0.5", "+0.0"]
     assert rows["this node"][:3] == ["250", "400", "60"]
     assert rows["node"][:4] == ["on", "210", "355", "58"]
+
+
+def test_what_the_core_of_a_machine_that_walks_is_is_told() -> None:
+    feet = {**ANSWER["parts"][1], "name": "feet"}
+    said = "The core is here that of a body over the same samples"
+    assert said in printed({**ANSWER, "parts": [*ANSWER["parts"], feet]}, 120)
+    assert said not in printed({**ANSWER, "parts": [*ANSWER["parts"], {**feet, "on": False}]}, 120)
 
 
 def test_the_totals_are_told_in_words() -> None:

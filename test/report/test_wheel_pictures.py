@@ -17,6 +17,7 @@ from impact_predictor.report.motions.wheel_figure import (
     spokes_of,
     stance_of,
     stances,
+    steady_rates,
     title_of,
     write_wheel_figure,
 )
@@ -85,8 +86,33 @@ def test_titles_and_sentences_say_what_rolls_and_what_it_needs(slips: Rolling, s
     assert title_of(slips.wheel) == "A rimless wheel of 8 spokes with friction 0.35 on a slope of 5°"
     assert title_of(stops.wheel) == "A rimless wheel of 8 spokes that does not slip on a slope of 3°"
     assert "between them 0.375327; it has 0.35" in sentences(slips)[-1]
+    assert sentences(slips)[-2].startswith(
+        "Without slip it would come to steady rolling, closed form: 1.605412029 rad/s"
+    )
+    last = slips.impacts[-1].strike
+    really = f"in its last impact it slows down from {-last.before.omega:.9f} to {-last.after.omega:.9f} rad/s"
+    assert sentences(slips)[-3] == f"Its spokes slip: {really}"
     assert sentences(stops)[-1].startswith("On this slope it does not keep rolling")
     assert as_json(stops)["steady"] is None
+
+
+def test_steady_rolling_is_drawn_downhill_and_not_where_there_is_none(slips: Rolling) -> None:
+    before, after = steady_rates(slips.wheel)
+    assert before > after > 1.0
+    hub = slips.wheel.hub
+    assert steady_rates(Wheel(hub._replace(slope=-hub.slope))) == (-before, -after)
+    assert steady_rates(Wheel(hub._replace(slope=radians(3.0)))) == ()  # it stops
+    assert steady_rates(Wheel(hub._replace(slope=radians(40.0)))) == ()  # no friction is enough
+
+
+def test_a_wheel_that_slides_is_told_with_its_speed_and_one_that_came_to_rest_without() -> None:
+    wheel = Wheel(Hub(inertia=0.1, friction=0.0, slope=radians(5.0)))
+    slides = sentences(roll(wheel, 0.0, steps=None, duration=2.0))
+    # g sin(slope) for two seconds.
+    assert slides[1] == "Its spokes slip: in the end its hub moves at 1.71 m/s and it does not turn"
+    rests = sentences(roll(wheel._replace(hub=wheel.hub._replace(friction=0.2)), 0.0))
+    assert "it rests on two spokes, 0 steps and 0.905 m down the slope" in rests[0]
+    assert rests[1].startswith("Without slip")
 
 
 def test_the_moving_picture_lasts_as_long_as_one_can_look(slips: Rolling, stops: Rolling) -> None:

@@ -17,13 +17,12 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from PIL import Image
 
-from ...scenarios.walking.closed_forms import steady
 from ...scenarios.walking.wheel import Rolling
 from ..figure import STYLE
 from .animation import STEP, Picture, check_animation, digits_of, pace_of, save_film, speed_for
 from .figure import COLOURS
 from .stage import STRUCK
-from .wheel_figure import FIRST, GROUND, LEG, STANCES, rate_of, spokes_of, stance_of, stances, title_of
+from .wheel_figure import FIRST, GROUND, LEG, STANCES, rate_of, spokes_of, stance_of, stances, steady_rates, title_of
 
 _WIDTH, _HEIGHT, _DPI = 7.0, 5.4, 90
 _WIDE: Final = 5.2
@@ -156,10 +155,10 @@ class _Rate:
         (self._line,) = axes.plot([], [], color=COLOURS[0], linewidth=1.8)
         (self._dot,) = axes.plot([], [], "o", color=COLOURS[0], markersize=6)
         axes.axhline(0.0, color="#666666", linewidth=0.8)
-        rolls = steady(rolling.wheel)
-        title = "rate downhill (rad/s) against time (s)"
-        if rolls is not None:
-            for value in (rolls.before, rolls.after):
+        title = "rate ahead (rad/s) against time (s)"
+        steadily = steady_rates(rolling.wheel)
+        if steadily:
+            for value in steadily:
                 axes.axhline(value, color="#555555", linewidth=0.8, linestyle=(0, (5, 3)))
             title += "; dashed: steady rolling without slip, before and after an impact"
         axes.set(xlim=(0.0, rolling.time))

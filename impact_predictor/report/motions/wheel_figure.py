@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from math import cos, degrees, sin
+from math import copysign, cos, degrees, inf, sin
 from typing import Final
 
 import matplotlib
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ...mechanics.motion import PlanarState
 from ...mechanics.types import Mode
-from ...scenarios.walking.closed_forms import steady
+from ...scenarios.walking.closed_forms import downhill, least_friction, steady
 from ...scenarios.walking.wheel import RollEnd, Rolling, Stand, Wheel
 from ..figure import MODE_MARKERS, STYLE, check_figure, save_figure
 from .figure import COLOURS
@@ -84,7 +84,7 @@ def stances(rolling: Rolling, end: float) -> list[Stand]:
 
 
 def rate_of(rolling: Rolling, points: int = _POINTS) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Times (s) and rates of turning downhill (rad/s), with a gap at each impact."""
+    """Times (s) and rates of turning ahead (rad/s), with a gap at each impact."""
     strikes = [one.strike.time for one in rolling.impacts]
     times: list[NDArray[np.float64]] = []
     for start, end in zip([0.0, *strikes], [*strikes, rolling.time], strict=True):
@@ -94,6 +94,15 @@ def rate_of(rolling: Rolling, points: int = _POINTS) -> tuple[NDArray[np.float64
     time = np.concatenate(times) if times else np.array([0.0])
     omega = -rolling.world(np.nan_to_num(time)).omega
     return time, np.where(np.isnan(time), np.nan, omega)
+
+
+def steady_rates(wheel: Wheel) -> tuple[float, ...]:
+    """Rates ahead (rad/s) before and after each impact of steady rolling without slip; none where there is no such."""
+    down = downhill(wheel)
+    rolls = steady(down)
+    if rolls is None or least_friction(down) == inf:
+        return ()
+    return tuple(copysign(rate, wheel.hub.slope) for rate in (rolls.before, rolls.after))
 
 
 def spokes_of(wheel: Wheel, state: PlanarState) -> NDArray[np.float64]:
@@ -158,18 +167,18 @@ def _draw_rate(axes: Axes, rolling: Rolling) -> None:
         marker = modes.setdefault(strike.outcome.mode, MODE_MARKERS.get(strike.outcome.mode, "x"))
         axes.plot([strike.time] * 2, rates, color=COLOURS[0], linewidth=0.8, linestyle=":")
         axes.plot(strike.time, rates[1], marker, color=STRUCK, markersize=6, zorder=4)
-    rolls = steady(rolling.wheel)
+    steadily = steady_rates(rolling.wheel)
     handles = [Line2D([], [], color=COLOURS[0], linewidth=1.6, label="simulated")]
     for mode, marker in modes.items():
         name = f"after an impact: {mode.name}"
         handles.append(Line2D([], [], color=STRUCK, linestyle="", marker=marker, label=name))
-    if rolls is not None:
-        for value in (rolls.before, rolls.after):
+    if steadily:
+        for value in steadily:
             axes.axhline(value, color="#555555", linewidth=0.9, linestyle=(0, (5, 3)), zorder=1)
         name = "steady rolling without slip, before and after an impact"
         handles.append(Line2D([], [], color="#555555", linewidth=0.9, linestyle=(0, (5, 3)), label=name))
     axes.axhline(0.0, color="#666666", linewidth=0.8, zorder=1)
-    axes.set_ylabel("rate downhill (rad/s)")
+    axes.set_ylabel("rate ahead (rad/s)")
     low, high = axes.get_ylim()
     axes.set_ylim(low, high + 0.28 * (high - low))
     axes.legend(handles=handles, loc="upper right", ncols=2)

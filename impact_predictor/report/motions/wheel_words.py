@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from math import degrees, inf
+from math import degrees, hypot, inf
 from typing import Any, Final
 
 from rich.console import Console
 from rich.table import Table
 
-from ...scenarios.walking.closed_forms import impact_friction, least_friction, steady
-from ...scenarios.walking.wheel import RollEnd, Rolling
+from ...scenarios.walking.closed_forms import downhill, impact_friction, least_friction, steady
+from ...scenarios.walking.wheel import RollEnd, Rolling, Wheel
 from ..table import plain_table, show
 from .words import MOST_ROWS
 
@@ -22,24 +22,26 @@ ENDS: Final = {
     RollEnd.LOST: "cannot go on: the impact law has no answer, or there are too many events",
 }
 
+ROUNDING: Final = 1e-12
+"""A rate (rad/s) this small is none."""
+
 
 def as_json(rolling: Rolling) -> dict[str, Any]:
     """A rolling motion as JSON: times in s, angular velocities as magnitudes in rad/s.
 
-    `steady` is the closed form without slip, with the least friction coefficient for it (null where some part of a step
-    needs more than any); null where the wheel stops.
+    `steps` and `speed` count ahead. `steady` is the closed form of rolling down the slope without slip, with the least
+    friction coefficient for it; null where the wheel stops, or no friction is enough.
     """
     wheel = rolling.wheel
-    rolls = steady(wheel)
-    known = None
-    if rolls is not None:
-        needed = least_friction(wheel)
+    down = downhill(wheel)
+    rolls, known = steady(down), None
+    if rolls is not None and (needed := least_friction(down)) < inf:
         known = {
             "omega_before": rolls.before,
             "omega_after": rolls.after,
             "step_time": rolls.time,
             "speed": rolls.speed,
-            "friction": needed if needed < inf else None,
+            "friction": needed,
         }
     return {
         "impacts": [
@@ -83,7 +85,7 @@ def impact_table(rolling: Rolling) -> Table:
     for header in ("before\nrad/s", "after\nrad/s", "ratio\n", "energy\nlost, J"):
         table.add_column(header, justify="right", no_wrap=True)
     for number, (old, new, strike) in enumerate(rolling.impacts[:MOST_ROWS], 1):
-        before, after = (-rate if abs(rate) > 1e-12 else 0.0 for rate in (strike.before.omega, strike.after.omega))
+        before, after = (-rate if abs(rate) > ROUNDING else 0.0 for rate in (strike.before.omega, strike.after.omega))
         table.add_row(
             str(number),
             f"{strike.time:.6f}",
@@ -103,25 +105,70 @@ def sentences(rolling: Rolling) -> list[str]:
     more = len(rolling.impacts) - MOST_ROWS
     if more > 0:
         said.append(f"{more} more impacts: read them with --json")
+    said.append(f"At {rolling.time:.6f} s it {ENDS[rolling.end]}, {_way(rolling)}")
+    return [*said, *_steadily(rolling)]
+
+
+def _way(rolling: Rolling) -> str:
+    """How far a wheel has come, and where to."""
     steps, metres = rolling.steps, rolling.distance
-    farther = f"{steps} step{'' if abs(steps) == 1 else 's'} and {metres:.3f} m down the slope"
-    said.append(f"At {rolling.time:.6f} s it {ENDS[rolling.end]}, {farther}")
-    wheel = rolling.wheel
-    rolls = steady(wheel)
+    ways = [_ahead(rolling.wheel) if one >= 0 else _backwards(rolling.wheel) for one in (steps, metres)]
+    made, come = f"{abs(steps)} step{'' if abs(steps) == 1 else 's'}", f"{abs(metres):.3f} m"
+    if steps == 0 or ways[0] == ways[1]:
+        return f"{made} and {come} {ways[1]}"
+    return f"{made} {ways[0]} and {come} {ways[1]}"
+
+
+def _ahead(wheel: Wheel) -> str:
+    return "up the slope" if wheel.hub.slope < 0.0 else "down the slope"
+
+
+def _backwards(wheel: Wheel) -> str:
+    return f"backwards, {'down' if wheel.hub.slope < 0.0 else 'up'} the slope"
+
+
+def _steadily(rolling: Rolling) -> list[str]:
+    """What steady rolling down the slope would be, and what this wheel does instead where it cannot roll so."""
+    wheel, down = rolling.wheel, downhill(rolling.wheel)
+    rolls = steady(down)
     if rolls is None:
-        said.append("On this slope it does not keep rolling: each impact takes more than a step gives (closed form)")
-        return said
-    said.append(
-        f"Steady rolling, closed form: {rolls.before:.9f} rad/s before each impact, {rolls.after:.9f} after it, "
+        return ["On this slope it does not keep rolling: each impact takes more than a step gives (closed form)"]
+    struck, needed = impact_friction(wheel.hub, wheel.alpha), least_friction(down)
+    if needed == inf:
+        none = "no friction is enough, the ground would have to hold its spokes down (closed form)"
+        return [*_really(rolling), f"Without slip it cannot roll steadily: {none}"]
+    rates = (
+        f"{rolls.before:.9f} rad/s before each impact, {rolls.after:.9f} after it, "
         f"a step in {rolls.time:.6f} s, {rolls.speed:.4f} m/s"
     )
-    needed, struck = least_friction(wheel), impact_friction(wheel.hub, wheel.alpha)
-    between = f"{needed:.6f}" if needed < inf else "none is enough: the ground would have to pull"
-    said.append(
-        f"It needs a friction coefficient of {struck:.6f} in the impacts, between them {between}; "
+    friction = (
+        f"needs a friction coefficient of {struck:.6f} in the impacts, between them {needed:.6f}; "
         f"it has {wheel.hub.friction:g}"
     )
-    return said
+    if wheel.hub.friction >= needed:
+        return [
+            f"Steady rolling{' backwards' if wheel.hub.slope < 0.0 else ''}, closed form: {rates}",
+            f"It {friction}",
+        ]
+    return [
+        *_really(rolling),
+        f"Without slip it would come to steady rolling, closed form: {rates}",
+        f"This {friction}",
+    ]
+
+
+def _really(rolling: Rolling) -> list[str]:
+    """What a wheel does that has less friction than steady rolling needs; nothing where its end has told it."""
+    if rolling.end in (RollEnd.RESTS, RollEnd.BALANCED, RollEnd.TAKES_OFF):
+        return []
+    slips = any(state != "S" for stand in rolling.stands for _, state in stand.tips)
+    state, said = rolling.world(rolling.time), "Its spokes slip: in" if slips else "In"
+    if abs(state.omega) > ROUNDING and rolling.impacts:
+        last = rolling.impacts[-1].strike
+        before, after = abs(last.before.omega), abs(last.after.omega)
+        return [f"{said} its last impact it slows down from {before:.9f} to {after:.9f} rad/s"]
+    turns = "" if abs(state.omega) > ROUNDING else " and it does not turn"
+    return [f"{said} the end its hub moves at {hypot(state.vx, state.vy):.4g} m/s{turns}"]
 
 
 def _say(console: Console, text: str) -> None:

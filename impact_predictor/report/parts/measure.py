@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
-from itertools import zip_longest
+from itertools import pairwise, zip_longest
 from pathlib import Path
 from statistics import median
 from time import process_time_ns
@@ -24,6 +24,8 @@ Tell = Callable[[float], None]
 CORE: Final = "core"
 WHY_CORE: Final = "every scene: samples, impact plane, motion until the touchdown, impact, score"
 
+FEET: Final = next(part for part in PARTS if part.name == "feet")
+
 COSTS: Final = ("us_per_sample", "start_ms", "start_mb")
 SAMPLES: Final = 400
 RUNS: Final = 5
@@ -40,27 +42,31 @@ def measure_parts(params: str | os.PathLike[str], tell: Tell = _nobody, runs: in
 
     `tell` is told how much is done, 0 to 100. Keys:
 
-    - `parts`, each with `name`, `on`, `why`, `us_per_sample`, `start_ms`, `start_mb`; None where there is no such cost
-    - `us_per_sample`, `start_ms`, `start_mb` of the whole scene; in `all_on` with every part instead
+    - `parts`, each with `name`, `on`, `why`, `us_per_sample`, `start_ms`, `start_mb`; None where there is no such cost;
+      and `us_scatter`, that of `us_per_sample`: what is not above it cannot be told from no cost
+    - `us_per_sample`, `start_ms`, `start_mb` of the whole scene; in `all_on` with every part instead, and `us_scatter`
+      of what that adds
     - `node`, the same two of the start of the node, and `us_per_message`, in which a message without a touchdown is
       published, received and answered; or None for the reason in `why_no_node`
     - `outputs`, the microseconds for a sample in which each is encoded, paid only while somebody subscribes to it
     - `scene`, and `record`: over what it was measured
 
     Costs are CPU time, in medians of `runs` runs. The parts are switched on one after another, those of the scene
-    first, so that the costs add up; a part may cost less than nothing.
+    first, so that the costs add up. The scatter is half the range of what a part adds in each of the runs: with five of
+    them about twice the standard error of their median.
 
     Raises:
         InputError: the file cannot be read, or a parameter is wrong.
     """
     values, name = read_values(params), Path(params).stem
-    steps = ladder(values)
+    steps = steps_of(values)
     body, one = measured(values)
     record = record_of(name, one, SAMPLES)
     costs = us_per_sample(steps, record, runs, lambda done: tell(0.5 * done))
-    starts = starts_of(steps, runs, lambda done: tell(50 + 0.5 * done))
+    starts = starts_of(steps, runs, lambda done: tell(50 + 0.5 * done), 1 if FEET.on(values) else 0)
     scene = max(k for k, (part, _) in enumerate(steps) if part is None or part.on(values))
-    added = [cost - before for cost, before in zip(costs, [0.0, *costs], strict=False)]
+    medians = [median(cost) for cost in costs]
+    added = [(medians[0], 0.0), *[added_by(before, after) for before, after in pairwise(costs)]]
     return {
         "scene": name,
         "parts": [
@@ -68,19 +74,23 @@ def measure_parts(params: str | os.PathLike[str], tell: Tell = _nobody, runs: in
                 "name": CORE if part is None else part.name,
                 "on": part is None or part.on(values),
                 "why": WHY_CORE if part is None else part.why(values),
-                "us_per_sample": _us(part, us, starts),
+                **_us(part, us, starts),
                 **_start(part, predictor, node),
             }
             for (part, _), us, predictor, node in zip_longest(steps, added, starts.predictor, starts.node)
         ]
         + [
-            {"name": part.name, "on": part.on(values), "why": part.why(values), **dict.fromkeys(COSTS)}
+            {"name": part.name, "on": part.on(values), "why": part.why(values), **dict.fromkeys((*COSTS, "us_scatter"))}
             for part in PARTS
             if part not in [step for step, _ in steps]
         ],
-        "us_per_sample": costs[scene],
+        "us_per_sample": medians[scene],
         **_sum(starts.predictor[: scene + 1]),
-        "all_on": {"us_per_sample": costs[-1], **_sum(starts.predictor)},
+        "all_on": {
+            "us_per_sample": medians[-1],
+            "us_scatter": added_by(costs[scene], costs[-1])[1],
+            **_sum(starts.predictor),
+        },
         "node": _node(starts, scene, values["executor"] == "events"),
         "why_no_node": starts.why_no_node,
         "outputs": us_per_output(values, record),
@@ -88,14 +98,32 @@ def measure_parts(params: str | os.PathLike[str], tell: Tell = _nobody, runs: in
     }
 
 
-def _us(part: Part | None, us: float, starts: Starts) -> float | None:
-    """What a part adds to a sample; the executor, to its way to the predictor."""
-    if part is None or not part.of_node:
-        return us
-    if part.name != EVENTS or starts.messages is None:
-        return None
-    single, events = starts.messages
-    return events - single
+def steps_of(values: Values) -> list[tuple[Part | None, Values]]:
+    """The ladder of a scene. Where it has feet, these are a step of their own, after points that are fixed to the body.
+
+    That is over the same record: the points are then where the last geometry has told them to be.
+    """
+    (core, first), *others = ladder(values)
+    if not FEET.on(values):
+        return [(core, first), *others]
+    fixed = {name: () if name.rpartition("feet.")[2] == "names" else value for name, value in first.items()}
+    return [(core, fixed), (FEET, first), *others]
+
+
+def added_by(before: Sequence[float], after: Sequence[float]) -> tuple[float, float]:
+    """What a step adds to the median of repeated runs, and the scatter of that."""
+    added = [cost - other for other, cost in zip(before, after, strict=False)]
+    return median(after) - median(before), 0.5 * (max(added) - min(added))
+
+
+def _us(part: Part | None, added: tuple[float, float], starts: Starts) -> dict[str, float | None]:
+    """What a part adds to a sample, with its scatter; the executor, to its way to the predictor."""
+    if part is not None and part.of_node:
+        if part.name != EVENTS or starts.messages is None:
+            return {"us_per_sample": None, "us_scatter": None}
+        single, events = starts.messages
+        added = events - single, starts.messages_scatter
+    return dict(zip(("us_per_sample", "us_scatter"), added, strict=True))
 
 
 def _node(starts: Starts, scene: int, by_events: bool) -> dict[str, Any] | None:
@@ -123,8 +151,8 @@ def _sum(starts: Sequence[Start]) -> dict[str, float]:
     return {"start_ms": sum(start.ms for start in starts), "start_mb": sum(start.mb for start in starts)}
 
 
-def us_per_sample(steps: Steps, record: Record, runs: int, tell: Tell = _nobody) -> list[float]:
-    """Microseconds of CPU time for each sample of a record, at every step of a ladder: medians of runs in turn."""
+def us_per_sample(steps: Steps, record: Record, runs: int, tell: Tell = _nobody) -> list[list[float]]:
+    """Microseconds of CPU time for each sample of a record, at every step of a ladder, in each of some runs in turn."""
     costs: list[list[float]] = [[] for _ in steps]
     for run in range(runs + 1):
         for k, (part, values) in enumerate(steps):
@@ -135,7 +163,7 @@ def us_per_sample(steps: Steps, record: Record, runs: int, tell: Tell = _nobody)
                 if run or cost * 1e-6 * record.samples > BUDGET:  # the first run warms up, if there is time for it
                     costs[k].append(cost)
             tell(100 * (run * len(steps) + k + 1) / ((runs + 1) * len(steps)))
-    return [median(cost) for cost in costs]
+    return costs
 
 
 def measured(values: Values) -> tuple[str, Scene]:

@@ -37,32 +37,40 @@ class Starts(NamedTuple):
     """What each step of a ladder adds to the start of a predictor, and of the node.
 
     `messages` are the microseconds in which the node receives and answers a message without a touchdown, with the
-    executors single and events; `why_no_node` says why the node was not measured, or "".
+    executors single and events, `messages_scatter` that of their difference; `why_no_node` says why the node was not
+    measured, or "".
     """
 
     predictor: list[Start]
     node: list[Start]
     messages: tuple[float, float] | None
     why_no_node: str
+    messages_scatter: float = 0.0
 
 
-def starts_of(steps: Steps, runs: int, tell: Callable[[float], None]) -> Starts:
-    """Measure a ladder (see `impact_predictor.prediction.parts.ladder`); `tell` is told 0 to 100."""
+def starts_of(steps: Steps, runs: int, tell: Callable[[float], None], first: int = 0) -> Starts:
+    """Measure a ladder (see `impact_predictor.prediction.parts.ladder`); `tell` is told 0 to 100.
+
+    The node starts with the `first` of the steps, which counts for those before it, too.
+    """
     predictor, _ = _measured(steps, (), runs, lambda done: tell(0.35 * done))
     if find_spec("rclpy") is None:
         return Starts(predictor, [], None, NO_ROS)
     try:
-        arguments = arguments_of(with_poses(steps[0][1]))
-        node, messages = _measured(steps, arguments, runs // 2 + 1, lambda done: tell(35 + 0.65 * done))
+        arguments = arguments_of(with_poses(steps[first][1]))
+        node, messages = _measured(steps[first:], arguments, runs // 2 + 1, lambda done: tell(35 + 0.65 * done))
     except InputError as error:
         return Starts(predictor, [], None, str(error))
-    return Starts(predictor, node, messages, "")
+    single, events = zip(*messages, strict=True)
+    added = [other - one for one, other in messages]
+    node = [Start(0.0, 0.0)] * first + node
+    return Starts(predictor, node, (median(single), median(events)), "", 0.5 * (max(added) - min(added)))
 
 
 def _measured(
     steps: Steps, arguments: tuple[str, ...], runs: int, tell: Callable[[float], None]
-) -> tuple[list[Start], tuple[float, float]]:
-    """What each step adds, of the parts of the node only with arguments; and what messages cost then. All medians."""
+) -> tuple[list[Start], list[tuple[float, float]]]:
+    """The median of what each step adds (parts of the node: only with arguments), and what messages cost each time."""
     taken = [k for k, (part, _) in enumerate(steps) if not part or (arguments if part.of_node else part.modules)]
     found: list[list[Start]] = [[] for _ in steps]
     messages = []
@@ -74,8 +82,7 @@ def _measured(
             found[k].append(Start(*start))
         messages.append(last)
         tell(100 * (run + 1) / runs)
-    single, events = (median(one) for one in zip(*messages, strict=True))
-    return [Start(*map(median, zip(*one, strict=True))) if one else Start(0.0, 0.0) for one in found], (single, events)
+    return [Start(*map(median, zip(*one, strict=True))) if one else Start(0.0, 0.0) for one in found], messages
 
 
 def _step(part: Part | None, values: Values) -> dict[str, Any] | str:

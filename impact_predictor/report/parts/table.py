@@ -9,7 +9,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from ...prediction.parts import PARTS
+from ...prediction.parts import EVENTS, PARTS
 from ..table import plain_table
 from .measure import COSTS
 
@@ -51,8 +51,7 @@ def parts_table(answer: Costs) -> Table:
         _add(table, part)
     if left_out:
         _add_total(table, "everything on", answer["all_on"], "")
-        saved = {cost: answer["all_on"][cost] - answer[cost] for cost in COSTS}
-        _add_total(table, "saved", saved, "by what this scene leaves out")
+        _add_total(table, "saved", _saved(answer), "by what this scene leaves out")
     if answer["node"] is not None:
         _add(table, _rest_of_node(answer, node))
     for part in node:
@@ -63,13 +62,15 @@ def parts_table(answer: Costs) -> Table:
 
 
 def _add(table: Table, part: Costs) -> None:
-    cells = [_number(part[cost], signed=not part["on"]) for cost in COSTS]
+    cells = [_us(part, signed=not part["on"]), *[_number(part[cost], signed=not part["on"]) for cost in COSTS[1:]]]
     table.add_row(part["name"], "on" if part["on"] else "off", *cells, part["why"], style="" if part["on"] else "dim")
 
 
 def _add_total(table: Table, name: str, costs: Costs, why: str) -> None:
     table.add_section()
-    table.add_row(name, "", *[_number(costs[cost]) for cost in COSTS], why, style="bold", end_section=True)
+    table.add_row(
+        name, "", _us(costs), *[_number(costs[cost]) for cost in COSTS[1:]], why, style="bold", end_section=True
+    )
 
 
 def _rest_of_node(answer: Costs, parts: list[Costs]) -> Costs:
@@ -92,6 +93,19 @@ def _whole_node(answer: Costs) -> Costs:
     return {**node, "us_per_sample": answer["us_per_sample"] + node["us_per_message"]}
 
 
+def _saved(answer: Costs) -> Costs:
+    every = answer["all_on"]
+    return {**{cost: every[cost] - answer[cost] for cost in COSTS}, "us_scatter": every["us_scatter"]}
+
+
+def _us(costs: Costs, signed: bool = False) -> str:
+    """Microseconds for a sample: about none within their scatter; below 0 only the executor, which replaces another."""
+    us, scatter = costs["us_per_sample"], costs.get("us_scatter")
+    if us is not None and scatter is not None and (abs(us) <= scatter or (us < 0.0 and costs.get("name") != EVENTS)):
+        return "~0"
+    return _number(us, signed)
+
+
 def _number(value: float | None, signed: bool = False) -> str:
     if value is None:
         return ""
@@ -102,21 +116,23 @@ def _number(value: float | None, signed: bool = False) -> str:
 
 def sentences(answer: Costs) -> list[str]:
     """The totals in words, what the outputs cost, and how all this was measured."""
-    saved = {cost: answer["all_on"][cost] - answer[cost] for cost in COSTS}
     total = "; ".join(
         f"{name}: {_words(costs)}"
-        for name, costs in (("This scene", answer), ("everything on", answer["all_on"]), ("saved", saved))
+        for name, costs in (("This scene", answer), ("everything on", answer["all_on"]), ("saved", _saved(answer)))
     )
     outputs = ", ".join(f"~/{name} {_number(us)}" for name, us in answer["outputs"].items())
     said = [
         f"{total}.",
         f"To encode an output costs more, but only while somebody subscribes to it (us for each sample): {outputs}.",
-        f"Measured over {answer['record']}: CPU time, medians; memory beyond Python's own. A cost below 0 is a saving.",
+        f"Measured over {answer['record']}: CPU time, medians; memory beyond Python's own.",
+        "~0 us is no more than the scatter of repeated runs. Below 0 an executor saves against the other one.",
         "A support that may move tells 100 times a second that it is at rest; its messages count with the samples.",
     ]
+    if any(part["name"] == "feet" and part["on"] for part in answer["parts"]):
+        said.append("The core is here that of a body over the same samples, its contact points fixed to it.")
     return said if answer["node"] is not None else [*said, f"{answer['why_no_node']}."]
 
 
 def _words(costs: Costs) -> str:
-    us, ms, mb = (_number(costs[cost]) for cost in COSTS)
+    us, (ms, mb) = _us(costs), (_number(costs[cost]) for cost in COSTS[1:])
     return f"{us} us per sample, {ms} ms and {mb} MB at the start"

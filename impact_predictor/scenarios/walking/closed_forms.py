@@ -48,7 +48,7 @@ def passes(hub: Hub, start: float, rate: float) -> bool:
 
 
 def steady(wheel: Wheel) -> Steady | None:
-    """The rolling in which each step is as the one before; None where the wheel stops.
+    """The rolling ahead in which each step is as the one before; None where the wheel stops.
 
     From any rate with which it rolls on, the squares of the rates come nearer to it by kept^2 with each step.
     """
@@ -61,6 +61,11 @@ def steady(wheel: Wheel) -> Steady | None:
         return None
     time = step_time(hub, -alpha, alpha, part * before)
     return Steady(before, part * before, time, wheel.step / time)
+
+
+def downhill(wheel: Wheel) -> Wheel:
+    """The wheel seen from the side from which it rolls ahead, not backwards, down its slope."""
+    return wheel._replace(hub=wheel.hub._replace(slope=abs(wheel.hub.slope)))
 
 
 def rates(wheel: Wheel, after: float) -> Iterator[float]:
@@ -112,6 +117,8 @@ def stance_friction(hub: Hub, angle: float, rate: float) -> float:
 
 def least_friction(wheel: Wheel) -> float:
     """The smallest friction coefficient with which nothing slips in steady rolling: of the impact or of the stance.
+
+    inf where none is enough, for the ground would have to pull: the wheel slips or takes off.
 
     Raises:
         ValueError: the wheel stops.

@@ -23,9 +23,9 @@ Array = NDArray[np.float64]
 
 
 class Compass(NamedTuple):
-    """A compass with a point mass at the hip and one in each leg, `to_foot` + `to_hip` long; SI units.
+    """A compass with a point mass at the hip and the mass centre of each leg `to_foot` and `to_hip` away; SI units.
 
-    `slope` in rad, positive downhill ahead.
+    `slope` in rad, positive downhill ahead; `leg_inertia` of a leg about its mass centre.
     """
 
     hip_mass: float = 10.0
@@ -34,6 +34,7 @@ class Compass(NamedTuple):
     to_hip: float = 0.5
     slope: float = 0.05
     gravity: float = 9.81
+    leg_inertia: float = 0.0
 
     @property
     def leg(self) -> float:
@@ -133,7 +134,7 @@ def after_impact(compass: Compass, angles: tuple[float, float], rates: tuple[flo
     and `rates` are those of the old standing leg and of the new one right before.
     """
     theta, psi = angles
-    inertia = _inertia(compass, theta, psi)
+    inertia = inertia_of(compass, theta, psi)
     momentum = inertia @ _free_rates(compass, theta, *rates)
     # What the legs do about the new foot, as velocities of the hip and rates of the legs.
     pinned = np.array([[0.0, compass.leg * cos(psi)], [0.0, -compass.leg * sin(psi)], [1.0, 0.0], [0.0, 1.0]])
@@ -148,10 +149,21 @@ def strike(
 
     Friction may be too small to hold the feet. Arguments as those of `after_impact`; the legs must have mass.
     """
-    theta, psi = angles
-    inertia = _inertia(compass, theta, psi)
-    velocity = _free_rates(compass, theta, *rates)
-    rows = np.array(
+    rows = contact_rows(compass, *angles)
+    velocity = _free_rates(compass, angles[0], *rates)
+    response = np.linalg.solve(inertia_of(compass, *angles), rows.T)
+    speeds = rows @ velocity
+    outcome = solve(rows @ response, (0.0, 0.0, speeds[2], speeds[3]), (friction, friction), law=law)
+    after = velocity + response @ np.array([*outcome.impulses[0], *outcome.impulses[1]])
+    return outcome, (float(after[3]), float(after[2]))
+
+
+def contact_rows(compass: Compass, theta: float, psi: float) -> Array:
+    """Velocities of the feet (4, 4) by those of the hip, ahead and up, and rates of the legs at two angles.
+
+    Along the slope's normal and ahead: of the foot of the first leg, and of the other one.
+    """
+    return np.array(
         [
             [0.0, 1.0, compass.leg * sin(theta), 0.0],
             [1.0, 0.0, -compass.leg * cos(theta), 0.0],
@@ -159,23 +171,18 @@ def strike(
             [1.0, 0.0, 0.0, -compass.leg * cos(psi)],
         ]
     )
-    response = np.linalg.solve(inertia, rows.T)
-    speeds = rows @ velocity
-    outcome = solve(rows @ response, (0.0, 0.0, speeds[2], speeds[3]), (friction, friction), law=law)
-    after = velocity + response @ np.array([*outcome.impulses[0], *outcome.impulses[1]])
-    return outcome, (float(after[3]), float(after[2]))
 
 
-def _inertia(compass: Compass, theta: float, psi: float) -> Array:
+def inertia_of(compass: Compass, theta: float, psi: float) -> Array:
     """Inertia for velocities of the hip, ahead and up, and rates of the legs at two angles."""
     m, b = compass.leg_mass, compass.to_hip
-    whole = compass.hip_mass + 2.0 * m
+    whole, own = compass.hip_mass + 2.0 * m, m * b * b + compass.leg_inertia
     return np.array(
         [
             [whole, 0.0, -m * b * cos(theta), -m * b * cos(psi)],
             [0.0, whole, m * b * sin(theta), m * b * sin(psi)],
-            [-m * b * cos(theta), m * b * sin(theta), m * b * b, 0.0],
-            [-m * b * cos(psi), m * b * sin(psi), 0.0, m * b * b],
+            [-m * b * cos(theta), m * b * sin(theta), own, 0.0],
+            [-m * b * cos(psi), m * b * sin(psi), 0.0, own],
         ]
     )
 
@@ -187,14 +194,15 @@ def _free_rates(compass: Compass, theta: float, stance: float, swing: float) -> 
 
 def _accelerations(compass: Compass, theta: float, psi: float, stance: float, swing: float) -> tuple[float, float]:
     """Angular accelerations of the legs while the foot of the first one stands; the second row is for unit mass."""
-    hip, m, a, b, gamma, g = compass
+    hip, m, a, b, gamma, g, inertia = compass
     leg = a + b
     between = theta - psi
-    own, coupling = hip * leg * leg + m * (a * a + leg * leg), -leg * b * cos(between)
+    own, coupling = hip * leg * leg + m * (a * a + leg * leg) + inertia, -leg * b * cos(between)
+    others = b * b + inertia / m
     turning = m * leg * b * sin(between) * swing * swing + (hip * leg + m * (a + leg)) * g * sin(theta + gamma)
     swinging = -leg * b * sin(between) * stance * stance - b * g * sin(psi + gamma)
-    determinant = own * b * b - m * coupling * coupling
+    determinant = own * others - m * coupling * coupling
     return (
-        (b * b * turning - m * coupling * swinging) / determinant,
+        (others * turning - m * coupling * swinging) / determinant,
         (own * swinging - coupling * turning) / determinant,
     )

@@ -26,6 +26,10 @@ _WHOLE: Final = 1e-9
 """How far a number of spokes may be from a whole one, relative to it: angles come in degrees, too."""
 
 
+_BEYOND: Final = 1.0 + 1e-12
+"""How far beyond being over a spoke it is over it, so that it is not over it at once."""
+
+
 class Wheel(NamedTuple):
     """A hub with equal spokes all around, `alpha` (rad) half the angle between two of them."""
 
@@ -116,13 +120,13 @@ class Rolling:
 
     @property
     def steps(self) -> int:
-        """How many spokes farther down the slope it stands than where it began."""
+        """How many spokes farther ahead it stands than where it began; negative where it has rolled backwards."""
         last = self.parts[-1]
         return last.first + (1 if last.run.states(self.time)[0] == "O" else 0)
 
     @property
     def distance(self) -> float:
-        """How far down the slope its hub has come, in m."""
+        """How far ahead along the slope its hub has come, in m."""
         return float(self.parts[-1].run.state(self.time).x - self.parts[0].run.state(0.0).x)
 
     def world(self, time: Any) -> PlanarState:
@@ -162,10 +166,10 @@ class Rolling:
 
 
 def roll(wheel: Wheel, rate: float = 0.0, steps: int | None = 20, duration: float = 60.0, law: str = "path") -> Rolling:
-    """Let a wheel go with spoke 0 at right angles to the slope, turning downhill at `rate` (rad/s).
+    """Let a wheel go with spoke 0 at right angles to the slope, turning ahead at `rate` (rad/s).
 
-    It is followed for `duration` s, until it rests, or until it is over the spoke that `steps` of them lead to. `law`
-    is that of `solve_impact`; the spokes slip where friction does not hold them, and do not bounce.
+    It is followed for `duration` s, until it rests, or until it is over the spoke that `steps` of them lead to, ahead
+    or backwards. `law` is that of `solve_impact`; the spokes slip where friction does not hold them, and do not bounce.
 
     Raises:
         InputError: a number is out of its range.
@@ -178,11 +182,13 @@ def roll(wheel: Wheel, rate: float = 0.0, steps: int | None = 20, duration: floa
     # Every part but this one begins with the impact on the second of its spokes.
     first, time, state, parts = -1, 0.0, standing(body, -alpha, -rate, x=-wheel.step), []
     while True:
-        for limit in (alpha, 2.0 * alpha) if first + 1 == steps else (2.0 * alpha,):
+        # Contact 1 of a part is ahead, contact 0 behind: the last spoke of the steps is one of them, or neither.
+        last = True if first + 1 == steps else False if -first == steps else None
+        for limit in (2.0 * alpha,) if last is None else (_BEYOND * alpha, 2.0 * alpha):
             left = max(0.0, duration - time)
             run = rock(body, state, support, law, left, time, overturned=limit, max_events=_MOST_EVENTS)
             onwards = run.states(run.time)[0] == "O"
-            if onwards or run.end is not End.OVERTURNED:
+            if onwards is last or run.end is not End.OVERTURNED:
                 break
         parts.append(Part(first, time, run))
         flight = next((phase.start for phase in run.phases if phase.states == "OO" and phase.end > phase.start), inf)
@@ -190,7 +196,7 @@ def roll(wheel: Wheel, rate: float = 0.0, steps: int | None = 20, duration: floa
             return Rolling(wheel, law, parts, RollEnd.TAKES_OFF, flight)
         if run.end is not End.OVERTURNED:
             return Rolling(wheel, law, parts, _ENDS.get(run.end, RollEnd.LOST), run.time)
-        if onwards and first + 1 == steps:
+        if onwards is last:
             return Rolling(wheel, law, parts, RollEnd.STEPS_DONE, run.time)
         # The next spoke touches: as if the wheel had gone on by a step, and not turned.
         end, on = run.state(run.time), 1 if onwards else -1

@@ -10,6 +10,7 @@ import pytest
 from impact_predictor.mechanics.impact import solve_impact
 from impact_predictor.mechanics.types import Mode
 from impact_predictor.scenarios.walking.closed_forms import (
+    downhill,
     gained,
     impact_friction,
     kept,
@@ -56,6 +57,7 @@ def test_on_a_slope_of_005_a_point_mass_stops_and_it_rolls_from_where_it_just_co
 def test_the_level_and_the_uphill_stop_every_wheel_and_so_do_three_or_four_spokes() -> None:
     for slope in (0.0, -0.1):
         assert steady(sloping(slope, 1.0)) is None
+    assert steady(downhill(sloping(-0.1, 1.0))) == steady(sloping(0.1, 1.0)) == steady(downhill(sloping(0.1, 1.0)))
     for spokes in (3, 4):
         assert steady(POINT_MASS._replace(alpha=pi / spokes)) is None
 

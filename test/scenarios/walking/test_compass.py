@@ -98,8 +98,9 @@ def test_the_impact_of_feet_with_mass_is_the_published_one(share: float) -> None
     assert stance == pytest.approx(0.25 * cos(0.4) / (1.0 + share * sin(0.4) ** 2), rel=1e-13)
 
 
-def test_a_compass_with_heavy_legs_walks_steadily_down_3_degrees() -> None:
-    compass = Compass(slope=radians(3.0))
+@pytest.mark.parametrize("inertia", [0.0, 0.02])
+def test_a_compass_with_heavy_legs_walks_steadily_down_3_degrees(inertia: float) -> None:
+    compass = Compass(slope=radians(3.0), leg_inertia=inertia)
     found = fixed_point(compass, Gait(0.27, 1.1, 0.4))
     landed = step(compass, found)
     assert landed is not None

@@ -16,10 +16,11 @@ from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene, inertia_matrix
 from impact_predictor.prediction.types import Prediction
 from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY, ODOMETRY, POLYGON, decode_odometry, decode_polygon
+from impact_predictor.scenarios.record import REST
 from impact_predictor.scenarios.truth import TRUTH_TOPIC, TrueImpact, decode_true_impacts
 from impact_predictor.scenarios.walking.record import samples_in, write_wheel
 from impact_predictor.scenarios.walking.stride import Hub
-from impact_predictor.scenarios.walking.wheel import Rolling, Wheel, roll
+from impact_predictor.scenarios.walking.wheel import RollEnd, Rolling, Wheel, roll
 
 CONFIG = Path(__file__).parents[3] / "config/wheel.yaml"
 SHIPPED = Wheel(Hub(inertia=0.1, friction=100.0, slope=radians(5.0)))
@@ -36,9 +37,9 @@ def scene_of(wheel: Wheel) -> Scene:
     )
 
 
-def predicted(path: Path, rolling: Rolling) -> tuple[list[TrueImpact], list[Prediction]]:
+def predicted(path: Path, rolling: Rolling, rate: float = 200.0) -> tuple[list[TrueImpact], list[Prediction]]:
     """The true impacts of a bag, and the prediction of each sample."""
-    write_wheel(path, rolling, 200.0)
+    write_wheel(path, rolling, rate)
     truths = [
         one
         for message in read_messages(path, {TRUTH_TOPIC: DIAGNOSTIC_ARRAY})
@@ -52,6 +53,18 @@ def predicted(path: Path, rolling: Rolling) -> tuple[list[TrueImpact], list[Pred
 def last_before(truth: TrueImpact, answers: list[Prediction]) -> Any:
     """The last touchdown that was announced before an impact."""
     return [one.touchdown for one in answers if one.touchdown is not None and one.sample.stamp < truth.stamp][-1]
+
+
+def test_a_wheel_that_rocks_to_rest_is_announced_nothing_but_its_impacts(tmp_path: Path) -> None:
+    rolling = roll(Wheel(Hub(inertia=1e-9, friction=100.0, slope=0.05)), 1.5, steps=None)
+    truths, answers = predicted(tmp_path / "wheel.mcap", rolling, 1000.0)
+    assert rolling.end is RollEnd.RESTS
+    stamps = np.array([truth.stamp for truth in truths])
+    announced = [one.sample.stamp + 1e9 * one.touchdown.lead_time for one in answers if one.touchdown is not None]
+    # Once it moves by less than the scene's tolerance, its next spoke but one may be announced for after its rest.
+    until = [stamp for stamp in announced if stamp < 1e9 * (rolling.time + REST)]
+    assert len(until) > 1000
+    assert max(np.abs(stamps - stamp).min() for stamp in until) < 10.0  # ns
 
 
 def test_the_shipped_scene_is_that_of_the_simulated_wheel() -> None:

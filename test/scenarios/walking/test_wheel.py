@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from math import cos, pi, radians, sin
+from math import cos, inf, pi, radians, sin
 
 import numpy as np
 import pytest
@@ -179,9 +179,34 @@ def test_spokes_count_on_every_turn_and_uphill_they_count_back() -> None:
 
 
 def test_a_wheel_thrown_up_a_steep_slope_comes_back_and_rolls_down_behind_its_start() -> None:
-    rolling = roll(Wheel(HUB._replace(slope=-0.15), ALPHA), 2.0, steps=2, duration=20.0)
-    assert rolling.distance < -2.0
-    assert rolling.end is RollEnd.TIME_UP
+    rolling = roll(Wheel(HUB._replace(slope=-0.15), ALPHA), 2.0, steps=4, duration=20.0)
+    assert max(one.new for one in rolling.impacts[:2]) == 1
+    assert (rolling.end, rolling.steps) == (RollEnd.STEPS_DONE, -4)
+    assert rolling.distance == pytest.approx(-4.0 * rolling.wheel.step)
+
+
+@pytest.mark.parametrize("friction", [1.0, 0.35])
+@pytest.mark.parametrize("steps", [1, 2, 9])
+def test_on_a_slope_that_rises_ahead_it_rolls_backwards_as_its_mirror_image_rolls_ahead(
+    steps: int, friction: float
+) -> None:
+    hub = HUB._replace(inertia=0.1, friction=friction)
+    ahead, back = (roll(Wheel(hub._replace(slope=slope), ALPHA), 0.0, steps) for slope in (0.08, -0.08))
+    assert (back.end, back.steps) == (RollEnd.STEPS_DONE, -steps)
+    assert back.time == pytest.approx(ahead.time, rel=1e-9)
+    assert back.distance == pytest.approx(-ahead.distance, rel=1e-9)
+    assert rates_of(back) == [pytest.approx((-before, -after), rel=1e-9) for before, after in rates_of(ahead)]
+    assert [one.new for one in back.impacts] == [-one.new % 8 for one in ahead.impacts]
+
+
+@pytest.mark.parametrize(("slope", "spokes", "end"), [(20.0, 8, "STEPS_DONE"), (40.0, 8, "TAKES_OFF")])
+def test_a_wheel_for_which_no_friction_is_enough_slips_or_takes_off(slope: float, spokes: int, end: str) -> None:
+    wheel = Wheel(HUB._replace(inertia=0.1, friction=100.0, slope=radians(slope)), pi / spokes)
+    assert steady(wheel) is not None
+    assert least_friction(wheel) == inf
+    rolling = roll(wheel, 0.0)
+    assert rolling.end.name == end
+    assert any(state in ("+", "-") for stand in rolling.stands for _, state in stand.tips)
 
 
 def test_a_wheel_that_turns_too_fast_for_its_weight_takes_off() -> None:
