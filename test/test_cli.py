@@ -318,6 +318,8 @@ def test_of_a_damaged_bag_the_readable_part_is_used_with_status_3(tmp_path: Path
         (["{bag}", "{bag}", "--params", SCENE, "-o", "both.mcap"], "both.mcap is one file, but 2 bags are given"),
         (["{bag}", "{bag}", "--params", SCENE, "-o", "both"], "would be written for two bags"),
         (["{bag}", "--params", SCENE, "-o", "{bag}/out"], "cannot be written"),
+        (["{bag}", "--params", SCENE, "-o", "none/out.mcap"], "the folder of none/out.mcap does not exist; make it"),
+        (["{bag}", "b.mcap", "--params", SCENE, "-o", "none/out"], "the folder of none/out does not exist; make it"),
         (["{bag}", "--params", SCENE, "--markers"], "--markers are written into an output: give its name with -o"),
     ],
 )

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import sys
 from collections import Counter
 from collections.abc import Callable
+from math import copysign
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -19,6 +21,7 @@ from scipy.spatial.transform import Rotation
 
 from impact_predictor.bags.read import read_messages, topics
 from impact_predictor.prediction.walking.walker import Walker
+from impact_predictor.scenarios.warned import Warned
 
 ROOT = Path(__file__).parents[1]
 BAG = ROOT / "examples/hyq/hyq.bag"
@@ -60,6 +63,19 @@ def test_all_touchdowns_of_the_plan_are_found_and_none_besides(answer: dict[str,
     assert answer["statuses"] == answer["geometry_statuses"] == {"ACCEPTED": 3601}
     truth = answer["truth"]
     assert (truth["touchdowns"], truth["missed"], truth["false"]) == (49, 0, 0)
+
+
+def test_the_document_names_every_key(answer: dict[str, Any]) -> None:
+    page = (ROOT / "docs/replay.md").read_text()
+    watched = {*Warned._fields, "bodies_with_slide_or_impact", "warned_before_first_impact"}
+    of_some = {"inputs", "damaged", "baseline", "error", *watched}
+    keys = {*answer, *answer["touchdowns"][0], *answer["error_by_lead_time"][0], *answer["truth"]}
+    told = {name for names in re.findall(r"`([\w` ,]+)`", page) for name in re.split("[` ,]+", names)}
+    assert keys | of_some <= told
+
+
+def test_a_landing_speed_has_no_sign(answer: dict[str, Any]) -> None:
+    assert all(copysign(1.0, one["landing_speed"]) > 0.0 for one in answer["touchdowns"])
 
 
 def test_each_is_predicted_50_ms_ahead_and_to_2_ms_in_the_median(answer: dict[str, Any]) -> None:

@@ -104,18 +104,21 @@ def _adapted(
 ) -> dict[Input, str]:
     """Topics whose messages have an adapter, for inputs that have no topic: a message may tell all of a body.
 
-    That is the topic of the body's state, or for a body without a name the only one with such messages.
+    That is the topic of the body's state, else the one that tells something else of it, or for a body without a name
+    the only one with such messages.
     """
     adapted: dict[Input, str] = {}
     for state in [one for one in inputs if one.kind == ODOM and one.body is not None]:
         missing = [one for one in inputs if one.body == state.body and one.kind != IMU and one not in found]
         if not missing or recorded.get(found.get(state, "")) == TYPES[ODOM]:
             continue
-        possible = [found[state]] if state in found else [] if state.body else list(recorded)
         from .adapters.known import known  # only for bags without the usual messages
 
         adapters = known()
-        topics = [topic for topic in possible if recorded.get(topic, "") in adapters]
+        told = [found[state]] if state in found else [found[one] for one in found if one.body == state.body]
+        topics = [topic for topic in dict.fromkeys(told) if recorded.get(topic, "") in adapters]
+        if not topics and not state.body and state not in found:
+            topics = [topic for topic, kind in recorded.items() if kind in adapters]
         if len(topics) > 1:
             raise InputError(_ambiguous(path, topics, state))
         adapted |= {one: topic for one in missing for topic in topics}

@@ -16,6 +16,7 @@ from rosbags.typesys import Stores, get_types_from_idl, get_types_from_msg, get_
 from rosbags.typesys.store import Typestore
 
 from ..errors import InputError
+from ..ros.messages import MalformedMessage
 
 Reader = Ros1Reader | Ros2Reader
 
@@ -28,6 +29,10 @@ _REPAIRS: Final = {
 _HEADER: Final = "std_msgs/msg/Header"
 _IDL: Final = f"{'=' * 80}\nIDL: "
 _MOST_TOPICS_NAMED: Final = 20
+
+
+class UnusableMessage(MalformedMessage):
+    """A whole message that its adapter refuses; says which adapter, and why."""
 
 
 class BagMessage(NamedTuple):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack
 from pathlib import Path
@@ -12,8 +11,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..errors import InputError
-from ..prediction.inputs import CONTACT_GEOMETRY, JOINTS, STATES, Input, inputs_of
-from ..prediction.remedies import REMEDIES
+from ..prediction.inputs import CONTACT_GEOMETRY, STATES, inputs_of
 from ..prediction.scene import Scene
 from ..prediction.types import Status
 from ..ros.messages import DIAGNOSTIC_ARRAY
@@ -21,6 +19,7 @@ from ..scenarios.truth import ONSET_TOPIC, TRUTH_TOPIC
 from .inputs import TYPES, adapted_topics, find_topics
 from .inputs import remapping as remapping
 from .read import BagMessage, read_messages, topics
+from .remarks import remarks, total_of, why_unpredictable
 from .run import Run
 from .stream import NODE as NODE
 from .stream import Settled as Settled
@@ -47,10 +46,10 @@ class Result(NamedTuple):
 
     `samples` counts the messages of odom, `seconds` is what everything took, reading and writing included. `statuses`
     and `geometry_statuses` say what became of the messages about states and about contact points of all bodies, and
-    `inputs` the same for each input by its name. `notes` are sentences about choices that were made; `unpredictable`
-    says why nothing could be predicted, and `damaged` what of the bag was lost, or "". `truth` is how the predictions
-    compare with the truth, where the bag carries it, and `truths` the same for each body. `gaits` are those of the
-    bodies that walk.
+    `inputs` the same for each input by its name. `notes` are sentences about choices that were made, what was refused
+    and what looks wrong; `unpredictable` says why nothing could be predicted, and `damaged` what of the bag was lost,
+    or "". `truth` is how the predictions compare with the truth, where the bag carries it, and `truths` the same for
+    each body. `gaits` are those of the bodies that walk.
     """
 
     bag: str
@@ -118,15 +117,18 @@ def replay(
             raise InputError(damage[0])
         run.finish()
     truth, truths = _compare(run, by_name)
+    unpredictable = why_unpredictable(run, inputs, names, by_name)
+    if not unpredictable:
+        notes += tuple(f"in {os.fspath(path)}, {said}" for said in remarks(run, inputs, names, by_name))
     return Result(
         os.fspath(path),
         run.samples,
         perf_counter() - started,
         tuple(run.settled),
-        _sum([counts for one, counts in inputs.items() if one.body is not None and one.kind in STATES]),
-        _sum([counts for one, counts in inputs.items() if one.kind == CONTACT_GEOMETRY]),
+        total_of([counts for one, counts in inputs.items() if one.body is not None and one.kind in STATES]),
+        total_of([counts for one, counts in inputs.items() if one.kind == CONTACT_GEOMETRY]),
         notes,
-        _why_unpredictable(inputs, names, by_name),
+        unpredictable,
         damage[0] if damage else "",
         truth,
         truths,
@@ -145,41 +147,6 @@ def _readable(messages: Iterator[BagMessage], damage: list[str]) -> Iterator[Bag
 
 def _counts(by_number: list[int]) -> Statuses:
     return {status: by_number[status] for status in Status if by_number[status]}
-
-
-def _sum(counts: list[Statuses]) -> Statuses:
-    total = sum(map(Counter, counts), Counter[Status]())
-    return {status: total[status] for status in Status if total[status]}
-
-
-def _why_unpredictable(
-    inputs: Mapping[Input, Statuses], names: Mapping[Input, str], scenes: Mapping[str, Scene]
-) -> str:
-    """Why no state could be used, in one sentence, or ""."""
-    states = {one: counts for one, counts in inputs.items() if one.body is not None and one.kind in STATES}
-    # Bodies of which nothing is measured are watched by the motion of the support alone.
-    states = states or dict(inputs)
-    if not states:
-        return "nothing is measured in this scene, so there is nothing for it in a bag"
-    counts = _sum(list(states.values()))
-    where = ", ".join(names[one] for one in states)
-    if not counts:
-        return f"there is no message on {where}, so nothing was predicted"
-    if Status.ACCEPTED in counts:
-        return ""
-    status = max(counts, key=lambda status: counts[status])
-    if status is not Status.NO_GEOMETRY:
-        refused = f"{counts[status]} of {sum(counts.values())} messages on {where}"
-        return f"no sample was accepted, so nothing was predicted: {refused} are {status.name}: {REMEDIES[status]}"
-    needed = next((one.kind for one in inputs_of(scenes) if one.kind in (CONTACT_GEOMETRY, JOINTS)), CONTACT_GEOMETRY)
-    topics_of_points = [topic for one, topic in names.items() if one.kind == needed]
-    told = f"{', '.join(topics_of_points)} told none that can be used"
-    where = told if topics_of_points else f"there is no {TYPES[needed]} in the bag"
-    # The points of feet move: they cannot be parameters.
-    or_give = (
-        "" if any(scene.walking for scene in scenes.values()) else "give body.contact_points in the parameter file, or "
-    )
-    return f"no contact points are known, so nothing was predicted: {where}; {or_give}--remap {needed}:=TOPIC"
 
 
 def _compare(run: Run, scenes: Mapping[str, Scene]) -> tuple[Truth | None, dict[str, BodyTruth]]:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 from ..prediction.inputs import CONTACT_GEOMETRY, IMU, JOINTS, ODOM, SCHEDULE, WRENCH, Input
 from ..prediction.monitor import Monitor
 from ..prediction.scene import Scene
-from ..prediction.types import Geometry, Imu, Sample, Status
+from ..prediction.types import Geometry, Imu, Joints, Sample, Status
 from ..ros import messages
 from ..ros.messages import DIAGNOSTIC_ARRAY, MARKER_ARRAY, MalformedMessage, decode_odometry
 from ..scenarios.truth import (
@@ -24,7 +24,7 @@ from ..scenarios.truth import (
     decode_true_impacts,
     decode_true_onsets,
 )
-from .read import BagMessage
+from .read import BagMessage, UnusableMessage
 from .stream import NODE, Settled, Stream, Write
 
 if TYPE_CHECKING:
@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from ..scenarios.warned import Warned, Warnings
     from .adapters.known import Read
     from .gait import Gait
+    from .points import Points
 
 Told = Callable[[Any, int], Status]
 """Takes a message that asks for no answer, and its log time (ns)."""
@@ -55,7 +56,8 @@ class Run:
     """The messages of one bag, in the order in which they were logged.
 
     `write` takes what the node would publish, with the log time of the message that caused it. `readers` read the
-    topics whose messages have an adapter. `statuses` say what became of the messages on each input, by its name.
+    topics whose messages have an adapter. `statuses` say what became of the messages on each input, `unusable` what an
+    adapter said of the first one that it refused, and `points` what is known of the contact points of each body.
     """
 
     def __init__(
@@ -72,6 +74,8 @@ class Run:
         self.samples = 0
         self.settled: list[Settled] = []
         self.statuses = {one: [0] * len(Status) for one in topics}
+        self.unusable: dict[Input, str] = {}
+        self.points: dict[str, Points] = {}
         self.true_impacts: list[TrueImpact] = []
         self.true_onsets: list[TrueOnset] = []
         self.announcements: Announcements | None = None
@@ -86,6 +90,11 @@ class Run:
             body: Stream(body, partial(self.monitor.update, body) if self._watches else predictor.update, write)
             for body, predictor in self.monitor.predictors.items()
         }
+        telling = [one.body or "" for one in topics if one.kind in (CONTACT_GEOMETRY, JOINTS)]
+        if telling:
+            from .points import Points
+
+            self.points = {body: Points(scenes[body], self.monitor.walkers.get(body)) for body in telling}
         self._takers = {topic: self._taker(one) for one, topic in topics.items() if topic not in readers}
         for topic, read in readers.items():
             inputs = {one.kind: one for one, its_topic in topics.items() if its_topic == topic}
@@ -103,8 +112,8 @@ class Run:
             from ..scenarios.comparison import Announcements
 
             self.announcements = Announcements()
-            self._takers[TRUTH_TOPIC] = self._take_true_impact
-            self._takers[ONSET_TOPIC] = self._take_true_onset
+            self._takers[TRUTH_TOPIC] = partial(self._take_truth, self.true_impacts, decode_true_impacts)
+            self._takers[ONSET_TOPIC] = partial(self._take_truth, self.true_onsets, decode_true_onsets)
             if self._watches:
                 from ..scenarios.warned import Warnings
 
@@ -112,7 +121,7 @@ class Run:
         if markers:
             from ..ros.markers.scene import MarkerScene
 
-            self._drawing = MarkerScene(scenes)
+            self._drawing = MarkerScene(self.monitor.scenes)
 
     def take(self, messages: Iterable[BagMessage], progress: Callable[[int], None] | None) -> None:
         """Answer every message; `progress` is told now and then how many samples are done."""
@@ -164,12 +173,10 @@ class Run:
             return partial(self._set_tilt, body)
         if one.kind == CONTACT_GEOMETRY:
             return partial(self._set_geometry, body)
-        updates: dict[str, Callable[[str, Any], Status]] = {
-            JOINTS: monitor.set_joints,
-            WRENCH: monitor.set_wrench,
-            SCHEDULE: monitor.set_schedule,
-        }
-        return lambda message, _: updates[one.kind](body, message)
+        if one.kind == JOINTS:
+            return partial(self._set_joints, body)
+        update: Callable[[str, Any], Status] = monitor.set_wrench if one.kind == WRENCH else monitor.set_schedule
+        return lambda message, _: update(body, message)
 
     def _take_sample(self, stream: Stream, counts: list[int], log_time: int, data: bytes) -> None:
         self.samples += 1
@@ -185,6 +192,8 @@ class Run:
         prediction = stream.update(sample)
         cost = perf_counter() - began
         counts[prediction.status] += 1
+        if stream.body in self.points:
+            self.points[stream.body].take(prediction)
         if prediction.status is not Status.ACCEPTED:
             return
         stream.answered(prediction, log_time, cost)
@@ -216,9 +225,11 @@ class Run:
         self.samples += state is not None
         try:
             told = read(data)
-        except MalformedMessage:
+        except MalformedMessage as error:
             for one in inputs.values():
                 self.statuses[one][Status.MALFORMED] += 1
+                if isinstance(error, UnusableMessage):
+                    self.unusable.setdefault(one, str(error))
             return
         about = (CONTACT_GEOMETRY, told.geometry), (JOINTS, told.joints), (SCHEDULE, told.schedule)
         for kind, message in (*about, *[(WRENCH, wrench) for wrench in told.wrenches]):
@@ -228,16 +239,23 @@ class Run:
         if sample is not None and state is not None:
             stream = self._streams[state.body or ""]
             if self.landings is not None and stream.body in self.gaits and told.stands:
+                read.check_stands(told, self.gaits[stream.body].feet)
                 self.landings.tell(stream.body or sample.child_frame_id, sample.stamp, told.stands)
                 self.gaits[stream.body].tell(sample.stamp, told.stands)
             self._answer(stream, self.statuses[state], log_time, sample)
 
     def _set_geometry(self, body: str, geometry: Geometry, log_time: int) -> Status:
         status = self.monitor.set_geometry(body, geometry)
+        self.points[body].take_geometry(geometry, status)
         if status is Status.ACCEPTED and self._drawing is not None:
             self._drawing.set_geometry(body, geometry)
             if body in self.monitor.walkers:
                 self._draw(geometry.stamp, log_time)
+        return status
+
+    def _set_joints(self, body: str, joints: Joints, _: int) -> Status:
+        status = self.monitor.set_joints(body, joints)
+        self.points[body].take_joints(joints, status)
         return status
 
     def _set_support(self, update: Callable[[Any], Status], message: Sample | Imu, log_time: int) -> Status:
@@ -254,14 +272,11 @@ class Run:
             self._draw(imu.stamp, log_time)
         return status
 
-    def _take_true_impact(self, log_time: int, data: bytes) -> None:
-        # What tells no impact there is another program's.
+    @staticmethod
+    def _take_truth(known: list[Any], decode: Callable[[bytes], Iterable[Any]], log_time: int, data: bytes) -> None:
+        # What tells no truth there is another program's.
         with suppress(MalformedMessage):
-            self.true_impacts += decode_true_impacts(data)
-
-    def _take_true_onset(self, log_time: int, data: bytes) -> None:
-        with suppress(MalformedMessage):
-            self.true_onsets += decode_true_onsets(data)
+            known.extend(decode(data))
 
     def _report(self, log_time: int) -> None:
         """Write what is to be said of the units now."""

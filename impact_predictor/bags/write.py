@@ -48,8 +48,11 @@ class BagWriter:
         """Begin the bag.
 
         Raises:
-            InputError: the place is taken by something that this class did not write, or cannot be written.
+            InputError: the place is taken by something that this class did not write, cannot be written, or is in no
+                folder that there is.
         """
+        if not self.path.absolute().parent.exists():
+            raise InputError(f"the folder of {self.path} does not exist; make it, or give another name")
         try:
             _check_replaceable(self.path, self._is_file)
             _remove_partial(self.partial)

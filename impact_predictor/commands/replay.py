@@ -51,7 +51,7 @@ DAMAGED: Final = 3
     "--output",
     metavar="NAME",
     help="Write the predictions: NAME.mcap is one file, any other name a rosbag2 folder; with several bags, "
-    "a folder with one file for each.",
+    "a folder with one file for each. The folder that it is in must be there.",
 )
 @click.option("--markers", is_flag=True, help="Write the markers for RViz and Foxglove too, into the output.")
 @click.option(
@@ -60,7 +60,12 @@ DAMAGED: Final = 3
     help="Draw errors and velocities, of a walking machine its gait, into a .png or .svg file.",
 )
 @click.option("--all", "every", is_flag=True, help="List every touchdown, not only the first scored ones.")
-@click.option("--json", "as_json", is_flag=True, help="Print JSON only: an object, or a list for several bags.")
+@click.option(
+    "--json",
+    "as_json",
+    is_flag=True,
+    help="Print JSON only: an object, or a list for several bags; docs/replay.md has its keys and units.",
+)
 @click.option(
     "--baseline",
     metavar="RUN",
@@ -185,8 +190,10 @@ def outputs_of(bags: tuple[str, ...], output: str | None) -> list[Path | None]:
     twice = [file for file, count in Counter(files).items() if count > 1]
     if twice:
         raise InputError(f"{twice[0]} would be written for two bags; replay bags of one name one after the other")
+    if not folder.absolute().parent.exists():
+        raise InputError(f"the folder of {output} does not exist; make it, or give another name")
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        folder.mkdir(exist_ok=True)
     except OSError as error:
         raise InputError(f"the folder {output} cannot be made: {error.strerror}") from error
     return list(files)

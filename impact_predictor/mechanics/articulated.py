@@ -7,8 +7,11 @@ joints are free in it, so that the mobility of its contacts is W = G M(q)^-1 G^T
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import os
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
+from tempfile import TemporaryFile
 from typing import Any
 
 import numpy as np
@@ -25,9 +28,9 @@ SINGULAR = 1e-12
 class WholeBody:
     """A model of `urdf`, a file, with the points at the origins of its `frames` (links or joints) as contacts.
 
-    `joints` are the names of the joints that move, in the model's order. `place` it before anything else is read:
-    `inertia` (n, n) is then M(q), `points` (k, 3) in m and `jacobians` (k, 3, n) are those of the frames' origins,
-    along the base's axes.
+    `joints` are the names of the joints that move, in the model's order, and `mass` in kg is that of all links. `place`
+    it before anything else is read: `inertia` (n, n) is then M(q), `points` (k, 3) in m and `jacobians` (k, 3, n) are
+    those of the frames' origins, along the base's axes.
 
     Raises:
         InputError: Pinocchio is not installed, there is no such file or frame, or the file is not the URDF of a machine
@@ -42,6 +45,7 @@ class WholeBody:
         # The first joint is the universe, the second the base's.
         moving = list(self._model.joints)[2:]
         self.joints: tuple[str, ...] = tuple(self._model.names)[2:]
+        self.mass: float = self._pinocchio.computeTotalMass(self._model)
         for name, joint in zip(self.joints, moving, strict=True):
             if joint.nv != 1:
                 raise InputError(
@@ -104,13 +108,34 @@ def _pinocchio() -> Any:
 
 def _model(pinocchio: Any, urdf: str) -> Any:
     if not Path(urdf).is_file():
-        raise InputError(f"robot.urdf: there is no file {urdf!r}; give the URDF of the machine")
-    try:
-        return pinocchio.buildModelFromUrdf(urdf, pinocchio.JointModelFreeFlyer())
-    except (ValueError, RuntimeError) as error:
-        raise InputError(
-            f"robot.urdf: {urdf} is not a URDF that Pinocchio can read; check it with `check_urdf`"
-        ) from error
+        where = f" in {Path.cwd()}, where this program runs" if not Path(urdf).is_absolute() else ""
+        raise InputError(f"robot.urdf: there is no file {urdf!r}{where}; give the whole path of the machine's URDF")
+    with _complaints() as complained:
+        try:
+            return pinocchio.buildModelFromUrdf(urdf, pinocchio.JointModelFreeFlyer())
+        except (ValueError, RuntimeError) as error:
+            reason = f" ({said})" if (said := complained()) else ""
+            raise InputError(
+                f"robot.urdf: {urdf} is not a URDF that Pinocchio can read{reason}; check it with `check_urdf`"
+            ) from error
+
+
+@contextmanager
+def _complaints() -> Iterator[Callable[[], str]]:
+    """Hold back what the URDF parser, which is no Python, prints on standard error; gives its first line."""
+    shown = os.dup(2)
+    with TemporaryFile() as file:
+        os.dup2(file.fileno(), 2)
+
+        def first() -> str:
+            file.seek(0)
+            return file.readline().decode(errors="replace").strip().removeprefix("Error:").strip()
+
+        try:
+            yield first
+        finally:
+            os.dup2(shown, 2)
+            os.close(shown)
 
 
 def _frame(model: Any, name: str, urdf: str) -> int:

@@ -13,6 +13,7 @@ from .types import Parameter as Parameter
 from .types import Value as Value
 from .types import values_of
 from .values import allowed, check
+from .walking import OF_MODEL
 
 _OF_EVERY_NODE: Final = ("use_sim_time", "start_type_description_service")
 _QOS_OVERRIDES: Final = "qos_overrides."
@@ -29,7 +30,8 @@ def validate(values: Mapping[str, object]) -> dict[str, Value]:
     """The values of all parameters, with the defaults of those that are not given; lists become tuples.
 
     With `bodies`, those that are given for one of them follow as <body>.<parameter>, and of a parameter without default
-    that is given for each of them alone there is no common value. Parameters that every ROS node has are passed over.
+    that is given for each of them alone there is no common value; nor of one that the model of a machine tells, where
+    it is not given. Parameters that every ROS node has are passed over.
     `impact_predictor.prediction.scene.scenes_of` makes the scenes of them.
 
     Raises:
@@ -43,15 +45,13 @@ def validate(values: Mapping[str, object]) -> dict[str, Value]:
     for name, value in given.items():
         parameter = _parameter_of(name, bodies)
         (checked if name in PARAMETERS else own)[name] = check(parameter._replace(name=name), value)
+    defaults = {one.name: one.default for one in PARAMETERS.values() if one.default is not None}
+    checked = defaults | checked
+    of_each = [values_of(checked | own, body) for body in bodies or ("",)]
     for parameter in PARAMETERS.values():
-        if parameter.name in checked:
-            continue
-        if parameter.default is not None:
-            checked[parameter.name] = parameter.default
-            continue
-        lacking = [body for body in bodies if f"{body}.{parameter.name}" not in own]
-        if lacking or not bodies:
-            raise _missing(parameter, lacking)
+        lacking = [body for body, its in zip(bodies or ("",), of_each, strict=True) if not _is_known(parameter, its)]
+        if lacking:
+            raise _missing(parameter, lacking if bodies else [])
     # In one order, whatever that of the file.
     checked = {name: checked[name] for name in PARAMETERS if name in checked} | own
     for body in bodies or ("",):
@@ -104,6 +104,11 @@ def _hint(name: str, bodies: Sequence[str]) -> str:
 
 def _all_own(bodies: Sequence[str]) -> Iterator[str]:
     return (f"{body}.{name}" for body in bodies for name, parameter in PARAMETERS.items() if not parameter.shared)
+
+
+def _is_known(parameter: Parameter, values: Mapping[str, object]) -> bool:
+    """Whether there is a value, or the model of the machine tells it."""
+    return parameter.name in values or (parameter.name in OF_MODEL and bool(values["robot.urdf"]))
 
 
 def _missing(parameter: Parameter, lacking: Sequence[str]) -> InputError:

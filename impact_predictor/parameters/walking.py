@@ -7,6 +7,9 @@ from typing import Final
 from .flaws import feet_flaw
 from .types import Parameter
 
+OF_MODEL: Final = ("body.mass", "body.inertia")
+"""Parameters that a machine with robot.urdf does without."""
+
 WALKING_PARAMETERS: Final = (
     Parameter(
         "feet.names",
@@ -76,8 +79,9 @@ WALKING_PARAMETERS: Final = (
         "string",
         "",
         "",
-        "File of the machine's model (URDF); a relative path begins where the process runs. Its feet and its inertia "
-        "are then those of joint_states. Left out, the legs have no mass.",
+        "File of the machine's model (URDF); a relative path begins in the folder where the process runs. Its feet "
+        "and its inertia are then those of joint_states, which may tell of other joints too, and body.mass and "
+        "body.inertia are neither needed nor used. Left out, the legs have no mass.",
     ),
     Parameter(
         "robot.frames",

@@ -58,6 +58,8 @@ class Monitor:
             from .walking.walker import Walker
 
             self.walkers = {body: Walker(scene) for body, scene in scenes.items() if scene.walking is not None}
+            # The model of a robot tells its mass.
+            self.scenes = {**scenes, **{body: walker.scene for body, walker in self.walkers.items()}}
         self.predictors: dict[str, Predictor | Walker] = {
             body: self.walkers.get(body) or (Predictor(scene) if self.deck is None else Predictor(scene, self.deck))
             for body, scene in scenes.items()

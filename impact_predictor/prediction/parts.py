@@ -240,6 +240,8 @@ def ladder(values: Values) -> list[tuple[Part | None, dict[str, Any]]]:
     So the costs of the parts, from one to the next, add up to that of the scene, and on to that of everything that such
     bodies can have.
     """
+    # A machine whose model tells its mass may have none for the steps without the model.
+    values = {"body.mass": 1.0, "body.inertia": (1.0,), **values}
     walks = any(one["feet.names"] for one in _bodies(values))
     possible = [part for part in PARTS if (part.to_have or part.to_leave_out) and (part.with_feet or not walks)]
     everything = dict(values)

@@ -32,10 +32,11 @@ REMEDIES: Final[dict[Status, str]] = {
     Status.BODY_STALE: "no message of the body's source, or none any more; look whether it still publishes",
     Status.GEOMETRY_STALE: "the last contact points are too old, or were never told; look whether their source still "
     "publishes, and by the same clock",
-    Status.FEET_CHANGED: "the message has another number of points than feet.names and feet.points of the scene",
-    Status.BELOW_GROUND: "a foot lies deeper in the ground than noise puts it; compare support.height, the contact "
-    "points and the body frame",
-    Status.WRONG_JOINTS: "the joints are not those of robot.urdf; compare their names",
+    Status.FEET_CHANGED: "the message has another number of points than feet.names x feet.points; correct these, or "
+    "the message",
+    Status.BELOW_GROUND: "a foot lies deeper in the ground than noise puts it; compare support.height, the units of "
+    "the points (m), and the frames of body and points",
+    Status.WRONG_JOINTS: "a joint of robot.urdf is missing, or is there twice; compare the names",
     Status.SINGULAR_INERTIA: "the robot's inertia matrix has no inverse; look for links without mass in robot.urdf",
 }
 """What to say of each status but ACCEPTED."""

@@ -90,7 +90,8 @@ class Scene(NamedTuple):
     at `place` in the support's frame, turned by `yaw` about the normal, until its source says more. A `radius` above
     zero makes it a cylinder along the line between pairs of `edges` of the support, on which it lies, in the place of
     `points`: x y z of one point of each edge, in the support's frame. `watching` tells to watch its margins. `walking`
-    makes it a machine whose contact points are its feet, which move against the body.
+    makes it a machine whose contact points are its feet, which move against the body; with a robot, `mass` is that of
+    its model once this is read, and `inertia` is not used.
     """
 
     mass: float
@@ -130,8 +131,8 @@ class Scene(NamedTuple):
         length = hypot(*normal)
         points = () if values["body.radius"] or values["feet.names"] else values["body.contact_points"]
         return cls(
-            mass=values["body.mass"],
-            inertia=inertia_matrix(values["body.inertia"]),
+            mass=values.get("body.mass", 1.0),
+            inertia=inertia_matrix(values.get("body.inertia", (1.0,))),
             friction=values["contact.friction"],
             restitution=values["contact.restitution"],
             center_of_mass=triple(values["body.center_of_mass"]),

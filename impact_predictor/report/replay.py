@@ -149,12 +149,16 @@ def _costs(result: Result) -> list[str]:
         said = [f"{samples} at {cost:.0f} us each, {rate:,.0f} per second, with reading and writing."]
     if early := result.statuses.get(EARLY, 0):
         said.append(f"{counted(early, 'sample')} came before the deck's motion was known.")
+    expected = {Status.ACCEPTED, EARLY}
+    if Status.ACCEPTED in result.statuses and (first := result.statuses.get(Status.NO_GEOMETRY, 0)):
+        said.append(f"{counted(first, 'sample')} came before the first contact points.")
+        expected.add(Status.NO_GEOMETRY)
     told = {"samples": result.statuses, "messages of contact_geometry": result.geometry_statuses}
     for name, counts in result.inputs.items():
         if name.startswith("support/") or name.rpartition("/")[2] not in (*STATES, CONTACT_GEOMETRY):
             told[f"messages of {name}"] = counts
     for name, counts in told.items():
-        faults = {status: count for status, count in counts.items() if status not in (Status.ACCEPTED, EARLY)}
+        faults = {status: count for status, count in counts.items() if status not in expected}
         if faults:
             refused = ", ".join(f"{count:,} {words(status.name)}" for status, count in faults.items())
             said.append(f"Refused {name}: {refused}.")

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter, deque
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from ..prediction.score import median
 from ..prediction.types import Foot, Landing, Prediction
+
+if TYPE_CHECKING:
+    from ..prediction.walking.legs import Articulated
 
 DISAGREES: Final = 0.5
 """The part of a second's samples above which a force sensor disagrees; while a foot lands or lifts each one does."""
@@ -17,13 +20,15 @@ _REMEMBERED: Final = 1000
 class FeetReport:
     """Counts what the answers tell of the feet of one body, which it calls by their names."""
 
-    def __init__(self, body: str) -> None:
-        """Count for a body; "" is the name of a body alone."""
+    def __init__(self, body: str, model: Articulated | None = None) -> None:
+        """Count for a body, "" being the name of a body alone, and for the model of its joints if there is one."""
         self.flaw = ""
         """What is wrong with its force sensors in the last second, "" where nothing is."""
         self._prefix = f"{body}/feet" if body else "feet"
+        self._model = model
         self._feet: tuple[Foot, ...] = ()
         self._landings: Counter[str] = Counter()
+        self._unannounced = 0
         self._late: deque[float] = deque(maxlen=_REMEMBERED)
         self._time_errors: deque[float] = deque(maxlen=_REMEMBERED)
         self._begin_second()
@@ -48,6 +53,8 @@ class FeetReport:
             self._late.append(landing.late)
         if landing.history:
             self._time_errors.append(abs(landing.history[-1][1]))
+        else:
+            self._unannounced += 1
 
     def second_over(self) -> None:
         """Sum up the second that ends, and begin the next."""
@@ -62,6 +69,10 @@ class FeetReport:
             "landings": str(self._landings.total()),
         }
         values |= {f"landings.{name}": str(count) for name, count in sorted(self._landings.items())}
+        if self._model is not None and self._model.left_out:
+            values["joints_left_out"] = " ".join(self._model.left_out)
+        if self._unannounced:
+            values["landings.unannounced"] = str(self._unannounced)
         if self._time_errors:
             values["landings.median_time_error"] = f"{median(self._time_errors):.4f}"
         if self._late:

@@ -64,6 +64,10 @@ class Landings:
         """What was found of the landings of each body of which the truth is told, foot by foot."""
         return {body: self._compare(body, last) for body, last in self._last.items() if body in self._stands}
 
+    def later(self) -> int:
+        """How many true landings come after the last sample of their body that was accepted: they are not compared."""
+        return sum(one.stamp > self._last.get(one.body, one.stamp) for one in self.true)
+
     def _compare(self, body: str, end: int) -> Compared:
         announced: list[Announced] = []
         touchdowns = false = 0

@@ -55,9 +55,11 @@ def test_a_bag_without_messages_is_a_bag(tmp_path: Path) -> None:
         assert topics(tmp_path / name) == {}
 
 
-def test_folders_on_the_way_are_made(tmp_path: Path) -> None:
-    write(tmp_path / "a/b/out.mcap")
-    assert read(tmp_path / "a/b/out.mcap") == MESSAGES
+def test_a_folder_that_is_not_there_is_not_made(tmp_path: Path) -> None:
+    for name in ("a/b/out.mcap", "a/out"):
+        said = refused(tmp_path / name)
+        assert said == f"the folder of {tmp_path / name} does not exist; make it, or give another name"
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_relative_name_is_enough(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

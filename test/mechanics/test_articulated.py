@@ -206,21 +206,36 @@ def test_a_link_that_moves_without_mass_leaves_the_inertia_without_an_inverse(tm
     ("urdf", "frames", "sentence"),
     [
         ("missing.urdf", ("arm",), "there is no file 'missing.urdf'"),
-        ("no xml", ("arm",), "is not a URDF that Pinocchio can read"),
+        ("no xml", ("arm",), r"is not a URDF that Pinocchio can read \(.*XML.*\); check it"),
+        ("empty", ("arm",), r"is not a URDF that Pinocchio can read \(.*EMPTY.*\); check it"),
         ("floating", ("arm",), "joint shoulder has 6 degrees of freedom"),
         ("revolute", ("arm", "toe"), "has no link or joint 'toe'"),
     ],
 )
-def test_what_is_no_model_of_a_machine_is_said_in_one_sentence(tmp_path, urdf, frames, sentence):
+def test_what_is_no_model_of_a_machine_is_said_in_one_sentence(tmp_path, capfd, urdf, frames, sentence):
     needs_pinocchio()
-    if urdf == "no xml":
-        (tmp_path / "robot.urdf").write_text("a robot")
+    if urdf in ("no xml", "empty"):
+        (tmp_path / "robot.urdf").write_text("a robot" if urdf == "no xml" else "")
         urdf = str(tmp_path / "robot.urdf")
     elif urdf != "missing.urdf":
         urdf = one_link(tmp_path, INERTIAL.format(1.0), INERTIAL.format(1.0), urdf)
     with pytest.raises(InputError, match=sentence) as error:
         WholeBody(urdf, frames)
     assert "\n" not in str(error.value)
+    # The parser itself prints on standard error, past Python.
+    assert capfd.readouterr() == ("", "")
+
+
+@pytest.mark.extras
+def test_a_relative_path_begins_where_the_process_runs_and_a_sentence_says_where_that_is(tmp_path, monkeypatch):
+    needs_pinocchio()
+    one_link(tmp_path, INERTIAL.format(1.0), INERTIAL.format(2.0))
+    monkeypatch.chdir(tmp_path)
+    assert WholeBody("robot.urdf", ("arm",)).mass == pytest.approx(3.0)
+    with pytest.raises(
+        InputError, match=f"no file 'other.urdf' in {tmp_path}, where this program runs; give the whole"
+    ):
+        WholeBody("other.urdf", ("arm",))
 
 
 def test_a_model_without_pinocchio_says_what_to_install(monkeypatch):

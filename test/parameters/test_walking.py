@@ -71,6 +71,18 @@ def test_names_of_feet_are_there_once_and_not_empty() -> None:
     validate({**BODY, "feet.names": ["left foot", "LF_FOOT-1"]})
 
 
+def test_a_machine_whose_model_tells_its_mass_needs_neither_mass_nor_inertia() -> None:
+    model = {"contact.friction": 0.7, "feet.names": ["foot"], "robot.urdf": "robot.urdf", "robot.frames": ["sole"]}
+    values = validate(model)
+    assert "body.mass" not in values
+    assert "body.inertia" not in values
+    assert validate({**model, "body.mass": 3.0})["body.mass"] == 3.0
+    assert validate({name: value for name, value in values.items() if value not in ((), "")}) == values
+    assert "body.mass is missing" in refusal({**model, "robot.urdf": ""})
+    several = {**{f"dog.{name}": value for name, value in model.items()}, "bodies": ["dog", "crate"]}
+    assert "or crate.body.mass for crate alone" in refusal({**several, "crate.contact.friction": 0.2})
+
+
 def test_a_model_has_a_frame_for_each_point_of_each_foot() -> None:
     frames = ["a", "b", "c"]
     assert refusal({**FEET, "robot.urdf": "a.urdf", "robot.frames": frames}) == (

@@ -122,6 +122,16 @@ def test_what_comes_before_the_deck_is_known_is_no_fault_of_the_samples() -> Non
     assert "refused" not in text.lower()
 
 
+def test_a_sample_before_the_first_contact_points_is_not_told_as_an_error() -> None:
+    first = {"odom": {Status.ACCEPTED: 5, Status.NO_GEOMETRY: 1}}
+    text = printed(CARGO._replace(truth=None, truths={}, statuses=first["odom"], inputs=first))
+    assert "1 sample came before the first contact points." in text
+    assert "refused" not in text.lower()
+    none = {"odom": {Status.NO_GEOMETRY: 6}}
+    text = printed(CARGO._replace(truth=None, truths={}, statuses=none["odom"], inputs=none))
+    assert "Refused samples: 6 no geometry." in text
+
+
 def test_where_nothing_is_listed_no_empty_lines_follow_each_other() -> None:
     text = printed(CARGO)
     assert "\n\n\n" not in text

@@ -195,6 +195,7 @@ def test_the_json_of_a_landing_has_its_foot_its_impact_and_how_late_it_was() -> 
     assert (row["announced_lead_time"], row["scored"], row["flags"]) == (0.2, False, ["DRIVEN", "REVERSED_SLIP"])
     assert {name: row[name] for name in list(row)[15:]} == {
         "foot": "left",
+        "point": None,
         "late": -0.015,
         "confirmed": True,
         "time_error": -0.001,

@@ -243,7 +243,9 @@ def stepping(bent=BENT):
 @pytest.mark.slow
 @pytest.mark.extras
 @pytest.mark.skipif(importlib.util.find_spec("pinocchio") is None, reason="needs the extra `articulated`")
-def test_joints_of_another_machine_or_without_an_inverse_inertia_are_named_and_the_node_goes_on(peer, tmp_path):
+def test_joints_of_another_machine_or_without_an_inverse_inertia_or_too_many_are_named_and_the_node_goes_on(
+    peer, tmp_path
+):
     urdf = tmp_path / "stilts.urdf"
     legs = "".join(LEG.format(n=name, x=x, y=y) for name, (x, y) in PLACES.items())
     urdf.write_text(URDF.format(legs=legs))
@@ -251,6 +253,11 @@ def test_joints_of_another_machine_or_without_an_inverse_inertia_are_named_and_t
 
     def other_names(message):
         return message._replace(names=("elsewhere", *message.names[1:])) if isinstance(message, Joints) else message
+
+    def with_arm(message):
+        if isinstance(message, Joints):
+            return message._replace(names=("arm", *message.names), positions=(1.0, *message.positions))
+        return message
 
     def stretched(message):
         return message._replace(positions=(0.0,) * 8) if isinstance(message, Joints) else message
@@ -265,4 +272,8 @@ def test_joints_of_another_machine_or_without_an_inverse_inertia_are_named_and_t
             assert peer.report().level > OK
             walk_until(peer, machine, predicts(peer))
             walk_until(peer, machine, lambda: peer.report().level == OK)
+        assert peer.reported("feet.joints_left_out") is None
+        walk_until(peer, machine, lambda: peer.reported("feet.joints_left_out") == "arm", with_arm)
+        walk_until(peer, machine, predicts(peer), with_arm)
+        assert peer.report().level == OK
         assert "Traceback" not in node.complained()

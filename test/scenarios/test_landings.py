@@ -148,6 +148,15 @@ def test_what_the_record_does_not_reach_is_not_counted() -> None:
     assert compared(record(100, {"left": (), "right": ()}, announced)).together == NOTHING
 
 
+def test_true_landings_after_the_last_answer_are_counted_apart() -> None:
+    landings = Landings({"": SCENE})
+    landings.add(answer(100, {}, (), ("left", "right")))
+    for at, stands in ((50, (False, False)), (90, (True, False)), (130, (True, True))):
+        landings.tell("base", at * MS, stands)
+    assert landings.later() == 1
+    assert landings.compared()["base"].touchdowns == 1
+
+
 def test_of_other_bodies_nothing_is_compared_here() -> None:
     made = Landings({"walker": SCENE, "crate": SCENE._replace(walking=None)})
     for at in range(100):

@@ -8,13 +8,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping
-from functools import partial
 from importlib.metadata import EntryPoint, entry_points
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 from ...errors import InputError
 from ...ros.messages import MalformedMessage
-from ..read import decoders
+from ..read import UnusableMessage, decoders
 from .adapted import Adapted, Adapter
 
 GROUP: Final = "impact_predictor.adapters"
@@ -22,8 +21,54 @@ GROUP: Final = "impact_predictor.adapters"
 
 BUILT_IN: Final = (EntryPoint("xpp_msgs/msg/RobotStateCartesian", "impact_predictor.bags.adapters.xpp:adapt", GROUP),)
 
-Read = Callable[[bytes], Adapted]
-"""Takes a message in CDR; raises MalformedMessage for one that cannot be used."""
+
+class Read(NamedTuple):
+    """Reads a message in CDR, through an adapter that is `named` in sentences."""
+
+    named: str
+    decode: Callable[[bytes], Any]
+    adapt: Adapter
+
+    def __call__(self, data: bytes) -> Adapted:
+        """What a message tells.
+
+        Raises:
+            MalformedMessage: its bytes are none of its type, or as UnusableMessage: the adapter refuses it.
+            InputError: the adapter fails.
+        """
+        try:
+            message = self.decode(data)
+        # The decoder of damaged bytes may raise anything from its depths.
+        except Exception as error:
+            raise MalformedMessage(_reason(error)) from None
+        try:
+            told = self.adapt(message)
+        except ValueError as error:
+            raise UnusableMessage(f"the adapter {self.named} refuses it: {_reason(error)}") from None
+        # Anything else is no fault of this one message.
+        except Exception as error:
+            raise InputError(
+                f"the adapter {self.named} fails with {type(error).__name__} ({_reason(error)}); "
+                "compare it with the definition of the message in the bag"
+            ) from error
+        if not isinstance(told, Adapted):
+            raise InputError(
+                f"the adapter {self.named} returns {'None' if told is None else type(told).__name__}, not an Adapted; "
+                "look at what it returns"
+            )
+        return told
+
+    def check_stands(self, told: Adapted, feet: tuple[str, ...]) -> None:
+        """Whether a message that tells which feet stand does so for each of them.
+
+        Raises:
+            InputError: it does not.
+        """
+        if len(told.stands) not in (0, len(feet)):
+            raise InputError(
+                f"the adapter {self.named} tells in `stands` of {len(told.stands)} feet, but feet.names has "
+                f"{len(feet)}; give a flag for each of them in that order, or none"
+            )
 
 
 def known() -> dict[str, EntryPoint]:
@@ -43,7 +88,7 @@ def readers(path: str | os.PathLike[str], adapted: Mapping[str, str]) -> dict[st
     adapters = known()
     decode = decoders(path, adapted)
     return {
-        topic: partial(_read, decode[topic], _load(adapters[type_name]), f"{adapters[type_name].value} of {type_name}")
+        topic: Read(f"{adapters[type_name].value} of {type_name}", decode[topic], _load(adapters[type_name]))
         for topic, type_name in adapted.items()
     }
 
@@ -58,24 +103,6 @@ def _load(adapter: EntryPoint) -> Adapter:
             "install its package again, or remove it"
         ) from error
     return loaded
-
-
-def _read(decode: Callable[[bytes], Any], adapt: Adapter, named: str, data: bytes) -> Adapted:
-    try:
-        message = decode(data)
-    # The decoder of damaged bytes may raise anything from its depths.
-    except Exception as error:
-        raise MalformedMessage(_reason(error)) from None
-    try:
-        return adapt(message)
-    except ValueError as error:
-        raise MalformedMessage(_reason(error)) from None
-    # Anything else is no fault of this one message.
-    except Exception as error:
-        raise InputError(
-            f"the adapter {named} fails with {type(error).__name__} ({_reason(error)}); "
-            "compare it with the definition of the message in the bag"
-        ) from error
 
 
 def _reason(error: Exception) -> str:

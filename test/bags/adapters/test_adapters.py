@@ -20,10 +20,13 @@ from rosbags.typesys.store import Typestore
 
 from impact_predictor.bags.adapters import Adapted, known, of_world
 from impact_predictor.bags.inputs import adapted_topics, find_topics
-from impact_predictor.bags.read import read_messages
+from impact_predictor.bags.read import UnusableMessage, read_messages
+from impact_predictor.bags.replay import replay
 from impact_predictor.errors import InputError
+from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction.inputs import CONTACT_GEOMETRY, ODOM, Input
-from impact_predictor.ros.messages import ODOMETRY, MalformedMessage
+from impact_predictor.prediction.scene import Scene, Walking
+from impact_predictor.ros.messages import ODOMETRY, POLYGON, MalformedMessage
 
 DOCUMENT = (Path(__file__).parents[3] / "docs/adapters.md").read_text()
 TYPE = "my_robot_msgs/msg/State"
@@ -200,11 +203,74 @@ def test_what_an_adapter_raises_says_whose_fault_it_is(tmp_path: Path, monkeypat
         raise ValueError("no fix yet")
 
     module.adapt = refuse  # type: ignore[attr-defined]
-    with pytest.raises(MalformedMessage, match="no fix yet"):
+    with pytest.raises(UnusableMessage, match=rf"the adapter faulty:adapt of {TYPE} refuses it: no fix yet"):
+        read(bag)
+    module.adapt = lambda message: None  # type: ignore[attr-defined]
+    with pytest.raises(InputError, match=rf"the adapter faulty:adapt of {TYPE} returns None, not an Adapted; look at"):
         read(bag)
     module.adapt = lambda message: Adapted(message.odometry)  # type: ignore[attr-defined]
     with pytest.raises(InputError, match=rf"the adapter faulty:adapt of {TYPE} fails with AttributeError \(.*odometry"):
         read(bag)
+
+
+FEET = Scene.from_parameters(
+    validate({"body.mass": 9.0, "body.inertia": [1.0], "contact.friction": 0.6, "feet.names": ["left", "right"]})
+)
+
+
+def test_what_an_adapter_says_of_the_messages_that_it_refuses_is_said_by_the_replay(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    module = ModuleType("picky")
+    monkeypatch.setitem(sys.modules, "picky", module)
+    install(monkeypatch, EntryPoint(TYPE, "picky:adapt", known.GROUP))
+    store = typestore()
+    bag = write(tmp_path / "robot", store, states(store))
+
+    def refuse(message: object) -> Adapted:
+        raise ValueError("no fix yet")
+
+    module.adapt = refuse  # type: ignore[attr-defined]
+    said = replay(bag, FEET).unpredictable
+    assert f"3 of 3 messages on /state are MALFORMED: the adapter picky:adapt of {TYPE} refuses it: no fix yet" in said
+    assert "who else publishes" not in said
+
+
+@pytest.mark.usefixtures("documented")
+def test_the_first_refusal_is_said_where_other_messages_are_used(tmp_path: Path) -> None:
+    store = typestore()
+    whole = states(store)
+    turn = store.types["geometry_msgs/msg/Quaternion"](0.0, 0.0, 0.0, 0.0)
+    message = store.deserialize_cdr(whole[0], TYPE)
+    message.trunk.orientation = turn
+    bag = write(tmp_path / "robot", store, [bytes(store.serialize_cdr(message, TYPE)), *whole])
+    took, refused = replay(bag, FEET).notes
+    assert "took /state" in took
+    assert refused.endswith(
+        "1 of 4 messages on /state were refused as MALFORMED: the adapter my_robot.impact_adapter:adapt of "
+        f"{TYPE} refuses it: the orientation is a zero quaternion"
+    )
+
+
+@pytest.mark.usefixtures("documented")
+def test_flags_of_another_number_of_feet_are_a_fault_of_the_adapter(tmp_path: Path) -> None:
+    store = typestore()
+    bag = write(tmp_path / "robot", store, states(store))
+    with pytest.raises(InputError, match=r"tells in `stands` of 2 feet, but feet.names has 3; give a flag for each"):
+        replay(bag, FEET._replace(walking=Walking(("left", "right", "tail"))))
+
+
+@pytest.mark.usefixtures("documented")
+def test_one_topic_of_several_with_adapters_may_be_chosen_by_any_input() -> None:
+    recorded = {"/state": TYPE, "/state_des": TYPE}
+    everything = {ODOM_INPUT: "/state_des", FEET_INPUT: "/state_des"}
+    for name in ("odom", "contact_geometry"):
+        found, notes = find_topics("robot.bag", recorded, INPUTS, {name: "/state_des"})
+        assert found == everything
+        assert "its messages have an adapter" in notes[0]
+    # Points with a type of their own say nothing of the other one.
+    recorded = {"/state": TYPE, "/feet": POLYGON}
+    assert find_topics("robot.bag", recorded, INPUTS, {"contact_geometry": "/feet"})[0][ODOM_INPUT] == "/state"
 
 
 def test_a_zero_quaternion_and_velocities_of_other_points_are_refused() -> None:
