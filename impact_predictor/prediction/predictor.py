@@ -137,14 +137,11 @@ class Predictor:
             return Status.NO_GEOMETRY
         if self._geometry_frame and sample.child_frame_id and sample.child_frame_id != self._geometry_frame:
             return Status.WRONG_FRAME
-        if self._last is not None and sample.stamp <= self._last:
-            if sample.stamp == self._last:
-                return Status.STAMP_REPEATED
-            if self._last - sample.stamp > PAUSE:
-                self._forget()
-                self._last = None
-            return Status.STAMP_WENT_BACK
-        return Status.ACCEPTED
+        status = order_of(sample.stamp, self._last)
+        if self._last is not None and self._last - sample.stamp > PAUSE:
+            self._forget()
+            self._last = None
+        return status
 
     def _forget(self) -> None:
         """Begin anew; what waits for its measurement will not get it."""
@@ -278,6 +275,13 @@ def check_numbers(sample: Sample) -> Status:
     if not -UNIT < x * x + y * y + z * z + w * w - 1.0 < UNIT:
         return Status.BAD_QUATERNION if all(map(isfinite, sample.orientation)) else Status.NOT_FINITE
     return Status.ACCEPTED
+
+
+def order_of(stamp: int, last: int | None) -> Status:
+    """Whether a stamp follows the last one of its stream."""
+    if last is None or stamp > last:
+        return Status.ACCEPTED
+    return Status.STAMP_REPEATED if stamp == last else Status.STAMP_WENT_BACK
 
 
 def check_points(points: tuple[Vector3, ...]) -> Status:

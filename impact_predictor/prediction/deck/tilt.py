@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from math import atan2, hypot, isfinite
 
-from ..predictor import PAUSE, UNIT
+from ..predictor import PAUSE, UNIT, order_of
 from ..scene import Scene
 from ..types import Imu, Moment, Quaternion, Status, Vector3
 from ..vectors import any_across, axes_of, cross, dot, times, to_body, turned
@@ -30,14 +30,12 @@ class Tilt:
         if imu.orientation is None or not abs(sum(part * part for part in imu.orientation) - 1.0) < UNIT:
             return Status.BAD_QUATERNION
         last = self._last
-        if last is not None and imu.stamp <= last:
-            if imu.stamp == last:
-                return Status.STAMP_REPEATED
-            if last - imu.stamp > PAUSE:
-                self._last = None
-            return Status.STAMP_WENT_BACK
-        self._last = imu.stamp
-        return Status.ACCEPTED
+        status = order_of(imu.stamp, last)
+        if status is Status.ACCEPTED:
+            self._last = imu.stamp
+        elif last is not None and last - imu.stamp > PAUSE:
+            self._last = None
+        return status
 
     def on(self, support: Moment | None, orientation: Quaternion) -> Quaternion:
         """The orientation relative to the support, moving or (None) fixed, of a body with one in the world."""

@@ -10,7 +10,6 @@ from itertools import islice
 from math import sqrt
 
 from ..types import Vector3
-from ..vectors import add, times
 from .cubic import NANOSECONDS, SCALE, Fit, Frame, Noise, factored, solved
 from .habit import Habit
 from .sums import Sums
@@ -65,13 +64,6 @@ class Course:
             return last.rate or 0.0
         before = self.frames[-2]
         return (last.gap - before.gap) / (last.stamp - before.stamp) * NANOSECONDS
-
-    def velocity(self, k: int) -> Vector3:
-        """The velocity in m/s at the frame of index k, measured, or else from that frame and the one before it."""
-        frame, before = self.frames[k], self.frames[k - 1]
-        if frame.velocity is not None:
-            return frame.velocity
-        return times(add(frame.position, before.position, -1.0), NANOSECONDS / (frame.stamp - before.stamp))
 
     def follow(self) -> None:
         """Fit the last frame together with those that were followed before it."""

@@ -54,7 +54,7 @@ class Frame(NamedTuple):
     velocity: Vector3 | None
 
 
-class Landing(NamedTuple):
+class Descent(NamedTuple):
     """Where a course comes down: `time` in s from the fit's stamp, and the `rate` (m/s) of the gap then.
 
     `sure` where the foot has surely come through the level, or turned, soon after it; `precise` where at least the time
@@ -115,7 +115,7 @@ class Fit(NamedTuple):
             d * unit**3,
         )
 
-    def landing(self, level: float, tolerance: float, horizon: float) -> Landing | None:
+    def landing(self, level: float, tolerance: float, horizon: float) -> Descent | None:
         """When the gap first descends through a `level`, or comes to its lowest point within the `tolerance` above it.
 
         A lowest point so near to the level that the noise could put it there is one of a foot that brakes to rest,
@@ -149,7 +149,7 @@ class Fit(NamedTuple):
             return None
         return self._told(a, b, c, d, time, min(0.0, b + time * (2.0 * c + 3.0 * d * time)))
 
-    def _told(self, a: float, b: float, c: float, d: float, time: float, rate: float) -> Landing:
+    def _told(self, a: float, b: float, c: float, d: float, time: float, rate: float) -> Descent:
         """A landing, and how well it is known; speed and braking are taken to be less by their standard deviations."""
         later = time + SPREAD
         below = a + later * (b + later * (c + later * d)) < -SURE * self.gap_deviation(later)
@@ -159,7 +159,7 @@ class Fit(NamedTuple):
         else:
             bend = 2.0 * c + 6.0 * d * time
             precise = self.rate_deviation(time) < PRECISE * (bend - self.bend_deviation(time))
-        return Landing(time, rate, below or turned, precise)
+        return Descent(time, rate, below or turned, precise)
 
 
 def first_below(a: float, b: float, c: float, d: float, end: float) -> float:

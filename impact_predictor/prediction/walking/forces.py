@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..predictor import LARGEST, PAUSE
+from ..predictor import LARGEST, PAUSE, order_of
 from ..scene import Walking
 from ..types import Status, Wrench
 from ..vectors import dot
@@ -39,10 +39,3 @@ class Forces:
         if pressed is None or abs(stamp - pressed[0]) > self._timeout:
             return None
         return pressed[1] is stands
-
-
-def order_of(stamp: int, last: int | None) -> Status:
-    """Whether a stamp follows the last one of its stream."""
-    if last is None or stamp > last:
-        return Status.ACCEPTED
-    return Status.STAMP_REPEATED if stamp == last else Status.STAMP_WENT_BACK

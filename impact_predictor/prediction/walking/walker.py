@@ -7,7 +7,7 @@ from math import hypot, sqrt
 from typing import TYPE_CHECKING
 
 from ..planar import posture_of
-from ..predictor import LARGEST, PAUSE, check_numbers
+from ..predictor import LARGEST, PAUSE, check_numbers, order_of
 from ..scene import Scene, Walking
 from ..score import NANOSECONDS, Pending, Track
 from ..types import (
@@ -28,7 +28,7 @@ from .ahead import Ahead, point_of
 from .arrival import Arrival
 from .base import Twists, base_at
 from .cubic import Frame
-from .forces import Forces, order_of
+from .forces import Forces
 from .mechanism import Mechanism, Trunk
 from .plan import Plan
 from .point import Due, Point
