@@ -59,8 +59,8 @@ $(READY): setup.py constraints/jazzy.txt tools/requirements.txt
 test: $(READY) ## all tests, the quick ones first; ARGS="-k rod" runs some
 	@$(BIN)/python -m pytest --numprocesses 2 $(ARGS)
 
-test-extras: $(READY) ## what make test skips: the report's page in a browser (Debian: chromium), MuJoCo, wavespectra, Pinocchio
-	@$(BIN)/python -m pip install --quiet --quiet --disable-pip-version-check --editable '.[$(EXTRAS),articulated,browser,peers,robots,spectra]' \
+test-extras: $(READY) ## what make test skips: the pages in a browser (Debian: chromium), MuJoCo, wavespectra, Pinocchio, Dask
+	@$(BIN)/python -m pip install --quiet --quiet --disable-pip-version-check --editable '.[$(EXTRAS),articulated,browser,fleet,peers,robots,spectra]' \
 	  --constraint $(CONSTRAINTS)
 	@$(BIN)/python -m pytest -m extras $(ARGS)
 

@@ -44,8 +44,10 @@ setup(
         *files_of("launch"),
     ],
     install_requires=[
+        "backports.zstd>=1.0; python_version < '3.14'",
         "click>=8.1",
         "jinja2>=3.1",
+        "lz4>=4.0",
         "matplotlib>=3.6",
         "mpmath>=1.3",
         "numpy>=1.26",
@@ -58,6 +60,8 @@ setup(
     extras_require={
         "ros": ["ros-jazzy-common-interfaces", "ros-jazzy-rclpy[fastrtps]"],
         "fast": ["numba"],
+        # Many bags at a time, and their touchdowns as Parquet.
+        "fleet": ["dask>=2024.1", "distributed>=2024.1", "pyarrow>=16"],
         # Pinocchio, for machines with joints.
         "articulated": ["pin>=3.0"],
         "peers": ["mujoco>=3.2"],
@@ -66,7 +70,7 @@ setup(
         "browser": ["playwright>=1.45"],
         # Models of robots, for the tests.
         "robots": ["example-robot-data>=4.0"],
-        "test": ["hypothesis", "pytest", "pytest-xdist"],
+        "test": ["hypothesis", "mcap>=1.2,<2", "pytest", "pytest-xdist"],
     },
     entry_points={
         "console_scripts": [

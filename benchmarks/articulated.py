@@ -30,7 +30,7 @@ from rich.console import Console
 from rich.table import Table
 
 from impact_predictor.bags.adapters.known import readers
-from impact_predictor.bags.read import read_messages
+from impact_predictor.bags.read import Bag
 from impact_predictor.errors import InputError
 from impact_predictor.mechanics.types import Mode
 from impact_predictor.parameters.file import read_parameters
@@ -121,8 +121,9 @@ def posture(legs: Articulated, points: tuple[Vector3, ...], start: Array) -> Arr
 
 def landings(legs: Articulated) -> list[Case]:
     """The landings in the record, each from the last message before the foot stands."""
-    read = readers(BAG, STATE)
-    states = [read[message.topic](message.data) for message in read_messages(BAG, STATE)]
+    with Bag(BAG) as bag:
+        read = readers(bag, STATE)
+        states = [read[message.topic](message.data) for message in bag.messages(STATE)]
     names = legs.body.joints
     start = np.concatenate([BENT[name[1] == "h"] for name in names[::3]])
     cases = []

@@ -2,20 +2,25 @@
 
     python benchmarks/bench_latency.py [SECONDS] [--real-time]
 
-Three processes over real DDS: a publisher of contact points and pose of a trotting machine with four feet, at 500 Hz;
-the predictor with config/walker_hyq.yaml; and a sink that listens to its answers. Each sample has its own stamp. The
-publisher notes the time right before it publishes the contact points of a stamp, so that both messages count; the node
-notes the time right after its last answer to that stamp was published; the clock is the machine's monotonic one, which
-all processes share. Only this benchmark makes the node note times. What the sink has not received is lost.
+Four processes over real DDS: a publisher of contact points and pose of a trotting machine with four feet, at 500 Hz;
+the predictor with config/walker_hyq.yaml; a bare node that takes the same messages as bytes and publishes the pose as
+often as the predictor answers; and a sink that listens to both. Half a second goes to the one, the next to the other,
+in turn: what the bare node takes is the machine's, ROS's and the publisher's, and the difference the predictor's.
 
-With --real-time the three processes run under SCHED_FIFO, as root may, so that other programs of a busy machine do not
-count. The CPU time that the node spends on a sample hardly depends on them.
+Each sample has its own stamp. The publisher notes the time right before it publishes the contact points of a stamp, so
+that both messages count; the nodes note the time right after their last answer to that stamp was published; the clock
+is the machine's monotonic one, which all processes share. Only this benchmark makes the predictor note times. What the
+sink has not received is lost. Stolen is the time that the host of a virtual machine gave to others.
+
+With --real-time the processes run under SCHED_FIFO, as root may, so that other programs of a busy machine do not count.
 """
 
 from __future__ import annotations
 
+import gc
 import os
 import pickle
+import struct
 import sys
 import time
 from collections.abc import Callable
@@ -34,44 +39,84 @@ RATE: Final = 500.0
 SECONDS: Final = 20.0
 SETTLED: Final = 1.0
 """Seconds of answers that do not count: the first ones find caches empty."""
+PARTS: Final = (50, 90, 99, 99.9, 100)
 EXECUTORS: Final = ("single", "events")
 HEARD: Final = {
     "heard: post_impact, mode": ("post_impact", "mode"),
     "heard: everything": tuple(OUTPUTS),
 }
+TOPICS: Final = {"contact_geometry": POLYGON, "odom": ODOMETRY}
 QUEUE: Final = 100
 REAL_TIME: Final = "--real-time"
+TURN: Final = 250
+"""Samples that a node gets in its turn."""
+BARE: Final = "bare"
+INPUTS: Final = {"predictor": "", BARE: "bare/"}
+"""The nodes, and what their inputs begin with."""
+STAMP: Final = struct.Struct("<iI")
+"""Of a message, after the four bytes that tell its encoding."""
 LOAD: Final = "load average"
+ROUGH: Final = (LOAD, "later than 1 ms, %: predictor", "later than 1 ms, %: bare node")
+"""Figures with a digit behind the point."""
 PRIORITY: Final = 10
 """Of SCHED_FIFO, where it is asked for."""
 
 
 def publish(stop: Stop, file: str, seconds: str) -> int:
-    """Publish contact points, then the pose, at each step; note when, by the stamp."""
+    """Publish contact points, then the pose, at each step, to each node in its turn; note when, by the stamp."""
     from rclpy.node import Node
 
     node = Node("publisher", use_global_arguments=False)
-    points = node.create_publisher(message_class(POLYGON), "contact_geometry", QUEUE)
-    poses = node.create_publisher(message_class(ODOMETRY), "odom", QUEUE)
-    while not (points.get_subscription_count() and poses.get_subscription_count()):
+    publishers = [
+        [node.create_publisher(message_class(kind), prefix + topic, QUEUE) for topic, kind in TOPICS.items()]
+        for prefix in INPUTS.values()
+    ]
+    while not all(one.get_subscription_count() for both in publishers for one in both):
         if stop.wait(0.05):
             return 1
     stop.wait(1.0)  # the other side finds this one by itself
-    begin = time.time_ns()
     messages = [
         (sample.stamp, encode_polygon(geometry), encode_odometry(sample))
-        for geometry, sample in trot(RATE, float(seconds), begin)
+        for geometry, sample in trot(RATE, float(seconds), time.time_ns())
     ]
-    called: dict[int, int] = {}
-    first = time.monotonic_ns()
-    for stamp, geometry, sample in messages:
-        time.sleep(max(0.0, (first + stamp - begin - time.monotonic_ns()) * 1e-9))
-        called[stamp] = time.monotonic_ns()
-        points.publish(geometry)
-        poses.publish(sample)
+    called: list[dict[int, int]] = [{} for _ in INPUTS]
+    begin, step = time.monotonic(), 0
+    for first in range(0, len(messages), TURN):
+        for notes, (points, poses) in zip(called, publishers, strict=True):
+            for stamp, geometry, sample in messages[first : first + TURN]:
+                time.sleep(max(0.0, begin + step / RATE - time.monotonic()))
+                step += 1
+                notes[stamp] = time.monotonic_ns()
+                points.publish(geometry)
+                poses.publish(sample)
     stop.wait(0.5)
     node.destroy_node()
-    return _write(file, called)
+    return _write(file, dict(zip(INPUTS, called, strict=True)))
+
+
+def pass_on(stop: Stop, file: str, executor: str, *names: str) -> int:
+    """The bare node: publish each pose as it is, once for each answer of the predictor."""
+    from rclpy.node import Node
+    from rclpy.qos import QoSProfile, ReliabilityPolicy
+
+    node = Node(BARE, use_global_arguments=False)
+    outlets = [node.create_publisher(message_class(ODOMETRY), INPUTS[BARE] + name, QUEUE) for name in names]
+    returned: dict[int, int] = {}
+
+    def take(data: bytes) -> None:
+        for one in outlets:
+            one.publish(data)
+        seconds, nanoseconds = STAMP.unpack_from(data, 4)
+        returned[seconds * 10**9 + nanoseconds] = time.monotonic_ns()
+
+    takers = {POLYGON: lambda _: None, ODOMETRY: take}
+    qos = QoSProfile(depth=QUEUE, reliability=ReliabilityPolicy.BEST_EFFORT)
+    for topic, kind in TOPICS.items():
+        node.create_subscription(message_class(kind), INPUTS[BARE] + topic, takers[kind], qos, raw=True)
+    gc.freeze()  # as the predictor does
+    spin(node, stop, lambda: len(returned), executor)
+    node.destroy_node()
+    return _write(file, returned)
 
 
 def predict(file: str) -> int:
@@ -107,6 +152,7 @@ def listen(stop: Stop, file: str, *names: str) -> int:
     for name in names:
         kind = message_class(OUTPUTS[name].type_name)
         node.create_subscription(kind, f"/impact_predictor/{name}", counter(name), QUEUE, raw=True)
+        node.create_subscription(message_class(ODOMETRY), INPUTS[BARE] + name, lambda _: None, QUEUE, raw=True)
     spin(node, stop, lambda: sum(counts.values()))
     node.destroy_node()
     return _write(file, counts)
@@ -117,7 +163,7 @@ def _write(file: str, content: object) -> int:
     return 0
 
 
-ROLES: Final = ("publish", "predict", "listen")
+ROLES: Final = ("publish", "predict", "pass_on", "listen")
 
 
 def measure(executor: str, heard: tuple[str, ...], seconds: float, *how: str) -> dict[str, float]:
@@ -133,32 +179,46 @@ def measure(executor: str, heard: tuple[str, ...], seconds: float, *how: str) ->
             return stack.enter_context(Child(role, environment, __file__, *how, role, files[role], *more))
 
         arguments = ("--ros-args", "--params-file", str(PARAMETERS), "-p", f"executor:={executor}")
-        sink, node = start("listen", *heard), start("predict", *arguments)
-        publisher = start("publish", str(seconds + SETTLED))
+        sink, node, bare = start("listen", *heard), start("predict", *arguments), start("pass_on", executor, *heard)
+        publisher, stolen = start("publish", str(seconds + SETTLED)), stolen_time()
         while not publisher.ended:
             time.sleep(0.1)
-            sink.check()
-            node.check()
-        for one in (publisher, node, sink):
+            for one in (sink, node, bare):
+                one.check()
+        stolen = stolen_time() - stolen
+        for one in (publisher, node, bare, sink):
             one.end()
-        called, returned, counts = (pickle.loads(Path(files[role]).read_bytes()) for role in ROLES)
-    stamps = sorted(called)[round(RATE * SETTLED) :]
+        called, returned, passed_on, counts = (
+            pickle.loads(Path(files[role]).read_bytes()) for role in ("publish", "predict", "pass_on", "listen")
+        )
+    stamps = sorted(called["predictor"])[round(RATE * SETTLED) :]
     answered = [stamp for stamp in stamps if stamp in returned]
-    latency = np.array([returned[stamp][0] - called[stamp] for stamp in answered]) * 1e-3
+    latency = np.array([returned[stamp][0] - called["predictor"][stamp] for stamp in answered]) * 1e-3
+    of_bare = np.array([passed_on[one] - called[BARE][one] for one in stamps if one in passed_on]) * 1e-3
     update = np.array([returned[stamp][1] for stamp in answered]) * 1e6
-    if len(answered) < 2:
-        raise SystemExit("the node answered next to no sample; see what it says on /diagnostics")
+    if len(answered) < 2 or not len(of_bare):
+        raise SystemExit("a node answered next to no sample; see what the predictor says on /diagnostics")
+    parts = {f"p{part}": (np.percentile(latency, part), np.percentile(of_bare, part)) for part in PARTS}
     return {
         "samples": len(stamps),
         "not answered": len(stamps) - len(answered),
         "lost to the sink": len(returned) - counts["mode"],
-        **{f"p{part} us": float(np.percentile(latency, part)) for part in (50, 90, 99, 99.9)},
-        "max us": float(latency.max()),
-        "update p50 us": float(np.median(update)),
-        "update p99 us": float(np.percentile(update, 99)),
+        **{f"{part} us: predictor": float(ours) for part, (ours, _) in parts.items()},
+        **{f"{part} us: bare node": float(theirs) for part, (_, theirs) in parts.items()},
+        "p50 us: difference": float(parts["p50"][0] - parts["p50"][1]),
+        "later than 1 ms, %: predictor": float(100.0 * np.mean(latency > 1000.0)),
+        "later than 1 ms, %: bare node": float(100.0 * np.mean(of_bare > 1000.0)),
+        "update us: p50": float(np.median(update)),
+        "update us: p99": float(np.percentile(update, 99)),
         "node's CPU us": (returned[answered[-1]][2] - returned[answered[0]][2]) / (len(answered) - 1) * 1e6,
+        "stolen, ms of each s": stolen / (2.0 * seconds) * 1e3,
         LOAD: os.getloadavg()[0],
     }
+
+
+def stolen_time() -> float:
+    """Seconds of all processors that the host of this virtual machine gave to others."""
+    return int(Path("/proc/stat").read_text(encoding="ascii").split()[8]) / os.sysconf("SC_CLK_TCK")
 
 
 def main(words: list[str]) -> int:
@@ -173,7 +233,9 @@ def main(words: list[str]) -> int:
     for listener, heard in HEARD.items():
         for executor in EXECUTORS:
             figures = measure(executor, heard, seconds, *how)
-            columns[f"{listener}\n{executor}"] = [f"{number:.{int(name == LOAD)}f}" for name, number in figures.items()]
+            columns[f"{listener}\n{executor}"] = [
+                f"{number:.{int(name in ROUGH)}f}" for name, number in figures.items()
+            ]
     table = Table("", *columns, title=title)
     for name, *numbers in zip(figures, *columns.values(), strict=True):
         table.add_row(name, *numbers)
@@ -188,8 +250,8 @@ def play(words: list[str]) -> int:
     name, *arguments = [word for word in words if word != REAL_TIME]
     if name == "predict":
         return predict(arguments[0])
-    role = publish if name == "publish" else listen
-    return run(lambda stop: role(stop, *arguments), sys.argv)
+    roles: dict[str, Callable[..., int]] = {"publish": publish, "pass_on": pass_on, "listen": listen}
+    return run(lambda stop: roles[name](stop, *arguments), sys.argv)
 
 
 if __name__ == "__main__":

@@ -35,7 +35,7 @@ def run(machine: Scene, record: Record) -> tuple[list[float], list[int]]:
         walker.set_geometry(geometry)
         prediction = walker.update(sample)
         costs.append((perf_counter_ns() - started) * 1e-3)
-        ahead.append(len(prediction.touchdowns))
+        ahead.append(sum(foot.lead_time is not None for foot in prediction.feet))
     return costs, ahead
 
 

@@ -1,6 +1,6 @@
 """Predicted landings of a planned gait, with seeded noise on base and feet.
 
-    python benchmarks/walker_noise.py [SEEDS]
+    python benchmarks/walker_noise.py [SEEDS [FIRST]]
 
 Every sample gets noise of its own, standing feet included: 1 mm on each coordinate and 0.02 m/s on each part of each
 velocity. Prints, without noise and for each seed: true landings found and missed, false alarms, the shortest time from
@@ -23,14 +23,14 @@ from rich.progress import track
 
 from impact_predictor.bags.adapters import Adapted
 from impact_predictor.bags.adapters.known import readers
-from impact_predictor.bags.read import read_messages
+from impact_predictor.bags.read import Bag
 from impact_predictor.parameters.file import read_values
 from impact_predictor.prediction.scene import Scene, scenes_of
 from impact_predictor.prediction.types import Prediction
 from impact_predictor.prediction.walking.walker import Walker
 from impact_predictor.report.table import plain_table, show
-from impact_predictor.scenarios.comparison import Announced
 from impact_predictor.scenarios.landings import Landings
+from impact_predictor.scenarios.matching import Announced
 from impact_predictor.scenarios.walking.noise import noisy
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -56,8 +56,9 @@ class Outcome(NamedTuple):
 
 def plan() -> list[Adapted]:
     """The plan of HyQ."""
-    read = readers(BAG, {TOPIC: TYPE})[TOPIC]
-    return [read(message.data) for message in read_messages(BAG, {TOPIC: TYPE})]
+    with Bag(BAG) as bag:
+        read = readers(bag, {TOPIC: TYPE})[TOPIC]
+        return [read(message.data) for message in bag.messages({TOPIC: TYPE})]
 
 
 def scene() -> Scene:
@@ -131,6 +132,8 @@ def cells(name: str, seed: str, runs: Sequence[Outcome]) -> list[str]:
 
 def main() -> None:
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 20
+    first = int(sys.argv[2]) if len(sys.argv) > 2 else 0
+    numbers = range(first, first + count)
     record, machine = plan(), scene()
     table = plain_table()
     table.add_column("noise", no_wrap=True)
@@ -139,10 +142,10 @@ def main() -> None:
         table.add_column(header, justify="right", no_wrap=True)
     table.add_row(*cells("none", "", [run(record, machine)]))
     for on_robot, name in ((False, "world"), (True, "robot")):
-        seeds = track(range(count), name, console=Console(stderr=True), transient=True)
+        seeds = track(numbers, name, console=Console(stderr=True), transient=True)
         runs = [run(record, machine, seed, on_robot) for seed in seeds]
         table.add_section()
-        for seed, one in enumerate(runs):
+        for seed, one in zip(numbers, runs, strict=True):
             table.add_row(*cells(name, str(seed), [one]))
         table.add_row(*cells(name, "all", runs), style="bold")
     show(Console(), table)

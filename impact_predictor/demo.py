@@ -20,7 +20,8 @@ from .bags.read import read_messages, topics
 from .errors import InputError
 from .report.figure import write_figure
 from .report.summary import LEAD_TIME_EDGES, LeadTimeErrors, TouchdownRow, row_of_message, summarize
-from .report.table import conclusions, lead_time_table, show, touchdown_table
+from .report.table import lead_time_table, show, touchdown_table
+from .report.tally import Tally
 from .resources import find
 from .ros.messages import DIAGNOSTIC_ARRAY, Diagnostic, decode_diagnostic_array
 from .ros.player import PLAYING, timed
@@ -67,7 +68,7 @@ def run_demo(output: Path = Path("out/demo"), tosses: int = TOSSES) -> int:
     console.print()
     show(console, lead_time_table(recording.lead_time_errors))
     console.print()
-    for sentence in conclusions(recording.rows):
+    for sentence in Tally(recording.rows).sentences():
         console.print(sentence, soft_wrap=True)
     write_figure(picture, recording.rows, recording.lead_time_errors, f"{tosses} tosses of a cube, live on ROS topics")
     console.print(f"Predictions: {predictions}\nPicture: {picture}", soft_wrap=True)

@@ -10,6 +10,11 @@ from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
 from launch_ros.actions import Node
 from launch_ros.substitutions import FindPackageShare
 
+INPUTS = {
+    "support/odom": "Topic of the deck's state.",
+    "support/imu": "Topic of an inertial sensor on the deck.",
+}
+
 
 def generate_launch_description() -> LaunchDescription:
     scene = PathJoinSubstitution([FindPackageShare("impact_predictor"), "config", LaunchConfiguration("scene")])
@@ -22,12 +27,10 @@ def generate_launch_description() -> LaunchDescription:
             DeclareLaunchArgument(
                 "namespace", default_value="", description="Namespace of the node and of the topics of deck and cargo."
             ),
-            DeclareLaunchArgument(
-                "support_odom", default_value="support/odom", description="Topic of the deck's state."
-            ),
-            DeclareLaunchArgument(
-                "support_imu", default_value="support/imu", description="Topic of an inertial sensor on the deck."
-            ),
+            *[
+                DeclareLaunchArgument(name.replace("/", "_"), default_value=name, description=text)
+                for name, text in INPUTS.items()
+            ],
             Node(
                 package="impact_predictor",
                 executable="predictor",
@@ -35,10 +38,7 @@ def generate_launch_description() -> LaunchDescription:
                 namespace=LaunchConfiguration("namespace"),
                 output="screen",
                 parameters=[LaunchConfiguration("params_file")],
-                remappings=[
-                    ("support/odom", LaunchConfiguration("support_odom")),
-                    ("support/imu", LaunchConfiguration("support_imu")),
-                ],
+                remappings=[(name, LaunchConfiguration(name.replace("/", "_"))) for name in INPUTS],
             ),
         ]
     )

@@ -11,6 +11,8 @@ settings.register_profile("search")
 settings.register_profile("repeatable", derandomize=True)
 settings.load_profile("repeatable")
 
+LONGEST = "test_heavy_sea.py"
+
 
 def pytest_configure() -> None:
     """Give each worker of a parallel run a ROS domain of its own, before anything imports rclpy."""
@@ -21,4 +23,5 @@ def pytest_configure() -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    items.sort(key=lambda item: item.get_closest_marker("slow") is not None)
+    # The longest one comes first of the slow ones, so that no worker of a parallel run waits for it at the end.
+    items.sort(key=lambda item: (item.get_closest_marker("slow") is not None, item.path.name != LONGEST))

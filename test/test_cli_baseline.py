@@ -65,6 +65,20 @@ def test_the_json_carries_the_comparison_and_the_exit_status_is_the_same(
     assert same == {"file": str(old), "touchdowns_before": 3, "touchdowns": 3, "unchanged": 3, "changes": []}
 
 
+def test_a_bag_that_the_earlier_run_lacks_is_told_and_stops_no_other(tmp_path: Path, bag: Path) -> None:
+    (tmp_path / "new.mcap").hardlink_to(bag)
+    old, both = tmp_path / "old.json", (tmp_path / "new.mcap", "--baseline", tmp_path / "old.json")
+    old.write_text(f"[{replay(bag, SCENE, '--json').stdout}]")
+    said = f"the baseline {old} has no run of {tmp_path / 'new.mcap'}; replay that bag with --json again"
+    result = replay(bag, SCENE, *both)
+    assert (result.exit_code, said in result.stderr) == (1, True)
+    assert f"Nothing has changed against {old}: 3 touchdowns." in result.stdout
+    compared = [answer["baseline"] for answer in json.loads(replay(bag, SCENE, *both, "--json").stdout)]
+    assert (compared[0]["unchanged"], compared[1]) == (3, {"file": str(old), "error": said})
+    alone = replay(tmp_path / "new.mcap", SCENE, "--baseline", old)
+    assert (alone.exit_code, alone.stderr) == (2, f"error: {said}\n")
+
+
 def test_a_baseline_that_is_no_run_is_refused_before_anything_is_replayed(tmp_path: Path, bag: Path) -> None:
     refused = replay(bag, SCENE, "--baseline", bag, "-o", tmp_path / "new.mcap")
     assert refused.exit_code == 2

@@ -20,6 +20,7 @@ from impact_predictor.commands.simulate import EXAMPLES
 from impact_predictor.parameters.file import read_parameters
 from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction.scene import Scene
+from impact_predictor.report.motions import animation, wheel_animation
 from impact_predictor.ros.messages import POLYGON, decode_polygon
 from impact_predictor.scenarios.truth import TRUTH_TOPIC
 
@@ -202,7 +203,15 @@ def test_the_animation_moves_and_ends_where_the_body_stays(folder: Path, argumen
     assert all(np.abs(one - other).max() > 100.0 for one, other in pairwise(frames))
 
 
+@pytest.fixture
+def few_frames(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A tenth of the frames of a moving picture, where only that it is made counts."""
+    monkeypatch.setattr(animation, "STEP", 10 * animation.STEP)
+    monkeypatch.setattr(wheel_animation, "STEP", 10 * wheel_animation.STEP)
+
+
 @pytest.mark.slow
+@pytest.mark.usefixtures("few_frames")
 def test_the_documentation_is_what_its_lines_make(folder: Path) -> None:
     page = (ROOT / "docs/simulation.md").read_text(encoding="utf-8")
     lines = [line.strip() for line in page.splitlines() if line.startswith("    impact-predictor ")]
@@ -216,6 +225,7 @@ def test_the_documentation_is_what_its_lines_make(folder: Path) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("few_frames")
 @pytest.mark.parametrize("body", BODIES)
 def test_every_example_works(folder: Path, body: str) -> None:
     for line in EXAMPLES[body]:

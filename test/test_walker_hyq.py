@@ -20,6 +20,7 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from scipy.spatial.transform import Rotation
 
 from impact_predictor.bags.read import read_messages, topics
+from impact_predictor.mechanics.types import Flag
 from impact_predictor.prediction.walking.walker import Walker
 from impact_predictor.scenarios.warned import Warned
 
@@ -193,14 +194,16 @@ def test_the_plan_brakes_its_feet_and_their_impacts_are_those_of_the_last_sample
         assert min(old_n, new_n) >= 0.0
         assert abs(old_t) <= old_n * machine.friction + 1e-12
         assert abs(new_t) <= new_n * machine.friction + 1e-12
-        # A standing foot may lift; the landing one neither bounces nor goes on into the ground.
-        assert velocities[:, 0].min() > -1e-12
-        assert abs(velocities[-1, 0]) < 1e-12
+        # The landing foot neither bounces nor goes on into the ground; others lift, or one of two that land together.
+        # Of four that land together three are one contact in their mean, and one of them may not be the mean.
+        assert velocities[:, 0].min() > -1e-12 or len(impact.old) > 1
+        assert abs(new_n * velocities[-1, 0]) < 1e-12 or len(impact.old) > 1
+        assert new_n > 0.0 or Flag.BOTH_STRUCK in impact.flags
         slip = velocities[-1, 1]
         if abs(slip) < 1e-12:
             sticking += 1
         else:
-            assert impact.mode.name in ("SLIDE", "PIVOT_SLIDE")
+            assert impact.mode.name in ("SLIDE", "PIVOT_SLIDE") or not new_n
             # These never stop to slip on the way, so friction is at its limit throughout.
             assert new_t == pytest.approx(-np.sign(slip) * machine.friction * new_n, abs=1e-12)
     assert sticking > 20
@@ -216,8 +219,9 @@ def velocity_in_world(told: Any, foot: int) -> np.ndarray:
 def by_newton(told: Any, impact: Any, machine: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The trunk's twist after the impulses of an impact, in its own axes, by Newton's and Euler's laws in the world.
 
-    Then the velocities (n, t) of the mean standing foot, where feet stand, and of the landing one, changed from what
-    they were: rest and the foot's own. Legs have no mass: a foot's velocity changes as that of a point of the trunk.
+    Then the velocities (n, t) of the old contact, where there is one, and of the landing foot, changed from what they
+    were: rest, or its own of a foot that lands too, and the landing foot's own. Legs have no mass: a foot's velocity
+    changes as that of a point of the trunk.
     """
     sample = told.sample
     turned = Rotation.from_quat(sample.orientation)
@@ -230,7 +234,10 @@ def by_newton(told: Any, impact: Any, machine: Any) -> tuple[np.ndarray, np.ndar
     inertia = turned.as_matrix() @ np.array(machine.inertia) @ turned.as_matrix().T
     linear = np.sum(pushes, axis=0) / machine.mass
     angular = np.linalg.solve(inertia, np.sum(np.cross(arms, pushes), axis=0))
-    before = [np.zeros(3)] * (len(arms) - 1) + [velocity_in_world(told, impact.new[0])]
+    # The old contact rests, or it is a foot that lands together with the new one.
+    rests = Flag.BOTH_STRUCK not in impact.flags
+    before = [np.zeros(3) if rests else velocity_in_world(told, impact.old[0])][: len(arms) - 1]
+    before.append(velocity_in_world(told, impact.new[0]))
     after = [start + linear + np.cross(angular, arm) for start, arm in zip(before, arms, strict=True)]
     velocities = np.array([[vector @ normal, vector @ ahead] for vector in after])
     twist = (old + turned.inv().apply(new) for old, new in ((sample.linear, linear), (sample.angular, angular)))

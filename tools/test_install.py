@@ -9,6 +9,7 @@ variables; what pip downloads is kept for all of them.
 
 from __future__ import annotations
 
+import hashlib
 import itertools
 import json
 import os
@@ -29,6 +30,12 @@ VERSIONS = ("3.10", "3.11", "3.12", "3.13")
 FEWEST_TESTS = 300
 """Fewer executed by colcon mean that it did not find them: it then executes none and exits with 0."""
 PLATE = ("solve", "plate", "--length=1", "--height=0.4", "--mass=10", "--friction=0.2", "--omega=-1", "--json")
+BAGS = (
+    ("examples/cube_tosses", "config/cube_tosses.yaml"),
+    ("examples/hyq/hyq.bag", "config/walker_hyq.yaml"),
+)
+"""Recorded bags, each with its scene."""
+
 COLCON = "setuptools<80", "colcon-common-extensions"
 NOT_SOURCE = {".git", ".venv", ".hypothesis", "build", "dist", "install", "log", "out"}
 CALLERS = ("AMENT_", "CMAKE_PREFIX_PATH", "COLCON_", "LD_LIBRARY_PATH", "PYTHON", "ROS_", "VIRTUAL_ENV", "_ROS_WHEELS_")
@@ -42,6 +49,9 @@ while "{NAME}" not in probe.get_node_names():
     time.sleep(0.1)
 """
 
+
+predictions: dict[str, str] = {}
+"""What each Python predicted, by the path of the Python."""
 
 ros_domains = itertools.count(1 + os.getpid() % 80)
 """One for each install: two run at a time, and their nodes have one name."""
@@ -142,6 +152,24 @@ def check_offline(environment: Environment) -> None:
         raise InstallError("replay found no touchdown in the recorded tosses")
 
 
+def predictions_of(environment: Environment) -> str:
+    """The checksums of the predictions for the recorded bags: the same on every Python with the same bag libraries."""
+    share = environment.prefix / "share" / NAME
+    sums = []
+    for bag, scene in BAGS:
+        output = environment.work / "predictions.mcap"
+        command = (
+            f"{environment.prefix}/bin/impact-predictor",
+            "replay",
+            str(share / bag),
+            "--params",
+            str(share / scene),
+        )
+        environment.run(*command, "-o", str(output))
+        sums.append(hashlib.sha256(output.read_bytes()).hexdigest())
+    return " ".join(sums)
+
+
 def check_node_missing(environment: Environment) -> None:
     """Without ROS the node says so, in one line."""
     said = environment.run(f"{environment.prefix}/bin/predictor", status=None)
@@ -176,9 +204,11 @@ def check_node(environment: Environment, share: Path, *command: str) -> None:
 
 def install_without_ros(base: Path, python: str) -> str:
     environment = Environment(base, python)
-    environment.pip("install", str(copy_source(base / "source")))
+    source = copy_source(base / "source")
+    environment.pip("install", str(source), "--constraint", str(source / "constraints/bags.txt"))
     check_offline(environment)
     check_node_missing(environment)
+    predictions[python] = predictions_of(environment)
     return "library, solve, replay; the node says that ROS is missing"
 
 
@@ -270,7 +300,19 @@ def main() -> int:
         for done in as_completed([pool.submit(attempt, *plan) for plan in planned(ways)]):
             print(done.result(), flush=True)
             failed |= done.result().startswith("FAIL")
+    if "pip" in ways:
+        said = same_predictions()
+        print(said, flush=True)
+        failed |= said.startswith("FAIL")
     return int(failed)
+
+
+def same_predictions() -> str:
+    """Whether all Pythons predicted the same, to the last bit, in a line."""
+    name = f"the same predictions on {len(predictions)} Pythons"
+    if len(predictions) < 2:
+        return f"SKIP {name}: it takes two to compare"
+    return f"{'PASS' if len(set(predictions.values())) == 1 else 'FAIL'} {name}"
 
 
 if __name__ == "__main__":

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Final
 
 from ..prediction.remedies import REMEDIES
 from ..prediction.scene import Scene
-from ..prediction.score import NANOSECONDS
 from ..prediction.types import Geometry, Joints, Prediction, Sample, Status, Vector3
 from ..prediction.vectors import add, axes_of, dot, to_world
+from ..stamps import NANOSECONDS
 
 if TYPE_CHECKING:
     from ..prediction.walking.walker import Walker

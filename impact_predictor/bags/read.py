@@ -4,30 +4,23 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Collection, Iterator, Mapping
-from contextlib import ExitStack, suppress
+from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
-from rosbags.interfaces import Connection, ConnectionExtRosbag2, MessageDefinitionFormat
-from rosbags.rosbag1 import Reader as Ros1Reader
-from rosbags.rosbag2 import Reader as Ros2Reader
-from rosbags.typesys import Stores, get_types_from_idl, get_types_from_msg, get_typestore
-from rosbags.typesys.store import Typestore
-
 from ..errors import InputError
 from ..ros.messages import MalformedMessage
+from .chunks import UNKNOWN, Channel, Flaw
+from .compression import ZSTD_MAGIC, decompressed_message
+from .parts import Part, Recording, opened
 
-Reader = Ros1Reader | Ros2Reader
-
-_STORAGE_SUFFIXES: Final = (".mcap", ".db3")
-_KINDS: Final = "an .mcap file, a rosbag2 folder or a ROS 1 .bag file"
+_ENCODINGS: Final = ("cdr", "ros1")
 _REPAIRS: Final = {
     ".mcap": "repair a copy with `mcap recover`",
     ".bag": "repair a copy with `rosbag reindex`",
 }
-_HEADER: Final = "std_msgs/msg/Header"
-_IDL: Final = f"{'=' * 80}\nIDL: "
+
 _MOST_TOPICS_NAMED: Final = 20
 
 
@@ -43,106 +36,94 @@ class BagMessage(NamedTuple):
     data: bytes
 
 
+class Bag:
+    """A bag that is open; a context manager. However much is asked of it, it is looked through, and decompressed, once.
+
+    `wanted` has topics and the types that their messages must have, as in {"/odom": "nav_msgs/msg/Odometry"}.
+    """
+
+    def __init__(self, path: str | os.PathLike[str]) -> None:
+        """Open it.
+
+        Raises:
+            InputError: it is not there, is no bag, or cannot be read.
+        """
+        self.path = Path(path)
+        with ExitStack() as stack:
+            self._recording = opened(self.path, stack)
+            self._stack = stack.pop_all()
+
+    def __enter__(self) -> Bag:
+        """Nothing more is to be done."""
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Close its files."""
+        self._stack.close()
+
+    def topics(self) -> dict[str, str]:
+        """The topics with the types of their messages, in order; of a damaged bag those that can be read.
+
+        Raises:
+            InputError: the bag is so damaged that none can be read.
+        """
+        types = _types(_channels(self._recording))
+        if not types:
+            _check_whole(self.path, self._recording)
+        return types
+
+    def messages(self, wanted: Mapping[str, str]) -> Iterator[BagMessage]:
+        """The messages of some topics in the order of their log times, read while they are asked for.
+
+        Messages of ROS 1 are converted to CDR. What can be known before the first message is checked at once. Of a
+        bag in several files, one is read after the other.
+
+        Raises:
+            InputError: the bag lacks a topic, or a topic has another type; while reading: the bag is damaged, after
+                every message before the damage.
+        """
+        selected = _select(self.path, self._recording, wanted)
+        ros1 = [one for one in selected if one.encoding == "ros1"]
+        to_cdr = _ros1_converter(self.path, ros1) if ros1 else None
+        return _stream(self.path, self._recording, wanted, to_cdr)
+
+    def decoders(self, wanted: Mapping[str, str]) -> dict[str, Callable[[bytes], Any]]:
+        """What makes objects of the messages (in CDR) of some topics, by the definitions that the bag itself holds.
+
+        Raises:
+            InputError: the bag lacks a topic or the definition of a type, or a topic has another type.
+        """
+        from .definitions import typestore_of
+
+        selected = _select(self.path, self._recording, wanted)
+        typestore = typestore_of(self.path, selected)
+        return {one.topic: partial(typestore.deserialize_cdr, typename=one.type_name) for one in selected}
+
+
 def topics(path: str | os.PathLike[str]) -> dict[str, str]:
-    """The topics of a bag with the types of their messages, as in {"/odom": "nav_msgs/msg/Odometry"}, in order.
+    """The topics of a bag with the types of their messages: `Bag.topics`.
 
     Raises:
         InputError: the bag is not there or cannot be read.
     """
-    with ExitStack() as stack:
-        return _types(_open(Path(path), stack).connections)
+    with Bag(path) as bag:
+        return bag.topics()
 
 
 def read_messages(path: str | os.PathLike[str], wanted: Mapping[str, str]) -> Iterator[BagMessage]:
-    """The messages of some topics of a bag in the order of their log times, read while they are asked for.
-
-    `wanted` has the topics and the types that their messages must have. Messages of a ROS 1 bag are converted to CDR.
-    What can be known before the first message is checked at once.
+    """The messages of some topics of a bag: `Bag.messages`.
 
     Raises:
-        InputError: the bag is not there, cannot be read, or lacks a topic, or a topic has another type; while
-            reading: the bag is damaged, after every message before the damage.
+        InputError: the bag is not there or cannot be read, and what `Bag.messages` raises.
     """
-    path = Path(path)
     with ExitStack() as stack:
-        reader = _open(path, stack)
-        connections = _select(path, reader.connections, wanted)
-        to_cdr = _ros1_converter(path, connections) if isinstance(reader, Ros1Reader) else None
-        return _stream(path, reader, connections, to_cdr, stack.pop_all())
+        messages = stack.enter_context(Bag(path)).messages(wanted)
+        return _read_and_close(messages, stack.pop_all())
 
 
-def _open(path: Path, stack: ExitStack) -> Reader:
-    storage = _storage(path)
-    try:
-        reader = Ros1Reader(storage) if storage.suffix == ".bag" and storage.is_file() else Ros2Reader(storage)
-        reader.open()
-        # Metadata that were edited by hand, or damaged, may hold anything where a name or a count belongs.
-        for one in reader.connections:
-            if not (isinstance(one.topic, str) and isinstance(one.msgtype, str) and isinstance(one.msgcount, int)):
-                raise ValueError(f"the metadata name a topic {one.topic!r} of type {one.msgtype!r}")
-    # A damaged file may raise anything from the depths of the reader, not only its own errors.
-    except Exception as error:
-        raise InputError(_unreadable(path, error)) from error
-    stack.callback(_close, reader)
-    return reader
-
-
-def _close(reader: Reader) -> None:
-    with suppress(OSError):
-        reader.close()
-
-
-def _storage(path: Path) -> Path:
-    """What the reader opens: the path itself, or the only file of a folder that lost its metadata."""
-    if not path.exists():
-        raise InputError(f"{path} does not exist; give {_KINDS}")
-    if not path.is_dir():
-        if path.suffix not in (*_STORAGE_SUFFIXES, ".bag"):
-            raise InputError(f"{path} is not a bag; give {_KINDS}")
-        return path
-    if (path / "metadata.yaml").exists():
-        return path
-    files = sorted(file for file in path.iterdir() if file.suffix in _STORAGE_SUFFIXES)
-    if not files:
-        raise InputError(f"{path} is not a bag: it has neither metadata.yaml nor a recording; give {_KINDS}")
-    if len(files) > 1:
-        raise InputError(
-            f"{path} has {len(files)} recordings but no metadata.yaml that orders them; "
-            "make it with `ros2 bag reindex`, or give one of the files"
-        )
-    return files[0]
-
-
-def _unreadable(path: Path, error: Exception, read: int | None = None) -> str:
-    if isinstance(error, OSError) and error.strerror:
-        return f"{path} cannot be read: {error.strerror}"
-    reason = " ".join(str(error).split()).rstrip(".") or type(error).__name__
-    where = "" if read is None else f" after {read} messages"
-    repair = _REPAIRS.get(path.suffix, "repair a copy with `ros2 bag reindex`")
-    return f"{path} is damaged or cut off{where} ({reason}); {repair}, or record it again"
-
-
-def _types(connections: Collection[Connection]) -> dict[str, str]:
-    types: dict[str, set[str]] = {}
-    for connection in connections:
-        types.setdefault(connection.topic, set()).add(connection.msgtype)
-    return {topic: " and ".join(sorted(types[topic])) for topic in sorted(types)}
-
-
-def _select(path: Path, connections: Collection[Connection], wanted: Mapping[str, str]) -> list[Connection]:
-    """The connections of the wanted topics in the order of the bag, which decides between equal log times."""
-    types = _types(connections)
-    for topic, type_name in wanted.items():
-        if topic not in types:
-            raise InputError(f"{path} has no topic {topic} of type {type_name}; it has {listing(types, type_name)}")
-        if not any(one.topic == topic and one.msgtype == type_name for one in connections):
-            raise InputError(f"the topic {topic} of {path} has the type {types[topic]}, but {type_name} is needed")
-    selected = [one for one in connections if wanted.get(one.topic) == one.msgtype]
-    for one in selected:
-        if isinstance(one.ext, ConnectionExtRosbag2) and one.ext.serialization_format != "cdr":
-            encoding = one.ext.serialization_format
-            raise InputError(f"the topic {one.topic} of {path} is recorded as {encoding!r}, but CDR is needed")
-    return selected
+def _read_and_close(messages: Iterator[BagMessage], stack: ExitStack) -> Iterator[BagMessage]:
+    with stack:
+        yield from messages
 
 
 def listing(types: Mapping[str, str], type_name: str) -> str:
@@ -150,77 +131,133 @@ def listing(types: Mapping[str, str], type_name: str) -> str:
     if not types:
         return "no topics at all"
     ordered = sorted(types, key=lambda topic: types[topic] != type_name)
-    named = ", ".join(f"{topic} ({types[topic]})" for topic in ordered[:_MOST_TOPICS_NAMED])
+    named = ", ".join(f"{topic} ({types[topic] or 'no type'})" for topic in ordered[:_MOST_TOPICS_NAMED])
     more = len(ordered) - _MOST_TOPICS_NAMED
     return named if more <= 0 else f"{named} and {more} more"
+
+
+def _channels(recording: Recording) -> list[Channel]:
+    return [channel for part in recording.parts for channel in part.file.channels]
+
+
+def _types(channels: Collection[Channel]) -> dict[str, str]:
+    types: dict[str, set[str]] = {}
+    for one in channels:
+        name = one.type_name if one.encoding in _ENCODINGS else f"{one.type_name} as {one.encoding}"
+        types.setdefault(one.topic, set()).add(name)
+    return {topic: " and ".join(sorted(types[topic])) for topic in sorted(types)}
+
+
+def _select(path: Path, recording: Recording, wanted: Mapping[str, str]) -> list[Channel]:
+    """The channels of the wanted topics."""
+    channels = _channels(recording)
+    types = _types(channels)
+    for topic, type_name in wanted.items():
+        of_topic = [one for one in channels if one.topic == topic]
+        if any(one.type_name == type_name and one.encoding in _ENCODINGS for one in of_topic):
+            continue
+        similar = of_topic or [one for one in channels if one.type_name == type_name]
+        foreign = [one for one in similar if one.encoding not in _ENCODINGS]
+        if foreign:
+            raise InputError(_wrongly_encoded(path, foreign[0]))
+        if not of_topic:
+            _check_whole(path, recording)
+            raise InputError(f"{path} has no topic {topic} of type {type_name}; it has {listing(types, type_name)}")
+        has = f"has the type {types[topic]}" if types[topic] else "tells no type"
+        raise InputError(
+            f"the topic {topic} of {path} {has}, but {type_name} is needed; "
+            f"give another topic by --remap, or record it as {type_name}"
+        )
+    return [one for one in channels if wanted.get(one.topic) == one.type_name and one.encoding in _ENCODINGS]
+
+
+def _wrongly_encoded(path: Path, channel: Channel) -> str:
+    what = f"{channel.topic} ({channel.type_name or 'no type'}) of {path} is recorded as {channel.encoding!r}"
+    return f"the topic {what}, but CDR is needed, as `ros2 bag record` writes it; record or convert it so"
 
 
 Converter = Callable[[bytes, str], memoryview]
 
 
-def _ros1_converter(path: Path, connections: Collection[Connection]) -> Converter:
-    """The conversion with the definitions that the bag itself holds, so it needs no installed message packages."""
-    return _typestore(path, connections, ros1=True).ros1_to_cdr
+def _ros1_converter(path: Path, channels: Collection[Channel]) -> Converter:
+    from .definitions import typestore_of
 
-
-def decoders(path: str | os.PathLike[str], wanted: Mapping[str, str]) -> dict[str, Callable[[bytes], Any]]:
-    """What makes objects of the messages (in CDR) of some topics, by the definitions that the bag itself holds.
-
-    `wanted` has the topics and the types of their messages, as for `read_messages`.
-
-    Raises:
-        InputError: as `read_messages` does before the first message, or the bag holds no definition of a type.
-    """
-    path = Path(path)
-    with ExitStack() as stack:
-        reader = _open(path, stack)
-        connections = _select(path, reader.connections, wanted)
-    typestore = _typestore(path, connections, ros1=isinstance(reader, Ros1Reader))
-    return {one.topic: partial(typestore.deserialize_cdr, typename=one.msgtype) for one in connections}
-
-
-def _typestore(path: Path, connections: Collection[Connection], *, ros1: bool) -> Typestore:
-    """The types of the messages of some connections."""
-    typestore = get_typestore(Stores.EMPTY)
-    definitions = {}
-    for one in connections:
-        if one.msgdef.format is MessageDefinitionFormat.NONE:
-            raise InputError(f"{path} holds no definition of {one.msgtype} on {one.topic}; record it again as MCAP")
-    try:
-        for one in connections:
-            if one.msgdef.format is MessageDefinitionFormat.IDL:
-                # One section for each type, under a line with its name.
-                for section in one.msgdef.data.split(_IDL)[1:]:
-                    definitions.update(get_types_from_idl(section.partition("\n")[2]))
-            else:
-                definitions.update(get_types_from_msg(one.msgdef.data, one.msgtype))
-        if ros1:
-            # The conversion drops the sequence number of ROS 1 headers itself, and expects the definition without it.
-            definitions[_HEADER] = get_typestore(Stores.ROS2_JAZZY).fielddefs[_HEADER]
-        typestore.register(definitions)
-    except Exception as error:
-        raise InputError(_unreadable(path, error)) from error
-    return typestore
+    return typestore_of(path, channels).ros1_to_cdr
 
 
 def _stream(
-    path: Path,
-    reader: Reader,
-    connections: list[Connection],
-    to_cdr: Converter | None,
-    stack: ExitStack,
+    path: Path, recording: Recording, wanted: Mapping[str, str], to_cdr: Converter | None
 ) -> Iterator[BagMessage]:
-    announced = sum(connection.msgcount for connection in connections)
-    read = 0
-    with stack:
-        # An empty selection would mean every topic to the reader.
-        messages = reader.messages(connections) if connections else ()
+    announced = _announced(recording, wanted)
+    read = first = last = 0
+    for part in recording.parts:
+        chosen = {
+            one.id: one
+            for one in part.file.channels
+            if wanted.get(one.topic) == one.type_name and one.encoding in _ENCODINGS
+        }
+        names = {id_: one.topic for id_, one in chosen.items()}
+        ros1 = {id_ for id_, one in chosen.items() if one.encoding == "ros1"}
         try:
-            for connection, log_time, data in messages:
-                message = data if to_cdr is None else to_cdr(data, connection.msgtype)
-                yield BagMessage(connection.topic, log_time, bytes(message))
+            for log_time, _, channel, data in part.file.messages(chosen):
+                if data[:4] == ZSTD_MAGIC:
+                    data = decompressed_message(data)
+                if to_cdr is not None and channel in ros1:
+                    data = bytes(to_cdr(data, chosen[channel].type_name))
+                yield BagMessage(names[channel], log_time, data)
+                first = first if read else log_time
+                last = log_time
                 read += 1
+            if part.flaw is not None:
+                raise part.flaw
+        # Damaged messages may raise anything from the depths of a converter, not only its own errors.
         except Exception as error:
-            raise InputError(_unreadable(path, error, read)) from error
-        if read < announced:
-            raise InputError(_unreadable(path, EOFError(f"only {read} of {announced} messages are there")))
+            where = f" after {_counted(read)}" + (f", {(last - first) / 1e9:.3f} s after the first" if read else "")
+            lost = max(0, announced - read)
+            raise InputError(_unreadable(path, _reason(part, part.flaw or error, recording, lost), where)) from error
+    if recording.flaw:
+        raise InputError(_unreadable(path, recording.flaw, f" after {_counted(read)}"))
+    if read < announced:
+        raise InputError(_unreadable(path, f"only {read} of {announced} messages are there"))
+
+
+def _announced(recording: Recording, wanted: Mapping[str, str]) -> int:
+    """How many messages there should be: at least so many."""
+    if recording.counts:
+        return sum(recording.counts.get(topic, 0) for topic in wanted.items())
+    counts = [one.announced for one in _channels(recording) if wanted.get(one.topic) == one.type_name]
+    return 0 if UNKNOWN in counts else sum(counts)
+
+
+def _counted(messages: int) -> str:
+    return "1 message" if messages == 1 else f"{messages} messages"
+
+
+def _check_whole(path: Path, recording: Recording) -> None:
+    """Refuse a bag so damaged that what is asked for may be in what is lost."""
+    if recording.flaw:
+        raise InputError(_unreadable(path, recording.flaw))
+    for part in recording.parts:
+        flaw = part.flaw or part.file.flaw
+        if flaw is not None:
+            raise InputError(_unreadable(path, _reason(part, flaw, recording, 0)))
+
+
+def _reason(part: Part, error: Exception, recording: Recording, lost: int) -> str:
+    """What is wrong, where, and what is lost by it."""
+    said = [" ".join(str(error).split()).rstrip(".") or type(error).__name__]
+    if isinstance(error, Flaw) and error.place > 0:
+        said[0] += f", at byte {error.place:,} of {part.file.size:,}"
+    if len(recording.parts) > 1:
+        said[0] += f" of {part.path.name}"
+        unread = len(recording.parts) - recording.parts.index(part) - 1
+        if unread:
+            said.append("the file after it was not read" if unread == 1 else f"the {unread} after it were not read")
+    if lost:
+        said.append(f"{lost} messages are lost")
+    return "; ".join(said)
+
+
+def _unreadable(path: Path, reason: str, where: str = "") -> str:
+    repair = _REPAIRS.get(path.suffix, "repair a copy with `ros2 bag reindex`")
+    return f"{path} is damaged or cut off{where} ({reason}); {repair}, or record it again"

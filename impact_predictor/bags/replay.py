@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from time import perf_counter
 from types import MappingProxyType
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from ..errors import InputError
 from ..prediction.inputs import CONTACT_GEOMETRY, STATES, inputs_of
@@ -18,7 +18,7 @@ from ..ros.messages import DIAGNOSTIC_ARRAY
 from ..scenarios.truth import ONSET_TOPIC, TRUTH_TOPIC
 from .inputs import TYPES, adapted_topics, find_topics
 from .inputs import remapping as remapping
-from .read import BagMessage, read_messages, topics
+from .read import Bag, BagMessage
 from .remarks import remarks, total_of, why_unpredictable
 from .run import Run
 from .stream import NODE as NODE
@@ -28,10 +28,13 @@ from .write import BagWriter
 if TYPE_CHECKING:
     from ..prediction.monitor import Monitor
     from ..scenarios.comparison import Truth
+    from ..scenarios.matching import Match
     from ..scenarios.warned import Warned
     from .gait import Gait
 
 Statuses = dict[Status, int]
+
+_TRUTH: Final = (TRUTH_TOPIC, ONSET_TOPIC)
 
 
 class BodyTruth(NamedTuple):
@@ -49,7 +52,9 @@ class Result(NamedTuple):
     `inputs` the same for each input by its name. `notes` are sentences about choices that were made, what was refused
     and what looks wrong; `unpredictable` says why nothing could be predicted, and `damaged` what of the bag was lost,
     or "". `truth` is how the predictions compare with the truth, where the bag carries it, and `truths` the same for
-    each body. `gaits` are those of the bodies that walk.
+    each body. `gaits` are those of the bodies that walk. `extent` has the stamps in ns of the first and the last sample
+    that was accepted, `costs` the time in s that the answer to each took, and `matches` every true touchdown and every
+    false alarm, where the bag carries the truth.
     """
 
     bag: str
@@ -65,6 +70,9 @@ class Result(NamedTuple):
     truths: Mapping[str, BodyTruth] = MappingProxyType({})
     inputs: Mapping[str, Statuses] = MappingProxyType({})
     gaits: Mapping[str, Gait] = MappingProxyType({})
+    extent: tuple[int, int] | None = None
+    costs: Sequence[float] = ()
+    matches: Sequence[Match] = ()
 
 
 def replay(
@@ -95,20 +103,21 @@ def replay(
     if output is not None and Path(output).resolve() == Path(path).resolve():
         raise InputError(f"{os.fspath(output)} is the bag itself; give the predictions another name")
     by_name = {"": scenes} if isinstance(scenes, Scene) else scenes
-    recorded = topics(path)
-    names, notes = find_topics(path, recorded, inputs_of(by_name), remap or {})
-    adapted = adapted_topics(recorded, names)
-    wanted = {topic: TYPES[one.kind] for one, topic in names.items()} | adapted
-    knows_truth = recorded.get(TRUTH_TOPIC) == DIAGNOSTIC_ARRAY
-    if knows_truth:
-        wanted |= {one: DIAGNOSTIC_ARRAY for one in (TRUTH_TOPIC, ONSET_TOPIC) if recorded.get(one) == DIAGNOSTIC_ARRAY}
-    messages, readers = read_messages(path, wanted), {}
-    if adapted:
-        from .adapters.known import readers as readers_of
-
-        readers = readers_of(path, adapted)
     damage: list[str] = []
     with ExitStack() as stack:
+        bag = stack.enter_context(Bag(path))
+        recorded = bag.topics()
+        names, notes = find_topics(path, recorded, inputs_of(by_name), remap or {})
+        adapted = adapted_topics(recorded, names)
+        wanted = {topic: TYPES[one.kind] for one, topic in names.items()} | adapted
+        knows_truth = recorded.get(TRUTH_TOPIC) == DIAGNOSTIC_ARRAY
+        if knows_truth:
+            wanted |= {one: DIAGNOSTIC_ARRAY for one in _TRUTH if recorded.get(one) == DIAGNOSTIC_ARRAY}
+        messages, readers = bag.messages(wanted), {}
+        if adapted:
+            from .adapters.known import readers as readers_of
+
+            readers = readers_of(bag, adapted)
         write = None if output is None else stack.enter_context(BagWriter(output)).write
         run = Run(by_name, names, write, readers, knows_truth=knows_truth, markers=markers, monitor=monitor)
         run.take(_readable(messages, damage), progress)
@@ -116,7 +125,7 @@ def replay(
         if damage and not any(counts for one, counts in inputs.items() if one.kind in STATES):
             raise InputError(damage[0])
         run.finish()
-    truth, truths = _compare(run, by_name)
+    truth, truths, matches = _compare(run, by_name)
     unpredictable = why_unpredictable(run, inputs, names, by_name)
     if not unpredictable:
         notes += tuple(f"in {os.fspath(path)}, {said}" for said in remarks(run, inputs, names, by_name))
@@ -134,6 +143,9 @@ def replay(
         truths,
         {one.name: counts for one, counts in inputs.items()},
         run.gaits,
+        run.extent,
+        run.costs,
+        matches,
     )
 
 
@@ -149,13 +161,14 @@ def _counts(by_number: list[int]) -> Statuses:
     return {status: by_number[status] for status in Status if by_number[status]}
 
 
-def _compare(run: Run, scenes: Mapping[str, Scene]) -> tuple[Truth | None, dict[str, BodyTruth]]:
+def _compare(run: Run, scenes: Mapping[str, Scene]) -> tuple[Truth | None, dict[str, BodyTruth], list[Match]]:
     """How the predictions compare with the true impacts and landings, all together and of each body."""
     landings = {} if run.landings is None else run.landings.compared()
     if run.announcements is None and not landings:
-        return None, {}
-    from ..scenarios.comparison import Announcements, compare
+        return None, {}, []
+    from ..scenarios.comparison import compare
+    from ..scenarios.matching import Announcements
 
-    together, bodies = compare(run.true_impacts, run.announcements or Announcements(), scenes, landings)
+    together, bodies, matches = compare(run.true_impacts, run.announcements or Announcements(), scenes, landings)
     warned = run.warned({body: scene for body, scene in scenes.items() if scene.watching is not None})
-    return together, {body: BodyTruth(bodies.get(body), warned.get(body)) for body in {**bodies, **warned}}
+    return together, {body: BodyTruth(bodies.get(body), warned.get(body)) for body in {**bodies, **warned}}, matches

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from array import array
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
@@ -29,8 +30,8 @@ from .stream import NODE, Settled, Stream, Write
 
 if TYPE_CHECKING:
     from ..ros.markers.scene import MarkerScene
-    from ..scenarios.comparison import Announcements
     from ..scenarios.landings import Landings
+    from ..scenarios.matching import Announcements
     from ..scenarios.warned import Warned, Warnings
     from .adapters.known import Read
     from .gait import Gait
@@ -58,6 +59,7 @@ class Run:
     `write` takes what the node would publish, with the log time of the message that caused it. `readers` read the
     topics whose messages have an adapter. `statuses` say what became of the messages on each input, `unusable` what an
     adapter said of the first one that it refused, and `points` what is known of the contact points of each body.
+    `costs` are the times in s that the answers to the accepted samples took, without reading and writing.
     """
 
     def __init__(
@@ -72,6 +74,7 @@ class Run:
         monitor: Monitor | None = None,
     ) -> None:
         self.samples = 0
+        self.costs = array("d")
         self.settled: list[Settled] = []
         self.statuses = {one: [0] * len(Status) for one in topics}
         self.unusable: dict[Input, str] = {}
@@ -109,7 +112,7 @@ class Run:
 
             self.gaits = {body: Gait(one.walking) for body, one in scenes.items() if one.walking is not None}
         if knows_truth:
-            from ..scenarios.comparison import Announcements
+            from ..scenarios.matching import Announcements
 
             self.announcements = Announcements()
             self._takers[TRUTH_TOPIC] = partial(self._take_truth, self.true_impacts, decode_true_impacts)
@@ -141,6 +144,12 @@ class Run:
             self.settled += [stream.end(score) for score in scores]
             if body in self.gaits:
                 self.gaits[body].end_with(scores)
+
+    @property
+    def extent(self) -> tuple[int, int] | None:
+        """Stamps in ns of the first and the last sample that was accepted; None without any."""
+        extents = [stream.extent for stream in self._streams.values() if stream.extent is not None]
+        return (min(first for first, _ in extents), max(last for _, last in extents)) if extents else None
 
     def warned(self, bodies: Iterable[str]) -> dict[str, Warned]:
         """How bodies were warned of, where the bag tells what happened to them."""
@@ -196,6 +205,7 @@ class Run:
             self.points[stream.body].take(prediction)
         if prediction.status is not Status.ACCEPTED:
             return
+        self.costs.append(cost)
         stream.answered(prediction, log_time, cost)
         if self.announcements is not None:
             self.announcements.add(prediction, stream.body)

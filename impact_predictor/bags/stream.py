@@ -38,6 +38,7 @@ class Stream:
         prefix = f"{NODE}/{body}/" if body else f"{NODE}/"
         self._write = write
         self._outputs = [(prefix + name, *output) for name, output in OUTPUTS.items()]
+        self._first: int | None = None
         self._last: tuple[Sample, int] | None = None
         # What the predictions cost whose touchdowns may still be scored.
         self._costs: deque[tuple[int, float]] = deque(maxlen=_REMEMBERED)
@@ -45,6 +46,8 @@ class Stream:
     def answered(self, prediction: Prediction, log_time: int, cost: float) -> None:
         """Write the answer to a sample of a log time in ns, which took a time in s."""
         self._last = prediction.sample, log_time
+        if self._first is None:
+            self._first = prediction.sample.stamp
         if prediction.touchdown is not None:
             self._costs.append((prediction.sample.stamp, cost))
         if self._write is not None:
@@ -52,6 +55,11 @@ class Stream:
                 data = encode(prediction)
                 if data is not None:
                     self._write(topic, type_name, log_time, data)
+
+    @property
+    def extent(self) -> tuple[int, int] | None:
+        """Stamps in ns of the first and the last sample that was answered; None without any."""
+        return None if self._first is None or self._last is None else (self._first, self._last[0].stamp)
 
     def settle(self, score: Score) -> Settled:
         """The touchdown of a score."""

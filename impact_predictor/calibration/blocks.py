@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from ..prediction.score import NANOSECONDS
+from ..stamps import NANOSECONDS
 from .touchdowns import ScoredTouchdown
 
 Blocks = NDArray[np.int64]

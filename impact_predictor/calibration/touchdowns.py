@@ -16,10 +16,11 @@ from ..prediction.monitor import Monitor
 from ..prediction.planar import Across, Plane, Posture, across_of
 from ..prediction.predictor import Predictor
 from ..prediction.scene import Matrix3, Scene
-from ..prediction.score import MEASURED, NANOSECONDS
+from ..prediction.score import MEASURED
 from ..prediction.transverse import impact_across
 from ..prediction.types import Prediction, Sample, Score, Touchdown, Vector3
 from ..prediction.vectors import add, axes_of, cross, dot, to_world
+from ..stamps import NANOSECONDS
 
 if TYPE_CHECKING:
     from ..prediction.deck.tracker import Deck

@@ -5,8 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+import click
+
+from ..errors import InputError
+
 if TYPE_CHECKING:
     from ..bags.replay import Result
+    from ..report.baseline import Happened
 
 
 class Baseline:
@@ -16,22 +21,40 @@ class Baseline:
         """Read it; changes of times up to `time` in s and of relative errors up to `error` are none.
 
         Raises:
-            InputError: it cannot be read, or lacks a bag.
+            InputError: it cannot be read, or has none of the bags.
         """
+        from ..bags.names import names_of
         from ..report.baseline import Limits
-        from ..report.earlier import read_earlier
+        from ..report.earlier import Earlier
 
         self.has_changed = False
         self._path = path
         self._limits = Limits(time, error)
-        self._earlier = {bag: read_earlier(path, bag) for bag in bags}
+        self._runs: dict[str, tuple[Happened, ...]] = {}
+        self._missing: dict[str, InputError] = {}
+        earlier = Earlier(path)
+        for bag, name in zip(bags, names_of(bags), strict=True):
+            try:
+                self._runs[bag] = earlier.touchdowns_of(bag, name)
+            except InputError as flaw:  # noqa: PERF203 (each bag is missed by itself)
+                self._missing[bag] = flaw
+        if not self._runs:
+            raise next(iter(self._missing.values()))
 
     def judge(self, result: Result, every: bool, as_json: bool) -> dict[str, Any]:
-        """Print what has changed (the first changes, or `every` one), or give it as JSON."""
+        """Print what has changed (the first changes, or `every` one), or give it as JSON.
+
+        A bag that the earlier run does not have is a change: nothing vouches for it.
+        """
         from ..report.baseline import compare_runs, run_of
         from ..report.changes import as_json as fields_of
 
-        compared = compare_runs(self._earlier[result.bag], run_of(result), self._limits)
+        if result.bag in self._missing:
+            self.has_changed = True
+            flaw = str(self._missing[result.bag])
+            click.echo(f"note: {flaw}", err=True)
+            return {"baseline": {"file": self._path, "error": flaw}} if as_json else {}
+        compared = compare_runs(self._runs[result.bag], run_of(result), self._limits)
         self.has_changed |= bool(compared.changes)
         if as_json:
             return {"baseline": fields_of(compared, self._path)}

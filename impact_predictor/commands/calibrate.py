@@ -10,7 +10,8 @@ import click
 
 from ..errors import InputError
 from .examples import examples
-from .replay import DAMAGED, FAILED, read_scenes
+from .outcomes import DAMAGED, FAILED
+from .replay import read_scenes
 
 if TYPE_CHECKING:
     from ..bags.replay import Result
@@ -51,6 +52,7 @@ def calibrate(
     on touchdowns that it was not fitted to. What the touchdowns cannot tell stays as the parameter file gives it. The
     exit status is 3 where only a part of a bag could be read.
     """
+    from ..bags.find import bags_of
     from ..bags.replay import remapping
     from ..calibration.fit import calibrate as fit
     from ..report.calibration import as_json as fields_of
@@ -65,6 +67,7 @@ def calibrate(
         from ..report.figure import check_figure
 
         check_figure(figure)
+    bags = tuple(bags_of(bags))
     records, results = read_all(bags, scenes, topics)
     scores = [settled.score for result in results for settled in result.settled]
     try:

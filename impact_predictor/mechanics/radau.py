@@ -9,6 +9,8 @@ nodes are the zeros of P_6^(1,3/2). Integrals up to a node are exact to seven te
 from __future__ import annotations
 
 import math
+import operator
+from functools import reduce
 from typing import NamedTuple
 
 Row = tuple[float, float, float, float, float, float, float]
@@ -84,9 +86,11 @@ def _last(nodes: Row, weights: Row, power: int, step: int) -> tuple[Row, Row]:
     rows: list[Row] = []
     last, values, last_norm = [0.0] * 7, [1.0] * 7, 1.0
     for _ in nodes:
-        norm = sum(mass * value * value for mass, value in zip(masses, values, strict=True))
+        # Not `sum`, which compensates its rounding from Python 3.12 on: every Python shall give the same bits.
+        norm = reduce(operator.add, [mass * value * value for mass, value in zip(masses, values, strict=True)])
         rows.append(_row([w * value * values[-1] / norm for w, value in zip(weights, values, strict=True)]))
-        middle = sum(m * s**step * v * v for m, s, v in zip(masses, nodes, values, strict=True)) / norm
+        products = [m * s**step * v * v for m, s, v in zip(masses, nodes, values, strict=True)]
+        middle = reduce(operator.add, products) / norm
         ratio = norm / last_norm
         following = [(s**step - middle) * v - ratio * w for s, v, w in zip(nodes, values, last, strict=True)]
         last, values, last_norm = values, following, norm

@@ -6,7 +6,7 @@ from math import tau
 from typing import Final
 
 from .flaws import edges_flaw, extent_flaw, names_flaw
-from .types import Parameter
+from .types import FURTHEST, Parameter
 
 DECK_PARAMETERS: Final = (
     Parameter(
@@ -34,6 +34,8 @@ DECK_PARAMETERS: Final = (
         "m",
         "Where the body frame's origin stands in the support's frame, as far as its source does not tell.",
         lengths=(3,),
+        low=-FURTHEST,
+        high=FURTHEST,
     ),
     Parameter(
         "place.yaw",
@@ -61,6 +63,8 @@ DECK_PARAMETERS: Final = (
         "The two edges of the support on which a cylinder lies: x y z of one point of each, in the support's frame.",
         lengths=(6,),
         flaw=edges_flaw,
+        low=-FURTHEST,
+        high=FURTHEST,
     ),
     Parameter(
         "support.motion",
@@ -80,6 +84,8 @@ DECK_PARAMETERS: Final = (
         "Where the support's inertial sensor lies in the support's frame, whose axes it has.",
         lengths=(3,),
         shared=True,
+        low=-FURTHEST,
+        high=FURTHEST,
     ),
     Parameter(
         "support.window",
@@ -130,6 +136,8 @@ DECK_PARAMETERS: Final = (
         lengths=(4,),
         flaw=extent_flaw,
         shared=True,
+        low=-FURTHEST,
+        high=FURTHEST,
     ),
     Parameter(
         "onset.watch",

@@ -13,10 +13,17 @@ _PART_OF_A_NAME: Final = re.compile(r"[A-Za-z](_?[A-Za-z0-9])*")
 """No two underscores in a row: ROS keeps those for itself."""
 
 
+SIZES_OF_INERTIA: Final = (1e-30, 1e30)
+"""kg m^2: of a grain of dust and of a moon; products of three still are numbers."""
+
+
 def inertia_flaw(inertia: tuple[float, ...]) -> str:
     """Of one number, or of ixx, iyy, izz, ixy, ixz, iyz (kg m^2)."""
+    _, greatest = SIZES_OF_INERTIA
+    if max(inertia) > greatest:
+        return f"it must be at most {greatest:g} kg m^2"
     if len(inertia) == 1:
-        return "" if inertia[0] > 0.0 else "it must be positive"
+        return _small_flaw(inertia[0]) if inertia[0] > 0.0 else "it must be positive"
     xx, yy, zz, xy, xz, yz = inertia
     # Sylvester's criterion: the leading minors of a positive definite matrix are positive.
     minors = (
@@ -24,11 +31,16 @@ def inertia_flaw(inertia: tuple[float, ...]) -> str:
         xx * yy - xy * xy,
         xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz),
     )
-    if min(minors) <= 0.0:
+    if not min(minors) > 0.0:
         return "its matrix must be positive definite"
     if not _is_of_masses(inertia):
         return "no body has it: about each axis, inertia is at most the sum of that about the two axes across it"
-    return ""
+    return _small_flaw(min(xx, yy, zz))
+
+
+def _small_flaw(inertia: float) -> str:
+    least, _ = SIZES_OF_INERTIA
+    return "" if inertia >= least else f"it must be at least {least:g} kg m^2"
 
 
 def _is_of_masses(inertia: tuple[float, ...]) -> bool:
@@ -60,7 +72,7 @@ def points_flaw(numbers: tuple[float, ...]) -> str:
 
 def normal_flaw(normal: tuple[float, ...]) -> str:
     """Of a direction."""
-    return "" if math.hypot(*normal) > 0.0 else "it must have a direction"
+    return "" if 0.0 < math.hypot(*normal) < math.inf else "it must have a direction"
 
 
 def edges_flaw(numbers: tuple[float, ...]) -> str:

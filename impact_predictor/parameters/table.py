@@ -6,7 +6,7 @@ from typing import Final
 
 from .deck import DECK_PARAMETERS
 from .flaws import inertia_flaw, normal_flaw, points_flaw
-from .types import Parameter
+from .types import FURTHEST, Parameter
 from .walking import WALKING_PARAMETERS
 
 _BODY_PARAMETERS: Final = (
@@ -22,7 +22,14 @@ _BODY_PARAMETERS: Final = (
         flaw=inertia_flaw,
     ),
     Parameter(
-        "body.center_of_mass", "double_array", (0.0, 0.0, 0.0), "m", "Mass centre in the body frame.", lengths=(3,)
+        "body.center_of_mass",
+        "double_array",
+        (0.0, 0.0, 0.0),
+        "m",
+        "Mass centre in the body frame.",
+        lengths=(3,),
+        low=-FURTHEST,
+        high=FURTHEST,
     ),
     Parameter(
         "body.contact_points",
@@ -32,6 +39,8 @@ _BODY_PARAMETERS: Final = (
         "Points that can touch the support, in the body frame: x y z of each, one after the other. Left out, they "
         "come from the topic contact_geometry; given, there is no such subscription.",
         flaw=points_flaw,
+        low=-FURTHEST,
+        high=FURTHEST,
     ),
     Parameter(
         "contact.friction",
@@ -81,7 +90,13 @@ _BODY_PARAMETERS: Final = (
         flaw=normal_flaw,
     ),
     Parameter(
-        "support.height", "double", 0.0, "m", "Distance of the support's plane from the origin, along its normal."
+        "support.height",
+        "double",
+        0.0,
+        "m",
+        "Distance of the support's plane from the origin, along its normal.",
+        low=-FURTHEST,
+        high=FURTHEST,
     ),
     Parameter(
         "odom.twist_window",

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from typing import Any, NamedTuple
+from typing import Any, Final, NamedTuple
+
+FURTHEST: Final = 1e9
+"""m: nothing that is predicted is larger or further away, and squares of it are numbers that can be added."""
 
 Value = bool | int | float | str | tuple[float, ...] | tuple[str, ...]
 

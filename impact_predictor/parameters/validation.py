@@ -91,7 +91,8 @@ def _parameter_of(name: str, bodies: Sequence[str]) -> Parameter:
         if PARAMETERS[common].shared:
             raise InputError(f"the parameter {common} holds for all bodies: give {common} in the place of {name}")
         return PARAMETERS[common]
-    raise InputError(f"there is no parameter {name}{_hint(name, bodies)}")
+    shown = name if name.isprintable() and name else repr(name)
+    raise InputError(f"there is no parameter {shown}{_hint(name, bodies)}")
 
 
 def _hint(name: str, bodies: Sequence[str]) -> str:

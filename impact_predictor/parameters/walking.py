@@ -30,15 +30,6 @@ WALKING_PARAMETERS: Final = (
         high=2,
     ),
     Parameter(
-        "feet.window",
-        "double",
-        0.0,
-        "s",
-        "Time over which the motion of the feet is fitted; 0 lets their noise decide.",
-        low=0.0,
-        high=1.0,
-    ),
-    Parameter(
         "feet.dead_time",
         "double",
         0.02,

@@ -11,6 +11,7 @@ from ..mechanics.types import Contact, Twist, TwoPointBody, Vector
 from .planar import Contacts, Plane, Posture, contacts_of, inertia_about, plane_of
 from .scene import Scene
 from .types import Moment, Sample, Vector3
+from .vectors import total
 
 GRAZES = 1e-9
 """m/s: what reaches the support slower only grazes it."""
@@ -95,7 +96,7 @@ def approach_of(
     speed = -(vy + omega * body.new.x)
     if speed < GRAZES:
         return None
-    measured = -sum([posture.rates[i] for i in contacts.new]) / len(contacts.new)
+    measured = -total([posture.rates[i] for i in contacts.new]) / len(contacts.new)
     approach = (
         contacts,
         plane,

@@ -2,12 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
+from ..stamps import NANOSECONDS
 from .predictor import Predictor
 from .scene import MovingDeck, Scene, shared_by
-from .types import Geometry, Imu, Joints, Moment, Prediction, Quaternion, Sample, Schedule, Score, Status, Wrench
+from .types import (
+    Geometry,
+    Imu,
+    Joints,
+    Moment,
+    Prediction,
+    Quaternion,
+    Sample,
+    Schedule,
+    Score,
+    Status,
+    Vector3,
+    Wrench,
+)
 
 if TYPE_CHECKING:
     from .deck.resting import Resting
@@ -25,8 +39,6 @@ SPOILT = frozenset({Status.NOT_FINITE, Status.BAD_QUATERNION})
 AGAIN = frozenset({Status.STAMP_REPEATED, Status.STAMP_WENT_BACK})
 """Messages that tell nothing new, and so take nothing away from what is known either."""
 
-NANOSECONDS = 1e9
-
 
 class Monitor:
     """The bodies of some scenes, by their names, over the support that they share.
@@ -37,11 +49,14 @@ class Monitor:
     """
 
     def __init__(self, scenes: Mapping[str, Scene]) -> None:
-        self.scenes = scenes
+        self.scenes = dict(scenes)
+        self._told = dict(scenes)
         shared = shared_by(scenes)
         self.deck: Deck | None = None
         self.watch: Watch | None = None
         self._resting: Resting | None = None
+        self._watched: dict[str, Scene] = {}
+        self._points: dict[str, tuple[Vector3, ...]] = {}  # of bodies under watch, as messages told them
         self._tilts: dict[str, Tilt] = {}
         self.tilts: dict[str, Quaternion] = {}
         """The orientations, relative to the support, of bodies of which no more is measured."""
@@ -59,28 +74,63 @@ class Monitor:
 
             self.walkers = {body: Walker(scene) for body, scene in scenes.items() if scene.walking is not None}
             # The model of a robot tells its mass.
-            self.scenes = {**scenes, **{body: walker.scene for body, walker in self.walkers.items()}}
+            self.scenes |= {body: walker.scene for body, walker in self.walkers.items()}
         self.predictors: dict[str, Predictor | Walker] = {
-            body: self.walkers.get(body) or (Predictor(scene) if self.deck is None else Predictor(scene, self.deck))
+            body: self.walkers.get(body) or Predictor(scene, self.deck)
             for body, scene in scenes.items()
             if scene.source == "odom"
         }
-        self._watched = {body: scene for body, scene in scenes.items() if scene.watching is not None}
-        if self._watched:
-            from .watch.watch import Watch
-
+        if any(scene.watching is not None for scene in scenes.values()):
             if self.deck is None:
                 from .deck.resting import Resting
 
                 self._resting = Resting(shared.gravity)
-                self.watch = Watch(self._watched, self._resting.forecast)
-            else:
-                self.watch = Watch(self._watched, self.deck.forecast)
+            self.watch = self._begin_to_watch(scenes)
         of_imu = {body: scene for body, scene in scenes.items() if scene.source == "imu"}
         if of_imu:
             from .deck.tilt import Tilt
 
             self._tilts = {body: Tilt(scene) for body, scene in of_imu.items()}
+
+    def _begin_to_watch(self, scenes: Mapping[str, Scene]) -> Watch:
+        from .watch.watch import Watch
+
+        self._watched = {body: scene for body, scene in scenes.items() if scene.watching is not None}
+        forecaster = self._resting or self.deck
+        assert forecaster is not None
+        return Watch(self._watched, forecaster.forecast)
+
+    def changed(self, scenes: Mapping[str, Scene]) -> Callable[[], None]:
+        """What makes other scenes of the same bodies those of this monitor: nothing has changed before it is called.
+
+        Bodies whose scene is another one then begin anew, with the contact points that are known, and so does the watch
+        over all bodies if one of them is watched. What is known of the support stays.
+
+        Raises:
+            InputError: there is no predictor for a scene.
+        """
+        others = {body: scene for body, scene in scenes.items() if scene != self._told[body]}
+        begun: dict[str, Predictor | Walker] = {}
+        for body, scene in others.items():
+            if body in self.walkers:
+                from .walking.walker import Walker
+
+                begun[body] = Walker(scene)
+            elif body in self.predictors:
+                begun[body] = Predictor(scene, self.deck)
+
+        def change() -> None:
+            self._told |= others
+            self.scenes |= others
+            for body, other in begun.items():
+                self.predictors[body].become(other)  # type: ignore[arg-type]  # both are of one kind
+                self.scenes[body] = other.scene
+            if any(body in self._watched for body in others):
+                self.watch = self._begin_to_watch({body: self.scenes[body] for body in self._watched})
+                for body, points in self._points.items():
+                    self.watch.set_points(body, points)
+
+        return change
 
     def update(self, body: str, sample: Sample) -> Prediction:
         """The answer to a sample of a body."""
@@ -132,6 +182,7 @@ class Monitor:
         """Take the contact points of a body."""
         status = self.predictors[body].set_geometry(geometry)
         if self.watch is not None and status is Status.ACCEPTED and body in self._watched:
+            self._points[body] = geometry.points
             self.watch.set_points(body, geometry.points)
         return status
 

@@ -11,8 +11,9 @@ CORE: Final = frozenset(
         *("mechanics.problem", "mechanics.radau", "mechanics.sliding_events", "mechanics.sliding_stance"),
         *("mechanics.sliding_sweep", "mechanics.stretch", "mechanics.total_law"),
         *("mechanics.turning_stance", "mechanics.types"),
-        *("prediction", "prediction.approach", "prediction.monitor", "prediction.planar", "prediction.predictor"),
-        *("prediction.scene", "prediction.score", "prediction.types", "prediction.vectors"),
+        *("prediction", "prediction.approach", "prediction.checks", "prediction.monitor", "prediction.planar"),
+        *("prediction.predictor", "prediction.scene", "prediction.score", "prediction.types", "prediction.vectors"),
+        "stamps",
     }
 )
 """The modules that the predictor loads in every scene."""
@@ -20,8 +21,15 @@ CORE: Final = frozenset(
 CORE_OF_NODE: Final = frozenset(
     {
         *("prediction.inputs", "prediction.monitor", "prediction.remedies"),
-        *("ros", "ros.body_topics", "ros.cdr", "ros.diagnostics", "ros.endpoints", "ros.markers.topic", "ros.messages"),
-        *("ros.input_topic", "ros.messages.inputs", "ros.messages.outputs", "ros.node", "ros.node_parameters"),
+        *("ros", "ros.backlog", "ros.body_topics", "ros.cdr", "ros.diagnostics", "ros.endpoints", "ros.input_topic"),
+        *(
+            "ros.markers.topic",
+            "ros.messages",
+            "ros.messages.inputs",
+            "ros.messages.outputs",
+            "ros.node",
+            "ros.node_parameters",
+        ),
         *("ros.predictor_node", "ros.process", "ros.qos", "ros.reporter"),
     }
 )

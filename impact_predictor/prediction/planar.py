@@ -15,7 +15,7 @@ from ..mechanics.motion import PlanarState
 from ..mechanics.types import Twist, Vector
 from .scene import Scene
 from .types import Quaternion, Sample, Vector3
-from .vectors import add, any_across, axes_of, combine, cross, dot, mean, times, to_body, to_world, turned
+from .vectors import add, any_across, axes_of, combine, cross, dot, mean, times, to_body, to_world, total, turned
 
 STANDING = 0.2
 """A point within the contact tolerance stands while it moves along the normal slower than this part of the fastest
@@ -113,7 +113,7 @@ def contacts_of(scene: Scene, posture: Posture) -> Contacts | None:
     ]
     if not closing:
         return None
-    base = sum([gaps[i] for i in old]) / len(old) if old else 0.0
+    base = total([gaps[i] for i in old]) / len(old) if old else 0.0
     due = [(base - gaps[i]) / rates[i] for i in closing]
     last = max(0.0, min(due)) + scene.contact_time
     new = [i for i, time in zip(closing, due, strict=True) if time <= last]
@@ -164,7 +164,7 @@ def plane_of(
         (dot(ahead, struck), dot(n, struck)),
         new_tuple(Twist, (dot(ahead, velocity), dot(n, velocity), -rate)),
         (dot(ahead, gravity), dot(n, gravity), dot(axis, gravity)),
-        max(0.0, sum([posture.gaps[i] for i in new]) / len(new) - base),
+        max(0.0, total([posture.gaps[i] for i in new]) / len(new) - base),
         off_axis_of(spin, axis, rate),
         lateral,
         offset,

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
-from math import hypot, isfinite
+from math import hypot
 from typing import TYPE_CHECKING
 
 from ..mechanics.impact import new_tuple, solve_impact
 from ..mechanics.types import Outcome
+from ..stamps import NANOSECONDS
 from .approach import Approach, approach_of
+from .checks import check_numbers, check_points, order_of
 from .planar import Across, Posture, across_of, in_space, posture_of
 from .scene import Scene
-from .score import NANOSECONDS, Pending, Track, leftover_of
-from .types import Geometry, Moment, Prediction, Sample, Score, Status, Touchdown, Vector3
-from .vectors import dot, to_world
+from .score import Pending, Track, leftover_of
+from .types import Geometry, Moment, Prediction, Sample, Score, Status, Touchdown
+from .vectors import to_world, total
 
 if TYPE_CHECKING:
     from .deck.aboard import Aboard
@@ -25,18 +27,9 @@ if TYPE_CHECKING:
 PAUSE = 250_000_000
 """ns without a sample after which the record begins anew."""
 
-LARGEST = 1e24
-"""Sum of the squares of position, velocity and angular velocity beyond which no body is and products overflow."""
-
-UNIT = 1e-3
-"""How far the square of a quaternion's length may be from 1; float32 sources stay below 1e-6."""
-
 SETTLED = 0.5
 """A touchdown has happened when less than this part of the approach is left, within the contact tolerance, that the
 predicting sample measured: the approach predicted for the touchdown has gravity's gain on the way added to it."""
-
-COINCIDENT = 1e-9
-"""Points closer than this part of the largest coordinate are one."""
 
 
 class Predictor:
@@ -81,6 +74,14 @@ class Predictor:
         self._pending: list[Pending] = []
         self._scores: deque[Score] = deque()
         self._recent: deque[tuple[Sample, Posture]] = deque(maxlen=4)
+
+    def become(self, other: Predictor) -> None:
+        """Go on as the predictor of another scene of the body: what was told stays known, and the track begins anew."""
+        if self._drum is None:
+            other._points, other._geometry_frame = self._points, self._geometry_frame
+        other._last = self._last
+        other._scores.extend(self.finish())
+        vars(self).update(vars(other))
 
     def set_geometry(self, geometry: Geometry) -> Status:
         """Take the body's contact points, in its frame, from now on. A refused geometry leaves the last one."""
@@ -170,10 +171,10 @@ class Predictor:
     def _has_landed(self, track: Track, posture: Posture) -> bool:
         gaps, rates = posture.gaps, posture.rates
         old, new = track.last.old, track.last.new
-        gap = sum([gaps[i] for i in new]) / len(new)
+        gap = total([gaps[i] for i in new]) / len(new)
         if old:
-            gap -= sum([gaps[i] for i in old]) / len(old)
-        approach = -sum([rates[i] for i in new]) / len(new)
+            gap -= total([gaps[i] for i in old]) / len(old)
+        approach = -total([rates[i] for i in new]) / len(new)
         return gap <= self.scene.tolerance and approach < SETTLED * track.approach
 
     def _revise(self, sample: Sample, posture: Posture, moment: Moment | None) -> Touchdown | None:
@@ -259,40 +260,3 @@ class Predictor:
             planar,
         )
         return new_tuple(Touchdown, touchdown)
-
-
-def check_numbers(sample: Sample) -> Status:
-    """Whether the numbers of a sample are those of a body."""
-    position, linear, angular = sample.position, sample.linear, sample.angular
-    size = dot(position, position) + dot(linear, linear) + dot(angular, angular)
-    # False for NaN as well. A sum of finite covariances may overflow: drivers fill in the largest double.
-    if not size < LARGEST or not (
-        isfinite(sum(sample.pose_covariance) + sum(sample.twist_covariance))
-        or all(map(isfinite, sample.pose_covariance + sample.twist_covariance))
-    ):
-        return Status.NOT_FINITE
-    x, y, z, w = sample.orientation
-    if not -UNIT < x * x + y * y + z * z + w * w - 1.0 < UNIT:
-        return Status.BAD_QUATERNION if all(map(isfinite, sample.orientation)) else Status.NOT_FINITE
-    return Status.ACCEPTED
-
-
-def order_of(stamp: int, last: int | None) -> Status:
-    """Whether a stamp follows the last one of its stream."""
-    if last is None or stamp > last:
-        return Status.ACCEPTED
-    return Status.STAMP_REPEATED if stamp == last else Status.STAMP_WENT_BACK
-
-
-def check_points(points: tuple[Vector3, ...]) -> Status:
-    """Whether points can be contact points: at least two, finite, and no two of them one."""
-    if not sum([dot(point, point) for point in points]) < LARGEST:
-        return Status.NOT_FINITE
-    if len(points) < 2:
-        return Status.TOO_FEW_POINTS
-    least = COINCIDENT * max([max(abs(x), abs(y), abs(z)) for x, y, z in points])
-    for i, (x, y, z) in enumerate(points):
-        for u, v, w in points[:i]:
-            if abs(x - u) <= least and abs(y - v) <= least and abs(z - w) <= least:
-                return Status.COINCIDENT_POINTS
-    return Status.ACCEPTED

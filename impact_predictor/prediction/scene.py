@@ -57,15 +57,14 @@ class Walking(NamedTuple):
     """How a machine's feet are told to stand or to swing; SI units.
 
     `feet` are their names and each has `points` contact points (1, or 2 for heel and toe), which follow each other in
-    the geometry in this order. Their motion is fitted over `window` s, 0 to let the noise of the feet decide; a change
-    of stance is believed after `dead_time` s; contact points older than `timeout` s tell nothing any more. From `force`
-    (N) on a force sensor says that its foot stands; 0 where there are none. `has_schedule` tells that a planner does
-    publish when the feet are to stand. Without a `robot` the legs have no mass and the body is rigid.
+    the geometry in this order. A change of stance is believed after `dead_time` s; contact points older than `timeout`
+    s tell nothing any more. From `force` (N) on a force sensor says that its foot stands; 0 where there are none.
+    `has_schedule` tells that a planner does publish when the feet are to stand. Without a `robot` the legs have no mass
+    and the body is rigid.
     """
 
     feet: tuple[str, ...]
     points: int = 1
-    window: float = 0.0
     dead_time: float = 0.02
     timeout: float = 0.1
     force: float = 0.0
@@ -209,7 +208,6 @@ def _walking(values: Mapping[str, Any]) -> Walking:
     return Walking(
         feet=tuple(values["feet.names"]),
         points=values["feet.points"],
-        window=values["feet.window"],
         dead_time=values["feet.dead_time"],
         timeout=values["feet.timeout"],
         force=values["feet.force"],

@@ -7,10 +7,11 @@ from collections.abc import Iterable
 from math import hypot
 
 from ..mechanics.types import Twist, TwoPointBody
+from ..stamps import NANOSECONDS
 from .planar import Contacts, Plane, Posture, hardly
 from .scene import Scene
 from .types import Leftover, Sample, Score, Touchdown, Vector3
-from .vectors import cross, dot, to_world
+from .vectors import cross, dot, to_world, total
 
 MEASURED = slice(1, 4)
 """Samples 2 to 4 after a touchdown: the first may average the impact itself, later ones see friction and bounces."""
@@ -27,8 +28,6 @@ SLOWEST = 4.0
 
 LONGEST = 1000
 """How many predictions of one touchdown are remembered."""
-
-NANOSECONDS = 1e9
 
 ONE_POINT, OUT_OF_PLANE, ONE_CORNER_FIRST, TOO_SLOW = (
     int(flag) for flag in (Leftover.ONE_POINT, Leftover.OUT_OF_PLANE, Leftover.ONE_CORNER_FIRST, Leftover.TOO_SLOW)
@@ -130,10 +129,10 @@ class Pending:
 
 def _at_zero(times: list[float], values: list[float]) -> float:
     """The value at time zero of the straight line nearest to some values (least squares)."""
-    middle = sum(times) / len(times)
-    mean = sum(values) / len(values)
-    slope = sum([(t - middle) * v for t, v in zip(times, values, strict=True)])
-    return mean - middle * slope / sum([(t - middle) ** 2 for t in times])
+    middle = total(times) / len(times)
+    mean = total(values) / len(values)
+    slope = total([(t - middle) * v for t, v in zip(times, values, strict=True)])
+    return mean - middle * slope / total([(t - middle) ** 2 for t in times])
 
 
 def leftover_of(

@@ -310,8 +310,7 @@ class Prediction(NamedTuple):
 
     `touchdown` is None when none lies within the horizon; `score` is the touchdown that this sample's measurement
     completed, if any. Over a moving `support` both are in its frame, as is `relative`, the sample seen from there.
-    Of a walking machine `feet` has every foot, and `touchdowns` that of each foot ahead, the soonest, which is
-    `touchdown`, first.
+    Of a walking machine `touchdown` is that of the foot that lands next, and `feet` has when each one lands.
     """
 
     status: Status
@@ -320,5 +319,4 @@ class Prediction(NamedTuple):
     score: Score | None = None
     support: Moment | None = None
     relative: Sample | None = None
-    touchdowns: tuple[Touchdown, ...] = ()
     feet: tuple[Foot, ...] = ()

@@ -2,12 +2,29 @@
 
 from __future__ import annotations
 
+import operator
+import sys
+from collections.abc import Iterable
+from functools import reduce
 from math import cos, sin, sqrt
 
 from .types import Quaternion, Vector3
 
 Axes = tuple[Vector3, Vector3, Vector3]
 """A body's axes in the world frame."""
+
+
+if sys.version_info >= (3, 12):
+
+    def total(values: Iterable[float]) -> float:
+        """The sum from the first to the last, rounded at each step, so that every Python gives the same bits.
+
+        From Python 3.12 on `sum` compensates its rounding, before that it does not.
+        """
+        return reduce(operator.add, values, 0.0)
+
+else:
+    total = sum
 
 
 def dot(u: Vector3, v: Vector3) -> float:
@@ -37,9 +54,9 @@ def mean(vectors: list[Vector3]) -> Vector3:
     if count == 1:
         return vectors[0]
     return (
-        sum([v[0] for v in vectors]) / count,
-        sum([v[1] for v in vectors]) / count,
-        sum([v[2] for v in vectors]) / count,
+        total([v[0] for v in vectors]) / count,
+        total([v[1] for v in vectors]) / count,
+        total([v[2] for v in vectors]) / count,
     )
 
 

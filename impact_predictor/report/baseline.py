@@ -14,7 +14,8 @@ from math import hypot
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..mechanics.types import Twist
-from ..scenarios.comparison import NANOSECONDS, NEAREST
+from ..scenarios.matching import NEAREST
+from ..stamps import NANOSECONDS
 from .table import first_stamp
 
 if TYPE_CHECKING:

@@ -13,12 +13,12 @@ from ..mechanics.rocking import End
 from ..scenarios.deck.record import Followed
 from ..scenarios.deck.voyage import Voyage
 from ..scenarios.truth import TrueImpact
+from ..stamps import NANOSECONDS
 from .table import plain_table, show
 
 RESOLVED: Final = 0.05
 """Approach in m/s above which an impact is told from the last small ones of a unit that comes to rest."""
 
-_NANOSECONDS: Final = 1e9
 _ENDS: Final = {
     End.OVERTURNED: "toppled",
     End.RESTS: "rests",
@@ -56,7 +56,7 @@ def _end(voyage: Voyage) -> str:
 
 def _impact(impact: TrueImpact) -> dict[str, Any]:
     return {
-        "time": impact.stamp / _NANOSECONDS,
+        "time": impact.stamp / NANOSECONDS,
         "mode": impact.mode.name,
         "omega_before": hypot(*impact.angular_before),
         "omega_after": hypot(*impact.angular_after),
@@ -71,7 +71,7 @@ def _unit(one: Followed) -> dict[str, Any]:
         "time": one.time,
         "resolved_impacts": sum(impact.approach > RESOLVED for impact in one.impacts),
         "onsets": [
-            {"time": onset.stamp / _NANOSECONDS, "slides": onset.slides, "lifts": onset.lifts} for onset in one.onsets
+            {"time": onset.stamp / NANOSECONDS, "slides": onset.slides, "lifts": onset.lifts} for onset in one.onsets
         ],
         "most_turned": one.most_turned,
         "moved": one.moved,
@@ -117,7 +117,7 @@ def unit_table(voyage: Voyage) -> Table:
 
 def _first(stamps: Any) -> str:
     first = min(stamps, default=None)
-    return "-" if first is None else f"{first / _NANOSECONDS:.2f}"
+    return "-" if first is None else f"{first / NANOSECONDS:.2f}"
 
 
 def sentences(voyage: Voyage) -> list[str]:

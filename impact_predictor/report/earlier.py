@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import json
 import os
+from collections import defaultdict
 from pathlib import Path
 from typing import Any, Final
 
+from ..bags.names import name_of
 from ..bags.read import read_messages, topics
 from ..bags.stream import NODE
 from ..errors import InputError
@@ -15,59 +17,82 @@ from ..ros.messages import DIAGNOSTIC_ARRAY, MalformedMessage, decode_diagnostic
 from .baseline import Happened, happened
 
 _HINT: Final = "give what `impact-predictor replay` wrote with -o, or printed with --json"
-
-
-def name_of(bag: str | os.PathLike[str]) -> str:
-    """What a bag is called without its folder and suffix."""
-    path = Path(bag).resolve()
-    return path.stem if path.suffix in (".mcap", ".db3", ".bag") else path.name
+_OTHER_JSON: Final = (KeyError, TypeError, ValueError, AttributeError)
+"""What comes of taking another JSON for that of a replay."""
 
 
 def read_earlier(path: str | os.PathLike[str], bag: str | os.PathLike[str]) -> tuple[Happened, ...]:
-    """The touchdowns of an earlier run of a bag.
+    """The touchdowns of an earlier run of a bag; raises what `Earlier` does."""
+    return Earlier(path).touchdowns_of(bag)
 
-    `path` is the bag that the run wrote or a recording of the node's topics, or the JSON of the run; of a run of
-    several bags it is the folder of what was written, in which the predictions have the name of their bag, or the JSON
-    with one object for each.
 
-    Raises:
-        InputError: nothing is there, it is no run, or none of this bag.
+class Earlier:
+    """An earlier run of one bag or of several.
+
+    That is the bag that the run wrote or a recording of the node's topics, or the JSON of the run; of a run of several
+    bags the folder of what was written, or the JSON with one object for each.
     """
-    path = Path(path)
-    if path.suffix == ".json":
-        return _read_json(path, bag)
-    of_several = path / f"{name_of(bag)}.mcap"
-    if path.is_dir() and not (path / "metadata.yaml").exists():
-        if not of_several.exists():
-            raise InputError(
-                f"the baseline {path} has no {of_several.name}; write it with `impact-predictor replay -o`"
-            )
-        path = of_several
-    return _read_bag(path)
+
+    def __init__(self, path: str | os.PathLike[str]) -> None:
+        """Look at it; JSON is read at once, bags when they are asked for.
+
+        Raises:
+            InputError: it is JSON that cannot be read, or none of a replay.
+        """
+        self._path = Path(path)
+        self._runs = _runs_of(self._path) if self._path.suffix == ".json" else None
+
+    def touchdowns_of(self, bag: str | os.PathLike[str], name: str | os.PathLike[str] = "") -> tuple[Happened, ...]:
+        """The touchdowns of a bag, which has a `name` in a run of several (`names_of`; without one that of its file).
+
+        Raises:
+            InputError: nothing is there, it is no run, or none of this bag.
+        """
+        path = self._path
+        if self._runs is not None:
+            return self._runs.touchdowns_of(path, os.fspath(bag))
+        if path.is_dir() and not (path / "metadata.yaml").exists():
+            path /= f"{os.fspath(name) or name_of(bag)}.mcap"
+            if not path.exists():
+                raise InputError(
+                    f"the baseline {self._path} has no {path.name}; write it with `impact-predictor replay -o`"
+                )
+        return _read_bag(path)
 
 
-def _read_json(path: Path, bag: str | os.PathLike[str]) -> tuple[Happened, ...]:
+class _Runs:
+    """The JSON of a run of one bag, or of several by their paths and by their names."""
+
+    def __init__(self, answer: Any) -> None:
+        self._only = None if isinstance(answer, list) else answer
+        self._by_path: dict[str, list[Any]] = defaultdict(list)
+        self._by_name: dict[str, list[Any]] = defaultdict(list)
+        for run in answer if isinstance(answer, list) else ():
+            self._by_path[run["bag"]].append(run)
+            self._by_name[name_of(run["bag"])].append(run)
+
+    def touchdowns_of(self, path: Path, bag: str) -> tuple[Happened, ...]:
+        run = self._only
+        if run is None:
+            same = self._by_path.get(bag) or self._by_name.get(name_of(bag), [])
+            if len(same) != 1 or "error" in same[0]:
+                raise InputError(f"the baseline {path} has no run of {bag}; replay that bag with --json again")
+            (run,) = same
+        try:
+            return tuple(happened(fields) for fields in run["touchdowns"])
+        except _OTHER_JSON as error:
+            raise InputError(f"the baseline {path} is not the JSON of a replay; {_HINT}") from error
+
+
+def _runs_of(path: Path) -> _Runs:
     try:
-        answer = json.loads(path.read_bytes())
+        return _Runs(json.loads(path.read_bytes()))
     except OSError as error:
         raise InputError(f"the baseline {path} cannot be read: {error.strerror}") from error
-    except ValueError as error:
+    except json.JSONDecodeError as error:
         raise InputError(f"the baseline {path} is not JSON ({error}); {_HINT}") from error
-    try:
-        run = _run_of_bag(answer, bag) if isinstance(answer, list) else answer
-        found = None if run is None else tuple(happened(fields) for fields in run["touchdowns"])
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
+    except _OTHER_JSON as error:
         raise InputError(f"the baseline {path} is not the JSON of a replay; {_HINT}") from error
-    if found is None:
-        raise InputError(f"the baseline {path} has no run of {os.fspath(bag)}; replay that bag with --json again")
-    return found
-
-
-def _run_of_bag(runs: list[Any], bag: str | os.PathLike[str]) -> Any | None:
-    """The only run of a bag of this path, or else of this name."""
-    same = [run for run in runs if run["bag"] == os.fspath(bag)]
-    same = same or [run for run in runs if name_of(run["bag"]) == name_of(bag)]
-    return same[0] if len(same) == 1 and "touchdowns" in same[0] else None
 
 
 def _read_bag(path: Path) -> tuple[Happened, ...]:

@@ -14,10 +14,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from ..errors import InputError
 from ..mechanics.types import Mode, Twist
 from .summary import LeadTimeErrors, TouchdownRow, errors_of, words
-from .whole import whole
+from .whole import named, whole
 
 SUFFIXES: Final = (".png", ".svg")
 
@@ -57,12 +56,7 @@ def check_figure(path: str | os.PathLike[str]) -> Path:
     Raises:
         InputError: the suffix names no known format, or there is no such folder.
     """
-    path = Path(path)
-    if path.suffix.lower() not in SUFFIXES:
-        raise InputError(f"{path} is no picture that can be drawn; give a name that ends in {' or '.join(SUFFIXES)}")
-    if not path.parent.is_dir():
-        raise InputError(f"the folder of {path} does not exist; make it, or give another name")
-    return path
+    return named(path, "picture that can be drawn", SUFFIXES)
 
 
 def write_figure(
@@ -108,12 +102,14 @@ def _draw_velocities(axes: Axes, rows: Sequence[TouchdownRow]) -> None:
         _say_nothing(axes, "no touchdown was scored")
         return
     extent = 0.0
-    for row in rows:
-        assert row.measured is not None
+    # Those of a mode at once: a line of its own for each of many touchdowns takes minutes.
+    for mode in sorted({row.mode for row in rows}):
+        mine = [(row.measured, row.predicted, row.half_distance) for row in rows if row.mode is mode]
         for _, colour, of in _VELOCITIES:
-            x, y = of(row.measured, row.half_distance), of(row.predicted, row.half_distance)
-            extent = max(extent, abs(x), abs(y))
-            axes.plot(x, y, MODE_MARKERS.get(row.mode, "x"), color=colour, markersize=6, alpha=0.6, markeredgewidth=0)
+            x = [of(measured, arm) for measured, _, arm in mine if measured is not None]
+            y = [of(predicted, arm) for _, predicted, arm in mine]
+            extent = max([extent, *map(abs, x), *map(abs, y)])
+            axes.plot(x, y, MODE_MARKERS.get(mode, "x"), color=colour, markersize=6, alpha=0.6, markeredgewidth=0)
     extent = 1.08 * extent or 1.0
     axes.axline((0.0, 0.0), slope=1.0, color=_GREY, linewidth=1.0, zorder=1)
     axes.set(xlim=(-extent, extent), ylim=(-extent, extent), aspect="equal")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterable, Sequence
 from math import hypot
 from statistics import median
@@ -14,7 +13,6 @@ from rich.table import Table
 from ..mechanics.types import Mode, Twist
 from ..prediction.types import Landing, Score, Touchdown
 from ..scenarios.comparison import LEAD_TIMES
-from .summary import counted
 from .table import NONE, first_stamp, least_width, plain_table
 
 if TYPE_CHECKING:
@@ -22,9 +20,6 @@ if TYPE_CHECKING:
 
 IMPACT: Final = ("\nimpulse\nN s", "body's\nchange\nm/s")
 ERRORS: Final = ("error\nms, told\n20 ms", "error\nms, told\n50 ms")
-
-
-NOISY: Final = "a foot came down too suddenly, or the noise of base and feet hides how it comes down"
 
 
 class Landed(NamedTuple):
@@ -217,45 +212,3 @@ def _number(value: float | None, scale: float, digits: int, sign: str = "") -> s
         return NONE
     text = f"{value * scale:{sign}.{digits}f}"
     return text if float(text) else f"{0.0:.{digits}f}"
-
-
-def landing_sentences(landings: Sequence[Landed]) -> list[str]:
-    """What the landings say all together, one sentence each."""
-    if not landings:
-        return []
-    firsts = [one for one in landings if not one.second]
-    feet = len({(one.body, one.foot.split()[0]) for one in landings})
-    there = f"{counted(len(firsts), 'landing')} of {'1 foot' if feet == 1 else f'{feet} feet'}"
-    missing = sum(one.announced is None for one in firsts)
-    more = len(landings) - len(firsts)
-    besides = f", besides {counted(more, 'second contact')} of feet that stood already" if more else ""
-    least = _least(firsts)
-    if least is None:
-        said = [f"{there}, none of them announced{besides}: {NOISY}"]
-    else:
-        who = "each" if not missing else f"{len(firsts) - missing:,} of them"
-        told = f"{who} told {least * 1e3:.0f} ms ahead or earlier{besides}"
-        said = [f"{there}, {told}; errors are of that time, by when the foot's motion ends"]
-        if missing:
-            stances = "1 landing was" if missing == 1 else f"{missing:,} landings were"
-            said.append(f"{stances} not announced: {NOISY}")
-    modes = Counter(one.mode for one in landings)
-    counts = ", ".join(f"{modes[mode]:,} {mode.name}" for mode in sorted(modes))
-    braked = ": every foot brakes to rest as it reaches the ground" if set(modes) == {Mode.NO_IMPACT} else ""
-    said.append(f"Predicted modes: {counts}{braked}")
-    seen = [one for one in landings if one.speed is not None]
-    if seen:
-        typical, most = _median([one.speed for one in seen if one.speed is not None]), _most(one.speed for one in seen)
-        impulse, change = _most(one.impulse for one in seen), _most(one.velocity for one in seen)
-        said.append(
-            f"Speeds are those of the last sample in the air, {typical:.3f} m/s in the median, at most {most:.3f} m/s: "
-            f"a foot that lands with it gets at most {impulse:.2f} N s, and changes the body's velocity by at most "
-            f"{change:.3f} m/s"
-        )
-    late = [one.late for one in landings if one.late is not None]
-    if late:
-        said.append(
-            f"Against the plan {counted(len(late), 'landing')} came {median(late) * 1e3:+.1f} ms late in the median, "
-            f"from {min(late) * 1e3:+.1f} to {max(late) * 1e3:+.1f} ms"
-        )
-    return [f"{sentence}." for sentence in said]

@@ -11,7 +11,8 @@ from ..prediction.inputs import CONTACT_GEOMETRY, STATES
 from ..prediction.types import Status
 from .bodies import EARLY, bodies_of, bodies_table, truths_table
 from .summary import counted, error_by_lead_time, row_of, words
-from .table import conclusions, lead_time_table, percent, show, small_percent, touchdown_table
+from .table import lead_time_table, percent, show, small_percent, touchdown_table
+from .tally import Together
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -55,14 +56,9 @@ def print_replay(console: Console, result: Result, every: bool = False) -> None:
 
 def concluded(settled: Iterable[Settled]) -> list[str]:
     """What touchdowns that have happened say all together, one sentence each: landings of feet, and all others."""
-    found = list(settled)
-    rows = [row_of(*one) for one in found if one.score.landing is None]
-    landings = _landings_of(found)
-    if not landings:
-        return conclusions(rows)
-    from .landings import landing_sentences
-
-    return landing_sentences(landings) + (conclusions(rows) if rows else [])
+    together = Together()
+    together.add(settled)
+    return together.sentences()
 
 
 def _landings_of(settled: Iterable[Settled]) -> list[Landed]:

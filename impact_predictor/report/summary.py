@@ -115,7 +115,12 @@ def errors_of(rows: Iterable[TouchdownRow]) -> Errors:
 
 def error_by_lead_time(scores: Iterable[Score]) -> tuple[LeadTimeErrors, ...]:
     """How wrong every prediction of the scored touchdowns was, by how long before the touchdown it was made."""
-    made = [prediction for score in scores if score.scored for prediction in score.history]
+    return errors_ahead(prediction for score in scores if score.scored for prediction in score.history)
+
+
+def errors_ahead(predictions: Iterable[tuple[float, float]]) -> tuple[LeadTimeErrors, ...]:
+    """How wrong predictions were, from the (lead time in s, relative error) of each."""
+    made = list(predictions)
     return tuple(
         LeadTimeErrors(begin, end, summarize([error for lead_time, error in made if begin <= lead_time < end]))
         for begin, end in pairwise(LEAD_TIME_EDGES)
@@ -145,6 +150,11 @@ def quantile(values: Sequence[float], part: float) -> float:
 def counted(number: int, noun: str) -> str:
     """A number of things, in words that fit one of them and many."""
     return f"{number:,} {noun}" if number == 1 else f"{number:,} {noun}s"
+
+
+def without_bag(said: str, bag: str) -> str:
+    """A sentence that names its bag, as it can be said of several."""
+    return said.replace(f"in {bag}, ", "").replace(bag, "it")
 
 
 def words(name: str) -> str:
@@ -188,6 +198,9 @@ def as_json(result: Result) -> dict[str, Any]:
         answer["truth"] = _truth_as_json(result.truth, result.truths)
     if result.damaged:
         answer["damaged"] = result.damaged
+    from .details import details_of
+
+    answer |= details_of(result)
     return answer
 
 

@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.table import Table
 
 from ..mechanics.types import Twist
-from .summary import LeadTimeErrors, TouchdownRow, counted, errors_of, reasons, words
+from .summary import LeadTimeErrors, TouchdownRow, words
 
 NONE: Final = "-"
 _WALL_CLOCK: Final = 10**17
@@ -133,18 +133,3 @@ def lead_time_table(errors: Sequence[LeadTimeErrors]) -> Table:
         span = f"{one.begin * 1e3:.0f} to {one.end * 1e3:.0f}"
         table.add_row(span, str(one.errors.number), percent(one.errors.median), percent(one.errors.p90))
     return table
-
-
-def conclusions(rows: Sequence[TouchdownRow]) -> list[str]:
-    """How wrong the scored touchdowns were, and why the others are not scored, one sentence each."""
-    errors = errors_of(rows)
-    if not rows:
-        return ["No touchdown was predicted."]
-    said = [f"{errors.number:,} of {counted(len(rows), 'touchdown')} scored"]
-    if errors.number:
-        said[0] += f": relative error {percent(errors.median)} % in the median, 90 % below {percent(errors.p90)} %"
-    if unscored := reasons(rows):
-        counts = ", ".join(f"{count:,} {words(reason)}" for reason, count in unscored.items())
-        several = ", for one or several reasons each" if len(unscored) > 1 else ""
-        said.append(f"{len(rows) - errors.number:,} not scored{several}: {counts}")
-    return [f"{sentence}." for sentence in said]

@@ -15,7 +15,8 @@ from rclpy.node import Node
 from ..prediction.inputs import IMU as SENSOR
 from ..prediction.inputs import ODOM, SCHEDULE
 from ..prediction.types import Imu, Prediction, Sample, Score, Status
-from .endpoints import publisher, subscription
+from .backlog import LONGEST, Backlog
+from .endpoints import Outlet, publisher, subscription
 from .input_topic import InputTopic
 from .messages import IMU, ODOMETRY, OUTPUTS, POLYGON, MalformedMessage, decode_odometry, decode_polygon
 from .reporter import Reporter
@@ -35,10 +36,12 @@ class BodyTopics:
     A body without a name has the topics `odom` and `~/mode`, another one `crate/odom` and `~/crate/mode`.
     """
 
-    def __init__(self, node: Node, reporter: Reporter, monitor: Monitor, body: str) -> None:
+    def __init__(self, node: Node, reporter: Reporter, monitor: Monitor, body: str, of_support: list[Any]) -> None:
+        """Have no topic yet; `of_support` are the subscriptions that tell of the support, made before the first."""
         self.outputs: dict[str, Any] = {}
         self._node, self._reporter, self._monitor, self._body = node, reporter, monitor, body
         self._latched: LatchedTopic | None = None
+        self._of_support, self._others = of_support, list[Any]()
         self._last_sample: Sample | None = None
 
     def listen(self, topic: str, kind: str) -> Any:
@@ -55,7 +58,8 @@ class BodyTopics:
         if kind == SCHEDULE:
             self._latched = listen_to_schedule(*about)
             return None
-        return listen_to_feet(*about, kind)
+        self._others.append(listen_to_feet(*about, kind))
+        return self._others[-1]
 
     def _listen_to_geometry(self, topic: str) -> None:
         from .latched_topic import LatchedTopic
@@ -79,10 +83,13 @@ class BodyTopics:
         self._update = self._monitor.predictors[self._body].update
         if self._monitor.watch is not None:
             self._update = partial(self._monitor.update, self._body)
+        samples = subscription(self._node, topic, ODOMETRY, self._on_odometry, self._reporter.on_lost)
+        others, longest = self._of_support + self._others, LONGEST / len(self._monitor.predictors)
+        self._backlog = Backlog(samples, others, self._answer, longest)
         prefix = f"~/{self._body}/" if self._body else "~/"
         self.outputs = {name: publisher(self._node, prefix + name, one.type_name) for name, one in OUTPUTS.items()}
-        self._encoders = [(self.outputs[name], output.encode) for name, output in OUTPUTS.items()]
-        return subscription(self._node, topic, ODOMETRY, self._on_odometry, self._reporter.on_lost)
+        self._encoders = [(Outlet(self.outputs[name]), output.encode) for name, output in OUTPUTS.items()]
+        return samples
 
     def look_for_history(self) -> None:
         """Ask for contact points, or a plan, that were published before, if there may be any."""
@@ -100,6 +107,10 @@ class BodyTopics:
             self._reporter.refuse(self._geometry_name, status)
 
     def _on_odometry(self, data: bytes) -> None:
+        if dropped := self._backlog.take(data):
+            self._reporter.dropped(dropped)
+
+    def _answer(self, data: bytes) -> None:
         began = perf_counter()
         try:
             sample = decode_odometry(data)
@@ -116,8 +127,8 @@ class BodyTopics:
             self._reporter.refuse(self._name, prediction.status)
             return
         self._last_sample = sample
-        for output, encode in self._encoders:
-            _publish(output, encode, prediction)
+        for outlet, encode in self._encoders:
+            _publish(outlet, encode, prediction)
         if prediction.score is not None:
             self._reporter.settled(sample.child_frame_id, prediction.score)
         if prediction.feet:
@@ -132,15 +143,16 @@ class BodyTopics:
         """Publish the scores that the end of the record settles, and see them received."""
         if self._last_sample is None or not scores:
             return
+        outlet = Outlet(self.outputs["score"])
         for score in scores:
             prediction = Prediction(Status.ACCEPTED, self._last_sample, None, score)
-            _publish(self.outputs["score"], OUTPUTS["score"].encode, prediction)
+            _publish(outlet, OUTPUTS["score"].encode, prediction)
         self.outputs["score"].wait_for_all_acked(LAST_WORDS)
 
 
-def _publish(output: Any, encode: Callable[[Prediction], bytes | None], prediction: Prediction) -> None:
+def _publish(outlet: Outlet, encode: Callable[[Prediction], bytes | None], prediction: Prediction) -> None:
     """Publish what there is to say, unless nobody listens: then it is not even encoded."""
-    if output.get_subscription_count():
+    if outlet.listeners():
         data = encode(prediction)
         if data is not None:
-            output.publish(data)
+            outlet.send(data)

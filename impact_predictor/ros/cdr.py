@@ -12,6 +12,8 @@ from functools import lru_cache, wraps
 from struct import Struct
 from typing import Final, NamedTuple, TypeVar
 
+from ..stamps import NANOSECONDS
+
 HEADER_SIZE: Final = 4
 LITTLE_ENDIAN_HEADER: Final = b"\x00\x01\x00\x00"
 LARGEST_TRAILER: Final = 3
@@ -19,7 +21,6 @@ LARGEST_TRAILER: Final = 3
 TRAILER_OF_DOUBLES: Final = 4
 """Bytes more for each sequence of doubles: rclpy makes room to align them also where there are none."""
 
-NANOSECONDS: Final = 1_000_000_000
 OK, WARN, ERROR, STALE = range(4)
 """The levels of a diagnostic_msgs/DiagnosticStatus."""
 _SECONDS_RANGE: Final = (-(2**31), 2**31 - 1)

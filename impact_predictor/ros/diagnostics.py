@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 from ..prediction.remedies import REMEDIES
 from ..prediction.score import median
 from ..prediction.types import Score, Status
-from .cdr import ERROR, NANOSECONDS, OK, WARN, DiagnosticForm, StatusBytes
+from ..stamps import NANOSECONDS
+from .cdr import ERROR, OK, WARN, DiagnosticForm, StatusBytes
 
 if TYPE_CHECKING:
     from .feet_report import FeetReport
@@ -67,6 +68,7 @@ class Diagnostics:
         self._accepted = 0
         self._refused: Counter[Refused] = Counter()
         self._others = 0
+        self._dropped = 0
         self._last: dict[str, float] = {}
         self._last_stamps: dict[str, int] = {}
         self._touchdowns = 0
@@ -82,6 +84,7 @@ class Diagnostics:
         self._totals: list[float] = []
         self._largest_gap = 0
         self._latency: int | None = None
+        self._dropped_before = self._dropped
         self._refused_before = self._refused_now
         self._refused_now = Counter()
         self._told: set[tuple[str, Status]] = set()
@@ -116,6 +119,10 @@ class Diagnostics:
         self._refused[reason] += 1
         self._refused_now[reason] += 1
         return self.level == OK and self._judge(now)
+
+    def dropped(self, count: int) -> None:
+        """Count samples that were dropped because newer ones waited behind them."""
+        self._dropped += count
 
     def is_news(self, reason: Refused) -> bool:
         """Whether a message is the first in this second to be refused for a reason, and so worth a line in the log."""
@@ -167,6 +174,7 @@ class Diagnostics:
             "samples.rate": f"{second.rate:.1f}",
             "samples.largest_gap": f"{second.largest_gap:.4f}",
             "samples.publishers": str(sum(self.publishers.values())),
+            "samples.dropped": str(self._dropped),
             "samples.lost": str(self.lost),
             "incompatible_qos": str(len(self.misfits)),
         }
@@ -212,6 +220,8 @@ class Diagnostics:
             if only_refused and reason.status is not Status.NO_GEOMETRY:
                 return ERROR, f"nothing but refused messages ({count}); {reason}"
             return WARN, f"{count} messages refused in the last second; {reason}"
+        if dropped := self._dropped - self._dropped_before:
+            return WARN, self._overload(dropped)
         if self.misfits:
             return WARN, f"QoS does not match ({len(self.misfits)}): {self.misfits[0]}"
         if len(self._last) < len(self.publishers):
@@ -222,6 +232,11 @@ class Diagnostics:
             return WARN, f"no sample{where} for {age:.1f} s"
         flaws = [feet.flaw for feet in self.feet.values() if feet.flaw]
         return (WARN, flaws[0]) if flaws else (OK, "predicting")
+
+    def _overload(self, dropped: int) -> str:
+        """Why samples were dropped."""
+        cost = f"{median(self._totals) * 1e3:.2g} ms" if self._totals else "too long"
+        return f"{dropped} samples dropped in the last second: they come faster than answers, of {cost} each"
 
     def _missing(self) -> str:
         """Which inputs have never told anything."""

@@ -9,7 +9,7 @@ from ..prediction.score import median
 from ..prediction.types import Foot, Landing, Prediction
 
 if TYPE_CHECKING:
-    from ..prediction.walking.legs import Articulated
+    from ..prediction.walking.walker import Walker
 
 DISAGREES: Final = 0.5
 """The part of a second's samples above which a force sensor disagrees; while a foot lands or lifts each one does."""
@@ -20,12 +20,12 @@ _REMEMBERED: Final = 1000
 class FeetReport:
     """Counts what the answers tell of the feet of one body, which it calls by their names."""
 
-    def __init__(self, body: str, model: Articulated | None = None) -> None:
-        """Count for a body, "" being the name of a body alone, and for the model of its joints if there is one."""
+    def __init__(self, body: str, walker: Walker | None = None) -> None:
+        """Count for a body, "" being the name of a body alone, which may have a model of its joints."""
         self.flaw = ""
         """What is wrong with its force sensors in the last second, "" where nothing is."""
         self._prefix = f"{body}/feet" if body else "feet"
-        self._model = model
+        self._walker = walker
         self._feet: tuple[Foot, ...] = ()
         self._landings: Counter[str] = Counter()
         self._unannounced = 0
@@ -69,8 +69,9 @@ class FeetReport:
             "landings": str(self._landings.total()),
         }
         values |= {f"landings.{name}": str(count) for name, count in sorted(self._landings.items())}
-        if self._model is not None and self._model.left_out:
-            values["joints_left_out"] = " ".join(self._model.left_out)
+        model = self._walker and self._walker.articulated
+        if model and model.left_out:
+            values["joints_left_out"] = " ".join(model.left_out)
         if self._unannounced:
             values["landings.unannounced"] = str(self._unannounced)
         if self._time_errors:

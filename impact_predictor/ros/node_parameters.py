@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from array import array
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from difflib import get_close_matches
 from typing import Any, Final
 
@@ -13,30 +13,71 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter as NodeParameter
 
 from ..errors import InputError
-from ..parameters.validation import Parameter, Value, parameter_of, validate
+from ..parameters.running import FIXED, check_change
+from ..parameters.validation import Parameter, Value, is_of_every_node, parameter_of, validate
 
 _QOS_OVERRIDES: Final = "qos_overrides."
 
 
-def declare_parameters(node: Node) -> dict[str, Value]:
-    """Declare every parameter on a node that was made with those which the user gave, and return their values.
+class NodeParameters:
+    """The parameters of a node: those that it began with, and what is set while it runs.
 
-    Raises:
-        InputError: the user gave an unknown parameter or a bad value, or left out one that has no default.
+    `values` are those that hold now.
     """
-    parameters: Mapping[str, Any] = node.get_parameters_by_prefix("")
-    given = {name: _plain(parameter.value) for name, parameter in parameters.items()}
-    values = validate(given)
-    for name, depth in given.items():
-        if name.startswith(_QOS_OVERRIDES) and name.endswith(".depth") and not (type(depth) is int and depth > 0):
-            raise InputError(f"the parameter {name} is {depth!r}, but it must be a whole number of messages above 0")
-    for name, value in values.items():
+
+    def __init__(self, node: Node) -> None:
+        """Declare every parameter on a node that was made with those which the user gave.
+
+        Raises:
+            InputError: the user gave an unknown parameter or a bad value, or left out one that has no default.
+        """
+        parameters: Mapping[str, Any] = node.get_parameters_by_prefix("")
+        self._node = node
+        self._given = {name: _plain(parameter.value) for name, parameter in parameters.items()}
+        self.values = validate(self._given)
+        for name, depth in self._given.items():
+            if name.startswith(_QOS_OVERRIDES) and name.endswith(".depth") and not (type(depth) is int and depth > 0):
+                raise InputError(
+                    f"the parameter {name} is {depth!r}, but it must be a whole number of messages above 0"
+                )
+        for name, value in self.values.items():
+            if name in self._given:
+                node.set_descriptor(name, _descriptor(parameter_of(name)))
+            else:
+                self._declare(name, value)
+
+    def _declare(self, name: str, value: Value) -> None:
         parameter = parameter_of(name)
-        if name in given:
-            node.set_descriptor(name, _descriptor(parameter))
-        else:
-            node.declare_parameter(name, _ros_value(parameter, value), _descriptor(parameter))
-    return values
+        self._node.declare_parameter(name, _ros_value(parameter, value), _descriptor(parameter))
+
+    def changed(self, parameters: Sequence[NodeParameter]) -> dict[str, Value]:
+        """The values that would hold with others for some parameters; nothing is changed.
+
+        Raises:
+            InputError: one is refused as at the start, or cannot change while the node runs.
+        """
+        others = _ours(parameters)
+        for name, value in others.items():
+            if value is None:
+                raise InputError(f"the parameter {name} cannot be deleted while the node runs; give it another value")
+        values = validate({**self._given, **others})
+        check_change(self.values, values)
+        return values
+
+    def take(self, parameters: Sequence[NodeParameter], values: dict[str, Value]) -> list[NodeParameter]:
+        """Take values that `changed` has made; the parameters that the node itself has still to set."""
+        others = _ours(parameters)
+        for name in others:
+            if not self._node.has_parameter(name):
+                self._declare(name, values[name])
+        was, self.values = self.values, values
+        self._given |= others
+        return [one for one in parameters if one.name not in others or was.get(one.name) != values[one.name]]
+
+
+def _ours(parameters: Sequence[NodeParameter]) -> dict[str, Any]:
+    """The values of parameters that are not of every node."""
+    return {one.name: _plain(one.value) for one in parameters if not is_of_every_node(one.name)}
 
 
 def check_qos_overrides(node: Node) -> None:
@@ -85,8 +126,7 @@ def _descriptor(parameter: Parameter) -> ParameterDescriptor:
         type=NodeParameter.Type[parameter.kind.upper()].value,
         description=f"{parameter.description}{unit}",
         additional_constraints=" or ".join(parameter.choices),
-        # The scene is made once.
-        read_only=True,
+        read_only=parameter.name in FIXED,
         floating_point_range=ranges,
         integer_range=whole_ranges,
     )

@@ -16,10 +16,9 @@ from typing import Any, Final, NamedTuple
 
 from ..bags.read import BagMessage, read_messages, topics
 from ..errors import InputError
+from ..stamps import NANOSECONDS
 from .messages import IMU, JOINT_STATE, JOINT_TRAJECTORY, ODOMETRY, POLYGON, WRENCH
 from .process import Stop, message_class, run
-
-NANOSECONDS: Final = 1e9
 
 AWAITED: Final = (ODOMETRY, IMU, POLYGON)
 """Types of the messages that are played when somebody has subscribed to them."""

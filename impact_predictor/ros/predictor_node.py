@@ -5,17 +5,20 @@ from __future__ import annotations
 from itertools import chain
 from typing import Any
 
+from rcl_interfaces.msg import SetParametersResult
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 from rclpy.exceptions import ParameterException
 from rclpy.node import Node
+from rclpy.parameter import Parameter as NodeParameter
 
 from ..errors import InputError
+from ..parameters.validation import is_of_every_node
 from ..prediction.inputs import inputs_of
 from ..prediction.monitor import Monitor
 from ..prediction.scene import Scene, scenes_of
 from .body_topics import BodyTopics
-from .node_parameters import check_qos_overrides, declare_parameters
+from .node_parameters import NodeParameters, check_qos_overrides
 from .process import sentence
 from .qos import Misfits
 from .reporter import Reporter
@@ -32,9 +35,9 @@ class PredictorNode(Node):
         """
         try:
             self._join()
-            values = declare_parameters(self)
-            self.executor_kind = str(values["executor"])
-            self._connect(scenes_of(values))
+            self._settings = NodeParameters(self)
+            self.executor_kind = str(self._settings.values["executor"])
+            self._connect(scenes_of(self._settings.values))
         except InputError:
             raise
         # What rclpy raises for a name, a parameter or a QoS override that it cannot take.
@@ -56,14 +59,16 @@ class PredictorNode(Node):
         # Each subscription that tells what was lost costs the single-threaded executor as much as another topic.
         counts_losses = self.executor_kind == "events" or len(scenes) == 1
         self._reporter = reporter = Reporter(self, self._monitor, counts_losses)
-        self._bodies = {body: BodyTopics(self, reporter, self._monitor, body) for body in scenes}
+        of_support: list[Any] = []
+        self._bodies = {body: BodyTopics(self, reporter, self._monitor, body, of_support) for body in scenes}
         self._inputs: dict[str, Any] = {}
-        # What is subscribed to first is served first when messages wait on several.
+        # What is subscribed to first is served first when messages wait on several; the samples come last.
         for topic, kind, body in inputs_of(scenes):
             if body is None:
                 from .support_topic import listen_to_support
 
                 self._inputs[topic] = listen_to_support(self, reporter, self._monitor, topic, kind)
+                of_support.append(self._inputs[topic])
             elif (expected := self._bodies[body].listen(topic, kind)) is not None:
                 self._inputs[topic] = expected
         reporter.listen(list(self._inputs))
@@ -72,6 +77,30 @@ class PredictorNode(Node):
         # By a steady clock, so that the node reports while simulated time stands still.
         self.create_timer(1.0, self._on_second, clock=Clock(clock_type=ClockType.STEADY_TIME))
         check_qos_overrides(self)
+
+    def set_parameters_atomically(self, parameter_list: list[NodeParameter]) -> SetParametersResult:
+        """Set parameters while the node runs: all of them, for the next sample, or none, with the reason.
+
+        This is what the parameter services call.
+        """
+        try:
+            values = self._settings.changed(parameter_list)
+            change = self._monitor.changed(scenes_of(values))
+        except InputError as error:
+            return SetParametersResult(successful=False, reason=str(error))
+        # What is left are parameters of ROS itself, which it may refuse, and values that it cannot refuse any more.
+        others = [one for one in parameter_list if is_of_every_node(one.name)]
+        if others:
+            result = super().set_parameters_atomically(others)
+            if not result.successful:
+                return result
+        change()
+        ours = self._settings.take([one for one in parameter_list if one not in others], values)
+        if not ours:
+            return SetParametersResult(successful=True)
+        self._reporter.markers.begin_anew()
+        self.get_logger().info(f"from now on {', '.join(f'{one.name} is {one.value}' for one in ours)}")
+        return super().set_parameters_atomically(ours)
 
     def _on_second(self) -> None:
         for body in self._bodies.values():

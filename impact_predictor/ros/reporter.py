@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 from rclpy.node import Node
 
 from ..prediction.types import Prediction, Score, Status
-from .cdr import NANOSECONDS, diagnostic_array
+from ..stamps import NANOSECONDS
+from .cdr import diagnostic_array
 from .diagnostics import Diagnostics, Refused
-from .endpoints import publisher
+from .endpoints import Outlet, publisher
 from .markers.topic import MarkerTopic
 from .messages import DIAGNOSTIC_ARRAY
 
@@ -26,7 +27,7 @@ class Reporter:
         """Report for a node; `counts_losses` says whether its subscriptions are to tell what the middleware loses."""
         self.on_lost = self._on_lost if counts_losses else None
         self.publisher = publisher(node, "/diagnostics", DIAGNOSTIC_ARRAY)
-        self.markers = MarkerTopic(node, monitor.scenes)
+        self._outlet = Outlet(self.publisher)
         self._node = node
         self._name = node.get_fully_qualified_name().lstrip("/")
         self._monitor = monitor
@@ -37,6 +38,8 @@ class Reporter:
 
     def listen(self, inputs: list[str]) -> None:
         """Expect messages on these inputs; the first is of the support where that moves."""
+        # Last, because what is drawn takes the longest to load, and nobody waits for it.
+        self.markers = MarkerTopic(self._node, self._monitor.scenes)
         self._support = inputs[0] if self._monitor.deck is not None else ""
         self.diagnostics = Diagnostics(self._name, perf_counter(), inputs)
         self.diagnostics.lost = None if self.on_lost is None else 0
@@ -44,10 +47,14 @@ class Reporter:
         if walkers:
             from .feet_report import FeetReport
 
-            self.diagnostics.feet = {body: FeetReport(body, walker.articulated) for body, walker in walkers.items()}
+            self.diagnostics.feet = {body: FeetReport(body, walker) for body, walker in walkers.items()}
 
     def _on_lost(self, event: Any) -> None:
         self.diagnostics.lost = (self.diagnostics.lost or 0) + event.total_count_change
+
+    def dropped(self, count: int) -> None:
+        """Samples were dropped because newer ones waited behind them."""
+        self.diagnostics.dropped(count)
 
     def walked(self, body: str, prediction: Prediction) -> None:
         """A sample of a body with feet was answered."""
@@ -97,7 +104,7 @@ class Reporter:
             from .messages.reports import encode_reports
 
             stamp = max(report.stamp for report in reports)
-            self.publisher.publish(encode_reports(reports, stamp, self._name))
+            self._outlet.send(encode_reports(reports, stamp, self._name))
 
     def second_over(self) -> None:
         """Sum up a second of the steady clock, in which time goes on for the units too."""
@@ -111,19 +118,19 @@ class Reporter:
 
     def report(self) -> None:
         """Publish what the node says about itself, with the reports on the units that are due."""
-        if self.publisher.get_subscription_count():
+        if self._outlet.listeners():
             statuses = [self.diagnostics.report(perf_counter())]
             if self._units:
                 from .messages.reports import status_of
 
                 statuses += [status_of(report, self._name) for report in self._due()]
             stamp = self._node.get_clock().now().nanoseconds
-            self.publisher.publish(diagnostic_array(stamp, "", statuses))
+            self._outlet.send(diagnostic_array(stamp, "", statuses))
 
     def _due(self) -> tuple[Report, ...]:
         """The reports on the units that are due, if there is anybody to be told."""
         drawing = self.markers.drawing
-        if drawing is None and not self.publisher.get_subscription_count():
+        if drawing is None and not self._outlet.listeners():
             return ()
         reports = self._monitor.reports()
         if reports and drawing is not None:

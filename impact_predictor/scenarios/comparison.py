@@ -1,14 +1,12 @@
-"""Predicted against true touchdowns.
+"""Predicted against true touchdowns: what was found, how early, and how right; `matching` tells which belong together.
 
-Predictions of one touchdown follow each other: the next sample announces the same contacts again, unless the announced
-moment has passed. Such a row of predictions belongs to the true impact, of those after its last sample, that is nearest
-to what it announced last, if they are within `NEAREST` of each other; a row without one was a false alarm. What was
-announced for a time after the record is not counted. Touchdowns are those of impacts here, or of the landings of feet.
+What was announced for a time after the record is not counted. Touchdowns are those of impacts here, or of the landings
+of feet.
 """
 
 from __future__ import annotations
 
-from bisect import bisect_left, bisect_right
+from bisect import bisect_right
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from math import dist, hypot
@@ -18,12 +16,11 @@ from typing import Final, NamedTuple
 
 from ..prediction.planar import hardly
 from ..prediction.scene import Scene
-from ..prediction.types import Prediction, Touchdown, Vector3
+from ..prediction.types import Vector3
 from ..prediction.vectors import add, axes_of, cross, to_world
+from ..stamps import NANOSECONDS
+from .matching import Announced, Announcement, Announcements, Match, match, matches_of
 from .truth import TrueImpact
-
-NEAREST: Final = 20_000_000
-"""ns between an announced touchdown and the true one that it is taken for."""
 
 LEAD_TIMES: Final = (0.02, 0.05)
 """Seconds before a touchdown at which the predictions are made whose errors of time count; the first are the usual."""
@@ -33,8 +30,6 @@ BORDER: Final = 0.02
 
 SEEN: Final = 2
 """Samples between two impacts of which the last one shows the second ahead: a body that rocks rises before it falls."""
-
-NANOSECONDS: Final = 1e9
 
 
 class Truth(NamedTuple):
@@ -73,14 +68,7 @@ class Comparison(NamedTuple):
 
     together: Truth
     bodies: dict[str, Truth]
-
-
-class Announcement(NamedTuple):
-    """A prediction: the stamps of its sample and of the touchdown that it announces, in ns."""
-
-    seen: int
-    stamp: int
-    touchdown: Touchdown
+    matches: list[Match]
 
 
 class Found(NamedTuple):
@@ -90,64 +78,10 @@ class Found(NamedTuple):
     last: Announcement
 
 
-class Announced(NamedTuple):
-    """The stamp of a true touchdown that was found, in ns, and its predictions in order."""
-
-    stamp: int
-    predictions: Sequence[Announcement]
-
-
-class Rows:
-    """The predictions of what touches down again and again, in rows of one touchdown each."""
-
-    def __init__(self) -> None:
-        self.all: list[list[Announcement]] = []
-        self._goes_on = False
-
-    def add(self, seen: int, touchdown: Touchdown | None) -> None:
-        """Take what a sample of a stamp in ns announces; what has no lead time announces nothing."""
-        if touchdown is None:
-            self._goes_on = False
-        elif touchdown.lead_time > 0.0:
-            announced = Announcement(seen, seen + round(touchdown.lead_time * NANOSECONDS), touchdown)
-            if self._goes_on and follows(announced, self.all[-1][-1]):
-                self.all[-1].append(announced)
-            else:
-                self.all.append([announced])
-            self._goes_on = True
-
-
-class Announcements:
-    """The predictions of each body.
-
-    A body goes by its name, or where it has none by its frame.
-    """
-
-    def __init__(self) -> None:
-        self.samples: dict[str, list[int]] = defaultdict(list)
-        """Stamps in ns."""
-        self.rows: dict[str, Rows] = defaultdict(Rows)
-        self.names: dict[str, str] = {}
-        """The names of bodies by their frames, by which a truth may call them too."""
-
-    def add(self, prediction: Prediction, name: str = "") -> None:
-        """Take the answer to an accepted sample."""
-        sample = prediction.sample
-        body = name or sample.child_frame_id
-        self.names[sample.child_frame_id] = body
-        self.samples[body].append(sample.stamp)
-        self.rows[body].add(sample.stamp, prediction.touchdown)
-
-
-def follows(announced: Announcement, last: Announcement) -> bool:
-    """Whether a prediction is of the same touchdown as the one before it."""
-    return announced.seen <= last.stamp and not set(announced.touchdown.new).isdisjoint(last.touchdown.new)
-
-
 class Compared(NamedTuple):
     """What was found of the touchdowns of one body, and, where the truth tells them, of its impacts.
 
-    `errors` are those of the velocities after the impacts.
+    `errors` are those of the velocities after the impacts; `matches` has all, the false alarms too.
     """
 
     announced: Sequence[Announced]
@@ -157,6 +91,7 @@ class Compared(NamedTuple):
     unresolved_wrong: int = 0
     found: Sequence[Found] = ()
     errors: Sequence[float] = ()
+    matches: Sequence[Match] = ()
 
 
 def compare(
@@ -175,30 +110,40 @@ def compare(
         of_body[announcements.names.get(impact.body, impact.body)].append(impact)
     compared = {
         body: _compare(
-            of_body[body], announcements.rows[body].all, sorted(samples), scenes[body if body in scenes else ""]
+            body, of_body[body], announcements.rows[body].all, sorted(samples), scenes[body if body in scenes else ""]
         )
         for body, samples in announcements.samples.items()
     } | dict(others)
-    return Comparison(_truth(compared.values()), {body: _truth([one]) for body, one in compared.items()})
+    return Comparison(
+        _truth(compared.values()),
+        {body: _truth([one]) for body, one in compared.items()},
+        [match for one in compared.values() for match in one.matches],
+    )
 
 
 def _compare(
-    impacts: Sequence[TrueImpact], announced: Sequence[list[Announcement]], recorded: Sequence[int], scene: Scene
+    body: str,
+    impacts: Sequence[TrueImpact],
+    announced: Sequence[list[Announcement]],
+    recorded: Sequence[int],
+    scene: Scene,
 ) -> Compared:
     happened = sorted((one for one in impacts if one.stamp <= recorded[-1]), key=lambda one: one.stamp)
     rows = [row for row in announced if row[-1].stamp <= recorded[-1]]
     matched, alarms = match([impact.stamp for impact in happened], rows)
     shown = resolved(happened, recorded, hardly(scene))
-    found = [Found(happened[k], matched[k][-1]) for k in shown if k in matched]
+    found = {k: Found(happened[k], matched[k][-1]) for k in shown if k in matched}
+    errors = {k: velocity_error(one, scene.center_of_mass) for k, one in found.items()}
     hidden = [Found(happened[k], matched[k][-1]) for k in set(matched) - set(shown)]
     return Compared(
         [Announced(happened[k].stamp, matched[k]) for k in shown if k in matched],
         len(shown),
-        alarms,
+        len(alarms),
         len(happened) - len(shown),
         sum(not is_right(one) for one in hidden),
-        found,
-        [velocity_error(one, scene.center_of_mass) for one in found],
+        list(found.values()),
+        list(errors.values()),
+        matches_of(body, "", [(one.stamp, one.mode) for one in happened], matched, alarms, set(shown), errors),
     )
 
 
@@ -236,28 +181,7 @@ def median_time_error(announced: Iterable[Announced], lead_time: float) -> float
 
 def is_right(found: Found) -> bool:
     """Whether the last prediction before an impact had its mode."""
-    return found.last.touchdown.mode is found.impact.mode
-
-
-def match(
-    stamps: Sequence[int], rows: Iterable[list[Announcement]], late: int = 0
-) -> tuple[dict[int, list[Announcement]], int]:
-    """The predictions of each true touchdown by its place, from their stamps in order, and the number of false alarms.
-
-    A row may go on for `late` ns after its touchdown.
-    """
-    matched: dict[int, list[Announcement]] = defaultdict(list)
-    alarms = 0
-    for row in rows:
-        seen, announced, _ = row[-1]
-        first = bisect_left(stamps, seen - late)
-        later = bisect_left(stamps, announced, lo=first)
-        near = [k for k in (later - 1, later) if first <= k < len(stamps) and abs(stamps[k] - announced) <= NEAREST]
-        if near:
-            matched[min(near, key=lambda k: abs(stamps[k] - announced))] += row
-        else:
-            alarms += 1
-    return matched, alarms
+    return found.last.touchdown is not None and found.last.touchdown.mode is found.impact.mode
 
 
 def resolved(happened: Sequence[TrueImpact], samples: Sequence[int], slowest: float) -> list[int]:
@@ -276,6 +200,7 @@ def velocity_error(found: Found, center: Vector3) -> float:
     Angular velocities count as speeds at half the contacts' distance.
     """
     impact, touchdown = found.impact, found.last.touchdown
+    assert touchdown is not None
     axes = axes_of(touchdown.orientation)
     linear = to_world(axes, add(touchdown.linear, cross(touchdown.angular, center)))
     angular = to_world(axes, touchdown.angular)

@@ -12,7 +12,8 @@ from typing import NamedTuple
 
 from ..prediction.scene import Scene
 from ..prediction.types import Prediction
-from .comparison import NEAREST, Announced, Compared, Rows, match
+from .comparison import Compared
+from .matching import NEAREST, Announced, Match, Rows, match, matches_of
 
 
 class TrueLanding(NamedTuple):
@@ -55,9 +56,11 @@ class Landings:
         walking = self._scene(body).walking
         if walking is None:
             return
-        ahead = {walking.feet[one.new[0] // walking.points]: one for one in reversed(prediction.touchdowns)}
+        soonest = prediction.touchdown
+        first = None if soonest is None else walking.feet[soonest.new[0] // walking.points]
         for foot in prediction.feet:
-            self._rows[body][foot.name].add(sample.stamp, None if foot.stands else ahead.get(foot.name))
+            lead_time = None if foot.stands else foot.lead_time
+            self._rows[body][foot.name].add(sample.stamp, lead_time, soonest if foot.name == first else None)
         self._last[body] = sample.stamp
 
     def compared(self) -> dict[str, Compared]:
@@ -70,6 +73,7 @@ class Landings:
 
     def _compare(self, body: str, end: int) -> Compared:
         announced: list[Announced] = []
+        matches: list[Match] = []
         touchdowns = false = 0
         for foot, rows in self._rows[body].items():
             stamps = sorted(one.stamp for one in self.true if (one.body, one.foot) == (body, foot) and one.stamp <= end)
@@ -77,8 +81,9 @@ class Landings:
             matched, alarms = match(stamps, [row for row in rows.all if row[-1].stamp <= end], late=NEAREST)
             announced += [Announced(stamps[k], predictions) for k, predictions in sorted(matched.items())]
             touchdowns += len(stamps)
-            false += alarms
-        return Compared(announced, touchdowns, false)
+            false += len(alarms)
+            matches += matches_of(body, foot, [(one, None) for one in stamps], matched, alarms, range(len(stamps)))
+        return Compared(announced, touchdowns, false, matches=matches)
 
     def _scene(self, body: str) -> Scene:
         return self._scenes[body if body in self._scenes else ""]

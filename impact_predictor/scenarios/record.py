@@ -14,8 +14,8 @@ from ..bags.write import BagWriter
 from ..mechanics.problem import approach
 from ..mechanics.rocking import End, Run, Strike
 from ..prediction.types import Geometry
-from ..ros.cdr import NANOSECONDS
 from ..ros.messages import DIAGNOSTIC_ARRAY, ODOMETRY, POLYGON, encode_odometry, encode_polygon
+from ..stamps import NANOSECONDS
 from .deck.sensors import AT_ONCE, Odometer
 from .space import FORWARD, Mount, Plane
 from .truth import TRUTH_TOPIC, TrueImpact, encode_true_impact

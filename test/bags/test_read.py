@@ -7,51 +7,20 @@ import tracemalloc
 from pathlib import Path
 
 import pytest
-from rosbags.interfaces import Connection
-from rosbags.rosbag1 import Writer as Ros1Writer
+from recordings import RECORDED, TYPESTORE, WANTED, first_messages, write_ros1, write_ros2
 from rosbags.rosbag2 import StoragePlugin, Writer
-from rosbags.rosbag2.enums import CompressionFormat, CompressionMode
-from rosbags.typesys import Stores, get_typestore
+from rosbags.rosbag2.enums import CompressionMode
 
 from impact_predictor.bags.read import BagMessage, read_messages, topics
 from impact_predictor.errors import InputError
 from impact_predictor.ros.messages import ODOMETRY, POLYGON, decode_odometry, decode_polygon
 
-RECORDED = Path(__file__).parents[2] / "examples/cube_tosses/cube_tosses.mcap"
-WANTED = {"/cube/odom": ODOMETRY, "/cube/contact_geometry": POLYGON}
-TYPESTORE = get_typestore(Stores.ROS2_JAZZY)
-NOETIC = get_typestore(Stores.ROS1_NOETIC)
 COUNT = 300
 
 
 @pytest.fixture(scope="module")
 def messages() -> list[BagMessage]:
-    stream = read_messages(RECORDED, WANTED)
-    return [next(stream) for _ in range(COUNT)]
-
-
-def write_ros2(
-    path: Path, messages: list[BagMessage], plugin: StoragePlugin, mode: CompressionMode = CompressionMode.NONE
-) -> Path:
-    writer = Writer(path, version=9, storage_plugin=plugin)
-    writer.set_compression(mode, CompressionFormat.ZSTD)
-    with writer:
-        connections: dict[str, Connection] = {}
-        for topic, log_time, data in messages:
-            if topic not in connections:
-                connections[topic] = writer.add_connection(topic, WANTED[topic], typestore=TYPESTORE)
-            writer.write(connections[topic], log_time, data)
-    return path
-
-
-def write_ros1(path: Path, messages: list[BagMessage]) -> Path:
-    with Ros1Writer(path) as writer:
-        connections: dict[str, Connection] = {}
-        for topic, log_time, data in messages:
-            if topic not in connections:
-                connections[topic] = writer.add_connection(topic, WANTED[topic], typestore=NOETIC)
-            writer.write(connections[topic], log_time, TYPESTORE.cdr_to_ros1(data, WANTED[topic]))
-    return path
+    return first_messages(COUNT)
 
 
 def test_the_recorded_tosses_are_read_in_order_of_time() -> None:
@@ -164,20 +133,6 @@ def test_a_folder_of_several_files_without_metadata_asks_for_one(tmp_path: Path)
     assert "ros2 bag reindex" in refusal(tmp_path)
 
 
-@pytest.mark.parametrize("text", ["", "rosbag2_bagfile_information:\n  version: 9\n", "a: [", "- 1\n"])
-def test_a_folder_with_broken_metadata_is_damaged(tmp_path: Path, messages: list[BagMessage], text: str) -> None:
-    bag = write_ros2(tmp_path / "bag", messages, StoragePlugin.MCAP)
-    (bag / "metadata.yaml").write_text(text)
-    assert "damaged or cut off" in refusal(bag)
-
-
-def test_metadata_that_name_nothing_are_damaged(tmp_path: Path, messages: list[BagMessage]) -> None:
-    bag = write_ros2(tmp_path / "bag", messages, StoragePlugin.MCAP)
-    text = (bag / "metadata.yaml").read_text()
-    (bag / "metadata.yaml").write_text(text.replace("name: /cube/odom", "name:"))
-    assert "damaged or cut off" in refusal(bag)
-
-
 def test_a_lacking_topic_is_named_with_those_there_are() -> None:
     sentence = refusal(RECORDED, {"/odom": ODOMETRY})
     assert "has no topic /odom of type nav_msgs/msg/Odometry" in sentence
@@ -190,21 +145,6 @@ def test_a_lacking_topic_is_named_with_those_there_are() -> None:
 def test_a_topic_of_another_type_is_refused() -> None:
     sentence = refusal(RECORDED, {"/cube/odom": POLYGON})
     assert "has the type nav_msgs/msg/Odometry, but geometry_msgs/msg/PolygonStamped is needed" in sentence
-
-
-@pytest.mark.parametrize("share", [0.02, 0.5, 0.99])
-@pytest.mark.parametrize("kind", ["mcap", "db3", "bag"])
-def test_a_bag_that_was_cut_off_is_damaged(tmp_path: Path, messages: list[BagMessage], kind: str, share: float) -> None:
-    if kind == "bag":
-        whole = write_ros1(tmp_path / "whole.bag", messages)
-    else:
-        plugin = StoragePlugin.MCAP if kind == "mcap" else StoragePlugin.SQLITE3
-        whole = write_ros2(tmp_path / "whole", messages, plugin) / f"whole.{kind}"
-    data = whole.read_bytes()
-    cut = tmp_path / f"cut.{kind}"
-    cut.write_bytes(data[: int(len(data) * share)])
-    with pytest.raises(InputError, match="damaged or cut off"):
-        list(read_messages(cut, WANTED))
 
 
 def test_messages_before_the_damage_are_given(tmp_path: Path) -> None:

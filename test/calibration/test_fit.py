@@ -22,7 +22,7 @@ PLANE = Plane((0.0, -1.0, 0.0), (1.0, 0.0, 0.0), None, (0.0, 0.0), Twist(0.0, 0.
 
 def touchdowns(
     truth: Coefficients,
-    number: int = 40,
+    number: int = 24,
     noise: float = 0.0,
     given: tuple[float, float] = (0.4, 0.0),
     slip: float = 0.5,

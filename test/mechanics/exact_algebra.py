@@ -2,41 +2,56 @@
 
 from fractions import Fraction
 from itertools import product
-from math import isqrt
+from math import isqrt, lcm
 
 ZERO, ONE = Fraction(0), Fraction(1)
 
 
 def dot(u, v):
-    return sum((x * y for x, y in zip(u, v, strict=True) if x and y), ZERO)
+    terms = [(x.numerator * y.numerator, x.denominator * y.denominator) for x, y in zip(u, v, strict=True) if x and y]
+    common = lcm(*(below for _, below in terms))
+    return Fraction(sum(above * (common // below) for above, below in terms), common)
 
 
 def solve(matrix, right):
-    """One solution of a linear system and the directions in which it is free; None where it has no solution."""
-    table = [[*row, value] for row, value in zip(matrix, right, strict=True)]
-    size, leads = len(matrix[0]), []
+    """One solution of a linear system and the directions in which it is free; None where it has no solution.
+
+    The rows are brought to whole numbers, which are eliminated without fractions (Bareiss): every number is then a
+    minor of the matrix, and the leads are all one, the last.
+    """
+    table = [whole([*row, value]) for row, value in zip(matrix, right, strict=True)]
+    size, leads, last = len(matrix[0]), [], 1
     for column in range(size):
         done = len(leads)
-        lead = next((i for i in range(done, len(table)) if table[i][column]), None)
-        if lead is None:
+        chosen = next((i for i in range(done, len(table)) if table[i][column]), None)
+        if chosen is None:
             continue
-        table[done], table[lead] = table[lead], table[done]
-        table[done] = [x / table[done][column] for x in table[done]]
+        table[done], table[chosen] = table[chosen], table[done]
+        own = table[done]
+        lead = own[column]
         for i, row in enumerate(table):
-            if i != done and row[column]:
-                table[i] = [x - row[column] * y if y else x for x, y in zip(row, table[done], strict=True)]
+            if i != done:
+                part = row[column]
+                table[i] = [(lead * x - part * y) // last for x, y in zip(row, own, strict=True)]
         leads.append(column)
+        last = lead
     if any(row[size] for row in table[len(leads) :]):
         return None
     point, free = [ZERO] * size, []
     for i, column in enumerate(leads):
-        point[column] = table[i][size]
+        point[column] = Fraction(table[i][size], last)
     for column in sorted(set(range(size)) - set(leads)):
         direction = [ONE if k == column else ZERO for k in range(size)]
         for i, lead in enumerate(leads):
-            direction[lead] = -table[i][column]
+            direction[lead] = Fraction(-table[i][column], last)
         free.append(direction)
     return point, free
+
+
+def whole(row):
+    """Fractions times their common denominator."""
+    common = lcm(*(x.denominator for x in row))
+    return [x.numerator * (common // x.denominator) for x in row]
 
 
 def within(conditions, count):

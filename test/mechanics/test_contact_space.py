@@ -9,11 +9,12 @@ from pathlib import Path
 import exact
 import numpy as np
 import pytest
+from alone import random_impacts
 from exact_algebra import dot
 
 from impact_predictor import Contact, Flag, Mode, Twist, TwoPointBody, plate, solve_impact
 from impact_predictor.mechanics.contact_space import solve
-from impact_predictor.mechanics.random_problems import KINDS, problems_of
+from impact_predictor.mechanics.random_problems import KINDS
 
 LAWS = ("path", "total")
 CLOSE = 1e-11
@@ -78,14 +79,6 @@ def finite(speeds):
     return max(abs(speed) for speed in speeds if abs(speed) < math.inf)
 
 
-def element(values, i):
-    """The i-th of values that are arrays, in tuples."""
-    if isinstance(values, tuple):
-        parts = [element(value, i) for value in values]
-        return type(values)(*parts) if hasattr(values, "_fields") else tuple(parts)
-    return None if values is None else float(values[i])
-
-
 PLANAR = [kind for kind in KINDS if kind not in ("slender", "close", "extreme", "extreme-apart")]
 EACH = 250
 
@@ -93,10 +86,8 @@ EACH = 250
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("kind", PLANAR)
 def test_a_planar_body_known_by_w_has_the_impact_of_the_body(kind, law):
-    _, bodies, twists = problems_of(kind, np.random.default_rng(3), EACH)
     others = 0
-    for i in range(EACH):
-        body, twist = element(bodies, i), element(twists, i)
+    for body, twist in random_impacts(kind, EACH, seed=3):
         w, c, friction, restitution = seen_by_contacts(body, twist)
         outcome, expected = solve(w, c, friction, restitution, law), solve_impact(body, twist, law)
         close = finite(c) * max(CLOSE, ERROR * condition(w))
@@ -119,9 +110,8 @@ def test_a_planar_body_known_by_w_has_the_impact_of_the_body(kind, law):
 def test_random_planar_bodies_meet_what_can_happen():
     flags, modes = Flag.NONE, set()
     for kind in PLANAR:
-        _, bodies, twists = problems_of(kind, np.random.default_rng(3), EACH)
-        for i in range(EACH):
-            outcome = solve(*seen_by_contacts(element(bodies, i), element(twists, i)))
+        for body, twist in random_impacts(kind, EACH, seed=3):
+            outcome = solve(*seen_by_contacts(body, twist))
             flags |= outcome.flags
             modes.add(outcome.mode)
     assert modes == set(Mode)

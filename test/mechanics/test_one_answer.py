@@ -4,12 +4,12 @@ from itertools import product
 
 import numpy as np
 import pytest
-from test_batch import element
+from alone import random_impacts
 
 from impact_predictor import solve_impact
 from impact_predictor.mechanics import total_law
 from impact_predictor.mechanics.one_answer import one_answer
-from impact_predictor.mechanics.random_problems import KINDS, problems_of
+from impact_predictor.mechanics.random_problems import KINDS
 
 
 def least_determinant(pair):
@@ -68,8 +68,7 @@ def test_on_a_flat_floor_the_two_frictions_may_be_any_that_differ_little(fa, fb,
 
 @pytest.mark.parametrize("kind", [kind for kind in KINDS if not kind.startswith("extreme")])
 def test_trying_all_states_gives_the_same_outcome(kind, monkeypatch):
-    _, bodies, twists = problems_of(kind, np.random.default_rng(11), 200)
-    problems = [(element(bodies, i), element(twists, i)) for i in range(200)]
+    problems = random_impacts(kind, 200, seed=11)
     outcomes = [solve_impact(*problem, "total") for problem in problems]
     monkeypatch.setattr(total_law, "one_answer", lambda *_: False)
     assert outcomes == [solve_impact(*problem, "total") for problem in problems]

@@ -354,3 +354,12 @@ def test_phases_follow_each_other_without_a_gap() -> None:
     assert run.phases[-1].end == pytest.approx(0.5)
     for one, other in pairwise(run.phases):
         assert one.end == pytest.approx(other.start, abs=1e-15)
+
+
+def test_a_body_that_trembles_takes_as_many_steps_in_all_as_events_are_allowed() -> None:
+    # m l^2 is 1e13 times the inertia, and nothing holds the foot: to follow what happens in 2 s would take minutes.
+    x, y = 100.0 * math.sin(math.pi / 3.0), -50.0
+    light = TwoPointBody(1e6, 1e-3, Contact(-x, y, 0.0), Contact(x, y, 0.0))
+    run = rock(light, standing(light, -math.pi / 3.0), FixedSupport(0.3, 1e-3), duration=2.0, max_events=300)
+    assert run.end is End.TOO_MANY_EVENTS
+    assert 0.0 < run.time < 2.0

@@ -6,10 +6,11 @@ from math import nan
 import exact
 import numpy as np
 import pytest
+from alone import random_impacts
 
 from impact_predictor import Contact, Flag, Twist, TwoPointBody, cylinder, plate, solve_impact
 from impact_predictor.mechanics.closed_forms import cylindrical, flat
-from impact_predictor.mechanics.random_problems import KINDS, problems_of
+from impact_predictor.mechanics.random_problems import KINDS
 from impact_predictor.mechanics.sensitivity import FREE, INPUTS, NO_CHANGE, allowed_changes, sensitivity
 
 STEP = Fraction(1, 2**40)
@@ -22,14 +23,6 @@ NEAR_BORDER = 1e-7
 """At a border the derivative is taken 1e-9 away from it, and curvatures are up to 1e2."""
 
 LAWS = ("path", "total")
-
-
-def element(values, i):
-    """The i-th of values that are arrays, in tuples."""
-    if isinstance(values, tuple):
-        parts = [element(value, i) for value in values]
-        return type(values)(*parts) if hasattr(values, "_fields") else tuple(parts)
-    return None if values is None else float(values[i])
 
 
 def changed(body, twist, direction, step):
@@ -71,9 +64,8 @@ def columns_of(derivatives):
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("kind", ["plate", "rod", "cylinder", "floor", "step", "wedge", "tilted", "deck", "one-point"])
 def test_derivatives_are_those_of_exact_solutions(kind, law):
-    _, bodies, twists = problems_of(kind, np.random.default_rng(4), 6)
     compared = 0
-    for body, twist in ((element(bodies, i), element(twists, i)) for i in range(6)):
+    for body, twist in random_impacts(kind, 6, seed=4):
         outcome = solve_impact(body, twist, law)
         if not outcome.segments or not outcome.unique or outcome.flags & Flag.LAST_RESORT:
             continue
@@ -134,9 +126,8 @@ def test_the_twist_after_is_proportional_to_the_twist_before():
 
 def test_restitution_limited_by_the_stored_work_has_exact_derivatives():
     """The one place with a square root: found among random wedges, compared with exact differences."""
-    _, bodies, twists = problems_of("wedge", np.random.default_rng(2), 2000)
     compared = 0
-    for body, twist in ((element(bodies, i), element(twists, i)) for i in range(2000)):
+    for body, twist in random_impacts("wedge", 2000, seed=2):
         outcome = solve_impact(body, twist)
         if outcome.flags & Flag.WORK_LIMITED and outcome.unique:
             derivatives = sensitivity(body, twist)
@@ -203,9 +194,8 @@ def test_without_an_impact_the_twist_stays():
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("kind", KINDS)
 def test_derivatives_are_finite_whatever_the_impact(kind, law):
-    _, bodies, twists = problems_of(kind, np.random.default_rng(6), 20)
-    for i in range(20):
-        derivatives = sensitivity(element(bodies, i), element(twists, i), law)
+    for body, twist in random_impacts(kind, 20, seed=6):
+        derivatives = sensitivity(body, twist, law)
         assert np.isfinite(np.array([*derivatives[:3], *derivatives.twist])).all()
 
 

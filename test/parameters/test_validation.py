@@ -73,6 +73,19 @@ def test_a_mass_is_a_positive_finite_double(value: object) -> None:
     )
 
 
+def test_the_sentence_about_an_unknown_name_stays_one_line_whatever_the_name_is() -> None:
+    for name in ("a\nb", "", "a\0b"):
+        with pytest.raises(InputError) as error:
+            validate({**REQUIRED, name: 1.0})
+        assert str(error.value).startswith(f"there is no parameter {name!r}")
+        assert str(error.value).isprintable()
+
+
+def test_lengths_are_those_of_something_on_earth() -> None:
+    assert refusal(body__center_of_mass=[0.0, 0.0, 1e200]).endswith("list of 3 finite doubles from -1e+09 to 1e+09 m")
+    assert "but it must be" in refusal(support__height=-1e200)
+
+
 def test_a_friction_is_not_negative_and_a_restitution_at_most_one() -> None:
     assert refusal(contact__friction=-0.1).endswith("but it must be a finite double from 0 to 100")
     assert refusal(contact__restitution=1.01).endswith("but it must be a finite double from 0 to 1")
@@ -91,6 +104,9 @@ def test_a_friction_is_not_negative_and_a_restitution_at_most_one() -> None:
         ([3.0, 1.0, 1.0, 0.0, 0.0, 0.0], NO_BODY),
         ([1.0, 1.0, 1.0, 0.6, 0.0, 0.0], NO_BODY),  # its principal moments are 0.4, 1.0 and 1.6
         ([1.0, 1.0, 1.0, 0.4, 0.4, 0.4], NO_BODY),  # 0.6, 0.6 and 1.8
+        ([1e-60], "it must be at least 1e-30 kg m^2"),
+        ([1e-60, 1e-60, 1e-60, 0.0, 0.0, 0.0], "it must be at least 1e-30 kg m^2"),
+        ([1e60], "it must be at most 1e+30 kg m^2"),
         ([1.0, 1.0, 1.0], "it must be a list of 1 or 6 finite doubles kg m^2"),
         ([], "it must be a list of 1 or 6 finite doubles kg m^2"),
         ([math.nan], "it must be a list of 1 or 6 finite doubles kg m^2"),

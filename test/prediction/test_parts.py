@@ -125,9 +125,9 @@ def loaded(code: str, *given: Any) -> set[str]:
 
 
 def of_rooms(modules: set[str]) -> set[str]:
-    """The modules of the three rooms, by their names in the package."""
+    """The modules of the three rooms and the unit of their stamps, by their names in the package."""
     names = {name.removeprefix(f"{PACKAGE}.") for name in modules}
-    return {name for name in names if name.split(".")[0] in ("mechanics", "prediction", "ros")}
+    return {name for name in names if name.split(".")[0] in ("mechanics", "prediction", "ros", "stamps")}
 
 
 @pytest.mark.slow

@@ -78,7 +78,6 @@ def test_the_feet_of_a_machine_and_its_model_reach_the_scene() -> None:
     given = {
         "feet.names": ["left", "right"],
         "feet.points": 2,
-        "feet.window": 0.05,
         "feet.dead_time": 0.01,
         "feet.timeout": 0.2,
         "feet.force": 30.0,
@@ -88,7 +87,7 @@ def test_the_feet_of_a_machine_and_its_model_reach_the_scene() -> None:
     }
     scene = Scene.from_parameters(validate({**BODY, **given}))
     robot = Robot("robot.urdf", ("left_heel", "left_toe", "right_heel", "right_toe"))
-    assert scene.walking == Walking(("left", "right"), 2, 0.05, 0.01, 0.2, 30.0, True, robot)
+    assert scene.walking == Walking(("left", "right"), 2, 0.01, 0.2, 30.0, True, robot)
     assert not scene.needs_geometry  # the joints tell where the feet are
     without = {name: value for name, value in given.items() if not name.startswith("robot.")}
     assert Scene.from_parameters(validate({**BODY, **without})).needs_geometry

@@ -7,46 +7,21 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import touchdowns
+from touchdowns import SAMPLE
 
 from impact_predictor.bags.replay import Result, Settled
 from impact_predictor.bags.stream import Stream
 from impact_predictor.bags.write import BagWriter
 from impact_predictor.errors import InputError
-from impact_predictor.mechanics.types import Flag, Mode, Twist
-from impact_predictor.prediction.types import Landing, Leftover, Prediction, Sample, Score, Status, Touchdown
+from impact_predictor.mechanics.types import Twist
+from impact_predictor.prediction.types import Landing, Leftover, Prediction, Score, Status
 from impact_predictor.report.baseline import Happened, happened
-from impact_predictor.report.earlier import read_earlier
+from impact_predictor.report.earlier import Earlier, read_earlier
 from impact_predictor.report.summary import as_json
 from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY
 
-SAMPLE = Sample(
-    10**9, "world", "cube", (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), (0.0,) * 3, (0.0,) * 3, (0.0,) * 36, (0.0,) * 36
-)
-TOUCHDOWN = Touchdown(
-    lead_time=0.004,
-    mode=Mode.PIVOT_SLIDE,
-    before=Twist(1.0, -0.5, -4.0),
-    after=Twist(0.1 + 0.2, 0.25, -3.0),
-    impulses=((0.0, 0.0), (0.5, -0.125)),
-    segments=("++", "O+"),
-    energy_lost=0.25,
-    flags=Flag.REVERSED_SLIP,
-    unique=True,
-    law="path",
-    old=(),
-    new=(2, 3),
-    axis=(0.0, 1.0, 0.0),
-    position=(0.0, 0.0, 0.0),
-    orientation=(0.0, 0.0, 0.0, 1.0),
-    linear=(0.0, 0.0, 0.0),
-    angular=(0.0, 0.0, 0.0),
-    half_distance=0.05,
-    off_axis=0.125,
-    lateral=0.0,
-    closing_spread=0.001,
-    offset=0.0,
-    leftover=Leftover.NONE,
-)
+TOUCHDOWN = touchdowns.TOUCHDOWN._replace(after=Twist(0.1 + 0.2, 0.25, -3.0), old=())
 SCORED = Score(1_004_000_000, TOUCHDOWN, Twist(0.5, 0.125, -2.0), 0.25, True, Leftover.NONE, ((0.004, 0.25),))
 UNSCORED = SCORED._replace(stamp=2_000_000_000, scored=False, leftover=Leftover.OUT_OF_PLANE)
 UNMEASURED = SCORED._replace(stamp=3_000_000_000, measured=None, relative_error=None, scored=False, history=())
@@ -136,6 +111,13 @@ def test_of_several_bags_the_run_of_this_one_is_read(tmp_path: Path, json_of: An
     runs = [run("cube", SCORES[:k]) | {"bag": f"bags/{name}"} for k, name in ((1, "monday.mcap"), (2, "tuesday.mcap"))]
     assert len(read_earlier(json_of(runs), "bags/tuesday.mcap")) == 2
     assert len(read_earlier(json_of(runs), "elsewhere/monday.mcap")) == 1
+
+
+def test_the_json_of_many_bags_is_read_once(json_of: Any) -> None:
+    path = json_of([run("cube", SCORES[:k]) | {"bag": f"{k}.mcap"} for k in range(4)])
+    earlier = Earlier(path)
+    path.unlink()
+    assert [len(earlier.touchdowns_of(f"{k}.mcap")) for k in range(4)] == [0, 1, 2, 3]
 
 
 @pytest.mark.parametrize(

@@ -5,46 +5,31 @@ from __future__ import annotations
 import io
 
 import pytest
+import touchdowns
 from rich.console import Console
 from rich.table import Table
 
 from impact_predictor.bags.replay import Result, Settled
 from impact_predictor.mechanics.types import Flag, Mode, Twist
-from impact_predictor.prediction.types import Landing, Leftover, Score, Touchdown
+from impact_predictor.prediction.types import Landing, Leftover, Score
+from impact_predictor.report.landing_tally import landing_sentences
 from impact_predictor.report.landings import (
     error_ahead,
     feet_table,
     landing_as_json,
-    landing_sentences,
     landings_of,
     landings_table,
 )
 from impact_predictor.report.replay import print_replay
 from impact_predictor.report.table import show
 
-TOUCHDOWN = Touchdown(
-    lead_time=0.002,
-    mode=Mode.PIVOT_SLIDE,
+TOUCHDOWN = touchdowns.TOUCHDOWN._replace(
     before=Twist(0.5, 0.0, 0.0),
     after=Twist(0.47, 0.04, 0.1),
     impulses=((1.0, 0.5), (3.0, -4.0)),
-    segments=("OS",),
-    energy_lost=0.1,
     flags=Flag.NONE,
-    unique=True,
-    law="path",
     old=(1,),
     new=(0,),
-    axis=(0.0, 1.0, 0.0),
-    position=(0.0, 0.0, 0.5),
-    orientation=(0.0, 0.0, 0.0, 1.0),
-    linear=(0.5, 0.0, 0.0),
-    angular=(0.0, 0.0, 0.0),
-    half_distance=0.3,
-    off_axis=0.0,
-    lateral=0.0,
-    closing_spread=0.0,
-    offset=0.0,
     leftover=Leftover.DRIVEN,
 )
 HISTORY = ((0.1, 0.004), (0.06, -0.0123), (0.05, 0.0034), (0.03, 0.002), (0.01, 0.001))

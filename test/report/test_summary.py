@@ -6,10 +6,11 @@ import json
 
 import numpy as np
 import pytest
+from touchdowns import SAMPLE, TOUCHDOWN
 
 from impact_predictor.bags.replay import BodyTruth, Result, Settled
-from impact_predictor.mechanics.types import Flag, Mode, Twist
-from impact_predictor.prediction.types import Landing, Leftover, Prediction, Sample, Score, Status, Touchdown
+from impact_predictor.mechanics.types import Mode, Twist
+from impact_predictor.prediction.types import Landing, Leftover, Prediction, Score, Status
 from impact_predictor.report.summary import (
     Errors,
     as_json,
@@ -23,36 +24,9 @@ from impact_predictor.report.summary import (
 )
 from impact_predictor.ros.messages import decode_diagnostic_array, encode_score
 from impact_predictor.scenarios.comparison import Truth
+from impact_predictor.scenarios.matching import Announcement, Match
 from impact_predictor.scenarios.warned import Warned
 
-SAMPLE = Sample(
-    10**9, "world", "cube", (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), (0.0,) * 3, (0.0,) * 3, (0.0,) * 36, (0.0,) * 36
-)
-TOUCHDOWN = Touchdown(
-    lead_time=0.004,
-    mode=Mode.PIVOT_SLIDE,
-    before=Twist(1.0, -0.5, -4.0),
-    after=Twist(0.75, 0.25, -3.0),
-    impulses=((0.0, 0.0), (0.5, -0.125)),
-    segments=("++", "O+"),
-    energy_lost=0.25,
-    flags=Flag.REVERSED_SLIP,
-    unique=True,
-    law="path",
-    old=(0, 1),
-    new=(2, 3),
-    axis=(0.0, 1.0, 0.0),
-    position=(0.0, 0.0, 0.0),
-    orientation=(0.0, 0.0, 0.0, 1.0),
-    linear=(0.0, 0.0, 0.0),
-    angular=(0.0, 0.0, 0.0),
-    half_distance=0.05,
-    off_axis=0.125,
-    lateral=0.0,
-    closing_spread=0.001,
-    offset=0.0,
-    leftover=Leftover.NONE,
-)
 SCORED = Score(
     1_004_000_000,
     TOUCHDOWN,
@@ -251,6 +225,39 @@ def test_the_json_of_several_bodies_has_their_inputs_and_how_each_compares_with_
         "warned_before_first_impact": False,
     }
     assert compared["bodies"]["still"]["warned_before_first_impact"] is None
+
+
+def test_the_json_of_a_replay_has_its_costs_its_errors_ahead_and_every_true_touchdown() -> None:
+    told = [
+        Announcement(1_900_000_000, 2_004_000_000, TOUCHDOWN),
+        Announcement(1_985_000_000, 2_001_000_000, TOUCHDOWN),
+    ]
+    matches = (
+        Match("cube", "", 2_000_000_000, Mode.STOP, told, True, 0.25),
+        Match("cube", "left", 3_000_000_000, None, (), True),
+        Match("cube", "", None, None, told[:1]),
+    )
+    result = Result("a.mcap", 2, 0.001, (Settled("cube", SCORED, None),), {}, {}, ("took odom",), "", "")
+    result = result._replace(extent=(5, 9), costs=(1e-5, 3e-5), matches=matches)
+    answer = json.loads(json.dumps(as_json(result), allow_nan=False))
+    assert (answer["begin"], answer["end"], answer["notes"]) == (5, 9, ["took odom"])
+    assert (answer["cost_us"]["count"], answer["cost_us"]["p50"]) == (2, pytest.approx(20.0))
+    assert [one["count"] for one in answer["relative_errors_ahead"]] == [1, 1, 0, 0, 0, 1]
+    # The first prediction was made 100 ms ahead, beyond what is told; the second 15 ms, and 1 ms wrong.
+    assert [(one["count"], one["p50"]) for one in answer["time_errors_ahead"][:3]] == [(0, None), (1, 0.001), (0, None)]
+    found, missed, false = answer["true_touchdowns"]
+    assert found == {
+        "body": "cube",
+        "stamp": 2_000_000_000,
+        "mode": "STOP",
+        "first_seen": 1_900_000_000,
+        "predicted_stamp": 2_001_000_000,
+        "predicted_mode": TOUCHDOWN.mode.name,
+        "velocity_error": 0.25,
+        "shown": True,
+    }
+    assert (missed["foot"], missed["mode"], missed["predicted_stamp"]) == ("left", None, None)
+    assert (false["stamp"], false["predicted_stamp"]) == (None, 2_004_000_000)
 
 
 def test_the_json_of_an_empty_replay_has_nothing_to_divide() -> None:

@@ -11,7 +11,8 @@ from rich.table import Table
 
 from impact_predictor.mechanics.types import Mode, Twist
 from impact_predictor.report.summary import Errors, LeadTimeErrors, TouchdownRow
-from impact_predictor.report.table import conclusions, lead_time_table, show, touchdown_table
+from impact_predictor.report.table import lead_time_table, show, touchdown_table
+from impact_predictor.report.tally import Tally
 
 ROW = TouchdownRow(
     body="cube",
@@ -107,9 +108,9 @@ def test_lead_times_without_predictions_have_no_error() -> None:
 
 
 def test_conclusions_count_the_scored_and_explain_the_others() -> None:
-    assert conclusions([ROW, UNSCORED, UNMEASURED]) == [
+    assert Tally([ROW, UNSCORED, UNMEASURED]).sentences() == [
         "1 of 3 touchdowns scored: relative error 12.3 % in the median, 90 % below 12.3 %.",
         "2 not scored, for one or several reasons each: 1 out of plane, 1 one corner first, 1 too short.",
     ]
-    assert conclusions([]) == ["No touchdown was predicted."]
-    assert conclusions([UNMEASURED]) == ["0 of 1 touchdown scored.", "1 not scored: 1 too short."]
+    assert Tally([]).sentences() == ["No touchdown was predicted."]
+    assert Tally([UNMEASURED]).sentences() == ["0 of 1 touchdown scored.", "1 not scored: 1 too short."]

@@ -66,6 +66,19 @@ def test_a_warning_stays_until_a_whole_second_went_without_a_refused_message(dia
     assert diagnostics.level == OK
 
 
+def test_a_second_in_which_samples_were_dropped_is_a_warning_that_says_how_many_and_what_an_answer_takes(diagnostics):
+    accept(diagnostics, 0.1, total=3e-3)
+    diagnostics.dropped(7)
+    assert diagnostics.second_over(1.0)
+    assert diagnostics.level == WARN
+    assert report(diagnostics).message.startswith("7 samples dropped in the last second")
+    assert "of 3 ms each" in report(diagnostics).message
+    accept(diagnostics, 1.05)
+    assert diagnostics.second_over(2.0)
+    assert report(diagnostics).values["samples.dropped"] == "7"
+    assert diagnostics.level == OK
+
+
 def test_a_second_of_nothing_but_refused_messages_is_an_error_until_a_sample_is_accepted(diagnostics):
     accept(diagnostics, 0.1)
     diagnostics.second_over(1.0)

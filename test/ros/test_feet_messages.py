@@ -38,7 +38,7 @@ SCORE = Score(LANDING.stamp, TOUCHDOWN, None, None, False, Leftover.DRIVEN, (), 
 
 
 def told(*feet: Foot, **changes: Any) -> list[Diagnostic]:
-    prediction = Prediction(Status.ACCEPTED, SAMPLE, TOUCHDOWN, touchdowns=(TOUCHDOWN,), feet=feet)
+    prediction = Prediction(Status.ACCEPTED, SAMPLE, TOUCHDOWN, feet=feet)
     return decode_diagnostic_array(encode_prediction(prediction._replace(**changes)))
 
 
@@ -56,6 +56,13 @@ def test_a_status_for_each_foot_follows_that_of_the_prediction_which_stays_as_it
         known = {name: value for name, value in known.items() if name not in ("position", "place")}
         texts = {name: value if name == "name" else json.loads(value) for name, value in status.values.items()}
         assert texts == known
+
+
+def test_feet_that_strike_together_are_no_warning_but_any_other_body_that_does_is() -> None:
+    both = TOUCHDOWN._replace(flags=Flag.BOTH_STRUCK)
+    assert told(SWINGING, touchdown=both)[0].level == OK
+    assert told(touchdown=both)[0].level == WARN
+    assert told(SWINGING, touchdown=both._replace(flags=Flag.BOTH_STRUCK | Flag.JAMMED))[0].level == WARN
 
 
 def test_feet_are_the_bytes_that_rosbags_writes_and_their_hardware_is_the_foot() -> None:

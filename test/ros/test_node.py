@@ -30,6 +30,8 @@ BEST_EFFORT = QoSProfile(depth=100, reliability=ReliabilityPolicy.BEST_EFFORT)
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 POINTS = [[x, y, z] for x in (-HALF, HALF) for y in (-HALF, HALF) for z in (-HALF, HALF)]
 FIXED_POINTS = ("-p", f"body.contact_points:={[number for point in POINTS for number in point]}")
+# Nothing is lost or dropped then, however busy the machine is.
+EVERY_SAMPLE = ("-p", "qos_overrides./odom.subscription.reliability:=reliable")
 
 
 @pytest.fixture
@@ -68,11 +70,11 @@ def polygon(points=POINTS):
 @pytest.mark.parametrize("executor", ["single", "events"])
 def test_every_accepted_sample_is_answered_with_one_mode_and_one_prediction(peer, executor, qos):
     with running(*FIXED_POINTS, "-p", f"executor:={executor}"):
-        samples = peer.connected(peer.publisher(Odometry, "odom", qos))
+        samples = peer.found(peer.publisher(Odometry, "odom", qos))
         for k in range(30):
+            # One after the other, so that none is dropped for a newer one on a busy machine.
             samples.publish(odometry(k))
-            peer.executor.spin_once(timeout_sec=0.01)
-        peer.until(lambda: len(peer.heard["mode"]) >= 30 and len(peer.heard["prediction"]) >= 30)
+            peer.until(lambda k=k: len(peer.heard["mode"]) > k and len(peer.heard["prediction"]) > k)
         stamps = [decode_diagnostic_array(data)[0].values["stamp"] for data in peer.heard["prediction"]]
         assert stamps == [str(k * 10_000_000) for k in range(30)]
         assert len(peer.heard["mode"]) == 30
@@ -89,14 +91,12 @@ def test_fixed_points_leave_no_subscription_to_contact_geometry(peer):
 @pytest.mark.slow
 @pytest.mark.parametrize("executor", ["single", "events"])
 def test_samples_before_the_geometry_are_refused_by_name_and_those_after_it_answered(peer, executor):
-    with running("-p", f"executor:={executor}"):
+    with running(*EVERY_SAMPLE, "-p", f"executor:={executor}"):
         samples = peer.connected(peer.publisher(Odometry, "odom", RELIABLE))
         samples.publish(odometry(0))
         peer.until(lambda: peer.reported("refused.odom.NO_GEOMETRY") == "1")
-        peer.connected(peer.publisher(PolygonStamped, "contact_geometry", RELIABLE)).publish(polygon())
-        samples.publish(odometry(50))
-        peer.until(lambda: peer.heard["mode"])
-        assert peer.reported("samples.accepted") is not None
+        geometry = peer.connected(peer.publisher(PolygonStamped, "contact_geometry", RELIABLE))
+        peer.until(answers_to(peer, samples, lambda: geometry.publish(polygon())))
 
 
 @pytest.mark.slow
@@ -104,14 +104,19 @@ def test_samples_before_the_geometry_are_refused_by_name_and_those_after_it_answ
 def test_geometry_that_was_latched_before_the_node_started_is_found(peer, executor):
     peer.publisher(PolygonStamped, "contact_geometry", LATCHED).publish(polygon())
     with running("-p", f"executor:={executor}"):
-        samples = peer.connected(peer.publisher(Odometry, "odom", RELIABLE))
-        count = iter(range(10_000))
+        peer.until(answers_to(peer, peer.connected(peer.publisher(Odometry, "odom", RELIABLE))))
 
-        def answered():
-            samples.publish(odometry(next(count)))
-            return peer.heard["mode"]
 
-        peer.until(answered)
+def answers_to(peer, samples, before=bool):
+    """A condition: the node answers to one of the samples that are published until it does."""
+    stamps = iter(range(1, 10_000))
+
+    def answered():
+        before()
+        samples.publish(odometry(next(stamps)))
+        return peer.heard["mode"]
+
+    return answered
 
 
 @pytest.mark.slow
@@ -119,20 +124,23 @@ def test_geometry_that_was_latched_before_the_node_started_is_found(peer, execut
 def test_geometry_that_changes_while_the_node_runs_is_taken_from_every_kind_of_publisher(peer, qos):
     with running():
         geometry = peer.connected(peer.publisher(PolygonStamped, "contact_geometry", qos))
-        # Two points that a falling body meets later than eight.
-        for points in (POINTS[:1], POINTS, POINTS[:2]):
+
+        # One point is refused, and two are taken. Best effort may lose a message, so each is told until it is known.
+        def told(points, known):
             geometry.publish(polygon(points))
-        peer.until(lambda: peer.reported("refused.contact_geometry.TOO_FEW_POINTS") == "1")
-        samples = peer.connected(peer.publisher(Odometry, "odom", RELIABLE))
-        samples.publish(odometry(0))
-        peer.until(lambda: peer.heard["mode"])
+            peer.executor.spin_once(timeout_sec=0.05)
+            return known()
+
+        peer.until(lambda: told(POINTS[:1], lambda: peer.reported("refused.contact_geometry.TOO_FEW_POINTS")))
+        for points in (POINTS, POINTS[:2]):
+            told(points, bool)
+        peer.until(answers_to(peer, peer.connected(peer.publisher(Odometry, "odom", RELIABLE))))
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("executor", ["single", "events"])
 def test_bad_messages_are_counted_by_name_and_the_node_goes_on(peer, executor):
-    with running("-p", f"executor:={executor}") as node:
-        peer.connected(peer.publisher(PolygonStamped, "contact_geometry", RELIABLE)).publish(polygon())
+    with running(*FIXED_POINTS, *EVERY_SAMPLE, "-p", f"executor:={executor}") as node:
         samples = peer.connected(peer.publisher(Odometry, "odom", RELIABLE))
         samples.publish(odometry(10))
         peer.until(lambda: peer.heard["mode"])
@@ -147,7 +155,6 @@ def test_bad_messages_are_counted_by_name_and_the_node_goes_on(peer, executor):
             odometry(11, frame="elsewhere"),
             whole[:100],
             whole[:2],
-            b"",
         ):
             samples.publish(bad)
         samples.publish(odometry(12))
@@ -157,11 +164,11 @@ def test_bad_messages_are_counted_by_name_and_the_node_goes_on(peer, executor):
             "refused.odom.STAMP_REPEATED": "1",
             "refused.odom.STAMP_WENT_BACK": "1",
             "refused.odom.WRONG_FRAME": "1",
+            # None without any bytes: Fast DDS never gets past one on its way to a reliable subscription.
+            "refused.odom.MALFORMED": "2",
         }
         peer.until(lambda: len(peer.heard["mode"]) == 2)
         peer.until(lambda: counts.items() <= peer.report().values.items())
-        # DDS itself may drop a message without any bytes.
-        assert int(peer.reported("refused.odom.MALFORMED")) in (2, 3)
         assert peer.report().level > 0
         good = iter(range(13, 10_000))
 
@@ -176,7 +183,7 @@ def test_bad_messages_are_counted_by_name_and_the_node_goes_on(peer, executor):
 
 @pytest.mark.slow
 def test_publishers_and_subscribers_that_qos_keeps_apart_from_the_node_are_named(peer):
-    with running(*FIXED_POINTS, "-p", "qos_overrides./odom.subscription.reliability:=reliable"):
+    with running(*FIXED_POINTS, *EVERY_SAMPLE):
         peer.until(lambda: peer.reported("incompatible_qos") == "0")
         peer.publisher(Odometry, "odom", BEST_EFFORT)
         peer.until(lambda: peer.reported("incompatible_qos") == "1")

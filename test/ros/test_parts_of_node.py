@@ -98,7 +98,7 @@ def test_the_node_loads_the_core_and_the_parts_of_its_scene_and_nothing_else(nam
     assert done.returncode == 0, done.stderr.decode()
     _, topics, loaded = pickle.loads(done.stdout)
     modules = {name.removeprefix("impact_predictor.") for name in loaded}
-    rooms = {name for name in modules if name.split(".")[0] in ("mechanics", "prediction", "ros")}
+    rooms = {name for name in modules if name.split(".")[0] in ("mechanics", "prediction", "ros", "stamps")}
     assert rooms == modules_of(values, node=True)
     unwanted = {"click", "matplotlib", "rich", "rosbags", "ruamel", "scipy", "statistics"}
     assert not (unwanted if not values["uncertainty.samples"] else unwanted - {"statistics", "scipy"}) & modules

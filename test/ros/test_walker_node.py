@@ -151,7 +151,10 @@ def test_diagnostics_say_which_feet_stand_how_late_they_land_and_which_sensor_di
     types = {"contact_geometry": POLYGON, "odom": ODOMETRY, "contact_wrench": WRENCH, "schedule": JOINT_TRAJECTORY}
     with running_node(SCENE, "-p", "feet.force:=50.0", "-p", "feet.has_schedule:=true"):
         machine = Machine(peer, types, steps())
-        machine.publishers["schedule"].publish(encode_schedule(plan(100.0, earlier=0.01)))
+        schedule = machine.publishers["schedule"]
+        # What is published before the node has found the publisher is lost; a message that is none tells when it has.
+        peer.until(lambda: schedule.publish(b"\0") or peer.reported("refused.schedule.MALFORMED"))
+        schedule.publish(encode_schedule(plan(100.0, earlier=0.01)))
         walk_until(peer, machine, lambda: int(peer.reported("feet.landings") or 0) >= 8)
         walk_until(peer, machine, lambda: "force sensor of RF does not agree" in peer.report().message)
         assert set(FEET) == feet_of(peer).keys()
@@ -190,6 +193,7 @@ def test_a_walking_machine_is_told_by_the_node_what_the_replay_tells_byte_for_by
         if data is not None:
             told[output.topic_name].append(data)
 
+    monkeypatch.setattr(body_topics, "Outlet", lambda publisher: publisher)
     monkeypatch.setattr(body_topics, "_publish", publish)
     rclpy.init(args=list(arguments_of(values)))
     node = predictor_node.PredictorNode()

@@ -3,50 +3,29 @@
 from __future__ import annotations
 
 import pytest
+import touchdowns
 
-from impact_predictor.mechanics.types import Flag, Mode, Twist
 from impact_predictor.prediction.scene import Scene, Walking
-from impact_predictor.prediction.types import Foot, Leftover, Prediction, Sample, Status, Touchdown
-from impact_predictor.scenarios.comparison import Announcements, Comparison, Truth, compare
+from impact_predictor.prediction.types import Foot, Leftover, Prediction, Sample, Status
+from impact_predictor.scenarios.comparison import Comparison, Truth, compare
 from impact_predictor.scenarios.landings import Landings, TrueLanding
+from impact_predictor.scenarios.matching import Announcements
 
 UNIT = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 SCENE = Scene(1.0, UNIT, 0.5, walking=Walking(("left", "right")))
 MS = 1_000_000
 NOTHING = Truth(0, 0, 0, 0, None, None, None, time_error_by_lead_time={"0.02": None, "0.05": None})
 
-TOUCHDOWN = Touchdown(
-    lead_time=0.0,
-    mode=Mode.PIVOT,
-    before=Twist(0.0, 0.0, 0.0),
-    after=Twist(0.0, 0.0, 0.0),
-    impulses=((0.0, 0.0), (0.0, 0.0)),
-    segments=(),
-    energy_lost=0.0,
-    flags=Flag.NONE,
-    unique=True,
-    law="path",
-    old=(),
-    new=(0,),
-    axis=(0.0, 1.0, 0.0),
-    position=(0.0, 0.0, 0.0),
-    orientation=(0.0, 0.0, 0.0, 1.0),
-    linear=(0.0, 0.0, 0.0),
-    angular=(0.0, 0.0, 0.0),
-    half_distance=0.5,
-    off_axis=0.0,
-    lateral=0.0,
-    closing_spread=0.0,
-    offset=0.0,
-    leftover=Leftover.DRIVEN,
-)
+TOUCHDOWN = touchdowns.TOUCHDOWN._replace(old=(), new=(0,), leftover=Leftover.DRIVEN)
 
 Told = dict[int, float]
 """For when a landing is announced, by when: both in ms."""
 
 
-def answer(at: int, announced: dict[int, Told], standing: tuple[str, ...], feet: tuple[str, ...]) -> Prediction:
-    """What is told at a time in ms of points, by their indices."""
+def answer(
+    at: int, announced: dict[int, Told], standing: tuple[str, ...], feet: tuple[str, ...], each: int = 1
+) -> Prediction:
+    """What is told at a time in ms of points, by their indices, `each` foot having so many."""
     zeros = (0.0,) * 36
     sample = Sample(at * MS, "world", "base", (0.0,) * 3, (0.0, 0.0, 0.0, 1.0), (0.0,) * 3, (0.0,) * 3, zeros, zeros)
     touchdowns = [
@@ -55,9 +34,9 @@ def answer(at: int, announced: dict[int, Told], standing: tuple[str, ...], feet:
         if at in told
     ]
     touchdowns.sort(key=lambda one: one.lead_time)
-    states = tuple(Foot(foot, foot in standing, 0, 0.1, 0.0) for foot in feet)
-    first = touchdowns[0] if touchdowns else None
-    return Prediction(Status.ACCEPTED, sample, first, touchdowns=tuple(touchdowns), feet=states)
+    soonest = {one.new[0] // each: one.lead_time for one in reversed(touchdowns)}
+    states = tuple(Foot(foot, foot in standing, 0, 0.1, 0.0, soonest.get(i)) for i, foot in enumerate(feet))
+    return Prediction(Status.ACCEPTED, sample, touchdowns[0] if touchdowns else None, feet=states)
 
 
 def record(
@@ -74,7 +53,7 @@ def record(
         made.tell(
             "base", at * MS, tuple(sum(at >= change for change in stands[foot]) % 2 == 1 for foot in scene.walking.feet)
         )
-        made.add(answer(at, announced, standing, scene.walking.feet))
+        made.add(answer(at, announced, standing, scene.walking.feet, scene.walking.points))
     return made
 
 
@@ -89,7 +68,7 @@ def test_a_foot_lands_when_its_flag_rises_but_not_with_the_first_one() -> None:
 
 def test_landings_of_feet_are_found_foot_by_foot_and_modes_are_not_compared() -> None:
     announced = {0: dict.fromkeys(range(5, 70), 70.0), 1: dict.fromkeys(range(10, 71), 71.0)}
-    together, bodies = compared(record(100, {"left": (70,), "right": (71,)}, announced))
+    together, bodies, _ = compared(record(100, {"left": (70,), "right": (71,)}, announced))
     assert together == bodies["base"]
     assert together == NOTHING._replace(
         touchdowns=2,

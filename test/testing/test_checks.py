@@ -5,41 +5,17 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+from touchdowns import TOUCHDOWN
 
 from impact_predictor.bags.replay import Result, Settled
-from impact_predictor.mechanics.types import Flag, Mode, Twist
-from impact_predictor.prediction.types import Landing, Leftover, Score, Touchdown
+from impact_predictor.mechanics.types import Twist
+from impact_predictor.prediction.types import Landing, Leftover, Score
 from impact_predictor.scenarios.comparison import Truth
 from impact_predictor.testing.checks import Check, checks_of
 from impact_predictor.testing.tolerances import Range, Tolerances
 
 TOLERANCES = Tolerances(
     error=0.3, median_error=0.2, time_error=0.01, mode_accuracy=0.9, missed=1, false=1, touchdowns=Range(1, None)
-)
-TOUCHDOWN = Touchdown(
-    lead_time=0.004,
-    mode=Mode.PIVOT_SLIDE,
-    before=Twist(1.0, -0.5, -4.0),
-    after=Twist(0.75, 0.25, -3.0),
-    impulses=((0.0, 0.0), (0.5, -0.125)),
-    segments=("++", "O+"),
-    energy_lost=0.25,
-    flags=Flag.REVERSED_SLIP,
-    unique=True,
-    law="path",
-    old=(0, 1),
-    new=(2, 3),
-    axis=(0.0, 1.0, 0.0),
-    position=(0.0, 0.0, 0.0),
-    orientation=(0.0, 0.0, 0.0, 1.0),
-    linear=(0.0, 0.0, 0.0),
-    angular=(0.0, 0.0, 0.0),
-    half_distance=0.05,
-    off_axis=0.125,
-    lateral=0.0,
-    closing_spread=0.001,
-    offset=0.0,
-    leftover=Leftover.NONE,
 )
 RIGHT = Score(
     23_410_000_000, TOUCHDOWN, Twist(0.5, 0.125, -2.0), 0.25, True, Leftover.NONE, ((0.055, 0.5), (0.004, 0.25))

@@ -6,14 +6,13 @@ decides which code runs.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Mapping
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any, Final, NamedTuple
 
 from ...errors import InputError
 from ...ros.messages import MalformedMessage
-from ..read import UnusableMessage, decoders
+from ..read import Bag, UnusableMessage
 from .adapted import Adapted, Adapter
 
 GROUP: Final = "impact_predictor.adapters"
@@ -76,17 +75,15 @@ def known() -> dict[str, EntryPoint]:
     return {one.name: one for one in (*BUILT_IN, *entry_points(group=GROUP))}
 
 
-def readers(path: str | os.PathLike[str], adapted: Mapping[str, str]) -> dict[str, Read]:
+def readers(bag: Bag, adapted: Mapping[str, str]) -> dict[str, Read]:
     """What reads the messages of some topics of a bag, from the topics and their types, which have adapters.
 
     Raises:
         InputError: an adapter cannot be imported, or the bag holds no definition of a type; while reading: an adapter
             fails.
     """
-    if not adapted:
-        return {}
     adapters = known()
-    decode = decoders(path, adapted)
+    decode = bag.decoders(adapted)
     return {
         topic: Read(f"{adapters[type_name].value} of {type_name}", decode[topic], _load(adapters[type_name]))
         for topic, type_name in adapted.items()

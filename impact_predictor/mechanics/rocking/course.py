@@ -52,6 +52,7 @@ class Course:
         assert one is not None
         if isinstance(one, Flight):
             landing = one.follow(self.until - self.time, self.most)
+            self.most -= len(one.instants)
             self._pass(landing.time)
             if landing.happening is Happening.TOUCHES:
                 self._land(landing)
@@ -73,7 +74,9 @@ class Course:
             return self._rest(arc)
         if self.fixed and STICK in (arc.a, arc.b):
             return turn_about(arc, self.until - self.time, self.limit)
-        return follow(arc, self.until - self.time, self.limit, self.most)
+        event = follow(arc, self.until - self.time, self.limit, self.most)
+        self.most -= len(arc.instants)
+        return event
 
     def _pass(self, span: float) -> None:
         self.time += span

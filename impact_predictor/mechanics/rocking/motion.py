@@ -47,7 +47,7 @@ def rock(
     contacts. `start` is the state of the mass centre in the support's frame at `start_time` (s), see `standing`; a
     contact near the support is put on it. `law` is that of `solve_impact`. The motion is followed for `duration` s,
     until it is at rest for ever, or until it has turned by `overturned` rad from the pose with both contacts closed.
-    It ends, too, after `max_events` events, or as many steps between two of them.
+    It ends, too, after `max_events` events, or as many steps in all.
     `tolerance` is the error allowed to a step where a contact slips or the support moves, relative to what happens in
     the step; without both, turning is exact.
 

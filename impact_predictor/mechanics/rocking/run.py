@@ -30,7 +30,7 @@ class End(IntEnum):
     TIME_UP = 3
     """The duration is over; `phases` tell how the body moved then."""
     TOO_MANY_EVENTS = 4
-    """As many events, or steps between two of them, as were allowed came first."""
+    """As many events, or steps in all, as were allowed came first."""
     NO_SOLUTION = 5
     """No law has an answer to an impact, or numbers become too large or too small."""
     INVALID_INPUT = 6

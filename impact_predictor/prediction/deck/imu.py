@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from math import atan2, exp, sqrt
 
+from ...stamps import NANOSECONDS
 from ..types import Imu, Quaternion, Status, Vector3
 from ..vectors import add, axes_of, cross, dot, times, to_body, turned
 from .motion import NOWHERE, Seen
-from .window import NANOSECONDS
 
 START: Quaternion = (0.0, 0.0, 0.0, 1.0)
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from ...stamps import NANOSECONDS
 from ..types import Vector3
 from ..vectors import add, dot
 from .motion import Seen, rotation_between
-from .window import NANOSECONDS
 
 
 class Step(NamedTuple):

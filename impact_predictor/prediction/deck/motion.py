@@ -8,9 +8,9 @@ from math import atan2, sin, sqrt
 from typing import NamedTuple
 
 from ...mechanics.impact import new_tuple
+from ...stamps import NANOSECONDS
 from ..types import Felt, Moment, Quaternion, Vector3
 from ..vectors import Axes, add, axes_of, combine, cross, dot, times, to_body, turned
-from .window import NANOSECONDS
 
 NOWHERE: Vector3 = (0.0, 0.0, 0.0)
 """Place, velocity and acceleration of a support that nobody measures."""

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from math import atan2, hypot, isfinite
 
-from ..predictor import PAUSE, UNIT, order_of
+from ..checks import UNIT, order_of
+from ..predictor import PAUSE
 from ..scene import Scene
 from ..types import Imu, Moment, Quaternion, Status, Vector3
 from ..vectors import any_across, axes_of, cross, dot, times, to_body, turned

@@ -7,14 +7,16 @@ from math import isfinite, sqrt
 from typing import TYPE_CHECKING
 
 from ...mechanics.impact import new_tuple
-from ..predictor import LARGEST, PAUSE, UNIT
+from ...stamps import NANOSECONDS
+from ..checks import LARGEST, UNIT, order_of
+from ..predictor import PAUSE
 from ..scene import MovingDeck
 from ..types import Imu, Moment, Quaternion, Sample, Status, Vector3
 from ..vectors import add, axes_of, dot, times, to_world
 from .jumps import Following
 from .motion import NOWHERE, Known, Seen, between, later, moment_of
 from .usual import Usual
-from .window import NANOSECONDS, MotionWindow
+from .window import MotionWindow
 
 if TYPE_CHECKING:
     import numpy as np
@@ -165,22 +167,20 @@ class Deck:
         return forecast(moment, None if fitted else self._usual, times)
 
     def _in_order(self, stamp: int, frames: tuple[str, str]) -> Status:
-        if self._seen is not None:
-            gap = stamp - self._seen.stamp
-            if gap > self._timeout:
+        last = None if self._seen is None else self._seen.stamp
+        status = order_of(stamp, last)
+        if last is not None:
+            if stamp - last > self._timeout:
                 self._forget(Status.SUPPORT_STALE)
             elif frames != self._frames:
                 return Status.WRONG_FRAME
-            elif gap == 0:
-                return Status.STAMP_REPEATED
-            elif gap < 0:
-                if -gap > PAUSE:
-                    self._forget(Status.NO_SUPPORT)
-                    self._asked = None
-                return Status.STAMP_WENT_BACK
-        self._frames = frames
-        self._heard = self._asked
-        return Status.ACCEPTED
+            elif last - stamp > PAUSE:
+                self._forget(Status.NO_SUPPORT)
+                self._asked = None
+        if status is Status.ACCEPTED:
+            self._frames = frames
+            self._heard = self._asked
+        return status
 
     def _forget(self, state: Status) -> None:
         """Begin anew; until accelerations are known again `state` says why they are not."""

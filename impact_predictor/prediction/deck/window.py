@@ -6,7 +6,8 @@ from collections import deque
 from itertools import repeat
 from operator import mul, sub
 
-NANOSECONDS = 1e9
+from ...stamps import NANOSECONDS
+from ..vectors import total
 
 FLAT = 1e-6
 """Of the determinant of evenly spread samples: with less their stamps lie in two clumps, which tell no curvature."""
@@ -56,7 +57,7 @@ class MotionWindow:
         weights = slope_weights(x, 1.0)
         scale *= NANOSECONDS
         # Less its last value: a large constant would leave its rounding in the slope.
-        return [scale * sum(map(mul, weights, map(sub, channel, repeat(channel[-1])))) for channel in self._channels]
+        return [scale * total(map(mul, weights, map(sub, channel, repeat(channel[-1])))) for channel in self._channels]
 
     def ends(self) -> list[float]:
         """The values of the channels at the last sample, on the straight lines through them.
@@ -68,11 +69,11 @@ class MotionWindow:
         scale = 2.0 / (last - stamps[0])
         x = [1.0 + scale * (stamp - last) for stamp in stamps]
         count = len(x)
-        s1, s2 = sum(x), sum(map(mul, x, x))
+        s1, s2 = total(x), total(map(mul, x, x))
         part = 1.0 / (count * s2 - s1 * s1)
         c0, c1 = part * (s2 - s1), part * (count - s1)
         weights = [c0 + c1 * each for each in x]
-        return [sum(map(mul, weights, channel)) for channel in self._channels]
+        return [total(map(mul, weights, channel)) for channel in self._channels]
 
 
 def slope_weights(x: list[float], at: float) -> list[float]:
@@ -82,7 +83,7 @@ def slope_weights(x: list[float], at: float) -> list[float]:
     """
     squares = [each * each for each in x]
     count = len(x)
-    s1, s2, s3, s4 = sum(x), sum(squares), sum(map(mul, x, squares)), sum(map(mul, squares, squares))
+    s1, s2, s3, s4 = total(x), total(squares), total(map(mul, x, squares)), total(map(mul, squares, squares))
     # The normal equations, by minors: the weights c0 + c1 x + c2 x^2 have the moments 0, 1, 2 at.
     m0, m1, m2 = s1 * s4 - s2 * s3, s1 * s3 - s2 * s2, count * s3 - s1 * s2
     determinant = count * (s2 * s4 - s3 * s3) - s1 * m0 + s2 * m1

@@ -1,21 +1,64 @@
-"""The landings ahead of a machine: which points of a foot make one, and the impact of each."""
+"""The landings ahead of a machine: the points of a foot that make one, the feet that land together, their impacts."""
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Sequence
+from math import hypot
+from typing import NamedTuple
 
+from ...stamps import NANOSECONDS
 from ..scene import Scene
-from ..score import NANOSECONDS, Track
-from ..types import Sample, Status, Touchdown, Vector3
-from ..vectors import add, axes_of, dot, mean, to_body
-from .base import Twists
+from ..score import LONGEST, Pending
+from ..types import Landing, Sample, Score, Status, Touchdown, Vector3
+from ..vectors import add, axes_of, mean, to_body
+from .base import Line, Twists, ahead, base_at
 from .impact import touchdown_of
 from .mechanism import Mechanism
 from .point import Due, Point
 
 
+class Impending(NamedTuple):
+    """What the impact of a landing is computed from, when somebody wants it.
+
+    The base of a `sample` goes on along a `line` for `time` s; points are then at `places` (m, in the world), the `new`
+    ones of a foot with a mean `velocity` (m/s), those of other feet that land `together` with theirs, and the `old`
+    ones stand. `lead_time` in s is that of the foot itself.
+    """
+
+    sample: Sample
+    line: Line | None
+    time: float
+    lead_time: float
+    places: Sequence[Vector3]
+    old: tuple[int, ...]
+    new: tuple[int, ...]
+    velocity: Vector3
+    together: dict[int, Vector3]
+
+
+class Told:
+    """What was announced of one landing: when and how long ahead, and the last of it."""
+
+    def __init__(self, last: Impending) -> None:
+        self.times: deque[tuple[int, float]] = deque(maxlen=LONGEST)
+        """Stamps in ns and lead times in s."""
+        self.last = last
+        self.settled = False
+        """Whether one of its points has come to stand."""
+
+
+class Landed(NamedTuple):
+    """A landing that is not told yet: the samples after it, what was announced of it last, and what was seen."""
+
+    pending: Pending
+    landing: Landing
+    announced: Impending | None
+    seen: Impending | None
+
+
 class Ahead:
-    """The touchdowns that the points of a machine's feet announce, and their impacts."""
+    """The landings that the points of a machine's feet announce."""
 
     def __init__(self, scene: Scene, mechanism: Mechanism, points: Sequence[Point], twists: Twists) -> None:
         assert scene.walking is not None
@@ -25,90 +68,142 @@ class Ahead:
         self._twists = twists
         self._each = scene.walking.points
         self._contact_time = round(scene.contact_time * NANOSECONDS)
-        self._tracks: dict[int, Track] = {}
-        self._joined: dict[int, int] = {}
+        self._told: dict[int, Told] = {}
 
-    def settle(self, i: int, stamp: int) -> Track | None:
-        """End the landing of a point, which came to stand at a stamp in ns: what was announced of it.
+    def settle(self, i: int) -> Told | None:
+        """End the landing of a point, which has come to stand: what was announced of it.
 
         None where nothing was, or where it belongs to a landing that its foot has made already.
         """
-        track = self._tracks.pop(i, None)
-        if self._joined.pop(i, None) is not None or track is None:
+        told = self._told.pop(i, None)
+        if told is None or told.settled:
             return None
-        for j in track.last.new:
-            if j != i:
-                self._joined[j] = stamp + self._contact_time
-        return track
+        told.settled = True
+        return told
 
-    def impact(
-        self,
-        base: Sample,
-        standing: tuple[int, ...],
-        new: tuple[int, ...],
-        lead_time: float,
-        places: Sequence[Vector3],
-        velocity: Vector3,
-    ) -> Touchdown | Status:
-        """The touchdown of the `new` points at some `velocity`, all points being at `places` in the world then."""
-        axes = axes_of(base.orientation)
-        points = tuple([to_body(axes, add(place, base.position, -1.0)) for place in places])
-        return touchdown_of(self._scene, self._mechanism, base, points, standing, new, lead_time, velocity)
+    def impact(self, impending: Impending) -> Touchdown | Status:
+        """The touchdown that a landing makes, with its impact."""
+        sample, line, time, lead_time, places, old, new, velocity, together = impending
+        base = ahead(sample, line, time)
+        axes, position = axes_of(base.orientation), base.position
+        points = tuple([to_body(axes, add(place, position, -1.0)) for place in places])
+        return touchdown_of(self._scene, self._mechanism, base, points, old, new, lead_time, velocity, together)
 
-    def touchdowns(self, sample: Sample, dues: list[Due | None]) -> tuple[Touchdown, ...] | Status:
-        """The touchdowns of the feet, the soonest first; points of one foot that land together make one."""
-        each = self._each
-        found: list[Touchdown] = []
-        for i, point in enumerate(self._points):
-            if point.stands or point.due is None:
-                self._joined.pop(i, None)
-            if point.due is None:
-                self._tracks.pop(i, None)
-        for first in range(0, len(self._points), each):
-            own = [(due, i) for i in range(first, first + each) if (due := dues[i]) and not self._has_joined(i, due)]
-            if own and each > 1:
-                own = self._without_joining(own, range(first, first + each), sample.stamp)
-            if own:
-                touchdown = self._touchdown(sample, own)
-                if isinstance(touchdown, Status):
-                    return touchdown
-                found.append(touchdown)
-        return tuple(sorted(found, key=lambda one: one.lead_time))
+    def struck(self, landed: Landed) -> Landed:
+        """A landing with the impact that was seen, where one was."""
+        pending, landing, announced, seen = landed
+        impact = None if seen is None else self.impact(seen)
+        if seen is not None and isinstance(impact, Touchdown):
+            landing = landing._replace(speed=hypot(*seen.velocity), impact=impact)
+        return Landed(pending, landing, announced, None)
 
-    def _has_joined(self, i: int, due: Due) -> bool:
-        """Whether the landing of a point belongs to one that its foot has made already."""
-        last = self._joined.get(i)
-        if last is None or due.stamp <= last:
-            return last is not None
-        del self._joined[i]
-        return False
+    def score(self, landed: Landed) -> Score | None:
+        """The score of a landing, as announced last, or else with the velocity that was seen; None without both."""
+        pending, landing, announced, _ = landed if landed.seen is None else self.struck(landed)
+        touchdown = landing.impact if announced is None else self.impact(announced)
+        if not isinstance(touchdown, Touchdown):
+            return None
+        pending.track.add(landing.stamp, touchdown, 0.0)
+        return (pending.score(self._scene) if pending.complete else pending.unmeasured())._replace(landing=landing)
 
-    def _without_joining(self, own: list[tuple[Due, int]], foot: range, stamp: int) -> list[tuple[Due, int]]:
-        """The landings ahead that do not belong to one that another point of the foot makes at this moment."""
-        now = [due.stamp for i in foot if (due := self._points[i].due) is not None and due.stamp <= stamp]
-        last = min(now, default=stamp) + self._contact_time
-        return [one for one in own if one[0].stamp > last] if now else own
+    def soonest(self, sample: Sample, dues: list[Due | None]) -> Touchdown | Status | None:
+        """The touchdown of the foot that lands next; None where none does.
 
-    def _touchdown(self, sample: Sample, own: list[tuple[Due, int]]) -> Touchdown | Status:
-        """The touchdown that a foot makes with the first of its points, and with those that close soon after it."""
-        stamp = min([due.stamp for due, _ in own])
-        last = stamp + self._contact_time
-        landing = [(due, i) for due, i in own if due.stamp <= last]
-        new = tuple([i for _, i in landing])
-        lead_time = (stamp - sample.stamp) / NANOSECONDS
-        base = self._twists.ahead(sample, lead_time)
-        places = [point.course.frames[-1].position for point in self._points]
-        for due, i in landing:
-            places[i] = due.position
-        standing = tuple([i for i, point in enumerate(self._points) if point.stands])
-        velocity = mean([due.velocity for due, _ in landing])
-        touchdown = self.impact(base, standing, new, lead_time, places, velocity)
-        if isinstance(touchdown, Touchdown):
-            track = next((self._tracks[i] for i in new if i in self._tracks), None) or Track()
-            track.add(sample.stamp, touchdown, -dot(self._scene.normal, velocity))
-            for i in new:
-                self._tracks[i] = track
-        return touchdown
+        Feet that land within the contact time of each other strike together. Each is the old contact of the other.
+        """
+        points, now = self._points, sample.stamp
+        feet = [range(first, first + self._each) for first in range(0, len(points), self._each)]
+        landings = [(min([due.stamp for due in own.values()]), own) for foot in feet if (own := self._own(foot, dues))]
+        for i in [i for i in self._told if points[i].due is None]:
+            del self._told[i]
+        if not landings:
+            return None
+        landings.sort(key=lambda landing: landing[0])
+        standing = [i for i, point in enumerate(points) if point.stands or point.closed]
+        places = [
+            point.course.frames[-1].position if due is None else due.position
+            for point, due in zip(points, dues, strict=True)
+        ]
+        next_one = None
+        while landings:
+            begin = landings[0][0]
+            group = [one for one in landings if one[0] <= begin + self._contact_time]
+            struck = sorted([(i, due.velocity) for _, own in group for i, due in own.items()])
+            for stamp, own in group:
+                impending = Impending(
+                    sample,
+                    self._twists.line,
+                    (begin - now) / NANOSECONDS,
+                    (stamp - now) / NANOSECONDS,
+                    places,
+                    tuple(standing),
+                    tuple(own),
+                    mean([due.velocity for due in own.values()]),
+                    {i: velocity for i, velocity in struck if i not in own},
+                )
+                self._tell(impending)
+                next_one = next_one or impending
+            standing = sorted(standing + [i for i, _ in struck])
+            landings = landings[len(group) :]
+        return None if next_one is None else self.impact(next_one)
+
+    def seen(self, i: int, new: tuple[int, ...], recent: Sequence[Sample]) -> Impending | None:
+        """The landing of the `new` points of a foot, of which `i` has come to stand, as the last frame before shows it.
+
+        No foot that lands together with it has landed then: the base has still the twist of before their impact. None
+        where the velocity is not known.
+        """
+        points, arrival = self._points, self._points[i].arrival
+        if arrival is None or arrival.velocity is None:
+            return None
+        landed = {j: stamp for j, point in enumerate(points) if (stamp := point.lands) is not None}
+        near = {j: stamp for j, stamp in landed.items() if abs(stamp - arrival.stamp) <= self._contact_time}
+        together = [j for j in near if j // self._each != i // self._each]
+        begin, k = min([arrival.stamp, *[near[j] for j in together]]), -arrival.age
+        course = points[i].course.frames
+        while course[k].stamp >= begin and k > -len(course):
+            k -= 1
+        frames = [point.course.frames[k] for point in points]
+        moves = {j: frame.velocity for j, frame in enumerate(frames) if frame.velocity is not None}
+        if not moves:  # no velocities are measured
+            told = {j: points[j].due or points[j].arrival for j in together}
+            moves = dict.fromkeys(new, arrival.velocity)
+            moves |= {j: one.velocity for j, one in told.items() if one is not None and one.velocity is not None}
+        stamp = frames[i].stamp
+        return Impending(
+            base_at(recent, stamp),
+            None,
+            0.0,
+            0.0,
+            [frame.position for frame in frames],
+            tuple([j for j, point in enumerate(points) if j not in new and j not in together and point.stood(stamp)]),
+            new,
+            mean([moves[j] for j in new]),
+            {j: moves[j] for j in together if j in moves},
+        )
+
+    def _own(self, foot: range, dues: list[Due | None]) -> dict[int, Due]:
+        """The points that make the next landing of a foot: the first, and those that close soon after it.
+
+        What closes soon after another point of the foot has landed belongs to the landing of that one.
+        """
+        own = {i: due for i in foot if (due := dues[i]) is not None}
+        if own and self._each > 1:
+            landed = [since for i in foot if (since := self._points[i].landed) is not None]
+            last = max(landed, default=-self._contact_time) + self._contact_time
+            own = {i: due for i, due in own.items() if due.stamp > last}
+            last = min([due.stamp for due in own.values()], default=0) + self._contact_time
+            own = {i: due for i, due in own.items() if due.stamp <= last}
+        return own
+
+    def _tell(self, impending: Impending) -> None:
+        """Remember what is announced of a landing."""
+        known = [one for i in impending.new if (one := self._told.get(i)) and not one.settled]
+        told = known[0] if known else Told(impending)
+        told.times.append((impending.sample.stamp, impending.lead_time))
+        told.last = impending
+        for i in impending.new:
+            self._told[i] = told
 
 
 def point_of(new: tuple[int, ...], each: int) -> str | None:

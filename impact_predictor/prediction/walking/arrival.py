@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import pairwise
 from math import inf
 from typing import NamedTuple
 
+from ...stamps import NANOSECONDS
 from ..types import Vector3
-from .cubic import NANOSECONDS, SCALE, Frame, Noise, factored, solved, square_of
-from .sums import Gaps, Sums
+from ..vectors import total
+from .cubic import SCALE, Factor, Frame, Noise, factored, solved, square_of
+from .sums import Gaps, Sums, sums_of
 
 FEWEST = 5
 """Frames in the air from which a cubic is told."""
@@ -19,9 +20,11 @@ LEAST = 6
 
 They may be from before the foot began to descend, which is no great harm."""
 
-MOST = 40
+MOST = 42
 """... and the most of them that are looked at, besides those that may have been on the ground already."""
 
+FULL = 150
+"""Frames after which a point that hovers near the ground is looked at anew: fewer than its course remembers."""
 
 SAME = 0.01
 """A later arrival is believed where it leaves less by this part of the noise's square, else the earlier."""
@@ -39,69 +42,105 @@ class Arrival(NamedTuple):
     velocity: Vector3 | None
 
 
-def arrival(frames: Sequence[Frame], begin: int, level: float, tolerance: float, noise: Noise) -> Arrival:
-    """Find the arrival of a point that rests in its last frames, and came down since `begin` (ns) to about a level (m).
+class Between(NamedTuple):
+    """The cubic of the frames up to `last`, if the point arrived between that and the next frame.
 
-    In the air the frames follow one cubic, then they rest at the level of the cubic's end: of all pairs of neighbours
-    that the arrival may lie between it is the one where both together leave least (least squares). A foot that strikes
-    arrives where the cubic meets the level; one that brakes to rest hardly meets it: it arrives with the nearest frame.
+    `left` is the least square of what it leaves of them; `here` and `there` are its gaps (m) at the two frames, with
+    what is unsure of them; `near` are the sums over the frames near the ground up to the last.
     """
-    first = next((k for k in range(len(frames) - 1, -1, -1) if frames[k].gap - level > tolerance), 0)
-    start = next((k for k, frame in enumerate(frames) if frame.stamp >= begin), 0)
-    start = max(0, first - MOST, min(start, first - LEAST))
-    own, first = frames[start:], first - start
-    sums, ratio = Gaps(own[0]), 0.0
-    if all(frame.rate is not None for frame in own):
-        ratio = (noise.gap / (noise.rate * SCALE)) ** 2
-    # What comes to rest does so near the level of the others, by half a tolerance or so: as good as so many frames.
-    known = (2.0 * noise.gap / tolerance) ** 2
-    resting, total, square, rates = float(len(own) - 1), 0.0, 0.0, 0.0
-    for frame in own[1:]:
-        off = frame.gap - level
-        total, square = total + off, square + off * off
-        rates += ratio * (SCALE * (frame.rate or 0.0)) ** 2
-    best, stamp, last = inf, own[min(first + 1, len(own) - 1)].stamp, first
-    for k, (frame, following) in enumerate(pairwise(own)):
-        if k:
-            sums.add(frame)
-            off = frame.gap - level
-            resting, total, square = resting - 1.0, total - off, square - off * off
-            rates -= ratio * (SCALE * (frame.rate or 0.0)) ** 2
-        factor = factored(sums.normal(ratio)) if k >= max(first, FEWEST - 1) else None
-        if factor is None:
-            continue
-        right = sums.right(ratio)
-        a, b, c, d = cubic = solved(factor, right)
-        rest = total / (resting + known)
-        left = square - total * rest + rates + sums.square + ratio * sums.square_rate
-        left -= sum([x * y for x, y in zip(cubic, right, strict=True)])
-        ends = []
-        for one in (frame, following):
-            s = (one.stamp - own[0].stamp) / (SCALE * NANOSECONDS)
-            off = own[0].gap - level - rest + a + s * (b + s * (c + s * d))
-            ends.append((off, off * off / square_of(factor, (1.0, s, s * s, s * s * s))))
-        (here, cost), (there, later) = ends
-        part = 0.0 if cost <= later else 1.0
-        if here > 0.0 > there:
-            part, cost = here / (here - there), 0.0
-        left += min(cost, later)
-        if left < best - SAME * noise.gap**2:
-            best, last = left, k if part > 0.0 else max(0, k - 1)
-            stamp = frame.stamp + round(part * (following.stamp - frame.stamp))
-    return Arrival(stamp, len(own) - last, own[last].velocity or _velocity(own[: last + 1]))
+
+    last: int
+    factor: Factor
+    left: float
+    here: tuple[float, float]
+    there: tuple[float, float]
+    near: tuple[float, float]
 
 
-def _velocity(own: Sequence[Frame]) -> Vector3 | None:
-    """The velocity in the last of some frames without velocities, by the cubic through them."""
-    sums = Sums(own[0])
-    for frame in own[1:]:
+class Arriving:
+    """A point that is near the ground and does not stand yet, from its first frame there on.
+
+    `frames` are the last ones up to that; the point came down since `begin` (ns) to about a `level` (m). While frames
+    come in the work is shared between them.
+    """
+
+    def __init__(self, frames: Sequence[Frame], begin: int, level: float, tolerance: float, noise: Noise) -> None:
+        first = max(0, len(frames) - 2)
+        start = next((k for k, frame in enumerate(frames) if frame.stamp >= begin), 0)
+        start = max(0, min(start, first - LEAST))
+        self._frames = list(frames[start : first + 1])
+        self._first = first - start
+        self._level, self._tolerance, self._noise = level, tolerance, noise
+        self._ratio = (noise.gap / (noise.rate * SCALE)) ** 2
+        self._sums = sums_of(Gaps, self._frames)
+        self._near = 0.0, 0.0
+        self._tried: list[Between] = []
+        if len(frames) > 1:
+            self.add(frames[-1])
+
+    @property
+    def is_full(self) -> bool:
+        """Whether it has so many frames that the next one is to begin another."""
+        return len(self._frames) >= FULL
+
+    def add(self, frame: Frame) -> None:
+        """Take the next frame near the ground."""
+        frames, sums = self._frames, self._sums
+        ratio = self._ratio if sums.measured else 0.0
+        factor = factored(sums.normal(ratio)) if len(frames) >= FEWEST else None
+        if factor is not None:
+            right = sums.right(ratio)
+            a, b, c, d = cubic = solved(factor, right)
+            left = sums.square + ratio * sums.square_rate - total([x * y for x, y in zip(cubic, right, strict=True)])
+            ends = []
+            for one in (frames[-1], frame):
+                s = (one.stamp - frames[0].stamp) / (SCALE * NANOSECONDS)
+                off = frames[0].gap - self._level + a + s * (b + s * (c + s * d))
+                ends.append((off, square_of(factor, (1.0, s, s * s, s * s * s))))
+            self._tried.append(Between(len(frames) - 1, factor, left, ends[0], ends[1], self._near))
+        frames.append(frame)
         sums.add(frame)
-    factor = factored(sums.normal(0.0)) if len(own) >= FEWEST else None
-    if factor is None:
-        return None
-    s = (own[-1].stamp - own[0].stamp) / (SCALE * NANOSECONDS)
-    x, y, z = [
-        (b + s * (2.0 * c + 3.0 * d * s)) / SCALE
-        for _, b, c, d in [solved(factor, sums.along(axis, 0.0)) for axis in range(3)]
-    ]
-    return x, y, z
+        off, (near, square) = frame.gap - self._level, self._near
+        self._near = near + off, square + off * off + ratio * (SCALE * (frame.rate or 0.0)) ** 2
+
+    def arrival(self) -> Arrival:
+        """The arrival, once the point rests.
+
+        In the air the frames follow one cubic, then they rest at the level of the cubic's end: of all pairs of
+        neighbours that the arrival may lie between it is the one where both together leave least (least squares). A
+        foot that strikes arrives where the cubic meets the level; one that brakes to rest hardly meets it: it arrives
+        with the nearest frame.
+        """
+        frames, noise = self._frames, self._noise
+        best, last, found = inf, self._first, None
+        stamp = frames[min(last + 1, len(frames) - 1)].stamp
+        # What comes to rest does so near the level of the others, by half a tolerance or so: as good as so many frames.
+        known = (2.0 * noise.gap / self._tolerance) ** 2
+        for one in self._tried:
+            near, square = self._near[0] - one.near[0], self._near[1] - one.near[1]
+            rest = near / (len(frames) - 1 - one.last + known)
+            here, there = one.here[0] - rest, one.there[0] - rest
+            cost, later = here * here / one.here[1], there * there / one.there[1]
+            part = 0.0 if cost <= later else 1.0
+            if here > 0.0 > there:
+                part, cost = here / (here - there), 0.0
+            left = one.left + square - near * rest + min(cost, later)
+            if left < best - SAME * noise.gap**2:
+                best, found, last = left, one, one.last if part > 0.0 else one.last - 1
+                before = frames[one.last].stamp
+                stamp = before + round(part * (frames[one.last + 1].stamp - before))
+        velocity = frames[last].velocity
+        if velocity is None and found is not None:
+            velocity = self._velocity(found, last)
+        return Arrival(stamp, len(frames) - last, velocity)
+
+    def _velocity(self, between: Between, last: int) -> Vector3:
+        """The velocity in a frame without velocities, by the cubic through those up to the end of the air."""
+        frames = self._frames
+        sums = sums_of(Sums, frames[: between.last + 1])
+        s = (frames[last].stamp - frames[0].stamp) / (SCALE * NANOSECONDS)
+        x, y, z = [
+            (b + s * (2.0 * c + 3.0 * d * s)) / SCALE
+            for _, b, c, d in [solved(between.factor, sums.along(axis, 0.0)) for axis in range(3)]
+        ]
+        return x, y, z

@@ -6,9 +6,9 @@ from collections import deque
 from collections.abc import Sequence
 from operator import mul
 
+from ...stamps import NANOSECONDS
 from ..types import Sample, Vector3
-from ..vectors import add, axes_of, times, to_body, to_world, turned
-from .cubic import NANOSECONDS
+from ..vectors import add, axes_of, times, to_body, to_world, total, turned
 
 SPAN = 50_000_000
 """ns over which the acceleration of the base is taken to be constant."""
@@ -44,39 +44,47 @@ class Twists:
             self._recent.popleft()
         self._line = None
 
-    def ahead(self, sample: Sample, time: float) -> Sample:
-        """The base `time` s after the last sample, whose stamp it keeps; twists lie on the line nearest to the last.
+    @property
+    def line(self) -> Line | None:
+        """The line nearest to the last twists (least squares); None where these are too few.
 
         A base that turns about a foot gains speed until the next one lands, and a line averages the noise of twists.
         """
         recent = self._recent
-        if len(recent) < FEWEST or recent[-1][0] - recent[0][0] < LEAST_SPAN:
-            return carried(sample, time)._replace(stamp=sample.stamp)
-        (x, y, z, u, v, w), (a, b, c, p, q, r) = self._line = self._line or line_of(recent)
-        half = 0.5 * time
-        glide: Vector3 = x + half * a, y + half * b, z + half * c
-        axes = axes_of(sample.orientation)
-        spin = to_body(axes, (u + half * p, v + half * q, w + half * r))
-        orientation = turned(sample.orientation, times(spin, time))
-        then = axes_of(orientation)
-        return sample._replace(
-            position=add(sample.position, glide, time),
-            orientation=orientation,
-            linear=to_body(then, (x + a * time, y + b * time, z + c * time)),
-            angular=to_body(then, (u + p * time, v + q * time, w + r * time)),
-        )
+        if self._line is None and len(recent) >= FEWEST and recent[-1][0] - recent[0][0] >= LEAST_SPAN:
+            self._line = line_of(recent)
+        return self._line
+
+
+def ahead(sample: Sample, line: Line | None, time: float) -> Sample:
+    """A base `time` s after a sample, whose stamp it keeps; its twists lie on a line, or are those that it has."""
+    if line is None:
+        return carried(sample, time)._replace(stamp=sample.stamp)
+    (x, y, z, u, v, w), (a, b, c, p, q, r) = line
+    half = 0.5 * time
+    glide: Vector3 = x + half * a, y + half * b, z + half * c
+    axes = axes_of(sample.orientation)
+    spin = to_body(axes, (u + half * p, v + half * q, w + half * r))
+    orientation = turned(sample.orientation, times(spin, time))
+    then = axes_of(orientation)
+    return sample._replace(
+        position=add(sample.position, glide, time),
+        orientation=orientation,
+        linear=to_body(then, (x + a * time, y + b * time, z + c * time)),
+        angular=to_body(then, (u + p * time, v + q * time, w + r * time)),
+    )
 
 
 def line_of(recent: Sequence[tuple[int, tuple[float, ...]]]) -> Line:
     """The line nearest to some twists (least squares), at the last of them."""
     last, count = recent[-1][0], len(recent)
     ages = [(stamp - last) / NANOSECONDS for stamp, _ in recent]
-    middle = sum(ages) / count
+    middle = total(ages) / count
     arms = [age - middle for age in ages]
-    spread = sum(map(mul, arms, arms))
+    spread = total(map(mul, arms, arms))
     columns = list(zip(*[twist for _, twist in recent], strict=True))
-    rates = [sum(map(mul, arms, column)) / spread for column in columns]
-    now = [sum(column) / count - middle * rate for column, rate in zip(columns, rates, strict=True)]
+    rates = [total(map(mul, arms, column)) / spread for column in columns]
+    now = [total(column) / count - middle * rate for column, rate in zip(columns, rates, strict=True)]
     return tuple(now), tuple(rates)
 
 

@@ -9,10 +9,11 @@ from collections import deque
 from itertools import islice
 from math import sqrt
 
+from ...stamps import NANOSECONDS
 from ..types import Vector3
-from .cubic import NANOSECONDS, SCALE, Fit, Frame, Noise, factored, solved
+from .cubic import SCALE, Fit, Frame, Noise, factored, solved
 from .habit import Habit
-from .sums import Sums
+from .sums import Gaps, Sums, sums_of
 
 FEWEST = 5
 """Frames that a cubic is fitted to at least: four would leave nothing to tell how well it fits."""
@@ -35,14 +36,10 @@ TURNED = 3.0
 
 
 class Course:
-    """The last frames of a point over a ground with a unit `normal`, and the longest stretch of them one cubic fits.
+    """The last frames of a point over a ground with a unit `normal`, and the longest stretch of them one cubic fits."""
 
-    Over a `window` in s that is above zero the stretch is all of it.
-    """
-
-    def __init__(self, window: float, normal: Vector3) -> None:
+    def __init__(self, normal: Vector3) -> None:
         self.frames: deque[Frame] = deque(maxlen=MOST)
-        self._window = round(window * NANOSECONDS)
         self._normal = normal
         self._sums: Sums | None = None
         self._falls = False
@@ -87,16 +84,16 @@ class Course:
         rate = self.frames[-1].rate
         if not self._falls and rate is not None and rate > TURNED * noise.rate:
             return None
-        if self._window:
-            begin = self.frames[-1].stamp - self._window
-            sums = self._again(max(FEWEST, sum([frame.stamp >= begin for frame in islice(self.frames, MOST)])))
-        elif sums.count >= MOST:
+        if sums.count >= MOST:
             sums = self._again(SHORTER * MOST // 4)
         fit = self._fit_of(sums, noise, habit)
         self.broke = fit is not None and not fit.fits and fit.deviation > BROKE * self._deviation
-        while fit is not None and not (fit.fits or self._window or sums.count == FEWEST):
-            sums = self._again(max(FEWEST, SHORTER * sums.count // 4))
-            fit = self._fit_of(sums, noise, habit)
+        count = sums.count
+        while fit is not None and not (fit.fits or count == FEWEST):
+            count = max(FEWEST, SHORTER * count // 4)
+            fit = self._fit_of(sums_of(Gaps, self.last(count)), noise, habit)
+        if count < sums.count:
+            self._again(count)
         if fit is None:
             return None
         self._deviation = fit.deviation
@@ -116,16 +113,16 @@ class Course:
             speeds.append((b + s * (2.0 * c + 3.0 * d * s)) / SCALE)
         return (places[0], places[1], places[2]), (speeds[0], speeds[1], speeds[2])
 
+    def last(self, count: int) -> list[Frame]:
+        """The last `count` frames."""
+        return list(islice(self.frames, max(0, len(self.frames) - count), None))
+
     def _again(self, count: int) -> Sums:
         """The sums over the last `count` frames alone, from now on."""
-        frames = self.frames
-        own = islice(frames, max(0, len(frames) - count), None)
-        sums = self._sums = Sums(next(own))
-        for frame in own:
-            sums.add(frame)
+        sums = self._sums = sums_of(Sums, self.last(count))
         return sums
 
-    def _fit_of(self, sums: Sums, noise: Noise, habit: Habit) -> Fit | None:
+    def _fit_of(self, sums: Gaps, noise: Noise, habit: Habit) -> Fit | None:
         """The cubic nearest to the gaps, and to their rates where all are measured (weighted least squares)."""
         # A rate in units of the scale weighs as the square of how much surer it is than a gap.
         ratio = (noise.gap / (noise.rate * SCALE)) ** 2 if sums.measured else 0.0

@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import inf, sqrt
 from typing import NamedTuple
 
+from ...stamps import NANOSECONDS
 from ..types import Vector3
 
 SCALE = 0.1
@@ -12,6 +13,9 @@ SCALE = 0.1
 
 DOUBT = 2.0
 """Standard deviations within which the lowest point of a course may be a foot that brakes to rest on the ground."""
+
+REACH = 1.0
+"""Standard deviations by which the lowest point of a foot that brakes may seem to lie above the tolerance."""
 
 SURE = 2.5
 """A landing is sure when so many standard deviations of the course ..."""
@@ -24,8 +28,6 @@ PRECISE = 0.01
 
 SINGULAR = 1e-12
 """A pivot below this part of its diagonal is rounding: the frames are too few instants for a cubic."""
-
-NANOSECONDS = 1e9
 
 Cubic = tuple[float, float, float, float]
 """Coefficients, from that of the zeroth power."""
@@ -132,7 +134,7 @@ class Fit(NamedTuple):
             lowest = -b / (c + sqrt(square))
         if lowest < horizon:
             depth = a + lowest * (b + lowest * (c + lowest * d))
-            if depth > tolerance:
+            if depth > tolerance and depth > tolerance + REACH * self.gap_deviation(lowest):
                 return None
             rests = depth >= 0.0
             if not rests:

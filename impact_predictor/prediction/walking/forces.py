@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from ..predictor import LARGEST, PAUSE, order_of
+from ...stamps import NANOSECONDS
+from ..checks import LARGEST, order_of
+from ..predictor import PAUSE
 from ..scene import Walking
 from ..types import Status, Wrench
 from ..vectors import dot
-from .cubic import NANOSECONDS
 
 
 class Forces:

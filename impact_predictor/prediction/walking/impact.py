@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from math import hypot, inf, sqrt
 
-from ...mechanics.contact_space import ContactOutcome, solve
+from ...mechanics.contact_space import ContactOutcome, solve, unchanged
 from ...mechanics.impact import new_tuple
 from ...mechanics.types import Flag, Mode, Twist
 from ..approach import GRAZES
@@ -17,6 +18,8 @@ from .mechanism import Mechanism, Response
 USABLE = 0.2
 """The machine turns about the line of its standing points where the landing one is further from it than this part of
 their distance: else that line says nothing of where the machine goes."""
+
+NOTHING: Mapping[int, Vector3] = {}
 
 COLLINEAR = 0.05
 """Standing points no further from a line than this part of its length stand on it."""
@@ -31,46 +34,59 @@ def touchdown_of(
     new: tuple[int, ...],
     lead_time: float,
     velocity: Vector3,
+    together: Mapping[int, Vector3] = NOTHING,
 ) -> Touchdown | Status:
     """The touchdown of the `new` points of one foot while the `old` ones stand, with its impact.
 
     `base` is the sample with the pose and the twist that the base has at the touchdown, `lead_time` s after its stamp;
     `points` (m, in its frame) are those of then, and `velocity` (m/s) is that of the new contact relative to the
-    support, along the axes of the frame that the pose is in. The old contact rests; it is that of the same foot where
-    other points of it stand, else the mean of all standing points. Joints are free during an impact, or held by a
-    `mechanism` that has none. A foot that has braked before it lands makes no impact (Mode.NO_IMPACT). A status, where
-    the mechanism has no response.
+    support, along the axes of the frame that the pose is in. The old contact is the mean of the points of other feet
+    that land `together` with this one, and strikes with the mean of their velocities (Flag.BOTH_STRUCK). Else it rests:
+    it is that of the same foot where other points of it stand, else the mean of all standing points. Joints are free
+    during an impact, or held by a `mechanism` that has none. Leftover.OUT_OF_PLANE where a foot of a rigid machine
+    would be pressed into the ground that these two contacts leave out. Feet that have braked before they land make no
+    impact (Mode.NO_IMPACT). A status, where the mechanism has no response.
     """
     axes = axes_of(base.orientation)
     normal = to_body(axes, scene.normal)
     striking = to_body(axes, velocity)
-    approach = dot(normal, striking)
+    beside = to_body(axes, mean(list(together.values()))) if together else ORIGIN
     center = scene.center_of_mass
     struck = mean([points[i] for i in new])
-    stands = standing = standing_with(scene, old, new)
-    leftover = Leftover.DRIVEN if stands else Leftover.DRIVEN | Leftover.ONE_POINT
+    first = tuple(together) or standing_with(scene, old, new)
+    watched = dict.fromkeys(old, 0.0) | {i: dot(scene.normal, moves) for i, moves in together.items()}
+    leftover = Leftover.DRIVEN if first else Leftover.DRIVEN | Leftover.ONE_POINT
+    approach = without_grazing(dot(normal, striking)), without_grazing(dot(normal, beside))
+    # Of feet that land together the total law says the same whichever is the new one, also where one has braked.
+    law = "total" if together and not approach[1] else scene.law
+    kick = spin = ORIGIN
     while True:
-        stood = [points[i] for i in stands]
+        stood = [points[i] for i in first]
         ahead = ahead_of(scene, normal, stood, struck, striking)
-        response = mechanism.response(stands, new, normal, ahead, points)
+        c = approach[1] if first else inf, dot(ahead, beside), approach[0], dot(ahead, striking)
+        if approach == (0.0, 0.0):
+            outcome = unchanged(c, scene.law, 0)
+            break
+        response = mechanism.response(first, new, normal, ahead, points)
         if isinstance(response, Status):
             return response
-        c = 0.0 if stands else inf, 0.0, approach if approach < -GRAZES else 0.0, dot(ahead, striking)
-        outcome = solve(response.W, c, (scene.friction, scene.friction), (0.0, scene.restitution), scene.law)
+        restitution = (scene.restitution if approach[1] else 0.0), scene.restitution
+        outcome = solve(response.W, c, (scene.friction, scene.friction), restitution, law)
         kick, spin = changes(response, outcome)
-        rates = [dot(normal, add(kick, cross(spin, points[i]))) for i in standing]
-        if not mechanism.is_rigid or min(rates, default=0.0) > -GRAZES:
+        rates = {i: rate + dot(normal, add(kick, cross(spin, points[i]))) for i, rate in watched.items()}
+        pressed = [i for i, rate in rates.items() if rate < -GRAZES]
+        if not (mechanism.is_rigid and pressed):
             break
         # The mean of several feet rolls freely, into the ground on one side: those that are pressed prevent it alone.
-        held = tuple([i for i, rate in zip(standing, rates, strict=True) if rate < -GRAZES and i in stands])
-        if not held:
+        held = tuple([i for i in pressed if i in first])
+        if together or len(held) in (0, len(first)):
             leftover |= Leftover.OUT_OF_PLANE
             break
-        stands = held
+        first = held
     linear, angular = add(base.linear, kick), add(base.angular, spin)
     axis = cross(normal, ahead)
 
-    arms = [add(point, center, -1.0) for point in ((mean(stood), struck) if stands else (struck,))]
+    arms = [add(point, center, -1.0) for point in ((mean(stood), struck) if first else (struck,))]
     span = add(arms[-1], arms[0], -1.0)
     gaps = [dot(normal, points[i]) for i in new]
     touchdown = (
@@ -84,7 +100,7 @@ def touchdown_of(
         outcome.flags | doubts(scene, outcome),
         outcome.unique,
         outcome.law,
-        stands,
+        first,
         new,
         to_world(axes, axis),
         base.position,
@@ -110,6 +126,11 @@ def standing_with(scene: Scene, old: tuple[int, ...], new: tuple[int, ...]) -> t
         return old
     foot = new[0] // count
     return tuple([i for i in old if i // count == foot]) or old
+
+
+def without_grazing(rate: float) -> float:
+    """The speed at which a contact strikes, negative; 0 where it only grazes, or leaves."""
+    return rate if rate < -GRAZES else 0.0
 
 
 def changes(response: Response, outcome: ContactOutcome) -> tuple[Vector3, Vector3]:

@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import NamedTuple, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...errors import InputError
+from ..planar import ORIGIN
 from ..scene import Scene
 from ..types import Status, Vector3
-from ..vectors import cross, mean
+from ..vectors import add, cross, dot, mean
 
 Row = tuple[float, float, float, float]
 
@@ -66,13 +66,10 @@ class Trunk:
             raise InputError(
                 f"the inertia {scene.inertia} of the body has no inverse: give one that is positive about every axis"
             )
-        # M^-1 at the base's origin: that of the mass centre, whose velocity less omega x c is the origin's.
-        carried = np.eye(6)
-        carried[:3, 3:] = np.cross(scene.center_of_mass, np.eye(3)).T
-        at_center = np.zeros((6, 6))
-        at_center[:3, :3] = np.eye(3) / scene.mass
-        at_center[3:, 3:] = np.linalg.inv(inertia)
-        self._mobility: NDArray[np.float64] = carried @ at_center @ carried.T
+        (xx, xy, xz), (_, yy, yz), (_, _, zz) = np.linalg.inv(inertia).tolist()
+        self._agility = xx, xy, xz, yy, yz, zz
+        self._lightness = 1.0 / scene.mass
+        self._center = scene.center_of_mass
 
     def response(
         self,
@@ -82,11 +79,27 @@ class Trunk:
         ahead: Vector3,
         points: tuple[Vector3, ...],
     ) -> Response | Status:
-        rows = np.zeros((4, 6))
-        for first, those in ((0, old), (2, new)):
-            if those:
-                arm = mean([points[i] for i in those])
-                rows[first] = *normal, *cross(arm, normal)
-                rows[first + 1] = *ahead, *cross(arm, ahead)
-        twist = self._mobility @ rows.T
-        return Response(tuple(map(tuple, (rows @ twist).tolist())), tuple(map(tuple, twist.tolist())))
+        xx, xy, xz, yy, yz, zz = self._agility
+        center, lightness = self._center, self._lightness
+        arms: list[Vector3] = []
+        spins: list[Vector3] = []
+        kicks: list[Vector3] = []
+        for those in (old, new):
+            if not those:
+                arms, spins, kicks = [ORIGIN, ORIGIN], [ORIGIN, ORIGIN], [ORIGIN, ORIGIN]
+                continue
+            place = add(mean([points[i] for i in those]), center, -1.0)
+            for way in (normal, ahead):
+                # About the mass centre, whose velocity less omega x c is that of the base's origin.
+                x, y, z = arm = cross(place, way)
+                spin = xx * x + xy * y + xz * z, xy * x + yy * y + yz * z, xz * x + yz * y + zz * z
+                arms.append(arm)
+                spins.append(spin)
+                kicks.append(add(cross(center, spin), way, lightness))
+        rows = [[dot(arm, spin) for spin in spins] for arm in arms]
+        for i in range(0 if old else 2, 4):
+            rows[i][i] += lightness
+            rows[i][(i + 2) % 4] += lightness if old else 0.0
+        W = [(a, b, c, d) for a, b, c, d in rows]
+        twist = [*zip(*kicks, strict=True), *zip(*spins, strict=True)]
+        return Response(tuple(W), tuple(twist))

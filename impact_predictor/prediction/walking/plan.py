@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import pairwise
 
+from ...stamps import NANOSECONDS
 from ..types import Schedule, Status
-from .cubic import NANOSECONDS
 
 LONGEST = 10_000_000_000
 """ns for which what was planned is remembered."""

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import sqrt
 
+from ...stamps import NANOSECONDS
 from ..planar import hardly
 from ..scene import Scene
-from .cubic import NANOSECONDS, Frame, Noise
+from ..vectors import total
+from .cubic import Frame, Noise
 from .habit import Habit
 
 LEAST = 1e-5
@@ -118,9 +120,9 @@ class Stance:
             lasted, count = list(frames)[-2:], 2
         rates = [frame.rate for frame in lasted if frame.rate is not None]
         if rates:
-            return abs(sum(rates)) / len(rates) <= self._slow + 3.0 * noise.rate / sqrt(len(rates))
+            return abs(total(rates)) / len(rates) <= self._slow + 3.0 * noise.rate / sqrt(len(rates))
         half = count // 2
         late, early = lasted[-half:], lasted[:half]
         span = (sum([f.stamp for f in late]) - sum([f.stamp for f in early])) / half / NANOSECONDS
-        rise = (sum([f.gap for f in late]) - sum([f.gap for f in early])) / half
+        rise = (total([f.gap for f in late]) - total([f.gap for f in early])) / half
         return abs(rise) <= self._slow * span + 3.0 * noise.gap * sqrt(2.0 / half)

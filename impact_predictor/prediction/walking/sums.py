@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
-from .cubic import NANOSECONDS, SCALE, Cubic, Factor, Frame
+from collections.abc import Sequence
+from typing import TypeVar
+
+from ...stamps import NANOSECONDS
+from .cubic import SCALE, Cubic, Factor, Frame
 
 
 class Gaps:
@@ -81,6 +85,17 @@ class Sums(Gaps):
     def along(self, axis: int, ratio: float) -> Cubic:
         """The right-hand side of the least squares for a coordinate."""
         return beside(self.places[axis], self.speeds[axis], ratio)
+
+
+Kind = TypeVar("Kind", bound=Gaps)
+
+
+def sums_of(kind: type[Kind], frames: Sequence[Frame]) -> Kind:
+    """The sums of a kind over some frames, of which there is at least one."""
+    sums = kind(frames[0])
+    for frame in frames[1:]:
+        sums.add(frame)
+    return sums
 
 
 def summed(sums: list[float], value: float, s: float, s2: float, s3: float) -> None:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections import deque
-from math import hypot, sqrt
+from math import sqrt
 from typing import TYPE_CHECKING
 
+from ...stamps import NANOSECONDS
+from ..checks import LARGEST, check_numbers, order_of
 from ..planar import posture_of
-from ..predictor import LARGEST, PAUSE, check_numbers, order_of
+from ..predictor import PAUSE
 from ..scene import Scene, Walking
-from ..score import NANOSECONDS, Pending, Track
+from ..score import Pending, Track
 from ..types import (
     Foot,
     Geometry,
@@ -20,12 +22,10 @@ from ..types import (
     Schedule,
     Score,
     Status,
-    Touchdown,
     Wrench,
 )
 from ..vectors import add, axes_of, cross, dot, to_world
-from .ahead import Ahead, point_of
-from .arrival import Arrival
+from .ahead import Ahead, Landed, point_of
 from .base import Twists, base_at
 from .cubic import Frame
 from .forces import Forces
@@ -89,6 +89,12 @@ class Walker:
         """The model of the robot; None where the feet are told of themselves."""
         return self._articulated
 
+    def become(self, other: Walker) -> None:
+        """Go on as the machine of another scene: feet and plan stay known, and all that was seen begins anew."""
+        other._geometry, other._waiting, other._plan = self._geometry, self._waiting, self._plan
+        other._scores.extend(self.finish())
+        vars(self).update(vars(other))
+
     def set_geometry(self, geometry: Geometry) -> Status:
         """Take where the points of the feet are; what became of the message. A refused one leaves the last."""
         points, velocities = geometry.points, geometry.velocities
@@ -127,6 +133,7 @@ class Walker:
         status = self._check(sample)
         if status is not Status.ACCEPTED:
             return Prediction(status, sample)
+        landed = len(self._landed)
         self._recent.append(sample)
         self._twists.add(sample)
         self._see()
@@ -135,18 +142,15 @@ class Walker:
             status = Status.NO_GEOMETRY
         if status is not Status.ACCEPTED:
             return Prediction(status, sample)
-        for pending, _ in self._pending:
-            self._measure(pending, sample)
-        while self._pending and self._pending[0][0].complete:
-            done, landing = self._pending.pop(0)
-            self._scores.append(done.score(self.scene)._replace(landing=landing))
+        for one in self._landed:
+            self._measure(one.pending, sample)
         dues = [point.revise(sample.stamp, self._ground) for point in self._points]
-        touchdowns = self._ahead.touchdowns(sample, dues)
-        if isinstance(touchdowns, Status):
-            return Prediction(touchdowns, sample)
+        touchdown = self._ahead.soonest(sample, dues)
+        if isinstance(touchdown, Status):
+            return Prediction(touchdown, sample)
         feet = tuple([self._foot(number, sample.stamp, dues) for number in range(len(self._walking.feet))])
-        score = self._scores.popleft() if self._scores else None
-        return Prediction(status, sample, touchdowns[0] if touchdowns else None, score, None, None, touchdowns, feet)
+        # What lands now is told with the next sample, which has less to do.
+        return Prediction(status, sample, touchdown, self._score() if landed or self._scores else None, feet=feet)
 
     def finish(self) -> tuple[Score, ...]:
         """End the record: the scores not yet handed out, those without enough samples after them included."""
@@ -158,14 +162,14 @@ class Walker:
     def _begin(self) -> None:
         self._points = [Point(self.scene) for _ in range(self._count)]
         self._ground = Ground(self.scene)
-        self._pending: list[tuple[Pending, Landing]] = []
+        self._landed: deque[Landed] = deque()
         self._twists = Twists()
         self._found = Status.ACCEPTED  # what became of the last geometry that met a sample
         self._ahead = Ahead(self.scene, self._mechanism, self._points, self._twists)
 
     def _forget(self) -> None:
         """Begin anew; what waits for its measurement will not get it."""
-        self._scores.extend([pending.unmeasured()._replace(landing=landing) for pending, landing in self._pending])
+        self._scores.extend([score for landed in self._landed if (score := self._ahead.score(landed)) is not None])
         self._recent.clear()
         self._begin()
 
@@ -198,11 +202,9 @@ class Walker:
                 status = self._found = found
                 continue
             status = self._found = Status.ACCEPTED
-            for i, (point, frame) in enumerate(zip(self._points, found, strict=True)):
-                stood = point.stands
-                point.add(frame, self._ground)
-                if point.stands and not stood and point.arrival is not None:
-                    self._land(i)
+            landed = [point.add(frame, self._ground) for point, frame in zip(self._points, found, strict=True)]
+            for i in [i for i, has_landed in enumerate(landed) if has_landed]:
+                self._land(i)
         return status
 
     def _frames(self, geometry: Geometry, base: Sample) -> list[Frame] | Status:
@@ -229,47 +231,38 @@ class Walker:
         The first contact of a foot is told even where it was not announced.
         """
         point, each = self._points[i], self._walking.points
-        stamp, arrival = point.stance.since, point.arrival
-        track = self._ahead.settle(i, stamp)
+        stamp, told = point.stance.since, self._ahead.settle(i)
         first = i - i % each
-        if track is None and any(one.stands for one in self._points[first : first + each] if one is not point):
+        if told is None and any(one.stands for one in self._points[first : first + each] if one is not point):
             return
-        new = (i,) if track is None else track.last.new
-        seen = self._last_seen(new, arrival)
-        history: tuple[tuple[float, float], ...] = ()
-        if track is not None:
-            history = tuple(
-                [
-                    ((stamp - made) / NANOSECONDS, (made - stamp) / NANOSECONDS + told.lead_time)
-                    for made, told in track.answers
-                    if made <= stamp
-                ]
-            )
-        elif seen is None:
-            return
-        else:
-            track = Track()
-            track.add(stamp, seen[1], 0.0)
+        new = told.last.new if told is not None and i in told.last.new else (i,)
         foot = self._walking.feet[i // each]
         late, confirmed = self._plan.late(foot, stamp), self._forces.agree(foot, True, self._recent[-1].stamp)
-        pending = Pending(track, stamp)
-        speed, impact = seen or (None, None)
-        landing = Landing(foot, stamp, late, confirmed, history, speed, impact, point_of(new, each))
-        self._pending.append((pending, landing))
+        times = () if told is None else told.times
+        history = tuple(
+            [
+                ((stamp - made) / NANOSECONDS, (made - stamp) / NANOSECONDS + lead_time)
+                for made, lead_time in times
+                if made <= stamp
+            ]
+        )
+        landing = Landing(foot, stamp, late, confirmed, history, point=point_of(new, each))
+        last = None if told is None else told.last
+        landed = Landed(Pending(Track(), stamp), landing, last, self._ahead.seen(i, new, self._recent))
+        self._landed.append(landed)
         self._twists.begin(stamp)
         for sample in self._recent:
-            self._measure(pending, sample)
+            self._measure(landed.pending, sample)
 
-    def _last_seen(self, new: tuple[int, ...], arrival: Arrival | None) -> tuple[float, Touchdown] | None:
-        """The speed of points of a foot in their last frame in the air, and the touchdown that they make with it."""
-        if arrival is None or arrival.velocity is None:
-            return None
-        k = -arrival.age
-        seen = self._points[new[0]].course.frames[k].stamp
-        others = tuple([i for i, point in enumerate(self._points) if point.stands and point.stance.since <= seen])
-        places = [point.course.frames[k].position for point in self._points]
-        touchdown = self._ahead.impact(base_at(self._recent, seen), others, new, 0.0, places, arrival.velocity)
-        return None if isinstance(touchdown, Status) else (hypot(*arrival.velocity), touchdown)
+    def _score(self) -> Score | None:
+        """The next score that is complete; of its two impacts a sample computes one."""
+        if not self._scores and self._landed[0].pending.complete:
+            landed = self._landed.popleft()
+            if landed.seen is not None:
+                self._landed.appendleft(self._ahead.struck(landed))
+                return None
+            return self._ahead.score(landed)
+        return self._scores.popleft() if self._scores else None
 
     def _measure(self, pending: Pending, sample: Sample) -> None:
         """Hand a sample to a touchdown that waits for those after it."""
@@ -280,7 +273,7 @@ class Walker:
         """A foot as the sample of a stamp in ns shows it."""
         name, each = self._walking.feet[number], self._walking.points
         own = self._points[number * each : (number + 1) * each]
-        standing = [point.stance.since for point in own if point.stands]
+        standing = [landed for point in own if (landed := point.landed) is not None]
         since = min(standing) if standing else max([point.stance.since for point in own])
         lowest = min(own, key=lambda point: point.course.frames[-1].gap) if each > 1 else own[0]
         lead_time = speed = late = place = None

@@ -9,12 +9,11 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from ...stamps import NANOSECONDS
 from ..scene import Watching
 
 Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]
-
-NANOSECONDS: Final = 1e9
 
 
 class Level(IntEnum):

@@ -9,7 +9,7 @@ from typing import Final
 from ..planar import edge_of
 from ..scene import Scene
 from ..types import Quaternion, Sample, Vector3
-from ..vectors import add, axes_of, cross, dot, times, to_body, to_world
+from ..vectors import add, axes_of, cross, dot, times, to_body, to_world, total
 from .stance import Edge, Pose, Stance, edges_of, inertia_in_support, outline, placed, side
 
 COARSE: Final = 5e-4
@@ -177,7 +177,7 @@ class Standing:
         scene, spin = self._scene, sample.angular
         velocity = add(sample.linear, cross(spin, scene.center_of_mass))
         momentum = [dot(row, spin) for row in scene.inertia]
-        return 0.5 * (scene.mass * dot(velocity, velocity) + sum(p * w for p, w in zip(momentum, spin, strict=True)))
+        return 0.5 * (scene.mass * dot(velocity, velocity) + total(p * w for p, w in zip(momentum, spin, strict=True)))
 
     def _slide(self, stamp: int, pose: Pose, feet: list[Vector3]) -> None:
         """Compare where the feet are with where they stood; a cylinder's are where it then lay on its edges."""

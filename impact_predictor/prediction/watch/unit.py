@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import Final
 
 from ...mechanics.types import Mode
+from ...stamps import NANOSECONDS
 from ..scene import Scene, Watching
 from ..types import Status, Touchdown, Vector3
-from .levels import ERROR, NANOSECONDS, OK, STALE
+from .levels import ERROR, OK, STALE
 from .standing import Motion, Standing
 from .words import Used, margins
 

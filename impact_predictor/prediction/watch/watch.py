@@ -12,10 +12,11 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
+from ...stamps import NANOSECONDS
 from ..scene import MovingDeck, Scene
 from ..types import Moment, Quaternion, Sample, Status, Touchdown, Vector3
 from .counts import OnsetCounts
-from .levels import GRAVITY, NANOSECONDS, OK, WARN, Array, Level, Levels, Numbers
+from .levels import GRAVITY, OK, WARN, Array, Level, Levels, Numbers
 from .onset import Onset, first_times, motion_of, motions
 from .unit import Unit, place_of
 from .words import Known, Used, message, reasons, values

@@ -23,6 +23,7 @@ from ...prediction.scene import Scene as Body
 from ...prediction.types import Geometry, Sample, Score
 from ...resources import find
 from ...ros.messages import ODOMETRY, POLYGON, decode_odometry, decode_polygon
+from ...stamps import NANOSECONDS
 from .measuring import undisturbed
 from .rows import IMPACT, TOUCHDOWN, Row, Scene, quantiles
 from .touchdown_scenes import Falling
@@ -32,8 +33,6 @@ TOPICS = {"/cube/odom": ODOMETRY, "/cube/contact_geometry": POLYGON}
 
 AHEAD = 0.04
 """s before a touchdown at which the methods for touchdowns are asked."""
-
-NANOSECONDS = 1e9
 
 FAMILIES = {
     "predictor": "Predictor.update of this program on each recorded sample, with the laws and parameters named.",

@@ -17,8 +17,8 @@ from PIL import Image
 
 from ...mechanics.support import MovingSupport
 from ...prediction.scene import Watching
-from ...prediction.score import NANOSECONDS
 from ...scenarios.deck.sea import Array
+from ...stamps import NANOSECONDS
 from ..figure import STYLE
 from .animation import STEP, Picture, check_animation, save_film
 from .course import Course

@@ -20,8 +20,8 @@ from ...mechanics.rocking import End
 from ...mechanics.support import MovingSupport
 from ...mechanics.types import Mode
 from ...prediction.scene import Watching
-from ...prediction.score import NANOSECONDS
 from ...scenarios.deck.sea import Array
+from ...stamps import NANOSECONDS
 from ..figure import MODE_MARKERS, STYLE, check_figure, save_figure
 from ..maps.figure import COLOURS as MODE_COLOURS
 from ..summary import words

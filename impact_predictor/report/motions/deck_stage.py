@@ -15,8 +15,8 @@ from matplotlib.transforms import Affine2D
 from ...mechanics.motion import PlanarState
 from ...mechanics.support import MovingSupport
 from ...prediction.scene import Watching
-from ...prediction.score import NANOSECONDS
 from ...scenarios.deck.sea import Array
+from ...stamps import NANOSECONDS
 from .course import Course, margin_used, outline_of
 from .stage import CLOSED, LINE, OPEN, STRUCK, SUPPORT, placed
 

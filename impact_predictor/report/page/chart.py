@@ -35,6 +35,22 @@ class Shape(NamedTuple):
     height: float
     margins: tuple[float, float, float, float] = (46.0, 20.0, 38.0, 26.0)
 
+    def axes_of(self, figure: Figure) -> Axes:
+        """Axes between the margins of a figure of this size."""
+        left, right, bottom, top = self.margins
+        box = (self.width - left - right) / self.width, (self.height - bottom - top) / self.height
+        return figure.add_axes((left / self.width, bottom / self.height, *box))
+
+    def picture(self, across: str, upward: str = "") -> tuple[Figure, Axes]:
+        """A figure of this size, to be drawn in `STYLE`, and its axes: named below, and above for the upward one."""
+        figure = Figure(figsize=(self.width / 72.0, self.height / 72.0))
+        FigureCanvasAgg(figure)
+        axes = self.axes_of(figure)
+        axes.tick_params(length=0)
+        axes.set_xlabel(across)
+        figure.text(2.0 / self.width, 1.0, upward, va="top", color=INK)
+        return figure, axes
+
 
 WIDE, NARROW, LARGE = Shape("wide", 520.0, 400.0), Shape("narrow", 345.0, 400.0), Shape("wide", 660.0, 480.0)
 STRIP, GAP = 40.0, 24.0

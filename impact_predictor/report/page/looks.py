@@ -31,8 +31,14 @@ def looks_of(families: Iterable[str]) -> dict[str, Looks]:
 
 def marker_svg(looks: Looks) -> Markup:
     """The marker of a family, for a line of text."""
-    style = MarkerStyle(looks.marker)
-    polygons: Any = style.get_path().transformed(style.get_transform()).to_polygons()
-    outline = " ".join(f"{x:.2f},{-y:.2f}" for x, y in polygons[0])
-    drawing = f'<polygon points="{outline}" fill="{looks.colour}" transform="translate(8 8) scale(11)"/>'
+    drawing = (
+        f'<polygon points="{outline_of(looks.marker)}" fill="{looks.colour}" transform="translate(8 8) scale(11)"/>'
+    )
     return Markup(tidy(f'<svg class="marker" viewBox="0 0 16 16" aria-hidden="true">{drawing}</svg>'))
+
+
+def outline_of(marker: str) -> str:
+    """The corners of a marker of about unit size, as SVG has them."""
+    style = MarkerStyle(marker)
+    polygons: Any = style.get_path().transformed(style.get_transform()).to_polygons()
+    return " ".join(f"{x:.2f},{-y:.2f}" for x, y in polygons[0])

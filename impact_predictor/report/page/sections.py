@@ -9,23 +9,31 @@ from markupsafe import Markup
 
 
 class Figure(NamedTuple):
-    """A picture, drawn wide and narrow; `notes` stand below it, `data` is its numbers as a table."""
+    """A picture, drawn wide and narrow; `notes` stand below it, `data` is its numbers as a table.
+
+    `anchor` is where links lead to, or "".
+    """
 
     title: str
     caption: str
     drawings: Sequence[Markup]
     notes: Sequence[str] = ()
     data: Table | None = None
+    anchor: str = ""
 
 
 class Cell(NamedTuple):
-    """A cell: its text, a smaller line below it, a class of its style, how many columns it takes, and their name."""
+    """A cell: its text, a smaller line below it, a class of its style, how many columns it takes, and their name.
+
+    `to` is the anchor of what its text leads to, or "".
+    """
 
     text: str
     below: str = ""
     css_class: str = ""
     span: int = 1
     head: str = ""
+    to: str = ""
 
 
 class Table(NamedTuple):
@@ -33,6 +41,7 @@ class Table(NamedTuple):
 
     The first `words` columns are text, the others numbers. On a narrow page a row becomes a card where `cards`; a cell
     is named there by its `head`, or else that of its column. `accuracies` are those of the columns after the first.
+    With words in `folded` it is folded away behind them.
     """
 
     caption: str
@@ -41,6 +50,7 @@ class Table(NamedTuple):
     words: int = 1
     cards: bool = False
     accuracies: Sequence[float] = ()
+    folded: str = ""
 
 
 class Key(NamedTuple):

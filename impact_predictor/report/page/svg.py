@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from io import BytesIO
 from typing import Any, Final, NamedTuple
 from xml.etree import ElementTree
@@ -50,10 +50,14 @@ _LINK: Final = "{http://www.w3.org/1999/xlink}href"
 
 
 class Mark(NamedTuple):
-    """What a drawn point tells: its tooltip, and attributes that the page's script reads."""
+    """What a drawn point tells: its tooltip, and attributes that the page's script reads.
+
+    Of points that are drawn at once `titles` has the tooltip of each.
+    """
 
     title: str
     attributes: Mapping[str, str]
+    titles: Sequence[str] = ()
 
 
 def family_colour(number: int) -> str:
@@ -100,16 +104,31 @@ def _tell(element: ElementTree.Element, mark: Mark) -> None:
     """Give a mark its attributes, and where it has a tooltip that and a ring around it that a finger meets."""
     for key, value in mark.attributes.items():
         element.set(f"data-{key}", value)
+    if mark.titles:
+        _tell_each(element, mark.titles)
     if not mark.title:
         return
     element.set("class", "point")
-    title = ElementTree.Element("title")
-    title.text = mark.title
-    element.insert(0, title)
+    element.insert(0, _title(mark.title))
     drawn = element.find(".//use")
     if drawn is not None:
         ring = {"class": "ring", "cx": drawn.get("x", "0"), "cy": drawn.get("y", "0"), "r": "9"}
         ElementTree.SubElement(element, "circle", ring)
+
+
+def _tell_each(element: ElementTree.Element, titles: Sequence[str]) -> None:
+    """Give each point of a crowd its tooltip."""
+    points = [(parent, one) for parent in element.iter() for one in parent if one.tag == "use"]
+    for (parent, drawn), title in zip(points, titles, strict=True):
+        group = ElementTree.Element("g", {"class": "point"})
+        group.extend((_title(title), drawn))
+        parent[list(parent).index(drawn)] = group
+
+
+def _title(text: str) -> ElementTree.Element:
+    title = ElementTree.Element("title")
+    title.text = text
+    return title
 
 
 def _drop_identifiers(root: ElementTree.Element) -> None:

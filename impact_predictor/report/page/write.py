@@ -6,13 +6,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
-
-from ..whole import whole
 from .choosing import choosing, headline
 from .data import Entry
 from .measured import measured
 from .parts import parts
+from .render import render, write
 from .scenes import scenes
 from .sections import Section
 from .study import Study, accuracies_of, studies_of
@@ -29,21 +27,14 @@ def write_page(file: Path, report: Mapping[str, Any]) -> None:
     Raises:
         InputError: the file cannot be written.
     """
-    with whole(file) as partial:
-        partial.write_text(page_of(report), encoding="utf-8")
+    write(file, page_of(report))
 
 
 def page_of(report: Mapping[str, Any]) -> str:
     """The page as HTML."""
     studies = studies_of(report)
-    environment = Environment(
-        loader=PackageLoader(__package__),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    return environment.get_template("page.html").render(
+    return render(
+        "page.html",
         made=report["made"],
         notes=[neat(note) for note in report.get("notes", ())],
         headlines=[headline(report, study) for study in studies],

@@ -15,8 +15,8 @@ from ...prediction.scene import MovingDeck, Scene
 from ...prediction.types import Geometry, Imu, Joints, Quaternion, Sample, Schedule, Vector3, Wrench
 from ...prediction.vectors import add, axes_of, cross, dot, mean, times, to_body, to_world, turned
 from ...resources import find
+from ...stamps import NANOSECONDS
 
-NANOSECONDS: Final = 10**9
 RATE: Final = 200
 """Samples per second of a made motion."""
 STEPS: Final = 20

@@ -8,7 +8,8 @@ from typing import Final
 from ...prediction.scene import Robot, Scene, Walking
 from ...prediction.types import Geometry, Joints, Sample, Schedule, Vector3, Wrench
 from ...prediction.vectors import add
-from .record import NANOSECONDS, RATE, Message, Record, ground_of, stamped, upright_of
+from ...stamps import NANOSECONDS
+from .record import RATE, Message, Record, ground_of, stamped, upright_of
 
 SAMPLES: Final = 400
 STEP: Final = 60

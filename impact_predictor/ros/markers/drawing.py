@@ -10,7 +10,7 @@ from ...mechanics.types import Mode
 from ...prediction.scene import Scene
 from ...prediction.types import Foot, Moment, Quaternion, Touchdown, Vector3
 from ...prediction.vectors import Axes, add, axes_of, combine, composed, cross, dot, mean, times, to_world
-from ..cdr import NANOSECONDS
+from ...stamps import NANOSECONDS
 from .message import ARROW, CUBE, CUBE_LIST, LINE_LIST, NOWHERE, SPHERE_LIST, TEXT, UNTURNED, Colour, Marker
 from .shapes import Shape, Slab, drum_axis, grid_of, turn_to
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 from ...prediction.scene import Scene
 from ...prediction.types import Foot, Geometry, Moment, Prediction, Quaternion, Status
 from ...prediction.vectors import add, axes_of, dot, to_body, to_world
-from ..cdr import NANOSECONDS
+from ...stamps import NANOSECONDS
 from .drawing import Ahead, Seen, Unit, draw_support, draw_unit
 from .message import DELETE, DELETE_ALL, Marker, encode_markers
 from .shapes import about, deck_of, patch_of, shape_of

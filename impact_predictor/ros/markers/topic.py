@@ -31,6 +31,11 @@ class MarkerTopic:
         if self.drawing is not None:
             self.drawing.set_geometry(body, geometry)
 
+    def begin_anew(self) -> None:
+        """Draw from now on what the scenes have become."""
+        self.drawing = None
+        self.look_for_viewers()
+
     def look_for_viewers(self) -> None:
         """Begin to draw when somebody looks, and end when nobody does any more."""
         if not self.publisher.get_subscription_count():

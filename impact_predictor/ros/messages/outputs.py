@@ -8,7 +8,8 @@ from typing import Final, NamedTuple
 
 from ...mechanics.types import Flag, Mode
 from ...prediction.types import Leftover, Prediction, Sample, Score, Status, Touchdown
-from ..cdr import LITTLE_ENDIAN_HEADER, NANOSECONDS, OK, WARN, DiagnosticForm, diagnostic_array
+from ...stamps import NANOSECONDS
+from ..cdr import LITTLE_ENDIAN_HEADER, OK, WARN, DiagnosticForm, diagnostic_array
 from .inputs import ODOMETRY, encode_odometry
 
 UINT8: Final = "std_msgs/msg/UInt8"
@@ -58,9 +59,9 @@ def encode_mode(prediction: Prediction) -> bytes:
     return _MODES[Mode.NO_IMPACT if touchdown is None else touchdown.mode]
 
 
-_DOUBTFUL_FLAGS: Final = (
-    Flag.JAMMED | Flag.ENERGY_GAINED | Flag.BOTH_STRUCK | Flag.LAST_RESORT | Flag.NO_SOLUTION | Flag.INVALID_INPUT
-)
+_DOUBTFUL_ON_FEET: Final = Flag.JAMMED | Flag.ENERGY_GAINED | Flag.LAST_RESORT | Flag.NO_SOLUTION | Flag.INVALID_INPUT
+"""Feet that land together are how a machine trots; any other body has its reasons to strike twice at once."""
+_DOUBTFUL_FLAGS: Final = _DOUBTFUL_ON_FEET | Flag.BOTH_STRUCK
 _DOUBTFUL_LEFTOVERS: Final = Leftover.OUT_OF_PLANE | Leftover.ONE_CORNER_FIRST | Leftover.TOO_SLOW
 
 _MODE_NAMES: Final = tuple(mode.name for mode in sorted(Mode))
@@ -110,7 +111,7 @@ def encode_prediction(prediction: Prediction) -> bytes:
         values = [status, str(sample.stamp), Mode.NO_IMPACT.name]
     else:
         form = _touchdown_form(touchdown.uncertainty is not None, touchdown.planar is not None)
-        level = WARN if _is_doubtful(touchdown) else OK
+        level = WARN if _is_doubtful(touchdown, _DOUBTFUL_ON_FEET if prediction.feet else _DOUBTFUL_FLAGS) else OK
         message = f"{_MODE_NAMES[touchdown.mode]} in {touchdown.lead_time * 1e3:.1f} ms"
         values = [status, str(sample.stamp), *_touchdown_values(touchdown)]
         if touchdown.uncertainty is not None or touchdown.planar is not None:
@@ -125,8 +126,8 @@ def encode_prediction(prediction: Prediction) -> bytes:
     return form.fill(sample.stamp, sample.frame_id, level, message, sample.child_frame_id, values)
 
 
-def _is_doubtful(touchdown: Touchdown) -> bool:
-    return bool(not touchdown.unique or touchdown.flags & _DOUBTFUL_FLAGS or touchdown.leftover & _DOUBTFUL_LEFTOVERS)
+def _is_doubtful(touchdown: Touchdown, flags: Flag) -> bool:
+    return bool(not touchdown.unique or touchdown.flags & flags or touchdown.leftover & _DOUBTFUL_LEFTOVERS)
 
 
 def _touchdown_values(touchdown: Touchdown) -> list[str]:

@@ -8,10 +8,10 @@ from __future__ import annotations
 from typing import Final
 
 from ...prediction.types import Joints, Schedule, Wrench
+from ...stamps import NANOSECONDS
 from ..cdr import (
     LITTLE_ENDIAN,
     LITTLE_ENDIAN_HEADER,
-    NANOSECONDS,
     add_doubles,
     add_strings,
     align4,

@@ -19,7 +19,7 @@ from ...mechanics.types import Contact, TwoPointBody, Vector
 from ...prediction.planar import inertia_about
 from ...prediction.scene import Scene
 from ...prediction.types import Vector3
-from ...ros.cdr import NANOSECONDS
+from ...stamps import NANOSECONDS
 from ..record import half_distance, true_impact
 from ..space import ACROSS, Mount
 from ..truth import TrueImpact, TrueOnset, border_of

@@ -23,7 +23,7 @@ from ...mechanics.rocking import End
 from ...mechanics.rocking.flight import from_world
 from ...mechanics.support import MovingSupport
 from ...mechanics.types import Contact, Mode, Twist, TwoPointBody
-from ...ros.cdr import NANOSECONDS
+from ...stamps import NANOSECONDS
 from ..space import ACROSS
 from ..truth import TrueImpact, border_of
 from .cargo import Span, Unit

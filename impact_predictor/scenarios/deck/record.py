@@ -13,8 +13,9 @@ from ...mechanics.rocking import End
 from ...mechanics.rocking.flight import in_world
 from ...mechanics.support import MovingSupport
 from ...prediction.scene import MovingDeck, Scene
-from ...ros.cdr import NANOSECONDS, diagnostic_array
+from ...ros.cdr import diagnostic_array
 from ...ros.messages import DIAGNOSTIC_ARRAY, IMU, ODOMETRY, encode_imu, encode_odometry
+from ...stamps import NANOSECONDS
 from ..record import FRAME, Message
 from ..space import ACROSS, Mount
 from ..truth import ONSET_TOPIC, TRUTH_TOPIC, TrueImpact, TrueOnset, encode_true_impact, encode_true_onset

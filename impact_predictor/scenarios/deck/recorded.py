@@ -10,8 +10,8 @@ import numpy as np
 from ...bags.read import read_messages, topics
 from ...errors import InputError
 from ...mechanics.support import MovingSupport, sampled_support
-from ...ros.cdr import NANOSECONDS
 from ...ros.messages import ODOMETRY, MalformedMessage, decode_odometry
+from ...stamps import NANOSECONDS
 
 
 class RecordedDeck(NamedTuple):

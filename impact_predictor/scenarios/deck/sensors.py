@@ -9,7 +9,7 @@ import numpy as np
 
 from ...mechanics.motion import PlanarState
 from ...prediction.types import Imu, Sample
-from ...ros.cdr import NANOSECONDS
+from ...stamps import NANOSECONDS
 from ..space import Mount, Plane, Poses, in_frame, origin_velocity, poses
 from .sea import Array
 

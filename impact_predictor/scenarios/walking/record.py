@@ -10,8 +10,8 @@ from typing import Final
 import numpy as np
 
 from ...prediction.types import Geometry
-from ...ros.cdr import NANOSECONDS
 from ...ros.messages import DIAGNOSTIC_ARRAY, ODOMETRY, POLYGON, encode_odometry, encode_polygon
+from ...stamps import NANOSECONDS
 from ..deck.sensors import AT_ONCE, Odometer
 from ..record import FRAME, REST, Message, true_impact, write_messages
 from ..space import FORWARD, Mount

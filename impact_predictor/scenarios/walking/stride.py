@@ -8,7 +8,7 @@ takes nothing, and both legs are rigid while the impact lasts. With one angle fo
 from __future__ import annotations
 
 from enum import IntEnum
-from math import cos, hypot, inf, nextafter, pi, sin
+from math import cos, degrees, hypot, inf, nextafter, pi, sin
 from typing import Any, Final, NamedTuple
 
 from ...errors import InputError
@@ -25,7 +25,7 @@ _BEYOND: Final = 1.0 + 1e-12
 _SLIP_ROUNDING: Final = 1e-12
 """A slip this small, relative to the speeds it is the difference of, is none."""
 
-_MOST_EVENTS: Final = 1000
+_MOST_EVENTS: Final = 10_000
 
 
 class Hub(NamedTuple):
@@ -161,7 +161,8 @@ def check(hub: Hub) -> None:
     """
     positive(mass=hub.mass, inertia=hub.inertia, leg=hub.leg, gravity=hub.gravity)
     not_negative(friction=hub.friction)
-    refuse({"slope": hub.slope}, lambda value: abs(value) < 0.5 * pi, "an angle between -pi / 2 and pi / 2")
+    if not abs(hub.slope) < 0.5 * pi:
+        raise InputError(f"slope is {degrees(hub.slope):g} degrees; give an angle between -90 and 90 degrees")
 
 
 def stance_of(body: TwoPointBody, contact: int, angle: float, state: PlanarState) -> Stance:

@@ -20,7 +20,7 @@ from rosbags.typesys.store import Typestore
 
 from impact_predictor.bags.adapters import Adapted, known, of_world
 from impact_predictor.bags.inputs import adapted_topics, find_topics
-from impact_predictor.bags.read import UnusableMessage, read_messages
+from impact_predictor.bags.read import Bag, UnusableMessage, read_messages
 from impact_predictor.bags.replay import replay
 from impact_predictor.errors import InputError
 from impact_predictor.parameters.validation import validate
@@ -100,8 +100,13 @@ def write(path: Path, store: Typestore, messages: list[bytes], topic: str = "/st
     return path
 
 
+def reader_of(path: Path, topic: str = "/state", type_name: str = TYPE) -> known.Read:
+    with Bag(path) as bag:
+        return known.readers(bag, {topic: type_name})[topic]
+
+
 def read(path: Path) -> list[Adapted]:
-    reader = known.readers(path, {"/state": TYPE})["/state"]
+    reader = reader_of(path)
     return [reader(message.data) for message in read_messages(path, {"/state": TYPE})]
 
 
@@ -179,14 +184,14 @@ def test_an_adapter_that_cannot_be_imported_is_named(tmp_path: Path, monkeypatch
     bag = write(tmp_path / "robot", store, states(store))
     install(monkeypatch, EntryPoint(TYPE, "nowhere.at_all:adapt", known.GROUP))
     with pytest.raises(InputError, match=rf"the adapter nowhere.at_all:adapt of {TYPE} cannot be imported \(No module"):
-        known.readers(bag, {"/state": TYPE})
+        reader_of(bag)
 
 
 @pytest.mark.usefixtures("documented")
 def test_damaged_bytes_are_malformed(tmp_path: Path) -> None:
     store = typestore()
     whole = states(store)[0]
-    reader = known.readers(write(tmp_path / "robot", store, [whole]), {"/state": TYPE})["/state"]
+    reader = reader_of(write(tmp_path / "robot", store, [whole]))
     for size in range(0, len(whole) - 4, 7):
         with pytest.raises(MalformedMessage):
             reader(whole[:size])
@@ -299,7 +304,7 @@ def test_a_bag_without_definitions_is_told_apart(tmp_path: Path, monkeypatch: py
     with sqlite3.connect(path / "robot.db3") as database:
         database.execute("DELETE FROM message_definitions")
     with pytest.raises(InputError, match=r"holds no definition of my_robot_msgs/msg/State on /state; record it again"):
-        known.readers(path, {"/state": TYPE})
+        reader_of(path)
 
 
 def test_definitions_may_be_in_idl(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -319,7 +324,7 @@ def test_definitions_may_be_in_idl(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     with Writer(tmp_path / "places", version=9, storage_plugin=StoragePlugin.MCAP) as writer:
         connection = writer.add_connection("/place", "places_msgs/msg/Place", msgdef=idl, rihs01="RIHS01_0")
         writer.write(connection, 0, data)
-    reader = known.readers(tmp_path / "places", {"/place": "places_msgs/msg/Place"})["/place"]
+    reader = reader_of(tmp_path / "places", "/place", "places_msgs/msg/Place")
     assert reader(data) == Adapted(stands=(True,))
 
 

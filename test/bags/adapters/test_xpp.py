@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from impact_predictor.bags.adapters import Adapted
 from impact_predictor.bags.adapters.known import readers
-from impact_predictor.bags.read import read_messages
+from impact_predictor.bags.read import Bag, read_messages
 
 BAG = Path(__file__).parents[3] / "examples/hyq/hyq.bag"
 TOPIC = "/xpp/state_des"
@@ -20,7 +20,8 @@ PERIOD = 0.0025
 
 @pytest.fixture(scope="module")
 def plan() -> list[Adapted]:
-    read = readers(BAG, {TOPIC: TYPE})[TOPIC]
+    with Bag(BAG) as bag:
+        read = readers(bag, {TOPIC: TYPE})[TOPIC]
     return [read(message.data) for message in read_messages(BAG, {TOPIC: TYPE})]
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from impact_predictor.prediction.types import Sample
 from impact_predictor.prediction.vectors import axes_of, to_body, to_world
-from impact_predictor.prediction.walking.base import FEWEST, Twists, base_at
+from impact_predictor.prediction.walking.base import FEWEST, Twists, ahead, base_at
 
 PERIOD = 2_500_000
 ZEROS = (0.0,) * 36
@@ -38,7 +38,7 @@ def twists_of(samples: list[Sample]) -> Twists:
 @pytest.mark.parametrize("lead_time", [0.0, 0.02, 0.1])
 def test_a_base_goes_on_at_the_acceleration_that_its_twists_show(lead_time: float) -> None:
     samples = [sample(k * PERIOD) for k in range(41)]
-    then = twists_of(samples).ahead(samples[-1], lead_time)
+    then = ahead(samples[-1], twists_of(samples).line, lead_time)
     true = sample(samples[-1].stamp + round(lead_time * 1e9))
     assert then.stamp == samples[-1].stamp
     # Motion of constant acceleration is followed exactly, up to rounding of 1 m and 4 rad/s.
@@ -53,7 +53,7 @@ def test_a_body_that_falls_over_a_foot_is_told_far_better_than_at_its_twist_of_n
     rates = [1.2 * cosh(sqrt(9.81) * (0.1 + k * PERIOD * 1e-9)) for k in range(41)]
     samples = [sample(k * PERIOD)._replace(angular=(0.0, 0.0, rate)) for k, rate in enumerate(rates)]
     true = 1.2 * cosh(sqrt(9.81) * 0.3)
-    told = twists_of(samples).ahead(samples[-1], 0.1).angular[2]
+    told = ahead(samples[-1], twists_of(samples).line, 0.1).angular[2]
     assert abs(told - true) < 0.4 * abs(rates[-1] - true)
 
 
@@ -62,13 +62,13 @@ def test_what_was_before_an_impact_does_not_count() -> None:
     twists = twists_of(samples)
     twists.begin(samples[20].stamp)
     true = sample(samples[-1].stamp + 50_000_000, shift=1.0)
-    assert twists.ahead(samples[-1], 0.05).linear == pytest.approx(true.linear, abs=1e-12)
+    assert ahead(samples[-1], twists.line, 0.05).linear == pytest.approx(true.linear, abs=1e-12)
 
 
 def test_from_fewer_samples_the_twist_of_now_is_kept() -> None:
     samples = [sample(k * PERIOD) for k in range(FEWEST - 1)]
     last = samples[-1]
-    then = twists_of(samples).ahead(last, 0.1)
+    then = ahead(last, twists_of(samples).line, 0.1)
     kept = to_world(axes_of(then.orientation), then.linear)
     assert kept == pytest.approx(to_world(axes_of(last.orientation), last.linear), abs=1e-15)
     assert then.angular == last.angular
@@ -76,14 +76,14 @@ def test_from_fewer_samples_the_twist_of_now_is_kept() -> None:
 
 def test_of_samples_that_come_at_once_no_acceleration_is_told() -> None:
     samples = [sample(k * 100_000) for k in range(2 * FEWEST)]
-    then = twists_of(samples).ahead(samples[-1], 0.1)
+    then = ahead(samples[-1], twists_of(samples).line, 0.1)
     assert then.angular == samples[-1].angular
 
 
 def test_a_slow_source_is_followed_over_a_longer_time() -> None:
     samples = [sample(k * 20_000_000) for k in range(2 * FEWEST)]
     true = sample(samples[-1].stamp + 100_000_000)
-    assert twists_of(samples).ahead(samples[-1], 0.1).linear == pytest.approx(true.linear, abs=1e-12)
+    assert ahead(samples[-1], twists_of(samples).line, 0.1).linear == pytest.approx(true.linear, abs=1e-12)
 
 
 @pytest.mark.parametrize(("offset", "nearest"), [(0, 4), (-1_000_000, 4), (-1_500_000, 3), (1_000_000, 4)])

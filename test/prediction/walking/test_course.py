@@ -16,8 +16,8 @@ UP = (0.0, 0.0, 1.0)
 CLEAN = Noise(1e-7, 1e-6)
 
 
-def course_of(gap: Callable[[float], float], times: np.ndarray, measured: bool = True, window: float = 0.0) -> Course:
-    course = Course(window, UP)
+def course_of(gap: Callable[[float], float], times: np.ndarray, measured: bool = True) -> Course:
+    course = Course(UP)
     for time in times.tolist():
         rate = (gap(time + 1e-6) - gap(time - 1e-6)) / 2e-6
         velocity = (0.3, 0.0, rate) if measured else None
@@ -93,7 +93,7 @@ def test_the_noise_that_is_predicted_is_that_of_many_fits() -> None:
     noise, times = Noise(1e-3, 0.02), np.arange(0.0, 0.1, 0.0025)
     found = []
     for _ in range(300):
-        course = Course(0.0, UP)
+        course = Course(UP)
         for time in times.tolist():
             gap, rate = 0.4 - 0.5 * time + rng.normal(0.0, noise.gap), -0.5 + rng.normal(0.0, noise.rate)
             course.add(Frame(round(time * 1e9), gap, rate, (0.0, 0.0, gap), (0.0, 0.0, rate)))

@@ -10,7 +10,7 @@ from impact_predictor.mechanics.types import Contact, Flag, Twist, TwoPointBody
 from impact_predictor.prediction.scene import Scene, Walking
 from impact_predictor.prediction.types import Leftover, Sample, Status
 from impact_predictor.prediction.vectors import axes_of, composed, cross
-from impact_predictor.prediction.walking.impact import touchdown_of
+from impact_predictor.prediction.walking.impact import ahead_of, touchdown_of
 from impact_predictor.prediction.walking.mechanism import Trunk
 
 FEET = ((0.31, 0.29, -0.58), (0.31, -0.29, -0.58), (-0.31, 0.29, -0.58), (-0.31, -0.29, -0.58))
@@ -54,8 +54,8 @@ def random_landing(source, **changes):
     return scene, base, feet, old, (new,), tuple((velocity @ axes).tolist())
 
 
-def landing(scene, base, feet, old, new, velocity):
-    return touchdown_of(scene, Trunk(scene), base, feet, old, new, 0.05, velocity)
+def landing(scene, base, feet, old, new, velocity, **together):
+    return touchdown_of(scene, Trunk(scene), base, feet, old, new, 0.05, velocity, **together)
 
 
 def motion_of_mass_centre(scene, linear, angular):
@@ -209,6 +209,11 @@ def test_a_toe_strikes_about_the_heel_of_its_own_foot_whatever_else_stands():
     scene = scene_of(walking=Walking(("left", "right"), points=2))
     touchdown = landing(scene, base_of(), FEET, (0, 1, 2), (3,), (0.0, 0.0, -0.2))
     assert touchdown.old == (2,)
+    # The impulses at the right foot, behind the mass centre, press the left one, ahead of it, into the ground.
+    turn = np.subtract(touchdown.angular, base_of().angular)
+    rise = touchdown.linear[2] - base_of().linear[2]
+    assert min(rise + np.cross(turn, FEET[i])[2] for i in (0, 1)) < 0.0
+    assert Leftover.OUT_OF_PLANE in touchdown.leftover
     touchdown = landing(scene, base_of(), FEET, (0, 1), (3,), (0.0, 0.0, -0.2))
     assert set(touchdown.old) <= {0, 1}
     assert touchdown.old
@@ -228,6 +233,16 @@ def test_no_standing_foot_of_a_rigid_machine_is_driven_into_the_ground(standing)
         assert min(rates) > -1e-9
         dropped += touchdown.old != old
     assert dropped > 0 or standing == 1
+
+
+def test_a_body_with_next_to_no_inertia_is_answered_although_its_standing_foot_is_pressed_by_rounding():
+    scene = scene_of(mass=20.0, inertia=((1e-9, 0.0, 0.0), (0.0, 1e-9, 0.0), (0.0, 0.0, 1e-9)), friction=0.405)
+    scene = scene._replace(center_of_mass=(0.0, 0.0, 0.0), walking=Walking(("left", "right")))
+    feet = (3e-17, 0.5, -0.49999999999887373), (-9e-17, -0.5, -0.5)
+    rest = base_of((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.5))
+    touchdown = landing(scene, rest, feet, (1,), (0,), (0.0, 0.0, -0.6666655474983967))
+    assert touchdown.old == (1,)
+    assert touchdown.leftover & Leftover.OUT_OF_PLANE
 
 
 def test_the_corners_of_a_sole_that_strike_together_tell_how_far_apart_they_close():
@@ -279,3 +294,105 @@ def test_the_twists_in_the_plane_are_those_of_the_mass_centre():
         velocity, spin = motion_of_mass_centre(scene, state.linear, state.angular)
         ahead = np.cross(axis, normal)
         assert twist == pytest.approx(Twist(velocity @ ahead, velocity @ normal, -spin @ axis), abs=1e-13)
+
+
+def test_a_touchdown_tells_how_far_from_planar_it_is():
+    scene = scene_of(center_of_mass=(0.0, 0.05, 0.0))
+    base = base_of(angular=(0.3, 0.4, 0.0))
+    touchdown = landing(scene, base, ((0.3, 0.0, -0.5), (-0.3, 0.0, -0.58)), (1,), (0,), (0.1, 0.2, -0.3))
+    assert touchdown.axis == pytest.approx((0.0, 1.0, 0.0))
+    assert touchdown.lateral == pytest.approx(0.2)
+    assert touchdown.half_distance == pytest.approx(0.5 * np.hypot(0.6, 0.08))
+    assert touchdown.offset == pytest.approx(0.05)
+    # The part of (0.3, 0.4, 0) off the y axis.
+    assert touchdown.off_axis == pytest.approx(0.6)
+
+
+@pytest.mark.parametrize(("off", "along_the_arm"), [(0.15, True), (0.25, False)])
+def test_the_line_of_standing_feet_counts_for_a_foot_that_is_far_enough_from_it(off, along_the_arm):
+    stood, distance = [(0.0, -0.3, 0.0), (0.0, 0.3, 0.0)], 0.5
+    struck = (distance * off, distance * np.sqrt(1.0 - off**2), 0.0)
+    ahead = ahead_of(scene_of(), (0.0, 0.0, 1.0), stood, struck, (0.0, 0.0, -0.2))
+    assert ahead == pytest.approx(np.array(struck) / distance if along_the_arm else (1.0, 0.0, 0.0))
+
+
+SYMMETRIC = {"inertia": ((4.3, 0, 0), (0, 9.0, 0), (0, 0, 8.3)), "center_of_mass": (0.0, 0.0, 0.0)}
+DOWN = (0.0, 0.0, -0.7)
+
+
+def falls(feet, struck, **changes):
+    """The touchdown of a symmetric machine that falls without turning, its first struck foot being the new contact."""
+    base = base_of(linear=DOWN, angular=(0.0, 0.0, 0.0))
+    first, *others = struck
+    return landing(
+        scene_of(**SYMMETRIC, **changes), base, feet, (), (first,), DOWN, together=dict.fromkeys(others, DOWN)
+    )
+
+
+@pytest.mark.parametrize("restitution", [0.0, 0.4])
+def test_two_front_feet_that_land_together_pitch_the_machine_by_newton_and_euler(restitution):
+    touchdown = falls(FEET, (0, 1), restitution=restitution)
+    ahead, side = FEET[0][:2]
+    # Both together push with one impulse at (ahead, 0): what it takes to turn the speed of the feet round.
+    push = (1.0 + restitution) * -DOWN[2] / (1.0 / 83.0 + ahead**2 / 9.0)
+    assert touchdown.impulses == (pytest.approx((0.5 * push, 0.0)), pytest.approx((0.5 * push, 0.0)))
+    assert touchdown.linear == pytest.approx((0.0, 0.0, DOWN[2] + push / 83.0), abs=1e-12)
+    assert touchdown.angular == pytest.approx((0.0, -ahead * push / 9.0, 0.0), abs=1e-12)
+    assert Flag.BOTH_STRUCK in touchdown.flags
+    assert touchdown.leftover == Leftover.DRIVEN
+    assert (touchdown.old, touchdown.new) == ((1,), (0,))
+    assert touchdown.half_distance == pytest.approx(side)
+
+
+@pytest.mark.parametrize("struck", [(0, 3), (3, 0), (1, 2), (0, 1, 2, 3), (2, 3, 0, 1)])
+def test_feet_that_land_together_around_the_mass_centre_stop_the_machine(struck):
+    touchdown = falls(FEET, struck)
+    assert touchdown.linear == pytest.approx((0.0, 0.0, 0.0), abs=1e-12)
+    assert touchdown.angular == pytest.approx((0.0, 0.0, 0.0), abs=1e-12)
+    assert touchdown.impulses[1][0] == pytest.approx(83.0 * 0.7 / len(struck))
+    assert touchdown.energy_lost == pytest.approx(0.5 * 83.0 * 0.7**2)
+
+
+def test_feet_that_land_together_make_one_impact_whichever_is_looked_at():
+    source = np.random.default_rng(9)
+    for _ in range(100):
+        base = base_of(tuple(source.normal(size=3)), tuple(source.normal(size=3)))
+        one, other = ((*source.normal(size=2), -source.uniform(0.1, 1.0)) for _ in range(2))
+        scene = scene_of(friction=source.uniform(0.1, 1.0))
+        here = landing(scene, base, FEET, (), (0,), one, together={3: other})
+        there = landing(scene, base, FEET, (), (3,), other, together={0: one})
+        if not (here.unique and there.unique):
+            continue
+        assert here.linear == pytest.approx(there.linear, abs=1e-11)
+        assert here.angular == pytest.approx(there.angular, abs=1e-11)
+        assert here.energy_lost == pytest.approx(there.energy_lost, abs=1e-10)
+        assert here.impulses[0] == pytest.approx((there.impulses[1][0], -there.impulses[1][1]), abs=1e-10)
+        before, after = (motion_of_mass_centre(scene, state.linear, state.angular) for state in (base, here))
+        pushes = impulse_vectors(scene, base, here)
+        assert scene.mass * (after[0] - before[0]) == pytest.approx(sum(pushes), abs=1e-10)
+        arms = np.subtract([FEET[3], FEET[0]], scene.center_of_mass)
+        turned = np.cross(arms, pushes).sum(axis=0)
+        assert np.array(scene.inertia) @ (after[1] - before[1]) == pytest.approx(turned, abs=1e-10)
+        for i, before in ((0, one), (3, other)):
+            change = np.subtract(here.linear, base.linear) + np.cross(np.subtract(here.angular, base.angular), FEET[i])
+            assert before[2] + change[2] > -1e-12
+
+
+def test_standing_feet_that_the_others_press_into_the_ground_are_told_to_be_left_out():
+    turns = {**SYMMETRIC, "inertia": ((4.3, 0, 0), (0, 4.0, 0), (0, 0, 8.3))}
+    base = base_of(linear=DOWN, angular=(0.0, 0.0, 0.0))
+    for inertia, pressed in ((turns, True), (SYMMETRIC, False)):
+        touchdown = landing(scene_of(**inertia), base, FEET, (2, 3), (0,), DOWN, together={1: DOWN})
+        assert (Leftover.OUT_OF_PLANE in touchdown.leftover) is pressed
+        assert touchdown.old == (1,)
+
+
+@pytest.mark.parametrize("restitution", [0.0, 0.5])
+def test_a_foot_that_lands_with_one_that_has_braked_turns_the_machine_about_it(restitution):
+    scene, rest = scene_of(restitution=restitution), (0.0, 0.0, 0.0)
+    touchdown = landing(scene, base_of(), FEET, (), (0,), DOWN, together={3: rest})
+    assert touchdown == landing(scene._replace(law="total"), base_of(), FEET, (3,), (0,), DOWN)
+    assert Flag.BOTH_STRUCK not in touchdown.flags
+    other = landing(scene, base_of(), FEET, (), (3,), rest, together={0: DOWN})
+    assert other.linear == pytest.approx(touchdown.linear, abs=1e-12)
+    assert other.angular == pytest.approx(touchdown.angular, abs=1e-12)

@@ -1,0 +1,70 @@
+"""Bags through the replay, one after the other or on workers, and where the predictions of each go."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Sequence
+from contextlib import nullcontext
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..errors import InputError
+
+if TYPE_CHECKING:
+    from ..fleet.job import Job, Outcome
+
+
+def outputs_of(bags: Sequence[str], output: str | None) -> list[Path | None]:
+    """Where the predictions of each bag go: one output, or a file for each of several bags in a folder.
+
+    Raises:
+        InputError: a bag is there twice, or a folder cannot be made.
+    """
+    if output is None:
+        return [None for _ in bags]
+    if len(bags) == 1:
+        return [Path(output)]
+    folder = Path(output)
+    if folder.suffix == ".mcap":
+        raise InputError(f"{output} is one file, but {len(bags)} bags are given; give the name of a folder")
+    from ..bags.names import names_of
+
+    files = [folder / f"{name}.mcap" for name in names_of(bags)]
+    if not folder.absolute().parent.exists():
+        raise InputError(f"the folder of {output} does not exist; make it, or give another name")
+    try:
+        for place in dict.fromkeys([folder, *(file.parent for file in files)]):
+            place.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"the folder {error.filename} cannot be made: {error.strerror}") from error
+    return list(files)
+
+
+def one_by_one(job: Job, bags: Sequence[str], outputs: Sequence[Path | None]) -> Generator[Outcome]:
+    """What became of each bag, replayed here."""
+    from ..fleet.job import replay_bag
+    from .compiling import compiling_is_said
+    from .progress import progress
+
+    samples = any(scene.samples for scene in job.scenes.values())
+    for number, (bag, output) in enumerate(zip(bags, outputs, strict=True), 1):
+        label = f"{Path(bag).name} ({number:,} of {len(bags):,})" if len(bags) > 1 else Path(bag).name
+        with progress(label) as tell, compiling_is_said() if samples else nullcontext():
+            outcome = replay_bag(job, bag, output, tell)
+        yield outcome
+
+
+def on_workers(
+    job: Job, bags: Sequence[str], outputs: Sequence[Path | None], workers: int, scheduler: str | None
+) -> Generator[Outcome]:
+    """What became of each bag, in their order, replayed by so many processes here or by the workers of a scheduler.
+
+    Raises:
+        InputError: Dask is missing, or the scheduler does not answer, has no workers, or is lost.
+    """
+    from ..fleet.cluster import Fleet, connected
+    from .progress import progress
+
+    with connected(min(workers, len(bags)), scheduler) as client, progress("bags", "bags", len(bags)) as bar:
+        for outcome in Fleet(client, job, bags, outputs).outcomes(bar):
+            bar.hide()
+            yield outcome

@@ -1,0 +1,53 @@
+"""What is asked of every bag, and what became of one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from ..bags.replay import Result, replay
+from ..errors import InputError
+from ..prediction.scene import Scene
+
+
+class Job(NamedTuple):
+    """What is asked of every bag: arguments of `bags.replay.replay`, and whether the `answers` in JSON are wanted."""
+
+    scenes: Mapping[str, Scene]
+    remap: Mapping[str, str]
+    markers: bool = False
+    answers: bool = False
+
+
+class Outcome(NamedTuple):
+    """What became of a bag: its result and, where it is wanted, the JSON; without a result `error` says why.
+
+    It grows with the touchdowns of the bag, not with its samples, so that it is fit to be sent.
+    """
+
+    bag: str
+    result: Result | None
+    answer: dict[str, Any]
+    error: str = ""
+
+
+def failed(bag: str, error: str) -> Outcome:
+    """The outcome of a bag that was not replayed, and why in one sentence."""
+    return Outcome(bag, None, {"bag": bag, "error": error}, error)
+
+
+def replay_bag(job: Job, bag: str, output: Path | None, progress: Callable[[int], None] | None = None) -> Outcome:
+    """Replay a bag into an output, if any; `progress` is told now and then how many samples are done."""
+    try:
+        result = replay(bag, job.scenes, job.remap, output, progress, job.markers)
+    except InputError as error:
+        return failed(bag, str(error))
+    except MemoryError:
+        return failed(bag, f"{bag} needs more memory than there is; use fewer workers, or a machine with more of it")
+    answer: dict[str, Any] = {}
+    if job.answers:
+        from ..report.summary import as_json
+
+        answer = as_json(result)
+    return Outcome(bag, result._replace(costs=(), matches=()), answer)

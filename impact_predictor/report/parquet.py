@@ -1,0 +1,177 @@
+"""The touchdowns of many bags as one Parquet file, written bag by bag."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Final, NamedTuple
+
+from ..errors import InputError
+from ..mechanics.types import Twist
+from .whole import named, whole
+
+MISSING: Final = "a Parquet table needs pyarrow; install it: pip install 'impact_predictor[fleet]'"
+
+_GROUP: Final = 10_000
+"""Rows that are written at a time: few enough for any memory, many enough to be read fast."""
+
+_BATCHES: Final = 64
+"""Bags whose rows are joined: alone each takes some 30 kB, however few its rows are."""
+
+
+class Column(NamedTuple):
+    """A column: its name, the name of its type in Arrow, and its unit, "" where it has none."""
+
+    name: str
+    type: str
+    unit: str = ""
+
+
+def _twist(name: str) -> list[Column]:
+    return [Column(f"{name}_{part}", "float64", "rad/s" if part == "omega" else "m/s") for part in Twist._fields]
+
+
+COLUMNS: Final = (
+    Column("bag", "string"),
+    Column("bag_status", "string"),
+    Column("bag_problem", "string"),
+    Column("bag_samples", "int64"),
+    Column("body", "string"),
+    Column("foot", "string"),
+    Column("point", "string"),
+    Column("stamp", "int64", "ns"),
+    Column("announced_lead_time", "float64", "s"),
+    Column("lead_time", "float64", "s"),
+    Column("mode", "string"),
+    *_twist("before"),
+    *_twist("predicted"),
+    *_twist("measured"),
+    Column("relative_error", "float64", "1"),
+    Column("half_distance", "float64", "m"),
+    Column("out_of_plane", "float64", "1"),
+    Column("scored", "bool"),
+    Column("flags", "list<string>"),
+    Column("old", "list<int32>"),
+    Column("new", "list<int32>"),
+    Column("time_error", "float64", "s"),
+    Column("late", "float64", "s"),
+    Column("confirmed", "bool"),
+    Column("landing_speed", "float64", "m/s"),
+    Column("landing_mode", "string"),
+    Column("impulse_normal", "float64", "N s"),
+    Column("impulse_tangential", "float64", "N s"),
+    *_twist("velocity_change"),
+)
+"""What is known of a touchdown, in SI units; docs/fleets.md tells what each column is."""
+
+_SPLIT: Final = {
+    **{f"{name}_twist": [f"{name}_{part}" for part in Twist._fields] for name in ("before", "predicted", "measured")},
+    "velocity_change": [f"velocity_change_{part}" for part in Twist._fields],
+    "impulse": ["impulse_normal", "impulse_tangential"],
+}
+"""What the JSON has as a list of numbers, and the columns of these."""
+
+
+def rows_of(answer: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
+    """The rows of the JSON of a replay: one for each touchdown, and of a bag without any one that tells of the bag."""
+    problem = answer.get("error") or answer.get("unpredictable") or answer.get("damaged")
+    status = "failed" if answer.get("error") or answer.get("unpredictable") else "damaged" if problem else "ok"
+    bag = {
+        "bag": answer["bag"],
+        "bag_status": status,
+        "bag_problem": problem,
+        "bag_samples": answer.get("samples"),
+    }
+    for touchdown in answer.get("touchdowns") or [{}]:
+        row = bag | {name: value for name, value in touchdown.items() if name not in _SPLIT}
+        for name, columns in _SPLIT.items():
+            row |= zip(columns, touchdown.get(name) or [None] * len(columns), strict=True)
+        yield row
+
+
+class TouchdownTable:
+    """Writes the touchdowns of bags into one Parquet file; a context manager.
+
+    The rows come in the order in which the bags are added, and the bytes depend on the answers alone. It has its name
+    when it is whole; after an exception it is gone, and an older one stays as it was.
+    """
+
+    def __init__(self, path: str | Path) -> None:
+        """Write to `path`; nothing happens before the context is entered.
+
+        Raises:
+            InputError: pyarrow is missing, the name does not end in .parquet, or its folder does not exist.
+        """
+        self.path = named(path, "Parquet table", (".parquet",))
+        try:
+            import pyarrow
+            import pyarrow.parquet
+        except ImportError as error:
+            raise InputError(MISSING) from error
+        self._arrow = pyarrow
+        self._schema = pyarrow.schema(
+            [
+                pyarrow.field(one.name, _arrow_type(pyarrow, one.type), metadata={"unit": one.unit} if one.unit else {})
+                for one in COLUMNS
+            ]
+        )
+        self._batches: list[Any] = []
+        self._rows = 0
+        self._stack = ExitStack()
+
+    def __enter__(self) -> TouchdownTable:
+        """Begin the file.
+
+        Raises:
+            InputError: it cannot be written.
+        """
+        with ExitStack() as stack:
+            partial = stack.enter_context(whole(self.path))
+            self._writer = stack.enter_context(
+                self._arrow.parquet.ParquetWriter(partial, self._schema, compression="zstd")
+            )
+            self._stack = stack.pop_all()
+        return self
+
+    def add(self, answer: Mapping[str, Any]) -> None:
+        """Add the touchdowns of a bag, from the JSON of its replay (`summary.as_json`, or its `bag` and `error`)."""
+        batch = self._arrow.RecordBatch.from_pylist(list(rows_of(answer)), schema=self._schema)
+        self._batches.append(batch)
+        self._rows += batch.num_rows
+        if self._rows >= _GROUP:
+            self._flush()
+        elif len(self._batches) >= _BATCHES:
+            self._batches = self._joined().to_batches()
+
+    def _joined(self) -> Any:
+        return self._arrow.Table.from_batches(self._batches, schema=self._schema).combine_chunks()
+
+    def _flush(self) -> None:
+        # One group of rows, wherever the borders of the bags are.
+        self._writer.write_table(self._joined(), row_group_size=max(self._rows, 1))
+        self._batches, self._rows = [], 0
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        """End the file and, unless an exception passes, give it its name.
+
+        Raises:
+            InputError: it cannot be written.
+        """
+        if kind is not None:
+            self._stack.__exit__(kind, error, traceback)
+            return
+        with self._stack:
+            if self._batches:
+                self._flush()
+
+
+def _arrow_type(arrow: Any, name: str) -> Any:
+    types = {"string": arrow.string(), "bool": arrow.bool_(), "int32": arrow.int32(), "int64": arrow.int64()}
+    types["float64"] = arrow.float64()
+    if name.startswith("list<"):
+        return arrow.list_(types[name[5:-1]])
+    return types[name]

@@ -1,0 +1,145 @@
+"""Which predictions belong to which true touchdowns, those of impacts or the landings of feet.
+
+Predictions of one touchdown follow each other: the next sample announces the same contacts again, unless the announced
+moment has passed. Such a row of predictions belongs to the true touchdown, of those after its last sample, that is
+nearest to what it announced last, if they are within `NEAREST` of each other; a row without one was a false alarm.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from collections import defaultdict
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from types import MappingProxyType
+from typing import Final, NamedTuple
+
+from ..mechanics.types import Mode
+from ..prediction.types import Prediction, Touchdown
+from ..stamps import NANOSECONDS
+
+NEAREST: Final = 20_000_000
+"""ns between an announced touchdown and the true one that it is taken for."""
+
+
+class Announcement(NamedTuple):
+    """A prediction: the stamps of its sample and of the touchdown that it announces, in ns.
+
+    `touchdown` is None where another one is sooner, so that its impact is not told.
+    """
+
+    seen: int
+    stamp: int
+    touchdown: Touchdown | None
+
+
+class Match(NamedTuple):
+    """A true touchdown and what was announced of it, or a false alarm.
+
+    `stamp` in ns and `mode` are those of the true one, None for a false alarm, and `mode` also where the truth does not
+    know it; `predictions` are in order, none where it was missed; `shown` says whether the record can show it at its
+    rate. `velocity_error` is that of the velocities after the impact, relative to those before, where the truth knows
+    them. `foot` is its name where a foot lands, else "".
+    """
+
+    body: str
+    foot: str
+    stamp: int | None
+    mode: Mode | None
+    predictions: Sequence[Announcement]
+    shown: bool = True
+    velocity_error: float | None = None
+
+
+class Announced(NamedTuple):
+    """The stamp of a true touchdown that was found, in ns, and its predictions in order."""
+
+    stamp: int
+    predictions: Sequence[Announcement]
+
+
+class Rows:
+    """The predictions of what touches down again and again, in rows of one touchdown each."""
+
+    def __init__(self) -> None:
+        self.all: list[list[Announcement]] = []
+        self._goes_on = False
+
+    def add(self, seen: int, lead_time: float | None, touchdown: Touchdown | None) -> None:
+        """Take what a sample of a stamp in ns announces; without a lead time in s nothing."""
+        if lead_time is None:
+            self._goes_on = False
+        elif lead_time > 0.0:
+            announced = Announcement(seen, seen + round(lead_time * NANOSECONDS), touchdown)
+            if self._goes_on and follows(announced, self.all[-1][-1]):
+                self.all[-1].append(announced)
+            else:
+                self.all.append([announced])
+            self._goes_on = True
+
+
+class Announcements:
+    """The predictions of each body.
+
+    A body goes by its name, or where it has none by its frame.
+    """
+
+    def __init__(self) -> None:
+        self.samples: dict[str, list[int]] = defaultdict(list)
+        """Stamps in ns."""
+        self.rows: dict[str, Rows] = defaultdict(Rows)
+        self.names: dict[str, str] = {}
+        """The names of bodies by their frames, by which a truth may call them too."""
+
+    def add(self, prediction: Prediction, name: str = "") -> None:
+        """Take the answer to an accepted sample."""
+        sample = prediction.sample
+        body = name or sample.child_frame_id
+        self.names[sample.child_frame_id] = body
+        self.samples[body].append(sample.stamp)
+        touchdown = prediction.touchdown
+        self.rows[body].add(sample.stamp, None if touchdown is None else touchdown.lead_time, touchdown)
+
+
+def follows(announced: Announcement, last: Announcement) -> bool:
+    """Whether a prediction is of the same touchdown as the one before it."""
+    one, other = announced.touchdown, last.touchdown
+    same = one is None or other is None or not set(one.new).isdisjoint(other.new)
+    return same and announced.seen <= last.stamp
+
+
+def match(
+    stamps: Sequence[int], rows: Iterable[list[Announcement]], late: int = 0
+) -> tuple[dict[int, list[Announcement]], list[list[Announcement]]]:
+    """The predictions of each true touchdown by its place, from their stamps in order, and those that are false alarms.
+
+    A row may go on for `late` ns after its touchdown.
+    """
+    matched: dict[int, list[Announcement]] = defaultdict(list)
+    alarms: list[list[Announcement]] = []
+    for row in rows:
+        seen, announced, _ = row[-1]
+        first = bisect_left(stamps, seen - late)
+        later = bisect_left(stamps, announced, lo=first)
+        near = [k for k in (later - 1, later) if first <= k < len(stamps) and abs(stamps[k] - announced) <= NEAREST]
+        if near:
+            matched[min(near, key=lambda k: abs(stamps[k] - announced))] += row
+        else:
+            alarms.append(row)
+    return matched, alarms
+
+
+def matches_of(
+    body: str,
+    foot: str,
+    happened: Sequence[tuple[int, Mode | None]],
+    matched: Mapping[int, Sequence[Announcement]],
+    alarms: Iterable[Sequence[Announcement]],
+    shown: Collection[int],
+    errors: Mapping[int, float] = MappingProxyType({}),
+) -> list[Match]:
+    """Every true touchdown, from its stamp (ns) and mode, and every false alarm, from what `match` has found."""
+    true = [
+        Match(body, foot, stamp, mode, matched.get(place, ()), place in shown, errors.get(place))
+        for place, (stamp, mode) in enumerate(happened)
+    ]
+    return true + [Match(body, foot, None, None, row) for row in alarms]
