@@ -1,9 +1,10 @@
 """A simple biped in simulation: a hub on two legs without mass, the one that swings set ahead by a motor.
 
 It is a rimless wheel with two spokes: the leg that stands is locked to the hub and turns with it over its foot; the
-other one is shortened, swung ahead to a commanded angle, stretched, and may still be trimmed until it lands. Both legs
-are rigid while an impact lasts, and the rear one can push off at that moment. Contacts are rigid and rub after Coulomb;
-impacts follow the impulse path (`impact_predictor.solve_impact`); a foot that slips is followed until it sticks again.
+other one is shortened, swung ahead to a commanded angle, stretched, and may still be trimmed until it lands. A spring
+in the leg that stands is wound up meanwhile and let go right before the next foot lands: a push-off there takes less
+than one after the impact. Both legs are rigid while an impact lasts. Contacts are rigid and rub after Coulomb; impacts
+follow the impulse path (`impact_predictor.solve_impact`); a foot that slips is followed until it sticks again.
 
 The plane of the walk: x down the slope, z out of the ground; a leg leans forwards by a positive angle from the ground's
 normal. Nothing here knows of the controller, and the controllers know nothing of this but `Seen`.
@@ -14,10 +15,11 @@ come, slabs differ and the leg moves until it lands, so that the step is followe
 
 from __future__ import annotations
 
+from enum import Enum
 from math import cos, inf, sin, tan
-from typing import Final
+from typing import Final, NamedTuple
 
-from values import Command, Failure, Ground, Gust, Machine, Seen
+from values import Command, Machine, Seen
 
 from impact_predictor import Contact, Mode, Twist, TwoPointBody, solve_impact
 
@@ -29,15 +31,47 @@ PERIOD: Final = 1.0 / RATE
 LARGEST_SLIP: Final = 0.05
 """m that a foot may slip before the walk has failed."""
 
-FIRST_LEAN: Final = 0.3
-"""rad that both legs lean at the beginning."""
+FIRST_LEAN: Final = 0.15
+"""rad that both legs lean at the beginning; more would slip at once where friction is low."""
 
 LARGEST_LEAN: Final = 0.8
 """rad from which on nothing catches the machine any more."""
 
-
 UNLOADS: Final = 0.95
 """Part of the approach of the foot ahead that the push-off may take away: the load on that foot lets it go on."""
+
+
+class Gust(NamedTuple):
+    """A push along the ground: `force` in N from `start` to `end` in s."""
+
+    start: float
+    end: float
+    force: float
+
+
+class Ground(NamedTuple):
+    """A slope (rad, positive downhill ahead) of one friction, paved with slabs of different heights (m)."""
+
+    slope: float
+    friction: float
+    heights: tuple[float, ...]
+    slab: float = 0.25
+    gravity: float = 9.81
+
+    def height_at(self, x: float) -> float:
+        """The height at a place; the first slab and the last have no end."""
+        return self.heights[min(max(int(x / self.slab), 0), len(self.heights) - 1)]
+
+
+class Failure(Enum):
+    """Why a walk ended."""
+
+    SLIP = "slip"
+    """A foot slipped too far, or both feet slid apart on the ground."""
+    STOP = "stop"
+    """It did not get over its leg, or came to stand on both."""
+    FALL = "fall"
+    """The next leg was not there in time, or the machine left the ground."""
 
 
 class Walk:
@@ -49,9 +83,11 @@ class Walk:
         self.ticks = self.steps = 0
         self.lean, self.rate, self.pitch = -FIRST_LEAN, rate, 0.0
         self.foot_x, self.slip, self.slipped = 1.5 * ground.slab, 0.0, 0.0
-        self.foot_z = ground.heights[ground.slab_at(self.foot_x)]
+        self.foot_z = ground.height_at(self.foot_x)
         self.angle, self.length = -2.0 * FIRST_LEAN, machine.leg
         self.modes: list[Mode] = []
+        self.work = 0.0
+        """J, of all push-offs."""
         self._gusts = gusts
         self._down = ground.gravity * sin(ground.slope)
         self._into = ground.gravity * cos(ground.slope)
@@ -78,6 +114,8 @@ class Walk:
         machine = self.machine
         before = self.angle, self.length
         self._swing(command.angle)
+        wanted, most = min(max(command.push, 0.0), machine.largest_push), machine.push_rate * PERIOD
+        self.push += min(max(wanted - self.push, -most), most)
         state = self.lean, self.rate, self.foot_x, self.slip, self.slipped
         self._advance(PERIOD)
         if self.failure is None and self.angle > 0.0 and self._gap() <= 0.0:
@@ -92,7 +130,7 @@ class Walk:
                 self._restore(state)
                 self._advance(middle)
                 low, high = (low, middle) if self._gap() <= 0.0 else (middle, high)
-            self._land(min(max(command.push, 0.0), machine.largest_push))
+            self._land()
             if self.failure is None:
                 self._advance(PERIOD - high)
         self.ticks += 1
@@ -102,7 +140,7 @@ class Walk:
         self.lean, self.rate, self.foot_x, self.slip, self.slipped = state
 
     def _begin_swing(self) -> None:
-        self._shortening = self._stretching = 0.0
+        self._shortening = self._stretching = self.push = 0.0
         self._swung = False
 
     def _swing(self, target: float) -> None:
@@ -114,7 +152,7 @@ class Walk:
             self._shortening = min(1.0, self._shortening + pace)
             self.length = machine.leg * (1.0 - machine.shortening * smooth(self._shortening))
             return
-        most = (machine.trim_rate if self._swung else machine.swing_rate) * PERIOD
+        most = machine.swing_rate * PERIOD
         self.angle += min(max(target - self.angle, -most), most)
         self._swung = self._swung or abs(target - self.angle) < 1e-9
         if self._swung and self._stretching < 1.0:
@@ -126,29 +164,28 @@ class Walk:
         lean = self.lean - self.angle
         hub = self.machine.leg * cos(self.lean)
         x = self.foot_x + self.machine.leg * sin(self.lean) - self.length * sin(lean)
-        return self.foot_z + hub - self.length * cos(lean) - self.ground.heights[self.ground.slab_at(x)]
+        return self.foot_z + hub - self.length * cos(lean) - self.ground.height_at(x)
 
-    def _land(self, push: float) -> None:
-        """The impact of the foot that swings, with the push-off of the one that stands."""
+    def _land(self) -> None:
+        """The impact of the foot that swings, right before which the spring of the one that stands is let go."""
         machine, ground = self.machine, self.ground
         leg, lean, ahead = machine.leg, self.lean, self.lean - self.angle
         if self._stretching < 1.0 or ahead >= 0.0:
             self.failure = Failure.FALL
             return
-        grip = ground.frictions[ground.slab_at(self.foot_x)]
         x = self.foot_x + leg * (sin(lean) - sin(ahead))
-        friction = ground.frictions[ground.slab_at(x)]
         vx, vz = self.slip + leg * self.rate * cos(lean), -leg * self.rate * sin(lean)
-        if tan(lean) <= grip and self.slip == 0.0:
+        if tan(lean) <= ground.friction and self.slip == 0.0:
             # A leg without mass pushes along itself: outside the friction cone its foot would slip away.
             approach = self.rate * leg * (sin(lean) - sin(ahead))
-            kick = min(push / machine.mass, UNLOADS * approach / cos(lean))
+            kick = min(self.push / machine.mass, UNLOADS * approach / cos(lean))
             vx, vz = vx + kick * sin(lean), vz + kick * cos(lean)
+            self.work += 0.5 * machine.mass * kick * kick
         body = TwoPointBody(
             machine.mass,
             machine.inertia,
-            Contact(-leg * sin(lean), -leg * cos(lean), grip),
-            Contact(-leg * sin(ahead), -leg * cos(ahead), friction),
+            Contact(-leg * sin(lean), -leg * cos(lean), ground.friction),
+            Contact(-leg * sin(ahead), -leg * cos(ahead), ground.friction),
         )
         outcome = solve_impact(body, Twist(vx, vz, -self.rate))
         self.modes.append(outcome.mode)
@@ -157,7 +194,7 @@ class Walk:
             return
         self.steps += 1
         self.rate = -outcome.twist.omega
-        self.foot_x, self.foot_z = x, ground.heights[ground.slab_at(x)]
+        self.foot_x, self.foot_z = x, ground.height_at(x)
         self.slip = outcome.twist.vx - leg * self.rate * cos(ahead) if outcome.mode is Mode.PIVOT_SLIDE else 0.0
         self.slipped = 0.0
         self.lean, self.angle = ahead, -self.angle
@@ -169,7 +206,7 @@ class Walk:
         now = self.ticks * PERIOD
         wind = sum(gust.force for gust in self._gusts if gust.start <= now < gust.end) / machine.mass
         down, into, leg = self._down + wind, self._into, machine.leg
-        friction = ground.frictions[ground.slab_at(self.foot_x)]
+        friction = ground.friction
         inertia = machine.inertia / machine.mass
         gain = leg / (inertia + leg * leg)
         if self.slip == 0.0:

@@ -17,10 +17,10 @@ import time
 from pathlib import Path
 from typing import Any, Final
 
-from controller import Announcement, Controller, Estimate, Feedback, FeedbackGains, Predictive, PredictiveGains
-from machine import PERIOD, RATE, Walk
+from controller import Controller, Feedback, FeedbackGains, Predictive, PredictiveGains
+from machine import PERIOD, RATE, Ground, Walk
 from sensors import geometry_of, sample_of
-from values import Ground, Machine
+from values import Announcement, Estimate, Machine
 
 from impact_predictor.ros.endpoints import publisher, subscription
 from impact_predictor.ros.messages import ODOMETRY, POLYGON, UINT8, decode_odometry, encode_odometry, encode_polygon
@@ -39,7 +39,7 @@ class WalkerNode:
         given = {"seed": 0, "slope": 0.03, "friction": 0.45, "predict": True}
         seed, slope, friction, predicts = (node.declare_parameter(name, value).value for name, value in given.items())
         heights = random.Random(seed)
-        self._ground = Ground(slope, (friction,) * SLABS, tuple(heights.uniform(-0.003, 0.003) for _ in range(SLABS)))
+        self._ground = Ground(slope, friction, tuple(heights.uniform(-0.003, 0.003) for _ in range(SLABS)))
         self._estimate, self._predicts = Estimate(slope, friction), predicts
         self._odom = publisher(node, "odom", ODOMETRY)
         self._feet = publisher(node, "contact_geometry", POLYGON)

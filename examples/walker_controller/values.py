@@ -1,8 +1,7 @@
-"""What machine and controllers share: the machine's numbers, its ground, what it is told and what it measures."""
+"""What machine and controllers share: the machine's numbers, what it is told and what it measures."""
 
 from __future__ import annotations
 
-from enum import Enum
 from typing import NamedTuple
 
 
@@ -11,47 +10,38 @@ class Machine(NamedTuple):
 
     mass: float = 20.0
     inertia: float = 1.2
-    """About the hub, where the mass centre is, with what it carries there."""
+    """About the hub, where the mass centre is."""
     leg: float = 1.0
-    swing_rate: float = 8.0
+    swing_rate: float = 10.0
     """The fastest that the leg turns against the hub while it swings, rad/s."""
-    trim_rate: float = 8.0
-    """The same once it is stretched."""
     shortening: float = 0.1
     """Part of its length by which the leg is shortened while it swings."""
-    stretch_time: float = 0.06
+    stretch_time: float = 0.05
     """Time in s to shorten it, and to stretch it again."""
     largest_push: float = 20.0
-    """N s."""
-    least_angle: float = 0.3
+    """N s, of the spring in a leg that is wound up while the leg stands, and let go as the next one lands."""
+    push_rate: float = 150.0
+    """N s for each second: how fast the spring is wound up or down."""
+    least_angle: float = 0.2
     largest_angle: float = 1.0
     """Between the legs, rad."""
 
-
-class Gust(NamedTuple):
-    """A push along the ground: `force` in N from `start` to `end` in s."""
-
-    start: float
-    end: float
-    force: float
+    @property
+    def foot_inertia(self) -> float:
+        """Moment of inertia about the foot that stands."""
+        return self.inertia + self.mass * self.leg**2
 
 
-class Ground(NamedTuple):
-    """A slope (rad, positive downhill ahead) paved with slabs, each with its own friction and height (m)."""
+class Estimate(NamedTuple):
+    """What the robot takes the ground for: `slope` in rad, positive downhill ahead, and its friction coefficient."""
 
     slope: float
-    frictions: tuple[float, ...]
-    heights: tuple[float, ...]
-    slab: float = 0.25
+    friction: float
     gravity: float = 9.81
-
-    def slab_at(self, x: float) -> int:
-        """The number of the slab at a place; the first and the last have no end."""
-        return min(max(int(x / self.slab), 0), len(self.heights) - 1)
 
 
 class Command(NamedTuple):
-    """What the machine is told at each tick: the angle between the legs to set (rad), and the push-off (N s)."""
+    """What the machine is told at each tick: the angle between the legs to set (rad), and the push to wind up (N s)."""
 
     angle: float
     push: float
@@ -73,12 +63,9 @@ class Seen(NamedTuple):
     slips: bool
 
 
-class Failure(Enum):
-    """Why a walk ended."""
+class Announcement(NamedTuple):
+    """The touchdown that the predictor announces: its stamp (ns), its mode, and the rate (rad/s) right after it."""
 
-    SLIP = "slip"
-    """A foot slipped too far, or both feet slid apart on the ground."""
-    STOP = "stop"
-    """It did not get over its leg, or came to stand on both."""
-    FALL = "fall"
-    """The next leg was not there in time, or the machine left the ground."""
+    stamp: int
+    mode: int
+    rate: float
