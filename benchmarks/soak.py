@@ -1,0 +1,243 @@
+"""The node for a long time: does its memory stay flat, and is every sample answered?
+
+    python benchmarks/soak.py --seconds 1800 --rate 500
+    python benchmarks/soak.py --seconds 1800 --rate 500 --disturb 60     (a new publisher every minute)
+
+Publisher, node and listener are three processes over real DDS. The publisher sends the recorded tosses over and over
+with stamps that go on; the listener counts the answers on ~/prediction by their stamps. The exit status is 1 when an
+answer is missing or came twice, or when the memory of the node grows.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import struct
+import sys
+import time
+from pathlib import Path
+from typing import Final
+
+from impact_predictor.bags.read import read_messages, topics
+from impact_predictor.ros.cdr import decode_diagnostic_array
+from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY, ODOMETRY
+from impact_predictor.ros.process import Stop, message_class, run, spin
+from impact_predictor.ros.processes import Child, ros_environment
+
+ROOT: Final = Path(__file__).resolve().parents[1]
+TOSSES: Final = ROOT / "examples/cube_tosses"
+POINTS: Final = [half for x in (-0.05, 0.05) for y in (-0.05, 0.05) for z in (-0.05, 0.05) for half in (x, y, z)]
+FIRST_STAMP: Final = 10**9
+QUEUE: Final = 10_000
+WARM_UP: Final = 0.2
+"""Part of the time after which the memory is to stay as it is; at most two minutes."""
+WINDOW: Final = 0.1
+"""Part of the time over which the memory at its beginning and its end is averaged."""
+MOST_GROWTH: Final = 1.0
+"""MB from after the warm-up to the end: the pools of Python and of DDS scatter by half of that."""
+TELL_EVERY: Final = 30.0
+SETTLING: Final = 2.0
+"""Seconds for the node's last report."""
+BETWEEN: Final = 1.0
+"""Seconds in which the node finds a new publisher, which knows it long before: what is sent until then is lost."""
+
+
+def main() -> int:
+    if sys.argv[1:2] == ["publish"]:
+        rate, seconds, disturb, count = map(float, sys.argv[2:6])
+        return run(lambda stop: publish(stop, rate, seconds, disturb, int(count)), [])
+    if sys.argv[1:2] == ["listen"]:
+        return run(lambda stop: listen(stop, int(sys.argv[2]), int(sys.argv[3])), [])
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("--seconds", type=float, default=120.0)
+    parser.add_argument("--rate", type=float, default=500.0, help="samples a second")
+    parser.add_argument("--executor", choices=("single", "events"), default="events")
+    parser.add_argument(
+        "--disturb", type=float, default=0.0, help="seconds after which the publisher is a new one; 0: never"
+    )
+    return soak(parser.parse_args())
+
+
+def soak(arguments: argparse.Namespace) -> int:
+    """Run the three processes, watch the node, and print what came of it."""
+    step = round(1e9 / arguments.rate)
+    count = round(arguments.seconds * arguments.rate)
+    environment = {**ros_environment(), "PYTHONPATH": os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])}
+    environment.setdefault("AMENT_PREFIX_PATH", sys.prefix)
+    ros = (
+        "--ros-args",
+        "--params-file",
+        str(ROOT / "config/cube_tosses.yaml"),
+        "-p",
+        f"executor:={arguments.executor}",
+    )
+    node = Child("node", environment, "-m", "impact_predictor.ros.node", *ros, "-p", f"body.contact_points:={POINTS}")
+    listener = Child("listener", environment, __file__, "listen", str(count), str(step))
+    numbers = arguments.rate, arguments.seconds, arguments.disturb, count
+    publisher = Child("publisher", environment, __file__, "publish", *map(str, numbers))
+    memory: list[tuple[float, float]] = []
+    with node, listener:
+        while "ready" not in listener.said():
+            listener.check()
+            node.check()
+            time.sleep(0.05)
+        with publisher:
+            began = told = time.monotonic()
+            print("seconds      MB  answers", flush=True)
+            while not publisher.ended:
+                time.sleep(1.0)
+                node.check()
+                now = time.monotonic()
+                memory.append((now - began, resident(node.process_id)))
+                if now - told >= TELL_EVERY:
+                    told = now
+                    print(f"{now - began:7.0f} {memory[-1][1]:7.2f} {last_word(listener):>8}", flush=True)
+            publisher.end()
+            sent = json.loads(publisher.said().splitlines()[-1])
+        time.sleep(SETTLING)
+        cpu = processor_time(node.process_id)
+        node.end()
+        listener.end()
+        heard = json.loads(listener.said().splitlines()[-1])
+        said = node.complained().strip()
+    return judge(arguments, memory, sent, heard, cpu, said)
+
+
+def judge(
+    arguments: argparse.Namespace,
+    memory: list[tuple[float, float]],
+    sent: dict[str, int],
+    heard: dict[str, int],
+    cpu: float,
+    said: str,
+) -> int:
+    warm = min(WARM_UP * memory[-1][0], 120.0)
+    after = [(when, mb) for when, mb in memory if when >= warm]
+    window = max(1, round(WINDOW * len(memory)))
+    first, last = (sum(mb for _, mb in part) / len(part) for part in (after[:window], after[-window:]))
+    lost = sent["sent"] - heard["heard"]
+    rows = [
+        ("sent", f"{sent['sent']} samples at {arguments.rate:g} Hz, executor {arguments.executor}"),
+        ("publishers", f"{sent['publishers']}, one after the other"),
+        ("answered", f"{heard['heard']}; {lost} missing, {heard['twice']} twice"),
+        (
+            "of its own",
+            f"{heard['accepted']} accepted, {heard['dropped']} dropped, {heard['lost']} lost by DDS",
+        ),
+        (
+            "memory",
+            f"{first:.2f} MB after {warm:.0f} s, {last:.2f} MB at the end, {max(mb for _, mb in after):.2f} MB at most",
+        ),
+        ("slope", f"{slope(after) * 3600:+.2f} MB/h from then on"),
+        ("processor time", f"{cpu / max(sent['sent'], 1) * 1e6:.0f} us for each sample, the start included"),
+        ("the node said", said or "nothing"),
+    ]
+    for name, text in rows:
+        print(f"{name:15} {text}")
+    flat = last - first <= MOST_GROWTH
+    print(
+        "the memory is flat" if flat else "the memory grows",
+        "and",
+        "nothing is lost" if not lost else "answers are missing",
+    )
+    return int(bool(lost or heard["twice"]) or not flat)
+
+
+def publish(stop: Stop, rate: float, seconds: float, disturb: float, count: int) -> int:
+    """Send the samples of the tosses with stamps that go on."""
+    from rclpy.node import Node
+
+    types = {topic: kind for topic, kind in topics(TOSSES).items() if kind == ODOMETRY}
+    samples = [bytearray(message.data) for message in read_messages(TOSSES, types)]
+    node = Node("source", use_global_arguments=False)
+    publisher, publishers = None, 0
+    stamp, step = struct.Struct("<iI"), round(1e9 / rate)
+    began = next_one = time.monotonic()
+    sent = 0
+    while sent < count and not stop.requested:
+        if publisher is None or (disturb and time.monotonic() - began > disturb * publishers):
+            if publisher is not None:
+                time.sleep(BETWEEN)
+                node.destroy_publisher(publisher)
+            publisher = node.create_publisher(message_class(ODOMETRY), "odom", 100)
+            publishers += 1
+            while not publisher.get_subscription_count() and not stop.wait(0.01):
+                pass
+            time.sleep(BETWEEN)
+            next_one = time.monotonic()
+        data = samples[sent % len(samples)]
+        stamp.pack_into(data, 4, *divmod(FIRST_STAMP + sent * step, 10**9))
+        publisher.publish(bytes(data))
+        sent += 1
+        next_one += 1.0 / rate
+        time.sleep(max(0.0, next_one - time.monotonic()))
+    time.sleep(BETWEEN)
+    print(json.dumps({"sent": sent, "publishers": publishers}), flush=True)
+    node.destroy_node()
+    return 0
+
+
+def listen(stop: Stop, count: int, step: int) -> int:
+    """Count the answers by their stamps, until the stop."""
+    from rclpy.node import Node
+    from rclpy.qos import QoSProfile
+
+    node = Node("listener", use_global_arguments=False)
+    seen, stamp = bytearray(count), struct.Struct("<iI")
+    numbers = dict.fromkeys(("heard", "twice", "accepted", "dropped", "lost"), 0)
+    told = time.monotonic()
+
+    def take(data: bytes) -> None:
+        nonlocal told
+        seconds, rest = stamp.unpack_from(data, 4)
+        number = (seconds * 10**9 + rest - FIRST_STAMP) // step
+        numbers["twice" if seen[number] else "heard"] += 1
+        seen[number] = 1
+        if time.monotonic() - told > 5.0:
+            told = time.monotonic()
+            print(numbers["heard"], flush=True)
+
+    def report(data: bytes) -> None:
+        values = decode_diagnostic_array(data)[0].values
+        numbers.update({name: int(values.get(f"samples.{name}", 0)) for name in ("accepted", "dropped", "lost")})
+
+    kind = message_class(DIAGNOSTIC_ARRAY)
+    node.create_subscription(kind, "/impact_predictor/prediction", take, QoSProfile(depth=QUEUE), raw=True)
+    node.create_subscription(kind, "/diagnostics", report, QoSProfile(depth=QUEUE), raw=True)
+
+    def look() -> None:
+        if node.count_publishers("/impact_predictor/prediction"):
+            print("ready", flush=True)
+            node.destroy_timer(timer)
+
+    timer = node.create_timer(0.1, look)
+    spin(node, stop, lambda: numbers["heard"], "events")
+    print(json.dumps(numbers), flush=True)
+    node.destroy_node()
+    return 0
+
+
+def resident(process: int) -> float:
+    """The resident memory of a process, in MB."""
+    return int(Path(f"/proc/{process}/statm").read_text(encoding="ascii").split()[1]) * os.sysconf("SC_PAGE_SIZE") / 1e6
+
+
+def processor_time(process: int) -> float:
+    """The processor time of a process, in s."""
+    fields = Path(f"/proc/{process}/stat").read_text(encoding="ascii").rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def slope(points: list[tuple[float, float]]) -> float:
+    """That of the straight line nearest to some points."""
+    x, y = (sum(values) / len(points) for values in zip(*points, strict=True))
+    return sum((a - x) * (b - y) for a, b in points) / (sum((a - x) ** 2 for a, _ in points) or 1.0)
+
+
+def last_word(child: Child) -> str:
+    return child.said().split()[-1]
+
+
+if __name__ == "__main__":
+    sys.exit(main())
