@@ -56,8 +56,9 @@ $(READY): setup.py constraints/jazzy.txt tools/requirements.txt
 	  --constraint $(CONSTRAINTS) --requirement tools/requirements.txt
 	@touch '$@'
 
+# Those that start processes mostly wait: three at a time keep two cores busy.
 test: $(READY) ## all tests, the quick ones first; ARGS="-k rod" runs some
-	@$(BIN)/python -m pytest --numprocesses 2 $(ARGS)
+	@$(BIN)/python -m pytest --numprocesses 3 --dist worksteal $(ARGS)
 
 test-extras: $(READY) ## what make test skips: the pages in a browser (Debian: chromium), MuJoCo, wavespectra, Pinocchio, Dask
 	@$(BIN)/python -m pip install --quiet --quiet --disable-pip-version-check --editable '.[$(EXTRAS),articulated,browser,fleet,peers,robots,spectra]' \
