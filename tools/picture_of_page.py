@@ -30,7 +30,7 @@ def main() -> None:
         page.goto(arguments.page.resolve().as_uri())
         bottom = page.locator(f"#{arguments.until}").evaluate("(one) => one.getBoundingClientRect().bottom")
         clip = {"x": 0, "y": 0, "width": WIDTH, "height": bottom + BELOW}
-        page.screenshot(path=arguments.picture, full_page=True, clip=clip)  # type: ignore[arg-type]
+        page.screenshot(path=arguments.picture, full_page=True, clip=clip)
         browser.close()
 
 
