@@ -55,9 +55,9 @@ def title_of(answers: Sequence[Answer]) -> str:
         many = announced_of(landings)
     else:
         many = counted(len(times), "touchdown")
-    said = f"{many} predicted {seconds_words(median(times))} ahead"
+    said = f"{many} first predicted {seconds_words(median(times))} ahead"
     if errors.number:
-        return f"{said}, half of their velocities within {within(errors.median)}"
+        return f"{said}, half of the last predictions within {within(errors.median)}"
     return said if time is None else f"{said}, half of their times within {seconds_words(time.p50)}"
 
 
@@ -74,7 +74,7 @@ def announced_of(landings: Sequence[Answer]) -> str:
 
 
 def time_told(found: Sequence[Answer]) -> Spread | None:
-    """The errors in s of the times that were told 20 ms ahead; None where no record tells the true ones."""
+    """The errors in s of the times that were told 20 to 30 ms ahead; None where no record tells the true ones."""
     return next(
         (one.errors for one in ahead(found, "time_errors_ahead") if one.begin >= AHEAD and one.errors.number), None
     )
@@ -145,11 +145,11 @@ def _right(found: Sequence[Answer]) -> Headline | None:
             all_found = sum(count for pair, count in modes.items() if NOTHING not in pair)
             why += f" The mode is right in {right:,} of {all_found:,}."
         if time is not None:
-            why += f" The time told 20 ms ahead is {seconds_words(time.p50)} wrong in the median."
+            why += f" The time told 20 to 30 ms ahead is {seconds_words(time.p50)} wrong in the median."
         return Headline("How right", f"velocities within {within(errors.median)}", why)
     if time is None:
         return None
-    why = f"So close are half of the times that were told 20 ms ahead; 90 % are within {seconds_words(time.p90)}."
+    why = f"So close are half of the times that were told 20 to 30 ms ahead; 90 % are within {seconds_words(time.p90)}."
     return Headline("How right", f"times within {seconds_words(time.p50)}", why)
 
 

@@ -18,8 +18,8 @@ UNTOLD: Final = (
     "before the next samples. What can be checked is how well the velocities agree that are told with each mode."
 )
 UNTOLD_FEET: Final = (
-    "The record tells when feet stand, not what their impacts do: the modes of landings are predictions alone. They "
-    "are those of an impact with the speed of the foot in its last sample in the air."
+    "The record tells when feet stand, not what their impacts do: the modes of landings are predictions alone. In the "
+    "table they are of an impact with the speed of the foot in its last sample in the air."
 )
 
 
@@ -28,15 +28,18 @@ def modes(answers: Sequence[Answer]) -> Section | None:
     if not touchdowns_of(answers):
         return None
     counts = confusion(answers)
-    known = {mode for pair in counts for mode in pair} | {one["mode"] for one in touchdowns_of(answers)}
-    known |= {one["landing_mode"] for one in landings_of(answers)}
+    landings = landings_of(answers)
+    told = {one["landing_mode"] for one in landings} or {one["mode"] for one in touchdowns_of(answers)}
+    known = {mode for pair in counts for mode in pair} | told
     key = [Key(marker_svg(looks), mode, SAYS[mode]) for mode, looks in MODES.items() if mode in known]
     if counts:
         return Section("modes", "Predicted against true modes", words_of(counts), key, [confusion_table(counts)])
-    landings = landings_of(answers)
-    words = [UNTOLD_FEET] if landings else [UNTOLD]
-    tables = [landing_table(landings)] if landings else [agreement_table(answers)]
-    return Section("modes", "Predicted modes", words, key, tables)
+    if landings:
+        ahead = Counter(one["mode"] for one in landings)
+        said = ", ".join(f"{ahead[mode]:,} {mode}" for mode in MODES if ahead[mode])
+        words = [UNTOLD_FEET, f"As they were foretold, with the speed that was expected at the ground: {said}."]
+        return Section("modes", "Modes of the landings", words, key, [landing_table(landings)])
+    return Section("modes", "Predicted modes", [UNTOLD], key, [agreement_table(answers)])
 
 
 def words_of(counts: Counter[tuple[str, str]]) -> list[str]:
