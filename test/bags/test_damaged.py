@@ -117,7 +117,7 @@ def test_of_a_bag_cut_anywhere_everything_before_is_read(tmp_path: Path, kind: s
         assert len(messages) > COUNT * place / len(data) - 2 * PER_CHUNK, place
         most = len(messages)
         if messages:
-            assert f"after {len(messages)} messages" in said
+            assert f"after {len(messages)} message" in said
     # SQLite writes the last page as a whole.
     assert most > COUNT - PER_PAGE
 
