@@ -33,8 +33,15 @@ def names_of(bags: Sequence[str | os.PathLike[str]]) -> list[Path]:
     twice = [path for path, count in Counter(full).items() if count > 1]
     if twice:
         raise InputError(f"the predictions of {twice[0]} would be written for two bags; give each bag once")
-    # Without the root: a name lies in the folder of the output.
-    parts = [path.parts[1:] for path in full]
+    return told_apart(full)
+
+
+def told_apart(paths: Sequence[Path]) -> list[Path]:
+    """The last part of each path, and as many before it as tell it from the others; never the root.
+
+    What is given twice cannot be told apart, and stays alike.
+    """
+    parts = [path.relative_to(path.anchor).parts for path in paths]
     depths = [1] * len(parts)
     while True:
         tails = [part[-depth:] for part, depth in zip(parts, depths, strict=True)]

@@ -8,24 +8,21 @@ from typing import Any, Final
 from ..errors import InputError
 from .validation import parameter_of
 
-FIXED: Final[Mapping[str, str]] = {
-    **dict.fromkeys(
-        ("bodies", "source", "support.motion", "body.contact_points", "feet.names", "feet.points", "feet.force"),
-        "the topics follow from it",
+_REASONS: Final = {
+    "the topics follow from it": (
+        *("bodies", "source", "support.motion", "body.contact_points", "feet.names", "feet.points", "feet.force"),
+        *("feet.has_schedule", "robot.urdf", "robot.frames"),
     ),
-    **dict.fromkeys(("feet.has_schedule", "robot.urdf", "robot.frames"), "the topics follow from it"),
-    **dict.fromkeys(
-        ("gravity", "support.normal", "support.frame", "support.edges", "support.extent", "support.imu_position"),
-        "all that is known of the support rests on it",
+    "all that is known of the support rests on it": (
+        *("gravity", "support.normal", "support.frame", "support.edges", "support.extent", "support.imu_position"),
+        *("support.window", "support.timeout", "support.extrapolation", "support.harmonic_window"),
     ),
-    **dict.fromkeys(
-        ("support.window", "support.timeout", "support.extrapolation", "support.harmonic_window"),
-        "all that is known of the support rests on it",
-    ),
-    **dict.fromkeys(("place.position", "place.yaw"), "it tells where the body began"),
-    **dict.fromkeys(("body.radius", "onset.watch"), "what is computed and loaded follows from it"),
-    "executor": "messages are waited for by it",
+    "it tells where the body began": ("place.position", "place.yaw"),
+    "what is computed and loaded follows from it": ("body.radius", "onset.watch"),
+    "messages are waited for by it": ("executor",),
 }
+
+FIXED: Final[Mapping[str, str]] = {name: why for why, names in _REASONS.items() for name in names}
 """Why a parameter cannot change while the node runs; every other one can."""
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from statistics import median
 from typing import Final, NamedTuple
 
+from ....bags.names import told_apart
 from ....prediction.types import Leftover
 from ....stamps import NANOSECONDS
 from ...spread import Spread, from_json, together
@@ -52,15 +53,7 @@ def used(answers: Sequence[Answer]) -> Sequence[Answer]:
 
 def names_of(answers: Sequence[Answer]) -> list[str]:
     """A name for each bag: the last part of its path, or as much of it as no other bag has."""
-    paths = [Path(answer["bag"]) for answer in answers]
-    names = [path.name for path in paths]
-    for length in range(2, max((len(path.parts) for path in paths), default=0) + 1):
-        counts = Counter(names)
-        if len(counts) == len(names):
-            break
-        pairs = zip(paths, names, strict=True)
-        names = [str(Path(*path.parts[-length:])) if counts[name] > 1 else name for path, name in pairs]
-    return names
+    return [str(name) for name in told_apart([Path(answer["bag"]) for answer in answers])]
 
 
 def touchdowns_of(answers: Sequence[Answer]) -> Sequence[Answer]:

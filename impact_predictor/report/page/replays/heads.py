@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from statistics import median
 from typing import Final, NamedTuple
 
-from ...spread import Spread
 from ...summary import counted, quantile
 from ..words import digits, time_words
 from .answers import (
     NOTHING,
+    Ahead,
     Answer,
     ahead,
     announced,
@@ -58,7 +58,7 @@ def title_of(answers: Sequence[Answer]) -> str:
     said = f"{many} first predicted {seconds_words(median(times))} ahead"
     if errors.number:
         return f"{said}, half of the last predictions within {within(errors.median)}"
-    return said if time is None else f"{said}, half of their times within {seconds_words(time.p50)}"
+    return said if time is None else f"{said}, half of their times within {seconds_words(time.errors.p50)}"
 
 
 def tells_truth(found: Sequence[Answer]) -> int:
@@ -73,11 +73,13 @@ def announced_of(landings: Sequence[Answer]) -> str:
     return all_landings if number == len(landings) else f"{number:,} of {all_landings}"
 
 
-def time_told(found: Sequence[Answer]) -> Spread | None:
-    """The errors in s of the times that were told 20 to 30 ms ahead; None where no record tells the true ones."""
-    return next(
-        (one.errors for one in ahead(found, "time_errors_ahead") if one.begin >= AHEAD and one.errors.number), None
-    )
+def time_told(found: Sequence[Answer]) -> Ahead | None:
+    """The errors in s of the times told 20 ms ahead or somewhat more; None where nothing tells the true ones."""
+    return next((one for one in ahead(found, "time_errors_ahead") if one.begin >= AHEAD and one.errors.number), None)
+
+
+def _span(time: Ahead) -> str:
+    return f"{time.begin * 1e3:.0f} to {time.end * 1e3:.0f} ms ahead"
 
 
 def headlines_of(answers: Sequence[Answer]) -> list[Headline]:
@@ -145,12 +147,13 @@ def _right(found: Sequence[Answer]) -> Headline | None:
             all_found = sum(count for pair, count in modes.items() if NOTHING not in pair)
             why += f" The mode is right in {right:,} of {all_found:,}."
         if time is not None:
-            why += f" The time told 20 to 30 ms ahead is {seconds_words(time.p50)} wrong in the median."
+            why += f" The time told {_span(time)} is {seconds_words(time.errors.p50)} wrong in the median."
         return Headline("How right", f"velocities within {within(errors.median)}", why)
     if time is None:
         return None
-    why = f"So close are half of the times that were told 20 to 30 ms ahead; 90 % are within {seconds_words(time.p90)}."
-    return Headline("How right", f"times within {seconds_words(time.p50)}", why)
+    within_90 = seconds_words(time.errors.p90)
+    why = f"So close are half of the times that were told {_span(time)}; 90 % are within {within_90}."
+    return Headline("How right", f"times within {seconds_words(time.errors.p50)}", why)
 
 
 def _early(found: Sequence[Answer]) -> Headline | None:
