@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 from replay_answers import TOSSES, TRUE, UNREADABLE, WALK, answer, landing, touchdown, true
+from replay_answers import ahead as spans
 
 from impact_predictor.mechanics.types import Mode
 from impact_predictor.parameters.file import read_values
@@ -133,6 +134,14 @@ def test_without_a_truth_the_page_says_that_modes_cannot_be_told() -> None:
     assert walking is not None
     assert [[cell.text for cell in row] for row in walking.tables[0].rows] == [["right", "2"], ["left", "1"]]
     assert confusion([{**WALK, "true_touchdowns": [true(300, None, 300, "STOP")]}]) == {}
+
+
+def test_the_error_of_the_time_is_that_of_the_first_span_from_20_ms_ahead_on_that_has_any() -> None:
+    later = {**TRUE, "time_errors_ahead": spans({0.0: [0.5], 0.03: [0.004]})}
+    (right,) = (one.why for one in headlines_of([later]) if one.term == "How right")
+    assert right.replace("\N{NO-BREAK SPACE}", " ").endswith(
+        "The time told 30 to 40 ms ahead is 4 ms wrong in the median."
+    )
 
 
 def test_the_headlines_say_how_many_how_right_and_how_early() -> None:
