@@ -9,8 +9,8 @@ from typing import NamedTuple
 from ...stamps import NANOSECONDS
 from ..types import Vector3
 from ..vectors import total
-from .cubic import SCALE, Factor, Frame, Noise, factored, solved, square_of
-from .sums import Gaps, Sums, sums_of
+from .cubic import SCALE, Cubic, Factor, Frame, Noise, factored, solved, square_of
+from .sums import Gaps, Sums
 
 FEWEST = 5
 """Frames in the air from which a cubic is told."""
@@ -25,6 +25,9 @@ MOST = 42
 
 FULL = 150
 """Frames after which a point that hovers near the ground is looked at anew: fewer than its course remembers."""
+
+SHARE = 4
+"""Frames that are caught up with while the next one comes in."""
 
 SAME = 0.01
 """A later arrival is believed where it leaves less by this part of the noise's square, else the earlier."""
@@ -46,7 +49,8 @@ class Between(NamedTuple):
     """The cubic of the frames up to `last`, if the point arrived between that and the next frame.
 
     `left` is the least square of what it leaves of them; `here` and `there` are its gaps (m) at the two frames, with
-    what is unsure of them; `near` are the sums over the frames near the ground up to the last.
+    what is unsure of them; `near` are the sums over the frames near the ground up to the last; `places` are those of
+    the coordinates, where the velocities of the frames are not measured.
     """
 
     last: int
@@ -55,28 +59,28 @@ class Between(NamedTuple):
     here: tuple[float, float]
     there: tuple[float, float]
     near: tuple[float, float]
+    places: tuple[Cubic, ...]
 
 
 class Arriving:
     """A point that is near the ground and does not stand yet, from its first frame there on.
 
-    `frames` are the last ones up to that; the point came down since `begin` (ns) to about a `level` (m). While frames
-    come in the work is shared between them.
+    `frames` are the last ones up to that; the point came down since `begin` (ns) to about a `level` (m). The work is
+    shared between the frames that come in: the first of them finds many that are new.
     """
 
     def __init__(self, frames: Sequence[Frame], begin: int, level: float, tolerance: float, noise: Noise) -> None:
         first = max(0, len(frames) - 2)
         start = next((k for k, frame in enumerate(frames) if frame.stamp >= begin), 0)
         start = max(0, min(start, first - LEAST))
-        self._frames = list(frames[start : first + 1])
+        self._frames = list(frames[start:])
         self._first = first - start
         self._level, self._tolerance, self._noise = level, tolerance, noise
         self._ratio = (noise.gap / (noise.rate * SCALE)) ** 2
-        self._sums = sums_of(Gaps, self._frames)
+        measured = all(frame.velocity is not None for frame in self._frames)
+        self._sums: Gaps = (Gaps if measured else Sums)(self._frames[0])
         self._near = 0.0, 0.0
         self._tried: list[Between] = []
-        if len(frames) > 1:
-            self.add(frames[-1])
 
     @property
     def is_full(self) -> bool:
@@ -85,23 +89,38 @@ class Arriving:
 
     def add(self, frame: Frame) -> None:
         """Take the next frame near the ground."""
+        self._frames.append(frame)
+        self._catch_up(SHARE)
+
+    def _catch_up(self, most: int) -> None:
+        """Look at up to so many of the frames that were not looked at yet."""
+        done = self._sums.count
+        for k in range(done, min(done + most, len(self._frames))):
+            frame = self._frames[k]
+            if k > self._first:
+                self._try(k)
+                off, (near, square) = frame.gap - self._level, self._near
+                ratio = self._ratio if self._sums.measured else 0.0
+                self._near = near + off, square + off * off + ratio * (SCALE * (frame.rate or 0.0)) ** 2
+            self._sums.add(frame)
+
+    def _try(self, k: int) -> None:
+        """The arrival between frame `k`, which is the next one, and the one before."""
         frames, sums = self._frames, self._sums
         ratio = self._ratio if sums.measured else 0.0
-        factor = factored(sums.normal(ratio)) if len(frames) >= FEWEST else None
-        if factor is not None:
-            right = sums.right(ratio)
-            a, b, c, d = cubic = solved(factor, right)
-            left = sums.square + ratio * sums.square_rate - total([x * y for x, y in zip(cubic, right, strict=True)])
-            ends = []
-            for one in (frames[-1], frame):
-                s = (one.stamp - frames[0].stamp) / (SCALE * NANOSECONDS)
-                off = frames[0].gap - self._level + a + s * (b + s * (c + s * d))
-                ends.append((off, square_of(factor, (1.0, s, s * s, s * s * s))))
-            self._tried.append(Between(len(frames) - 1, factor, left, ends[0], ends[1], self._near))
-        frames.append(frame)
-        sums.add(frame)
-        off, (near, square) = frame.gap - self._level, self._near
-        self._near = near + off, square + off * off + ratio * (SCALE * (frame.rate or 0.0)) ** 2
+        factor = factored(sums.normal(ratio)) if k >= FEWEST else None
+        if factor is None:
+            return
+        right = sums.right(ratio)
+        a, b, c, d = cubic = solved(factor, right)
+        left = sums.square + ratio * sums.square_rate - total([x * y for x, y in zip(cubic, right, strict=True)])
+        ends = []
+        for one in frames[k - 1 : k + 1]:
+            s = (one.stamp - frames[0].stamp) / (SCALE * NANOSECONDS)
+            off = frames[0].gap - self._level + a + s * (b + s * (c + s * d))
+            ends.append((off, square_of(factor, (1.0, s, s * s, s * s * s))))
+        places = tuple([sums.along(axis, 0.0) for axis in range(3)]) if isinstance(sums, Sums) else ()
+        self._tried.append(Between(k - 1, factor, left, ends[0], ends[1], self._near, places))
 
     def arrival(self) -> Arrival:
         """The arrival, once the point rests.
@@ -111,6 +130,7 @@ class Arriving:
         foot that strikes arrives where the cubic meets the level; one that brakes to rest hardly meets it: it arrives
         with the nearest frame.
         """
+        self._catch_up(FULL)
         frames, noise = self._frames, self._noise
         best, last, found = inf, self._first, None
         stamp = frames[min(last + 1, len(frames) - 1)].stamp
@@ -130,17 +150,16 @@ class Arriving:
                 before = frames[one.last].stamp
                 stamp = before + round(part * (frames[one.last + 1].stamp - before))
         velocity = frames[last].velocity
-        if velocity is None and found is not None:
+        if velocity is None and found is not None and found.places:
             velocity = self._velocity(found, last)
         return Arrival(stamp, len(frames) - last, velocity)
 
     def _velocity(self, between: Between, last: int) -> Vector3:
         """The velocity in a frame without velocities, by the cubic through those up to the end of the air."""
         frames = self._frames
-        sums = sums_of(Sums, frames[: between.last + 1])
         s = (frames[last].stamp - frames[0].stamp) / (SCALE * NANOSECONDS)
         x, y, z = [
             (b + s * (2.0 * c + 3.0 * d * s)) / SCALE
-            for _, b, c, d in [solved(between.factor, sums.along(axis, 0.0)) for axis in range(3)]
+            for _, b, c, d in [solved(between.factor, along) for along in between.places]
         ]
         return x, y, z

@@ -11,7 +11,7 @@ from ..checks import LARGEST, check_numbers, order_of
 from ..planar import posture_of
 from ..predictor import PAUSE
 from ..scene import Scene, Walking
-from ..score import Pending, Track
+from ..score import MEASURED, Pending, Track
 from ..types import (
     Foot,
     Geometry,
@@ -142,8 +142,6 @@ class Walker:
             status = Status.NO_GEOMETRY
         if status is not Status.ACCEPTED:
             return Prediction(status, sample)
-        for one in self._landed:
-            self._measure(one.pending, sample)
         dues = [point.revise(sample.stamp, self._ground) for point in self._points]
         touchdown = self._ahead.soonest(sample, dues)
         if isinstance(touchdown, Status):
@@ -169,7 +167,10 @@ class Walker:
 
     def _forget(self) -> None:
         """Begin anew; what waits for its measurement will not get it."""
-        self._scores.extend([score for landed in self._landed if (score := self._ahead.score(landed)) is not None])
+        for landed in self._landed:
+            self._measure(landed.pending)
+            if (score := self._ahead.score(landed)) is not None:
+                self._scores.append(score)
         self._recent.clear()
         self._begin()
 
@@ -248,26 +249,28 @@ class Walker:
         )
         landing = Landing(foot, stamp, late, confirmed, history, point=point_of(new, each))
         last = None if told is None else told.last
-        landed = Landed(Pending(Track(), stamp), landing, last, self._ahead.seen(i, new, self._recent))
-        self._landed.append(landed)
+        self._landed.append(Landed(Pending(Track(), stamp), landing, last, self._ahead.seen(i, new, self._recent)))
         self._twists.begin(stamp)
-        for sample in self._recent:
-            self._measure(landed.pending, sample)
 
     def _score(self) -> Score | None:
         """The next score that is complete; of its two impacts a sample computes one."""
-        if not self._scores and self._landed[0].pending.complete:
-            landed = self._landed.popleft()
-            if landed.seen is not None:
-                self._landed.appendleft(self._ahead.struck(landed))
-                return None
-            return self._ahead.score(landed)
-        return self._scores.popleft() if self._scores else None
+        if self._scores:
+            return self._scores.popleft()
+        self._measure(self._landed[0].pending)
+        if not self._landed[0].pending.complete:
+            return None
+        landed = self._landed.popleft()
+        if landed.seen is not None:
+            self._landed.appendleft(self._ahead.struck(landed))
+            return None
+        return self._ahead.score(landed)
 
-    def _measure(self, pending: Pending, sample: Sample) -> None:
-        """Hand a sample to a touchdown that waits for those after it."""
-        if sample.stamp > pending.stamp and not pending.complete:
-            pending.add(sample, posture_of(self.scene, (), sample))
+    def _measure(self, pending: Pending) -> None:
+        """Hand the samples after a touchdown to it, once there are enough of them."""
+        after = [sample for sample in self._recent if sample.stamp > pending.stamp][: MEASURED.stop]
+        if len(after) == MEASURED.stop and not pending.complete:
+            for sample in after:
+                pending.add(sample, posture_of(self.scene, (), sample))
 
     def _foot(self, number: int, stamp: int, dues: list[Due | None]) -> Foot:
         """A foot as the sample of a stamp in ns shows it."""

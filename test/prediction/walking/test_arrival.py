@@ -1,0 +1,79 @@
+"""When a point that has come to rest reached the ground, of descents whose arrival is known."""
+
+import pytest
+
+from impact_predictor.prediction.walking.arrival import FULL, MOST, Arriving
+from impact_predictor.prediction.walking.cubic import Frame, Noise
+from impact_predictor.stamps import NANOSECONDS
+
+RATE = 500
+LEVEL, TOLERANCE, NOISE = 0.002, 0.005, Noise(2e-4, 2e-3)
+# The foot strikes at 0.4 m/s, with a brake of 1 m/s^2, and moves along the ground meanwhile.
+SPEED, BRAKE, ALONG = 0.4, 1.0, (0.3, -0.2)
+
+
+def frame(step, landing, *, measured):
+    """The frame of a step, of a foot that lands at a time in s."""
+    left = landing - step / RATE
+    speed = -(SPEED + BRAKE * left) if left > 0.0 else 0.0
+    gap = LEVEL + (SPEED + 0.5 * BRAKE * left) * left if left > 0.0 else LEVEL
+    x, y = (rate * -max(left, 0.0) for rate in ALONG)
+    velocity = (*(ALONG if left > 0.0 else (0.0, 0.0)), speed)
+    stamp = step * NANOSECONDS // RATE
+    return Frame(stamp, gap, speed if measured else None, (x, y, gap), velocity if measured else None)
+
+
+def arrival(frames):
+    """Of frames in which the point comes near the ground at some time, and then rests."""
+    near = next(k for k, one in enumerate(frames) if one.gap - LEVEL <= TOLERANCE)
+    arriving = Arriving(frames[max(0, near + 1 - MOST) : near + 1], 0, LEVEL, TOLERANCE, NOISE)
+    for one in frames[near + 1 :]:
+        assert not arriving.is_full
+        arriving.add(one)
+    return arriving.arrival()
+
+
+@pytest.mark.parametrize("measured", [True, False])
+@pytest.mark.parametrize("landing", [0.1, 0.1007, 0.1019])
+def test_a_foot_that_strikes_arrives_where_its_cubic_meets_the_level(landing, measured):
+    frames = [frame(step, landing, measured=measured) for step in range(70)]
+    stamp, age, velocity = arrival(frames)
+    # The level is that of the resting frames, which count beside what feet usually differ by: a few micrometres.
+    assert stamp == pytest.approx(landing * NANOSECONDS, abs=2e4)
+    last = max(step for step in range(70) if step / RATE < landing)
+    assert age == len(frames) - last
+    expected = frame(last, landing, measured=True).velocity
+    assert velocity == pytest.approx(expected, abs=1e-12 if measured else 5e-3)
+
+
+def test_velocities_that_begin_to_be_measured_on_the_way_down_change_the_arrival_little():
+    landing = 0.1007
+    frames = [frame(step, landing, measured=step > 47) for step in range(70)]
+    stamp, _, velocity = arrival(frames)
+    assert stamp == pytest.approx(landing * NANOSECONDS, abs=2e4)
+    assert velocity == pytest.approx(frame(50, landing, measured=True).velocity)
+
+
+@pytest.mark.parametrize("resting", [0, 1, 2, 3, 12])
+def test_an_arrival_asked_for_at_once_catches_up_with_all_frames(resting):
+    # Few resting frames leave most of the frames in the air to be looked at when the arrival is asked for.
+    landing = 0.1007
+    frames = [frame(step, landing, measured=False) for step in range(51 + resting)]
+    stamp, _, _ = arrival(frames)
+    if resting > 1:
+        assert stamp == pytest.approx(landing * NANOSECONDS, abs=1e5)
+
+
+def test_of_too_few_frames_no_velocity_is_told():
+    frames = [frame(step, 0.003, measured=False) for step in range(4)]
+    stamp, _, velocity = arrival(frames)
+    assert frames[0].stamp <= stamp <= frames[2].stamp
+    assert velocity is None
+
+
+def test_a_point_that_hovers_near_the_ground_is_full_in_the_end():
+    frames = [frame(step, 0.0, measured=False) for step in range(FULL)]
+    arriving = Arriving(frames[:2], 0, LEVEL, TOLERANCE, NOISE)
+    for one in frames[2:]:
+        arriving.add(one)
+    assert arriving.is_full
