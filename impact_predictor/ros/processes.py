@@ -20,6 +20,9 @@ PATIENCE: Final = 10.0
 _DOMAINS: Final = range(1, 102)
 """ROS domains whose ports are clear of those that Linux hands to ordinary sockets."""
 
+_PARTICIPANTS: Final = 10
+"""Processes of a ROS domain whose ports are looked at: each takes the first that is free."""
+
 
 def ros_environment() -> dict[str, str]:
     """The environment of processes that see each other on this machine, and nobody else.
@@ -34,10 +37,19 @@ def ros_environment() -> dict[str, str]:
 
 
 def _is_free(domain: int) -> bool:
-    """Whether nobody listens for participants of a ROS domain (the port is that of RTPS 2.3, section 9.6.1.1)."""
+    """Whether nobody listens on the ports of a ROS domain, as RTPS 2.3, section 9.6.1.1, numbers them.
+
+    Where ROS keeps to this machine nobody need listen for the others of a domain at its first port: then the ports of
+    the first participants tell.
+    """
+    first = 7400 + 250 * domain
+    return all(map(_can_listen, (first, *range(first + 10, first + 10 + 2 * _PARTICIPANTS, 2))))
+
+
+def _can_listen(port: int) -> bool:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as listener:
         try:
-            listener.bind(("", 7400 + 250 * domain))
+            listener.bind(("", port))
         except OSError:
             return False
     return True

@@ -52,8 +52,23 @@ def test_a_process_that_does_not_listen_is_not_left_running(monkeypatch):
     assert child.ended
 
 
-def test_processes_get_a_ros_domain_that_nobody_uses():
+@pytest.mark.parametrize("offset", [0, 10, 14])
+def test_a_ros_domain_in_which_somebody_listens_is_not_free(offset):
     domain = int(ros_environment()["ROS_DOMAIN_ID"])
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
-        taken.bind(("", 7400 + 250 * domain))
+        taken.bind(("", 7400 + 250 * domain + offset))
         assert not processes._is_free(domain)
+
+
+@pytest.mark.slow
+def test_a_ros_domain_with_a_node_in_it_is_not_free():
+    rclpy = pytest.importorskip("rclpy", reason="the node needs ROS 2: source it, or install the extra `ros`")
+    domain = int(ros_environment()["ROS_DOMAIN_ID"])
+    context = rclpy.Context()
+    context.init(domain_id=domain)
+    try:
+        node = rclpy.create_node("somebody", context=context)
+        assert not processes._is_free(domain)
+        node.destroy_node()
+    finally:
+        context.shutdown()
