@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from heapq import merge
 from math import inf
 from operator import itemgetter
 from time import perf_counter
@@ -12,7 +13,7 @@ from rclpy.qos import ReliabilityPolicy
 
 from .endpoints import QUEUE
 
-LONGEST: Final = 0.02
+LONGEST: Final = 0.1
 """Seconds that a node may spend on samples that wait before it drops all of them but the newest."""
 
 
@@ -44,8 +45,9 @@ class Backlog:
             self._answer(sample)
             return 0
         began, newest, dropped = perf_counter(), waiting[-1], 0
-        told = [one for other in self._others for one in _waiting_on(other, other.callback)]
-        for message in [(0, self._answer, sample), *sorted(told + waiting, key=itemgetter(0))]:
+        told = [_waiting_on(other, other.callback) for other in self._others]
+        # What came on one topic stays in its order, also where the clock was set back meanwhile.
+        for message in [(0, self._answer, sample), *merge(*told, waiting, key=itemgetter(0))]:
             _, take, data = message
             if take is self._answer and message is not newest:
                 self._is_behind = self._is_behind or perf_counter() - began > self._longest
