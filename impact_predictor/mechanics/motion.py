@@ -139,7 +139,7 @@ def next_touchdown(
             return Fall(time, next_points[stretch.direction > 0], now, motion)
         if stretch.end is End.LIFTS:
             fall = _fly(now, points, gravity, horizon - time, stance)
-            return fall._replace(time=time + fall.time, state=state if fall.point < 0 else fall.state)
+            return Fall(time + fall.time, fall.point, state if fall.point < 0 else fall.state, fall.motion)
         if stretch.end is End.TURNS:
             continue
         start, turned = angle, 0.0

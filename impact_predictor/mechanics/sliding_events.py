@@ -64,7 +64,8 @@ class Slip:
 
     def mirrored(self) -> Stance:
         """The stance seen so that the body turns back."""
-        return self.stance._replace(drag=-self.stance.drag)
+        drag, side, rho_squared, gravity = self.stance
+        return Stance(-drag, side, rho_squared, gravity)
 
     def standstill(self, turned: float) -> Pose:
         """A standstill that much further, seen so that the body turns back from it."""

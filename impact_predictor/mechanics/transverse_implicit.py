@@ -79,7 +79,7 @@ def implicit_step(
 
     to_rate, to_middle = a1 + M2 * a2 + M3 * a3, M2 * b2 + M3 * b3
     to_a, to_b = c1 + M2 * c2 + M3 * c3, d1 + M2 * d2 + M3 * d3
-    changes = tuple(zip(rate, middle, turn_a, turn_b, strict=True))
+    changes = list(zip(rate, middle, turn_a, turn_b, strict=True))
     after = tuple(
         [v + to_rate * p + to_middle * q + to_a * r + to_b * s for v, (p, q, r, s) in zip(y, changes, strict=True)]
     )

@@ -90,7 +90,7 @@ def approach_of(
     body = body_at(scene, plane, inertia, angle)
     blocked = on_edge and body.old is not None and len(contacts.new) > 1
     if on_edge and not blocked:
-        body = body._replace(inertia=inertia_about(scene, plane.axis, blocked=False))
+        body = TwoPointBody(body.mass, inertia_about(scene, plane.axis, blocked=False), body.old, body.new)
     if body.old is not None and body.old.x >= body.new.x:
         return None  # it falls back, and other points strike before
     speed = -(vy + omega * body.new.x)

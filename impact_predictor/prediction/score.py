@@ -103,9 +103,11 @@ class Pending:
             return hypot(after.vx - seen.vx, (after.omega - seen.omega) * last.half_distance) / scale
 
         history = tuple(
-            ((self.stamp - stamp) / NANOSECONDS, error(touchdown))
-            for stamp, touchdown in self.track.answers
-            if stamp <= self.stamp and touchdown.old == last.old and touchdown.new == last.new
+            [
+                ((self.stamp - stamp) / NANOSECONDS, error(touchdown))
+                for stamp, touchdown in self.track.answers
+                if stamp <= self.stamp and touchdown.old == last.old and touchdown.new == last.new
+            ]
         )
         return Score(self.stamp, last, measured, error(last), not last.leftover, last.leftover, history)
 

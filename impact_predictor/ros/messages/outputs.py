@@ -131,7 +131,7 @@ def _is_doubtful(touchdown: Touchdown, flags: Flag) -> bool:
 
 
 def _touchdown_values(touchdown: Touchdown) -> list[str]:
-    numbers = (
+    numbers = [
         touchdown.lead_time,
         *touchdown.before,
         *touchdown.after,
@@ -144,7 +144,7 @@ def _touchdown_values(touchdown: Touchdown) -> list[str]:
         touchdown.lateral,
         touchdown.closing_spread,
         touchdown.offset,
-    )
+    ]
     return [
         _MODE_NAMES[touchdown.mode],
         touchdown.law,
