@@ -133,7 +133,7 @@ def predict(file: str) -> int:
         answered(self, name, stamp, latency, update, began)
 
     Reporter.answered = note  # type: ignore[method-assign]
-    return run_node(sys.argv) or _write(file, returned)
+    return run_node([sys.argv[0], *sys.argv[sys.argv.index("--ros-args") :]]) or _write(file, returned)
 
 
 def listen(stop: Stop, file: str, *names: str) -> int:

@@ -269,11 +269,42 @@ def test_of_several_bags_one_that_cannot_be_read_stops_no_other(tmp_path: Path, 
     failed, answer = json.loads(result.stdout)
     assert failed == {
         "bag": missing,
-        "error": f"{missing} does not exist; give an .mcap file, a rosbag2 folder or a ROS 1 .bag file",
+        "error": f"{missing} does not exist; give an .mcap, .db3 or ROS 1 .bag file, or a rosbag2 folder",
     }
     assert answer["touchdowns"]
     assert [path.name for path in output.iterdir()] == ["tosses.mcap"]
     assert "error: " in result.stderr
+
+
+def test_a_bag_that_fails_leaves_no_folder_and_others_keep_theirs(tmp_path: Path, bag: str) -> None:
+    output = tmp_path / "out"
+    missing = [str(tmp_path / day / "tosses.mcap") for day in ("monday", "tuesday")]
+    assert run("replay", missing[0], bag, "--params", SCENE, "-o", str(output), "--json").exit_code == 2
+    folder = Path(bag).parent.name
+    assert sorted(path.relative_to(output).as_posix() for path in output.rglob("*")) == [
+        folder,
+        f"{folder}/tosses.mcap",
+    ]
+    assert run("replay", *missing, "--params", SCENE, "-o", str(tmp_path / "none"), "--json").exit_code == 2
+    assert not (tmp_path / "none").exists()
+    (tmp_path / "mine").mkdir()
+    assert run("replay", *missing, "--params", SCENE, "-o", str(tmp_path / "mine"), "--json").exit_code == 2
+    assert list((tmp_path / "mine").iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "wanted"),
+    [
+        ("--workers", "x", "a whole number of 1 or more"),
+        ("--workers", "0", "a whole number of 1 or more"),
+        ("--workers", "1.5", "a whole number of 1 or more"),
+        ("--baseline-time", "1ms", "a number of 0 or more"),
+        ("--baseline-error", "nan", "a number of 0 or more"),
+    ],
+)
+def test_an_option_says_which_numbers_it_takes(bag: str, option: str, value: str, wanted: str) -> None:
+    said = refused("replay", bag, "--params", SCENE, option, value)
+    assert f"'{option}': '{value}' is not {wanted}; see" in said
 
 
 def test_several_bags_are_summed_up(tmp_path: Path, bag: str, messages: list[BagMessage]) -> None:

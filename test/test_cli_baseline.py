@@ -79,6 +79,42 @@ def test_a_bag_that_the_earlier_run_lacks_is_told_and_stops_no_other(tmp_path: P
     assert (alone.exit_code, alone.stderr) == (2, f"error: {said}\n")
 
 
+def test_a_set_of_bags_may_grow_beside_its_baseline(tmp_path: Path, bag: Path) -> None:
+    """Where a second bag of the name comes, the folder calls both otherwise, so that it has none of them."""
+    days = [tmp_path / day / "run.mcap" for day in ("monday", "tuesday", "wednesday")]
+    for day in days:
+        day.parent.mkdir()
+        day.hardlink_to(bag)
+    old = tmp_path / "old"
+    old.mkdir()
+    assert replay(days[0], SCENE, "-o", old / "run.mcap").exit_code == 0
+    grown = replay(days[0], SCENE, days[1], "--baseline", old)
+    assert grown.exit_code == 1
+    notes = [line for line in grown.stderr.splitlines() if "the baseline" in line]
+    assert notes == [
+        f"note: the baseline {old} has no {day}/run.mcap; write it with `impact-predictor replay -o`"
+        for day in ("monday", "tuesday")
+    ]
+    assert "2 bags together" in grown.stdout
+    assert replay(days[0], SCENE, days[1], "-o", old).exit_code == 0
+    assert replay(days[0], SCENE, days[1], "--baseline", old).exit_code == 0
+    assert replay(days[0], SCENE, *days[1:], "--baseline", old).exit_code == 1
+    # One of them alone is still found.
+    (old / "run.mcap").unlink()
+    assert replay(days[1], SCENE, "--baseline", old).exit_code == 0
+
+
+def test_the_run_of_one_bag_is_no_baseline_of_several(tmp_path: Path, bag: Path) -> None:
+    (tmp_path / "new.mcap").hardlink_to(bag)
+    for old, option in ((tmp_path / "old.mcap", "-o"), (tmp_path / "old.json", "--json")):
+        done = replay(bag, SCENE, "-o", old) if option == "-o" else replay(bag, SCENE, "--json")
+        if option == "--json":
+            old.write_text(done.stdout)
+        refused = replay(bag, SCENE, tmp_path / "new.mcap", "--baseline", old)
+        said = f"error: the baseline {old} is the run of one bag, but 2 bags are given; give what a run of several"
+        assert (refused.exit_code, refused.stderr.startswith(said), refused.stdout) == (2, True, "")
+
+
 def test_a_baseline_that_is_no_run_is_refused_before_anything_is_replayed(tmp_path: Path, bag: Path) -> None:
     refused = replay(bag, SCENE, "--baseline", bag, "-o", tmp_path / "new.mcap")
     assert refused.exit_code == 2

@@ -19,7 +19,7 @@ ACTIVE: Final = ".active"
 """Follows the name of a ROS 1 bag until its recorder closes it."""
 
 METADATA: Final = "metadata.yaml"
-KINDS: Final = "an .mcap file, a rosbag2 folder or a ROS 1 .bag file"
+KINDS: Final = "an .mcap, .db3 or ROS 1 .bag file, or a rosbag2 folder"
 
 _UNFINISHED: Final = ".partial"
 """Ending of the folders in which outputs are being written."""

@@ -97,11 +97,6 @@ class Points:
         said = []
         if self._left_out:
             said.append(f"robot.urdf does not know {some(self._left_out)}, so what is told of these joints is left out")
-        if self._walker is None and 2 * self._moved > self._messages:
-            said.append(
-                f"the contact points are elsewhere than at first in {self._moved:,} of {self._messages:,} messages; "
-                "if they are the feet of a machine that walks, give the names of these as feet.names"
-            )
         near = NEAR * self._scene.tolerance
         if near < self._nearest < inf:
             said.append(f"no foot came nearer to the ground than {self._nearest:.3g} m")
@@ -111,6 +106,15 @@ class Points:
                 else ": compare support.height, the units of the points (m), and the frames of body and points"
             )
         return said
+
+    def moving(self) -> str:
+        """What is said of points that move against a body whose scene names no feet; "" where they do not."""
+        if self._walker is not None or 2 * self._moved <= self._messages:
+            return ""
+        return (
+            f"the contact points are elsewhere than at first in {self._moved:,} of {self._messages:,} messages; "
+            "if they are the feet of a machine that walks, give the names of these as feet.names"
+        )
 
     @property
     def _interval(self) -> float:

@@ -11,6 +11,7 @@ from typing import Any, Final, NamedTuple
 
 from ..errors import InputError
 from ..ros.messages import MalformedMessage
+from ..wording import counted
 from .chunks import UNKNOWN, Channel, Flaw
 from .compression import ZSTD_MAGIC, decompressed_message
 from .parts import Part, Recording, opened
@@ -212,13 +213,15 @@ def _stream(
                 raise part.flaw
         # Damaged messages may raise anything from the depths of a converter, not only its own errors.
         except Exception as error:
-            where = f" after {_counted(read)}" + (f", {(last - first) / 1e9:.3f} s after the first" if read else "")
+            where = f" after {counted(read, 'message')}"
+            if read:
+                where += f", {(last - first) / 1e9:.3f} s after the first"
             lost = max(0, announced - read)
             raise InputError(_unreadable(path, _reason(part, part.flaw or error, recording, lost), where)) from error
     if recording.flaw:
-        raise InputError(_unreadable(path, recording.flaw, f" after {_counted(read)}"))
+        raise InputError(_unreadable(path, recording.flaw, f" after {counted(read, 'message')}"))
     if read < announced:
-        raise InputError(_unreadable(path, f"only {read} of {announced} messages are there"))
+        raise InputError(_unreadable(path, f"only {read:,} of {counted(announced, 'message')} are there"))
 
 
 def _announced(recording: Recording, wanted: Mapping[str, str]) -> int:
@@ -227,10 +230,6 @@ def _announced(recording: Recording, wanted: Mapping[str, str]) -> int:
         return sum(recording.counts.get(topic, 0) for topic in wanted.items())
     counts = [one.announced for one in _channels(recording) if wanted.get(one.topic) == one.type_name]
     return 0 if UNKNOWN in counts else sum(counts)
-
-
-def _counted(messages: int) -> str:
-    return "1 message" if messages == 1 else f"{messages} messages"
 
 
 def _check_whole(path: Path, recording: Recording) -> None:
@@ -254,7 +253,7 @@ def _reason(part: Part, error: Exception, recording: Recording, lost: int) -> st
         if unread:
             said.append("the file after it was not read" if unread == 1 else f"the {unread} after it were not read")
     if lost:
-        said.append(f"{lost} messages are lost")
+        said.append(f"{counted(lost, 'message')} {'is' if lost == 1 else 'are'} lost")
     return "; ".join(said)
 
 

@@ -42,7 +42,7 @@ MISSED: Final = {
 def why_unpredictable(
     run: Run, inputs: Mapping[Input, Statuses], names: Mapping[Input, str], scenes: Mapping[str, Scene]
 ) -> str:
-    """Why no state could be used, in one sentence, or ""."""
+    """Why no state could be used, or none as the feet that the bag tells of, in one sentence, or ""."""
     states = {one: counts for one, counts in inputs.items() if one.body is not None and one.kind in STATES}
     # Bodies of which nothing is measured are watched by the motion of the support alone.
     states = states or dict(inputs)
@@ -53,7 +53,8 @@ def why_unpredictable(
     if not counts:
         return f"there is no message on {where}, so nothing was predicted"
     if Status.ACCEPTED in counts:
-        return ""
+        feet = [] if run.settled else _unnamed_feet(run, inputs, names)
+        return f"no touchdown was predicted, and {feet[0]}" if feet else ""
     status, refused = max(counts, key=lambda one: counts[one]), list(states)
     if status is Status.NO_GEOMETRY:
         # What became of the contact points says more.
@@ -96,7 +97,7 @@ def remarks(
     run: Run, inputs: Mapping[Input, Statuses], names: Mapping[Input, str], scenes: Mapping[str, Scene]
 ) -> list[str]:
     """What was left out of the predictions, and what looks wrong in bag or scene, one sentence each."""
-    said = _refused(run, inputs, names)
+    said = _refused(run, inputs, names) + _unnamed_feet(run, inputs, names)
     for one in inputs_of(scenes):
         if one.kind in MISSED and not inputs.get(one):
             otherwise = "" if one in names else f"; if there is another topic of it, --remap {one.name}:=TOPIC"
@@ -108,6 +109,21 @@ def remarks(
         landings = "1 true landing is" if later == 1 else f"{later:,} true landings are"
         said.append(f"{landings} after the last sample that was accepted, and not counted")
     return said
+
+
+def _unnamed_feet(run: Run, inputs: Mapping[Input, Statuses], names: Mapping[Input, str]) -> list[str]:
+    """What tells of feet though the scene names none, one sentence for each body."""
+    said: dict[str, str] = {}
+    for one in (each for each in inputs if each.body is not None):
+        body = one.body or ""
+        if one.kind in STATES and body in run.unnamed_feet:
+            said[body] = (
+                f"{names[one]} tells which feet stand, but the scene is of a body without feet; give that of a machine "
+                "that walks, with feet.names, as config/walker_hyq.yaml has them"
+            )
+        elif one.kind in (CONTACT_GEOMETRY, JOINTS) and (moving := run.points[body].moving()):
+            said.setdefault(body, f"{names[one]}: {moving}")
+    return list(said.values())
 
 
 def _refused(run: Run, inputs: Mapping[Input, Statuses], names: Mapping[Input, str]) -> list[str]:

@@ -60,6 +60,7 @@ class Run:
     topics whose messages have an adapter. `statuses` say what became of the messages on each input, `unusable` what an
     adapter said of the first one that it refused, and `points` what is known of the contact points of each body.
     `costs` are the times in s that the answers to the accepted samples took, without reading and writing.
+    `unnamed_feet` are the bodies whose messages tell which feet stand, though their scene names none.
     """
 
     def __init__(
@@ -84,6 +85,7 @@ class Run:
         self.announcements: Announcements | None = None
         self.landings: Landings | None = None
         self.gaits: dict[str, Gait] = {}
+        self.unnamed_feet: set[str] = set()
         self.warnings: Warnings | None = None
         self.monitor = Monitor(scenes) if monitor is None else monitor
         self._write = write
@@ -248,7 +250,9 @@ class Run:
         sample = told.sample
         if sample is not None and state is not None:
             stream = self._streams[state.body or ""]
-            if self.landings is not None and stream.body in self.gaits and told.stands:
+            if told.stands and stream.body not in self.gaits:
+                self.unnamed_feet.add(stream.body)
+            elif told.stands and self.landings is not None:
                 read.check_stands(told, self.gaits[stream.body].feet)
                 self.landings.tell(stream.body or sample.child_frame_id, sample.stamp, told.stands)
                 self.gaits[stream.body].tell(sample.stamp, told.stands)

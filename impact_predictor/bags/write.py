@@ -31,8 +31,9 @@ class BagWriter:
     """Writes a bag; a context manager.
 
     `X.mcap` becomes one MCAP file, any other name a rosbag2 folder. Until the end it is the bag `bag` in the folder
-    `<name>.partial`. After an exception it stays there, complete up to the last message, and an older output stays as
-    it was. Only an output of this class is ever replaced. The bytes depend on the messages alone, not on the name.
+    `<name>.partial`. After an exception it stays there, complete up to the last message (without any it is removed),
+    and an older output stays as it was. Only an output of this class is ever replaced. The bytes depend on the messages
+    alone, not on the name.
     """
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
@@ -91,6 +92,8 @@ class BagWriter:
             # What was written so far becomes a readable bag; the exception that passes matters more than a second one.
             with suppress(Exception):
                 self._writer.close()
+                if not self._connections:
+                    _remove_partial(self.partial)
             return
         try:
             self._writer.close()
@@ -110,6 +113,25 @@ class BagWriter:
     def _unwritable(self, error: OSError) -> InputError:
         kept = f"; what was written stays in {self._staged}" if self._staged.exists() else ""
         return InputError(f"{self.path} cannot be written: {error.strerror or error}{kept}")
+
+
+def left_of(path: str | os.PathLike[str]) -> Path | None:
+    """The bag that a `BagWriter` to `path` has left unfinished; it is cut off where the process was ended.
+
+    None where there is none. One in which there is no message to be read is removed.
+    """
+    from .read import Bag
+
+    partial = Path(f"{os.fspath(path)}.partial")
+    try:
+        with Bag(partial / _BAG) as bag:
+            if bag.topics():
+                return partial / _BAG
+    except InputError:
+        pass
+    with suppress(InputError):
+        _remove_partial(partial)
+    return None
 
 
 def _check_replaceable(path: Path, is_file: bool) -> None:

@@ -21,7 +21,7 @@ class Baseline:
         """Read it; changes of times up to `time` in s and of relative errors up to `error` are none.
 
         Raises:
-            InputError: it cannot be read, or has none of the bags.
+            InputError: it cannot be read, is the run of one bag where several are given, or lacks the only one.
         """
         from ..bags.names import names_of
         from ..report.baseline import Limits
@@ -33,12 +33,13 @@ class Baseline:
         self._runs: dict[str, tuple[Happened, ...]] = {}
         self._missing: dict[str, InputError] = {}
         earlier = Earlier(path)
+        earlier.check_of_several(len(bags))
         for bag, name in zip(bags, names_of(bags), strict=True):
             try:
                 self._runs[bag] = earlier.touchdowns_of(bag, name)
             except InputError as flaw:  # noqa: PERF203 (each bag is missed by itself)
                 self._missing[bag] = flaw
-        if not self._runs:
+        if len(bags) == 1 and self._missing:
             raise next(iter(self._missing.values()))
 
     def judge(self, result: Result, every: bool, as_json: bool) -> dict[str, Any]:

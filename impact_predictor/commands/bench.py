@@ -11,6 +11,7 @@ import click
 from ..mechanics.impact import LAWS
 from .examples import examples
 from .experiment import experiment
+from .limits import Whole
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -52,7 +53,7 @@ bench.add_command(experiment)
 @click.option(
     "--count", type=float, callback=whole, default=1e6, show_default="1e6", metavar="N", help="Problems to solve."
 )
-@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Which random problems.")
+@click.option("--seed", type=Whole(min=0), default=0, show_default=True, help="Which random problems.")
 @click.option(
     "--law", type=click.Choice([*LAWS, "both"]), default="both", show_default=True, help="Impact law to be checked."
 )

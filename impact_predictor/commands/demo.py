@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from .examples import examples
+from .limits import Whole
 
 
 @click.command(
@@ -26,7 +27,7 @@ from .examples import examples
 )
 @click.option(
     "--tosses",
-    type=click.IntRange(min=1, max=285),
+    type=Whole(min=1, max=285),
     help="Tosses to play of the 285 recorded, as many as take about half a minute unless given.",
 )
 def demo(output: Path, tosses: int | None) -> int:

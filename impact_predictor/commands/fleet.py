@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Sequence
-from contextlib import nullcontext
+import os
+from collections.abc import Generator, Iterator, Sequence
+from contextlib import contextmanager, nullcontext, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,7 +18,7 @@ def outputs_of(bags: Sequence[str], output: str | None) -> list[Path | None]:
     """Where the predictions of each bag go: one output, or a file for each of several bags in a folder.
 
     Raises:
-        InputError: a bag is there twice, or a folder cannot be made.
+        InputError: a bag is there twice, or there is no place for the folder.
     """
     if output is None:
         return [None for _ in bags]
@@ -31,12 +32,32 @@ def outputs_of(bags: Sequence[str], output: str | None) -> list[Path | None]:
     files = [folder / f"{name}.mcap" for name in names_of(bags)]
     if not folder.absolute().parent.exists():
         raise InputError(f"the folder of {output} does not exist; make it, or give another name")
-    try:
-        for place in dict.fromkeys([folder, *(file.parent for file in files)]):
-            place.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"the folder {error.filename} cannot be made: {error.strerror}") from error
     return list(files)
+
+
+@contextmanager
+def folders_of(outputs: Sequence[Path | None]) -> Iterator[None]:
+    """The folders of several outputs; those that were made for them and are empty at the end are removed.
+
+    Raises:
+        InputError: a folder cannot be made.
+    """
+    # That of a single output must be there.
+    files = [file for file in outputs if file is not None] if len(outputs) > 1 else []
+    made: list[Path] = []
+    try:
+        try:
+            for folder in dict.fromkeys(folder for file in files for folder in reversed(file.parents)):
+                if not folder.is_dir():
+                    folder.mkdir()
+                    made.append(folder)
+        except OSError as error:
+            raise InputError(f"the folder {error.filename} cannot be made: {error.strerror}") from error
+        yield
+    finally:
+        for folder in reversed(made):
+            with suppress(OSError):
+                folder.rmdir()
 
 
 def one_by_one(job: Job, bags: Sequence[str], outputs: Sequence[Path | None]) -> Generator[Outcome]:
@@ -62,9 +83,14 @@ def on_workers(
         InputError: Dask is missing, or the scheduler does not answer, has no workers, or is lost.
     """
     from ..fleet.cluster import Fleet, connected
+    from ..fleet.job import renamed
     from .progress import progress
 
+    # The folder in which a worker of a scheduler runs may be another one; what is told has the names that were given.
+    far = scheduler is not None
+    sent = [os.fspath(Path(bag).absolute()) if far else bag for bag in bags]
+    into = [output.absolute() if far and output is not None else output for output in outputs]
     with connected(min(workers, len(bags)), scheduler) as client, progress("bags", "bags", len(bags)) as bar:
-        for outcome in Fleet(client, job, bags, outputs).outcomes(bar):
+        for number, outcome in enumerate(Fleet(client, job, sent, into).outcomes(bar)):
             bar.hide()
-            yield outcome
+            yield renamed(outcome, {sent[number]: bags[number], str(into[number]): str(outputs[number])})

@@ -13,6 +13,7 @@ from ..errors import InputError
 from ..mechanics.impact import LAWS
 from ..report.maps.parameters import SUBJECTS, Axis, Parameter, fixed_values, option_of
 from .examples import examples
+from .limits import Whole
 
 if TYPE_CHECKING:
     from ..report.maps.modes import ModeMap
@@ -94,7 +95,7 @@ def command_of(name: str) -> click.Command:
         click.option("--law", type=click.Choice(LAWS), default="path", show_default=True, help="Impact law."),
         click.option(
             "--resolution",
-            type=click.IntRange(2, MOST_CELLS),
+            type=Whole(2, MOST_CELLS),
             default=1000,
             show_default=True,
             metavar="N",

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from ..report.summary import counted, without_bag
+from ..report.summary import without_bag
+from ..wording import counted
 
 if TYPE_CHECKING:
     from ..bags.replay import Result

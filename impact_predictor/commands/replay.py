@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import os
 from contextlib import ExitStack, closing
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from ..errors import InputError
 from .examples import examples
+from .limits import Number, Whole
 
 if TYPE_CHECKING:
     from ..prediction.scene import Scene
@@ -69,7 +68,7 @@ if TYPE_CHECKING:
 )
 @click.option(
     "--workers",
-    type=click.IntRange(min=1),
+    type=Whole(min=1),
     default=1,
     show_default=True,
     metavar="N",
@@ -87,14 +86,14 @@ if TYPE_CHECKING:
 )
 @click.option(
     "--baseline-time",
-    type=click.FloatRange(min=0.0),
+    type=Number(min=0.0),
     default=1e-3,
     show_default=True,
     help="Times that differ by up to so many s have not changed.",
 )
 @click.option(
     "--baseline-error",
-    type=click.FloatRange(min=0.0),
+    type=Number(min=0.0),
     default=0.01,
     show_default=True,
     help="Errors and velocities that differ by up to this part of 1 have not changed.",
@@ -128,16 +127,13 @@ def replay(
     from ..bags.replay import remapping
     from ..fleet.job import Job
     from ..report.whole import named
-    from .fleet import on_workers, one_by_one, outputs_of
+    from .fleet import folders_of, on_workers, one_by_one, outputs_of
     from .outcomes import Outcomes
+    from .unfinished import tell_unfinished
 
     if markers and output is None:
         raise InputError("--markers are written into an output: give its name with -o")
     bags = tuple(bags_of(bags))
-    if scheduler is not None:
-        # The folder in which a worker runs may be another one.
-        bags = tuple(os.fspath(Path(bag).absolute()) for bag in bags)
-        output = output and os.fspath(Path(output).absolute())
     job = Job(read_scenes(params), remapping(remap), markers, as_json or table is not None or report is not None)
     picture: Picture | None = None
     if figure is not None:
@@ -163,6 +159,7 @@ def replay(
 
             touchdowns = stack.enter_context(TouchdownTable(table))
         outputs = outputs_of(bags, output)
+        stack.enter_context(folders_of(outputs))
         if scheduler is not None or min(workers, len(bags)) > 1:
             outcomes = on_workers(job, bags, outputs, workers, scheduler)
         else:
@@ -175,10 +172,15 @@ def replay(
                         raise InputError(outcome.error)
                     told.take(outcome, its_output)
         except (KeyboardInterrupt, InputError) as error:
-            if not told.number:
+            if told.number:
+                stopped = error
+                click.echo(
+                    f"note: stopped after {told.number:,} of {len(bags):,} bags; what they gave is kept", err=True
+                )
+            if isinstance(error, KeyboardInterrupt):
+                tell_unfinished(outputs[told.number :], scheduler)
+            if stopped is None:
                 raise
-            stopped = error
-            click.echo(f"note: stopped after {told.number:,} of {len(bags):,} bags; what they gave is kept", err=True)
         told.finish()
         if picture is not None and told.replayed:
             picture.write()

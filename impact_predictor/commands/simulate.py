@@ -13,6 +13,7 @@ import click
 from ..mechanics.bodies import refuse
 from ..mechanics.impact import LAWS
 from .examples import examples
+from .limits import Number
 from .simulate_deck import EXAMPLES as DECK_EXAMPLES
 from .simulate_deck import simulate_deck
 from .simulate_wheel import EXAMPLES as WHEEL_EXAMPLES
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 
 F = TypeVar("F", bound=Callable[..., Any])
 
-ACUTE: dict[str, Any] = {"type": click.FloatRange(-90.0, 90.0, min_open=True, max_open=True), "metavar": "DEGREES"}
+ACUTE: dict[str, Any] = {"type": Number(-90.0, 90.0, min_open=True, max_open=True), "metavar": "DEGREES"}
 
 EXAMPLES = {
     "rod": (
@@ -239,12 +240,14 @@ def write_bag(output: str, rockings: Sequence[Rocking], rate: float) -> None:
     """Write the motions into one bag."""
     from ..scenarios.record import Actor, samples_in, write_record
     from .progress import progress
+    from .unfinished import unfinished_is_told
 
     actors = [
         Actor(f"{rocking.rocker.name}_{k}" if len(rockings) > 1 else rocking.rocker.name, rocking.run)
         for k, rocking in enumerate(rockings, 1)
     ]
-    with progress(Path(output).name, total=sum(samples_in(actor.run, rate) for actor in actors)) as tell:
+    samples = sum(samples_in(actor.run, rate) for actor in actors)
+    with unfinished_is_told(output), progress(Path(output).name, total=samples) as tell:
         write_record(output, actors, rate, tell)
 
 

@@ -12,6 +12,7 @@ import click
 from click.core import ParameterSource
 
 from .examples import examples
+from .limits import Whole
 from .simulated_files import check_pictures
 
 if TYPE_CHECKING:
@@ -69,9 +70,7 @@ def numbers(command: F) -> F:
 @click.command("deck", short_help="Cargo on the deck of a vessel in a sea.", epilog=examples(*EXAMPLES))
 @click.option("--params", metavar="FILE", help=f"Parameter file of the units. [default: {SCENE}]")
 @click.option("--duration", type=float, help=f"Seconds to simulate. [default: {DURATION:g}, or the recorded deck's]")
-@click.option(
-    "--seed", type=click.IntRange(min=0), default=SEED, show_default=True, help="Makes the sea and the noise."
-)
+@click.option("--seed", type=Whole(min=0), default=SEED, show_default=True, help="Makes the sea and the noise.")
 @click.option(
     "--spectrum",
     type=click.Choice(["jonswap", "pm"]),
@@ -127,6 +126,7 @@ def simulate_deck(
     from ..scenarios.deck.sensors import Noise
     from ..scenarios.deck.voyage import gravity_of, sail, total
     from .progress import progress
+    from .unfinished import unfinished_is_told
 
     check_options(recorded=record is not None)
     scenes = scenes_of(read_values(find(SCENE) if params is None else params))
@@ -145,7 +145,8 @@ def simulate_deck(
     seen = {} if courses is None else {"seen": courses.taking}
     what = "simulated deck" if output is None else Path(output).name
     unit = "s" if output is None else "messages"
-    with progress(what, unit, total(scenes, duration, output is not None, sensors)) as tell:
+    work = total(scenes, duration, output is not None, sensors)
+    with unfinished_is_told(output), progress(what, unit, work) as tell:
         voyage = sail(scenes, deck, duration, contacts, output, sensors, tell, **seen)
     if courses is not None:
         draw(deck, courses, plot, animate)

@@ -12,6 +12,7 @@ import click
 
 from ..mechanics.impact import LAWS
 from .examples import examples
+from .limits import Number, Whole
 from .simulated_files import RATE, check_pictures, rate_of_bag, say_files
 
 if TYPE_CHECKING:
@@ -32,7 +33,7 @@ EXAMPLES: Final = (
 )
 """The second one is the point mass on the slope of 0.08 rad; the fourth one has less friction than it needs."""
 
-_ACUTE: Final = click.FloatRange(-90.0, 90.0, min_open=True, max_open=True)
+_ACUTE: Final = Number(-90.0, 90.0, min_open=True, max_open=True)
 _NUMBERS: Final[tuple[tuple[str, Any, float, str], ...]] = (
     ("--slope", _ACUTE, 5.0, "Slope of the ground, degrees; positive is downhill ahead."),
     ("--alpha", float, 22.5, "Half the angle between two spokes, degrees: 180 divided by their number."),
@@ -58,7 +59,7 @@ def numbers(command: F) -> F:
 @click.option("--law", type=click.Choice(LAWS), default="path", show_default=True, help="Impact law.")
 @click.option(
     "--steps",
-    type=click.IntRange(min=1),
+    type=Whole(min=1),
     help=f"Steps to make, ahead or backwards. [default: {STEPS}, or those of --duration]",
 )
 @click.option("--duration", type=float, help=f"Longest time that is simulated, s. [default: {DURATION:g}]")
@@ -122,8 +123,9 @@ def write_bag(output: str, rolling: Rolling, rate: float) -> None:
     """Write the motion into a bag."""
     from ..scenarios.walking.record import samples_in, write_wheel
     from .progress import progress
+    from .unfinished import unfinished_is_told
 
-    with progress(Path(output).name, total=samples_in(rolling, rate)) as tell:
+    with unfinished_is_told(output), progress(Path(output).name, total=samples_in(rolling, rate)) as tell:
         write_wheel(output, rolling, rate, tell)
 
 

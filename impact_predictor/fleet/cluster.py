@@ -20,7 +20,7 @@ from .job import Job, Outcome, failed, replay_bag
 if TYPE_CHECKING:
     from distributed import Client, Future
 
-MISSING: Final = "several workers need Dask; install it: pip install 'impact_predictor[fleet]'"
+MISSING: Final = "several workers need Dask; install it: pip install dask distributed"
 PATIENCE: Final = "10s"
 """How long a scheduler has to answer."""
 

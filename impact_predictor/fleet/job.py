@@ -51,3 +51,25 @@ def replay_bag(job: Job, bag: str, output: Path | None, progress: Callable[[int]
 
         answer = as_json(result)
     return Outcome(bag, result._replace(costs=(), matches=()), answer)
+
+
+def renamed(outcome: Outcome, names: Mapping[str, str]) -> Outcome:
+    """An outcome that calls its bag and what else it speaks of by other names, a name for each path."""
+
+    def said(words: str) -> str:
+        for path, name in names.items():
+            words = words.replace(path, name)
+        return words
+
+    result, answer = outcome.result, outcome.answer
+    if result is not None:
+        result = result._replace(
+            bag=said(result.bag),
+            notes=tuple(map(said, result.notes)),
+            unpredictable=said(result.unpredictable),
+            damaged=said(result.damaged),
+        )
+    answer = {key: said(value) if isinstance(value, str) else value for key, value in answer.items()}
+    if "notes" in answer:
+        answer["notes"] = list(map(said, answer["notes"]))
+    return Outcome(said(outcome.bag), result, answer, said(outcome.error))

@@ -12,7 +12,8 @@ from ..calibration.fit import Calibration
 from ..calibration.scene_file import Change, number_text
 from ..calibration.search import FOLDS, Estimate
 from ..prediction.types import Leftover, Score
-from .summary import Errors, counted, summarize, words
+from ..wording import counted
+from .summary import Errors, summarize, words
 from .table import percent, plain_table
 
 NAMES: Final = ("friction", "restitution", "inertia")

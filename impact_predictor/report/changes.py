@@ -9,8 +9,8 @@ from typing import Any, Final
 from rich.console import Console
 from rich.table import Table
 
+from ..wording import counted
 from .baseline import Change, Comparison, Kind
-from .summary import counted
 from .table import NONE, percent, plain_table, show
 
 MOST_ROWS: Final = 20

@@ -37,27 +37,50 @@ class Earlier:
         """Look at it; JSON is read at once, bags when they are asked for.
 
         Raises:
-            InputError: it is JSON that cannot be read, or none of a replay.
+            InputError: it does not exist, or is JSON that cannot be read, or none of a replay.
         """
-        self._path = Path(path)
-        self._runs = _runs_of(self._path) if self._path.suffix == ".json" else None
+        self.path = Path(path)
+        if not self.path.exists():
+            raise InputError(f"the baseline {self.path} does not exist; {_HINT}")
+        self._runs = _runs_of(self.path) if self.path.suffix == ".json" else None
+
+    def check_of_several(self, bags: int) -> None:
+        """Whether it can be of so many bags.
+
+        Raises:
+            InputError: it is the run of one bag, and there are several.
+        """
+        is_of_one = self._runs.is_of_one if self._runs is not None else not self._is_folder
+        if bags > 1 and is_of_one:
+            raise InputError(
+                f"the baseline {self.path} is the run of one bag, but {bags:,} bags are given; give what a run of "
+                "several wrote: its folder (-o), or its --json"
+            )
 
     def touchdowns_of(self, bag: str | os.PathLike[str], name: str | os.PathLike[str] = "") -> tuple[Happened, ...]:
         """The touchdowns of a bag, which has a `name` in a run of several (`names_of`; without one that of its file).
 
+        In a folder it may also be called by more of its path: there were more bags in the earlier run.
+
         Raises:
             InputError: nothing is there, it is no run, or none of this bag.
         """
-        path = self._path
         if self._runs is not None:
-            return self._runs.touchdowns_of(path, os.fspath(bag))
-        if path.is_dir() and not (path / "metadata.yaml").exists():
-            path /= f"{os.fspath(name) or name_of(bag)}.mcap"
-            if not path.exists():
-                raise InputError(
-                    f"the baseline {self._path} has no {path.name}; write it with `impact-predictor replay -o`"
-                )
-        return _read_bag(path)
+            return self._runs.touchdowns_of(self.path, os.fspath(bag))
+        if not self._is_folder:
+            return _read_bag(self.path)
+        name = Path(name or name_of(bag))
+        folders = Path(bag).resolve().parent.parts[1:]
+        longer = [Path(*folders[k:], name.name) for k in range(len(folders) + 1 - len(name.parts), -1, -1)]
+        found = [path for one in (name, *longer) if (path := self.path / f"{one}.mcap").exists()]
+        if not found:
+            raise InputError(f"the baseline {self.path} has no {name}.mcap; write it with `impact-predictor replay -o`")
+        return _read_bag(found[0])
+
+    @property
+    def _is_folder(self) -> bool:
+        """Whether it is a folder of what was written of several bags."""
+        return self.path.is_dir() and not (self.path / "metadata.yaml").exists()
 
 
 class _Runs:
@@ -70,6 +93,10 @@ class _Runs:
         for run in answer if isinstance(answer, list) else ():
             self._by_path[run["bag"]].append(run)
             self._by_name[name_of(run["bag"])].append(run)
+
+    @property
+    def is_of_one(self) -> bool:
+        return self._only is not None
 
     def touchdowns_of(self, path: Path, bag: str) -> tuple[Happened, ...]:
         run = self._only

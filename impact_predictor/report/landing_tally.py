@@ -9,8 +9,8 @@ from statistics import median
 from typing import Final
 
 from ..mechanics.types import Mode
+from ..wording import counted
 from .landings import Landed
-from .summary import counted
 
 NOISY: Final = "a foot came down too suddenly, or the noise of base and feet hides how it comes down"
 
@@ -56,8 +56,9 @@ class LandingTally:
         if self._speeds:
             said.append(
                 f"Speeds are those of the last sample in the air, {median(self._speeds):.3f} m/s in the median, "
-                f"at most {max(self._speeds):.3f} m/s: a foot that lands with it gets at most {self._impulse:.2f} N s, "
-                f"and changes the body's velocity by at most {self._change:.3f} m/s"
+                f"at most {max(self._speeds):.3f} m/s: a foot that lands with it gets at most {self._impulse:.2f} N s; "
+                "by that and by what the others get, which stand or land together with it, the body's velocity "
+                f"changes by at most {self._change:.3f} m/s"
             )
         if self._late:
             said.append(

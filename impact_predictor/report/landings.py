@@ -18,7 +18,7 @@ from .table import NONE, first_stamp, least_width, plain_table
 if TYPE_CHECKING:
     from ..bags.stream import Settled
 
-IMPACT: Final = ("\nimpulse\nN s", "body's\nchange\nm/s")
+IMPULSES: Final = ("foot's\nimpulse\nN s", "others'\nimpulse\nN s")
 ERRORS: Final = ("error\nms, told\n20 ms", "error\nms, told\n50 ms")
 
 
@@ -27,11 +27,11 @@ class Landed(NamedTuple):
 
     `foot` with the part of it that has landed, where not all of it did at once; `second` where another part stood
     already. `stamp` in ns, when it came to stand, as its motion shows; `announced` how long before in s the first
-    prediction was made, None where there was none; the errors of
-    the times that were told `LEAD_TIMES` before, None where nothing was told yet; `mode` of the last prediction;
-    `speed` of the foot in its last sample in the air, and the `impulse` at the foot and the change of the mass centre's
-    `velocity` in the impact plane that it makes with that speed; `late` in s after the plan, `confirmed` by a force
-    sensor, None without one.
+    prediction was made, None where there was none; the errors of the times that were told `LEAD_TIMES` before, None
+    where nothing was told yet; `mode` of the last prediction; `speed` of the foot in its last sample in the air, and
+    what it makes with that speed: the `impulse` at the foot, that at the `others`, which stand or land together with
+    it, and the change of the mass centre's `velocity` in the impact plane by both; `late` in s after the plan,
+    `confirmed` by a force sensor, None without one.
     """
 
     body: str
@@ -43,6 +43,7 @@ class Landed(NamedTuple):
     mode: Mode
     speed: float | None
     impulse: float | None
+    others: float | None
     velocity: float | None
     late: float | None
     confirmed: bool | None
@@ -66,6 +67,7 @@ def _landed(body: str, score: Score, landing: Landing) -> Landed:
         touchdown.mode,
         landing.speed,
         None if landing.impact is None else hypot(*landing.impact.impulses[1]),
+        None if landing.impact is None or not landing.impact.old else hypot(*landing.impact.impulses[0]),
         None if landing.impact is None else hypot(*change_by(landing.impact)[:2]),
         landing.late,
         landing.confirmed,
@@ -96,12 +98,14 @@ def landing_as_json(landing: Landing) -> dict[str, Any]:
         "landing_speed": landing.speed,
         "landing_mode": None if impact is None else impact.mode.name,
         "impulse": None if impact is None else impact.impulses[1],
+        "others_impulse": None if impact is None or not impact.old else impact.impulses[0],
         "velocity_change": None if impact is None else change_by(impact),
     }
 
 
 def landings_table(landings: Sequence[Landed], width: int) -> Table:
-    """One row for each landing; both errors of time are beside each other, or in two lines where that is too wide.
+    """One row for each landing; both errors of time, and the impulses at the foot and at the others, are beside each
+    other, or in two lines where that is too wide.
 
     `width` is that of the terminal in characters.
     """
@@ -115,9 +119,11 @@ def _landings_table(landings: Sequence[Landed], stacked: bool) -> Table:
     errors = ("error\n20 ms\n50 ms",) if stacked else ERRORS
     time = "since\nfirst\ns" if start else "\ntime\ns"
     headers = [time, "\n\nfoot", "told\nms\nahead", *errors, "\npredicted\nmode"]
-    table = _table([*headers, "foot's\nspeed\nm/s", *IMPACT, *_headers_of_some(landings)])
+    impulses = ("N s at\nfoot\nothers",) if stacked else IMPULSES
+    table = _table([*headers, "foot's\nspeed\nm/s", *impulses, "body's\nchange\nm/s", *_headers_of_some(landings)])
     for one in landings:
         told = [_number(error, 1e3, 1, "+") for error in one.time_errors]
+        struck = [_number(one.impulse, 1.0, 2), _number(one.others, 1.0, 2)]
         table.add_row(
             f"{(one.stamp - start) / 1e9:.3f}",
             names[one.body, one.foot],
@@ -125,7 +131,7 @@ def _landings_table(landings: Sequence[Landed], stacked: bool) -> Table:
             *(["\n".join(told)] if stacked else told),
             one.mode.name,
             _number(one.speed, 1.0, 3),
-            _number(one.impulse, 1.0, 2),
+            *(["\n".join(struck)] if stacked else struck),
             _number(one.velocity, 1.0, 3),
             *([_number(one.late, 1e3, 1, "+")] if _are_planned(landings) else []),
             *(["-" if one.confirmed is None else "yes" if one.confirmed else "no"] if _are_felt(landings) else []),

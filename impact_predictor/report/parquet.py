@@ -12,7 +12,7 @@ from ..errors import InputError
 from ..mechanics.types import Twist
 from .whole import named, whole
 
-MISSING: Final = "a Parquet table needs pyarrow; install it: pip install 'impact_predictor[fleet]'"
+MISSING: Final = "a Parquet table needs pyarrow; install it: pip install pyarrow"
 
 _GROUP: Final = 10_000
 """Rows that are written at a time: few enough for any memory, many enough to be read fast."""
@@ -62,6 +62,8 @@ COLUMNS: Final = (
     Column("landing_mode", "string"),
     Column("impulse_normal", "float64", "N s"),
     Column("impulse_tangential", "float64", "N s"),
+    Column("others_impulse_normal", "float64", "N s"),
+    Column("others_impulse_tangential", "float64", "N s"),
     *_twist("velocity_change"),
 )
 """What is known of a touchdown, in SI units; docs/fleets.md tells what each column is."""
@@ -69,7 +71,7 @@ COLUMNS: Final = (
 _SPLIT: Final = {
     **{f"{name}_twist": [f"{name}_{part}" for part in Twist._fields] for name in ("before", "predicted", "measured")},
     "velocity_change": [f"velocity_change_{part}" for part in Twist._fields],
-    "impulse": ["impulse_normal", "impulse_tangential"],
+    **{name: [f"{name}_normal", f"{name}_tangential"] for name in ("impulse", "others_impulse")},
 }
 """What the JSON has as a list of numbers, and the columns of these."""
 

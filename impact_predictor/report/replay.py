@@ -9,8 +9,9 @@ from rich.console import Console
 
 from ..prediction.inputs import CONTACT_GEOMETRY, STATES
 from ..prediction.types import Status
+from ..wording import counted
 from .bodies import EARLY, bodies_of, bodies_table, truths_table
-from .summary import counted, error_by_lead_time, row_of, words
+from .summary import error_by_lead_time, row_of, words
 from .table import lead_time_table, percent, show, small_percent, touchdown_table
 from .tally import Together
 
@@ -74,11 +75,18 @@ def _landings_of(settled: Iterable[Settled]) -> list[Landed]:
 def truth_sentences(truth: Truth) -> list[str]:
     """How the predictions compare with the true impacts of the bag, one sentence each."""
     from ..scenarios.comparison import BORDER
+    from ..scenarios.matching import NEAREST
 
     found = truth.touchdowns - truth.missed
     there = counted(truth.touchdowns, "touchdown")
     told = f"{found:,} of {there} found" if truth.touchdowns else "no touchdown that this rate of samples can show"
     said = [f"Against the truth in the bag: {told}, {counted(truth.false, 'false alarm')}"]
+    if truth.missed:
+        others = "the other was" if truth.missed == 1 else f"the other {truth.missed:,} were"
+        said.append(
+            "A touchdown is found where a prediction before it told its time to "
+            f"{NEAREST / 1e6:.0f} ms; {others} announced too late, too far off, or not at all"
+        )
     if truth.mode_accuracy is not None:
         said.append(
             f"Of those found, {percent(truth.mode_accuracy)} % have the right mode; "

@@ -19,6 +19,16 @@ if TYPE_CHECKING:
 LEAD_TIME_EDGES: Final = (0.0, 0.01, 0.02, 0.03, 0.04, 0.05, 0.06)
 """Borders in s between which the error is shown against the lead time."""
 
+WHY: Final = {
+    "ONE_POINT": "nothing stood on the support before",
+    "OUT_OF_PLANE": "the body also turned off the plane of the impact, or its contacts lay beside it",
+    "ONE_CORNER_FIRST": "one corner of the edge that struck came before the other",
+    "TOO_SHORT": "the record ended, or paused, too soon after",
+    "TOO_SLOW": "the approach was too slow to be told from rest",
+    "DRIVEN": "the feet are driven: what follows is not the impact alone",
+}
+"""Why a touchdown is not compared with what was measured, by the names of `Leftover`."""
+
 
 class TouchdownRow(NamedTuple):
     """One settled touchdown as it is shown.
@@ -145,11 +155,6 @@ def quantile(values: Sequence[float], part: float) -> float:
     below = int(place)
     above = min(below + 1, len(ordered) - 1)
     return ordered[below] + (place - below) * (ordered[above] - ordered[below])
-
-
-def counted(number: int, noun: str) -> str:
-    """A number of things, in words that fit one of them and many."""
-    return f"{number:,} {noun}" if number == 1 else f"{number:,} {noun}s"
 
 
 def without_bag(said: str, bag: str) -> str:

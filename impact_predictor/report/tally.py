@@ -7,7 +7,8 @@ from collections import Counter
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from .summary import TouchdownRow, counted, reasons, row_of, summarize, words
+from ..wording import counted
+from .summary import WHY, TouchdownRow, reasons, row_of, summarize, words
 from .table import percent
 
 if TYPE_CHECKING:
@@ -45,11 +46,15 @@ class Tally:
         said = [f"{errors.number:,} of {counted(self._rows, 'touchdown')} scored"]
         if errors.number:
             said[0] += f": relative error {percent(errors.median)} % in the median, 90 % below {percent(errors.p90)} %"
+        said[0] += "."
         if self._reasons:
-            counts = ", ".join(f"{count:,} {words(reason)}" for reason, count in self._reasons.most_common())
             several = ", for one or several reasons each" if len(self._reasons) > 1 else ""
-            said.append(f"{self._rows - errors.number:,} not scored{several}: {counts}")
-        return [f"{sentence}." for sentence in said]
+            said.append(
+                "A touchdown is scored where the samples after it show the velocities that the impact left; they "
+                f"do not for {self._rows - errors.number:,}{several}:"
+            )
+            said += [f"  {count:,} {words(reason)}: {WHY[reason]}" for reason, count in self._reasons.most_common()]
+        return said
 
 
 class Together:

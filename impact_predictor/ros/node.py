@@ -4,13 +4,27 @@ from __future__ import annotations
 
 import gc
 import sys
+from typing import Final
 
-from .process import Stop, run, spin
+from .process import Stop, only_for_ros, run, spin
+
+USAGE: Final = """\
+predictor --ros-args --params-file scene.yaml -r odom:=/robot/odom
+
+The node of impact_predictor: it predicts touchdowns from the samples that arrive, until Ctrl-C.
+
+All arguments are those of ROS, and follow --ros-args:
+  --params-file FILE   parameters of the scene, as in config/cube_tosses.yaml
+  -p NAME:=VALUE       one parameter, in the place of that in the file
+  -r FROM:=TO          the topic TO in the place of the input FROM
+
+docs/node.md has topics and parameters; with a sourced ROS 2 the start is `ros2 run impact_predictor predictor ...`."""
 
 
 def main(args: list[str] | None = None) -> int:
     """Run the node until SIGINT or SIGTERM; the exit status."""
-    return run(_serve, args)
+    refused = only_for_ros(args, USAGE)
+    return run(_serve, args) if refused is None else refused
 
 
 def _serve(stop: Stop) -> int:

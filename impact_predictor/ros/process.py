@@ -99,6 +99,26 @@ def run(work: Callable[[Stop], int], args: list[str] | None) -> int:
             rclpy.try_shutdown()
 
 
+def only_for_ros(args: list[str] | None, usage: str) -> int | None:
+    """Look at the arguments of a program that takes those of ROS alone: its exit status where it shall not start.
+
+    `--help` prints the `usage`, whose first line shows a start; what does not follow `--ros-args` is refused.
+    """
+    own, for_ros = [], False
+    for word in (sys.argv if args is None else args)[1:]:
+        if word in ("--ros-args", "--"):
+            for_ros = word == "--ros-args"
+        elif not for_ros:
+            own.append(word)
+    if {"-h", "--help"} & set(own):
+        print(usage)
+        return 0
+    if own:
+        start = usage.splitlines()[0].strip()
+        return _refuse(f"{' '.join(own)} is not understood: every argument goes after --ros-args, as in `{start}`", 2)
+    return None
+
+
 def _flaw_of_file(args: list[str] | None) -> str:
     """What is wrong with the parameter file of the arguments, said as offline, or "": rcl says it less clearly."""
     words = sys.argv if args is None else args

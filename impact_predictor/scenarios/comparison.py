@@ -1,7 +1,6 @@
 """Predicted against true touchdowns: what was found, how early, and how right; `matching` tells which belong together.
 
-What was announced for a time after the record is not counted. Touchdowns are those of impacts here, or of the landings
-of feet.
+Touchdowns are those of impacts here, or of the landings of feet.
 """
 
 from __future__ import annotations
@@ -129,8 +128,7 @@ def _compare(
     scene: Scene,
 ) -> Compared:
     happened = sorted((one for one in impacts if one.stamp <= recorded[-1]), key=lambda one: one.stamp)
-    rows = [row for row in announced if row[-1].stamp <= recorded[-1]]
-    matched, alarms = match([impact.stamp for impact in happened], rows)
+    matched, alarms = match([impact.stamp for impact in happened], announced, recorded[-1])
     shown = resolved(happened, recorded, hardly(scene))
     found = {k: Found(happened[k], matched[k][-1]) for k in shown if k in matched}
     errors = {k: velocity_error(one, scene.center_of_mass) for k, one in found.items()}

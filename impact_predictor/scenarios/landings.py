@@ -78,7 +78,7 @@ class Landings:
         for foot, rows in self._rows[body].items():
             stamps = sorted(one.stamp for one in self.true if (one.body, one.foot) == (body, foot) and one.stamp <= end)
             # A foot comes down softly: it may seem to come down still when the plan says that it stands.
-            matched, alarms = match(stamps, [row for row in rows.all if row[-1].stamp <= end], late=NEAREST)
+            matched, alarms = match(stamps, rows.all, end, late=NEAREST)
             announced += [Announced(stamps[k], predictions) for k, predictions in sorted(matched.items())]
             touchdowns += len(stamps)
             false += len(alarms)

@@ -3,6 +3,8 @@
 Predictions of one touchdown follow each other: the next sample announces the same contacts again, unless the announced
 moment has passed. Such a row of predictions belongs to the true touchdown, of those after its last sample, that is
 nearest to what it announced last, if they are within `NEAREST` of each other; a row without one was a false alarm.
+What was announced for a time less than `NEAREST` before the end of the record, or after it, may still come when nobody
+sees it: without a true touchdown it is neither found nor false, and is left out.
 """
 
 from __future__ import annotations
@@ -108,11 +110,11 @@ def follows(announced: Announcement, last: Announcement) -> bool:
 
 
 def match(
-    stamps: Sequence[int], rows: Iterable[list[Announcement]], late: int = 0
+    stamps: Sequence[int], rows: Iterable[list[Announcement]], end: int, late: int = 0
 ) -> tuple[dict[int, list[Announcement]], list[list[Announcement]]]:
     """The predictions of each true touchdown by its place, from their stamps in order, and those that are false alarms.
 
-    A row may go on for `late` ns after its touchdown.
+    The record ends at the stamp `end`; a row may go on for `late` ns after its touchdown.
     """
     matched: dict[int, list[Announcement]] = defaultdict(list)
     alarms: list[list[Announcement]] = []
@@ -123,7 +125,7 @@ def match(
         near = [k for k in (later - 1, later) if first <= k < len(stamps) and abs(stamps[k] - announced) <= NEAREST]
         if near:
             matched[min(near, key=lambda k: abs(stamps[k] - announced))] += row
-        else:
+        elif announced <= end - NEAREST:
             alarms.append(row)
     return matched, alarms
 

@@ -9,13 +9,15 @@ from typing import TYPE_CHECKING, NamedTuple
 from ..errors import InputError
 from ..mechanics.types import Twist
 from ..report.landings import error_ahead
-from ..report.summary import counted, errors_of, reasons, row_of, words
+from ..report.summary import errors_of, reasons, row_of, words
 from ..report.table import first_stamp, percent
+from ..wording import counted
 from .tolerances import Tolerances
 
 if TYPE_CHECKING:
     from ..bags.replay import Result, Settled
     from ..prediction.types import Landing
+    from ..report.earlier import Earlier
     from ..report.summary import TouchdownRow
     from ..scenarios.comparison import Truth
 
@@ -153,19 +155,18 @@ def _landing_check(name: str, settled: Settled, landing: Landing, tolerance: flo
     return Check(name, "\n".join(lines), figures=figures)
 
 
-def baseline_check(result: Result, baseline: str | PathLike[str]) -> Check:
-    """Whether a run is as an earlier one, which may be of several bags."""
+def baseline_check(result: Result, earlier: Earlier, name: str | PathLike[str] = "") -> Check:
+    """Whether a run is as an earlier one, which may be of several bags; `name` tells its bag from the others."""
     from ..report.baseline import compare_runs, run_of
     from ..report.changes import concluded, sentences
-    from ..report.earlier import read_earlier
 
     try:
-        compared = compare_runs(read_earlier(baseline, result.bag), run_of(result))
+        compared = compare_runs(earlier.touchdowns_of(result.bag, name), run_of(result))
     except InputError as error:
         return Check("baseline", str(error))
     if not compared.changes:
         return Check("baseline")
-    lines = [concluded(compared, baseline), *sentences(compared)[:MOST_LISTED]]
+    lines = [concluded(compared, earlier.path), *sentences(compared)[:MOST_LISTED]]
     more = len(compared.changes) - MOST_LISTED
     lines += [f"and {more:,} more"] if more > 0 else []
     return Check("baseline", "\n".join(lines), figures={"changes": len(compared.changes)})

@@ -6,17 +6,21 @@ import os
 from collections.abc import Iterable, Iterator
 from glob import glob, has_magic
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from ..bags.inputs import remapping
+from ..bags.names import names_of
 from ..errors import InputError
 from ..parameters.file import read_values
 from .checks import Check, baseline_check, checks_of
 from .plugin import TOLERANCES, folder_of, path_of, setting
 from .replays import replays_of
 from .tolerances import read_tolerances
+
+if TYPE_CHECKING:
+    from ..report.earlier import Earlier
 
 
 class CheckItem(pytest.Item):
@@ -76,7 +80,14 @@ class BagCollection:
             raise InputError("bags are tested by a parameter file of the scene: give --impact-params FILE")
         read_values(params)  # what is wrong there is wrong for every bag
         self._params = params
-        self._baseline = path_of(config, "baseline")
+        self._earlier: Earlier | None = None
+        baseline = path_of(config, "baseline")
+        if baseline is not None:
+            from ..report.earlier import Earlier
+
+            self._earlier = Earlier(baseline)
+            self._earlier.check_of_several(len(bags))
+            self._names = dict(zip(bags, names_of(bags), strict=True))
         self._remap = remapping(setting(config, "remap"))
         self._tolerances = read_tolerances({name: str(setting(config, name)) for name in TOLERANCES})
         self._replays = replays_of(config)
@@ -88,7 +99,9 @@ class BagCollection:
         except InputError as error:
             return [Check("samples", str(error))]
         checks = checks_of(result, self._tolerances)
-        return checks if self._baseline is None else [*checks, baseline_check(result, self._baseline)]
+        if self._earlier is None:
+            return checks
+        return [*checks, baseline_check(result, self._earlier, self._names[bag])]
 
     def pytest_collect_file(self, file_path: Path, parent: pytest.Collector) -> BagFile | None:
         """A bag, where the file is one of them."""

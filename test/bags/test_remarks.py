@@ -148,9 +148,11 @@ def test_points_that_are_told_in_the_world_are_known_by_lying_on_the_ground_ther
 
 def test_points_that_move_are_taken_for_feet_that_the_scene_does_not_name(tmp_path: Path) -> None:
     rigid = Scene.from_parameters(validate({k: v for k, v in GIVEN.items() if not k.startswith("feet")}))
-    (note,) = replayed(tmp_path, rigid).notes
-    assert (
-        "of 400 messages; if they are the feet of a machine that walks, give the names of these as feet.names" in note
+    stepping = replayed(tmp_path, rigid)
+    assert stepping.settled == stepping.notes == ()
+    assert stepping.unpredictable.startswith("no touchdown was predicted, and /contact_geometry: the contact points")
+    assert stepping.unpredictable.endswith(
+        "of 400 messages; if they are the feet of a machine that walks, give the names of these as feet.names"
     )
 
     def at_rest(number: int, one: Any) -> Any:

@@ -10,7 +10,7 @@ from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
 
 from impact_predictor.bags.read import BagMessage, read_messages, topics
-from impact_predictor.bags.write import BagWriter
+from impact_predictor.bags.write import BagWriter, left_of
 from impact_predictor.errors import InputError
 from impact_predictor.ros.messages import UINT8
 
@@ -100,6 +100,33 @@ def test_an_exception_leaves_what_was_written_and_the_older_output(
     write(tmp_path / name)
     assert read(tmp_path / name) == MESSAGES
     assert [entry.name for entry in tmp_path.iterdir()] == [name]
+
+
+@NAMES
+def test_what_a_stopped_writer_leaves_is_found_and_without_a_message_it_leaves_nothing(
+    tmp_path: Path, name: str
+) -> None:
+    assert left_of(tmp_path / name) is None
+    with pytest.raises(KeyboardInterrupt), BagWriter(tmp_path / name):
+        raise KeyboardInterrupt
+    assert list(tmp_path.iterdir()) == []
+    with pytest.raises(KeyboardInterrupt):
+        write_and_stop(tmp_path / name, KeyboardInterrupt)
+    assert left_of(tmp_path / name) == tmp_path / f"{name}.partial/bag"
+
+
+def test_of_a_writer_whose_process_was_ended_only_a_bag_with_messages_is_left(tmp_path: Path) -> None:
+    with pytest.raises(KeyboardInterrupt):
+        write_and_stop(tmp_path / "out.mcap", KeyboardInterrupt)
+    bag = tmp_path / "out.mcap.partial/bag"
+    # It ends somewhere behind its first chunk, or before it; the metadata come last.
+    (bag / "metadata.yaml").unlink()
+    data = (bag / "bag.mcap").read_bytes()
+    (bag / "bag.mcap").write_bytes(data[: len(data) // 2])
+    assert left_of(tmp_path / "out.mcap") == bag
+    (bag / "bag.mcap").write_bytes(data[:20])
+    assert left_of(tmp_path / "out.mcap") is None
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_until_the_end_there_is_only_the_partial_output(tmp_path: Path) -> None:

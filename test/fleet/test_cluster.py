@@ -147,7 +147,11 @@ def test_two_workers_give_the_bytes_of_one_and_a_damaged_bag_stops_no_other(tmp_
 
 
 @pytest.mark.slow  # a real scheduler over TCP, with a worker in this process
-def test_the_workers_of_a_scheduler_give_the_same_bytes(tmp_path: Path, bags: list[str]) -> None:
+def test_the_workers_of_a_scheduler_give_the_same_bytes(
+    tmp_path: Path, bags: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(Path(bags[0]).parent)
+    bags = [Path(bag).name for bag in bags]
     options = {"processes": False, "threads_per_worker": 1, "protocol": "tcp://", "dashboard_address": None}
     with distributed.LocalCluster(n_workers=0, **options) as cluster:
         address = cluster.scheduler_address
@@ -170,8 +174,9 @@ def test_ctrl_c_keeps_what_is_done_and_leaves_no_process_behind(tmp_path: Path, 
     many.mkdir()
     for number in range(400):
         (many / f"{number}.mcap").hardlink_to(bags[0])
-    table = tmp_path / "table.parquet"
-    command = [sys.executable, "-m", "impact_predictor", "replay", str(many), "--params", SCENE, "--table", str(table)]
+    table, output = tmp_path / "table.parquet", tmp_path / "out"
+    files = ["--table", str(table), "-o", str(output)]
+    command = [sys.executable, "-m", "impact_predictor", "replay", str(many), "--params", SCENE, *files]
     # As a terminal does, the signal goes to all processes of the group.
     process = subprocess.Popen(
         [*command, "--workers", "2"],
@@ -191,6 +196,8 @@ def test_ctrl_c_keeps_what_is_done_and_leaves_no_process_behind(tmp_path: Path, 
     assert "note: stopped after" in said
     assert "Traceback" not in said
     assert table.exists()
+    # What a worker was writing stays only if it holds messages, and is named.
+    assert all(str(place) in said for place in output.glob("*.partial"))
     end = time.monotonic() + 5.0
     while _is_there(process.pid) and time.monotonic() < end:
         time.sleep(0.05)

@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
@@ -14,6 +15,7 @@ from click.testing import CliRunner, Result
 from impact_predictor.cli import main
 from impact_predictor.commands import fleet, outcomes
 from impact_predictor.commands.replay import read_scenes
+from impact_predictor.fleet import cluster
 from impact_predictor.fleet.job import Job, Outcome, failed, replay_bag
 
 SCENE = str(Path(__file__).parents[2] / "config/cube_tosses.yaml")
@@ -78,22 +80,22 @@ def test_after_ctrl_c_what_is_done_is_told_as_if_it_had_been_all(
 
 
 @pytest.mark.parametrize(
-    ("missing", "arguments"),
+    ("missing", "arguments", "remedy"),
     [
-        ("distributed", ["--workers", "2"]),
-        ("distributed", ["--scheduler", "tcp://localhost:8786"]),
-        ("pyarrow", ["--table", "t.parquet"]),
+        ("distributed", ["--workers", "2"], "pip install dask distributed"),
+        ("distributed", ["--scheduler", "tcp://localhost:8786"], "pip install dask distributed"),
+        ("pyarrow", ["--table", "t.parquet"], "pip install pyarrow"),
     ],
 )
 def test_what_the_extra_brings_is_missed_in_one_sentence(
-    monkeypatch: pytest.MonkeyPatch, bags: list[str], missing: str, arguments: list[str]
+    monkeypatch: pytest.MonkeyPatch, bags: list[str], missing: str, arguments: list[str], remedy: str
 ) -> None:
     monkeypatch.setitem(sys.modules, missing, None)
     result = run(*bags, *arguments)
     assert (result.exit_code, result.stdout) == (2, "")
     (line,) = result.stderr.splitlines()
     assert line.startswith("error: ")
-    assert "pip install 'impact_predictor[fleet]'" in line
+    assert line.endswith(remedy)  # whichever way the package itself was installed
 
 
 @pytest.mark.slow  # in a fresh process
@@ -104,3 +106,29 @@ def test_one_worker_needs_nothing_of_dask(bags: list[str]) -> None:
         "print(result.exit_code, *{'dask', 'distributed', 'pyarrow'} & sys.modules.keys())"
     )
     assert subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout == "0\n"
+
+
+def test_a_scheduler_gets_absolute_paths_and_what_is_told_has_the_names_that_were_given(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, bags: list[str]
+) -> None:
+    sent: list[str] = []
+
+    class Sent:
+        def __init__(self, client: None, job: Job, bags: list[str], outputs: list[Path]) -> None:
+            sent.extend([*bags, *map(str, outputs)])
+            self.outcomes: Callable[[object], Iterator[Outcome]] = lambda bar: map(
+                replay_bag, [job] * len(bags), bags, outputs
+            )
+
+    monkeypatch.setattr(cluster, "connected", lambda *_: nullcontext())
+    monkeypatch.setattr(cluster, "Fleet", Sent)
+    monkeypatch.chdir(Path(bags[0]).parent)
+    given = [Path(bags[0]).name, "missing.mcap"]
+    near, far = (run(*given, "--json", "-o", "out", *more) for more in ([], ["--scheduler", "tcp://localhost:8786"]))
+    assert sent == [bags[0], str(Path("missing.mcap").absolute()), *(str(Path("out", one).absolute()) for one in given)]
+    assert far.stderr == near.stderr
+
+    def told(answers: str) -> list[object]:
+        return [{key: value for key, value in one.items() if "us" not in key} for one in json.loads(answers)]
+
+    assert told(far.stdout) == told(near.stdout)

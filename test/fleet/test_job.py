@@ -9,7 +9,7 @@ import pytest
 
 from impact_predictor.commands.replay import read_scenes
 from impact_predictor.fleet import job
-from impact_predictor.fleet.job import Job, replay_bag
+from impact_predictor.fleet.job import Job, failed, renamed, replay_bag
 
 SCENE = str(Path(__file__).parents[2] / "config/cube_tosses.yaml")
 
@@ -38,3 +38,17 @@ def test_a_bag_that_cannot_be_used_is_an_outcome_too(tmp_path: Path, monkeypatch
 
     monkeypatch.setattr(job, "replay", exhausted)
     assert "needs more memory than there is" in replay_bag(Job({}, {}), missing, None).error
+
+
+def test_an_outcome_speaks_of_its_bag_by_another_name_everywhere(bags: list[str]) -> None:
+    outcome = replay_bag(Job(read_scenes(SCENE), {}, answers=True), bags[0], None)
+    assert outcome.result is not None
+    assert bags[0] in str(outcome.result.notes)
+    outcome.answer["damaged"] = f"{bags[0]} is damaged"
+    other = renamed(outcome, {bags[0]: "toss.mcap"})
+    assert bags[0] not in str(other)
+    assert other.result is not None
+    assert (other.bag, other.result.bag, other.answer["bag"]) == ("toss.mcap",) * 3
+    assert other.answer["touchdowns"] == outcome.answer["touchdowns"]
+    error = renamed(failed("/data/run", "/data/run is no bag, /tmp/out stays"), {"/data/run": "run", "/tmp/out": "out"})
+    assert error == failed("run", "run is no bag, out stays")

@@ -93,7 +93,11 @@ def gait() -> dict[str, Any]:
 
 WALK = answer(
     "walk.bag",
-    touchdowns=[landing(300, "right", 0.002), landing(700, "left", -0.004), landing(900, "right", None)],
+    touchdowns=[
+        landing(300, "right", 0.002, others_impulse=[5.0, 12.0]),
+        landing(700, "left", -0.004),
+        landing(900, "right", None),
+    ],
     gaits={"": gait()},
 )
 TRUE = answer(

@@ -101,13 +101,32 @@ def test_what_rounds_to_nothing_has_no_sign() -> None:
     (line,) = [
         line
         for line in printed(
-            landings_table(landings_of([landed(1.0, history=((0.1, -1e-9),), speed=-1e-9)]), 80), 80
+            landings_table(landings_of([landed(1.0, history=((0.1, -1e-9),), speed=-1e-9)]), 120), 120
         ).splitlines()
         if "LF" in line
     ]
     assert "-0" not in line
     assert line.split()[3:6] == ["0.0", "0.0", "PIVOT_SLIDE"]
     assert line.split()[6] == "0.000"
+
+
+@pytest.mark.parametrize("width", [80, 120])
+def test_what_the_other_feet_get_stands_beside_the_impulse_of_the_foot(width: int) -> None:
+    """Of two feet that land together one may have braked: the impulse is at the other alone."""
+    impact = TOUCHDOWN._replace(impulses=((3.0, 0.0), (0.0, 0.0)))
+    soft, alone = (
+        landed(1.0, impact=impact),
+        landed(2.0, "RF", impact=impact._replace(old=(), impulses=((0, 0), (4, 3)))),
+    )
+    lines = printed(landings_table(landings_of([soft, alone]), width), width).splitlines()
+    first, second = (next(k for k, line in enumerate(lines) if foot in line) for foot in ("LF", "RF"))
+    told = " ".join(lines[first:second]).split()
+    assert told.count("0.00") == told.count("3.00") == 1
+    assert {"5.00", "-"} <= set(" ".join(lines[second:]).split())
+    assert soft.score.landing is not None
+    assert alone.score.landing is not None
+    assert landing_as_json(soft.score.landing)["others_impulse"] == (3.0, 0.0)
+    assert landing_as_json(alone.score.landing)["others_impulse"] is None
 
 
 def test_feet_are_named_with_their_bodies_where_there_are_several() -> None:
@@ -128,7 +147,8 @@ def test_what_landings_say_together() -> None:
     assert landing_sentences(one)[1] == "Predicted modes: 1 PIVOT_SLIDE."
     assert landing_sentences(one)[2] == (
         "Speeds are those of the last sample in the air, 0.123 m/s in the median, at most 0.123 m/s: a foot that lands "
-        "with it gets at most 5.00 N s, and changes the body's velocity by at most 0.050 m/s."
+        "with it gets at most 5.00 N s; by that and by what the others get, which stand or land together with it, the "
+        "body's velocity changes by at most 0.050 m/s."
     )
     several = [landed(1.0, **KNOWN), landed(2.0, "RF", late=0.02), landed(3.0)]
     assert landing_sentences(landings_of(several))[-1] == (

@@ -19,7 +19,7 @@ from impact_predictor.report.maps.data import summary_of, write_csv
 from impact_predictor.report.maps.figure import COLOURS, write_figure
 from impact_predictor.report.maps.modes import ModeMap, map_modes, middles, shares
 from impact_predictor.report.maps.parameters import SUBJECTS, Axis, fixed_values, problem_at
-from impact_predictor.report.maps.words import axis_label, conditions
+from impact_predictor.report.maps.words import axis_label, conditions, hatched
 
 CELLS = 120
 
@@ -262,6 +262,22 @@ def test_a_picture_or_data_that_cannot_be_written_is_said(tmp_path: Path) -> Non
     for write in (write_figure, write_csv):
         with pytest.raises(InputError, match="cannot be written"):
             write(tmp_path / "nowhere" / "map.svg", modes)
+
+
+def test_where_a_law_has_no_single_answer_it_is_said_which_one_is_shown() -> None:
+    path, total = (
+        [said for _, said in hatched(a_map("plate", cells=2, slip=-1.0, law=law))] for law in ("path", "total")
+    )
+    assert path == [
+        "the impulse path jams (Painlevé): shown is what follows the tangential impact at A that resolves the jam",
+        "the impulse path is not unique: shown is one of its answers",
+        "the total law is not unique: shown is the path law",
+    ]
+    assert total == [
+        "the impulse path jams (Painlevé): shown is the total law",
+        "the impulse path is not unique: shown is the total law",
+        "the total law is not unique: shown is the answer nearest to that of the path",
+    ]
 
 
 def test_axes_and_conditions_are_said_as_the_paper_does() -> None:

@@ -36,6 +36,6 @@ def test_a_disk_that_is_full_is_told_in_one_sentence(monkeypatch: pytest.MonkeyP
     def full(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(module.pickle, "dump", full)
+    monkeypatch.setattr(module.marshal, "dumps", full)
     with pytest.raises(InputError, match="No space left on device; give another one in TMPDIR"):
         Kept().append(TOSSES)

@@ -43,6 +43,7 @@ LANDING = TOUCHDOWN | {
     "landing_speed": 0.1,
     "landing_mode": "PIVOT",
     "impulse": [2.0, -1.0],
+    "others_impulse": [4.0, 0.5],
     "velocity_change": [0.01, 0.02, 0.03],
 }
 ANSWERS: list[dict[str, Any]] = [
@@ -73,6 +74,7 @@ def test_there_is_a_row_for_each_touchdown_and_one_for_a_bag_without_any(tmp_pat
     assert (toss["measured_vx"], toss["relative_error"], toss["foot"]) == (None, None, None)
     assert (toss["flags"], toss["old"], toss["new"]) == (["TOO_SHORT"], [1], [0, 2])
     assert (landing["impulse_normal"], landing["impulse_tangential"]) == (2.0, -1.0)
+    assert (landing["others_impulse_normal"], landing["others_impulse_tangential"]) == (4.0, 0.5)
     assert (landing["velocity_change_omega"], landing["confirmed"], landing["late"]) == (0.03, True, 0.001)
 
 

@@ -15,8 +15,12 @@ from impact_predictor.scenarios.warned import Warned
 
 
 def test_the_truth_is_said_in_whole_sentences() -> None:
-    found, right, time, unseen = truth_sentences(Truth(4, 1, 2, 3, 0.75, 0.0123, 1.5e-6))
+    found, missed, right, time, unseen = truth_sentences(Truth(4, 1, 2, 3, 0.75, 0.0123, 1.5e-6))
     assert found == "Against the truth in the bag: 3 of 4 touchdowns found, 2 false alarms."
+    assert missed == (
+        "A touchdown is found where a prediction before it told its time to 20 ms; the other was announced too late, "
+        "too far off, or not at all."
+    )
     assert (
         right == "Of those found, 75.0 % have the right mode; the velocities after them are 1.2 % wrong in the median."
     )
@@ -36,7 +40,7 @@ def test_of_landings_the_truth_tells_times_alone() -> None:
 
 
 def test_modes_near_a_border_and_wrong_ones_that_no_record_shows_are_told_apart() -> None:
-    _, _, clear, unseen = truth_sentences(Truth(4, 1, 2, 3, 0.75, 0.0123, None, 2, 1.0, 1))
+    _, _, _, clear, unseen = truth_sentences(Truth(4, 1, 2, 3, 0.75, 0.0123, None, 2, 1.0, 1))
     assert clear == (
         "2 of them are farther than 2 % of friction or geometry from another mode; of these 100.0 % have the right one."
     )

@@ -176,6 +176,7 @@ def test_the_json_of_a_landing_has_its_foot_its_impact_and_how_late_it_was() -> 
         "landing_speed": 0.25,
         "landing_mode": TOUCHDOWN.mode.name,
         "impulse": [0.5, -0.125],
+        "others_impulse": [0.0, 0.0],
         "velocity_change": [-0.25, 0.75, 1.0],
     }
     unknown = LANDED._replace(landing=Landing("left", 2_000_000_000, None, None, ()))

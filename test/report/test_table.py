@@ -107,10 +107,20 @@ def test_lead_times_without_predictions_have_no_error() -> None:
     assert ["10 to 20", "0", "-", "-"] in lines
 
 
+SCORED = "A touchdown is scored where the samples after it show the velocities that the impact left; they do not"
+
+
 def test_conclusions_count_the_scored_and_explain_the_others() -> None:
     assert Tally([ROW, UNSCORED, UNMEASURED]).sentences() == [
         "1 of 3 touchdowns scored: relative error 12.3 % in the median, 90 % below 12.3 %.",
-        "2 not scored, for one or several reasons each: 1 out of plane, 1 one corner first, 1 too short.",
+        f"{SCORED} for 2, for one or several reasons each:",
+        "  1 out of plane: the body also turned off the plane of the impact, or its contacts lay beside it",
+        "  1 one corner first: one corner of the edge that struck came before the other",
+        "  1 too short: the record ended, or paused, too soon after",
     ]
     assert Tally([]).sentences() == ["No touchdown was predicted."]
-    assert Tally([UNMEASURED]).sentences() == ["0 of 1 touchdown scored.", "1 not scored: 1 too short."]
+    assert Tally([UNMEASURED]).sentences()[0] == "0 of 1 touchdown scored."
+    assert Tally([UNMEASURED]).sentences()[1] == f"{SCORED} for 1:"
+    assert Tally([ROW]).sentences() == [
+        "1 of 1 touchdown scored: relative error 12.3 % in the median, 90 % below 12.3 %."
+    ]

@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from impact_predictor.ros.node import USAGE, main
+
 needs_ros = pytest.mark.skipif(
     importlib.util.find_spec("rclpy") is None,
     reason="the node needs ROS 2: source it, or install the extra `ros`",
@@ -99,6 +101,30 @@ def test_without_rclpy_the_node_says_in_one_sentence_what_to_do():
     assert len(finished.stderr.splitlines()) == 1
     assert "source /opt/ros/jazzy/setup.bash" in finished.stderr
     assert "pip install '.[ros]'" in finished.stderr
+
+
+def test_the_node_shows_how_it_is_started_with_and_without_ros(capsys, monkeypatch):
+    monkeypatch.setitem(sys.modules, "rclpy", None)
+    for help_asked in (["--help"], ["-h"], ["--params-file", "scene.yaml", "--help", "--ros-args"]):
+        assert main(["predictor", *help_asked]) == 0
+        assert capsys.readouterr() == (f"{USAGE}\n", "")
+    assert USAGE.startswith("predictor --ros-args --params-file ")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "named"),
+    [
+        (["--params-file", "scene.yaml"], "--params-file scene.yaml"),
+        (["scene.yaml"], "scene.yaml"),
+        (["-p", "body.mass:=1.0", "--ros-args", "--params-file", "x.yaml"], "-p body.mass:=1.0"),
+        (["--ros-args", "-p", "body.mass:=1.0", "--", "--params-file", "x.yaml"], "--params-file x.yaml"),
+    ],
+)
+def test_what_does_not_follow_ros_args_is_refused_in_a_sentence_that_shows_the_way(capsys, arguments, named):
+    assert main(["predictor", *arguments]) == 2
+    way = "`predictor --ros-args --params-file scene.yaml -r odom:=/robot/odom`"
+    said = f"impact_predictor: {named} is not understood: every argument goes after --ros-args, as in {way}\n"
+    assert capsys.readouterr() == ("", said)
 
 
 @needs_ros

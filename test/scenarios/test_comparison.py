@@ -143,6 +143,26 @@ def test_what_the_record_does_not_reach_is_not_counted() -> None:
     assert compare([impact(120)], record(100, dict.fromkeys(range(50, 101), 120.0)), SCENE) == NOTHING
 
 
+@pytest.mark.parametrize(("until", "false"), [(100, 1), (99, 0), (90, 0), (81, 0)])
+def test_what_is_announced_for_the_last_20_ms_of_a_record_is_neither_found_nor_false(until: int, false: int) -> None:
+    made = record(until, dict.fromkeys(range(20, 80), 80.0))
+    # It comes 5 ms after the record, or never: nobody can tell.
+    for impacts in ([], [impact(until + 5)]):
+        together, bodies, matches = compare_all(impacts, made, {"": SCENE})
+        assert (together.touchdowns, together.missed, together.false) == (0, 0, false)
+        assert bodies["rod"] == together
+        assert len(matches) == false
+    # One that the record shows is found.
+    found = compare([impact(70)], made, SCENE)
+    assert (found.touchdowns, found.missed, found.false) == (1, 1, false)
+    assert compare([impact(80)], made, SCENE).missed == 0
+
+
+def test_a_touchdown_that_was_told_for_after_the_end_and_came_before_it_is_found() -> None:
+    truth = compare([impact(98)], record(100, dict.fromkeys(range(50, 98), 103.0)), SCENE)
+    assert (truth.touchdowns, truth.missed, truth.false, truth.median_time_error) == (1, 0, 0, pytest.approx(0.005))
+
+
 def test_impacts_that_no_sample_shows_are_not_missed() -> None:
     # At 10.2 ms there was no sample since 10.1 ms, at 11.4 ms one; gravity makes 0.00981 m/s in the 1 ms of a contact.
     impacts = [impact(10.1), impact(10.2), impact(11.4), impact(20.5, approach=0.0098)]

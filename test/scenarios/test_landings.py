@@ -127,6 +127,14 @@ def test_what_the_record_does_not_reach_is_not_counted() -> None:
     assert compared(record(100, {"left": (), "right": ()}, announced)).together == NOTHING
 
 
+@pytest.mark.parametrize(("until", "false"), [(100, 1), (99, 0), (90, 0), (81, 0)])
+def test_what_is_announced_for_the_last_20_ms_of_a_record_is_neither_found_nor_false(until: int, false: int) -> None:
+    announced = {0: dict.fromkeys(range(20, 80), 80.0)}
+    assert compared(record(until, {"left": (), "right": ()}, announced)).together == NOTHING._replace(false=false)
+    found = compared(record(until, {"left": (78,), "right": ()}, announced)).together
+    assert (found.touchdowns, found.missed, found.false) == (1, 0, 0)
+
+
 def test_true_landings_after_the_last_answer_are_counted_apart() -> None:
     landings = Landings({"": SCENE})
     landings.add(answer(100, {}, (), ("left", "right")))

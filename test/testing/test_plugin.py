@@ -206,6 +206,18 @@ def test_a_baseline_fails_only_when_something_has_changed(run: Run, pytester: py
     )
 
 
+def test_bags_of_one_name_have_their_own_baselines(run: Run, pytester: pytest.Pytester) -> None:
+    bags = [pytester.mkdir(day) / "run.mcap" for day in ("monday", "tuesday")]
+    for bag in bags:
+        shutil.copy(pytester.path / "run.mcap", bag)
+    told = ["replay", *map(str, bags), "--params", "scene.yaml", "-o", "old"]
+    assert CliRunner().invoke(main, told).exit_code == 0
+    options = ("--impact-bag", "*day/run.mcap", "--impact-params", "scene.yaml", "-k", "baseline", "--impact-baseline")
+    run(*options, "old").assert_outcomes(passed=2, deselected=2 * len(TESTS))
+    refused = run(*options, "old/monday/run.mcap")
+    refused.stderr.fnmatch_lines(["ERROR: the baseline *run.mcap is the run of one bag, but 2 bags are given; *"])
+
+
 def test_what_is_wrong_with_one_bag_fails_that_bag_alone(run: Run, pytester: pytest.Pytester) -> None:
     (pytester.path / "broken.mcap").write_bytes(b"no bag")
     result = run(*BAG, "--impact-bag", "broken.mcap")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import atan2, cos, degrees, pi, sin
 from pathlib import Path as FilePath
+from textwrap import wrap
 from typing import Any, Final
 
 import contourpy
@@ -57,6 +58,8 @@ LEAST_ROOM: Final = 0.04
 """A region is named inside if this part of the map's height is free above and below the name."""
 WIDTH_OF_A_LETTER: Final = 8.0
 """Pixels that a letter of a formula takes, about."""
+LETTERS_OF_A_LINE: Final = 33
+"""What a line of the legend has room for."""
 
 
 def write_figure(path: FilePath, modes: ModeMap) -> None:
@@ -138,7 +141,8 @@ def draw_hatches(axes: Axes, modes: ModeMap) -> list[Patch]:
         for part, colour in ((region & dark, "white"), (region & ~dark, "black")):
             for outline in outlines(part, modes):
                 axes.add_patch(PathPatch(outline, facecolor="none", edgecolor=colour, linewidth=0.0, hatch=hatch))
-        handles.append(Patch(facecolor="white", edgecolor="black", hatch=hatch, label=meaning))
+        label = "\n".join(wrap(meaning, LETTERS_OF_A_LINE))
+        handles.append(Patch(facecolor="white", edgecolor="black", hatch=hatch, label=label))
     return handles
 
 

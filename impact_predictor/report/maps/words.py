@@ -31,11 +31,16 @@ TITLES: Final = {
 
 
 def hatched(modes: ModeMap) -> tuple[tuple[NDArray[np.bool_], str], ...]:
-    """Where a law has no single answer, and what to say of it."""
+    """Where a law has no single answer, and what to say of it and of the answer that the map shows there."""
+    jam, path, total = (
+        ("what follows the tangential impact at A that resolves the jam", "one of its answers", "the path law")
+        if modes.law == "path"
+        else ("the total law", "the total law", "the answer nearest to that of the path")
+    )
     return (
-        (modes.jammed, "the impulse path jams (Painlevé)"),
-        (~modes.path_unique, "the impulse path is not unique"),
-        (~modes.total_unique, "the total law is not unique"),
+        (modes.jammed, f"the impulse path jams (Painlevé): shown is {jam}"),
+        (~modes.path_unique, f"the impulse path is not unique: shown is {path}"),
+        (~modes.total_unique, f"the total law is not unique: shown is {total}"),
     )
 
 

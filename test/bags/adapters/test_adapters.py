@@ -266,6 +266,22 @@ def test_flags_of_another_number_of_feet_are_a_fault_of_the_adapter(tmp_path: Pa
 
 
 @pytest.mark.usefixtures("documented")
+@pytest.mark.parametrize("given", [{}, {"body.contact_points": [0.0, 0.3, -0.5, 0.0, -0.3, -0.5]}])
+def test_feet_that_the_scene_does_not_name_are_told_where_nothing_was_predicted(
+    tmp_path: Path, given: dict[str, list[float]]
+) -> None:
+    store = typestore()
+    bag = write(tmp_path / "robot", store, states(store))
+    body = {"body.mass": 9.0, "body.inertia": [1.0], "contact.friction": 0.6}
+    result = replay(bag, Scene.from_parameters(validate({**body, **given})))
+    assert result.settled == ()
+    assert result.unpredictable == (
+        "no touchdown was predicted, and /state tells which feet stand, but the scene is of a body without feet; give "
+        "that of a machine that walks, with feet.names, as config/walker_hyq.yaml has them"
+    )
+
+
+@pytest.mark.usefixtures("documented")
 def test_one_topic_of_several_with_adapters_may_be_chosen_by_any_input() -> None:
     recorded = {"/state": TYPE, "/state_des": TYPE}
     everything = {ODOM_INPUT: "/state_des", FEET_INPUT: "/state_des"}

@@ -11,7 +11,7 @@ import numpy as np
 from markupsafe import Markup
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
-from ...summary import counted
+from ....wording import counted
 from ..chart import Shape
 from ..sections import Cell, Figure, Section, Table
 from ..svg import STYLE, Mark, family_colour, svg_of

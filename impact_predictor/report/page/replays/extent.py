@@ -104,17 +104,45 @@ def zooms_of(rows: Iterable[Row], extent: Extent) -> list[int]:
     return [zoom for zoom in ZOOMS if zoom == 1 or extent.length / zoom > 0.25 * width]
 
 
-def times_of(extent: Extent, step: int) -> Iterable[int]:
-    """Times (ns) since the beginning that are told: where pieces begin, and multiples of a step, a step apart."""
-    last = -step
-    for piece in extent.pieces:
-        begin, end = piece.begin - extent.begin, piece.end - extent.begin
-        end += piece is extent.pieces[-1]  # where another piece follows, its beginning is told instead
-        for time in (begin, *range((begin // step + 1) * step, end, step)):
-            place = piece.place + time - begin
-            if place >= last + step:
-                last = place
-                yield time
+def times_of(extent: Extent, step: int) -> Iterable[tuple[int, int]]:
+    """Times (ns) since the beginning that are told, at least a step apart, each with what it is a multiple of.
+
+    These are the multiples of the step; where pieces are so short that none is shown for a whole step, the roundest
+    time within half a step.
+    """
+    free = 0
+    while free <= extent.length:
+        for unit in units_of(step):
+            time = _first_multiple(extent, unit, free, free + (step - 1 if unit == step else step // 2))
+            if time is not None:
+                yield time, unit
+                free = extent.shown(extent.begin + time)
+                break
+        free += step
+
+
+def _first_multiple(extent: Extent, unit: int, first: int, last: int) -> int | None:
+    """The first multiple of a unit (ns) since the beginning that is shown between two places; None without any."""
+    pieces = extent.pieces
+    for piece in pieces[bisect_right(pieces, first, key=lambda one: one.place) - 1 :]:
+        if piece.place > last:
+            break
+        before = piece.begin - extent.begin - piece.place
+        # The last place of a piece is that of the next one.
+        end = min(last, piece.place + piece.end - piece.begin - (piece is not pieces[-1]))
+        time = -(-(max(first, piece.place) + before) // unit) * unit
+        if time <= end + before:
+            return time
+    return None
+
+
+def units_of(step: int) -> Iterable[int]:
+    """A step (ns), then smaller ones, the roundest first: 5, 2 and 1 times powers of ten down to `KEPT`."""
+    yield step
+    power = 10 ** floor(log10(step))
+    while power >= KEPT:
+        yield from (factor * power for factor in (5, 2, 1) if factor * power < step)
+        power //= 10
 
 
 def is_near(time: int, ordered: Sequence[int], most: int) -> bool:

@@ -6,7 +6,9 @@ from collections.abc import Sequence
 from statistics import median
 from typing import Final, NamedTuple
 
-from ...summary import counted, quantile
+from ....scenarios.matching import NEAREST
+from ....wording import counted
+from ...summary import WHY, quantile
 from ..words import digits, time_words
 from .answers import (
     NOTHING,
@@ -25,7 +27,7 @@ from .answers import (
     used,
     velocity_errors,
 )
-from .words import WHY, seconds_words, within
+from .words import seconds_words, within
 
 AHEAD: Final = 0.02
 """Seconds before a touchdown, from which on the errors of the times are told."""
@@ -118,6 +120,8 @@ def _many(found: Sequence[Answer]) -> Headline:
     missed = there.there - there.found
     alarms = counted(there.false, "false alarm") if there.false else "no false alarm"
     why = f"{f'{missed:,}' if missed else 'None'} missed, {alarms}."
+    if missed:
+        why += f" A touchdown is found where a prediction before it told its time to {NEAREST / 1e6:.0f} ms."
     unseen = sum(answer["truth"]["unresolved"] for answer in found if "truth" in answer)
     if unseen:
         why += f" {counted(unseen, 'more impact')} cannot be seen in the samples: too slow, or too soon after another."

@@ -118,7 +118,10 @@ def stances(known: Iterable[Sequence[int]], number: int, start: int) -> list[Bar
 
 
 def body_row(answer: Answer, body: str) -> Row:
-    """A body: its predicted touchdowns, the true ones where they are known, and how wrong the velocities after were."""
+    """A body: its predicted touchdowns, the true ones where they are known, and how wrong the velocities after were.
+
+    That is against the true velocities, or where they are not known against those that the samples show.
+    """
     start = begin_of(answer)
     mine = [one for one in answer["touchdowns"] if one["body"] == body and "foot" not in one]
     true = [one for one in answer.get("true_touchdowns", ()) if one["body"] == body]
@@ -128,11 +131,12 @@ def body_row(answer: Answer, body: str) -> Row:
     else:
         others = [touchdown_spot(one, start) for one in mine if not one["scored"]]
         lanes = [Lane("predicted", [touchdown_spot(one, start) for one in mine if one["scored"]])]
-    stems = [
-        Stem(one["stamp"], one["relative_error"], f"relative error {percent(one['relative_error'])}")
-        for one in mine
-        if one["scored"] and one["relative_error"] is not None
-    ]
+    wrong = (
+        [(one["stamp"], one["velocity_error"]) for one in true]
+        if true
+        else [(one["stamp"], one["relative_error"]) for one in mine if one["scored"]]
+    )
+    stems = [Stem(stamp, error, f"relative error {percent(error)}") for stamp, error in wrong if error is not None]
     lanes += [Lane("error", stems=stems)] if stems else []
     lanes += [Lane("not compared", others)] if others else []
     return Row(body, lanes)

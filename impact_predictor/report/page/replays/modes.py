@@ -6,7 +6,8 @@ from collections import Counter, defaultdict
 from collections.abc import Sequence
 from typing import Final
 
-from ...summary import counted, summarize
+from ....wording import counted
+from ...summary import summarize
 from ..looks import marker_svg
 from ..sections import Cell, Key, Section, Table
 from .answers import NOTHING, Answer, confusion, landings_of, scored_of, touchdowns_of

@@ -12,14 +12,14 @@ import numpy as np
 from markupsafe import Markup
 from matplotlib.ticker import FixedLocator, FuncFormatter, MaxNLocator, NullLocator
 
+from ....wording import counted
 from ...spread import LEAST, PER_DECADE, Spread
-from ...summary import counted
 from ..chart import Shape
 from ..labels import Line, write_names
 from ..sections import Cell, Figure, Section, Table
 from ..svg import FONT, INK, STYLE, Mark, family_colour, svg_of
 from ..words import share, time_words
-from .answers import Ahead, Answer, ahead, costs
+from .answers import Ahead, Answer, ahead, besides_truth, costs
 from .words import percent, seconds_words
 
 NARROW: Final = Shape("narrow", 345.0, 280.0, (54.0, 14.0, 46.0, 30.0))
@@ -62,7 +62,11 @@ QUANTITIES: Final = (
 def early(answers: Sequence[Answer]) -> Section | None:
     """The section of errors ahead of touchdowns; None where there are none."""
     known = [(quantity, spans) for quantity in QUANTITIES if (spans := ahead(answers, quantity.key))]
-    figures = [figure_of(spans, quantity, BESIDE if len(known) > 1 else ALONE) for quantity, spans in known]
+    shapes, measured = BESIDE if len(known) > 1 else ALONE, QUANTITIES[0]
+    figures = [
+        figure_of(spans, quantity, shapes)._replace(notes=besides_truth(answers) if quantity is measured else ())
+        for quantity, spans in known
+    ]
     if not figures:
         return None
     words = "Every sample before a touchdown makes a prediction of it. Does one that is made earlier do as well?"

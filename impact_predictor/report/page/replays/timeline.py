@@ -13,7 +13,8 @@ from typing import Final
 from markupsafe import Markup, escape
 
 from ....stamps import NANOSECONDS
-from ...summary import counted, quantile
+from ....wording import counted
+from ...summary import quantile
 from ..looks import outline_of
 from ..svg import tidy
 from .extent import Extent, is_near, nice, times_of, zooms_of
@@ -174,9 +175,8 @@ def ticks_of(rows: Sequence[Row], extent: Extent, zooms: Iterable[int], height: 
     levels: dict[tuple[int, int], list[int]] = {}
     for zoom in zooms:
         step = nice(extent.length / zoom / TICKS)
-        # Pieces begin at whole tenths of a second.
-        digits = next(number for number in range(extent.cut > 0, 10) if step % 10 ** (9 - number) == 0)
-        for time in times_of(extent, step):
+        for time, unit in times_of(extent, step):
+            digits = next(number for number in range(10) if unit % 10 ** (9 - number) == 0)
             if zoom < SPARSE or is_near(time, busy, step):
                 levels.setdefault((time, digits), []).append(zoom)
     for (time, digits), mine in levels.items():

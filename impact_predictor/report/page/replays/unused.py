@@ -9,11 +9,11 @@ from typing import Any, Final
 from ....prediction.parts import PARTS
 from ....prediction.remedies import REMEDIES
 from ....prediction.types import Status
-from ...summary import counted, without_bag, words
+from ....wording import counted
+from ...summary import WHY, without_bag, words
 from ..sections import Cell, Section, Table
 from ..words import share
 from .answers import Answer, names_of, refused, uncompared, used
-from .words import WHY
 
 LISTED: Final = 40
 """Remarks that are listed, the commonest."""

@@ -16,12 +16,13 @@ from matplotlib.patches import Rectangle
 from matplotlib.ticker import MaxNLocator
 
 from ....stamps import NANOSECONDS
-from ...summary import counted, quantile
+from ....wording import counted
+from ...summary import quantile
 from ..chart import Shape
 from ..looks import marker_svg
 from ..sections import Cell, Figure, Key, Section, Table
 from ..svg import MUTED, STYLE, Mark, svg_of
-from .answers import Answer, names_of, scored_of
+from .answers import Answer, besides_truth, names_of, scored_of
 from .lanes import begin_of
 from .words import MODES, SAYS, mode_words, percent, velocity_words
 
@@ -64,34 +65,35 @@ def velocities(answers: Sequence[Answer]) -> Section | None:
         "predicted last before it. On the line both are the same. The relative error of a touchdown is the distance of "
         "both its points from the line, over its velocities before the impact."
     )
+    said = [words, *besides_truth(answers)]
     modes = Counter(one["mode"] for one in scored)
     key = [
         Key(marker_svg(looks), mode, f"{SAYS[mode]} ({modes[mode]:,})") for mode, looks in MODES.items() if modes[mode]
     ]
-    pairs = {name: pairs_of(answers, name) for name in QUANTITIES}
+    pairs = pairs_of(answers)
     widest = max(high - low for low, high in map(limits_of, pairs.values()))
     figures = [figure_of(mine, name, LEAST_PART * widest) for name, mine in pairs.items()]
     listed = [worst_table(answers)]
-    return Section("velocities", "Predicted against measured velocities", [words], key, listed, figures)
+    return Section("velocities", "Predicted against measured velocities", said, key, listed, figures)
 
 
-def pairs_of(answers: Sequence[Answer], quantity: str) -> list[Pair]:
-    """A velocity of every touchdown that is compared, in the order of the bags."""
-    _, of = QUANTITIES[quantity]
-    pairs = []
-    several, told_each = len(answers) > 1, len(scored_of(answers)) <= MANY
-    for name, answer in zip(names_of(answers), answers, strict=True):
+def pairs_of(answers: Sequence[Answer]) -> dict[str, list[Pair]]:
+    """The velocities of every touchdown that is compared, by their quantities, in the order of the bags."""
+    pairs: dict[str, list[Pair]] = {quantity: [] for quantity in QUANTITIES}
+    names, told_each = names_of(answers), len(scored_of(answers)) <= MANY
+    for name, answer in zip(names, answers, strict=True):
         for one in scored_of([answer]):
-            arm = one["half_distance"]
-            told, measured = of(one["predicted_twist"], arm), of(one["measured_twist"], arm)
-            title = ""
-            if told_each:
-                first = f"{name}, " if several else ""
-                title = (
-                    f"{first}{since(answer, one['stamp']):.3f} s, {one['mode']}\npredicted {velocity_words(told)}, "
-                    f"measured {velocity_words(measured)}\nrelative error {percent(one['relative_error'])}"
-                )
-            pairs.append(Pair(measured, told, one["mode"], title))
+            for quantity, (_, of) in QUANTITIES.items():
+                arm = one["half_distance"]
+                told, measured = of(one["predicted_twist"], arm), of(one["measured_twist"], arm)
+                title = ""
+                if told_each:
+                    first = f"{name}, " if len(names) > 1 else ""
+                    title = (
+                        f"{first}{since(answer, one['stamp']):.3f} s, {one['mode']}\npredicted {velocity_words(told)}, "
+                        f"measured {velocity_words(measured)}\nrelative error {percent(one['relative_error'])}"
+                    )
+                pairs[quantity].append(Pair(measured, told, one["mode"], title))
     return pairs
 
 
@@ -197,10 +199,11 @@ def squares_of(pairs: Sequence[Pair], limits: tuple[float, float]) -> dict[tuple
 
 def worst_table(answers: Sequence[Answer]) -> Table:
     """The numbers of the touchdowns that are compared, those of the largest errors first."""
-    several, named = len(answers) > 1, len({one["body"] for one in scored_of(answers)}) > 1
+    names = names_of(answers)
+    several, named = len(names) > 1, len({one["body"] for one in scored_of(answers)}) > 1
     found = (
         (one["relative_error"], name, since(answer, one["stamp"]), one)
-        for name, answer in zip(names_of(answers), answers, strict=True)
+        for name, answer in zip(names, answers, strict=True)
         for one in scored_of([answer])
     )
     worst = nlargest(LISTED, found, key=itemgetter(0))

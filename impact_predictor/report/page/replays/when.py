@@ -23,7 +23,8 @@ LISTED: Final = 200
 TRUTH: Final = (
     "Each row has the predicted touchdowns above the true ones, which the record tells; a line before a mark leads "
     "back to when it was first announced. A star is a touchdown that was missed, a red cross one that never came. "
-    "Faint is what such a record cannot show: too slow to be told from rest, or too soon after another."
+    "Faint is what such a record cannot show: too slow to be told from rest, or too soon after another. Below them is "
+    "how wrong the velocities were that were told last, against the true ones."
 )
 MEASURED: Final = (
     "The record does not tell when contacts closed, so a touchdown stands where it was predicted last; a line before "
@@ -124,7 +125,7 @@ def landings_table(landings: Sequence[Answer], start: int) -> Table:
             Cell(seconds_words(one["announced_lead_time"]) if one["time_error"] is not None else "not announced"),
             Cell(signed_ms(one["time_error"])),
             Cell("–" if one["landing_speed"] is None else f"{one['landing_speed']:.3f} m/s"),
-            Cell("–" if one["impulse"] is None else f"{hypot(*one['impulse']):.2f} N s"),
+            impulse_cell(one),
             *([Cell(signed_ms(one["late"]))] if any(each["late"] is not None for each in landings) else []),
         ]
         for one in landings[:LISTED]
@@ -133,3 +134,12 @@ def landings_table(landings: Sequence[Answer], start: int) -> Table:
     head += ["after the plan"] if any(one["late"] is not None for one in landings) else []
     caption = f"The first {LISTED} of {len(landings):,} landings." if len(landings) > LISTED else ""
     return Table(caption, head, rows, words=2, cards=True)
+
+
+def impulse_cell(one: Answer) -> Cell:
+    """The impulse at a foot that lands, and that at the others."""
+    if one["impulse"] is None:
+        return Cell("–")
+    # Answers of older versions do not tell it.
+    others = one.get("others_impulse")
+    return Cell(f"{hypot(*one['impulse']):.2f} N s", f"{hypot(*others):.2f} N s at other feet" if others else "")

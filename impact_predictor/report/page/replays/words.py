@@ -33,16 +33,6 @@ SAYS: Final = {
 }
 """What follows in each mode."""
 
-WHY: Final = {
-    "ONE_POINT": "nothing stood on the support before",
-    "OUT_OF_PLANE": "the body also turned off the plane of the impact, or its contacts lay beside it",
-    "ONE_CORNER_FIRST": "one corner of the edge that struck came before the other",
-    "TOO_SHORT": "the record ended, or paused, too soon after",
-    "TOO_SLOW": "the approach was too slow to be told from rest",
-    "DRIVEN": "the feet are driven: what follows is not the impact alone",
-}
-"""Why a touchdown is not compared with what was measured, by the names of `Leftover`."""
-
 
 def mode_words(mode: str) -> str:
     """A mode as text."""
