@@ -20,7 +20,7 @@ from rich.table import Table
 
 from impact_predictor.bags.replay import replay
 from impact_predictor.calibration.fit import calibrate
-from impact_predictor.calibration.table import misses
+from impact_predictor.calibration.solver import Solver
 from impact_predictor.calibration.touchdowns import Coefficients, ObservingMonitor, ScoredTouchdown
 from impact_predictor.commands.replay import read_scenes
 
@@ -33,7 +33,7 @@ RANDOM = 5
 
 def numbers(touchdowns: list[ScoredTouchdown], coefficients: Coefficients) -> NDArray[np.float64]:
     """Median, 90 % and mean of the relative errors."""
-    errors = np.hypot(*misses([one.approached(coefficients) for one in touchdowns], coefficients).T)
+    errors = np.hypot(*Solver([one.approached(coefficients) for one in touchdowns]).misses(coefficients).T)
     return np.array([np.median(errors), np.quantile(errors, 0.9), np.mean(errors)])
 
 

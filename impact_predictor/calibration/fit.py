@@ -12,7 +12,8 @@ from ..errors import InputError
 from .blocks import Blocks, blocks_of
 from .inertia import Profile
 from .search import Estimate, Search
-from .table import Array, Grid, misses
+from .solver import Solver
+from .table import Array, Grid
 from .touchdowns import Coefficients, ScoredTouchdown
 
 NEEDED: Final = 10
@@ -27,8 +28,8 @@ them; or by more than three times what is usual, where they are noisy."""
 class Calibration(NamedTuple):
     """Coefficients fitted to touchdowns.
 
-    `blocks` is the block of each touchdown; `given_misses` and `held_out_misses` are what `table.misses` gives with the
-    given coefficients, and with those that were fitted to the blocks of the other folds, (n, 2) each. `map` has the
+    `blocks` is the block of each touchdown; `given_misses` and `held_out_misses` are what `Solver.misses` gives with
+    the given coefficients, and with those that were fitted to the blocks of the other folds, (n, 2) each. `map` has the
     mean errors over a grid; `inertias` (factor, least mean error over friction and restitution), none where no inertia
     was looked for. `left_out` touchdowns are scored, but something else happens while they are measured.
     """
@@ -113,7 +114,7 @@ def calibrate(
         friction,
         restitution,
         inertia,
-        misses(touchdowns, given),
+        Solver(touchdowns).misses(given),
         search.held_out(table),
         (coarse.grid, coarse.losses().reshape(coarse.grid.shape)),
         inertias,

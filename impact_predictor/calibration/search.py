@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from scipy.stats import bootstrap
 
 from .blocks import Blocks
-from .table import Array, Grid, Table, misses
+from .solver import Solver
+from .table import Array, Grid, Table
 from .touchdowns import Coefficients, ScoredTouchdown
 
 FOLDS: Final = 10
@@ -64,6 +65,7 @@ class Search:
     ) -> None:
         self._touchdowns, self._blocks, self._given = touchdowns, blocks, given
         self._seed, self._tell = seed, tell
+        self._solver = Solver(touchdowns)
         self._solved: dict[Coefficients, Array] = {}
         self.number = len(touchdowns)
         number = int(blocks.max()) + 1
@@ -85,10 +87,10 @@ class Search:
         return Table(self._blocks, Grid(friction, restitution, inertia), self.misses)
 
     def misses(self, coefficients: Coefficients) -> Array:
-        """What `table.misses` gives, solved once."""
+        """What `Solver.misses` gives, solved once."""
         found = self._solved.get(coefficients)
         if found is None:
-            found = self._solved[coefficients] = misses(self._touchdowns, coefficients)
+            found = self._solved[coefficients] = self._solver.misses(coefficients)
             self._tell(len(self._solved) * len(self._touchdowns))
         return found
 
@@ -153,9 +155,8 @@ class Search:
         for fold in range(int(folds.max()) + 1):
             best = table.grid.at(self.best(table, (folds != fold).astype(float)))
             left_out = folds[self._blocks] == fold
-            found[left_out] = misses(
-                [one.approached(best) for one, out in zip(self._touchdowns, left_out, strict=True) if out], best
-            )
+            others = [one.approached(best) for one, out in zip(self._touchdowns, left_out, strict=True) if out]
+            found[left_out] = Solver(others).misses(best)
         return found
 
     def best(self, table: Table, weights: Array | None = None) -> int:

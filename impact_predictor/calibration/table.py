@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from itertools import product
 from typing import Final, NamedTuple
 
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .blocks import Blocks
-from .touchdowns import Coefficients, ScoredTouchdown
+from .touchdowns import Coefficients
 
 Array = NDArray[np.float64]
 
@@ -38,22 +38,12 @@ class Grid(NamedTuple):
         return Grid(_between(self.friction, 0), _between(self.restitution, 0), self.inertia)
 
 
-def misses(touchdowns: Sequence[ScoredTouchdown], coefficients: Coefficients) -> Array:
-    """By what the predictions miss the measured (vx, omega s), relative to the speed before: (n, 2)."""
-    found = []
-    for one in touchdowns:
-        vx, _, omega = one.after(coefficients)
-        measured, s, speed = one.measured, one.half_distance, one.speed
-        found.append(((vx - measured.vx) / speed, (omega - measured.omega) * s / speed))
-    return np.array(found)
-
-
 class Table:
     """The errors of touchdowns over a grid, summed in blocks.
 
     `grid` is the finer one that they are interpolated to: between the nodes, at which the impacts are solved, the twist
-    after is taken to be linear. `misses_at` gives what `misses` does. `sums` is (blocks, places of the flattened grid),
-    `counts` the number of touchdowns in each block.
+    after is taken to be linear. `misses_at` gives what `Solver.misses` does. `sums` is (blocks, places of the flattened
+    grid), `counts` the number of touchdowns in each block.
     """
 
     def __init__(self, blocks: Blocks, nodes: Grid, misses_at: Callable[[Coefficients], Array]) -> None:

@@ -106,19 +106,35 @@ class ScoredTouchdown(NamedTuple):
 
 def solve(scene: Scene, impact: Impact, coefficients: Coefficients) -> Twist:
     """The twist after an impact with other coefficients, by the law and with the transverse slip of the scene."""
-    friction, restitution, factor = coefficients
+    slipped = solve_across(scene, impact, coefficients)
+    if slipped is not None:
+        return slipped
+    body = with_coefficients(impact.body, coefficients)
+    return solve_impact(body, impact.before, scene.law, scene.validity).twist
+
+
+def solve_across(scene: Scene, impact: Impact, coefficients: Coefficients) -> Twist | None:
+    """The twist after an impact that slips across its plane; None where it hardly does, or the scene leaves that out.
+
+    Which of them slip does not depend on the coefficients, as long as there is friction.
+    """
+    if not scene.transverse_slip or scene.law != "path" or scene.radius or coefficients.friction == 0.0:
+        return None
     plane, normal, body, before, across, angle, blocked = impact
-    body = body._replace(
+    body = with_coefficients(body, coefficients)
+    scene = scene._replace(inertia=scaled(scene.inertia, coefficients.inertia))
+    slipped = impact_across(scene, plane, normal, body, before, across, angle, blocked)
+    return None if slipped is None else slipped[0].twist
+
+
+def with_coefficients(body: TwoPointBody, coefficients: Coefficients) -> TwoPointBody:
+    """A body, or several as arrays, with other coefficients; the restitution of the old contact stays as it is."""
+    friction, restitution, factor = coefficients
+    return body._replace(
         inertia=factor * body.inertia,
         old=None if body.old is None else body.old._replace(friction=friction),
         new=body.new._replace(friction=friction, restitution=restitution),
     )
-    if scene.transverse_slip and scene.law == "path" and friction > 0.0 and not scene.radius:
-        scene = scene._replace(inertia=scaled(scene.inertia, factor))
-        slipped = impact_across(scene, plane, normal, body, before, across, angle, blocked)
-        if slipped is not None:
-            return slipped[0].twist
-    return solve_impact(body, before, scene.law, scene.validity).twist
 
 
 def impact_of(sample: Sample, posture: Posture, approach: Approach) -> Impact:

@@ -10,6 +10,7 @@ import click
 
 from ..errors import InputError
 from .examples import examples
+from .limits import Whole
 from .outcomes import DAMAGED, FAILED
 from .replay import read_scenes
 
@@ -35,7 +36,7 @@ if TYPE_CHECKING:
 )
 @click.option("-o", "--output", metavar="FILE", help="Write the parameter file with the fitted values in it.")
 @click.option("--figure", metavar="FILE", help="Draw the fit into a .png or .svg file.")
-@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Which resamples and folds.")
+@click.option("--seed", type=Whole(min=0), default=0, show_default=True, help="Which resamples and folds.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON only.")
 def calibrate(
     bags: tuple[str, ...],
@@ -58,6 +59,7 @@ def calibrate(
     from ..report.calibration import as_json as fields_of
     from ..report.calibration import unscored
     from ..report.summary import words
+    from .compiling import compiling_is_said
     from .progress import progress
 
     scenes, topics = read_scenes(params), remapping(remap)
@@ -71,7 +73,7 @@ def calibrate(
     records, results = read_all(bags, scenes, topics)
     scores = [settled.score for result in results for settled in result.settled]
     try:
-        with progress("fit", "impacts") as tell:
+        with progress("fit", "impacts") as tell, compiling_is_said():
             calibration = fit(records, seed, tell)
     except InputError as error:
         if reasons := unscored(scores):
@@ -138,16 +140,12 @@ def write_scene(params: str, output: str, calibration: Calibration) -> None:
     """
     from ..calibration.scene_file import changed
     from ..report.calibration import changes_of
+    from ..report.whole import whole
 
-    path = Path(output)
-    partial = path.with_name(f"{path.name}.partial")
-    try:
-        text = Path(params).read_text(encoding="utf-8")
+    text = Path(params).read_text(encoding="utf-8")
+    with whole(Path(output)) as partial:
         partial.write_text(changed(text, changes_of(calibration)), encoding="utf-8")
         read_scenes(str(partial))
-        partial.replace(path)
-    except OSError as error:
-        raise InputError(f"{path} cannot be written: {error.strerror}") from error
 
 
 def print_calibration(calibration: Calibration, results: list[Result]) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from impact_predictor.bags.replay import replay
-from impact_predictor.calibration.table import misses
+from impact_predictor.calibration.solver import Solver
 from impact_predictor.calibration.touchdowns import Coefficients, ObservingMonitor, ScoredTouchdown
 from impact_predictor.commands.replay import read_scenes
 from impact_predictor.prediction.scene import Scene, inertia_matrix
@@ -47,7 +47,7 @@ def test_a_touchdown_solved_with_the_coefficients_of_the_scene_is_the_predicted_
     predicted = {score.stamp: score for score in scores if score.scored}
     given = Coefficients(scene.friction, scene.restitution)
     assert len(monitor.touchdowns) == len(predicted) > 100
-    errors = np.hypot(*misses(monitor.touchdowns, given).T)
+    errors = np.hypot(*Solver(monitor.touchdowns).misses(given).T)
     for one, error in zip(monitor.touchdowns, errors, strict=True):
         score = predicted[one.stamp]
         assert one.after(given) == score.touchdown.after
@@ -72,7 +72,7 @@ def plate(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_what_gravity_adds_after_a_touchdown_is_taken_off(plate: Path) -> None:
     one = observed(plate, SCENE)[0]
     # Of a simulation without noise, the truth to the curvature of its motion within 4 ms.
-    assert np.hypot(*misses([one], Coefficients(FRICTION, RESTITUTION))[0]) < 1e-4
+    assert np.hypot(*Solver([one]).misses(Coefficients(FRICTION, RESTITUTION))[0]) < 1e-4
     assert one.bend < 1e-4
 
 
