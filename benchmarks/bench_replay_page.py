@@ -16,6 +16,7 @@ from impact_predictor.bags.replay import replay
 from impact_predictor.parameters.file import read_values
 from impact_predictor.prediction.scene import scenes_of
 from impact_predictor.report.page.replay import write_replay_page
+from impact_predictor.report.page.replays.kept import Kept
 from impact_predictor.report.summary import as_json
 
 ROOT = Path(__file__).parent.parent
@@ -48,7 +49,10 @@ def main() -> None:
     random = Random(1)
     with TemporaryDirectory() as folder:
         for count in (1, bags):
-            answers = [source] if count == 1 else [made(source, number, random) for number in range(count)]
+            # In a file, as the command keeps them.
+            answers = Kept()
+            for number in range(count):
+                answers.append(source if count == 1 else made(source, number, random))
             touchdowns = sum(len(answer["touchdowns"]) for answer in answers)
             file, began = Path(folder) / "replay.html", process_time()
             write_replay_page(file, answers, values)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-import pickle
+import json
+import marshal
 import tempfile
 from array import array
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -51,7 +52,7 @@ class Kept(Sequence[Answer]):
             self._file = tempfile.TemporaryFile()  # noqa: SIM115 (it lives as long as this object)
         except OSError as error:
             raise _unwritable(error) from error
-        self._places = array("Q")
+        self._ends = array("Q", [0])
 
     def append(self, answer: Answer) -> None:
         """Add the answer of a bag.
@@ -60,18 +61,20 @@ class Kept(Sequence[Answer]):
             InputError: the file cannot be written.
         """
         try:
-            place = self._file.seek(0, SEEK_END)
-            pickle.dump(answer, self._file, pickle.HIGHEST_PROTOCOL)
+            self._file.seek(0, SEEK_END)
+            # The page passes over all answers many times, and nothing is read as fast; it takes plain values alone.
+            values = json.loads(json.dumps(answer))
+            self._file.write(marshal.dumps({key: marshal.dumps(value) for key, value in values.items()}))
             self._file.flush()
         except OSError as error:
             raise _unwritable(error) from error
-        self._places.append(place)
+        self._ends.append(self._file.tell())
 
     def __len__(self) -> int:
-        return len(self._places)
+        return len(self._ends) - 1
 
     def __iter__(self) -> Iterator[Answer]:
-        return map(self._load, self._places)
+        return map(self._load, range(len(self)))
 
     @overload
     def __getitem__(self, place: int) -> Answer: ...
@@ -79,14 +82,33 @@ class Kept(Sequence[Answer]):
     def __getitem__(self, place: slice) -> Sequence[Answer]: ...
     def __getitem__(self, place: int | slice) -> Answer | Sequence[Answer]:
         if isinstance(place, slice):
-            return [self._load(one) for one in self._places[place]]
-        return self._load(self._places[place])
+            return [self._load(one) for one in range(len(self))[place]]
+        return self._load(range(len(self))[place])
 
     def _load(self, place: int) -> Answer:
-        self._file.seek(place)
+        begin, end = self._ends[place : place + 2]
+        self._file.seek(begin)
         # Nobody but this object can write into the file.
-        answer: Answer = pickle.load(self._file)
-        return answer
+        return _Loaded(marshal.loads(self._file.read(end - begin)))
+
+
+class _Loaded(Mapping[str, Any]):
+    """An answer of which each pass reads what it looks at: the touchdowns are most of it."""
+
+    def __init__(self, values: dict[str, bytes]) -> None:
+        self._values = values
+        self._read: dict[str, Any] = {}
+
+    def __getitem__(self, key: str) -> Any:
+        if key not in self._read:
+            self._read[key] = marshal.loads(self._values[key])
+        return self._read[key]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._values)
+
+    def __len__(self) -> int:
+        return len(self._values)
 
 
 def _unwritable(error: OSError) -> InputError:
