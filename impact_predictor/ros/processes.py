@@ -31,12 +31,12 @@ def ros_environment() -> dict[str, str]:
         InputError: every ROS domain is in use.
     """
     for domain in random.sample(_DOMAINS, len(_DOMAINS)):
-        if _is_free(domain):
+        if is_free(domain):
             return {**os.environ, "ROS_DOMAIN_ID": str(domain), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
     raise InputError("every ROS domain of this machine is in use; end some of the processes that use ROS")
 
 
-def _is_free(domain: int) -> bool:
+def is_free(domain: int) -> bool:
     """Whether nobody listens on the ports of a ROS domain, as RTPS 2.3, section 9.6.1.1, numbers them.
 
     Where ROS keeps to this machine nobody need listen for the others of a domain at its first port: then the ports of

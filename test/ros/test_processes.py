@@ -57,7 +57,7 @@ def test_a_ros_domain_in_which_somebody_listens_is_not_free(offset):
     domain = int(ros_environment()["ROS_DOMAIN_ID"])
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
         taken.bind(("", 7400 + 250 * domain + offset))
-        assert not processes._is_free(domain)
+        assert not processes.is_free(domain)
 
 
 @pytest.mark.slow
@@ -68,7 +68,7 @@ def test_a_ros_domain_with_a_node_in_it_is_not_free():
     context.init(domain_id=domain)
     try:
         node = rclpy.create_node("somebody", context=context)
-        assert not processes._is_free(domain)
+        assert not processes.is_free(domain)
         node.destroy_node()
     finally:
         context.shutdown()
