@@ -3,14 +3,17 @@
     python benchmarks/soak.py --seconds 1800 --rate 500
     python benchmarks/soak.py --seconds 1800 --rate 500 --disturb 60     (a new publisher every minute)
 
-Publisher, node and listener are three processes over real DDS. The publisher sends the recorded tosses over and over
-with stamps that go on; the listener counts the answers on ~/prediction by their stamps. The exit status is 1 when an
-answer is missing or came twice, or when the memory of the node grows.
+Publisher, node, listener and a bare node are four processes over real DDS. The publisher sends the recorded tosses
+over and over with stamps that go on; the listener counts the answers on ~/prediction by their stamps. The bare node
+takes the same samples and publishes them as they are, with the same executor: what its memory does is what ROS and the
+middleware do. The exit status is 1 when an answer is missing or came twice, or when the memory of the node grows by
+more than that of the bare one.
 """
 
 from __future__ import annotations
 
 import argparse
+import gc
 import json
 import os
 import struct
@@ -47,6 +50,8 @@ def main() -> int:
     if sys.argv[1:2] == ["publish"]:
         rate, seconds, disturb, count = map(float, sys.argv[2:6])
         return run(lambda stop: publish(stop, rate, seconds, disturb, int(count)), [])
+    if sys.argv[1:2] == ["pass_on"]:
+        return run(lambda stop: pass_on(stop, sys.argv[2]), [])
     if sys.argv[1:2] == ["listen"]:
         return run(lambda stop: listen(stop, int(sys.argv[2]), int(sys.argv[3])), [])
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
@@ -73,31 +78,35 @@ def soak(arguments: argparse.Namespace) -> int:
         f"executor:={arguments.executor}",
     )
     node = Child("node", environment, "-m", "impact_predictor.ros.node", *ros, "-p", f"body.contact_points:={POINTS}")
+    bare = Child("bare node", environment, __file__, "pass_on", arguments.executor)
     listener = Child("listener", environment, __file__, "listen", str(count), str(step))
-    numbers = arguments.rate, arguments.seconds, arguments.disturb, count
-    publisher = Child("publisher", environment, __file__, "publish", *map(str, numbers))
-    memory: list[tuple[float, float]] = []
-    with node, listener:
+    plan = arguments.rate, arguments.seconds, arguments.disturb, count
+    publisher = Child("publisher", environment, __file__, "publish", *map(str, plan))
+    memory: list[tuple[float, float, float]] = []
+    with node, bare, listener:
         while "ready" not in listener.said():
             listener.check()
             node.check()
             time.sleep(0.05)
         with publisher:
             began = told = time.monotonic()
-            print("seconds      MB  answers", flush=True)
+            print("seconds      MB  bare MB  answers", flush=True)
             while not publisher.ended:
                 time.sleep(1.0)
                 node.check()
                 now = time.monotonic()
-                memory.append((now - began, resident(node.process_id)))
+                bare.check()
+                memory.append((now - began, resident(node.process_id), resident(bare.process_id)))
                 if now - told >= TELL_EVERY:
                     told = now
-                    print(f"{now - began:7.0f} {memory[-1][1]:7.2f} {last_word(listener):>8}", flush=True)
+                    numbers = f"{now - began:7.0f} {memory[-1][1]:7.2f} {memory[-1][2]:8.2f}"
+                    print(numbers, f"{last_word(listener):>8}", flush=True)
             publisher.end()
             sent = json.loads(publisher.said().splitlines()[-1])
         time.sleep(SETTLING)
         cpu = processor_time(node.process_id)
         node.end()
+        bare.end()
         listener.end()
         heard = json.loads(listener.said().splitlines()[-1])
         said = node.complained().strip()
@@ -106,16 +115,15 @@ def soak(arguments: argparse.Namespace) -> int:
 
 def judge(
     arguments: argparse.Namespace,
-    memory: list[tuple[float, float]],
+    memory: list[tuple[float, float, float]],
     sent: dict[str, int],
     heard: dict[str, int],
     cpu: float,
     said: str,
 ) -> int:
     warm = min(WARM_UP * memory[-1][0], 120.0)
-    after = [(when, mb) for when, mb in memory if when >= warm]
-    window = max(1, round(WINDOW * len(memory)))
-    first, last = (sum(mb for _, mb in part) / len(part) for part in (after[:window], after[-window:]))
+    ours, bares = ([(one[0], one[part]) for one in memory if one[0] >= warm] for part in (1, 2))
+    growth, of_bare = grown(ours), grown(bares)
     lost = sent["sent"] - heard["heard"]
     rows = [
         ("sent", f"{sent['sent']} samples at {arguments.rate:g} Hz, executor {arguments.executor}"),
@@ -125,17 +133,14 @@ def judge(
             "of its own",
             f"{heard['accepted']} accepted, {heard['dropped']} dropped, {heard['lost']} lost by DDS",
         ),
-        (
-            "memory",
-            f"{first:.2f} MB after {warm:.0f} s, {last:.2f} MB at the end, {max(mb for _, mb in after):.2f} MB at most",
-        ),
-        ("slope", f"{slope(after) * 3600:+.2f} MB/h from then on"),
+        ("memory", in_words(ours)),
+        ("bare node", in_words(bares)),
         ("processor time", f"{cpu / max(sent['sent'], 1) * 1e6:.0f} us for each sample, the start included"),
         ("the node said", said or "nothing"),
     ]
     for name, text in rows:
         print(f"{name:15} {text}")
-    flat = last - first <= MOST_GROWTH
+    flat = growth - of_bare <= MOST_GROWTH
     print(
         "the memory is flat" if flat else "the memory grows",
         "and",
@@ -178,6 +183,28 @@ def publish(stop: Stop, rate: float, seconds: float, disturb: float, count: int)
     return 0
 
 
+def pass_on(stop: Stop, executor: str) -> int:
+    """The bare node: publish each sample as it is."""
+    from rclpy.node import Node
+    from rclpy.qos import QoSProfile, ReliabilityPolicy
+
+    node = Node("bare", use_global_arguments=False)
+    publisher = node.create_publisher(message_class(ODOMETRY), "bare", QUEUE)
+    served = 0
+
+    def take(data: bytes) -> None:
+        nonlocal served
+        publisher.publish(data)
+        served += 1
+
+    qos = QoSProfile(depth=QUEUE, reliability=ReliabilityPolicy.BEST_EFFORT)
+    node.create_subscription(message_class(ODOMETRY), "odom", take, qos, raw=True)
+    gc.freeze()  # as the predictor does
+    spin(node, stop, lambda: served, executor)
+    node.destroy_node()
+    return 0
+
+
 def listen(stop: Stop, count: int, step: int) -> int:
     """Count the answers by their stamps, until the stop."""
     from rclpy.node import Node
@@ -205,6 +232,7 @@ def listen(stop: Stop, count: int, step: int) -> int:
     kind = message_class(DIAGNOSTIC_ARRAY)
     node.create_subscription(kind, "/impact_predictor/prediction", take, QoSProfile(depth=QUEUE), raw=True)
     node.create_subscription(kind, "/diagnostics", report, QoSProfile(depth=QUEUE), raw=True)
+    node.create_subscription(message_class(ODOMETRY), "bare", lambda _: None, QoSProfile(depth=QUEUE), raw=True)
 
     def look() -> None:
         if node.count_publishers("/impact_predictor/prediction"):
@@ -227,6 +255,22 @@ def processor_time(process: int) -> float:
     """The processor time of a process, in s."""
     fields = Path(f"/proc/{process}/stat").read_text(encoding="ascii").rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def grown(points: list[tuple[float, float]]) -> float:
+    """What a memory has grown by, in MB."""
+    window = max(1, round(WINDOW * len(points)))
+    first, last = (sum(mb for _, mb in part) / len(part) for part in (points[:window], points[-window:]))
+    return last - first
+
+
+def in_words(points: list[tuple[float, float]]) -> str:
+    """What a memory did from the warm-up on."""
+    (warm, first), (_, last) = points[0], points[-1]
+    steady = (
+        f"{first:.2f} MB after {warm:.0f} s, {last:.2f} MB at the end, {max(mb for _, mb in points):.2f} MB at most"
+    )
+    return f"{steady}, {slope(points) * 3600:+.2f} MB/h"
 
 
 def slope(points: list[tuple[float, float]]) -> float:
