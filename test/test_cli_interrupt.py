@@ -112,14 +112,14 @@ def test_of_several_bags_those_that_are_done_stay_and_the_one_that_was_begun_is_
 
 
 def test_of_many_unfinished_bags_the_first_are_named(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    for number in range(5):
+    for number in range(4):
         with pytest.raises(KeyboardInterrupt), BagWriter(f"{number}.mcap") as writer:
             writer.write("/mode", "std_msgs/msg/UInt8", 0, bytes([0, 1, 0, 0, 1]))
             raise KeyboardInterrupt
     outputs = [Path(f"{number}.mcap") for number in range(9)]
     tell_unfinished(outputs)
     (line,) = capsys.readouterr().err.splitlines()
-    assert "stays as bags in 0.mcap.partial/bag, 1.mcap.partial/bag, 2.mcap.partial/bag and 2 more, until" in line
+    assert "stays as bags in 0.mcap.partial/bag, 1.mcap.partial/bag, 2.mcap.partial/bag and 1 more, until" in line
 
 
 def test_the_workers_of_a_scheduler_go_on_and_what_they_write_is_left_alone(
@@ -129,3 +129,5 @@ def test_the_workers_of_a_scheduler_go_on_and_what_they_write_is_left_alone(
         tell_unfinished([Path("out.mcap")], "tcp://localhost:8786")
         assert Path("out.mcap.partial").is_dir()
     assert "finish the bags that they have begun" in capsys.readouterr().err
+    tell_unfinished([None], "tcp://localhost:8786")
+    assert capsys.readouterr().err == ""

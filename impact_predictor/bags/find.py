@@ -41,7 +41,8 @@ def bags_of(arguments: Sequence[str]) -> list[str]:
     it is.
 
     Raises:
-        InputError: there is no bag in a folder, or none that a pattern matches, or a folder cannot be read.
+        InputError: a name is empty, there is no bag in a folder, or none that a pattern matches, or a folder cannot be
+            read.
     """
     try:
         return _bags_of(arguments)
@@ -52,6 +53,8 @@ def bags_of(arguments: Sequence[str]) -> list[str]:
 def _bags_of(arguments: Sequence[str]) -> list[str]:
     bags: list[str] = []
     for argument in arguments:
+        if not argument:
+            raise InputError(f"the name of a bag is empty; give {KINDS}")
         if Path(argument).is_dir() and not _is_bag(Path(argument)):
             found = list(_below(Path(argument)))
             flaw = f"{argument} holds no bag, and no folder below it does; give {KINDS}"

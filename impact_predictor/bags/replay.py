@@ -164,11 +164,13 @@ def _counts(by_number: list[int]) -> Statuses:
 def _compare(run: Run, scenes: Mapping[str, Scene]) -> tuple[Truth | None, dict[str, BodyTruth], list[Match]]:
     """How the predictions compare with the true impacts and landings, all together and of each body."""
     landings = {} if run.landings is None else run.landings.compared()
-    if run.announcements is None and not landings:
+    if run.truth is None and not landings:
         return None, {}, []
     from ..scenarios.comparison import compare
     from ..scenarios.matching import Announcements
 
-    together, bodies, matches = compare(run.true_impacts, run.announcements or Announcements(), scenes, landings)
-    warned = run.warned({body: scene for body, scene in scenes.items() if scene.watching is not None})
+    truth = run.truth
+    impacts, announcements = ([], Announcements()) if truth is None else (truth.impacts, truth.announcements)
+    together, bodies, matches = compare(impacts, announcements, scenes, landings)
+    warned = {} if truth is None else truth.warned(body for body, one in scenes.items() if one.watching is not None)
     return together, {body: BodyTruth(bodies.get(body), warned.get(body)) for body in {**bodies, **warned}}, matches

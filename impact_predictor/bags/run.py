@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from array import array
-from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from functools import partial
@@ -17,25 +16,16 @@ from ..prediction.scene import Scene
 from ..prediction.types import Geometry, Imu, Joints, Sample, Status
 from ..ros import messages
 from ..ros.messages import DIAGNOSTIC_ARRAY, MARKER_ARRAY, MalformedMessage, decode_odometry
-from ..scenarios.truth import (
-    ONSET_TOPIC,
-    TRUTH_TOPIC,
-    TrueImpact,
-    TrueOnset,
-    decode_true_impacts,
-    decode_true_onsets,
-)
 from .read import BagMessage, UnusableMessage
 from .stream import NODE, Settled, Stream, Write
 
 if TYPE_CHECKING:
     from ..ros.markers.scene import MarkerScene
     from ..scenarios.landings import Landings
-    from ..scenarios.matching import Announcements
-    from ..scenarios.warned import Warned, Warnings
     from .adapters.known import Read
     from .gait import Gait
     from .points import Points
+    from .truth import TrueEvents
 
 Told = Callable[[Any, int], Status]
 """Takes a message that asks for no answer, and its log time (ns)."""
@@ -60,6 +50,7 @@ class Run:
     topics whose messages have an adapter. `statuses` say what became of the messages on each input, `unusable` what an
     adapter said of the first one that it refused, and `points` what is known of the contact points of each body.
     `costs` are the times in s that the answers to the accepted samples took, without reading and writing.
+    `truth` is what the bag tells of what truly happened, where it does.
     `unnamed_feet` are the bodies whose messages tell which feet stand, though their scene names none.
     """
 
@@ -80,13 +71,10 @@ class Run:
         self.statuses = {one: [0] * len(Status) for one in topics}
         self.unusable: dict[Input, str] = {}
         self.points: dict[str, Points] = {}
-        self.true_impacts: list[TrueImpact] = []
-        self.true_onsets: list[TrueOnset] = []
-        self.announcements: Announcements | None = None
+        self.truth: TrueEvents | None = None
         self.landings: Landings | None = None
         self.gaits: dict[str, Gait] = {}
         self.unnamed_feet: set[str] = set()
-        self.warnings: Warnings | None = None
         self.monitor = Monitor(scenes) if monitor is None else monitor
         self._write = write
         self._drawing: MarkerScene | None = None
@@ -114,15 +102,10 @@ class Run:
 
             self.gaits = {body: Gait(one.walking) for body, one in scenes.items() if one.walking is not None}
         if knows_truth:
-            from ..scenarios.matching import Announcements
+            from .truth import TrueEvents
 
-            self.announcements = Announcements()
-            self._takers[TRUTH_TOPIC] = partial(self._take_truth, self.true_impacts, decode_true_impacts)
-            self._takers[ONSET_TOPIC] = partial(self._take_truth, self.true_onsets, decode_true_onsets)
-            if self._watches:
-                from ..scenarios.warned import Warnings
-
-                self.warnings = Warnings()
+            self.truth = TrueEvents(watches=self._watches)
+            self._takers |= self.truth.takers
         if markers:
             from ..ros.markers.scene import MarkerScene
 
@@ -152,21 +135,6 @@ class Run:
         """Stamps in ns of the first and the last sample that was accepted; None without any."""
         extents = [stream.extent for stream in self._streams.values() if stream.extent is not None]
         return (min(first for first, _ in extents), max(last for _, last in extents)) if extents else None
-
-    def warned(self, bodies: Iterable[str]) -> dict[str, Warned]:
-        """How bodies were warned of, where the bag tells what happened to them."""
-        if self.warnings is None or self.announcements is None:
-            return {}
-        names = self.announcements.names
-        impacts: dict[str, list[TrueImpact]] = defaultdict(list)
-        onsets: dict[str, list[TrueOnset]] = defaultdict(list)
-        for impact in self.true_impacts:
-            impacts[names.get(impact.body, impact.body)].append(impact)
-        for onset in self.true_onsets:
-            onsets[names.get(onset.body, onset.body)].append(onset)
-        # A body alone may have no name; it goes by its frame.
-        frame = next(iter([*names.values(), *impacts]), "")
-        return {body or frame: self.warnings.of(body, impacts[body or frame], onsets[body or frame]) for body in bodies}
 
     def _taker(self, one: Input) -> Callable[[int, bytes], None]:
         """What takes the messages on an input, as log time in ns and bytes."""
@@ -209,8 +177,8 @@ class Run:
             return
         self.costs.append(cost)
         stream.answered(prediction, log_time, cost)
-        if self.announcements is not None:
-            self.announcements.add(prediction, stream.body)
+        if self.truth is not None:
+            self.truth.announcements.add(prediction, stream.body)
         if self.landings is not None:
             self.landings.add(prediction, stream.body)
         if stream.body in self.gaits:
@@ -286,19 +254,13 @@ class Run:
             self._draw(imu.stamp, log_time)
         return status
 
-    @staticmethod
-    def _take_truth(known: list[Any], decode: Callable[[bytes], Iterable[Any]], log_time: int, data: bytes) -> None:
-        # What tells no truth there is another program's.
-        with suppress(MalformedMessage):
-            known.extend(decode(data))
-
     def _report(self, log_time: int) -> None:
         """Write what is to be said of the units now."""
         reports = self.monitor.reports()
         if not reports:
             return
-        if self.warnings is not None:
-            self.warnings.take(reports)
+        if self.truth is not None and self.truth.warnings is not None:
+            self.truth.warnings.take(reports)
         if self._drawing is not None:
             self._drawing.take_reports(reports)
         if self._write is not None:

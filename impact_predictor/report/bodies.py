@@ -52,7 +52,7 @@ def truths_table(result: Result) -> Table | None:
         return None
     headers = []
     if knows_truth:
-        headers += ["touchdowns\nfound", "false\nalarms", "right\nmode %", "wrong\nspeed %"]
+        headers += ["touchdowns\nfound", "false\nalarms", "right\nmode %", "speed\nerror %"]
     if warns:
         headers += ["events\nwarned of", "first one\ns ahead"]
     table = _table(headers)

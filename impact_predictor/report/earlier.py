@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections import defaultdict
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
 
@@ -60,18 +61,18 @@ class Earlier:
     def touchdowns_of(self, bag: str | os.PathLike[str], name: str | os.PathLike[str] = "") -> tuple[Happened, ...]:
         """The touchdowns of a bag, which has a `name` in a run of several (`names_of`; without one that of its file).
 
-        In a folder it may also be called by more of its path: there were more bags in the earlier run.
+        There it may also be called by more of its path: there were more bags in the earlier run.
 
         Raises:
             InputError: nothing is there, it is no run, or none of this bag.
         """
-        if self._runs is not None:
-            return self._runs.touchdowns_of(self.path, os.fspath(bag))
-        if not self._is_folder:
-            return _read_bag(self.path)
         name = Path(name or name_of(bag))
         folders = Path(bag).resolve().parent.parts[1:]
         longer = [Path(*folders[k:], name.name) for k in range(len(folders) + 1 - len(name.parts), -1, -1)]
+        if self._runs is not None:
+            return self._runs.touchdowns_of(self.path, os.fspath(bag), [name, *longer])
+        if not self._is_folder:
+            return _read_bag(self.path)
         found = [path for one in (name, *longer) if (path := self.path / f"{one}.mcap").exists()]
         if not found:
             raise InputError(f"the baseline {self.path} has no {name}.mcap; write it with `impact-predictor replay -o`")
@@ -98,10 +99,10 @@ class _Runs:
     def is_of_one(self) -> bool:
         return self._only is not None
 
-    def touchdowns_of(self, path: Path, bag: str) -> tuple[Happened, ...]:
+    def touchdowns_of(self, path: Path, bag: str, names: Sequence[Path]) -> tuple[Happened, ...]:
         run = self._only
         if run is None:
-            same = self._by_path.get(bag) or self._by_name.get(name_of(bag), [])
+            same = self._by_path.get(bag) or self._called(name_of(bag), names)
             if len(same) != 1 or "error" in same[0]:
                 raise InputError(f"the baseline {path} has no run of {bag}; replay that bag with --json again")
             (run,) = same
@@ -109,6 +110,21 @@ class _Runs:
             return tuple(happened(fields) for fields in run["touchdowns"])
         except _OTHER_JSON as error:
             raise InputError(f"the baseline {path} is not the JSON of a replay; {_HINT}") from error
+
+    def _called(self, last: str, names: Sequence[Path]) -> list[Any]:
+        """The runs of a bag by the shortest of its names that no other run has."""
+        same = self._by_name.get(last, [])
+        for name in names:
+            same = [run for run in same if _ends_with(run["bag"], name)]
+            if len(same) < 2:
+                break
+        return same
+
+
+def _ends_with(bag: str, name: Path) -> bool:
+    """Whether a bag is called so, with its suffix or without."""
+    path = Path(bag)
+    return any(one.parts[-len(name.parts) :] == name.parts for one in (path, path.parent / name_of(bag)))
 
 
 def _runs_of(path: Path) -> _Runs:

@@ -56,9 +56,9 @@ class LandingTally:
         if self._speeds:
             said.append(
                 f"Speeds are those of the last sample in the air, {median(self._speeds):.3f} m/s in the median, "
-                f"at most {max(self._speeds):.3f} m/s: a foot that lands with it gets at most {self._impulse:.2f} N s; "
-                "by that and by what the others get, which stand or land together with it, the body's velocity "
-                f"changes by at most {self._change:.3f} m/s"
+                f"at most {max(self._speeds):.3f} m/s; impulses are those of an impact with that speed, as if the foot "
+                f"braked no more: at most {self._impulse:.2f} N s. By that and by what the others get, which stand "
+                f"or land together with it, the body's velocity changes by at most {self._change:.3f} m/s"
             )
         if self._late:
             said.append(

@@ -90,7 +90,8 @@ def truth_sentences(truth: Truth) -> list[str]:
     if truth.mode_accuracy is not None:
         said.append(
             f"Of those found, {percent(truth.mode_accuracy)} % have the right mode; "
-            f"the velocities after them are {small_percent(truth.median_velocity_error)} % wrong in the median"
+            f"the velocities after them are within {small_percent(truth.median_velocity_error)} % of the "
+            "true ones in the median"
         )
     if truth.clear_mode_accuracy is not None and truth.clear < found:
         are = "is" if truth.clear == 1 else "are"

@@ -38,6 +38,9 @@ def whole(path: Path) -> Iterator[Path]:
         try:
             yield partial
             partial.replace(path)
+        except BrokenPipeError:
+            # A new file is no pipe: it is standard output whose reader has gone.
+            raise
         except OSError as error:
             raise InputError(f"{path} cannot be written: {error.strerror or error}") from error
     finally:

@@ -80,6 +80,11 @@ def test_where_nothing_is_found_it_is_said_in_one_sentence(runs: Path) -> None:
         assert str(runs / argument) in str(caught.value)
 
 
+def test_an_empty_name_is_not_the_folder_in_which_one_is() -> None:
+    with pytest.raises(InputError, match="the name of a bag is empty"):
+        bags_of([""])
+
+
 def test_a_folder_that_cannot_be_read_is_told_in_one_sentence(runs: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def locked(folder: Path) -> Iterator[Path]:
         raise PermissionError(errno.EACCES, "Permission denied", str(folder))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from impact_predictor.calibration.solver import Solver
-from impact_predictor.calibration.touchdowns import Coefficients, Impact, ScoredTouchdown
+from impact_predictor.calibration.touchdowns import Coefficients, Impact, ScoredTouchdown, scaled
 from impact_predictor.mechanics.bodies import plate
 from impact_predictor.mechanics.types import Twist
 from impact_predictor.prediction.planar import Across, Plane
@@ -47,3 +47,13 @@ def test_all_at_once_is_each_by_itself(coefficients: Coefficients) -> None:
     for one, twist, (along, turning) in zip(some, alone, missed.tolist(), strict=True):
         assert along == (twist.vx - one.measured.vx) / one.speed
         assert turning == (twist.omega - one.measured.omega) * one.half_distance / one.speed
+
+
+def test_another_inertia_is_that_of_a_body_that_has_it_in_its_plane_and_across_it() -> None:
+    for one in touchdowns():
+        body = one.impact.body
+        heavy = one._replace(
+            scene=one.scene._replace(inertia=scaled(one.scene.inertia, 1.3)),
+            impact=one.impact._replace(body=body._replace(inertia=1.3 * body.inertia)),
+        )
+        assert heavy.after(Coefficients(0.3, 0.1)) == one.after(Coefficients(0.3, 0.1, 1.3))

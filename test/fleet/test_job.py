@@ -45,6 +45,7 @@ def test_an_outcome_speaks_of_its_bag_by_another_name_everywhere(bags: list[str]
     assert outcome.result is not None
     assert bags[0] in str(outcome.result.notes)
     outcome.answer["damaged"] = f"{bags[0]} is damaged"
+    outcome = outcome._replace(result=outcome.result._replace(damaged=bags[0], unpredictable=bags[0]))
     other = renamed(outcome, {bags[0]: "toss.mcap"})
     assert bags[0] not in str(other)
     assert other.result is not None

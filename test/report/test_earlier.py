@@ -85,6 +85,23 @@ def test_bag_and_json_of_a_run_tell_the_same_to_the_last_bit(tmp_path: Path, jso
         assert (landed.foot, landed.time_error) == ("LF", 0.001)
 
 
+def test_a_bag_of_several_is_not_taken_for_another_of_its_name(json_of: Any) -> None:
+    """The names are those of `names_of`: where two bags of a name are replayed, each has a part of its path."""
+    other = run("cube", SCORES[:1])
+    one = Earlier(json_of([run("cube") | {"bag": "monday/run.mcap"}, other | {"bag": "other.mcap"}]))
+    assert len(one.touchdowns_of("/new/monday/run.mcap", "monday/run")) == len(SCORES)
+    with pytest.raises(InputError, match=r"has no run of tuesday/run\.mcap"):
+        one.touchdowns_of("tuesday/run.mcap", "tuesday/run")
+    # One of them alone has the short name, and needs a longer one only where the earlier run had several.
+    assert len(one.touchdowns_of("tuesday/run.mcap", "run")) == len(SCORES)
+    both = Earlier(json_of([run("cube") | {"bag": "monday/run.mcap"}, other | {"bag": "tuesday/run.mcap"}]))
+    assert len(both.touchdowns_of("/new/tuesday/run.mcap", "run")) == 1
+    with pytest.raises(InputError, match="has no run of"):
+        both.touchdowns_of("wednesday/run.mcap", "run")
+    twins = Earlier(json_of([run("cube") | {"bag": "/old/run.mcap"}, other | {"bag": "/old/run.db3"}]))
+    assert len(twins.touchdowns_of("/new/run.db3", "run.db3")) == 1
+
+
 def test_a_recording_of_a_node_in_a_namespace_is_a_run(tmp_path: Path, json_of: Any) -> None:
     for body, name in (("", "cube"), ("crate", "crate")):
         recorded = write_run(tmp_path / f"{name}.mcap", body, namespace="/robot")

@@ -146,10 +146,13 @@ def test_what_landings_say_together() -> None:
     assert landing_sentences(one)[0].startswith("1 landing of 1 foot, each told 100 ms ahead or earlier; ")
     assert landing_sentences(one)[1] == "Predicted modes: 1 PIVOT_SLIDE."
     assert landing_sentences(one)[2] == (
-        "Speeds are those of the last sample in the air, 0.123 m/s in the median, at most 0.123 m/s: a foot that lands "
-        "with it gets at most 5.00 N s; by that and by what the others get, which stand or land together with it, the "
-        "body's velocity changes by at most 0.050 m/s."
+        "Speeds are those of the last sample in the air, 0.123 m/s in the median, at most 0.123 m/s; impulses are "
+        "those of an impact with that speed, as if the foot braked no more: at most 5.00 N s. By that and by what the "
+        "others get, which stand or land together with it, the body's velocity changes by at most 0.050 m/s."
     )
+    weak = TOUCHDOWN._replace(impulses=((0.0, 0.0), (0.0, 0.0)), after=TOUCHDOWN.before)
+    largest = landing_sentences(landings_of([landed(1.0), landed(2.0, impact=weak, speed=0.023)]))[2]
+    assert all(told in largest for told in ("0.073 m/s in", "most 0.123 m/s", "most 5.00 N s", "most 0.050 m/s"))
     several = [landed(1.0, **KNOWN), landed(2.0, "RF", late=0.02), landed(3.0)]
     assert landing_sentences(landings_of(several))[-1] == (
         "Against the plan 2 landings came +3.9 ms late in the median, from -12.3 to +20.0 ms."

@@ -31,12 +31,12 @@ from impact_predictor.report.page.replays.answers import (
     velocity_errors,
 )
 from impact_predictor.report.page.replays.bags import LISTED, bags
-from impact_predictor.report.page.replays.extent import extent_of, nice, times_of, zooms_of
+from impact_predictor.report.page.replays.extent import Extent, Piece, extent_of, nice, times_of, zooms_of
 from impact_predictor.report.page.replays.heads import headlines_of, lead_of, title_of
 from impact_predictor.report.page.replays.lanes import FALSE, MISSED, rows_of
 from impact_predictor.report.page.replays.modes import modes
-from impact_predictor.report.page.replays.spreads import bars_of, cost_section, early
-from impact_predictor.report.page.replays.timeline import timeline
+from impact_predictor.report.page.replays.spreads import AGAINST_MEASURED, bars_of, cost_section, early
+from impact_predictor.report.page.replays.timeline import MOST, timeline
 from impact_predictor.report.page.replays.unused import scene, unused
 from impact_predictor.report.page.replays.velocities import (
     Pair,
@@ -46,7 +46,7 @@ from impact_predictor.report.page.replays.velocities import (
     velocities,
     worst_table,
 )
-from impact_predictor.report.page.replays.when import SHOWN, anchors_of, cut_words, numbers
+from impact_predictor.report.page.replays.when import SHOWN, anchors_of, cut_words, numbers, when
 from impact_predictor.report.page.replays.words import MODES, percent, seconds_words
 from impact_predictor.report.summary import WHY
 
@@ -54,6 +54,7 @@ MANY = [
     answer(f"day/{k}.mcap", touchdowns=[touchdown(100 + k, relative_error=0.001 * (k + 1))], notes=["took odom"])
     for k in range(LISTED + 10)
 ]
+WALK_FOUND = WALK | {"truth": {"touchdowns": 2, "missed": 0, "false": 0, "unresolved": 0}}
 
 
 class Outline(HTMLParser):
@@ -167,6 +168,7 @@ def test_the_headlines_say_how_many_how_right_and_how_early() -> None:
     many, right, soon, cost = (neat(f"{one.name}: {one.why}") for one in headlines_of([TRUE, UNREADABLE]))
     told = "A touchdown is found where a prediction before it told its time to 20 ms."
     assert many.startswith(f"2 of 3 found: 1 missed, 1 false alarm. {told} 1 more impact cannot be seen")
+    assert headlines_of([WALK_FOUND])[0].why == "None missed, no false alarm."
     assert "The mode is right in 1 of 2." in right
     assert right.endswith("The time told 20 to 30 ms ahead is 2 ms wrong in the median.")
     both = [neat(one.why) for one in headlines_of([TRUE, TOSSES])]
@@ -211,6 +213,32 @@ def test_the_timeline_of_a_walk_has_a_row_for_each_foot_with_its_stances() -> No
     assert table.rows[0][3].text == "+2.0\N{NO-BREAK SPACE}ms"
     assert [cell.text for cell in table.rows[2][2:]] == ["not announced", "–", "0.100 m/s", "5.00 N s"]
     assert [row[5].below for row in table.rows] == ["13.00 N s at other feet", "", ""]
+
+
+def test_the_key_of_the_timelines_has_the_marks_that_are_drawn_and_no_others() -> None:
+    assert len(WALK["touchdowns"]) == 3  # two STOP, foretold as NO_IMPACT, and one that nothing announced
+    for one, drawn in ((WALK, {"STOP"}), (TRUE, {"PIVOT", "STOP", "SLIDE"})):
+        section = when([one], anchors_of([one]))
+        assert section is not None
+        assert {key.name for key in section.key} == drawn
+
+
+def test_where_marks_are_too_many_for_one_each_the_page_says_that_columns_count_them() -> None:
+    crowd = answer(touchdowns=[touchdown(k) for k in range(MOST + 1)])
+    section = when([crowd], anchors_of([crowd]))
+    assert section is not None
+    assert section.key == []
+    assert section.figures[0].caption.startswith("There are more than 3,000 marks")
+    assert "#mark-" not in str(section.figures[0].drawings[-1])
+
+
+def test_faint_marks_on_each_other_are_no_darker_than_one_and_lie_below_what_counts() -> None:
+    one = answer(touchdowns=[], true_touchdowns=[true(100 + k, "PIVOT", None, None, shown=k < 2) for k in range(4)])
+    rows = rows_of(one)
+    drawn = str(timeline(rows, extent_of(one, rows), "", ""))
+    groups = re.findall(r'<g class="(marks[^"]*)"[^>]*>(.*?)</g>', drawn, re.DOTALL)
+    assert [(name, shapes.count("<use")) for name, shapes in groups] == [("marks faint", 2), ("marks", 2)]
+    assert "point faint" not in drawn
 
 
 def test_places_in_a_timeline_are_parts_of_the_time_that_is_shown() -> None:
@@ -263,6 +291,13 @@ def test_times_are_round_and_even_within_each_stretch() -> None:
     assert all(len(label.partition(".")[2]) <= 3 for label in labels)
 
 
+def test_no_time_stands_at_a_cut_where_the_next_stretch_begins() -> None:
+    pieces = [(0, 300, 0), (60_200, 60_400, 300), (120_100, 120_500, 500)]
+    extent = Extent([Piece(*(10**6 * stamp for stamp in piece)) for piece in pieces])
+    told = [(time // 10**6, unit // 10**6) for time, unit in times_of(extent, 2 * 10**8)]
+    assert told == [(0, 200), (200, 200), (60_300, 100), (120_200, 200), (120_400, 200)]
+
+
 def test_points_stand_where_measured_and_predicted_velocities_say() -> None:
     assert [pair[:3] for pair in pairs_of([TOSSES])["vx"]] == [(0.4, 0.5, "PIVOT"), (0.5, 0.5, "STOP")]
     turning = pairs_of([TOSSES])["turning"]
@@ -283,10 +318,19 @@ def test_the_page_says_why_measured_velocities_differ_more_than_true_ones() -> N
         "The true velocities are known too: 90 % of the predictions are within 2.0 % of them, but within 28.0 % of the "
         "measured ones. These are of the samples 2 to 4 after a touchdown"
     )
-    assert [list(figure.notes) for figure in ahead_of.figures] == [[measured.words[1]], []]
-    plain = velocities([TOSSES])
-    assert plain is not None
-    assert len(plain.words) == 1
+    assert [list(figure.notes) for figure in ahead_of.figures] == [[AGAINST_MEASURED], []]
+    none_found = answer(
+        touchdowns=[touchdown(100)],
+        true_touchdowns=[true(700, "PIVOT", None, None)],
+        truth={"touchdowns": 1, "missed": 1, "false": 0, "unresolved": 0},
+    )
+    for one in (TOSSES, none_found):
+        plain = velocities([one])
+        assert plain is not None
+        assert len(plain.words) == 1
+    of_tosses = early([TOSSES])
+    assert of_tosses is not None
+    assert [list(figure.notes) for figure in of_tosses.figures] == [[]]
 
 
 def test_squares_count_all_touchdowns_in_them_and_those_beyond_at_the_edge() -> None:

@@ -21,8 +21,9 @@ def test_the_truth_is_said_in_whole_sentences() -> None:
         "A touchdown is found where a prediction before it told its time to 20 ms; the other was announced too late, "
         "too far off, or not at all."
     )
-    assert (
-        right == "Of those found, 75.0 % have the right mode; the velocities after them are 1.2 % wrong in the median."
+    assert right == (
+        "Of those found, 75.0 % have the right mode; the velocities after them are within 1.2 % of the true ones in "
+        "the median."
     )
     assert time == "The time told 20 ms ahead is 1.5 us wrong in the median."
     assert unseen.startswith("3 more impacts cannot be seen at this rate of samples")

@@ -657,6 +657,17 @@ def test_a_record_that_ends_at_the_landing_still_tells_of_it() -> None:
     assert Leftover.TOO_SHORT in score.leftover
 
 
+def test_landings_whose_turn_did_not_come_before_a_pause_are_told_measured_with_the_samples_after_it() -> None:
+    messages = record([swing(0.3, 0.6), swing(0.3, 0.6), stands, stands], 0.8)
+    told = next(k for k, one in enumerate(walk(machine(), messages).predictions) if one.score is not None)
+    later = PAUSE + 10**9
+    rest = [Message(s._replace(stamp=s.stamp + later), g._replace(stamp=g.stamp + later)) for s, g in messages[:2]]
+    after = [one.score for one in walk(machine(), messages[: told + 1] + rest).predictions[told:]]
+    feet = [score.landing.foot for score in after if score is not None and score.landing is not None]
+    assert feet == ["LF", "RF"]
+    assert all(score.measured is not None for score in after if score is not None)
+
+
 def test_stamps_of_one_instant_break_no_fit() -> None:
     messages = record([swing(0.3, 0.6), stands, stands, stands], 0.8)
     crowded = []

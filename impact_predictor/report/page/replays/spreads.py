@@ -59,12 +59,20 @@ QUANTITIES: Final = (
 )
 
 
+AGAINST_MEASURED: Final = (
+    "Errors are against the measured velocities; what was said above of how far these are from the true ones holds "
+    "here too."
+)
+
+
 def early(answers: Sequence[Answer]) -> Section | None:
     """The section of errors ahead of touchdowns; None where there are none."""
     known = [(quantity, spans) for quantity in QUANTITIES if (spans := ahead(answers, quantity.key))]
     shapes, measured = BESIDE if len(known) > 1 else ALONE, QUANTITIES[0]
     figures = [
-        figure_of(spans, quantity, shapes)._replace(notes=besides_truth(answers) if quantity is measured else ())
+        figure_of(spans, quantity, shapes)._replace(
+            notes=[AGAINST_MEASURED] if quantity is measured and besides_truth(answers) else ()
+        )
         for quantity, spans in known
     ]
     if not figures:

@@ -123,19 +123,21 @@ def draw_lane(lane: Lane, top: int, extent: Extent, crowded: bool) -> str:
         if spot.since is not None and spot.since < spot.stamp
     ]
     drawn += [f'<g class="told">{"".join(told)}</g>'] if told else []
-    for mark in dict.fromkeys(spot.mark for spot in lane.spots):
-        # What counts lies above what does not.
-        mine = sorted((spot for spot in lane.spots if spot.mark == mark), key=lambda spot: not spot.faint)
-        uses = "".join(draw_spot(spot, middle, extent) for spot in mine)
-        drawn.append(f'<g class="marks" fill="{colour_of(mark)}">{uses}</g>')
+    kinds = dict.fromkeys((spot.faint, spot.mark) for spot in lane.spots)
+    # What counts lies above what does not.
+    for faint, mark in sorted(kinds, key=lambda kind: not kind[0]):
+        uses = "".join(
+            draw_spot(spot, middle, extent) for spot in lane.spots if (spot.faint, spot.mark) == (faint, mark)
+        )
+        # Faint as one: marks that lie on each other stay as faint as each of them.
+        drawn.append(f'<g class="marks{" faint" if faint else ""}" fill="{colour_of(mark)}">{uses}</g>')
     return "".join(drawn)
 
 
 def draw_spot(spot: Spot, y: int, extent: Extent) -> str:
     """A mark."""
-    faint = " faint" if spot.faint else ""
     return (
-        f'<use class="point{faint}" href="#mark-{spot.mark}" x="{extent.at(spot.stamp)}" y="{y}">'
+        f'<use class="point" href="#mark-{spot.mark}" x="{extent.at(spot.stamp)}" y="{y}">'
         f"<title>{escape(spot.told)}</title></use>"
     )
 

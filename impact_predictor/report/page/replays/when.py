@@ -11,8 +11,8 @@ from ..sections import Cell, Figure, Key, Section, Table
 from ..words import time_words
 from .answers import Answer, badness, landings_of, names_of
 from .extent import Extent, extent_of
-from .lanes import begin_of, rows_of
-from .timeline import marks, timeline
+from .lanes import Row, begin_of, rows_of
+from .timeline import MOST, marks, several_of, timeline
 from .words import MODES, SAYS, seconds_words, signed_ms
 
 SHOWN: Final = 8
@@ -33,7 +33,12 @@ MEASURED: Final = (
 )
 FEET: Final = (
     "Each row is a foot. A mark is a landing where it was predicted last, and the line before it leads back to when it "
-    "was first announced; below it, when the foot stands, as its motion shows"
+    "was first announced; its shape is the mode of an impact with the foot's speed in its last sample in the air. A "
+    "star is a landing that nothing announced. Below them is when the foot stands, as its motion shows"
+)
+COUNTED: Final = (
+    f"There are more than {MOST:,} marks, too many for one each: the higher a column is, the more of them fall into "
+    "its part of the time; point at it for the number."
 )
 
 
@@ -56,23 +61,23 @@ def when(answers: Sequence[Answer], anchors: Mapping[int, str]) -> Section | Non
     words = list(dict.fromkeys(says(answer) for answer in shown))
     if len(anchors) == SHOWN < len(answers):
         words.insert(0, f"The timelines of the worst {SHOWN} of {len(answers):,} bags.")
-    modes = {
-        one[key] for answer in shown for one in answer["touchdowns"] for key in ("mode", "landing_mode") if key in one
-    }
-    modes |= {
-        one[key] for answer in shown for one in answer.get("true_touchdowns", ()) for key in ("mode", "predicted_mode")
-    }
-    key = [Key(marker_svg(looks), mode, SAYS[mode]) for mode, looks in MODES.items() if mode in modes]
-    figures = [figure_of(answers[place], names[place], anchor) for place, anchor in anchors.items()]
+    rows = [rows_of(answer) for answer in shown]
+    single = [row for mine in rows if not several_of(mine) for row in mine]
+    drawn = {spot.mark for row in single for lane in row.lanes for spot in lane.spots}
+    key = [Key(marker_svg(looks), mode, SAYS[mode]) for mode, looks in MODES.items() if mode in drawn]
+    figures = [
+        figure_of(answer, mine, names[place], anchor)
+        for answer, mine, (place, anchor) in zip(shown, rows, anchors.items(), strict=True)
+    ]
     figures[0] = figures[0]._replace(drawings=[marks(), *figures[0].drawings])
     return Section("when", "When the touchdowns came", words, key, figures=figures)
 
 
-def figure_of(answer: Answer, name: str, anchor: str) -> Figure:
+def figure_of(answer: Answer, rows: Sequence[Row], name: str, anchor: str) -> Figure:
     """The timeline of a bag, and numbers of it."""
-    rows = rows_of(answer)
     extent = extent_of(answer, rows)
-    return Figure(name, cut_words(extent), [timeline(rows, extent, name, anchor)], (), numbers(answer), anchor)
+    said = " ".join(one for one in (COUNTED if several_of(rows) else "", cut_words(extent)) if one)
+    return Figure(name, said, [timeline(rows, extent, name, anchor)], (), numbers(answer), anchor)
 
 
 def cut_words(extent: Extent) -> str:

@@ -6,7 +6,7 @@ for (const timeline of document.querySelectorAll(".timeline")) {
   timeline.addEventListener("change", () => {
     const wanted = middle * box.scrollWidth - box.scrollLeft + box.getBoundingClientRect().left;
     let best = null;
-    for (const mark of timeline.querySelectorAll(".marks .point:not(.faint)")) {
+    for (const mark of timeline.querySelectorAll(".marks:not(.faint) .point")) {
       const { left, width } = mark.getBoundingClientRect();
       const away = left + width / 2 - wanted;
       if (best === null || Math.abs(away) < Math.abs(best)) best = away;

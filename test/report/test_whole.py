@@ -1,0 +1,31 @@
+"""Files that have their name only when they are whole, and whose fault it is when they are not."""
+
+from __future__ import annotations
+
+import errno
+from pathlib import Path
+
+import pytest
+
+from impact_predictor.errors import InputError
+from impact_predictor.report.whole import whole
+
+
+@pytest.mark.parametrize(
+    ("stop", "raised"),
+    [
+        (OSError(errno.ENOSPC, "No space left"), InputError),
+        (BrokenPipeError(errno.EPIPE, "Broken pipe"), BrokenPipeError),  # of what is printed meanwhile
+        (KeyboardInterrupt(), KeyboardInterrupt),
+    ],
+)
+def test_after_an_exception_the_older_file_stays_and_the_file_is_blamed_for_what_is_its_fault(
+    tmp_path: Path, stop: BaseException, raised: type[BaseException]
+) -> None:
+    file = tmp_path / "file.txt"
+    file.write_text("older")
+    with pytest.raises(raised) as caught, whole(file) as partial:
+        partial.write_text("newer")
+        raise stop
+    assert str(caught.value) == (f"{file} cannot be written: No space left" if raised is InputError else str(stop))
+    assert [(one.name, one.read_text()) for one in tmp_path.iterdir()] == [("file.txt", "older")]
