@@ -12,7 +12,8 @@ that both messages count; the nodes note the time right after their last answer 
 is the machine's monotonic one, which all processes share. Only this benchmark makes the predictor note times. What the
 sink has not received is lost. Stolen is the time that the host of a virtual machine gave to others.
 
-With --real-time the processes run under SCHED_FIFO, as root may, so that other programs of a busy machine do not count.
+With --real-time the processes run under SCHED_FIFO, as root may, so that other programs of a busy machine do not count,
+and both nodes, which work in turn, have a processor without publisher and sink.
 """
 
 from __future__ import annotations
@@ -245,9 +246,11 @@ def main(words: list[str]) -> int:
 
 def play(words: list[str]) -> int:
     """Play a role as a process of its own."""
+    name, *arguments = [word for word in words if word != REAL_TIME]
     if REAL_TIME in words:
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY))
-    name, *arguments = [word for word in words if word != REAL_TIME]
+        *others, last = sorted(os.sched_getaffinity(0))
+        os.sched_setaffinity(0, [last] if name in ("predict", "pass_on") else others or [last])
     if name == "predict":
         return predict(arguments[0])
     roles: dict[str, Callable[..., int]] = {"publish": publish, "pass_on": pass_on, "listen": listen}
