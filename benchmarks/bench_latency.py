@@ -2,9 +2,10 @@
 
     python benchmarks/bench_latency.py [SECONDS] [--real-time]
 
-Four processes over real DDS: a publisher of contact points and pose of a trotting machine with four feet, at 500 Hz;
-the predictor with config/walker_hyq.yaml; a bare node that takes the same messages as bytes and publishes the pose as
-often as the predictor answers; and a sink that listens to both. Half a second goes to the one, the next to the other,
+Four processes over real DDS: a publisher of contact points and pose at 500 Hz, of the biped of
+examples/walker_controller on its way and of a trotting machine with four feet; the predictor with config/walker.yaml,
+and with config/walker_hyq.yaml; a bare node that takes the same messages as bytes and publishes the pose as often as
+the predictor answers; and a sink that listens to both. Half a second goes to the one, the next to the other,
 in turn: what the bare node takes is the machine's, ROS's and the publisher's, and the difference the predictor's.
 
 Each sample has its own stamp. The publisher notes the time right before it publishes the contact points of a stamp, so
@@ -19,33 +20,40 @@ and both nodes, which work in turn, have a processor without publisher and sink.
 from __future__ import annotations
 
 import gc
+import json
 import os
 import pickle
 import struct
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Final
 
+from impact_predictor.prediction.types import Geometry, Sample
 from impact_predictor.ros.messages import ODOMETRY, OUTPUTS, POLYGON, encode_odometry, encode_polygon
 from impact_predictor.ros.process import Stop, message_class, run, spin
 from impact_predictor.ros.processes import Child, ros_environment
 from impact_predictor.scenarios.walking.trot import trot
 
-PARAMETERS: Final = Path(__file__).resolve().parents[1] / "config/walker_hyq.yaml"
+ROOT: Final = Path(__file__).resolve().parents[1]
 RATE: Final = 500.0
 SECONDS: Final = 20.0
 SETTLED: Final = 1.0
 """Seconds of answers that do not count: the first ones find caches empty."""
 PARTS: Final = (50, 90, 99, 99.9, 100)
 EXECUTORS: Final = ("single", "events")
-HEARD: Final = {
-    "heard: post_impact, mode": ("post_impact", "mode"),
-    "heard: everything": tuple(OUTPUTS),
+BY_CONTROLLER: Final = ("post_impact", "mode")
+"""What a controller listens to."""
+CASES: Final = {
+    "biped": ("walker", BY_CONTROLLER),
+    "four feet": ("walker_hyq", BY_CONTROLLER),
+    "four feet, everything heard": ("walker_hyq", tuple(OUTPUTS)),
 }
+"""The scene of each, and what is heard."""
 TOPICS: Final = {"contact_geometry": POLYGON, "odom": ODOMETRY}
 QUEUE: Final = 100
 REAL_TIME: Final = "--real-time"
@@ -63,7 +71,31 @@ PRIORITY: Final = 10
 """Of SCHED_FIFO, where it is asked for."""
 
 
-def publish(stop: Stop, file: str, seconds: str) -> int:
+def biped(seconds: float, begin: int) -> Iterator[tuple[Geometry, Sample]]:
+    """Feet and trunk of the biped of the controller's example on even ground, `begin` the first stamp in ns."""
+    example = ROOT / "examples/walker_controller"
+    sys.path.insert(0, str(example))
+    from controller import Feedback, FeedbackGains
+    from machine import Ground, Walk
+    from sensors import geometry_of, sample_of
+    from values import Estimate, Machine
+
+    slope, friction, machine = 0.03, 0.45, Machine()
+    gains = json.loads((example / "gains.json").read_text(encoding="utf-8"))["informed"]["gains"]
+    controller = Feedback(machine, Estimate(slope, friction), FeedbackGains(**gains))
+    walk = Walk(machine, Ground(slope, friction, (0.0,)))
+    while walk.ticks < seconds * RATE:
+        command = controller.command(walk.seen, None)
+        geometry, sample = geometry_of(walk), sample_of(walk)
+        yield geometry._replace(stamp=geometry.stamp + begin), sample._replace(stamp=sample.stamp + begin)
+        walk.tick(command)
+
+
+RECORDS: Final = {"walker": biped, "walker_hyq": partial(trot, RATE)}
+"""What is published, by its scene."""
+
+
+def publish(stop: Stop, file: str, seconds: str, scene: str) -> int:
     """Publish contact points, then the pose, at each step, to each node in its turn; note when, by the stamp."""
     from rclpy.node import Node
 
@@ -78,7 +110,7 @@ def publish(stop: Stop, file: str, seconds: str) -> int:
     stop.wait(1.0)  # the other side finds this one by itself
     messages = [
         (sample.stamp, encode_polygon(geometry), encode_odometry(sample))
-        for geometry, sample in trot(RATE, float(seconds), time.time_ns())
+        for geometry, sample in RECORDS[scene](float(seconds), time.time_ns())
     ]
     called: list[dict[int, int]] = [{} for _ in INPUTS]
     begin, step = time.monotonic(), 0
@@ -167,7 +199,7 @@ def _write(file: str, content: object) -> int:
 ROLES: Final = ("publish", "predict", "pass_on", "listen")
 
 
-def measure(executor: str, heard: tuple[str, ...], seconds: float, *how: str) -> dict[str, float]:
+def measure(executor: str, scene: str, heard: tuple[str, ...], seconds: float, *how: str) -> dict[str, float]:
     """Figures of one run by their names."""
     # Here, so that the processes under test load what the program itself does, and no more.
     import numpy as np
@@ -179,9 +211,9 @@ def measure(executor: str, heard: tuple[str, ...], seconds: float, *how: str) ->
         def start(role: str, *more: str) -> Child:
             return stack.enter_context(Child(role, environment, __file__, *how, role, files[role], *more))
 
-        arguments = ("--ros-args", "--params-file", str(PARAMETERS), "-p", f"executor:={executor}")
+        arguments = ("--ros-args", "--params-file", str(ROOT / f"config/{scene}.yaml"), "-p", f"executor:={executor}")
         sink, node, bare = start("listen", *heard), start("predict", *arguments), start("pass_on", executor, *heard)
-        publisher, stolen = start("publish", str(seconds + SETTLED)), stolen_time()
+        publisher, stolen = start("publish", str(seconds + SETTLED), scene), stolen_time()
         while not publisher.ended:
             time.sleep(0.1)
             for one in (sink, node, bare):
@@ -223,7 +255,7 @@ def stolen_time() -> float:
 
 
 def main(words: list[str]) -> int:
-    """Print the latencies for both executors and two kinds of listeners."""
+    """Print the latencies for each case and both executors."""
     from rich.console import Console
     from rich.table import Table
 
@@ -231,12 +263,10 @@ def main(words: list[str]) -> int:
     seconds = next((float(word) for word in words if word not in how), SECONDS)
     title = f"us from the publisher's call to the return of the predictor's publish; {RATE:.0f} Hz, {seconds:g} s each"
     columns: dict[str, list[str]] = {}
-    for listener, heard in HEARD.items():
+    for case, (scene, heard) in CASES.items():
         for executor in EXECUTORS:
-            figures = measure(executor, heard, seconds, *how)
-            columns[f"{listener}\n{executor}"] = [
-                f"{number:.{int(name in ROUGH)}f}" for name, number in figures.items()
-            ]
+            figures = measure(executor, scene, heard, seconds, *how)
+            columns[f"{case}\n{executor}"] = [f"{number:.{int(name in ROUGH)}f}" for name, number in figures.items()]
     table = Table("", *columns, title=title)
     for name, *numbers in zip(figures, *columns.values(), strict=True):
         table.add_row(name, *numbers)
