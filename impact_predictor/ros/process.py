@@ -8,6 +8,7 @@ import signal
 import sys
 import threading
 from collections.abc import Callable
+from functools import partial
 from itertools import pairwise
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Final
@@ -151,11 +152,14 @@ def spin(node: Node, stop: Stop, served: Callable[[], int], executor: str = "sin
     """
     runner, period = executor_of(node, executor)
     runner.add_node(node)
-    # A task ends a round that waits; the events executor has no guard conditions.
-    stop.call(lambda: runner.create_task(bool))
     try:
-        while not stop.requested:
-            runner.spin_once(timeout_sec=period)
+        if period is None:
+            # A task ends a round that waits.
+            stop.call(lambda: runner.create_task(bool))
+            while not stop.requested:
+                runner.spin_once()
+        else:
+            _serve(runner, stop, period)
         idle, before = 0, served()
         while idle < _IDLE_ROUNDS:
             runner.spin_once(timeout_sec=0.0)
@@ -164,6 +168,16 @@ def spin(node: Node, stop: Stop, served: Callable[[], int], executor: str = "sin
     finally:
         stop.call(bool)
         runner.remove_node(node)
+
+
+def _serve(runner: Any, stop: Stop, period: float) -> None:
+    """Serve until the stop with the events executor, which a call for each message would cost a fifth more."""
+    from rclpy.task import Future
+
+    while not stop.requested:
+        over = Future()
+        stop.call(partial(over.set_result, None))
+        runner.spin_until_future_complete(over, timeout_sec=period)
 
 
 _IDLE_ROUNDS: Final = 20
