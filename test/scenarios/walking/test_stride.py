@@ -141,6 +141,7 @@ def test_both_laws_agree_on_a_foot_that_turns_over_one_that_sticks() -> None:
         ({"ahead": 0.0}, "ahead is 0.0; give an angle between 0 and pi / 2"),
         ({"hub": HUB._replace(inertia=0.0)}, "inertia is 0.0; give a finite number above 0"),
         ({"hub": HUB._replace(friction=-1.0)}, "friction is -1.0"),
+        ({"hub": HUB._replace(slope=float("nan"))}, "slope is nan degrees; give an angle between -90 and 90 degrees"),
         ({"grip": -0.1}, "grip is -0.1"),
         ({"duration": float("nan")}, "duration is nan"),
     ],
