@@ -37,6 +37,8 @@ BAGS = (
 """Recorded bags, each with its scene."""
 
 COLCON = "setuptools<80", "colcon-common-extensions"
+PATIENCE = 1800.0
+"""Seconds for one command: colcon runs thousands of tests beside another install, on a machine that may be busy."""
 NOT_SOURCE = {".git", ".venv", ".hypothesis", "build", "dist", "install", "log", "out"}
 CALLERS = ("AMENT_", "CMAKE_PREFIX_PATH", "COLCON_", "LD_LIBRARY_PATH", "PYTHON", "ROS_", "VIRTUAL_ENV", "_ROS_WHEELS_")
 WAIT_FOR_NODE = f"""
@@ -81,9 +83,15 @@ class Environment:
         self.run(python, "-m", "venv", str(self.prefix))
 
     def run(self, *command: str, cwd: Path | None = None, status: int | None = 0) -> subprocess.CompletedProcess[str]:
-        """Run a command in the home folder, for at most ten minutes; `status` None stands for any but 0."""
+        """Run a command in the home folder, for at most so long; `status` None stands for any but 0."""
         done = subprocess.run(
-            command, cwd=cwd or self.work, env=self.variables, capture_output=True, text=True, timeout=600, check=False
+            command,
+            cwd=cwd or self.work,
+            env=self.variables,
+            capture_output=True,
+            text=True,
+            timeout=PATIENCE,
+            check=False,
         )
         if done.returncode != status and (status is not None or done.returncode == 0):
             output = "\n".join((done.stdout + done.stderr).splitlines()[-40:])
