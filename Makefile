@@ -9,6 +9,7 @@ export ROS_LOG_DIR ?= $(CURDIR)/log
 
 # A sourced ROS is used as it is; everywhere else ROS comes from PyPI into .venv. The two are never mixed.
 # An rclpy of wheels in another environment, active now, is not a sourced one.
+USED := fast,plot,page,calibrate,report,test
 ROS := wheels
 SOURCED := import sys, rclpy; print(sys.prefix == sys.base_prefix or not rclpy.__file__.startswith(sys.prefix))
 ifdef ROS_DISTRO
@@ -20,7 +21,7 @@ endif
 endif
 
 ifeq ($(ROS),wheels)
-EXTRAS := ros,fast,test
+EXTRAS := ros,$(USED)
 CONSTRAINTS := constraints/jazzy.txt
 # The wheels do not say where their ament index is.
 export AMENT_PREFIX_PATH := $(CURDIR)/.venv
@@ -29,7 +30,7 @@ ifdef _ROS_WHEELS_BOOTSTRAP_COMPLETE
 unexport _ROS_WHEELS_BOOTSTRAP_COMPLETE LD_LIBRARY_PATH
 endif
 else
-EXTRAS := fast,test
+EXTRAS := $(USED)
 CONSTRAINTS := .venv/constraints.txt
 SYSTEM_SITE := --system-site-packages
 endif

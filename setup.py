@@ -18,6 +18,30 @@ def files_of(folder: str) -> list[tuple[str, list[str]]]:
     ]
 
 
+EXTRAS = {
+    "ros": ["ros-jazzy-common-interfaces", "ros-jazzy-rclpy[fastrtps]"],
+    # Pictures: figures, maps, moving ones.
+    "plot": ["contourpy>=1.0", "matplotlib>=3.6", "pillow>=9.2", "scipy>=1.11"],
+    "page": ["jinja2>=3.1", "markupsafe>=2.0", "plotly>=6.0"],
+    "calibrate": ["scipy>=1.11"],
+    # References of `impact-predictor report`.
+    "report": ["matplotlib>=3.6", "mpmath>=1.3", "scipy>=1.11"],
+    "fast": ["numba"],
+    # Many bags at a time, and their touchdowns as Parquet.
+    "fleet": ["dask>=2024.1", "distributed>=2024.1", "pyarrow>=16"],
+    # Pinocchio, for machines with joints.
+    "articulated": ["pin>=3.0"],
+    "peers": ["mujoco>=3.2"],
+    # Spectra of waves to compare with.
+    "spectra": ["wavespectra>=4.4"],
+    "browser": ["playwright>=1.45"],
+    # Models of robots, for the tests.
+    "robots": ["example-robot-data>=4.0"],
+    "test": ["hypothesis", "pytest", "pytest-xdist"],
+}
+ALL = ("plot", "page", "calibrate", "report", "fast", "fleet", "articulated", "peers")
+"""What brings a command or an option; ROS from PyPI is never mixed with a sourced one, so it is asked for by name."""
+
 setup(
     name=NAME,
     version="0.1.0",
@@ -46,32 +70,14 @@ setup(
     install_requires=[
         "backports.zstd>=1.0; python_version < '3.14'",
         "click>=8.1",
-        "jinja2>=3.1",
         "lz4>=4.0",
-        "matplotlib>=3.6",
-        "mpmath>=1.3",
+        "mcap>=1.2,<2",
         "numpy>=1.26",
-        "pillow>=9.2",
         "rich>=13",
-        # Brings ruamel.yaml too, the reader of the parameter files.
         "rosbags>=0.11,<0.12",
-        "scipy>=1.11",
+        "ruamel.yaml>=0.18",
     ],
-    extras_require={
-        "ros": ["ros-jazzy-common-interfaces", "ros-jazzy-rclpy[fastrtps]"],
-        "fast": ["numba"],
-        # Many bags at a time, and their touchdowns as Parquet.
-        "fleet": ["dask>=2024.1", "distributed>=2024.1", "pyarrow>=16"],
-        # Pinocchio, for machines with joints.
-        "articulated": ["pin>=3.0"],
-        "peers": ["mujoco>=3.2"],
-        # Spectra of waves to compare with.
-        "spectra": ["wavespectra>=4.4"],
-        "browser": ["playwright>=1.45"],
-        # Models of robots, for the tests.
-        "robots": ["example-robot-data>=4.0"],
-        "test": ["hypothesis", "mcap>=1.2,<2", "pytest", "pytest-xdist"],
-    },
+    extras_require={**EXTRAS, "all": sorted({one for name in ALL for one in EXTRAS[name]})},
     entry_points={
         "console_scripts": [
             "impact-predictor = impact_predictor.cli:main",

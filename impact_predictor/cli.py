@@ -19,7 +19,7 @@ from .commands.replay import replay
 from .commands.report import report
 from .commands.simulate import simulate
 from .commands.solve import solve
-from .errors import InputError
+from .errors import InputError, missing
 
 WRONG_INPUT: Final = 2
 """Exit status after a wrong option, file or parameter."""
@@ -41,7 +41,7 @@ class Program(click.Group):
     ) -> Any:
         """Run a command and end the process with its exit status."""
         try:
-            status = super().main(args, prog_name, complete_var, standalone_mode=False, **extra)
+            status = self._run(args, prog_name, complete_var, standalone_mode=False, **extra)
         except InputError as error:
             click.echo(f"error: {error}", err=True)
             status = WRONG_INPUT
@@ -51,6 +51,12 @@ class Program(click.Group):
         except click.Abort:
             status = INTERRUPTED
         sys.exit(status)
+
+    def _run(self, *arguments: Any, **extra: Any) -> Any:
+        try:
+            return super().main(*arguments, **extra)
+        except ModuleNotFoundError as error:
+            raise missing(error.name or "") or error from error
 
 
 def _sentence(error: click.ClickException) -> str:

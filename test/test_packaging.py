@@ -1,3 +1,4 @@
+import ast
 import re
 import runpy
 import sys
@@ -8,6 +9,7 @@ from xml.etree import ElementTree
 import pytest
 
 import impact_predictor
+from impact_predictor.errors import EXTRAS, missing
 
 ROOT = Path(__file__).parents[1]
 
@@ -90,6 +92,55 @@ def test_the_scene_that_the_launch_file_starts_with_is_shipped():
 def test_ros_from_pypi_is_pinned_wherever_setup_py_asks_for_it(setup_arguments):
     pinned = {line.partition("==")[0] for line in (ROOT / "constraints/jazzy.txt").read_text().split()}
     assert {re.match(r"[\w-]+", requirement)[0] for requirement in setup_arguments["extras_require"]["ros"]} <= pinned
+
+
+DISTRIBUTIONS = {"backports": "backports.zstd", "compression": "", "ruamel": "ruamel.yaml"}
+"""Modules whose distributions have other names; `compression` is of Python 3.14 itself."""
+
+
+def imports_of(path):
+    """The packages that a module imports from elsewhere, wherever in it."""
+    found = set()
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            found |= {one.name for one in node.names}
+        elif isinstance(node, ast.ImportFrom) and not node.level:
+            found.add(node.module)
+    names = {name.partition(".")[0] for name in found}
+    return names - sys.stdlib_module_names - {"impact_predictor"}
+
+
+def names_of(requirements):
+    return {re.match(r"[\w.-]+", one)[0] for one in requirements}
+
+
+def test_every_import_is_declared_or_in_the_extra_that_the_error_sentence_names(setup_arguments):
+    base, extras = names_of(setup_arguments["install_requires"]), setup_arguments["extras_require"]
+    of_ros = r"rclpy|ament_index_python|launch\w*|\w+_msgs|\w+_interfaces"
+    for path in sorted((ROOT / "impact_predictor").rglob("*.py")):
+        for module in imports_of(path):
+            distribution = DISTRIBUTIONS.get(module, module)
+            if not distribution or distribution in base or re.fullmatch(of_ros, module):
+                continue
+            if module == "pytest":
+                assert path.parent.name == "testing"
+                continue
+            assert module in EXTRAS, f"{path} imports {module}, which nothing declares"
+            package, extra = EXTRAS[module]
+            assert package in names_of(extras[extra]), f"{package} is not in the extra {extra}"
+            assert f"`pip install {package}`" in str(missing(f"{module}.any"))
+
+
+def test_what_no_code_imports_is_not_declared(setup_arguments):
+    imported = {name for path in (ROOT / "impact_predictor").rglob("*.py") for name in imports_of(path)}
+    distributions = {DISTRIBUTIONS.get(name, EXTRAS.get(name, (name, ""))[0]) for name in imported}
+    assert names_of(setup_arguments["install_requires"]) - distributions <= {"mcap"}
+
+
+def test_the_extra_all_has_what_every_command_can_use(setup_arguments):
+    extras = setup_arguments["extras_require"]
+    assert {package for package, _ in EXTRAS.values()} <= names_of(extras["all"])
+    assert not names_of(extras["all"]) & names_of(extras["test"])
 
 
 def test_package_xml_asks_for_no_package_that_only_pip_has(manifest):

@@ -36,6 +36,9 @@ BAGS = (
 )
 """Recorded bags, each with its scene."""
 
+TESTED = "fast,plot,page,calibrate,report,test"
+"""The extras that the tests use."""
+
 COLCON = "setuptools<80", "colcon-common-extensions"
 PATIENCE = 1800.0
 """Seconds for one command: colcon runs thousands of tests beside another install, on a machine that may be busy."""
@@ -158,6 +161,26 @@ def check_offline(environment: Environment) -> None:
     replayed = json.loads(environment.run(command, "replay", bag, "--params", scene, "--json").stdout)
     if not replayed["touchdowns"]:
         raise InstallError("replay found no touchdown in the recorded tosses")
+    tables = environment.run(command, "replay", bag, "--params", scene).stdout
+    if "lead time" not in tables:
+        raise InstallError(f"replay printed no table:\n{tables}")
+
+
+def check_extras(environment: Environment) -> None:
+    """Without the extras each command that needs one says so, in one line."""
+    share = environment.prefix / "share" / NAME
+    replay = ("replay", str(share / "examples/cube_tosses"), "--params", str(share / "config/cube_tosses.yaml"))
+    for extra, *command in (
+        ("plot", "simulate", "rod", "--plot", "rod.png"),
+        ("plot", *replay, "--figure", "errors.png"),
+        ("page", *replay, "--report", "page.html"),
+        ("fleet", *replay, "--table", "table.parquet"),
+        ("calibrate", "calibrate", *replay[1:]),
+        ("report", "report", "-o", "accuracy"),
+    ):
+        said = environment.run(f"{environment.prefix}/bin/impact-predictor", *command, status=None).stderr
+        if said.count("\n") != 1 or f"the extra `{extra}`" not in said:
+            raise InstallError(f"{' '.join(command)} should name the extra {extra} in one line, but said:\n{said}")
 
 
 def predictions_of(environment: Environment) -> str:
@@ -215,9 +238,10 @@ def install_without_ros(base: Path, python: str) -> str:
     source = copy_source(base / "source")
     environment.pip("install", str(source), "--constraint", str(source / "constraints/bags.txt"))
     check_offline(environment)
+    check_extras(environment)
     check_node_missing(environment)
     predictions[python] = predictions_of(environment)
-    return "library, solve, replay; the node says that ROS is missing"
+    return "library, solve, replay with its tables; extras and ROS are named where they are missing"
 
 
 def install_with_ros(base: Path, python: str) -> str:
@@ -245,7 +269,9 @@ def install_with_colcon(base: Path, python: str) -> str:
     source = copy_source(base / "source")
     # What the package needs, without the package: colcon is to build that.
     constraints = str(source / "constraints/jazzy.txt")
-    environment.pip("install", *COLCON, f"{source}[ros,fast,test]", "--constraint", constraints)
+    environment.pip(
+        "install", *COLCON, f"{source}[ros,fast,plot,page,calibrate,report,test]", "--constraint", constraints
+    )
     environment.pip("uninstall", "--yes", NAME)
     copy_source(workspace / "src" / NAME)
     environment.variables["AMENT_PREFIX_PATH"] = str(environment.prefix)

@@ -142,6 +142,7 @@ def replay(
         picture = Picture(figure)
     answers: Kept | None = None
     if report is not None:
+        from ..report.page.replay import write_replay_page
         from ..report.page.replays.kept import Kept
 
         named(report, "page", (".html",))
@@ -187,7 +188,6 @@ def replay(
             told.tell_file("Picture", picture.path)
         if report is not None and answers is not None:
             from ..parameters.file import read_values
-            from ..report.page.replay import write_replay_page
 
             write_replay_page(report, answers, read_values(params))
             told.tell_file("Page", report)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
-from ..errors import InputError
+from ..errors import InputError, need
 from .examples import examples
 
 if TYPE_CHECKING:
@@ -95,10 +95,7 @@ def measured(quick: bool, folder: Path | None) -> Report:
     Raises:
         InputError: what the references are computed with is not installed.
     """
-    try:
-        import mpmath  # noqa: F401  # its absence is told in a sentence
-    except ImportError as error:
-        raise InputError("the report needs mpmath for its references; install it with `pip install mpmath`") from error
+    need("mpmath", "scipy")
     from ..report.accuracy.study import FULL, QUICK, steps
     from ..report.accuracy.study import report as measure
     from .compiling import compiling_is_said

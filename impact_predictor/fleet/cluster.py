@@ -14,13 +14,12 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Final
 
-from ..errors import InputError
+from ..errors import InputError, need
 from .job import Job, Outcome, failed, replay_bag
 
 if TYPE_CHECKING:
     from distributed import Client, Future
 
-MISSING: Final = "several workers need Dask; install it: pip install dask distributed"
 PATIENCE: Final = "10s"
 """How long a scheduler has to answer."""
 
@@ -59,11 +58,10 @@ def connected(workers: int, scheduler: str | None = None) -> Iterator[Client]:
     Raises:
         InputError: Dask is missing, or the scheduler does not answer or has no workers.
     """
-    try:
-        from dask import config
-        from distributed import Client, LocalCluster
-    except ImportError as error:
-        raise InputError(MISSING) from error
+    need("dask", "distributed")
+    from dask import config
+    from distributed import Client, LocalCluster
+
     if scheduler is None:
         # What a worker leaves that is ended within a bag goes with the folder.
         with TemporaryDirectory(prefix="impact_predictor_", ignore_cleanup_errors=True) as folder, config.set(_LOCAL):

@@ -8,11 +8,9 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Final, NamedTuple
 
-from ..errors import InputError
+from ..errors import need
 from ..mechanics.types import Twist
 from .whole import named, whole
-
-MISSING: Final = "a Parquet table needs pyarrow; install it: pip install pyarrow"
 
 _GROUP: Final = 10_000
 """Rows that are written at a time: few enough for any memory, many enough to be read fast."""
@@ -107,11 +105,10 @@ class TouchdownTable:
             InputError: pyarrow is missing, the name does not end in .parquet, or its folder does not exist.
         """
         self.path = named(path, "Parquet table", (".parquet",))
-        try:
-            import pyarrow
-            import pyarrow.parquet
-        except ImportError as error:
-            raise InputError(MISSING) from error
+        need("pyarrow")
+        import pyarrow
+        import pyarrow.parquet
+
         self._arrow = pyarrow
         self._schema = pyarrow.schema(
             [
