@@ -17,7 +17,8 @@ from ..mechanics.rocking import next_strike
 from ..mechanics.support import FixedSupport
 from ..mechanics.types import Contact, Twist, TwoPointBody, Vector
 from .approach import GRAZES, Approach
-from .deck.approach import PlanarSupport, center_of, gravity_over, is_uniform
+from .deck.approach import PlanarSupport, gravity_over, is_uniform
+from .deck.frame import center_of
 from .planar import Contacts, Plane, Posture, contacts_of, inertia_about, off_axis_of
 from .scene import Scene
 from .types import Moment, Sample, Vector3

@@ -24,8 +24,8 @@ from .types import (
 )
 
 if TYPE_CHECKING:
-    from .deck.resting import Resting
-    from .deck.tilt import Tilt
+    from .deck.imu import Tilt
+    from .deck.motion import RestingSupport
     from .deck.tracker import Deck
     from .walking.walker import Walker
     from .watch.watch import Report, Watch
@@ -54,7 +54,7 @@ class Monitor:
         shared = shared_by(scenes)
         self.deck: Deck | None = None
         self.watch: Watch | None = None
-        self._resting: Resting | None = None
+        self._resting: RestingSupport | None = None
         self._watched: dict[str, Scene] = {}
         self._points: dict[str, tuple[Vector3, ...]] = {}  # of bodies under watch, as messages told them
         self._tilts: dict[str, Tilt] = {}
@@ -82,13 +82,13 @@ class Monitor:
         }
         if any(scene.watching is not None for scene in scenes.values()):
             if self.deck is None:
-                from .deck.resting import Resting
+                from .deck.motion import RestingSupport
 
-                self._resting = Resting(shared.gravity)
+                self._resting = RestingSupport(shared.gravity)
             self.watch = self._begin_to_watch(scenes)
         of_imu = {body: scene for body, scene in scenes.items() if scene.source == "imu"}
         if of_imu:
-            from .deck.tilt import Tilt
+            from .deck.imu import Tilt
 
             self._tilts = {body: Tilt(scene) for body, scene in of_imu.items()}
 

@@ -109,8 +109,8 @@ PARTS: Final = (
         {"support.motion": "fixed"},
         (
             *ROCKING,
-            *("prediction.deck.aboard", "prediction.deck.approach", "prediction.deck.jumps", "prediction.deck.motion"),
-            *("prediction.deck.relative", "prediction.deck.tracker", "prediction.deck.usual", "prediction.deck.window"),
+            *("prediction.deck.approach", "prediction.deck.frame", "prediction.deck.motion", "prediction.deck.tracker"),
+            "prediction.deck.window",
             "ros.support_topic",
         ),
     ),
@@ -120,7 +120,7 @@ PARTS: Final = (
         reasons.why_harmonic,
         {"support.extrapolation": "harmonic"},
         {"support.extrapolation": "constant"},
-        ("prediction.deck.course", "prediction.deck.harmonic"),
+        ("prediction.deck.harmonic",),
     ),
     Part(
         "onset watch",

@@ -19,7 +19,7 @@ from .types import Geometry, Moment, Prediction, Sample, Score, Status, Touchdow
 from .vectors import to_world, total
 
 if TYPE_CHECKING:
-    from .deck.aboard import Aboard
+    from .deck.frame import SupportFrame
     from .deck.tracker import Deck
     from .drum import Drum
     from .uncertainty import Sampler
@@ -49,11 +49,11 @@ class Predictor:
             from .drum import Drum
 
             self._drum = Drum(scene)
-        self._aboard: Aboard | None = None
+        self._support_frame: SupportFrame | None = None
         if scene.deck is not None:
-            from .deck.aboard import Aboard
+            from .deck.frame import SupportFrame
 
-            self._aboard = Aboard(scene, deck, self._drum)
+            self._support_frame = SupportFrame(scene, deck, self._drum)
         self._impact_across: Callable[..., tuple[Outcome, Across] | None] | None = None
         if scene.transverse_slip and scene.law == "path" and scene.friction > 0.0 and self._drum is None:
             from .transverse import impact_across
@@ -98,15 +98,15 @@ class Predictor:
         status = self._check(sample)
         if status is not Status.ACCEPTED:
             return Prediction(status, sample)
-        moment, seen, aboard = None, sample, self._aboard
-        if aboard is not None:
-            found = aboard.seen(sample)
+        moment, seen, support = None, sample, self._support_frame
+        if support is not None:
+            found = support.seen(sample)
             if isinstance(found, Status):
                 return Prediction(found, sample)
             moment, seen = found
         posture = posture_of(self.scene, self._points, seen) if self._drum is None else self._drum.posture_of(seen)
-        if aboard is not None:
-            status = aboard.place_of(seen, posture, self._points)
+        if support is not None:
+            status = support.place_of(seen, posture, self._points)
             if status is not Status.ACCEPTED:
                 return Prediction(status, sample, None, None, moment, seen)
         if self._last is not None and sample.stamp - self._last > PAUSE:
@@ -132,7 +132,7 @@ class Predictor:
         status = check_numbers(sample)
         if status is not Status.ACCEPTED:
             return status
-        if self._aboard is None and self.scene.frame and sample.frame_id != self.scene.frame:
+        if self._support_frame is None and self.scene.frame and sample.frame_id != self.scene.frame:
             return Status.WRONG_FRAME
         if not self._points:
             return Status.NO_GEOMETRY

@@ -26,7 +26,7 @@ from ..planar import ORIGIN, Plane, Posture
 from ..scene import Scene
 from ..types import Moment, Sample, Vector3
 from ..vectors import add, cross, dot, times, to_world
-from .relative import pull_at
+from .frame import center_of, pull_at
 
 APART = 1e-6
 """Contacts nearer to each other in the plane than this part of their distance from the mass centre are one."""
@@ -111,11 +111,6 @@ def parabola(values: list[float]) -> tuple[float, float, float]:
 def gravity_over(scene: Scene, moment: Moment, sample: Sample, posture: Posture) -> Vector3:
     """Acceleration that the body would have now without contacts, in the support's frame."""
     return pull_at(moment.felt, center_of(scene, sample, posture), to_world(posture.axes, posture.velocity))
-
-
-def center_of(scene: Scene, sample: Sample, posture: Posture) -> Vector3:
-    """Where the mass centre is."""
-    return add(sample.position, to_world(posture.axes, scene.center_of_mass))
 
 
 def is_uniform(moment: Moment, horizon: float) -> bool:

@@ -1,22 +1,23 @@
-"""A moving support that is known from an inertial sensor on it alone."""
+"""Inertial sensors: one on a moving support that alone tells of its motion, and one on a body that tells its tilt."""
 
 from __future__ import annotations
 
-from math import atan2, exp, sqrt
+from math import atan2, exp, hypot, isfinite, sqrt
 
 from ...stamps import NANOSECONDS
-from ..types import Imu, Quaternion, Status, Vector3
-from ..vectors import add, axes_of, cross, dot, times, to_body, turned
-from .motion import NOWHERE, Seen
+from ..checks import UNIT, order_of
+from ..predictor import PAUSE
+from ..scene import Scene
+from ..types import Imu, Moment, Quaternion, Status, Vector3
+from ..vectors import add, any_across, axes_of, cross, dot, times, to_body, turned
+from .motion import LEVEL, NOWHERE, SupportState
 
-START: Quaternion = (0.0, 0.0, 0.0, 1.0)
-
-MEAN = 10.0
+AVERAGED = 10.0
 """s over which what the sensor feels is averaged, with exponential weights, before it is compared with gravity."""
 
 SPEED = 10.0
-"""m/s: no support moves faster along its normal for long, so that the mean acceleration is at most 2 SPEED/MEAN. The
-deck of a ship heaves with up to 5 m/s, a fast boat's bow with up to 8."""
+"""m/s: no support moves faster along its normal for long, so that the mean acceleration is at most 2 SPEED / AVERAGED.
+The deck of a ship heaves with up to 5 m/s, a fast boat's bow with up to 8."""
 
 SHARE = 0.5
 """Of gravity, by which the mean along the normal may differ from it: a list of 60 degrees is the limit."""
@@ -49,23 +50,30 @@ class DeckImu:
         oriented, self._oriented = self._oriented, imu.orientation is not None
         return oriented is not self._oriented
 
-    def seen(self, imu: Imu, before: Seen | None) -> Seen:
+    def seen(self, imu: Imu, before: SupportState | None) -> SupportState:
         """What a measurement shows; without an orientation its tilt is followed, and its heading counts from 0."""
         orientation = imu.orientation
         if orientation is None:
-            orientation, time = START, 0.0
+            orientation, time = LEVEL, 0.0
             if before is not None:
                 time = (imu.stamp - before.stamp) / NANOSECONDS
                 orientation = turned(before.orientation, times(add(before.angular, imu.angular), 0.5 * time))
             orientation = self._righted(orientation, imu.specific_force, time)
-        return Seen(imu.stamp, NOWHERE, orientation, axes_of(orientation), NOWHERE, imu.angular)
+        return SupportState(
+            stamp=imu.stamp,
+            position=NOWHERE,
+            orientation=orientation,
+            axes=axes_of(orientation),
+            velocity=NOWHERE,
+            angular=imu.angular,
+        )
 
     def _righted(self, orientation: Quaternion, force: Vector3, time: float) -> Quaternion:
         """The orientation turned a little towards the one in which the force of now would point up.
 
         Its mean does, so the drift of the angular velocity has no time to add up. The first force counts as the mean.
         """
-        self._righting = min(self._righting + time, MEAN)
+        self._righting = min(self._righting + time, AVERAGED)
         part = time / self._righting if self._righting > 0.0 else 1.0
         up = to_body(axes_of(orientation), self._up)
         across = cross(force, up)
@@ -90,11 +98,11 @@ class DeckImu:
         over T may differ from gravity by that much more before the sensor is wrong.
         """
         if self._stamp is not None:
-            keep = exp((self._stamp - imu.stamp) / (MEAN * NANOSECONDS))
+            keep = exp((self._stamp - imu.stamp) / (AVERAGED * NANOSECONDS))
             self._sum = keep * self._sum + (1.0 - keep) * dot(self._normal, imu.specific_force)
             self._weight = keep * self._weight + 1.0 - keep
         self._stamp = imu.stamp
-        time = MEAN * self._weight
+        time = AVERAGED * self._weight
         if time > 0.0:
             difference = abs(self._sum / self._weight - self._gravity)
             if difference > SHARE * self._gravity + 2.0 * SPEED / time:
@@ -102,3 +110,49 @@ class DeckImu:
             elif time > FIRST and difference <= SHARE * self._gravity:
                 self._verdict = Status.ACCEPTED
         return self._verdict
+
+
+class Tilt:
+    """The tilt of a body on its support, from an inertial sensor on it with the axes of the body frame.
+
+    Only which way is up counts of its orientation and of the support's: headings of inertial sensors drift apart, and
+    steel turns magnetic ones. So a body keeps the heading at which it was placed.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        self._up = times(scene.gravity, -1.0 / (hypot(*scene.gravity) or 1.0))
+        self._placed = turned(LEVEL, times(scene.normal, scene.yaw))
+        self._last: int | None = None
+
+    def check(self, imu: Imu) -> Status:
+        """What becomes of a measurement; one without an orientation tells no tilt."""
+        numbers = (*imu.angular, *imu.specific_force, *(imu.orientation or ()))
+        if not all(map(isfinite, numbers)):
+            return Status.NOT_FINITE
+        if imu.orientation is None or not abs(sum(part * part for part in imu.orientation) - 1.0) < UNIT:
+            return Status.BAD_QUATERNION
+        last = self._last
+        status = order_of(imu.stamp, last)
+        if status is Status.ACCEPTED:
+            self._last = imu.stamp
+        elif last is not None and last - imu.stamp > PAUSE:
+            self._last = None
+        return status
+
+    def on(self, support: Moment | None, orientation: Quaternion) -> Quaternion:
+        """The orientation relative to the support, moving or (None) fixed, of a body with one in the world."""
+        up = self._up if support is None else to_body(axes_of(support.orientation), self._up)
+        return turned(self._placed, rotation(to_body(axes_of(orientation), self._up), self._placed_up(up)))
+
+    def _placed_up(self, up: Vector3) -> Vector3:
+        """Which way is up for the body as it was placed."""
+        return to_body(axes_of(self._placed), up)
+
+
+def rotation(first: Vector3, second: Vector3) -> Vector3:
+    """The smallest rotation (vector, rad) of axes in which the direction `first` becomes `second`."""
+    across = cross(first, second)
+    sine = hypot(*across)
+    if sine == 0.0:
+        across = cross(first, any_across(first))
+    return times(across, atan2(sine, dot(first, second)) / hypot(*across))

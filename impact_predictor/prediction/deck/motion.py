@@ -1,27 +1,46 @@
-"""The motion of a moving support from what is known of it at one message: at other times, and what is felt there."""
+"""The motion of a support: what is known of it at one message, at other times, and what is felt on it."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
 from math import atan2, sin, sqrt
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
-from ...mechanics.impact import new_tuple
 from ...stamps import NANOSECONDS
 from ..types import Felt, Moment, Quaternion, Vector3
-from ..vectors import Axes, add, axes_of, combine, cross, dot, times, to_body, turned
+from ..vectors import Axes, add, axes_of, combine, composed, cross, dot, times, to_body, turned
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 NOWHERE: Vector3 = (0.0, 0.0, 0.0)
 """Place, velocity and acceleration of a support that nobody measures."""
 
+LEVEL: Quaternion = (0.0, 0.0, 0.0, 1.0)
 
-class Seen(NamedTuple):
-    """What a message tells of a moving support.
+AVERAGED = 60.0
+"""s over which means are taken, about ten waves."""
+
+FIRST_MEAN = 5.0
+"""s for which the support counts as level and slow before its first message: a mean does not begin with a wave."""
+
+SLOW = 1e-6, 1e-6
+"""Mean squares of the angular velocity (rad/s) and of its derivative then: waves of 6 s, too low to be seen."""
+
+QUARTER = 1.4
+"""rad after which a wave is no longer like what it was: nearly a quarter of it."""
+
+
+class SupportState(NamedTuple):
+    """What a message tells of a moving support, and, with the messages before, its accelerations.
 
     `stamp` in ns; `position` in m and `velocity` in m/s of its origin in the world, 0 where nobody measures them;
     `orientation` in the world, or in some frame that does not turn, with the `axes` it makes; `angular` velocity in
-    rad/s along these.
+    rad/s along these. `acceleration` of the origin in the world in m/s^2, 0 where nobody measures its velocity; the one
+    that is `felt` there, gravity less its own, in the frame of the orientation; `turning`, the derivative of the
+    angular velocity, along the support's axes.
     """
 
     stamp: int
@@ -30,25 +49,55 @@ class Seen(NamedTuple):
     axes: Axes
     velocity: Vector3
     angular: Vector3
+    acceleration: Vector3 = NOWHERE
+    felt: Vector3 = NOWHERE
+    turning: Vector3 = NOWHERE
 
 
-class Known(NamedTuple):
-    """What is known of it with the messages before: as `Seen`, and the accelerations.
+class MeanMotion:
+    """The mean `gravity` that is felt, along the support's axes, and the mean frequency with which it turns."""
 
-    `acceleration` of the origin in the world in m/s^2, 0 where nobody measures its velocity; the one that is `felt`
-    there, gravity less its own, in the frame of the orientation; `turning`, the derivative of the angular velocity,
-    along the support's axes.
-    """
+    def __init__(self, still: Vector3) -> None:
+        self.gravity = still
+        self._time = FIRST_MEAN
+        self._angular, self._turning = SLOW
 
-    stamp: int
-    position: Vector3
-    orientation: Quaternion
-    axes: Axes
-    velocity: Vector3
-    angular: Vector3
-    acceleration: Vector3
-    felt: Vector3
-    turning: Vector3
+    @property
+    def quarter(self) -> float:
+        """The time in s after which what is felt now says nothing. Noise of the accelerations makes it shorter."""
+        return QUARTER * sqrt(self._angular / self._turning)
+
+    def add(self, state: SupportState, time: float) -> None:
+        """Take a state that was known for a time in s."""
+        self._time = min(self._time + time, AVERAGED)
+        part = min(time / self._time, 1.0)
+        self.gravity = blend(self.gravity, to_body(state.axes, state.felt), part)
+        self._angular += part * (dot(state.angular, state.angular) - self._angular)
+        self._turning += part * (dot(state.turning, state.turning) - self._turning)
+
+
+class RestingSupport:
+    """A support at rest, told as a moving one is: gravity (m/s^2) and nothing else is felt, now and later."""
+
+    def __init__(self, gravity: Vector3) -> None:
+        self._felt = Felt(gravity, NOWHERE, NOWHERE)
+
+    def at(self, stamp: int) -> Moment:
+        """The support at a stamp in ns, in its own frame."""
+        return Moment(
+            stamp=stamp,
+            frame_id="",
+            child_frame_id="",
+            position=NOWHERE,
+            orientation=LEVEL,
+            linear=NOWHERE,
+            felt=self._felt,
+            ahead=lambda time: self._felt,
+        )
+
+    def forecast(self, times: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
+        """As `Deck.forecast`."""
+        return forecast(self.at(0), None, times)
 
 
 def ahead(gravity: Vector3, angular: Vector3, turning: Vector3, time: float) -> Felt:
@@ -75,46 +124,38 @@ def turned_back(vector: Vector3, rotation: Vector3) -> Vector3:
 def rotation_between(first: Quaternion, second: Quaternion) -> Vector3:
     """The rotation vector, along the first one's axes, that leads from one orientation to another (rad)."""
     px, py, pz, pw = first
-    qx, qy, qz, qw = second
-    x = pw * qx - px * qw - py * qz + pz * qy
-    y = pw * qy + px * qz - py * qw - pz * qx
-    z = pw * qz - px * qy + py * qx - pz * qw
-    w = pw * qw + px * qx + py * qy + pz * qz
+    x, y, z, w = composed((-px, -py, -pz, pw), second)
     if w < 0.0:
         x, y, z, w = -x, -y, -z, -w
     length = sqrt(x * x + y * y + z * z)
-    scale = 2.0 * atan2(length, w) / length if length > 0.0 else 2.0
-    return scale * x, scale * y, scale * z
+    return times((x, y, z), 2.0 * atan2(length, w) / length if length > 0.0 else 2.0)
 
 
-def later(known: Known, stamp: int) -> Known:
+def later(state: SupportState, stamp: int) -> SupportState:
     """The support at another stamp, before or after, with constant acceleration and angular acceleration."""
-    time = (stamp - known.stamp) / NANOSECONDS
-    velocity, acceleration = known.velocity, known.acceleration
-    rotation = times(add(known.angular, known.turning, 0.5 * time), time)
-    orientation = turned(known.orientation, rotation)
-    return Known(
-        stamp,
-        add(known.position, add(velocity, acceleration, 0.5 * time), time),
-        orientation,
-        axes_of(orientation),
-        add(velocity, acceleration, time),
-        add(known.angular, known.turning, time),
-        acceleration,
-        known.felt,
-        known.turning,
+    time = (stamp - state.stamp) / NANOSECONDS
+    velocity, acceleration = state.velocity, state.acceleration
+    rotation = times(add(state.angular, state.turning, 0.5 * time), time)
+    orientation = turned(state.orientation, rotation)
+    return state._replace(
+        stamp=stamp,
+        position=add(state.position, add(velocity, acceleration, 0.5 * time), time),
+        orientation=orientation,
+        axes=axes_of(orientation),
+        velocity=add(velocity, acceleration, time),
+        angular=add(state.angular, state.turning, time),
     )
 
 
-def between(first: Known, second: Known, stamp: int) -> Known:
+def between(first: SupportState, second: SupportState, stamp: int) -> SupportState:
     """The support at a stamp between those of two messages: both velocities are met, and what is felt blends over."""
     whole = (second.stamp - first.stamp) / NANOSECONDS
-    course = first._replace(
+    start = first._replace(
         acceleration=times(add(second.velocity, first.velocity, -1.0), 1.0 / whole),
         turning=times(add(second.angular, first.angular, -1.0), 1.0 / whole),
     )
     part = (stamp - first.stamp) / NANOSECONDS / whole
-    return later(course, stamp)._replace(
+    return later(start, stamp)._replace(
         acceleration=blend(first.acceleration, second.acceleration, part),
         felt=blend(first.felt, second.felt, part),
         turning=blend(first.turning, second.turning, part),
@@ -126,19 +167,39 @@ def blend(first: Vector3, second: Vector3, part: float) -> Vector3:
 
 
 def moment_of(
-    known: Known,
-    frame_id: str,
-    child_frame_id: str,
+    state: SupportState,
+    frames: tuple[str, str],
     gravity: Vector3,
-    extrapolate: Callable[[Known], Callable[[float], Felt]] | None = None,
+    extrapolate: Callable[[SupportState], Callable[[float], Felt]] | None = None,
 ) -> Moment:
-    """What the users of a support are told of it; `extrapolate` gives another `ahead` than constant accelerations."""
-    axes, angular, turning = known.axes, known.angular, known.turning
-    felt = to_body(axes, known.felt)
-    now = new_tuple(Felt, (felt, angular, turning))
-    on = partial(ahead, felt, angular, turning) if extrapolate is None else extrapolate(known)
-    linear = to_body(axes, known.velocity)
-    return new_tuple(
-        Moment,
-        (known.stamp, frame_id, child_frame_id, known.position, known.orientation, linear, now, on, gravity),
+    """What the users of a support are told of it, whose `frames` are the world's and its own; `extrapolate` gives
+    another `ahead` than constant accelerations.
+    """
+    felt = Felt(to_body(state.axes, state.felt), state.angular, state.turning)
+    return Moment(
+        stamp=state.stamp,
+        frame_id=frames[0],
+        child_frame_id=frames[1],
+        position=state.position,
+        orientation=state.orientation,
+        linear=to_body(state.axes, state.velocity),
+        felt=felt,
+        ahead=partial(ahead, *felt) if extrapolate is None else extrapolate(state),
+        gravity=gravity,
     )
+
+
+def forecast(
+    moment: Moment, mean: MeanMotion | None, times: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Gravity felt, angular velocity and angular acceleration at times (n,) in s after a moment, each (n, 3).
+
+    Where a `mean` is given, what `ahead` says goes over to it, and to no rotation, as exp(-(t / quarter)^2).
+    """
+    import numpy as np  # only the watch asks
+
+    felt = np.array([moment.ahead(time) for time in times.tolist()]).reshape(len(times), 3, 3)
+    if mean is not None:
+        rest = np.array((mean.gravity, NOWHERE, NOWHERE))
+        felt = rest + np.exp(-np.square(times / mean.quarter))[:, None, None] * (felt - rest)
+    return felt[:, 0], felt[:, 1], felt[:, 2]

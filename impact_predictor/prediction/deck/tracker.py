@@ -6,17 +6,14 @@ from collections import deque
 from math import isfinite, sqrt
 from typing import TYPE_CHECKING
 
-from ...mechanics.impact import new_tuple
 from ...stamps import NANOSECONDS
 from ..checks import LARGEST, UNIT, order_of
 from ..predictor import PAUSE
 from ..scene import MovingDeck
 from ..types import Imu, Moment, Quaternion, Sample, Status, Vector3
 from ..vectors import add, axes_of, dot, times, to_world
-from .jumps import Following
-from .motion import NOWHERE, Known, Seen, between, later, moment_of
-from .usual import Usual
-from .window import MotionWindow
+from .motion import LEVEL, NOWHERE, MeanMotion, SupportState, between, forecast, later, moment_of
+from .window import JumpDetector, MotionWindow
 
 if TYPE_CHECKING:
     import numpy as np
@@ -24,8 +21,6 @@ if TYPE_CHECKING:
 
     from .harmonic import Harmonic
     from .imu import DeckImu
-
-LEVEL: Quaternion = (0.0, 0.0, 0.0, 1.0)
 
 
 class Deck:
@@ -44,7 +39,7 @@ class Deck:
         self._gravity, self._normal = gravity, normal
         self._timeout = round(deck.timeout * NANOSECONDS)
         self._window = MotionWindow(deck.window, 6)
-        self._following = Following()
+        self._jumps = JumpDetector()
         self._imu: DeckImu | None = None
         if deck.source == "imu":
             from .imu import DeckImu
@@ -56,12 +51,12 @@ class Deck:
 
             self._harmonic = Harmonic(deck.harmonic_window)
         self._frames = ("", "")
-        self._seen: Seen | None = None
-        self._history: deque[Known] = deque()
+        self._seen: SupportState | None = None
+        self._history: deque[SupportState] = deque()
         self._latest: Moment | None = None
         self._state = self._before = Status.NO_SUPPORT
         self._still = times(normal, -sqrt(dot(gravity, gravity)))
-        self._usual = Usual(self._still)
+        self._mean = MeanMotion(self._still)
         self._asked: int | None = None
         self._heard: int | None = None
 
@@ -80,14 +75,21 @@ class Deck:
             return status
         axes = axes_of(sample.orientation)
         velocity = to_world(axes, linear)
-        seen = new_tuple(Seen, (sample.stamp, position, sample.orientation, axes, velocity, angular))
+        seen = SupportState(
+            stamp=sample.stamp,
+            position=position,
+            orientation=sample.orientation,
+            axes=axes,
+            velocity=velocity,
+            angular=angular,
+        )
         if not self._spans(seen, velocity):
             return self._refused()
-        ax, ay, az, *turning = self._window.slopes()
+        ax, ay, az, tx, ty, tz = self._window.slopes()
         acceleration = ax, ay, az
         felt = add(self._gravity, acceleration, -1.0)
         upright = dot(to_world(axes, self._normal), self._gravity) < 0.0
-        known = new_tuple(Known, (*seen, acceleration, felt, tuple(turning)))
+        known = seen._replace(acceleration=acceleration, felt=felt, turning=(tx, ty, tz))
         return self._know(known, Status.ACCEPTED if upright else Status.GRAVITY_WRONG)
 
     def update_imu(self, imu: Imu) -> Status:
@@ -115,7 +117,7 @@ class Deck:
         fx, fy, fz, *_ = self._window.ends()
         turning = tx, ty, tz
         felt = add((fx, fy, fz), to_world(seen.axes, sensor.euler(turning)))
-        return self._know(new_tuple(Known, (*seen, NOWHERE, felt, turning)), verdict)
+        return self._know(seen._replace(felt=felt, turning=turning), verdict)
 
     @property
     def last(self) -> Moment | None:
@@ -157,14 +159,12 @@ class Deck:
         from them later; a harmonic fit tells what it can up to 10 s ahead. While nothing is known of the support
         (`last` is None) it counts as level and at rest.
         """
-        from .forecast import forecast
-
         moment = self.last
         if moment is None:
-            known = Known(0, NOWHERE, LEVEL, axes_of(LEVEL), NOWHERE, NOWHERE, NOWHERE, self._still, NOWHERE)
-            moment = moment_of(known, *self._frames, self._gravity)
+            level = SupportState(0, NOWHERE, LEVEL, axes_of(LEVEL), NOWHERE, NOWHERE, felt=self._still)
+            moment = moment_of(level, self._frames, self._gravity)
         fitted = self._harmonic is not None and self._harmonic.fitted
-        return forecast(moment, None if fitted else self._usual, times)
+        return forecast(moment, None if fitted else self._mean, times)
 
     def _in_order(self, stamp: int, frames: tuple[str, str]) -> Status:
         last = None if self._seen is None else self._seen.stamp
@@ -191,9 +191,9 @@ class Deck:
         if self._harmonic is not None:
             self._harmonic.clear()
 
-    def _spans(self, seen: Seen, signal: Vector3) -> bool:
+    def _spans(self, seen: SupportState, signal: Vector3) -> bool:
         """Take what was seen; whether the window is full, so that accelerations are known."""
-        if self._seen is not None and not self._following.follows(self._seen, seen):
+        if self._seen is not None and not self._jumps.follows(self._seen, seen):
             self._forget(Status.SUPPORT_JUMPED)
         self._seen = seen
         return self._window.add(seen.stamp, (*signal, *seen.angular))
@@ -202,12 +202,12 @@ class Deck:
         """What becomes of a message that does not fill the window yet: after a jump it is not trusted."""
         return Status.SUPPORT_JUMPED if self._state is Status.SUPPORT_JUMPED else Status.ACCEPTED
 
-    def _know(self, known: Known, state: Status) -> Status:
+    def _know(self, known: SupportState, state: Status) -> Status:
         history = self._history
         if not history:
             self._before = self._state or Status.NO_SUPPORT
         else:
-            self._usual.add(known, (known.stamp - history[-1].stamp) / NANOSECONDS)
+            self._mean.add(known, (known.stamp - history[-1].stamp) / NANOSECONDS)
         self._state = state
         self._latest = None
         history.append(known)
@@ -226,9 +226,9 @@ class Deck:
         heard = self._heard
         return heard is not None and stamp - heard <= self._timeout and heard - last > self._timeout // 2
 
-    def _moment(self, known: Known) -> Moment:
+    def _moment(self, known: SupportState) -> Moment:
         extrapolate = None if self._harmonic is None else self._harmonic.ahead
-        return moment_of(known, *self._frames, self._gravity, extrapolate)
+        return moment_of(known, self._frames, self._gravity, extrapolate)
 
 
 def check_unit(orientation: Quaternion) -> Status:

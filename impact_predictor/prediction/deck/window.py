@@ -1,13 +1,15 @@
-"""Slopes of irregularly sampled signals at their last sample: a local least-squares parabola."""
+"""The last messages of a moving support: the slopes of its signals, and whether each message follows from the last."""
 
 from __future__ import annotations
 
 from collections import deque
 from itertools import repeat
 from operator import mul, sub
+from typing import NamedTuple
 
 from ...stamps import NANOSECONDS
-from ..vectors import total
+from ..vectors import add, dot, total
+from .motion import SupportState, rotation_between
 
 FLAT = 1e-6
 """Of the determinant of evenly spread samples: with less their stamps lie in two clumps, which tell no curvature."""
@@ -28,6 +30,7 @@ class MotionWindow:
         self._channels: tuple[deque[float], ...] = tuple(deque() for _ in range(channels))
 
     def clear(self) -> None:
+        """Forget all samples."""
         self._stamps.clear()
         for channel in self._channels:
             channel.clear()
@@ -50,11 +53,8 @@ class MotionWindow:
 
     def slopes(self) -> list[float]:
         """The derivatives of the channels at the last sample, per s."""
-        stamps = self._stamps
-        last = stamps[-1]
-        scale = 2.0 / (last - stamps[0])
-        x = [1.0 + scale * (stamp - last) for stamp in stamps]  # -1 .. 1
-        weights = slope_weights(x, 1.0)
+        scale, x = self._places()
+        weights = slope_weights(x)
         scale *= NANOSECONDS
         # Less its last value: a large constant would leave its rounding in the slope.
         return [scale * total(map(mul, weights, map(sub, channel, repeat(channel[-1])))) for channel in self._channels]
@@ -64,10 +64,7 @@ class MotionWindow:
 
         Exact for a value that changes linearly. The noise is 2/sqrt(n) of a sample's.
         """
-        stamps = self._stamps
-        last = stamps[-1]
-        scale = 2.0 / (last - stamps[0])
-        x = [1.0 + scale * (stamp - last) for stamp in stamps]
+        _, x = self._places()
         count = len(x)
         s1, s2 = total(x), total(map(mul, x, x))
         part = 1.0 / (count * s2 - s1 * s1)
@@ -75,23 +72,87 @@ class MotionWindow:
         weights = [c0 + c1 * each for each in x]
         return [total(map(mul, weights, channel)) for channel in self._channels]
 
+    def _places(self) -> tuple[float, list[float]]:
+        """The stamps on -1 .. 1, and how much of that a nanosecond is."""
+        stamps = self._stamps
+        last = stamps[-1]
+        scale = 2.0 / (last - stamps[0])
+        return scale, [1.0 + scale * (stamp - last) for stamp in stamps]
 
-def slope_weights(x: list[float], at: float) -> list[float]:
-    """What the values at x count in the slope at `at` of their least-squares parabola.
+
+def slope_weights(x: list[float]) -> list[float]:
+    """What the values at x count in the slope, at 1, of their least-squares parabola.
 
     x lies within -1 .. 1 and has both ends of it.
     """
     squares = [each * each for each in x]
     count = len(x)
     s1, s2, s3, s4 = total(x), total(squares), total(map(mul, x, squares)), total(map(mul, squares, squares))
-    # The normal equations, by minors: the weights c0 + c1 x + c2 x^2 have the moments 0, 1, 2 at.
+    # The normal equations, by minors: the weights c0 + c1 x + c2 x^2 have the moments 0, 1, 2.
     m0, m1, m2 = s1 * s4 - s2 * s3, s1 * s3 - s2 * s2, count * s3 - s1 * s2
     determinant = count * (s2 * s4 - s3 * s3) - s1 * m0 + s2 * m1
     if determinant < FLAT * count * count * count:
         part = 1.0 / (count * s2 - s1 * s1)
         return [part * (count * each - s1) for each in x]
     part = 1.0 / determinant
-    c0 = part * (2.0 * at * m1 - m0)
-    c1 = part * (count * s4 - s2 * s2 - 2.0 * at * m2)
-    c2 = part * (2.0 * at * (count * s2 - s1 * s1) - m2)
+    c0 = part * (2.0 * m1 - m0)
+    c1 = part * (count * s4 - s2 * s2 - 2.0 * m2)
+    c2 = part * (2.0 * (count * s2 - s1 * s1) - m2)
     return [c0 + c1 * each + c2 * square for each, square in zip(x, squares, strict=True)]
+
+
+class JumpBound(NamedTuple):
+    """How far one quantity may be from where the message before leads it, in its unit.
+
+    `least` and `most` bound what is allowed to noise, which is learnt; `slam` is what one of 30 m/s^2 or 10 rad/s^2
+    makes of it in 1 s, and grows with that power of the time between two messages.
+    """
+
+    least: float
+    most: float
+    slam: float
+    power: int
+
+
+BOUNDS = (
+    JumpBound(least=0.05, most=0.5, slam=3.75, power=2),
+    JumpBound(least=0.01, most=0.1, slam=1.25, power=2),
+    JumpBound(least=0.1, most=1.0, slam=30.0, power=1),
+    JumpBound(least=0.05, most=0.5, slam=10.0, power=1),
+)
+"""Of position, orientation, velocity and angular velocity."""
+
+FACTOR = 6.0
+"""Allowed to noise, in root mean squares of the steps; for three normal parts these are ten standard deviations."""
+
+MEMORY = 1.0 / 32.0
+"""Of the mean square, the part of the newest step."""
+
+
+class JumpDetector:
+    """Tells messages that follow from those before from jumps.
+
+    Pose after pose is led on by the mean of both twists; a twist is expected to stay. What noise and the support's
+    motion make of that is learnt from every step, so that a rough source is trusted too, up to the `most` of each
+    quantity.
+    """
+
+    def __init__(self) -> None:
+        self._squares = [(bound.least / FACTOR) ** 2 for bound in BOUNDS]
+
+    def follows(self, before: SupportState, now: SupportState) -> bool:
+        """Whether a message follows from the one before; it is learnt from in any case."""
+        time = (now.stamp - before.stamp) / NANOSECONDS
+        half = 0.5 * time
+        moved = add(add(now.position, before.position, -1.0), add(now.velocity, before.velocity), -half)
+        rotated = rotation_between(before.orientation, now.orientation)
+        turned = add(rotated, add(now.angular, before.angular), -half)
+        accelerated, spun = add(now.velocity, before.velocity, -1.0), add(now.angular, before.angular, -1.0)
+        squares, follows = self._squares, True
+        for i, (bound, error) in enumerate(zip(BOUNDS, (moved, turned, accelerated, spun), strict=True)):
+            square = dot(error, error)
+            noise = min(max(FACTOR * squares[i] ** 0.5, bound.least), bound.most)
+            if square > (noise + bound.slam * time**bound.power) ** 2:
+                follows = False
+            squares[i] += MEMORY * (min(square, bound.most * bound.most) - squares[i])
+        return follows

@@ -30,7 +30,7 @@ def encode_post_impact(prediction: Prediction) -> bytes | None:
     sample, uncertainty = prediction.sample, touchdown.uncertainty
     state = touchdown.position, touchdown.orientation, touchdown.linear, touchdown.angular
     if prediction.support is not None:
-        from ...prediction.deck.relative import post_impact  # only where the support moves
+        from ...prediction.deck.frame import post_impact  # only where the support moves
 
         state = post_impact(prediction)
     position, orientation, linear, angular = state

@@ -26,8 +26,8 @@ from impact_predictor.mechanics.rocking import rock, standing
 from impact_predictor.mechanics.rocking.flight import from_world, in_world
 from impact_predictor.mechanics.support import MovingSupport, SupportMotion, Wave, harmonic_support
 from impact_predictor.mechanics.types import Outcome, Twist
+from impact_predictor.prediction.deck.frame import post_impact
 from impact_predictor.prediction.deck.motion import ahead as constant
-from impact_predictor.prediction.deck.relative import post_impact
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import MovingDeck, Scene
 from impact_predictor.prediction.types import Felt, Moment, Prediction, Sample, Status, Vector3

@@ -12,9 +12,8 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from impact_predictor.prediction.deck import harmonic as deck_harmonic
-from impact_predictor.prediction.deck.course import SECONDS, STEP, Course
-from impact_predictor.prediction.deck.harmonic import PAST, REACH, Harmonic, predicted
-from impact_predictor.prediction.deck.motion import Known, ahead
+from impact_predictor.prediction.deck.harmonic import PAST, REACH, SECONDS, STEP, Harmonic, MotionForecast, predicted
+from impact_predictor.prediction.deck.motion import SupportState, ahead
 from impact_predictor.prediction.types import Felt
 from impact_predictor.prediction.vectors import axes_of, to_body, turned
 
@@ -36,12 +35,12 @@ def signals(times: Array) -> Array:
     return np.stack(columns, axis=1)
 
 
-def known_at(time: float, off: Any = 0.0) -> Known:
+def known_at(time: float, off: Any = 0.0) -> SupportState:
     """What a tracker without error knows then; its frame does not turn, as the angular velocities stay small here."""
     felt = signals(np.array([time - 1e-4, time, time + 1e-4])) + off
     turning = (felt[2, 3:] - felt[0, 3:]) / 2e-4
     row = felt[1].tolist()
-    return Known(
+    return SupportState(
         round(time * 1e9),
         NOTHING,
         LEVEL,
@@ -64,7 +63,7 @@ def fitted(until: float = 30.0, rate: float = 20.0, window: float = 20.0, begin:
 @pytest.mark.parametrize(("time", "error"), [(0.25, 0.005), (1.0, 0.05), (2.0, 0.25), (5.0, 0.6)])
 def test_waves_of_four_frequencies_are_told_ahead(time: float, error: float) -> None:
     harmonic = fitted()
-    course = harmonic._course
+    course = harmonic._fit
     assert course is not None
     now = course.time_of(30 * 10**9)
     wanted = signals(np.array([30.0 + time]))[0]
@@ -112,7 +111,9 @@ def test_an_offset_of_the_estimate_from_the_fit_fades() -> None:
 def test_gravity_ahead_is_seen_along_the_axes_of_then() -> None:
     harmonic = Harmonic(4.0)
     rate = 0.2
-    still = Known(0, NOTHING, LEVEL, axes_of(LEVEL), NOTHING, (rate, 0.0, 0.0), NOTHING, (0.0, 0.0, -9.81), NOTHING)
+    still = SupportState(
+        0, NOTHING, LEVEL, axes_of(LEVEL), NOTHING, (rate, 0.0, 0.0), NOTHING, (0.0, 0.0, -9.81), NOTHING
+    )
     for k in range(100):
         orientation = turned(LEVEL, (rate * k * 0.1, 0.0, 0.0))
         known = still._replace(stamp=k * STEP, orientation=orientation, axes=axes_of(orientation))
@@ -190,7 +191,7 @@ def cubic(times: Array) -> Array:
 
 def test_a_course_goes_through_cubics_exactly_with_their_slopes_and_areas() -> None:
     rows = cubic(np.arange(40) * SECONDS)
-    course = Course(25, rows, 5)
+    course = MotionForecast(25, rows, 5)
     assert course.time_of(20 * STEP) == 0.0
     for time in (0.3, 0.37, 1.111, 2.5):
         force, angular, turning, rotation = course.at(time)
@@ -206,7 +207,7 @@ def test_between_steps_the_error_shrinks_with_the_fourth_power_of_the_frequency(
     errors = []
     for omega in (4.0, 2.0, 1.0):
         times = np.arange(60) * SECONDS
-        course = Course(0, np.sin(omega * times)[:, None] * np.ones(6), 0)
+        course = MotionForecast(0, np.sin(omega * times)[:, None] * np.ones(6), 0)
         inner = np.linspace(1.0, 4.0, 500)
         errors.append(max(abs(course.at(time)[0][0] - np.sin(omega * time)) for time in inner.tolist()))
     assert errors[0] == pytest.approx((4.0 * SECONDS) ** 4 / 384.0, rel=0.3)  # of cubic pieces through exact slopes
@@ -215,7 +216,7 @@ def test_between_steps_the_error_shrinks_with_the_fourth_power_of_the_frequency(
 
 
 def test_before_its_first_row_and_after_its_last_a_course_stands() -> None:
-    course = Course(0, cubic(np.arange(30) * SECONDS), 0)
+    course = MotionForecast(0, cubic(np.arange(30) * SECONDS), 0)
     first, last = course.at(0.0), course.at(29 * SECONDS)
     for time in (-1e308, -1.0):
         assert course.at(time) == first

@@ -56,7 +56,7 @@ def test_a_large_constant_leaves_no_rounding_in_the_slope() -> None:
 @settings(max_examples=200, deadline=None)
 def test_weights_are_those_of_the_least_squares_parabola(inner: list[float]) -> None:
     x = [-1.0, *inner, 1.0]
-    weights = np.array(slope_weights(x, 1.0))
+    weights = np.array(slope_weights(x))
     powers = np.vander(x, 3, increasing=True)
     if np.linalg.cond(powers) < 100.0:
         wanted = np.array([0.0, 1.0, 2.0]) @ np.linalg.pinv(powers)
@@ -80,7 +80,7 @@ def test_the_end_of_a_line_is_exact() -> None:
 def test_noise_of_the_slope_is_as_documented(rate: int, span: float) -> None:
     count = round(rate * span) + 1
     x = np.linspace(-1.0, 1.0, count)
-    deviation = float(np.linalg.norm(slope_weights(x.tolist(), 1.0))) * 2.0 / span
+    deviation = float(np.linalg.norm(slope_weights(x.tolist()))) * 2.0 / span
     told = 13.9 / (span * count**0.5)
     assert 0.65 * told < deviation < 1.02 * told  # the formula is that of many samples; few have less
 
@@ -89,7 +89,7 @@ def test_noise_of_the_slope_is_as_documented(rate: int, span: float) -> None:
 def test_the_error_of_the_slope_of_a_harmonic_is_as_documented(omega: float) -> None:
     span = 0.2
     times = np.arange(-20, 1) / 100.0
-    weights = np.array(slope_weights((1.0 + 2.0 * times / span).tolist(), 1.0)) * 2.0 / span
+    weights = np.array(slope_weights((1.0 + 2.0 * times / span).tolist())) * 2.0 / span
     errors = [abs(weights @ np.sin(omega * times + p) - omega * np.cos(p)) for p in np.linspace(0.0, np.pi, 60)]
     assert max(errors) / omega == pytest.approx(0.1 * (omega * span) ** 2, rel=0.1)
 
