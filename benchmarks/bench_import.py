@@ -3,7 +3,7 @@
     python benchmarks/bench_import.py
 
 Prints a row for each: median, spread and worst of the runs in ms, Python's own start not included. What a scene leaves
-out is not imported: the rows "with" show what each part would add (`impact-predictor explain` tells it for one scene).
+out is not imported: `bench_parts.py` shows what each feature adds.
 """
 
 from __future__ import annotations
@@ -16,8 +16,6 @@ from typing import Final
 from rich.console import Console
 from rich.table import Table
 
-from impact_predictor.prediction.parts import PARTS
-
 RUNS: Final = 15
 LIMIT: Final = 150.0
 """ms that the library may take."""
@@ -26,17 +24,12 @@ NODE: Final = "impact_predictor.prediction.predictor, impact_predictor.ros.messa
 IMPORTS: Final = {
     "the library": "impact_predictor, impact_predictor.mechanics.impact",
     "what the node needs besides ROS": NODE,
-    **{
-        f"... with {part.name}": ", ".join([NODE, *[f"impact_predictor.{module}" for module in part.modules]])
-        for part in PARTS
-        if part.modules and not part.of_node
-    },
     "the plugin, after pytest itself": "impact_predictor.testing.plugin",
     "impact-predictor --help": "impact_predictor.cli",
     "impact-predictor solve": "impact_predictor.cli, impact_predictor.report.outcome",
     "impact-predictor replay": "impact_predictor.cli, impact_predictor.bags.replay, impact_predictor.report.replay",
     "... --figure": "impact_predictor.cli, impact_predictor.report.figure",
-    "impact-predictor explain": "impact_predictor.cli, impact_predictor.report.parts.measure",
+    "impact-predictor explain": "impact_predictor.cli, impact_predictor.prediction.features",
 }
 LOADED: Final = {"the plugin, after pytest itself": "pytest"}
 """What is loaded before the clock starts."""

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any, Final, NamedTuple
 
 from fuzz_choices import Choices
+from made_motions import OfSupport, made
 
 from impact_predictor.bags.read import BagMessage
 from impact_predictor.bags.run import Run
@@ -19,7 +20,6 @@ from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction.inputs import Input, inputs_of
 from impact_predictor.prediction.scene import Scene, scenes_of
 from impact_predictor.prediction.types import Geometry, Imu, Joints, Sample, Schedule, Wrench
-from impact_predictor.report.parts.record import OfSupport, made
 from impact_predictor.ros import messages as coded
 from impact_predictor.ros.cdr import MalformedMessage, decode_diagnostic_array
 from impact_predictor.stamps import NANOSECONDS
@@ -95,7 +95,7 @@ def made_course(name: str, values: Mapping[str, Any]) -> Course:
     for body, scene in scenes.items():
         if scene.source == "none":
             continue
-        for message in made(scene).messages:
+        for message in made(scene):
             value: Any = message
             key: tuple[str, str | None] = (kinds.get(type(message), "odom"), body)
             if isinstance(message, OfSupport):

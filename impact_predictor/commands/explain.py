@@ -1,8 +1,9 @@
-"""`impact-predictor explain`: what a scene pays for, and what it leaves out."""
+"""`impact-predictor explain`: what a scene has, what it leaves out, and why."""
 
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import click
 
@@ -10,7 +11,7 @@ from .examples import examples
 
 
 @click.command(
-    short_help="Tell which parts a scene has, which it leaves out, and what each costs.",
+    short_help="Tell which features a scene has, which it leaves out, and why.",
     epilog=examples(
         "impact-predictor explain config/cube_tosses.yaml",
         "impact-predictor explain scene.yaml --json",
@@ -19,22 +20,34 @@ from .examples import examples
 @click.argument("params", metavar="PARAMS.yaml")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON only.")
 def explain(params: str, as_json: bool) -> None:
-    """Tell which parts of the predictor and of its node a scene has, which it leaves out and why.
+    """Tell which features of the predictor and of its node a scene has, which it leaves out and why.
 
-    PARAMS.yaml is the ROS 2 parameter file of the scene. What each part costs is measured on this machine, in some
-    seconds: CPU time for each sample, CPU time and memory at the start. Parts left out show what they would add.
+    PARAMS.yaml is the ROS 2 parameter file of the scene. What is left out is neither imported nor subscribed to. The
+    parameter that is named switches a feature on or off.
     """
-    from ..report.parts.measure import measure_parts
-    from .compiling import compiling_is_said
-    from .progress import progress
+    from ..parameters.file import read_values
+    from ..prediction.features import features_of
+    from ..prediction.inputs import inputs_of
+    from ..prediction.scene import scenes_of
 
-    with progress("measuring", "of 100", total=100) as tell, compiling_is_said():
-        answer = measure_parts(params, lambda done: tell(round(done)))
+    values = read_values(params)
+    scene, features = Path(params).stem, features_of(values)
+    topics = [one.name for one in inputs_of(scenes_of(values))]
     if as_json:
-        click.echo(json.dumps(answer, allow_nan=False))
+        click.echo(json.dumps({"scene": scene, "parts": [one._asdict() for one in features], "topics": topics}))
         return
     from rich.console import Console
+    from rich.markup import escape
 
-    from ..report.parts.table import print_parts
+    from ..report.table import plain_table, show
 
-    print_parts(Console(), answer)
+    table = plain_table()
+    table.add_column("feature", no_wrap=True)
+    table.add_column("")
+    table.add_column("why", min_width=40)
+    for one in sorted(features, key=lambda feature: not feature.on):
+        table.add_row(one.name, "on" if one.on else "off", escape(one.why), style="" if one.on else "dim")
+    console = Console()
+    console.print(f"[bold]{escape(scene)}[/]: what this scene has, and what it leaves out\n", highlight=False)
+    show(console, table)
+    console.print(f"\nThe node subscribes to {' and '.join(topics)}.", highlight=False, markup=False)

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from made_motions import made
 
 from impact_predictor.bags.replay import Result, replay
 from impact_predictor.bags.write import BagWriter
@@ -15,7 +16,6 @@ from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction.monitor import Monitor
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.prediction.types import Geometry, Joints, Sample, Status
-from impact_predictor.report.parts.record import made
 from impact_predictor.ros.messages import JOINT_STATE, ODOMETRY, POLYGON, encode_joints, encode_odometry, encode_polygon
 
 GIVEN: dict[str, Any] = {
@@ -32,7 +32,7 @@ TYPES = {
     Joints: ("/joint_states", JOINT_STATE, encode_joints),
 }
 Told = Geometry | Sample | Joints
-STEPS: list[Told] = [one for one in made(SCENE).messages if isinstance(one, Geometry | Sample)]
+STEPS: list[Told] = [one for one in made(SCENE) if isinstance(one, Geometry | Sample)]
 """400 times geometry, then sample, of steps on the spot whose feet stand 0.5 m below the base."""
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from made_motions import made
 
 from impact_predictor.bags.read import BagMessage, read_messages, topics
 from impact_predictor.bags.replay import replay
@@ -16,7 +17,6 @@ from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.prediction.types import Geometry, Prediction, Sample, Schedule, Status, Wrench
 from impact_predictor.prediction.walking.walker import Walker
-from impact_predictor.report.parts.record import made
 from impact_predictor.ros.messages import (
     JOINT_TRAJECTORY,
     ODOMETRY,
@@ -56,7 +56,7 @@ def messages() -> list[BagMessage]:
     """A machine that steps on the spot, with its sensors and its planner."""
     return [
         BagMessage(topic, one.stamp, encode(one))  # type: ignore[operator, union-attr]
-        for one in made(SCENE).messages
+        for one in made(SCENE)
         for topic, (kind, _, encode) in TYPES.items()
         if isinstance(one, kind)
     ]

@@ -31,11 +31,9 @@ from impact_predictor.report.page.data import (
 from impact_predictor.report.page.labels import Line, write_names
 from impact_predictor.report.page.looks import looks_of
 from impact_predictor.report.page.measured import alike
-from impact_predictor.report.page.parts import parts
 from impact_predictor.report.page.scenes import by_scene
 from impact_predictor.report.page.study import studies_of
 from impact_predictor.report.page.words import (
-    digits,
     error_words,
     name_of,
     neat,
@@ -171,8 +169,7 @@ def test_names_of_a_report_cannot_become_part_of_the_page() -> None:
 
 def test_a_report_without_what_it_need_not_have_makes_a_page_too() -> None:
     report = {key: value for key, value in small_report().items() if key in ("made", "scenes", "rows", "choices")}
-    page = page_of({**report, "parts": []})
-    assert "What a scene does not need" not in page
+    page = page_of(report)
     assert "The node uses" not in page
     assert "Best, for the next touchdown" in page
 
@@ -273,20 +270,6 @@ def test_settings_of_a_measured_method_that_read_the_same_stand_once() -> None:
     rows = alike(points, "time_error")
     assert sum(count for _, count in rows) == len(points)
     assert len({(point.method, percent(point.row["time_error"])) for point, _ in rows}) == len(rows) < len(points)
-
-
-def test_a_scene_says_its_gain_against_all_parts() -> None:
-    section = parts(REPORT)
-    assert section is not None
-    scene = REPORT["parts"][0]
-    cell = section.tables[0].rows[0][1]
-    mine, full = scene["us_per_sample"], scene["all_on"]["us_per_sample"]
-    assert cell.text == time_words(mine)
-    assert cell.below == f"all on {time_words(full)}, {digits(full / mine)} ×"
-    table = section.sections[0].tables[0]
-    states = [row[0].below for row in table.rows[:-2]]
-    assert states == sorted(states, reverse=True)  # on before off
-    assert len(states) == len(scene["parts"])
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,6 @@
 """The rest of the ROS graph of a test: the node as a process of its own, and a peer that talks with it over DDS."""
 
+import json
 import os
 import time
 from contextlib import contextmanager
@@ -60,6 +61,12 @@ class Peer:
 
     def reported(self, key):
         return None if self.report() is None else self.report().values.get(key)
+
+
+def arguments_of(values):
+    """Parameters as arguments of a node."""
+    given = [f"{name}:={json.dumps(value)}" for name, value in values.items() if value not in ((), "")]
+    return ["--ros-args", *[word for one in given for word in ("-p", one)]]
 
 
 @contextmanager

@@ -18,7 +18,6 @@ from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction.inputs import inputs_of
 from impact_predictor.prediction.scene import scenes_of
 from impact_predictor.prediction.types import Imu, Sample, Status
-from impact_predictor.report.parts.start import arguments_of
 from impact_predictor.ros.cdr import OK, STALE, WARN
 from impact_predictor.ros.messages import (
     DIAGNOSTIC_ARRAY,
@@ -36,6 +35,7 @@ from impact_predictor.scenarios.deck.voyage import sail
 pytest.importorskip("rclpy", reason="the node needs ROS 2: source it, or install the extra `ros`")
 
 import rclpy
+from graph import arguments_of
 from rclpy.executors import SingleThreadedExecutor
 
 from impact_predictor.ros.process import message_class

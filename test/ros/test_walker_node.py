@@ -11,7 +11,7 @@ import pytest
 pytest.importorskip("rclpy", reason="the node needs ROS 2: source it, or install the extra `ros`")
 
 import rclpy
-from graph import peer_of_node, running_node
+from graph import arguments_of, peer_of_node, running_node
 
 from impact_predictor.bags.read import read_messages, topics
 from impact_predictor.bags.replay import replay
@@ -20,7 +20,6 @@ from impact_predictor.parameters.file import read_parameters
 from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction.scene import scenes_of
 from impact_predictor.prediction.types import Geometry, Joints, Schedule, Wrench
-from impact_predictor.report.parts.start import arguments_of
 from impact_predictor.ros import body_topics, predictor_node
 from impact_predictor.ros.cdr import OK
 from impact_predictor.ros.messages import (

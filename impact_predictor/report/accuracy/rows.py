@@ -99,8 +99,7 @@ class Default(NamedTuple):
 class Report(NamedTuple):
     """All that the files of the report say.
 
-    `made` is where, when and with what; `node` what the node uses for each question; `notes` tell what was left out,
-    and `parts` what each shipped scene switches on.
+    `made` is where, when and with what; `node` what the node uses for each question; `notes` tell what was left out.
     """
 
     made: dict[str, str]
@@ -110,7 +109,6 @@ class Report(NamedTuple):
     scenes: Sequence[Scene]
     rows: Sequence[Row]
     choices: Sequence[Choice]
-    parts: Sequence[dict[str, Any]]
 
 
 def quantiles(errors: Sequence[float]) -> Errors:
@@ -130,7 +128,6 @@ def to_json(report: Report) -> dict[str, Any]:
         "scenes": [scene._asdict() for scene in report.scenes],
         "rows": [fields_of(row) for row in report.rows],
         "choices": [choice_fields_of(choice) for choice in report.choices],
-        "parts": list(report.parts),
     }
 
 

@@ -1,4 +1,4 @@
-"""The whole report: every method on every scene, measured tosses, choices, and the parts of the shipped scenes."""
+"""The whole report: every method on every scene, measured tosses, and choices."""
 
 from __future__ import annotations
 
@@ -15,8 +15,6 @@ from statistics import median
 from typing import Any, NamedTuple
 
 from ... import __version__
-from ...resources import find
-from ..parts.measure import measure_parts
 from . import (
     compliant_peer,
     impact_errors,
@@ -47,7 +45,7 @@ NO_MUJOCO = "MuJoCo is not compared, because it is not installed; `pip install m
 
 class Size(NamedTuple):
     """How much is measured: problems of a touchdown and of an impact scene, effort for each method on each scene,
-    samples of the recorded tosses and runs over them, and runs for the parts of the shipped scenes.
+    samples of the recorded tosses and runs over them.
     """
 
     falls: int
@@ -55,11 +53,10 @@ class Size(NamedTuple):
     effort: Effort
     samples: int
     toss_runs: int
-    part_runs: int
 
 
-FULL = Size(32, 200, Effort(0.4, 0.2, 5), 100_000, 3, 5)
-QUICK = Size(6, 24, Effort(0.03, 0.02, 3), 4_000, 1, 1)
+FULL = Size(32, 200, Effort(0.4, 0.2, 5), 100_000, 3)
+QUICK = Size(6, 24, Effort(0.03, 0.02, 3), 4_000, 1)
 
 TOUCHDOWN_METHODS: list[Method] = [
     *touchdown_methods.METHODS,
@@ -189,7 +186,6 @@ def report(
         scenes,
         rows,
         choices_of(rows, scenes),
-        [measure_parts(file, runs=size.part_runs) for file in sorted(find("config").glob("*.yaml"))],
     )
 
 

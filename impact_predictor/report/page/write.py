@@ -9,7 +9,6 @@ from typing import Any
 from .choosing import choosing, headline
 from .data import Entry
 from .measured import measured
-from .parts import parts
 from .render import render, write
 from .scenes import scenes
 from .sections import Section
@@ -54,6 +53,5 @@ def sections_of(report: Entry, studies: list[Study]) -> list[Section]:
         choice,
         *(scenes(report, study) for study in studies),
         measured(report, studies),
-        parts(report),
     ]
     return [section for section in found if section]

@@ -53,7 +53,6 @@ def test_a_report_is_valid_json_with_all_its_parts() -> None:
         [SCENE],
         [ROW],
         [Choice(IMPACT, "plate", 1e-6, ROW), Choice(IMPACT, "plate", 1e-20, None)],
-        [],
     )
     fields = json.loads(json.dumps(to_json(report), allow_nan=False))
     assert fields["rows"][0]["method"] == "path law"

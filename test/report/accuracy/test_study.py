@@ -11,7 +11,7 @@ from impact_predictor.report.accuracy import study
 from impact_predictor.report.accuracy.measuring import Effort
 from impact_predictor.report.accuracy.rows import ALL_SCENES, IMPACT, TOUCHDOWN, Report, to_json
 
-TINY = study.Size(2, 4, Effort(0.0, 0.0, 1), 1500, 1, 1)
+TINY = study.Size(2, 4, Effort(0.0, 0.0, 1), 1500, 1)
 
 
 @pytest.fixture(scope="module")
@@ -21,9 +21,7 @@ def told() -> list[int]:
 
 @pytest.fixture(scope="module")
 def report(told: list[int]) -> Report:
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(study, "measure_parts", lambda file, runs: {"scene": file.stem, "parts": []})
-        return study.report(TINY, "impact-predictor report", told.append)
+    return study.report(TINY, "impact-predictor report", told.append)
 
 
 @pytest.fixture(scope="module")

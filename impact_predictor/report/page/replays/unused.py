@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
-from ....prediction.parts import PARTS
+from ....prediction.features import features_of
 from ....prediction.remedies import REMEDIES
 from ....prediction.types import Status
 from ....wording import counted
@@ -99,14 +99,15 @@ def scene(values: Mapping[str, Any] | None) -> Section | None:
     """The section of the scene's parts, from all its parameters; None where these are not known."""
     if values is None:
         return None
-    parts = sorted((part for part in PARTS if not part.of_node), key=lambda part: not part.on(values))
+    features = sorted(features_of(values), key=lambda feature: not feature.on)
+    features = [feature for feature in features if feature.name != "events executor"]
     rows = []
-    for part in parts:
-        state = "on" if part.on(values) else "off"
-        rows.append([Cell(part.name, "left out" if state == "off" else "", state), Cell(part.why(values), "", state)])
-    left_out = sum(not part.on(values) for part in parts)
+    for one in features:
+        state = "on" if one.on else "off"
+        rows.append([Cell(one.name, "" if one.on else "left out", state), Cell(one.why, "", state)])
+    left_out = sum(not one.on for one in features)
     words = (
-        f"The predictor took in {len(parts) - left_out} of its parts for this scene and left out {left_out}, in grey. "
-        "What is left out costs nothing; where a body needs it, the parameter that is named switches it on."
+        f"The predictor took in {len(features) - left_out} of its parts for this scene and left out {left_out}, in "
+        "grey. What is left out costs nothing; where a body needs it, the parameter that is named switches it on."
     )
     return Section("scene", "What the scene left out", [words], tables=[Table("", ["part", "why"], rows, 2)])

@@ -1,21 +1,20 @@
-"""Samples over which the cost of a scene is measured: recorded ones where the package has them, else made ones."""
+"""Motions that are made up for any scene: a body let fall and thrown, a walking machine that steps on the spot.
+
+The fuzzer, tests and benchmarks use them where a scene has no recorded bag.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import atan2, cos, hypot, pi, sqrt
-from pathlib import Path
+from math import atan2, cos, hypot, pi, sin, sqrt
 from random import Random
 from typing import Final, NamedTuple
 
-from ...errors import InputError
-from ...prediction.planar import inertia_about
-from ...prediction.predictor import PAUSE
-from ...prediction.scene import MovingDeck, Scene
-from ...prediction.types import Geometry, Imu, Joints, Quaternion, Sample, Schedule, Vector3, Wrench
-from ...prediction.vectors import add, axes_of, cross, dot, mean, times, to_body, to_world, turned
-from ...resources import find
-from ...stamps import NANOSECONDS
+from impact_predictor.prediction.planar import inertia_about
+from impact_predictor.prediction.scene import MovingDeck, Robot, Scene, Walking
+from impact_predictor.prediction.types import Geometry, Imu, Joints, Quaternion, Sample, Schedule, Vector3, Wrench
+from impact_predictor.prediction.vectors import add, axes_of, cross, dot, mean, times, to_body, to_world, turned
+from impact_predictor.stamps import NANOSECONDS
 
 RATE: Final = 200
 """Samples per second of a made motion."""
@@ -35,10 +34,22 @@ GAP: Final = 0.3
 """Seconds between two made motions: longer than a pause."""
 SUPPORT_RATE: Final = 100
 """Messages per second about a support at rest, which count where the support is said to move."""
-BEFORE: Final = 0.4
-"""Seconds of them before each recorded motion: twice the usual window."""
 LEAD: Final = 1.5
 """Seconds of them before the first motion, beyond their window: in less nobody believes what a sensor feels."""
+
+WALK: Final = 400
+"""Samples of a walk."""
+STEP: Final = 60
+"""Samples for which a foot stands, and then swings."""
+DOWN: Final = 0.5
+"""m from the body frame's origin down to feet that stand, and out to them."""
+LIFT: Final = 0.05
+"""m that a foot is lifted; or the whole machine, where a model tells where feet are but not how legs are bent."""
+SOLE: Final = 0.1
+"""m from heel to toe."""
+FORCE: Final = 30.0
+"""N on a foot that stands, where no more is asked for."""
+
 
 Motion = list[Sample]
 
@@ -52,55 +63,24 @@ class OfSupport(NamedTuple):
 Message = Geometry | Sample | OfSupport | Joints | Wrench | Schedule
 
 
-class Record(NamedTuple):
-    """Motions of a body, each after its contact points, and of its support; `origin` says where they are from."""
-
-    messages: tuple[Message, ...]
-    points: tuple[Vector3, ...]
-    origin: str
-
-    @property
-    def samples(self) -> int:
-        return sum(isinstance(message, Sample) for message in self.messages)
-
-
-def record_of(name: str, scene: Scene, samples: int) -> Record:
-    """About so many samples for the scene of a name: of examples/NAME where that exists, else made ones."""
-    if scene.deck is not None or scene.radius or scene.walking is not None:
-        return made(scene)
-    try:
-        bag = find(f"examples/{name}")
-    except InputError:
-        return made(scene)
-    motions, points = _motions_of(bag, scene)
-    if scene.frame not in ("", motions[0][0].frame_id):
-        return made(scene)  # another scene of that name
-    motions = motions[:: max(1, round(sum(map(len, motions)) / samples))]
-    origin = f"{sum(map(len, motions))} samples of examples/{name}, taken from all over it"
-    support = [
-        message
-        for motion in motions
-        for message in _still(scene, motion[0].stamp - round(BEFORE * NANOSECONDS), motion[-1].stamp)
-    ]
-    return _record(motions, points, origin, support)
-
-
-def made(scene: Scene) -> Record:
+def made(scene: Scene) -> tuple[Message, ...]:
     """The body let fall from what it stands on, to every side, and thrown; its support lies still.
 
     A machine that walks steps on the spot.
     """
     if scene.walking is not None:
-        from .steps import steps_of
-
         return steps_of(scene, scene.walking)
     start = (scene.deck or MovingDeck()).window + LEAD
     motions: list[Motion] = []
     for motion in (*falls(scene), *(() if scene.radius else throws(scene))):
         motions.append([sample._replace(stamp=sample.stamp + round(start * NANOSECONDS)) for sample in motion])
         start = motions[-1][-1].stamp / NANOSECONDS + GAP
-    origin = f"{sum(map(len, motions))} samples at {RATE} Hz of falls and throws of this body, made up for this"
-    return _record(motions, points_of(scene), origin, _still(scene, 0, round(start * NANOSECONDS)))
+    messages: list[Message] = [*_still(scene, 0, round(start * NANOSECONDS))]
+    points = points_of(scene)
+    for motion in motions:
+        messages += [Geometry(motion[0].stamp, "", points), *motion]
+    # The support comes first where stamps are the same, and the points of the body before its state.
+    return tuple(sorted(messages, key=_stamp_of))
 
 
 def _still(scene: Scene, begin: int, end: int) -> list[OfSupport]:
@@ -123,35 +103,6 @@ def still(scene: Scene, stamp: int) -> Sample | Imu:
 def frame_of(scene: Scene) -> str:
     """The frame of made samples."""
     return scene.frame or "world"
-
-
-def _record(motions: list[Motion], points: tuple[Vector3, ...], origin: str, support: list[OfSupport]) -> Record:
-    messages: list[Message] = [*support]
-    for motion in motions:
-        messages += [Geometry(motion[0].stamp, "", points), *motion]
-    # The support comes first where stamps are the same, and the points of the body before its state.
-    return Record(tuple(sorted(messages, key=_stamp_of)), points, origin)
-
-
-def _motions_of(bag: Path, scene: Scene) -> tuple[list[Motion], tuple[Vector3, ...]]:
-    """The motions in a bag, cut where it pauses and where they are long; and the contact points of the body."""
-    from ...bags.read import read_messages, topics
-    from ...ros.messages import ODOMETRY, POLYGON, decode_odometry, decode_polygon
-
-    types = {kind: topic for topic, kind in topics(bag).items()}
-    points = scene.points
-    motions: list[Motion] = []
-    last = 0
-    for topic, _, data in read_messages(bag, {types[kind]: kind for kind in (ODOMETRY, POLYGON) if kind in types}):
-        if topic == types.get(POLYGON):
-            points = points or decode_polygon(data).points
-            continue
-        sample = decode_odometry(data)
-        if not motions or sample.stamp - last > PAUSE or len(motions[-1]) >= LONGEST:
-            motions.append([])
-        motions[-1].append(sample)
-        last = sample.stamp
-    return motions, points
 
 
 def points_of(scene: Scene) -> tuple[Vector3, ...]:
@@ -268,3 +219,68 @@ def upright_of(scene: Scene) -> Quaternion:
         return 1.0, 0.0, 0.0, 0.0
     length = sqrt(2.0 * (1.0 + z))
     return -y / length, x / length, 0.0, 0.5 * length
+
+
+def steps_of(scene: Scene, walking: Walking) -> tuple[Message, ...]:
+    """Every second foot in turn; with what sensors and a planner would tell, whether the scene asks for it or not."""
+    robot, place, upright = walking.robot, ground_of(scene), upright_of(scene)
+    joints, fixed = ((), ()) if robot is None else _model_of(robot)
+    down = -min([z for _, _, z in fixed], default=-DOWN)
+    motion, points = [], []
+    for k in range(WALK):
+        high, rate = _lift(0, k) if fixed else (0.0, 0.0)
+        motion.append((add(place, scene.normal, down + high), upright, (0.0, 0.0, rate), (0.0, 0.0, 0.0)))
+        points.append(fixed or tuple(_points_at(walking, k)))
+    samples = stamped(scene, motion)
+    messages: list[Message] = [_plan_of(walking, samples, bool(fixed))]
+    for k, sample in enumerate(samples):
+        messages.append(Geometry(sample.stamp, "", points[k]))
+        if fixed:
+            messages.append(Joints(sample.stamp, joints, (0.0,) * len(joints), ()))
+        for number, foot in enumerate(walking.feet):
+            force = max(walking.force, FORCE) if _stands(0 if fixed else number, k) else 0.0
+            messages.append(Wrench(sample.stamp, foot, (0.0, 0.0, force)))
+        messages.append(sample)
+    return tuple(messages)
+
+
+def _stands(number: int, k: int) -> bool:
+    """Whether a foot stands at a sample: those with odd numbers stand while the others swing."""
+    return (k // STEP + number) % 2 == 1
+
+
+def _lift(number: int, k: int) -> tuple[float, float]:
+    """How high a foot is above the ground at a sample, in m, and how fast it rises, in m/s."""
+    if _stands(number, k):
+        return 0.0, 0.0
+    share = k % STEP / STEP
+    return 4.0 * LIFT * share * (1.0 - share), 4.0 * LIFT * (1.0 - 2.0 * share) * RATE / STEP
+
+
+def _points_at(walking: Walking, k: int) -> list[Vector3]:
+    """The contact points of the feet at a sample, in the body frame, on a circle about its origin."""
+    points = []
+    for number in range(len(walking.feet)):
+        angle = pi * (2 * number + 1) / len(walking.feet)
+        heel = DOWN * cos(angle), DOWN * sin(angle), _lift(number, k)[0] - DOWN
+        points += [add(heel, (SOLE, 0.0, 0.0), float(i)) for i in range(walking.points)]
+    return points
+
+
+def _plan_of(walking: Walking, samples: list[Sample], hops: bool) -> Schedule:
+    """When the feet are to stand: as they do."""
+    changes = range(0, WALK, STEP)
+    stands = [tuple(_stands(0 if hops else number, k) for number in range(len(walking.feet))) for k in changes]
+    first = samples[0].stamp
+    return Schedule(first, walking.feet, tuple(first + k * NANOSECONDS // RATE for k in changes), tuple(stands))
+
+
+def _model_of(robot: Robot) -> tuple[tuple[str, ...], tuple[Vector3, ...]]:
+    """The names of the joints of a model, and its contact points in the base's frame where every joint is at zero."""
+    import numpy as np
+
+    from impact_predictor.mechanics.articulated import WholeBody
+
+    body = WholeBody(robot.urdf, robot.frames)
+    body.place(np.zeros(len(body.joints)))
+    return body.joints, tuple((float(x), float(y), float(z)) for x, y, z in body.points)
