@@ -33,11 +33,12 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Final
 
+from trot import trot
+
 from impact_predictor.prediction.types import Geometry, Sample
 from impact_predictor.ros.messages import ODOMETRY, OUTPUTS, POLYGON, encode_odometry, encode_polygon
 from impact_predictor.ros.process import Stop, message_class, run, spin
 from impact_predictor.ros.processes import Child, ros_environment
-from impact_predictor.scenarios.walking.trot import trot
 
 ROOT: Final = Path(__file__).resolve().parents[1]
 RATE: Final = 500.0

@@ -32,7 +32,7 @@ from impact_predictor.prediction.types import Felt, Imu, Sample, Vector3
 from impact_predictor.ros.messages import IMU, ODOMETRY, decode_imu, decode_odometry
 from impact_predictor.scenarios.deck.sea import SeaState, waves_of
 from impact_predictor.scenarios.deck.vessel import SecondOrder, Vessel, deck_in
-from impact_predictor.scenarios.space import ACROSS, Mount, poses
+from impact_predictor.scenarios.sensors import ACROSS, Mount, poses
 
 Array = NDArray[np.float64]
 

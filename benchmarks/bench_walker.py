@@ -17,11 +17,11 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 from walker_noise import plan, scene
+from walker_sensors import noisy
 
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.prediction.types import Geometry, Sample
 from impact_predictor.prediction.walking.walker import Walker
-from impact_predictor.scenarios.walking.noise import noisy
 
 Record = Sequence[tuple[Sample, Geometry]]
 

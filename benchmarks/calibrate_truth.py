@@ -22,7 +22,7 @@ from impact_predictor.calibration.fit import Calibration, calibrate
 from impact_predictor.calibration.touchdowns import ObservingMonitor
 from impact_predictor.prediction.scene import Scene, inertia_matrix
 from impact_predictor.report.calibration import interval
-from impact_predictor.scenarios.record import Actor, write_record
+from impact_predictor.scenarios.record import rocking_actor, write_record
 from impact_predictor.scenarios.rocking import Rocker, release, rocking_plate, rocking_rod
 
 ANGLES = range(3, 27, 2)
@@ -57,7 +57,7 @@ def fitted(rocker: Rocker, folder: Path) -> Calibration:
     records = []
     for angle in ANGLES:
         path = folder / f"{angle}.mcap"
-        write_record(path, [Actor(rocker.name, release(rocker, radians(angle)).run)], RATE)
+        write_record(path, [rocking_actor(rocker.name, release(rocker, radians(angle)).run)], RATE)
         monitor = ObservingMonitor({"": scene})
         replay(path, scene, monitor=monitor)
         records.append(monitor.touchdowns)

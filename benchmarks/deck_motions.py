@@ -14,7 +14,7 @@ from impact_predictor.mechanics.rocking import rock, standing
 from impact_predictor.mechanics.support import Wave, harmonic_support
 from impact_predictor.prediction.scene import MovingDeck, Scene
 from impact_predictor.prediction.types import Sample, Vector3
-from impact_predictor.scenarios.space import ACROSS, Mount, poses
+from impact_predictor.scenarios.sensors import ACROSS, Mount, poses
 
 RATE: Final = 100.0
 """Messages a second of deck and body."""

@@ -19,16 +19,16 @@ from impact_predictor.bags.replay import Result, replay
 from impact_predictor.parameters.file import read_values
 from impact_predictor.prediction.scene import Scene, scenes_of
 from impact_predictor.report.table import plain_table, show
-from impact_predictor.scenarios.deck.record import Sensors
 from impact_predictor.scenarios.deck.sea import SeaState, waves_of
-from impact_predictor.scenarios.deck.sensors import NO_NOISE, Noise
 from impact_predictor.scenarios.deck.vessel import Vessel, deck_in
 from impact_predictor.scenarios.deck.voyage import sail
+from impact_predictor.scenarios.record import Sensors
+from impact_predictor.scenarios.sensors import NO_NOISE, SensorNoise
 
 ROOT: Final = Path(__file__).parents[1]
 CRATE: Final = ROOT / "config" / "deck_crate.yaml"
-TRACKER: Final = Noise(position=0.0005, orientation=0.0002, velocity=0.002, rate=0.001)
-FAIR: Final = Noise(position=0.002, orientation=0.001, velocity=0.01, rate=0.005)
+TRACKER: Final = SensorNoise(position=0.0005, orientation=0.0002, velocity=0.002, rate=0.001)
+FAIR: Final = SensorNoise(position=0.002, orientation=0.001, velocity=0.01, rate=0.005)
 COLUMNS: Final = ("shown", "missed", "false", "modes\nright %", "velocity\nerror %", "time\nerror ms", "warned")
 
 
@@ -40,7 +40,7 @@ class Case(NamedTuple):
     name: str
     seconds: float
     contacts: str = "rigid"
-    noise: Noise = NO_NOISE
+    noise: SensorNoise = NO_NOISE
     tolerance: float = 1e-5
     contact_time: float = 0.002
     window: float = 0.2

@@ -20,7 +20,7 @@ from impact_predictor.bags.replay import replay
 from impact_predictor.prediction.scene import Scene, inertia_matrix
 from impact_predictor.report.table import plain_table, show
 from impact_predictor.scenarios.comparison import Truth
-from impact_predictor.scenarios.record import Actor, write_record
+from impact_predictor.scenarios.record import rocking_actor, write_record
 from impact_predictor.scenarios.rocking import Rocker, Rocking, release, rocking_plate, rocking_rod
 
 
@@ -84,7 +84,7 @@ def truth_of(case: Case, folder: Path) -> Truth:
     """Simulate a case, record it and replay the record."""
     rocking = release(case.rocker, radians(case.angle), radians(case.slope))
     path = folder / "run.mcap"
-    write_record(path, [Actor("body", rocking.run)], case.rate)
+    write_record(path, [rocking_actor("body", rocking.run)], case.rate)
     truth = replay(path, scene_of(rocking, case)).truth
     assert truth is not None
     return truth

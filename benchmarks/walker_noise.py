@@ -20,6 +20,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from rich.console import Console
 from rich.progress import track
+from walker_sensors import noisy
 
 from impact_predictor.bags.adapters import Adapted
 from impact_predictor.bags.adapters.known import readers
@@ -29,9 +30,8 @@ from impact_predictor.prediction.scene import Scene, scenes_of
 from impact_predictor.prediction.types import Prediction
 from impact_predictor.prediction.walking.walker import Walker
 from impact_predictor.report.table import plain_table, show
-from impact_predictor.scenarios.landings import Landings
+from impact_predictor.scenarios.comparison import Landings
 from impact_predictor.scenarios.matching import Announced
-from impact_predictor.scenarios.walking.noise import noisy
 
 ROOT = Path(__file__).resolve().parents[1]
 BAG = ROOT / "examples/hyq/hyq.bag"

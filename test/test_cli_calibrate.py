@@ -17,7 +17,7 @@ from impact_predictor.cli import main
 from impact_predictor.parameters.file import read_values
 from impact_predictor.resources import find
 from impact_predictor.ros.messages import ODOMETRY, POLYGON
-from impact_predictor.scenarios.record import Actor, write_record
+from impact_predictor.scenarios.record import rocking_actor, write_record
 from impact_predictor.scenarios.rocking import release, rocking_plate
 
 FRICTION, RESTITUTION = 0.15, 0.1
@@ -47,7 +47,7 @@ def record(folder: Path, angles: Sequence[int], friction: float | None = FRICTIO
     bags = []
     for angle in angles:
         bags.append(str(folder / f"plate{angle}.mcap"))
-        write_record(bags[-1], [Actor("plate", release(rocker, radians(angle)).run)], 1000.0)
+        write_record(bags[-1], [rocking_actor("plate", release(rocker, radians(angle)).run)], 1000.0)
     return bags
 
 

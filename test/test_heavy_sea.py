@@ -10,10 +10,10 @@ import pytest
 from impact_predictor.bags.replay import Result, replay
 from impact_predictor.parameters.file import read_values
 from impact_predictor.prediction.scene import Scene, scenes_of
-from impact_predictor.scenarios.deck.record import Sensors
 from impact_predictor.scenarios.deck.sea import SeaState, waves_of
 from impact_predictor.scenarios.deck.vessel import Vessel, deck_in
 from impact_predictor.scenarios.deck.voyage import sail
+from impact_predictor.scenarios.record import Sensors
 
 pytestmark = pytest.mark.slow
 

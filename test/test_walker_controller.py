@@ -21,11 +21,12 @@ from tune import EFFORT, FIRST_SEED, GAINS
 from values import Command, Estimate, Machine
 from walks import foretold, predicted, scene_of, trial, walk_with
 
-from impact_predictor import Mode
+from impact_predictor import Mode, solve_impact
 from impact_predictor.parameters.file import read_values
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.prediction.vectors import add, axes_of, to_world
-from impact_predictor.scenarios.walking.stride import Hub, Stance, stride
+from impact_predictor.scenarios.wheel import Hub
+from impact_predictor.scenarios.wheel_closed_forms import gained, impact_friction, kept, step_time
 
 ROOT = Path(__file__).parents[1]
 EXAMPLE = ROOT / "examples" / "walker_controller"
@@ -46,20 +47,22 @@ def gains_of(name):
 
 
 @pytest.mark.parametrize("friction", [0.6, 0.33, 0.3])
-def test_a_step_of_the_machine_is_the_stride_of_the_same_hub(friction):
+def test_a_step_of_the_machine_is_that_of_the_same_hub_in_closed_form(friction):
     machine, slope, angle = Machine(), 0.05, 0.7
     walk = Walk(machine, even(slope, friction))
     hub = Hub(machine.mass, machine.inertia, machine.leg, friction, slope, 9.81)
-    expected = stride(hub, Stance(-FIRST_LEAN, 1.3), 0.5 * angle)
     while walk.steps == 0 and walk.failure is None:
         walk.tick(Command(angle, 0.0))
-    assert walk.modes[0] is expected.outcome.mode
-    if expected.outcome.mode is Mode.SLIDE:
+    body = hub.body(0.5 * angle)
+    assert walk.modes[0] is solve_impact(body, body.turning(-1.0)).mode
+    if walk.modes[0] is Mode.SLIDE:
         assert walk.failure is Failure.SLIP
         return
     # The tick goes on after the impact, with less than 10 rad/s^2.
-    assert walk.ticks * PERIOD == pytest.approx(expected.time, abs=PERIOD)
-    assert walk.rate == pytest.approx(expected.after.rate, abs=10.0 * PERIOD)
+    before = (1.3**2 + gained(hub, -FIRST_LEAN, 0.5 * angle)) ** 0.5
+    assert walk.ticks * PERIOD == pytest.approx(step_time(hub, -FIRST_LEAN, 0.5 * angle, 1.3), abs=PERIOD)
+    if friction > impact_friction(hub, 0.5 * angle):
+        assert walk.rate == pytest.approx(kept(hub, 0.5 * angle) * before, abs=10.0 * PERIOD)
 
 
 def test_a_push_off_before_the_impact_leaves_the_momentum_about_the_new_foot_that_it_adds():

@@ -9,8 +9,9 @@ follow the impulse path (`impact_predictor.solve_impact`); a foot that slips is 
 The plane of the walk: x down the slope, z out of the ground; a leg leans forwards by a positive angle from the ground's
 normal. Nothing here knows of the controller, and the controllers know nothing of this but `Seen`.
 
-`impact_predictor.scenarios.walking.stride` follows a whole step on even ground with its leg at one angle; here gusts
-come, slabs differ and the leg moves until it lands, so that the step is followed tick by tick. A test compares the two.
+On even ground with its leg at one angle a step is that of a rimless wheel (`impact_predictor.scenarios.wheel`); here
+gusts come, slabs differ and the leg moves until it lands, so that the step is followed tick by tick. A test compares
+the two.
 """
 
 from __future__ import annotations

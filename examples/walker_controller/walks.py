@@ -18,8 +18,8 @@ from impact_predictor.prediction.scene import Scene, Walking
 from impact_predictor.prediction.types import Prediction
 from impact_predictor.prediction.walking.walker import Walker
 from impact_predictor.ros.messages import decode_polygon, encode_polygon
-from impact_predictor.scenarios.walking.closed_forms import impact_friction, kept
-from impact_predictor.scenarios.walking.stride import Hub
+from impact_predictor.scenarios.wheel import Hub
+from impact_predictor.scenarios.wheel_closed_forms import impact_friction, kept
 
 TRACK: Final = 6.0
 """m to walk."""

@@ -21,7 +21,7 @@ from .stream import NODE, Settled, Stream, Write
 
 if TYPE_CHECKING:
     from ..ros.markers.scene import MarkerScene
-    from ..scenarios.landings import Landings
+    from ..scenarios.comparison import Landings
     from .adapters.known import Read
     from .gait import Gait
     from .points import Points
@@ -94,7 +94,7 @@ class Run:
             takes = {kind: self._told(one) for kind, one in inputs.items() if kind != ODOM}
             self._takers[topic] = partial(self._take_adapted, read, inputs, takes)
         if readers and self.monitor.walkers:
-            from ..scenarios.landings import Landings
+            from ..scenarios.comparison import Landings
 
             self.landings = Landings(scenes)
         if self.monitor.walkers:

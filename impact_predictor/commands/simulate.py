@@ -238,15 +238,15 @@ def answer(
 
 def write_bag(output: str, rockings: Sequence[Rocking], rate: float) -> None:
     """Write the motions into one bag."""
-    from ..scenarios.record import Actor, samples_in, write_record
+    from ..scenarios.record import rocking_actor, write_record
     from .progress import progress
     from .unfinished import unfinished_is_told
 
     actors = [
-        Actor(f"{rocking.rocker.name}_{k}" if len(rockings) > 1 else rocking.rocker.name, rocking.run)
+        rocking_actor(f"{rocking.rocker.name}_{k}" if len(rockings) > 1 else rocking.rocker.name, rocking.run)
         for k, rocking in enumerate(rockings, 1)
     ]
-    samples = sum(samples_in(actor.run, rate) for actor in actors)
+    samples = sum(actor.samples(rate) for actor in actors)
     with unfinished_is_told(output), progress(Path(output).name, total=samples) as tell:
         write_record(output, actors, rate, tell)
 

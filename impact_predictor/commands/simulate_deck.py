@@ -122,15 +122,15 @@ def simulate_deck(
     from ..parameters.file import read_values
     from ..prediction.scene import MovingDeck, scenes_of, shared_by
     from ..resources import find
-    from ..scenarios.deck.record import Sensors
-    from ..scenarios.deck.sensors import Noise
     from ..scenarios.deck.voyage import gravity_of, sail, total
+    from ..scenarios.record import Sensors
+    from ..scenarios.sensors import SensorNoise
     from .progress import progress
     from .unfinished import unfinished_is_told
 
     check_options(recorded=record is not None)
     scenes = scenes_of(read_values(find(SCENE) if params is None else params))
-    noise = Noise(*[options.pop(name.removeprefix("--").replace("-", "_")) for name, _ in _NOISE])
+    noise = SensorNoise(*[options.pop(name.removeprefix("--").replace("-", "_")) for name, _ in _NOISE])
     deck, longest = deck_of(record, seed, gravity_of(scenes), **options)
     duration = min(longest, DURATION) if duration is None else duration
     if duration > longest:
@@ -217,7 +217,7 @@ def deck_of(
 ) -> tuple[MovingSupport, float]:
     """The deck of a vessel in a sea, or a recorded one, and how long it lasts in s."""
     if record is not None:
-        from ..scenarios.deck.recorded import read_deck
+        from ..scenarios.deck.vessel import read_deck
 
         recorded = read_deck(record, record_topic, gravity)
         return recorded.support, recorded.duration

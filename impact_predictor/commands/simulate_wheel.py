@@ -16,7 +16,7 @@ from .limits import Number, Whole
 from .simulated_files import RATE, check_pictures, rate_of_bag, say_files
 
 if TYPE_CHECKING:
-    from ..scenarios.walking.wheel import Rolling
+    from ..scenarios.wheel import Rolling
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -96,8 +96,7 @@ def simulate_wheel(
     It is let go with spoke 0 at right angles to the slope. Each spoke strikes without bouncing; where friction does not
     hold it, it slips. What is printed tells the steady rolling by its closed form, too.
     """
-    from ..scenarios.walking.stride import Hub
-    from ..scenarios.walking.wheel import RollEnd, Wheel, roll
+    from ..scenarios.wheel import Hub, RollEnd, Wheel, roll
 
     rate = rate_of_bag(rate, output)
     check_pictures(plot, animate)
@@ -121,12 +120,13 @@ def simulate_wheel(
 
 def write_bag(output: str, rolling: Rolling, rate: float) -> None:
     """Write the motion into a bag."""
-    from ..scenarios.walking.record import samples_in, write_wheel
+    from ..scenarios.record import wheel_actor, write_record
     from .progress import progress
     from .unfinished import unfinished_is_told
 
-    with unfinished_is_told(output), progress(Path(output).name, total=samples_in(rolling, rate)) as tell:
-        write_wheel(output, rolling, rate, tell)
+    actor = wheel_actor(rolling)
+    with unfinished_is_told(output), progress(Path(output).name, total=actor.samples(rate)) as tell:
+        write_record(output, [actor], rate, tell)
 
 
 def draw_animation(file: str, rolling: Rolling) -> None:

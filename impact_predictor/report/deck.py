@@ -10,8 +10,7 @@ from rich.console import Console
 from rich.table import Table
 
 from ..mechanics.rocking import End
-from ..scenarios.deck.record import Followed
-from ..scenarios.deck.voyage import Voyage
+from ..scenarios.deck.voyage import Followed, Voyage
 from ..scenarios.truth import TrueImpact
 from ..stamps import NANOSECONDS
 from .table import plain_table, show

@@ -1,6 +1,8 @@
 """Predicted against true touchdowns: what was found, how early, and how right; `matching` tells which belong together.
 
-Touchdowns are those of impacts here, or of the landings of feet.
+Touchdowns are those of impacts, or landings of feet. The truth of these is what a plan or a simulation says of every
+foot: whether it stands. It is told beside the samples, is never an input of a prediction, and knows neither modes nor
+velocities, so that these are not compared.
 """
 
 from __future__ import annotations
@@ -15,10 +17,10 @@ from typing import Final, NamedTuple
 
 from ..prediction.planar import hardly
 from ..prediction.scene import Scene
-from ..prediction.types import Vector3
+from ..prediction.types import Prediction, Vector3
 from ..prediction.vectors import add, axes_of, cross, to_world
 from ..stamps import NANOSECONDS
-from .matching import Announced, Announcement, Announcements, Match, match, matches_of
+from .matching import NEAREST, Announced, Announcement, Announcements, Match, Rows, match, matches_of
 from .truth import TrueImpact
 
 LEAD_TIMES: Final = (0.02, 0.05)
@@ -70,7 +72,7 @@ class Comparison(NamedTuple):
     matches: list[Match]
 
 
-class Found(NamedTuple):
+class FoundImpact(NamedTuple):
     """A true impact with the last prediction before it."""
 
     impact: TrueImpact
@@ -88,7 +90,7 @@ class Compared(NamedTuple):
     false: int
     unresolved: int = 0
     unresolved_wrong: int = 0
-    found: Sequence[Found] = ()
+    found: Sequence[FoundImpact] = ()
     errors: Sequence[float] = ()
     matches: Sequence[Match] = ()
 
@@ -130,9 +132,9 @@ def _compare(
     happened = sorted((one for one in impacts if one.stamp <= recorded[-1]), key=lambda one: one.stamp)
     matched, alarms = match([impact.stamp for impact in happened], announced, recorded[-1])
     shown = resolved(happened, recorded, hardly(scene))
-    found = {k: Found(happened[k], matched[k][-1]) for k in shown if k in matched}
+    found = {k: FoundImpact(happened[k], matched[k][-1]) for k in shown if k in matched}
     errors = {k: velocity_error(one, scene.center_of_mass) for k, one in found.items()}
-    hidden = [Found(happened[k], matched[k][-1]) for k in set(matched) - set(shown)]
+    hidden = [FoundImpact(happened[k], matched[k][-1]) for k in set(matched) - set(shown)]
     return Compared(
         [Announced(happened[k].stamp, matched[k]) for k in shown if k in matched],
         len(shown),
@@ -177,7 +179,7 @@ def median_time_error(announced: Iterable[Announced], lead_time: float) -> float
     return median(errors) if errors else None
 
 
-def is_right(found: Found) -> bool:
+def is_right(found: FoundImpact) -> bool:
     """Whether the last prediction before an impact had its mode."""
     return found.last.touchdown is not None and found.last.touchdown.mode is found.impact.mode
 
@@ -192,7 +194,7 @@ def resolved(happened: Sequence[TrueImpact], samples: Sequence[int], slowest: fl
     return shown
 
 
-def velocity_error(found: Found, center: Vector3) -> float:
+def velocity_error(found: FoundImpact, center: Vector3) -> float:
     """Error of the twist after an impact relative to the twist before it; `center`: mass centre in the body frame.
 
     Angular velocities count as speeds at half the contacts' distance.
@@ -204,3 +206,76 @@ def velocity_error(found: Found, center: Vector3) -> float:
     angular = to_world(axes, touchdown.angular)
     wrong = hypot(dist(linear, impact.linear_after), dist(angular, impact.angular_after) * impact.half_distance)
     return wrong / hypot(*impact.linear_before, *[part * impact.half_distance for part in impact.angular_before])
+
+
+class TrueLanding(NamedTuple):
+    """A foot that comes to stand: `stamp` in ns; `body` by its name, or where it has none its frame; `foot` by name."""
+
+    stamp: int
+    body: str
+    foot: str
+
+
+class Landings:
+    """The true landings of feet and those that are announced, of the bodies of some scenes by their names.
+
+    A body goes by its name, or where it has none by its frame.
+    """
+
+    def __init__(self, scenes: Mapping[str, Scene]) -> None:
+        self.true: list[TrueLanding] = []
+        self._scenes = scenes
+        self._stands: dict[str, tuple[bool, ...]] = {}
+        self._rows: dict[str, dict[str, Rows]] = defaultdict(lambda: defaultdict(Rows))
+        self._last: dict[str, int] = {}
+
+    def tell(self, body: str, stamp: int, stands: tuple[bool, ...]) -> None:
+        """Take which feet of a body truly stand at a stamp in ns, in the order of the scene.
+
+        Feet that stand from the beginning have not landed.
+        """
+        walking = self._scene(body).walking
+        before = self._stands.get(body, stands)
+        self._stands[body] = stands
+        if walking is not None:
+            told = zip(walking.feet, before, stands, strict=False)
+            self.true += [TrueLanding(stamp, body, foot) for foot, stood, now in told if now and not stood]
+
+    def add(self, prediction: Prediction, name: str = "") -> None:
+        """Take the answer to an accepted sample: a foot that stands lands no more, though more of it may touch down."""
+        sample = prediction.sample
+        body = name or sample.child_frame_id
+        walking = self._scene(body).walking
+        if walking is None:
+            return
+        soonest = prediction.touchdown
+        first = None if soonest is None else walking.feet[soonest.new[0] // walking.points]
+        for foot in prediction.feet:
+            lead_time = None if foot.stands else foot.lead_time
+            self._rows[body][foot.name].add(sample.stamp, lead_time, soonest if foot.name == first else None)
+        self._last[body] = sample.stamp
+
+    def compared(self) -> dict[str, Compared]:
+        """What was found of the landings of each body of which the truth is told, foot by foot."""
+        return {body: self._compare(body, last) for body, last in self._last.items() if body in self._stands}
+
+    def later(self) -> int:
+        """How many true landings come after the last sample of their body that was accepted: they are not compared."""
+        return sum(one.stamp > self._last.get(one.body, one.stamp) for one in self.true)
+
+    def _compare(self, body: str, end: int) -> Compared:
+        announced: list[Announced] = []
+        matches: list[Match] = []
+        touchdowns = false = 0
+        for foot, rows in self._rows[body].items():
+            stamps = sorted(one.stamp for one in self.true if (one.body, one.foot) == (body, foot) and one.stamp <= end)
+            # A foot comes down softly: it may seem to come down still when the plan says that it stands.
+            matched, alarms = match(stamps, rows.all, end, late=NEAREST)
+            announced += [Announced(stamps[k], predictions) for k, predictions in sorted(matched.items())]
+            touchdowns += len(stamps)
+            false += len(alarms)
+            matches += matches_of(body, foot, [(one, None) for one in stamps], matched, alarms, range(len(stamps)))
+        return Compared(announced, touchdowns, false, matches=matches)
+
+    def _scene(self, body: str) -> Scene:
+        return self._scenes[body if body in self._scenes else ""]

@@ -1,45 +1,121 @@
-"""Planar motions as bags: bodies sampled at a rate, with their true impacts."""
+"""Made motions as bags: bodies sampled at a rate, decks with their cargo, and the true impacts."""
 
 from __future__ import annotations
 
 import heapq
 import os
-from collections.abc import Callable, Iterator, Sequence
-from math import cos, hypot, inf, sin
-from typing import Final, NamedTuple
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..bags.write import BagWriter
-from ..mechanics.problem import approach
-from ..mechanics.rocking import End, Run, Strike
+from ..mechanics.motion import PlanarState
+from ..mechanics.rocking import End, Run
+from ..mechanics.support import MovingSupport
+from ..mechanics.types import Vector
+from ..prediction.scene import MovingDeck, Scene
 from ..prediction.types import Geometry
-from ..ros.messages import DIAGNOSTIC_ARRAY, ODOMETRY, POLYGON, encode_odometry, encode_polygon
+from ..ros.cdr import diagnostic_array
+from ..ros.messages import DIAGNOSTIC_ARRAY, IMU, ODOMETRY, POLYGON, encode_imu, encode_odometry, encode_polygon
 from ..stamps import NANOSECONDS
-from .deck.sensors import AT_ONCE, Odometer
-from .space import FORWARD, Mount, Plane
-from .truth import TRUTH_TOPIC, TrueImpact, encode_true_impact
+from .sensors import ACROSS, AT_ONCE, FORWARD, NO_NOISE, InertialSensor, Mount, Odometer, SensorNoise, stamps_of
+from .truth import (
+    ONSET_TOPIC,
+    TRUTH_TOPIC,
+    TrueImpact,
+    TrueOnset,
+    encode_true_impact,
+    encode_true_onset,
+    true_impact,
+)
+from .wheel import RollEnd, Rolling
+
+if TYPE_CHECKING:
+    from .deck.cargo import Span
+    from .deck.voyage import Followed
 
 FRAME: Final = "world"
+
+DECK: Final = "deck"
+"""Frame of a moving support."""
+
+WHEEL: Final = "wheel"
+"""Frame of a wheel."""
 
 REST: Final = 0.25
 """Seconds that are recorded of a body that has come to rest."""
 
 
-class Actor(NamedTuple):
-    """A body of a record, its frame at its mass centre: the name of its frame, and how it moves on two points of it."""
+class Sensors(NamedTuple):
+    """How deck and units are observed: rates in Hz, noise and the seed that makes it."""
 
-    name: str
-    run: Run
+    rate: float = 50.0
+    deck_rate: float = 100.0
+    noise: SensorNoise = NO_NOISE
+    seed: int = 0
 
 
-class Message(NamedTuple):
+class RecordedMessage(NamedTuple):
     """A message as a bag holds it; they are ordered by their log times, in ns."""
 
     log_time: int
     topic: str
     type_name: str
     data: bytes
+
+
+class Actor(NamedTuple):
+    """A body of a record, its frame at its mass centre.
+
+    The `name` of its frame; its `points` (x, y) in m; the `duration` in s for which it is recorded; the `world` states
+    of its mass centre at an array of times in s; its true `impacts`.
+    """
+
+    name: str
+    points: tuple[Vector, ...]
+    duration: float
+    world: Callable[[NDArray[np.float64]], PlanarState]
+    impacts: tuple[TrueImpact, ...]
+
+    def samples(self, rate: float) -> int:
+        """How many samples of it a record has at a rate in Hz."""
+        return 1 + int(self.duration * rate)
+
+
+def rocking_actor(name: str, run: Run) -> Actor:
+    """A body that moves on two points of it."""
+    old, new = run.body.old, run.body.new
+    assert old is not None
+    tilts = [run.support.motion(strike.time).angle for strike in run.impacts]
+    return Actor(
+        name=name,
+        points=((old.x, old.y), (new.x, new.y)),
+        duration=run.time + (REST if run.end in (End.RESTS, End.BALANCED) else 0.0),
+        world=run.world,
+        impacts=tuple(
+            true_impact(strike, name, FORWARD, tilt) for strike, tilt in zip(run.impacts, tilts, strict=True)
+        ),
+    )
+
+
+def wheel_actor(rolling: Rolling) -> Actor:
+    """A wheel that rolls down a slope through the origin of the frame."""
+    impacts = []
+    for old, new, strike in rolling.impacts:
+        # Contacts 0 and 1 of a part are two neighbouring tips.
+        other = new if old is None else old
+        contacts = ((new,), (other,)) if strike.new == 0 else ((other,), (new,))
+        impacts.append(true_impact(strike, WHEEL, FORWARD, rolling.wheel.hub.support.slope, contacts))
+    return Actor(
+        name=WHEEL,
+        points=rolling.wheel.tips,
+        duration=rolling.time + (REST if rolling.end in (RollEnd.RESTS, RollEnd.BALANCED) else 0.0),
+        world=rolling.world,
+        impacts=tuple(impacts),
+    )
 
 
 def write_record(
@@ -55,11 +131,13 @@ def write_record(
         InputError: the bag cannot be written.
     """
     alone = len(actors) == 1
-    write_messages(path, [messages_of(actor, "" if alone else f"/{actor.name}", rate) for actor in actors], tell)
+    write_messages(path, [_messages_of(actor, "" if alone else f"/{actor.name}", rate) for actor in actors], tell)
 
 
 def write_messages(
-    path: str | os.PathLike[str], streams: Sequence[Iterator[Message]], tell: Callable[[int], None] | None = None
+    path: str | os.PathLike[str],
+    streams: Sequence[Iterator[RecordedMessage]],
+    tell: Callable[[int], None] | None = None,
 ) -> None:
     """Write a bag of messages, each stream of them ordered, while they are made: a long record takes no more memory.
 
@@ -69,84 +147,129 @@ def write_messages(
         InputError: the bag cannot be written.
     """
     with BagWriter(path) as writer:
-        ordered = heapq.merge(*streams, key=lambda message: message.log_time)
-        for count, (log_time, topic, type_name, data) in enumerate(ordered, 1):
+        for count, (log_time, topic, type_name, data) in enumerate(_by_time(*streams), 1):
             writer.write(topic, type_name, log_time, data)
             if tell is not None and count % AT_ONCE == 0:
                 tell(count)
 
 
-def messages_of(actor: Actor, namespace: str, rate: float) -> Iterator[Message]:
-    """The messages of one body in the order of their log times."""
-    return heapq.merge(_states(actor, namespace, rate), _truths(actor), key=lambda message: message.log_time)
+def deck_messages(
+    followed: Sequence[Followed],
+    deck: MovingSupport,
+    alone: bool,
+    duration: float,
+    sensors: Sensors,
+    truths: Sequence[str] = (TRUTH_TOPIC, ONSET_TOPIC),
+) -> list[Iterator[RecordedMessage]]:
+    """The streams of messages of a deck and its units, each ordered by its log times.
 
-
-def samples_in(run: Run, rate: float) -> int:
-    """How many samples of a motion a record has."""
-    rests = run.end in (End.RESTS, End.BALANCED)
-    return 1 + int((run.time + (REST if rests else 0.0)) * rate)
-
-
-def _states(actor: Actor, namespace: str, rate: float) -> Iterator[Message]:
-    old, new = actor.run.body.old, actor.run.body.new
-    assert old is not None
-    geometry = Geometry(0, actor.name, ((old.x, 0.0, old.y), (new.x, 0.0, new.y)))
-    yield Message(0, f"{namespace}/contact_geometry", POLYGON, encode_polygon(geometry))
-    count = samples_in(actor.run, rate)
-    odometer = Odometer(FRAME, actor.name, FORWARD, Mount())
-    for first in range(0, count, AT_ONCE):
-        stamps = [round(k * NANOSECONDS / rate) for k in range(first, min(first + AT_ONCE, count))]
-        state = actor.run.world(np.array(stamps) / NANOSECONDS)
-        for sample in odometer.samples(stamps, state):
-            yield Message(sample.stamp, f"{namespace}/odom", ODOMETRY, encode_odometry(sample))
-
-
-def _truths(actor: Actor) -> Iterator[Message]:
-    for strike in actor.run.impacts:
-        tilt = actor.run.support.motion(strike.time).angle
-        impact = true_impact(strike, actor.name, FORWARD, tilt)
-        yield Message(impact.stamp, TRUTH_TOPIC, DIAGNOSTIC_ARRAY, encode_true_impact(impact, FRAME))
-
-
-def true_impact(
-    strike: Strike,
-    name: str,
-    plane: Plane,
-    tilt: float = 0.0,
-    contacts: Sequence[tuple[int, ...]] = ((0,), (1,)),
-    border: float = inf,
-    since: float = 0.0,
-) -> TrueImpact:
-    """An impact of a motion as the truth of a record.
-
-    Its velocities are along axes that are turned by -`tilt` (rad) from the support's; `contacts` are the indices of the
-    points, in the scene, that the two contacts stand for; the times of the motion count from `since` (s).
+    The deck's are on `/support/odom` or `/support/imu`, a unit's on `/<name>/odom` or `/<name>/imu` as its scene tells;
+    the unit of a scene file without bodies, `alone`, is on `/odom` or `/imu`. The topics of the `truths` that are told
+    begin with an empty message: where nothing happened, that is the truth.
     """
-    body, before = strike.outcome.body, strike.outcome.before
-    assert body is not None
-    assert before is not None
-    after = strike.outcome.twist
-    c, s = cos(tilt), sin(tilt)
-    return TrueImpact(
-        round((since + strike.time) * NANOSECONDS),
-        name,
-        strike.outcome.mode,
-        () if strike.old is None else contacts[strike.old],
-        contacts[strike.new],
-        -approach(body.new, before)[0],
-        half_distance(strike),
-        strike.outcome.energy_lost,
-        plane.vector(c * before.vx - s * before.vy, s * before.vx + c * before.vy),
-        plane.spin(before.omega),
-        plane.vector(c * after.vx - s * after.vy, s * after.vx + c * after.vy),
-        plane.spin(after.omega),
-        border,
-    )
+    watched = followed[0].unit.scene.deck or MovingDeck()
+    nothing = diagnostic_array(0, DECK, ())
+    return [
+        iter([RecordedMessage(0, topic, DIAGNOSTIC_ARRAY, nothing) for topic in truths]),
+        _deck(deck, watched, duration, sensors),
+        *(
+            _unit(one, "" if alone else f"/{one.unit.name}", duration, sensors, number)
+            for number, one in enumerate(followed, 1)
+        ),
+    ]
 
 
-def half_distance(strike: Strike) -> float:
-    """Half the distance of the contacts in m, for one contact its distance from the mass centre."""
-    body = strike.outcome.body
-    assert body is not None
-    new, old = body.new, body.old
-    return hypot(new.x, new.y) if old is None else 0.5 * hypot(new.x - old.x, new.y - old.y)
+def messages_in(scenes: Mapping[str, Scene], duration: float, sensors: Sensors) -> int:
+    """How many messages of sensors a record of a deck has at most."""
+    observed = sum(scene.source != "none" for scene in scenes.values())
+    return round(duration * (sensors.deck_rate + observed * sensors.rate))
+
+
+def _by_time(*streams: Iterable[RecordedMessage]) -> Iterator[RecordedMessage]:
+    return heapq.merge(*streams, key=lambda message: message.log_time)
+
+
+def _messages_of(actor: Actor, namespace: str, rate: float) -> Iterator[RecordedMessage]:
+    """The messages of one body in the order of their log times."""
+    geometry = Geometry(0, actor.name, tuple((x, 0.0, y) for x, y in actor.points))
+    yield RecordedMessage(0, f"{namespace}/contact_geometry", POLYGON, encode_polygon(geometry))
+    stamps = [round(k * NANOSECONDS / rate) for k in range(actor.samples(rate))]
+    odometer = Odometer(FRAME, actor.name, FORWARD, Mount())
+    yield from _by_time(_odometry(odometer, stamps, actor.world, f"{namespace}/odom"), _truth(actor.impacts, (), FRAME))
+
+
+def _odometry(
+    odometer: Odometer, stamps: list[int], state: Callable[[NDArray[np.float64]], PlanarState], topic: str
+) -> Iterator[RecordedMessage]:
+    """An odometer's messages at stamps (ns) from the states at an array of times in s."""
+    for block in _blocks(stamps):
+        for sample in odometer.samples(block, state(np.array(block) / NANOSECONDS)):
+            yield RecordedMessage(sample.stamp, topic, ODOMETRY, encode_odometry(sample))
+
+
+def _truth(impacts: Iterable[TrueImpact], onsets: Iterable[TrueOnset], frame: str) -> list[RecordedMessage]:
+    """The messages of what truly happened, in the order of their stamps."""
+    told = [
+        RecordedMessage(one.stamp, TRUTH_TOPIC, DIAGNOSTIC_ARRAY, encode_true_impact(one, frame)) for one in impacts
+    ]
+    told += [RecordedMessage(one.stamp, ONSET_TOPIC, DIAGNOSTIC_ARRAY, encode_true_onset(one, frame)) for one in onsets]
+    return sorted(told, key=lambda message: message.log_time)
+
+
+def _deck(deck: MovingSupport, watched: MovingDeck, duration: float, sensors: Sensors) -> Iterator[RecordedMessage]:
+    rng = np.random.default_rng((sensors.seed, 0))
+    stamps = stamps_of(0.0, duration, sensors.deck_rate, last=True)
+    if watched.source == "odom":
+        odometer = Odometer(FRAME, DECK, ACROSS, Mount(), sensors.noise, rng)
+        yield from _odometry(odometer, stamps, partial(_state_of, deck), "/support/odom")
+        return
+    place = deck.at(*watched.imu_position[1:])
+    sensor = InertialSensor(DECK, ACROSS, Mount(), deck.gravity, sensors.noise, rng)
+    for block in _blocks(stamps):
+        motion = place.motion(np.array(block) / NANOSECONDS)
+        state = _state_of(place, np.array(block) / NANOSECONDS)
+        for imu in sensor.told(block, state, motion.ax, motion.ay + deck.gravity):
+            yield RecordedMessage(imu.stamp, "/support/imu", IMU, encode_imu(imu))
+
+
+def _state_of(support: MovingSupport, times: NDArray[np.float64]) -> PlanarState:
+    """The support as a body."""
+    motion = support.motion(times)
+    return PlanarState(motion.x, motion.y, motion.angle, motion.vx, motion.vy, motion.rate)
+
+
+def _unit(one: Followed, namespace: str, duration: float, sensors: Sensors, number: int) -> Iterator[RecordedMessage]:
+    """A unit's messages, and its truth."""
+    unit, rng = one.unit, np.random.default_rng((sensors.seed, number))
+    name, source = unit.name, unit.scene.source
+    # Nobody measures where a deck is of which only an inertial sensor tells: its units are seen from it.
+    relative = unit.scene.deck is not None and unit.scene.deck.source == "imu"
+    seen = one.on_deck if relative else one.in_world
+    frame = unit.scene.frame or DECK if relative else FRAME
+    odometer = Odometer(frame, name, ACROSS, unit.mount, sensors.noise, rng)
+    inertial = InertialSensor(name, ACROSS, unit.mount, one.support.gravity, sensors.noise, rng)
+    for span in one.spans():
+        last = span.end is not End.TIME_UP or span.time >= duration
+        stamps = stamps_of(span.start, span.time, sensors.rate, last) if source != "none" else []
+        sensed: Iterator[RecordedMessage] = iter(())
+        if source == "odom":
+            sensed = _odometry(odometer, stamps, partial(seen, span), f"{namespace}/odom")
+        elif source == "imu":
+            sensed = _inertial(one, span, stamps, inertial, f"{namespace}/imu", 0.5 / sensors.rate)
+        yield from _by_time(sensed, _truth(span.impacts, span.onsets, DECK))
+
+
+def _inertial(
+    one: Followed, span: Span, stamps: list[int], sensor: InertialSensor, topic: str, half: float
+) -> Iterator[RecordedMessage]:
+    """An inertial sensor's messages in a span; `half` the time of a sample in s, cut off where the span ends."""
+    for block in _blocks(stamps):
+        times = np.array(block) / NANOSECONDS
+        before, after = np.maximum(times - half, span.start), np.minimum(times + half, span.time)
+        now, early, late = (one.in_world(span, moment) for moment in (times, before, after))
+        for imu in sensor.measurements(block, now, early, late, after - before):
+            yield RecordedMessage(imu.stamp, topic, IMU, encode_imu(imu))
+
+
+def _blocks(stamps: list[int]) -> Iterator[list[int]]:
+    return (stamps[first : first + AT_ONCE] for first in range(0, len(stamps), AT_ONCE))

@@ -5,12 +5,19 @@ They travel on topics of their own, as diagnostic_msgs/DiagnosticArray, and are 
 
 from __future__ import annotations
 
-from math import inf
-from typing import Final, NamedTuple
+from collections.abc import Sequence
+from math import cos, hypot, inf, sin
+from typing import TYPE_CHECKING, Final, NamedTuple
 
-from ..mechanics.types import Mode, Outcome
+from ..mechanics.problem import approach
+from ..mechanics.types import Mode, Outcome, TwoPointBody
 from ..prediction.types import Vector3
 from ..ros.cdr import OK, DiagnosticForm, MalformedMessage, decode_diagnostic_array
+from ..stamps import NANOSECONDS
+
+if TYPE_CHECKING:
+    from ..mechanics.rocking import Strike
+    from .sensors import MotionPlane
 
 TRUTH_TOPIC: Final = "/truth/impacts"
 ONSET_TOPIC: Final = "/truth/onsets"
@@ -61,19 +68,61 @@ class TrueOnset(NamedTuple):
     lifts: bool
 
 
-def border_of(outcome: Outcome, half_distance: float) -> float:
+def true_impact(
+    strike: Strike,
+    name: str,
+    plane: MotionPlane,
+    tilt: float = 0.0,
+    contacts: Sequence[tuple[int, ...]] = ((0,), (1,)),
+    border: float = inf,
+    since: float = 0.0,
+) -> TrueImpact:
+    """An impact of a motion as the truth of a record.
+
+    Its velocities are along axes that are turned by -`tilt` (rad) from the support's; `contacts` are the indices of the
+    points, in the scene, that the two contacts stand for; the times of the motion count from `since` (s).
+    """
+    body, before = strike.outcome.body, strike.outcome.before
+    assert body is not None
+    assert before is not None
+    after = strike.outcome.twist
+    c, s = cos(tilt), sin(tilt)
+    return TrueImpact(
+        stamp=round((since + strike.time) * NANOSECONDS),
+        body=name,
+        mode=strike.outcome.mode,
+        old=() if strike.old is None else contacts[strike.old],
+        new=contacts[strike.new],
+        approach=-approach(body.new, before)[0],
+        half_distance=half_distance(body),
+        energy_lost=strike.outcome.energy_lost,
+        linear_before=plane.vector(c * before.vx - s * before.vy, s * before.vx + c * before.vy),
+        angular_before=plane.spin(before.omega),
+        linear_after=plane.vector(c * after.vx - s * after.vy, s * after.vx + c * after.vy),
+        angular_after=plane.spin(after.omega),
+        border=border,
+    )
+
+
+def half_distance(body: TwoPointBody) -> float:
+    """Half the distance of the contacts in m, for one contact its distance from the mass centre."""
+    new, old = body.new, body.old
+    return hypot(new.x, new.y) if old is None else 0.5 * hypot(new.x - old.x, new.y - old.y)
+
+
+def border_of(outcome: Outcome) -> float:
     """The smallest relative change with which an impact would have another mode; inf where none was found.
 
     A change of the friction of both contacts counts against the larger one, a shift of the mass centre or of the new
-    contact against `half_distance` in m (see `mechanics.margins`).
+    contact against the half distance of the contacts (see `mechanics.margins`).
     """
     body = outcome.body
     if body is None:
         return inf
     friction = max(contact.friction for contact in (body.old, body.new) if contact is not None)
-    found = outcome.margins
+    found, size = outcome.margins, half_distance(body)
     least = abs(found.friction.change) / friction if friction > 0.0 else inf
-    return min(least, *[abs(one.change) / half_distance for one in (found.center, found.height, found.reach)])
+    return min(least, *[abs(one.change) / size for one in (found.center, found.height, found.reach)])
 
 
 def encode_true_impact(impact: TrueImpact, frame_id: str) -> bytes:
@@ -103,25 +152,13 @@ def decode_true_impacts(data: bytes) -> list[TrueImpact]:
 
 
 def _impact(values: dict[str, str]) -> TrueImpact:
-    def vector(name: str) -> Vector3:
-        return float(values[f"{name}.x"]), float(values[f"{name}.y"]), float(values[f"{name}.z"])
-
-    return TrueImpact(
-        int(values["stamp"]),
-        values["body"],
-        Mode[values["mode"]],
-        tuple(map(int, values["old"].split())),
-        tuple(map(int, values["new"].split())),
-        float(values["approach"]),
-        float(values["half_distance"]),
-        float(values["energy_lost"]),
-        vector("linear_before"),
-        vector("angular_before"),
-        vector("linear_after"),
-        vector("angular_after"),
-        # Bags of older versions have none.
-        float(values.get("border", inf)),
-    )
+    old, new = (tuple(map(int, values[name].split())) for name in ("old", "new"))
+    numbers = {name: float(values[name]) for name in ("approach", "half_distance", "energy_lost")}
+    vectors = {name: tuple(float(values[f"{name}.{axis}"]) for axis in "xyz") for name in _VECTORS}
+    # Bags of older versions have no border.
+    border = float(values.get("border", inf))
+    stamp, body, mode = int(values["stamp"]), values["body"], Mode[values["mode"]]
+    return TrueImpact(stamp=stamp, body=body, mode=mode, old=old, new=new, border=border, **numbers, **vectors)  # type: ignore[arg-type]
 
 
 def encode_true_onset(onset: TrueOnset, frame_id: str) -> bytes:

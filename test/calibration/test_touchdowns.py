@@ -14,7 +14,7 @@ from impact_predictor.calibration.touchdowns import Coefficients, ObservingMonit
 from impact_predictor.commands.replay import read_scenes
 from impact_predictor.prediction.scene import Scene, inertia_matrix
 from impact_predictor.resources import find
-from impact_predictor.scenarios.record import Actor, write_record
+from impact_predictor.scenarios.record import rocking_actor, write_record
 from impact_predictor.scenarios.rocking import release, rocking_plate
 
 FRICTION, RESTITUTION = 0.15, 0.1
@@ -60,7 +60,7 @@ def test_a_touchdown_solved_with_the_coefficients_of_the_scene_is_the_predicted_
 def record(path: Path, degrees: float) -> Path:
     """A bag of a plate that is released at an angle."""
     rocker = rocking_plate(1.0, 0.4, None, None, 1.0, FRICTION, None, RESTITUTION)
-    write_record(path, [Actor("plate", release(rocker, radians(degrees)).run)], 1000.0)
+    write_record(path, [rocking_actor("plate", release(rocker, radians(degrees)).run)], 1000.0)
     return path
 
 

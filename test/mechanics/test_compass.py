@@ -1,19 +1,21 @@
-"""The compass gait, two legs with a hinge at the hip, against its closed form.
+"""The compass gait, two legs with a hinge at the hip: its impact in contact space, its momenta, its published gaits.
 
-Source: A. Goswami, B. Thuilot, B. Espiau, A study of the passive gait of a compass-like biped robot: symmetry and
-chaos (1998), section 2.3: a foot that strikes sticks while the other lifts, so that the impact keeps the angular
-momentum of the machine about the striking foot and that of the trailing leg about the hip.
+Sources: M. Garcia, A. Chatterjee, A. Ruina, M. Coleman, The simplest walking model: stability, complexity, and scaling,
+J. Biomechanical Engineering 120(2), 1998; the digits are those of the authors' program for it, "to 1e-10". And
+A. Goswami, B. Thuilot, B. Espiau, A study of the passive gait of a compass-like biped robot: symmetry and chaos (1998),
+section 2.3: a foot that strikes sticks while the other lifts, so that the impact keeps the angular momentum of the
+machine about the striking foot and that of the trailing leg about the hip.
 """
 
 import math
 
 import numpy as np
 import pytest
+from compass import Compass, Gait, after_impact, contact_rows, fixed_point, inertia_of, step, strike
 
 from impact_predictor import Mode
 from impact_predictor.mechanics.articulated import WholeBody
 from impact_predictor.mechanics.contact_space import solve
-from impact_predictor.scenarios.walking.compass import Compass, after_impact, contact_rows, inertia_of, strike
 
 LAWS = ("path", "total")
 
@@ -69,6 +71,78 @@ def test_a_compass_gait_by_hand_in_contact_space_follows_the_closed_form(law):
 def closing(compass, half_angle, rates):
     """How fast the new foot rises, in m/s."""
     return -compass.leg * math.sin(half_angle) * sum(rates)
+
+
+SIMPLEST = Compass(hip_mass=1.0, leg_mass=1e-15, to_foot=0.0, to_hip=1.0, slope=0.009, gravity=1.0)
+"""Its feet have hardly any mass: what is left of them is below rounding."""
+
+LONG, SHORT = (0.20031090049483, 0.19983247291764), (0.19393736960624, 0.20386692731962)
+"""Angle and rate of the standing leg right after an impact, of the long (stable) and the short steps."""
+
+
+@pytest.mark.parametrize(("published", "error"), [(LONG, 1e-10), (SHORT, 3e-10)])
+def test_the_simplest_walker_has_its_published_steady_gaits(published, error):
+    # The short gait multiplies errors by 4 with each step, so that its published digits are less sure.
+    angle, rate = published
+    assert fixed_point(SIMPLEST, Gait(angle, rate, rate * math.cos(2.0 * angle)))[:2] == pytest.approx(
+        published, abs=error
+    )
+
+
+@pytest.mark.parametrize("inertia", [0.0, 0.02])
+def test_in_a_step_of_steady_gait_gravity_gives_what_the_impact_takes(inertia):
+    compass = Compass(slope=math.radians(3.0), leg_inertia=inertia)
+    found = fixed_point(compass, Gait(0.27, 1.1, 0.4))
+    landed = step(compass, found)
+    gain = (10.0 + 2.0 * 5.0) * 9.81 * 2.0 * math.sin(found.angle) * math.sin(compass.slope)
+    outcome, _ = strike(compass, landed.angles, landed.rates, 1.0, law="total")
+    assert outcome.energy_lost == pytest.approx(gain, rel=1e-10)
+
+
+@pytest.mark.parametrize("share", [1e-12, 1e-3, 0.1, 1.0])
+def test_the_impact_of_feet_with_mass_is_the_published_one(share):
+    # The authors' program: the standing leg's rate becomes math.cos(2 theta) / (1 + beta sin^2(2 theta)) of it.
+    compass = SIMPLEST._replace(leg_mass=share)
+    stance, _ = after_impact(compass, (0.2, -0.2), (0.25, 0.1))
+    assert stance == pytest.approx(0.25 * math.cos(0.4) / (1.0 + share * math.sin(0.4) ** 2), rel=1e-13)
+
+
+def test_its_impact_by_the_total_law_is_that_of_the_momenta_where_friction_holds_the_new_foot():
+    compass = Compass(slope=math.radians(3.0))
+    landed = step(compass, Gait(0.27, 1.1, 0.4))
+    for friction in (0.3, 0.5, 1.0):
+        outcome, rates = strike(compass, landed.angles, landed.rates, friction, law="total")
+        assert outcome.mode is Mode.PIVOT
+        assert rates == pytest.approx(after_impact(compass, landed.angles, landed.rates), abs=1e-13)
+    (_, _), (normal, tangential) = outcome.impulses
+    least = abs(tangential) / normal
+    assert strike(compass, landed.angles, landed.rates, least * 0.999)[0].mode is Mode.PIVOT_SLIDE
+
+
+def test_along_the_impulse_path_the_old_foot_of_heavy_legs_is_pressed_a_little_before_it_leaves():
+    # The published impact takes the old foot to leave at once: an assumption that the growing impulse does not share.
+    compass = Compass(slope=math.radians(3.0))
+    landed = step(compass, fixed_point(compass, Gait(0.27, 1.1, 0.4)))
+    outcome, rates = strike(compass, landed.angles, landed.rates, 1.0, law="path")
+    known = after_impact(compass, landed.angles, landed.rates)
+    assert outcome.mode is Mode.PIVOT
+    assert 0.0 < outcome.impulses[0][0] < 0.01 * outcome.impulses[1][0]
+    assert 1e-3 < rates[0] / known[0] - 1.0 < 1e-2
+
+
+@pytest.mark.parametrize("share", [1e-2, 1e-4, 1e-6])
+def test_with_light_feet_both_laws_and_the_momenta_agree_and_the_friction_needed_is_that_of_a_point_mass(
+    share,
+):
+    compass, angles, rates = SIMPLEST._replace(leg_mass=share), (0.2, -0.2), (0.22, 0.21)
+    known = after_impact(compass, angles, rates)
+    for law in ("path", "total"):
+        outcome, found = strike(compass, angles, rates, 1.0, law)
+        assert outcome.mode is Mode.PIVOT
+        # W has a condition number of about 1 / share.
+        assert found == pytest.approx(known, abs=1e-15 / share + 1e-14)
+        normal, tangential = outcome.impulses[1]
+        assert abs(tangential) / normal == pytest.approx(math.tan(0.2), abs=share)
 
 
 URDF = """<robot name="compass">

@@ -22,8 +22,7 @@ from impact_predictor.report.motions.wheel_figure import (
     write_wheel_figure,
 )
 from impact_predictor.report.motions.wheel_words import as_json, sentences
-from impact_predictor.scenarios.walking.stride import Hub
-from impact_predictor.scenarios.walking.wheel import Rolling, Stand, Wheel, roll
+from impact_predictor.scenarios.wheel import Hub, Rolling, Stand, Wheel, roll
 
 matplotlib.use("agg")
 

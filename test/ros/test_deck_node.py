@@ -29,8 +29,8 @@ from impact_predictor.ros.messages import (
     encode_odometry,
 )
 from impact_predictor.ros.processes import Child
-from impact_predictor.scenarios.deck.record import Sensors
 from impact_predictor.scenarios.deck.voyage import sail
+from impact_predictor.scenarios.record import Sensors
 
 pytest.importorskip("rclpy", reason="the node needs ROS 2: source it, or install the extra `ros`")
 

@@ -12,6 +12,7 @@ pytest.importorskip("rclpy", reason="the node needs ROS 2: source it, or install
 
 import rclpy
 from graph import arguments_of, peer_of_node, running_node
+from trot import FEET, plan, trot
 
 from impact_predictor.bags.read import read_messages, topics
 from impact_predictor.bags.replay import replay
@@ -35,7 +36,6 @@ from impact_predictor.ros.messages import (
 )
 from impact_predictor.ros.messages.inputs import JOINT_STATE, JOINT_TRAJECTORY, WRENCH
 from impact_predictor.ros.process import message_class
-from impact_predictor.scenarios.walking.trot import FEET, plan, trot
 
 ROOT = Path(__file__).parents[2]
 SCENE = ROOT / "config/walker_hyq.yaml"

@@ -7,8 +7,7 @@ import touchdowns
 
 from impact_predictor.prediction.scene import Scene, Walking
 from impact_predictor.prediction.types import Foot, Leftover, Prediction, Sample, Status
-from impact_predictor.scenarios.comparison import Comparison, Truth, compare
-from impact_predictor.scenarios.landings import Landings, TrueLanding
+from impact_predictor.scenarios.comparison import Comparison, Landings, TrueLanding, Truth, compare
 from impact_predictor.scenarios.matching import Announcements
 
 UNIT = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))

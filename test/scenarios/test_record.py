@@ -12,7 +12,7 @@ from impact_predictor.bags.read import read_messages, topics
 from impact_predictor.prediction.types import Sample
 from impact_predictor.prediction.vectors import axes_of, to_world
 from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY, ODOMETRY, POLYGON, decode_odometry, decode_polygon
-from impact_predictor.scenarios.record import REST, Actor, samples_in, write_record
+from impact_predictor.scenarios.record import REST, Actor, rocking_actor, write_record
 from impact_predictor.scenarios.rocking import Rocking, release, rocking_rod
 from impact_predictor.scenarios.truth import TRUTH_TOPIC, decode_true_impacts
 
@@ -33,9 +33,9 @@ def samples_of(path: Path, topic: str = "/odom") -> list[Sample]:
 
 
 def test_one_body_stands_on_the_topics_of_the_node_and_several_on_their_own(tmp_path: Path) -> None:
-    alone = recorded(tmp_path / "alone.mcap", Actor("rod", a_rod().run))
+    alone = recorded(tmp_path / "alone.mcap", rocking_actor("rod", a_rod().run))
     assert topics(alone) == {"/contact_geometry": POLYGON, "/odom": ODOMETRY, TRUTH_TOPIC: DIAGNOSTIC_ARRAY}
-    both = recorded(tmp_path / "both", Actor("one", a_rod().run), Actor("two", a_rod(0.05).run))
+    both = recorded(tmp_path / "both", rocking_actor("one", a_rod().run), rocking_actor("two", a_rod(0.05).run))
     assert set(topics(both)) == {
         *("/one/odom", "/one/contact_geometry", "/two/odom", "/two/contact_geometry"),
         TRUTH_TOPIC,
@@ -47,8 +47,8 @@ def test_one_body_stands_on_the_topics_of_the_node_and_several_on_their_own(tmp_
 def test_the_states_are_those_of_the_motion_in_space_at_the_rate(tmp_path: Path) -> None:
     slope = radians(5.0)
     run = a_rod(slope=slope).run
-    samples = samples_of(recorded(tmp_path / "rod.mcap", Actor("rod", run), rate=700.0))
-    assert len(samples) == samples_in(run, 700.0) == 1 + int((run.time + REST) * 700.0)
+    samples = samples_of(recorded(tmp_path / "rod.mcap", rocking_actor("rod", run), rate=700.0))
+    assert len(samples) == rocking_actor("rod", run).samples(700.0) == 1 + int((run.time + REST) * 700.0)
     assert [sample.stamp for sample in samples] == [round(k * 1e9 / 700.0) for k in range(len(samples))]
     for sample in samples[::7]:
         state = run.state(sample.stamp / 1e9)
@@ -70,7 +70,7 @@ def test_the_states_are_those_of_the_motion_in_space_at_the_rate(tmp_path: Path)
 def test_the_true_impacts_are_those_of_the_motion(tmp_path: Path) -> None:
     slope = radians(5.0)
     run = a_rod(slope=slope).run
-    path = recorded(tmp_path / "rod.mcap", Actor("rod", run))
+    path = recorded(tmp_path / "rod.mcap", rocking_actor("rod", run))
     messages = list(read_messages(path, {TRUTH_TOPIC: DIAGNOSTIC_ARRAY}))
     impacts = [impact for message in messages for impact in decode_true_impacts(message.data)]
     assert len(impacts) == len(run.impacts) > 5
@@ -86,7 +86,7 @@ def test_the_true_impacts_are_those_of_the_motion(tmp_path: Path) -> None:
 
 
 def test_the_contact_points_are_those_of_the_body(tmp_path: Path) -> None:
-    path = recorded(tmp_path / "rod.mcap", Actor("rod", a_rod().run))
+    path = recorded(tmp_path / "rod.mcap", rocking_actor("rod", a_rod().run))
     (message,) = read_messages(path, {"/contact_geometry": POLYGON})
     geometry = decode_polygon(message.data)
     old, new = geometry.points
@@ -96,13 +96,13 @@ def test_the_contact_points_are_those_of_the_body(tmp_path: Path) -> None:
 
 
 def test_the_same_motion_makes_the_same_bytes(tmp_path: Path) -> None:
-    one, other = (recorded(tmp_path / name, Actor("rod", a_rod().run)) for name in ("one.mcap", "other.mcap"))
+    one, other = (recorded(tmp_path / name, rocking_actor("rod", a_rod().run)) for name in ("one.mcap", "other.mcap"))
     assert one.read_bytes() == other.read_bytes()
 
 
 def test_progress_is_told(tmp_path: Path) -> None:
     run = a_rod().run
     told: list[int] = []
-    write_record(tmp_path / "rod.mcap", [Actor("rod", run)], RATE, told.append)
+    write_record(tmp_path / "rod.mcap", [rocking_actor("rod", run)], RATE, told.append)
     assert told == sorted(told)
-    assert 0 < told[-1] <= samples_in(run, RATE)
+    assert 0 < told[-1] <= rocking_actor("rod", run).samples(RATE)

@@ -97,7 +97,7 @@ def test_a_border_is_the_nearest_of_friction_and_geometry() -> None:
     border = 3.0 * 0.8 / (4.0 * 0.8**2 + 1.0)
     for part in (0.5, 0.98, 1.001, 1.5):
         body = plate(1.0, 0.8, 2.0, part * border)
-        found = border_of(solve_impact(body, body.turning(-1.0)), 0.5)
+        found = border_of(solve_impact(body, body.turning(-1.0)))
         margins = solve_impact(body, body.turning(-1.0)).margins
         shifts = [abs(one.change) / 0.5 for one in (margins.center, margins.height, margins.reach)]
         assert found == pytest.approx(min(abs(border / (part * border) - 1.0), *shifts), rel=1e-6)
@@ -106,4 +106,4 @@ def test_a_border_is_the_nearest_of_friction_and_geometry() -> None:
 
 def test_nothing_struck_has_no_border() -> None:
     body = plate(1.0, 0.8, 2.0, 0.3)
-    assert border_of(solve_impact(body, body.turning(1.0)), 0.5) == inf
+    assert border_of(solve_impact(body, body.turning(1.0))) == inf

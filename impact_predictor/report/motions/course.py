@@ -7,6 +7,7 @@ from math import hypot
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...mechanics.motion import PlanarState
 from ...mechanics.rocking import End
@@ -14,8 +15,7 @@ from ...mechanics.support import MovingSupport
 from ...prediction.watch.onset import Onset, motions
 from ...prediction.watch.standing import Standing
 from ...ros.markers.shapes import box_of
-from ...scenarios.deck.cargo import Span, Unit
-from ...scenarios.deck.sea import Array
+from ...scenarios.deck.cargo import CargoUnit, Span
 from ...scenarios.truth import TrueImpact, TrueOnset
 from .stage import circle
 
@@ -25,7 +25,7 @@ _STEP: Final = 0.05
 """Seconds between the moments of a picture of a shorter one."""
 
 
-def moments(duration: float) -> Array:
+def moments(duration: float) -> NDArray[np.float64]:
     """Times in s at which a picture of a motion needs the state of each unit."""
     return np.linspace(0.0, duration, min(_MOST, max(2, round(duration / _STEP) + 1)))
 
@@ -36,12 +36,12 @@ class Course:
     `impacts` and `onsets` of it; `end` says how it ended, and `ended` when (s).
     """
 
-    def __init__(self, unit: Unit, times: Array) -> None:
+    def __init__(self, unit: CargoUnit, times: NDArray[np.float64]) -> None:
         self.unit, self.times = unit, times
         self.impacts: list[TrueImpact] = []
         self.onsets: list[TrueOnset] = []
         self.end, self.ended = End.TIME_UP, 0.0
-        self._states: Array = np.full((6, len(times)), np.nan)
+        self._states: NDArray[np.float64] = np.full((6, len(times)), np.nan)
 
     def taking(self, spans: Iterable[Span]) -> Iterator[Span]:
         """The spans of the motion, each taken up as it passes."""
@@ -68,30 +68,30 @@ class Course:
         return self.end is End.OVERTURNED
 
     @property
-    def tilt(self) -> Array:
+    def tilt(self) -> NDArray[np.float64]:
         """Angles in rad from how it stood."""
-        angles: Array = self._states[2] - self.unit.start.angle
+        angles: NDArray[np.float64] = self._states[2] - self.unit.start.angle
         return angles
 
     @property
-    def slid(self) -> Array:
+    def slid(self) -> NDArray[np.float64]:
         """Ways in m along the deck of the lower one of its contacts from where it stood; 0 for a cylinder on edges."""
         body, (x, _, angle, *_) = self.unit.body, self._states
         assert body.old is not None
         if self.unit.scene.radius > 0.0:
-            rest: Array = 0.0 * angle
+            rest: NDArray[np.float64] = 0.0 * angle
             return rest
         c, s = np.cos(angle), np.sin(angle)
         old, new = body.old, body.new
         old_is_lower = s * old.x + c * old.y < s * new.x + c * new.y
         turned = np.where(old_is_lower, (c - 1.0) * old.x - s * old.y, (c - 1.0) * new.x - s * new.y)
-        way: Array = turned + x - self.unit.foot[0] - self.unit.start.x
+        way: NDArray[np.float64] = turned + x - self.unit.foot[0] - self.unit.start.x
         return way
 
     @property
-    def speed(self) -> Array:
+    def speed(self) -> NDArray[np.float64]:
         """Of the mass centre along the deck in m/s."""
-        along: Array = self._states[3]
+        along: NDArray[np.float64] = self._states[3]
         return along
 
 
@@ -102,14 +102,14 @@ class Courses:
         self.times = moments(duration)
         self.all: list[Course] = []
 
-    def taking(self, unit: Unit, spans: Iterable[Span]) -> Iterator[Span]:
+    def taking(self, unit: CargoUnit, spans: Iterable[Span]) -> Iterator[Span]:
         """The spans of a unit, taken up as they pass."""
         course = Course(unit, self.times)
         self.all.append(course)
         return course.taking(spans)
 
 
-def outline_of(unit: Unit) -> Array:
+def outline_of(unit: CargoUnit) -> NDArray[np.float64]:
     """The outline (n, 2) in m of a unit seen along the deck, from its mass centre, while it stands."""
     scene, body = unit.scene, unit.body
     assert body.old is not None
@@ -122,7 +122,7 @@ def outline_of(unit: Unit) -> Array:
     return np.array([(left, bottom), (right, bottom), (right, top), (left, top)])
 
 
-def margin_used(deck: MovingSupport, unit: Unit, times: Array) -> Array:
+def margin_used(deck: MovingSupport, unit: CargoUnit, times: NDArray[np.float64]) -> NDArray[np.float64]:
     """The larger part that is used of the margins of a unit against sliding and tipping, where it began: 1 at the
     onset. `deck` is the support's motion, of its own frame.
     """
@@ -134,5 +134,5 @@ def margin_used(deck: MovingSupport, unit: Unit, times: Array) -> Array:
     gravity = np.stack([none, felt[:, 0], felt[:, 1]], axis=1)
     angular, turning = (np.stack([felt[:, k], none, none], axis=1) for k in (2, 3))
     margins = Onset([stance]).margins(motions(gravity, angular, turning))
-    used: Array = np.maximum(margins.slide, margins.tip)[0]
+    used: NDArray[np.float64] = np.maximum(margins.slide, margins.tip)[0]
     return used

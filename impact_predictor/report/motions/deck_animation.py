@@ -17,7 +17,6 @@ from PIL import Image
 
 from ...mechanics.support import MovingSupport
 from ...prediction.scene import Watching
-from ...scenarios.deck.sea import Array
 from ...stamps import NANOSECONDS
 from ..figure import STYLE
 from .animation import STEP, Picture, check_animation, save_film
@@ -76,7 +75,7 @@ def write_deck_animation(
 class _Film:
     """The picture at any moment."""
 
-    def __init__(self, deck: MovingSupport, courses: Sequence[Course], times: Array) -> None:
+    def __init__(self, deck: MovingSupport, courses: Sequence[Course], times: NDArray[np.float64]) -> None:
         near = busiest(courses, _UNITS)
         figure = Figure(figsize=(_WIDTH, _HEIGHT), dpi=_DPI)
         FigureCanvasAgg(figure)
@@ -112,7 +111,7 @@ class _Film:
 class _Roll:
     """The deck's roll against time with the impacts in it; `show` moves its end to a moment."""
 
-    def __init__(self, axes: Axes, deck: MovingSupport, courses: Sequence[Course], times: Array) -> None:
+    def __init__(self, axes: Axes, deck: MovingSupport, courses: Sequence[Course], times: NDArray[np.float64]) -> None:
         self._times, self._angles = times, np.degrees(deck.motion(times).angle)
         axes.plot(times, self._angles, color=ROLL, linewidth=1.0, alpha=0.3)
         (self._line,) = axes.plot([], [], color=ROLL, linewidth=1.8)

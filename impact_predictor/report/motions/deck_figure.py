@@ -15,12 +15,12 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from numpy.typing import NDArray
 
 from ...mechanics.rocking import End
 from ...mechanics.support import MovingSupport
 from ...mechanics.types import Mode
 from ...prediction.scene import Watching
-from ...scenarios.deck.sea import Array
 from ...stamps import NANOSECONDS
 from ..figure import MODE_MARKERS, STYLE, check_figure, save_figure
 from ..maps.figure import COLOURS as MODE_COLOURS
@@ -72,7 +72,7 @@ def _busyness(course: Course) -> tuple[bool, int, float]:
     return course.toppled, len(course.impacts), greatest(course.slid)
 
 
-def greatest(values: Array) -> float:
+def greatest(values: NDArray[np.float64]) -> float:
     """The largest size of numbers, some of which are NaN."""
     return float(np.nanmax(np.abs(values)))
 
@@ -86,7 +86,7 @@ def title_of(courses: Sequence[Course], shown: int) -> str:
     return told + (f"; the {shown} that moved most" if shown < len(courses) else "")
 
 
-def draw_deck(axes: Axes, deck: MovingSupport, times: Array) -> None:
+def draw_deck(axes: Axes, deck: MovingSupport, times: NDArray[np.float64]) -> None:
     """Roll and heave of the deck against time."""
     motion = deck.motion(moments(float(times[-1])))
     seen = moments(float(times[-1]))
@@ -147,7 +147,7 @@ def _fate(course: Course) -> str:
     return f"{course.unit.name}: {', '.join(told) or 'stays where it is'}"
 
 
-def _draw_margin(axes: Axes, times: Array, used: Array) -> None:
+def _draw_margin(axes: Axes, times: NDArray[np.float64], used: NDArray[np.float64]) -> None:
     """A strip along the bottom: how much of the margin against sliding and tipping is used."""
     # Never thinner than can be seen.
     half = max(0.5 * (times[1] - times[0]), 8e-4 * (times[-1] - times[0]))

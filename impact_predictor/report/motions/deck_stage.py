@@ -11,11 +11,11 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.patches import Polygon
 from matplotlib.transforms import Affine2D
+from numpy.typing import NDArray
 
 from ...mechanics.motion import PlanarState
 from ...mechanics.support import MovingSupport
 from ...prediction.scene import Watching
-from ...scenarios.deck.sea import Array
 from ...stamps import NANOSECONDS
 from .course import Course, margin_used, outline_of
 from .stage import CLOSED, LINE, OPEN, STRUCK, SUPPORT, placed
@@ -34,7 +34,7 @@ _ROOM: Final = 1.15
 class Vessel:
     """The vessel in still water, seen from astern, with its units; it rolls, heaves and sways."""
 
-    def __init__(self, axes: Axes, deck: MovingSupport, courses: Sequence[Course], times: Array) -> None:
+    def __init__(self, axes: Axes, deck: MovingSupport, courses: Sequence[Course], times: NDArray[np.float64]) -> None:
         self._deck, self._courses = deck, courses
         half = half_beam(courses)
         motion = deck.motion(times)
@@ -87,7 +87,7 @@ def half_beam(courses: Sequence[Course]) -> float:
 class UnitStage:
     """One unit on its piece of the deck, which rolls; what it does, and how much of its margin is used, in words."""
 
-    def __init__(self, axes: Axes, deck: MovingSupport, course: Course, times: Array) -> None:
+    def __init__(self, axes: Axes, deck: MovingSupport, course: Course, times: NDArray[np.float64]) -> None:
         self._deck, self._course = deck, course
         self._used = margin_used(deck, course.unit, course.times)
         unit, body = course.unit, course.unit.body
@@ -135,7 +135,7 @@ class UnitStage:
             mark.set_markerfacecolor(CLOSED if closed else OPEN)
         self._say(time, state, places)
 
-    def _say(self, time: float, state: PlanarState, places: Array) -> None:
+    def _say(self, time: float, state: PlanarState, places: NDArray[np.float64]) -> None:
         course = self._course
         used = float(np.interp(time, course.times, self._used))
         self._words.set_text(self._doing(time, state, used)[1])
@@ -163,7 +163,7 @@ class UnitStage:
             return True, f"slides at {abs(state.vx):.2g} m/s"
         return False, f"stands, {100.0 * min(used, 9.99):.0f} % of its margin used"
 
-    def _seen(self, points: Array, state: PlanarState | None, time: float) -> Array:
+    def _seen(self, points: NDArray[np.float64], state: PlanarState | None, time: float) -> NDArray[np.float64]:
         """Points of the deck, or of a body in a state, for a camera that goes with the deck but stays upright."""
         on_deck = points if state is None else placed(points, state)
         turned = Affine2D().rotate_around(*self._pivot, float(self._deck.motion(time).angle))

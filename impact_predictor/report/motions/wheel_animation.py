@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from PIL import Image
 
-from ...scenarios.walking.wheel import Rolling
+from ...scenarios.wheel import Rolling
 from ..figure import STYLE
 from .animation import STEP, Picture, check_animation, digits_of, pace_of, save_film, speed_for
 from .figure import COLOURS

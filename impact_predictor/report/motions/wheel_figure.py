@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 from ...mechanics.motion import PlanarState
 from ...mechanics.types import Mode
-from ...scenarios.walking.closed_forms import downhill, least_friction, steady
-from ...scenarios.walking.wheel import RollEnd, Rolling, Stand, Wheel
+from ...scenarios.wheel import RollEnd, Rolling, Stand, Wheel
+from ...scenarios.wheel_closed_forms import downhill, least_friction, steady
 from ..figure import MODE_MARKERS, STYLE, check_figure, save_figure
 from .figure import COLOURS
 

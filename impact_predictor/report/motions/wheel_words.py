@@ -8,8 +8,8 @@ from typing import Any, Final
 from rich.console import Console
 from rich.table import Table
 
-from ...scenarios.walking.closed_forms import downhill, impact_friction, least_friction, steady
-from ...scenarios.walking.wheel import RollEnd, Rolling, Wheel
+from ...scenarios.wheel import RollEnd, Rolling, Wheel
+from ...scenarios.wheel_closed_forms import downhill, impact_friction, least_friction, steady
 from ..table import plain_table, show
 from .words import MOST_ROWS
 

@@ -7,8 +7,12 @@ motion ends there.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from math import asin, atan2, cos, hypot, sin
 from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
 
 from ...errors import InputError
 from ...mechanics.bodies import wedged
@@ -20,10 +24,8 @@ from ...prediction.planar import inertia_about
 from ...prediction.scene import Scene
 from ...prediction.types import Vector3
 from ...stamps import NANOSECONDS
-from ..record import half_distance, true_impact
-from ..space import ACROSS, Mount
-from ..truth import TrueImpact, TrueOnset, border_of
-from .sea import Array
+from ..sensors import ACROSS, Mount
+from ..truth import TrueImpact, TrueOnset, border_of, true_impact
 
 ALONE: Final = "unit"
 """Frame of the unit of a scene file without `bodies`."""
@@ -43,7 +45,7 @@ _DIGITS: Final = 9
 _MOST_KNOWN: Final = 4096
 
 
-class Unit(NamedTuple):
+class CargoUnit(NamedTuple):
     """A cargo unit in the deck's plane, planar x to port and planar y up.
 
     `start` is its state on both contacts, seen from the place `foot` of the deck (y, z); `mount` tells how its frame
@@ -68,14 +70,14 @@ class Span(NamedTuple):
 
     start: float
     time: float
-    state: Callable[[Array], PlanarState]
+    state: Callable[[NDArray[np.float64]], PlanarState]
     impacts: tuple[TrueImpact, ...]
     onsets: tuple[TrueOnset, ...]
     sums: tuple[float, ...]
     end: End
 
 
-def units_of(scenes: Mapping[str, Scene]) -> list[Unit]:
+def units_of(scenes: Mapping[str, Scene]) -> list[CargoUnit]:
     """The units of a parameter file's scenes, see `prediction.scene.scenes_of`.
 
     Raises:
@@ -84,7 +86,7 @@ def units_of(scenes: Mapping[str, Scene]) -> list[Unit]:
     return [unit_of(name or ALONE, scene) for name, scene in scenes.items()]
 
 
-def unit_of(name: str, scene: Scene) -> Unit:
+def unit_of(name: str, scene: Scene) -> CargoUnit:
     """The unit of one scene, standing where its `place` and `yaw` tell, on the deck.
 
     Raises:
@@ -97,7 +99,7 @@ def unit_of(name: str, scene: Scene) -> Unit:
     return _drum(name, scene) if scene.radius > 0.0 else _box(name, scene)
 
 
-def _box(name: str, scene: Scene) -> Unit:
+def _box(name: str, scene: Scene) -> CargoUnit:
     """A unit that stands on points of it: of its lowest ones those furthest to starboard and to port."""
     if len(scene.points) < 2:
         raise InputError(f"{name} has no contact points; give body.contact_points in the parameter file")
@@ -126,10 +128,18 @@ def _box(name: str, scene: Scene) -> Unit:
     body = TwoPointBody(scene.mass, _inertia(scene, on_edges), contacts[0], contacts[1])
     y = scene.place[1] + arms[old[0]][1]
     mount = Mount(scene.place[0] + center[0], scene.yaw, scene.center_of_mass)
-    return Unit(name, scene, body, standing(body, 0.0, x=y), (0.0, scene.height), mount, (old, new))
+    return CargoUnit(
+        name=name,
+        scene=scene,
+        body=body,
+        start=standing(body, 0.0, x=y),
+        foot=(0.0, scene.height),
+        mount=mount,
+        contacts=(old, new),
+    )
 
 
-def _drum(name: str, scene: Scene) -> Unit:
+def _drum(name: str, scene: Scene) -> CargoUnit:
     """A cylinder along the deck that lies on two of the support's edges."""
     if len(scene.edges) != 2:
         raise InputError(f"{name} lies on {len(scene.edges)} edges; give support.edges two points, one of each chock")
@@ -149,7 +159,15 @@ def _drum(name: str, scene: Scene) -> Unit:
     assert body.old is not None
     body = body._replace(old=body.old._replace(restitution=scene.restitution))
     mount = Mount(scene.place[0] + scene.center_of_mass[0], scene.yaw, scene.center_of_mass)
-    return Unit(name, scene, body, standing(body, 0.0), (y, z), mount, ((edges[0],), (edges[1],)))
+    return CargoUnit(
+        name=name,
+        scene=scene,
+        body=body,
+        start=standing(body, 0.0),
+        foot=(y, z),
+        mount=mount,
+        contacts=((edges[0],), (edges[1],)),
+    )
 
 
 def _inertia(scene: Scene, blocked: bool) -> float:
@@ -164,7 +182,7 @@ def _ahead(vector: Vector3, yaw: float) -> Vector3:
     return c * x - s * y, s * x + c * y, z
 
 
-def follow(unit: Unit, support: MovingSupport, duration: float, law: str = "path") -> Iterator[Span]:
+def follow(unit: CargoUnit, support: MovingSupport, duration: float, law: str = "path") -> Iterator[Span]:
     """The motion of a unit, one span after the other; `support` has its origin at the unit's foot."""
     time, state, end, rested = 0.0, unit.start, End.TIME_UP, True
     borders = Borders()
@@ -177,13 +195,13 @@ def follow(unit: Unit, support: MovingSupport, duration: float, law: str = "path
         ]
         until = min(time + run.time, duration)
         yield Span(
-            time,
-            until,
-            _states_of(run, time),
-            tuple(impacts),
-            tuple(_onsets(unit.name, run, rested, time)),
-            tuple(time + one.time for one in run.accumulations),
-            run.end,
+            start=time,
+            time=until,
+            state=partial(_state_at, run, time),
+            impacts=tuple(impacts),
+            onsets=tuple(_onsets(unit.name, run, rested, time)),
+            sums=tuple(time + one.time for one in run.accumulations),
+            end=run.end,
         )
         rested = run.states(run.time) == STILL
         state, time, end = run.state(run.time), until, run.end
@@ -194,8 +212,8 @@ def _later(support: MovingSupport, since: float) -> MovingSupport:
     return MovingSupport(lambda time: support.motion(since + time), support.period, support.gravity)
 
 
-def _states_of(run: Run, since: float) -> Callable[[Array], PlanarState]:
-    return lambda times: run.state(times - since)
+def _state_at(run: Run, since: float, times: NDArray[np.float64]) -> PlanarState:
+    return run.state(times - since)
 
 
 def _onsets(name: str, run: Run, rested: bool, since: float) -> Iterator[TrueOnset]:
@@ -223,11 +241,11 @@ class Borders:
         before = strike.outcome.before
         assert before is not None
         if strike.old is None or before.omega == 0.0:
-            return border_of(strike.outcome, half_distance(strike))
+            return border_of(strike.outcome)
         key = (strike.old, round(before.vx / before.omega, _DIGITS), round(before.vy / before.omega, _DIGITS))
         found = self._known.get(key)
         if found is None:
             if len(self._known) >= _MOST_KNOWN:
                 self._known.clear()
-            found = self._known[key] = border_of(strike.outcome, half_distance(strike))
+            found = self._known[key] = border_of(strike.outcome)
         return found

@@ -13,6 +13,7 @@ from math import cos, hypot, pi, sin
 from typing import Final, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...errors import InputError
 from ...mechanics.compliant.integrator import Status
@@ -24,10 +25,9 @@ from ...mechanics.rocking.flight import from_world
 from ...mechanics.support import MovingSupport
 from ...mechanics.types import Contact, Mode, Twist, TwoPointBody
 from ...stamps import NANOSECONDS
-from ..space import ACROSS
+from ..sensors import ACROSS
 from ..truth import TrueImpact, border_of
-from .cargo import Span, Unit
-from .sea import Array
+from .cargo import CargoUnit, Span
 
 SPAN: Final = 10.0
 """Seconds that are integrated at once."""
@@ -62,12 +62,12 @@ _HALVINGS: Final = 50
 class _Contacts(NamedTuple):
     """Gaps (m), their rates and slips (m/s) of both contacts, seen from the support; numbers or arrays."""
 
-    gaps: tuple[Array, Array]
-    rates: tuple[Array, Array]
-    slips: tuple[Array, Array]
+    gaps: tuple[NDArray[np.float64], NDArray[np.float64]]
+    rates: tuple[NDArray[np.float64], NDArray[np.float64]]
+    slips: tuple[NDArray[np.float64], NDArray[np.float64]]
 
 
-def follow_compliant(unit: Unit, support: MovingSupport, duration: float, law: str = "path") -> Iterator[Span]:
+def follow_compliant(unit: CargoUnit, support: MovingSupport, duration: float, law: str = "path") -> Iterator[Span]:
     """The motion of a unit on compliant contacts, one span after the other; as `deck.follow`.
 
     `law` judges how near the state before an impact is to another mode, and nothing else.
@@ -106,17 +106,17 @@ def follow_compliant(unit: Unit, support: MovingSupport, duration: float, law: s
 class _Seen:
     """A stretch of compliant motion, seen from the support."""
 
-    def __init__(self, unit: Unit, support: MovingSupport, motion: CompliantMotion) -> None:
+    def __init__(self, unit: CargoUnit, support: MovingSupport, motion: CompliantMotion) -> None:
         self.unit, self.support, self.motion = unit, support, motion
         old = unit.body.old
         assert old is not None
         self.points = (old.x, old.y), (unit.body.new.x, unit.body.new.y)
 
-    def state(self, times: Array | float) -> PlanarState:
+    def state(self, times: NDArray[np.float64] | float) -> PlanarState:
         """The mass centre's states at a time or an array of times."""
         return from_world(self.support.motion(times), PlanarState(*self.motion.way(times)))
 
-    def contacts(self, times: Array | float) -> _Contacts:
+    def contacts(self, times: NDArray[np.float64] | float) -> _Contacts:
         return self.of(self.state(times))
 
     def of(self, state: PlanarState) -> _Contacts:
@@ -128,7 +128,7 @@ class _Seen:
         )
         return _Contacts((up_a, up_b), (rate_a, rate_b), (slip_a, slip_b))
 
-    def impacts(self, times: Array, last_open: list[float], law: str) -> Iterator[TrueImpact]:
+    def impacts(self, times: NDArray[np.float64], last_open: list[float], law: str) -> Iterator[TrueImpact]:
         """The impacts between the steps `times` of the integrator, in order.
 
         `last_open` is since when each contact has been open, below zero for a closed one; it is kept up to date.
@@ -201,7 +201,7 @@ class _Seen:
             ACROSS.spin(twist.omega),
             ACROSS.vector(twist_after.vx, twist_after.vy),
             ACROSS.spin(twist_after.omega),
-            border_of(solve_impact(body, twist, law), half),
+            border_of(solve_impact(body, twist, law)),
         )
 
     def _body(self, state: PlanarState, new: int, stood: bool) -> TwoPointBody:

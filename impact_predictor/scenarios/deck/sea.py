@@ -16,8 +16,6 @@ from numpy.typing import NDArray
 
 from ...errors import InputError
 
-Array = NDArray[np.float64]
-
 SPECTRA: Final = ("jonswap", "pm")
 
 RANGE: Final = 0.5, 4.0
@@ -47,9 +45,9 @@ class Waves(NamedTuple):
     The surface at the origin is the sum of amplitude * cos(frequency * t + phase).
     """
 
-    frequencies: Array
-    amplitudes: Array
-    phases: Array
+    frequencies: NDArray[np.float64]
+    amplitudes: NDArray[np.float64]
+    phases: NDArray[np.float64]
 
     @property
     def significant_height(self) -> float:
@@ -57,7 +55,7 @@ class Waves(NamedTuple):
         return 4.0 * sqrt(0.5 * float(self.amplitudes @ self.amplitudes))
 
 
-def density(state: SeaState, frequencies: Array) -> Array:
+def density(state: SeaState, frequencies: NDArray[np.float64]) -> NDArray[np.float64]:
     """Spectral density in m^2 s/rad at frequencies above 0 in rad/s (DNV-RP-C205, 3.5.5.1 and 3.5.5.2).
 
     Raises:
@@ -66,11 +64,13 @@ def density(state: SeaState, frequencies: Array) -> Array:
     height, period, spectrum, gamma = checked(state)
     peak = 2.0 * pi / period
     ratio = frequencies / peak
-    moskowitz: Array = 0.3125 * height * height / peak * ratio**-5.0 * np.exp(-1.25 * ratio**-4.0)
+    moskowitz: NDArray[np.float64] = 0.3125 * height * height / peak * ratio**-5.0 * np.exp(-1.25 * ratio**-4.0)
     if spectrum == "pm" or gamma == 1.0:
         return moskowitz
     width = np.where(ratio <= 1.0, 0.07, 0.09)
-    enhanced: Array = (1.0 - 0.287 * log(gamma)) * moskowitz * gamma ** np.exp(-0.5 * ((ratio - 1.0) / width) ** 2)
+    enhanced: NDArray[np.float64] = (
+        (1.0 - 0.287 * log(gamma)) * moskowitz * gamma ** np.exp(-0.5 * ((ratio - 1.0) / width) ** 2)
+    )
     return enhanced
 
 

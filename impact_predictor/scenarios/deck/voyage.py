@@ -5,24 +5,68 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator, Mapping
 from math import degrees, hypot, pi
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...errors import InputError
+from ...mechanics.motion import PlanarState
 from ...mechanics.rocking import End
+from ...mechanics.rocking.flight import in_world
 from ...mechanics.support import MovingSupport
 from ...prediction.scene import Scene, shared_by
-from ..record import write_messages
-from ..truth import ONSET_TOPIC, TRUTH_TOPIC
-from .cargo import Span, Unit, follow, units_of
-from .record import Followed, Sensors, messages_in, messages_of
+from ..record import Sensors, deck_messages, messages_in, write_messages
+from ..truth import ONSET_TOPIC, TRUTH_TOPIC, TrueImpact, TrueOnset
+from .cargo import CargoUnit, Span, follow, units_of
 
 CONTACTS = ("rigid", "compliant")
 
 _LONGEST = 7 * 24 * 3600.0
+LOOKS: Final = 20.0
+"""Hz at which the largest turn of a unit is looked for."""
+
 _CAPSIZED = 0.25 * pi
 """rad: no vessel with cargo on deck comes back from there."""
+
+
+class Followed:
+    """What happened to a unit, as far as it was followed."""
+
+    def __init__(self, unit: CargoUnit, support: MovingSupport, spans: Iterator[Span]) -> None:
+        self.unit, self.support = unit, support
+        self.impacts: list[TrueImpact] = []
+        self.onsets: list[TrueOnset] = []
+        self.sums: list[float] = []
+        self.end, self.time = End.TIME_UP, 0.0
+        self.most_turned = 0.0
+        """The largest angle (rad) from where it stood, as long as it had not toppled for good."""
+        self.moved = 0.0
+        """How far (m) it stands to port of where it began."""
+        self._spans = spans
+
+    def spans(self) -> Iterator[Span]:
+        """The spans of the motion, as they are followed."""
+        start = self.unit.start
+        for span in self._spans:
+            self.impacts += span.impacts
+            self.onsets += span.onsets
+            self.sums += span.sums
+            self.end, self.time = span.end, span.time
+            seen = span.state(np.append(np.arange(span.start, span.time, 1.0 / LOOKS), span.time))
+            turned = np.abs(seen.angle - start.angle)
+            self.most_turned = max(self.most_turned, float(turned.max()))
+            self.moved = float(np.asarray(seen.x)[-1]) - start.x
+            yield span
+
+    def in_world(self, span: Span, times: NDArray[np.float64]) -> PlanarState:
+        """The states of the mass centre in the world."""
+        return in_world(self.support.motion(times), span.state(times))
+
+    def on_deck(self, span: Span, times: NDArray[np.float64]) -> PlanarState:
+        """The states of the mass centre seen from the deck's frame."""
+        state, (y, z) = span.state(times), self.unit.foot
+        return state._replace(x=state.x + y, y=state.y + z)
 
 
 class Voyage(NamedTuple):
@@ -65,7 +109,7 @@ def sail(
     bag: str | os.PathLike[str] | None = None,
     sensors: Sensors = Sensors(),  # noqa: B008 - it is immutable
     tell: Callable[[int], None] | None = None,
-    seen: Callable[[Unit, Iterator[Span]], Iterator[Span]] = lambda unit, spans: spans,
+    seen: Callable[[CargoUnit, Iterator[Span]], Iterator[Span]] = lambda unit, spans: spans,
 ) -> Voyage:
     """Follow all units of the scenes for `duration` s, and write a `bag` with what their sensors told.
 
@@ -82,7 +126,7 @@ def sail(
     for name, deviation in sensors.noise._asdict().items():
         if not 0.0 <= deviation < 1e3:
             raise InputError(f"the noise of the {name} is {deviation}; give a standard deviation of 0 or more")
-    motion_of: Callable[[Unit, MovingSupport, float, str], Iterator[Span]] = follow
+    motion_of: Callable[[CargoUnit, MovingSupport, float, str], Iterator[Span]] = follow
     truths: tuple[str, ...] = (TRUTH_TOPIC, ONSET_TOPIC)
     if contacts == "compliant":
         from .compliant import follow_compliant
@@ -97,7 +141,7 @@ def sail(
     if bag is None:
         _pass(followed, tell)
     else:
-        write_messages(bag, messages_of(followed, deck, "" in scenes, duration, sensors, truths), tell)
+        write_messages(bag, deck_messages(followed, deck, "" in scenes, duration, sensors, truths), tell)
     return Voyage(deck, tuple(followed), duration, rolled, lateral)
 
 

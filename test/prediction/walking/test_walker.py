@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
+from walker_sensors import noisy
 
 from impact_predictor.mechanics.types import Flag
 from impact_predictor.prediction.predictor import PAUSE
@@ -28,8 +29,7 @@ from impact_predictor.prediction.walking.cubic import Frame
 from impact_predictor.prediction.walking.point import Point
 from impact_predictor.prediction.walking.stance import Ground
 from impact_predictor.prediction.walking.walker import Walker
-from impact_predictor.scenarios.landings import Landings
-from impact_predictor.scenarios.walking.noise import noisy
+from impact_predictor.scenarios.comparison import Landings
 
 MS = 1_000_000
 RATE = 400

@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 from rosbags.typesys import Stores, get_typestore
+from trot import FEET, PERIOD, trot
 
 from impact_predictor.parameters.file import read_values
 from impact_predictor.prediction.scene import Scene
@@ -13,7 +14,6 @@ from impact_predictor.prediction.walking.walker import Walker
 from impact_predictor.ros.markers.message import CUBE_LIST, SPHERE_LIST
 from impact_predictor.ros.markers.scene import MarkerScene
 from impact_predictor.ros.messages import MARKER_ARRAY
-from impact_predictor.scenarios.walking.trot import FEET, PERIOD, trot
 
 TYPESTORE = get_typestore(Stores.ROS2_JAZZY)
 SCENE = Scene.from_parameters(read_values(Path(__file__).parents[3] / "config/walker_hyq.yaml"))

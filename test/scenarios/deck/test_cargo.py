@@ -15,7 +15,7 @@ from impact_predictor.mechanics.rocking import End, rock
 from impact_predictor.mechanics.support import FixedSupport, MovingSupport, Wave, harmonic_support
 from impact_predictor.prediction.scene import MovingDeck, Scene
 from impact_predictor.scenarios.deck import cargo as deck_module
-from impact_predictor.scenarios.deck.cargo import Span, Unit, follow, unit_of, units_of
+from impact_predictor.scenarios.deck.cargo import CargoUnit, Span, follow, unit_of, units_of
 
 B, H, MASS, FRICTION = 0.4, 1.0, 500.0, 0.6
 
@@ -50,7 +50,7 @@ def a_deck(angle: float = 0.12) -> MovingSupport:
     return harmonic_support([Wave(angle, 2.4), Wave(0.4 * angle, 3.5, 1.0)], [Wave(0.35, 2.4, 0.3)], [Wave(0.2, 1.7)])
 
 
-def motion_of(unit: Unit, duration: float) -> list[Span]:
+def motion_of(unit: CargoUnit, duration: float) -> list[Span]:
     return list(follow(unit, a_deck().at(*unit.foot), duration))
 
 

@@ -17,9 +17,9 @@ from impact_predictor.prediction.types import Imu, Sample
 from impact_predictor.prediction.vectors import axes_of
 from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY, IMU, ODOMETRY, decode_imu, decode_odometry
 from impact_predictor.scenarios.deck.cargo import follow, unit_of
-from impact_predictor.scenarios.deck.record import Followed, Sensors, messages_of
-from impact_predictor.scenarios.deck.sensors import Noise
-from impact_predictor.scenarios.deck.voyage import gravity_of, sail
+from impact_predictor.scenarios.deck.voyage import Followed, gravity_of, sail
+from impact_predictor.scenarios.record import Sensors, deck_messages
+from impact_predictor.scenarios.sensors import SensorNoise
 from impact_predictor.scenarios.truth import (
     ONSET_TOPIC,
     TRUTH_TOPIC,
@@ -234,7 +234,7 @@ def test_over_a_deck_with_an_imu_alone_units_are_seen_from_the_deck(tmp_path: Pa
 
 
 def test_noise_has_its_deviations_and_says_so_in_the_covariances(tmp_path: Path) -> None:
-    noise = Noise(0.01, 0.02, 0.03, 0.04, 0.5, 0.06)
+    noise = SensorNoise(0.01, 0.02, 0.03, 0.04, 0.5, 0.06)
     scenes = {"a": box(), "b": box(source="imu")}
     clean = recorded(tmp_path / "clean", scenes, a_deck(0.0))
     noisy = recorded(tmp_path / "noisy", scenes, a_deck(0.0), noise=noise)
@@ -262,12 +262,12 @@ def test_noise_has_its_deviations_and_says_so_in_the_covariances(tmp_path: Path)
     sample = samples(noisy, "/a/odom")[0]
     assert np.diag(np.reshape(sample.pose_covariance, (6, 6))) == pytest.approx([1e-4] * 3 + [4e-4] * 3)
     assert np.diag(np.reshape(sample.twist_covariance, (6, 6))) == pytest.approx([9e-4] * 3 + [16e-4] * 3)
-    # Noise is of the sensors: what happened stays.
+    # SensorNoise is of the sensors: what happened stays.
     assert truths(clean) == truths(noisy)
 
 
 def test_the_same_seed_makes_the_same_bytes_and_another_one_others(tmp_path: Path) -> None:
-    noise = Noise(position=0.01, gyro=0.01)
+    noise = SensorNoise(position=0.01, gyro=0.01)
     scenes = {"a": box(), "b": box(source="imu")}
     one, same, other = (
         recorded(tmp_path / f"{k}.mcap", scenes, noise=noise, seed=seed).read_bytes()
@@ -293,7 +293,7 @@ def test_a_long_record_is_made_while_it_is_written() -> None:
     # The first messages come when the first minute has been followed, not the whole day.
     unit, day = unit_of("a", box(friction=0.1)), 24 * 3600.0
     one = Followed(unit, a_deck(), follow(unit, a_deck(), day))
-    streams = messages_of([one], a_deck(), False, day, Sensors())
+    streams = deck_messages([one], a_deck(), False, day, Sensors())
     next(streams[-1])
     assert one.time == 60.0
 

@@ -12,7 +12,7 @@ from impact_predictor.bags.write import BagWriter
 from impact_predictor.errors import InputError
 from impact_predictor.prediction.types import Sample
 from impact_predictor.ros.messages import ODOMETRY, encode_odometry
-from impact_predictor.scenarios.deck.recorded import read_deck
+from impact_predictor.scenarios.deck.vessel import read_deck
 
 RATE, DURATION = 10.0, 20.0
 FREQUENCY = 0.8

@@ -11,10 +11,10 @@ import pytest
 from impact_predictor.errors import InputError
 from impact_predictor.mechanics.support import Wave, harmonic_support
 from impact_predictor.scenarios.deck.sea import SeaState, Waves, waves_of
-from impact_predictor.scenarios.deck.vessel import SecondOrder, Table, Vessel, deck_in, read_vessel
+from impact_predictor.scenarios.deck.vessel import ResponseTable, SecondOrder, Vessel, deck_in, read_vessel
 
 G = 9.81
-NONE = Table((0.1, 10.0), (0.0, 0.0), (0.0, 0.0))
+NONE = ResponseTable((0.1, 10.0), (0.0, 0.0), (0.0, 0.0))
 TIMES = np.linspace(0.0, 300.0, 1001)
 
 
@@ -55,7 +55,7 @@ def test_a_raft_that_follows_the_water_feels_no_push_to_the_side() -> None:
 
 
 def test_a_table_is_met_at_its_frequencies_and_linear_between_them() -> None:
-    table = Table((0.5, 1.0), (0.2, 0.4), (0.0, 0.5 * pi))
+    table = ResponseTable((0.5, 1.0), (0.2, 0.4), (0.0, 0.5 * pi))
     at = table.at(np.array([0.3, 0.5, 0.75, 1.0, 2.0]), G)
     assert at == pytest.approx([0.2, 0.2, 0.1 + 0.2j, 0.4j, 0.4j], abs=1e-15)
 
@@ -95,8 +95,8 @@ def test_a_file_of_tables_is_a_vessel(tmp_path: Path) -> None:
     )
     vessel = read_vessel(str(file), 7.0)
     assert vessel.height == 7.0
-    assert vessel.roll == Table((0.3, 1.0), (0.01, 0.05), (-1.57, -1.6))
-    assert vessel.sway == Table((0.3, 1.0), (1.0, 0.4), (-1.57, -2.0))
+    assert vessel.roll == ResponseTable((0.3, 1.0), (0.01, 0.05), (-1.57, -1.6))
+    assert vessel.sway == ResponseTable((0.3, 1.0), (1.0, 0.4), (-1.57, -2.0))
 
 
 @pytest.mark.parametrize(

@@ -7,13 +7,11 @@ motion in one plane. Legs that do not slip; the inertia may be 0, that of a poin
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from math import cos, inf, sin, sqrt
 from typing import NamedTuple
 
-from ...mechanics.turning_stance import turn
-from .stride import Hub
-from .wheel import Wheel
+from ..mechanics.turning_stance import turn
+from .wheel import Hub, Wheel
 
 
 class Steady(NamedTuple):
@@ -66,18 +64,6 @@ def steady(wheel: Wheel) -> Steady | None:
 def downhill(wheel: Wheel) -> Wheel:
     """The wheel seen from the side from which it rolls ahead, not backwards, down its slope."""
     return wheel._replace(hub=wheel.hub._replace(slope=abs(wheel.hub.slope)))
-
-
-def rates(wheel: Wheel, after: float) -> Iterator[float]:
-    """Rates (rad/s) right after each impact from the one on, `after` which the wheel turns so; they end with its stop.
-
-    The last one is too slow for the wheel to come over its spoke, or is of an impact that leaves it on both spokes.
-    """
-    part, gain = kept(wheel.hub, wheel.alpha), gained(wheel.hub, -wheel.alpha, wheel.alpha)
-    yield after
-    while after > 0.0 and passes(wheel.hub, -wheel.alpha, after):
-        after = max(0.0, part) * sqrt(after * after + gain)
-        yield after
 
 
 def step_time(hub: Hub, start: float, end: float, rate: float) -> float:

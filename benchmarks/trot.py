@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from math import ceil, floor
 from typing import Final
 
-from ...prediction.types import Geometry, Sample, Schedule, Vector3
+from impact_predictor.prediction.types import Geometry, Sample, Schedule, Vector3
 
 SPEED: Final = 0.4
 """Of the trunk, in m/s."""

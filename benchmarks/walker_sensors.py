@@ -6,8 +6,8 @@ from typing import Final
 
 import numpy as np
 
-from ...prediction.types import Geometry, Sample
-from ...prediction.vectors import axes_of, to_world
+from impact_predictor.prediction.types import Geometry, Sample
+from impact_predictor.prediction.vectors import axes_of, to_world
 
 POSITION: Final = 1e-3
 """Standard deviation of each coordinate of base and feet, in m."""

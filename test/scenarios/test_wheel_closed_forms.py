@@ -2,27 +2,24 @@
 
 from __future__ import annotations
 
-from itertools import islice, pairwise
 from math import cos, inf, pi, sin, sqrt, tan
 
 import pytest
 
 from impact_predictor.mechanics.impact import solve_impact
 from impact_predictor.mechanics.types import Mode
-from impact_predictor.scenarios.walking.closed_forms import (
+from impact_predictor.scenarios.wheel import Hub, Wheel, roll
+from impact_predictor.scenarios.wheel_closed_forms import (
     downhill,
     gained,
     impact_friction,
     kept,
     least_friction,
     passes,
-    rates,
     stance_friction,
     steady,
     step_time,
 )
-from impact_predictor.scenarios.walking.stride import Hub, Stance, StrideEnd, stride
-from impact_predictor.scenarios.walking.wheel import Wheel
 
 ALPHA = pi / 8.0
 POINT_MASS = Wheel(Hub(mass=1.0, inertia=0.0, leg=1.0, friction=1.0, slope=0.08, gravity=9.8), ALPHA)
@@ -144,46 +141,33 @@ def test_the_stance_rules_the_friction_of_steady_rolling_with_inertia() -> None:
 
 
 @pytest.mark.parametrize("inertia", [0.05, 0.3, 2.0])
-def test_the_least_friction_of_steady_rolling_divides_strides_that_slip_from_those_that_do_not(inertia: float) -> None:
+def test_the_least_friction_of_steady_rolling_divides_wheels_that_slip_from_those_that_do_not(inertia: float) -> None:
     wheel = sloping(0.08, inertia)
     rolling = steady(wheel)
     assert rolling is not None
-    start = Stance(-ALPHA, rolling.after)
+    # From the steady rate over a spoke: the first impact is one of steady rolling.
+    rate = sqrt(rolling.after**2 + gained(wheel.hub, -ALPHA, 0.0))
     for part, sticks in ((1.0 + 1e-6, True), (1.0 - 1e-6, False)):
-        found = stride(wheel.hub._replace(friction=part * least_friction(wheel)), start, ALPHA)
-        slipped = [phase for phase in found.run.phases if phase.end <= found.time and set(phase.states) & set("+-")]
-        assert (not slipped) is sticks
+        hub = wheel.hub._replace(friction=part * least_friction(wheel))
+        found = roll(wheel._replace(hub=hub), rate, steps=2)
+        assert all(state == "S" for stand in found.stands for _, state in stand.tips) is sticks
 
 
 @pytest.mark.parametrize("inertia", [1e-9, 0.1, 1.0])
 def test_the_time_and_the_gain_of_a_step_are_those_of_the_motion(inertia: float) -> None:
-    wheel = sloping(0.08, inertia)
+    wheel = sloping(0.08, inertia)._replace(hub=sloping(0.08, inertia).hub._replace(friction=100.0))
     rolling = steady(wheel)
     assert rolling is not None
-    found = stride(wheel.hub, Stance(-ALPHA, rolling.after), ALPHA)
-    assert found.end is StrideEnd.LANDS
-    assert found.before is not None
+    first, second = roll(wheel, sqrt(rolling.after**2 + gained(wheel.hub, -ALPHA, 0.0)), steps=2).impacts
     # The motion is followed to 1e-11, the closed form is exact.
-    assert found.time == pytest.approx(rolling.time, rel=1e-10)
-    assert found.before.rate == pytest.approx(rolling.before, rel=1e-10)
+    assert second.strike.time - first.strike.time == pytest.approx(rolling.time, rel=1e-10)
+    assert -second.strike.before.omega == pytest.approx(rolling.before, rel=1e-10)
     assert rolling.speed == pytest.approx(2.0 * sin(ALPHA) / rolling.time, rel=1e-15)
 
 
-def test_the_rates_come_nearer_to_steady_rolling_by_the_square_of_what_an_impact_keeps() -> None:
-    rolling = steady(POINT_MASS)
-    assert rolling is not None
-    squares = [rate * rate - rolling.after**2 for rate in islice(rates(POINT_MASS, 2.0), 12)]
-    for one, other in pairwise(squares):
-        assert other / one == pytest.approx(0.5, rel=1e-9)
-
-
-def test_the_rates_of_a_wheel_that_stops_end_with_one_that_does_not_bring_it_over_its_spoke() -> None:
-    wheel = sloping(0.05)
-    found = list(rates(wheel, 1.5))
-    assert len(found) == 3
-    *others, last = found
-    assert all(passes(wheel.hub, -ALPHA, rate) for rate in others)
-    assert not passes(wheel.hub, -ALPHA, last)
-    assert step_time(wheel.hub, -ALPHA, ALPHA, last) == inf
-    # Where it has to turn at its highest place, all its motion is height.
-    assert last**2 + gained(wheel.hub, -ALPHA, -wheel.hub.slope) < 0.0
+def test_a_rate_too_small_does_not_bring_a_wheel_over_its_spoke() -> None:
+    hub = sloping(0.05).hub
+    least = sqrt(-gained(hub, -ALPHA, -hub.slope))
+    assert passes(hub, -ALPHA, least * (1.0 + 1e-12))
+    assert not passes(hub, -ALPHA, least * (1.0 - 1e-12))
+    assert step_time(hub, -ALPHA, ALPHA, least * (1.0 - 1e-12)) == inf

@@ -16,10 +16,7 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from scipy.optimize import root
 
-from ...errors import InputError
-from ...mechanics.contact_space import ContactOutcome, solve
-
-Array = NDArray[np.float64]
+from impact_predictor.mechanics.contact_space import ContactOutcome, solve
 
 
 class Compass(NamedTuple):
@@ -68,14 +65,14 @@ def step(compass: Compass, start: Gait, duration: float = 10.0) -> Step | None:
     when it comes down ahead. Angles count forwards, from the slope's normal.
     """
 
-    def slope_of_state(_: float, state: Array) -> list[float]:
+    def slope_of_state(_: float, state: NDArray[np.float64]) -> list[float]:
         return [state[2], state[3], *_accelerations(compass, *state)]
 
-    def lands(_: float, state: Array) -> float:
+    def lands(_: float, state: NDArray[np.float64]) -> float:
         # A foot ahead is above the ground while the sum of the angles is negative. Swinging past it may be below.
         return float(state[0] + state[1]) if state[0] > state[1] else 1.0
 
-    def falls(_: float, state: Array) -> float:
+    def falls(_: float, state: NDArray[np.float64]) -> float:
         return 1.5 - max(abs(float(state[0])), abs(float(state[1])))
 
     lands.terminal = falls.terminal = True  # type: ignore[attr-defined]
@@ -92,39 +89,15 @@ def step(compass: Compass, start: Gait, duration: float = 10.0) -> Step | None:
 
 
 def fixed_point(compass: Compass, near: Gait) -> Gait:
-    """The gait near another one that each step repeats.
+    """The gait near another one that each step repeats."""
 
-    Raises:
-        InputError: none was found.
-    """
-
-    def change(gait: Array) -> Array:
+    def change(gait: NDArray[np.float64]) -> NDArray[np.float64]:
         landed = step(compass, Gait(*gait))
         return np.array(landed.after) - gait if landed is not None else np.full(3, 1.0)
 
-    if step(compass, near) is None:
-        raise InputError("the compass falls from the gait that is given; give one with which it makes a step")
     found: Any = root(change, np.array(near), tol=1e-13)
-    if float(np.max(np.abs(found.fun))) > 1e-10:
-        raise InputError("the compass has no steady gait near the one that is given; give another one or another slope")
+    assert float(np.max(np.abs(found.fun))) < 1e-10
     return Gait(*map(float, found.x))
-
-
-def multipliers(compass: Compass, gait: Gait, nudge: float = 1e-6) -> NDArray[np.complex128]:
-    """By what each step multiplies a small change of a steady gait: stable where all are below 1; the largest first."""
-    columns = []
-    for k in range(3):
-        ends = []
-        for way in (nudge, -nudge):
-            moved = np.array(gait)
-            moved[k] += way
-            landed = step(compass, Gait(*moved))
-            if landed is None:
-                raise InputError("the compass falls next to its gait; take a smaller nudge")
-            ends.append(np.array(landed.after))
-        columns.append((ends[0] - ends[1]) / (2.0 * nudge))
-    values = np.linalg.eigvals(np.array(columns).T).astype(np.complex128)
-    return np.asarray(values[np.argsort(-np.abs(values))])
 
 
 def after_impact(compass: Compass, angles: tuple[float, float], rates: tuple[float, float]) -> tuple[float, float]:
@@ -158,7 +131,7 @@ def strike(
     return outcome, (float(after[3]), float(after[2]))
 
 
-def contact_rows(compass: Compass, theta: float, psi: float) -> Array:
+def contact_rows(compass: Compass, theta: float, psi: float) -> NDArray[np.float64]:
     """Velocities of the feet (4, 4) by those of the hip, ahead and up, and rates of the legs at two angles.
 
     Along the slope's normal and ahead: of the foot of the first leg, and of the other one.
@@ -173,7 +146,7 @@ def contact_rows(compass: Compass, theta: float, psi: float) -> Array:
     )
 
 
-def inertia_of(compass: Compass, theta: float, psi: float) -> Array:
+def inertia_of(compass: Compass, theta: float, psi: float) -> NDArray[np.float64]:
     """Inertia for velocities of the hip, ahead and up, and rates of the legs at two angles."""
     m, b = compass.leg_mass, compass.to_hip
     whole, own = compass.hip_mass + 2.0 * m, m * b * b + compass.leg_inertia
@@ -187,7 +160,7 @@ def inertia_of(compass: Compass, theta: float, psi: float) -> Array:
     )
 
 
-def _free_rates(compass: Compass, theta: float, stance: float, swing: float) -> Array:
+def _free_rates(compass: Compass, theta: float, stance: float, swing: float) -> NDArray[np.float64]:
     """Velocities of the hip and rates of the legs while the foot of the first one stands."""
     return np.array([compass.leg * cos(theta) * stance, -compass.leg * sin(theta) * stance, stance, swing])
 

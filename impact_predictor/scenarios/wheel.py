@@ -1,7 +1,8 @@
 """A rimless wheel on a slope: spokes without a rim, which it rolls over one after the other until it stops.
 
 Two neighbouring spokes at a time are a body on two points (`rock`): from the impact on the second one to the touchdown
-of a third. There the wheel looks as it did one spoke before.
+of a third. There the wheel looks as it did one spoke before (McGeer, "Passive dynamic walking", Int. J. Robotics
+Research 9(2), 1990).
 """
 
 from __future__ import annotations
@@ -12,13 +13,13 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from ...errors import InputError
-from ...mechanics.bodies import refuse
-from ...mechanics.motion import PlanarState
-from ...mechanics.rocking import End, Run, Strike, rock, standing
-from ...mechanics.rocking.flight import in_world
-from ...mechanics.types import Vector
-from .stride import Hub, check
+from ..errors import InputError
+from ..mechanics.bodies import not_negative, positive, refuse
+from ..mechanics.motion import PlanarState
+from ..mechanics.rocking import End, Run, Strike, rock, standing
+from ..mechanics.rocking.flight import in_world
+from ..mechanics.support import FixedSupport
+from ..mechanics.types import Contact, TwoPointBody, Vector
 
 _MOST_EVENTS: Final = 10_000
 _MOST_SPOKES: Final = 1000
@@ -28,6 +29,30 @@ _WHOLE: Final = 1e-9
 
 _BEYOND: Final = 1.0 + 1e-12
 """How far beyond being over a spoke it is over it, so that it is not over it at once."""
+
+
+class Hub(NamedTuple):
+    """A body on legs without mass, all of one length; SI units.
+
+    `inertia` about the mass centre, where the legs meet; `slope` of the support in rad, positive downhill ahead.
+    """
+
+    mass: float = 1.0
+    inertia: float = 0.01
+    leg: float = 1.0
+    friction: float = 1.0
+    slope: float = 0.0
+    gravity: float = 9.81
+
+    @property
+    def support(self) -> FixedSupport:
+        """The slope, its x axis downhill."""
+        return FixedSupport(-self.slope, self.gravity)
+
+    def body(self, ahead: float) -> TwoPointBody:
+        """The body on two feet, its legs `ahead` rad behind and ahead of the support's normal."""
+        x, y = self.leg * sin(ahead), -self.leg * cos(ahead)
+        return TwoPointBody(self.mass, self.inertia, Contact(-x, y, self.friction), Contact(x, y, self.friction))
 
 
 class Wheel(NamedTuple):
@@ -69,7 +94,7 @@ class RollEnd(IntEnum):
     """Too many events, or an impact without an answer."""
 
 
-class Part(NamedTuple):
+class RollingPart(NamedTuple):
     """A part of a rolling motion, from `start` (s) on, over tips `first` and `first` + 1, which count on every turn."""
 
     first: int
@@ -78,7 +103,7 @@ class Part(NamedTuple):
 
 
 class WheelStrike(NamedTuple):
-    """An impact of tip `new` of a wheel that stood on tip `old`, or on none; `strike` is that of the `Part`."""
+    """An impact of tip `new` of a wheel that stood on tip `old`, or on none; `strike` is that of the `RollingPart`."""
 
     old: int | None
     new: int
@@ -98,7 +123,7 @@ class Stand(NamedTuple):
 class Rolling:
     """How a wheel rolled, from 0 to `time` (s)."""
 
-    def __init__(self, wheel: Wheel, law: str, parts: list[Part], end: RollEnd, time: float) -> None:
+    def __init__(self, wheel: Wheel, law: str, parts: list[RollingPart], end: RollEnd, time: float) -> None:
         self.wheel, self.law, self.end, self.time = wheel, law, end, time
         self.parts = tuple(parts)
         self._starts = [part.start for part in parts]
@@ -160,7 +185,7 @@ class Rolling:
         part = self.parts[int(np.searchsorted(self._starts, time, side="right")) - 1]
         return self._tips(part, part.run.states(time))
 
-    def _tips(self, part: Part, states: str) -> tuple[tuple[int, str], ...]:
+    def _tips(self, part: RollingPart, states: str) -> tuple[tuple[int, str], ...]:
         count = self.wheel.spokes
         return tuple(((part.first + i) % count, state) for i, state in enumerate(states) if state != "O")
 
@@ -190,7 +215,7 @@ def roll(wheel: Wheel, rate: float = 0.0, steps: int | None = 20, duration: floa
             onwards = run.states(run.time)[0] == "O"
             if onwards is last or run.end is not End.OVERTURNED:
                 break
-        parts.append(Part(first, time, run))
+        parts.append(RollingPart(first, time, run))
         flight = next((phase.start for phase in run.phases if phase.states == "OO" and phase.end > phase.start), inf)
         if flight < inf:
             return Rolling(wheel, law, parts, RollEnd.TAKES_OFF, flight)
@@ -209,7 +234,11 @@ def check_wheel(wheel: Wheel) -> None:
     Raises:
         InputError: a number is out of its range, or no whole number of spokes fits.
     """
-    check(wheel.hub)
+    hub = wheel.hub
+    positive(mass=hub.mass, inertia=hub.inertia, leg=hub.leg, gravity=hub.gravity)
+    not_negative(friction=hub.friction)
+    if not abs(hub.slope) < 0.5 * pi:
+        raise InputError(f"slope is {degrees(hub.slope):g} degrees; give an angle between -90 and 90 degrees")
     spokes = pi / wheel.alpha if wheel.alpha > 0.0 else 0.0
     if not (3.0 - _WHOLE < spokes <= _MOST_SPOKES + 0.5 and abs(spokes - round(spokes)) < _WHOLE * spokes):
         raise InputError(

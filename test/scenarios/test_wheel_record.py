@@ -16,13 +16,11 @@ from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene, inertia_matrix
 from impact_predictor.prediction.types import Prediction
 from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY, ODOMETRY, POLYGON, decode_odometry, decode_polygon
-from impact_predictor.scenarios.record import REST
+from impact_predictor.scenarios.record import REST, wheel_actor, write_record
 from impact_predictor.scenarios.truth import TRUTH_TOPIC, TrueImpact, decode_true_impacts
-from impact_predictor.scenarios.walking.record import samples_in, write_wheel
-from impact_predictor.scenarios.walking.stride import Hub
-from impact_predictor.scenarios.walking.wheel import RollEnd, Rolling, Wheel, roll
+from impact_predictor.scenarios.wheel import Hub, RollEnd, Rolling, Wheel, roll
 
-CONFIG = Path(__file__).parents[3] / "config/wheel.yaml"
+CONFIG = Path(__file__).parents[2] / "config/wheel.yaml"
 SHIPPED = Wheel(Hub(inertia=0.1, friction=100.0, slope=radians(5.0)))
 
 
@@ -39,7 +37,7 @@ def scene_of(wheel: Wheel) -> Scene:
 
 def predicted(path: Path, rolling: Rolling, rate: float = 200.0) -> tuple[list[TrueImpact], list[Prediction]]:
     """The true impacts of a bag, and the prediction of each sample."""
-    write_wheel(path, rolling, rate)
+    write_record(path, [wheel_actor(rolling)], rate)
     truths = [
         one
         for message in read_messages(path, {TRUTH_TOPIC: DIAGNOSTIC_ARRAY})
@@ -78,14 +76,14 @@ def test_the_shipped_scene_is_that_of_the_simulated_wheel() -> None:
 
 def test_the_topics_are_those_of_one_body_whose_tips_are_its_contact_points(tmp_path: Path) -> None:
     rolling = roll(SHIPPED, 0.5, steps=3)
-    write_wheel(tmp_path / "wheel.mcap", rolling, 200.0)
     path = tmp_path / "wheel.mcap"
+    write_record(path, [wheel_actor(rolling)], 200.0)
     assert topics(path) == {"/contact_geometry": POLYGON, "/odom": ODOMETRY, TRUTH_TOPIC: DIAGNOSTIC_ARRAY}
     geometry = [decode_polygon(message.data) for message in read_messages(path, {"/contact_geometry": POLYGON})]
     # Points are float32 in that message.
     assert np.array(geometry[0].points) == pytest.approx(np.array(scene_of(SHIPPED).points), abs=1e-7)
     samples = [decode_odometry(message.data) for message in read_messages(path, {"/odom": ODOMETRY})]
-    assert len(samples) == samples_in(rolling, 200.0)
+    assert len(samples) == wheel_actor(rolling).samples(200.0)
     for sample in samples[::20]:
         state = rolling.world(sample.stamp * 1e-9)
         assert sample.position == pytest.approx((state.x, 0.0, state.y), abs=1e-12)
