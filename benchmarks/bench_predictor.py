@@ -26,9 +26,10 @@ from rich.console import Console
 from rich.table import Table
 
 from impact_predictor.bags.read import BagMessage, read_messages
+from impact_predictor.mechanics import transverse
 from impact_predictor.parameters.file import read_parameters
 from impact_predictor.parameters.validation import validate
-from impact_predictor.prediction import approach, predictor, transverse
+from impact_predictor.prediction import impact, points
 from impact_predictor.prediction.deck.tracker import Deck
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene
@@ -51,9 +52,9 @@ class Part(NamedTuple):
 
 
 PARTS = (
-    Part("the motion until the touchdown", approach, "next_touchdown"),
+    Part("the motion until the touchdown", points, "next_touchdown"),
     Part("impacts with slip across the plane", transverse, "solve_transverse_impact"),
-    Part("impacts in the plane", predictor, "solve_impact"),
+    Part("impacts in the plane", impact, "solve_impact"),
 )
 
 

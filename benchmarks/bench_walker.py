@@ -1,4 +1,4 @@
-"""What one sample of a walking machine with four feet costs: `Walker.set_geometry` and `Walker.update`, plan of HyQ.
+"""What one sample of a walking machine with four feet costs, with what is told of its feet: the plan of HyQ.
 
     python benchmarks/bench_walker.py [RUNS]
 
@@ -19,16 +19,16 @@ from rich.table import Table
 from walker_noise import plan, scene
 from walker_sensors import noisy
 
+from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.prediction.types import Geometry, Sample
-from impact_predictor.prediction.walking.walker import Walker
 
 Record = Sequence[tuple[Sample, Geometry]]
 
 
 def run(machine: Scene, record: Record) -> tuple[list[float], list[int]]:
     """Microseconds of each sample with its geometry, and how many landings it announces."""
-    walker = Walker(machine)
+    walker = Predictor(machine)
     costs, ahead = [], []
     for sample, geometry in record:
         started = perf_counter_ns()

@@ -21,7 +21,8 @@ from rich.table import Table
 from impact_predictor.bags.read import read_messages
 from impact_predictor.parameters.file import read_parameters
 from impact_predictor.parameters.validation import validate
-from impact_predictor.prediction import planar, predictor, score, transverse
+from impact_predictor.prediction import impact, planar, points
+from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene, inertia_matrix
 from impact_predictor.prediction.types import Geometry, Sample
 from impact_predictor.ros.messages import ODOMETRY, POLYGON, decode_odometry, decode_polygon
@@ -36,12 +37,12 @@ HALF_SIDE = 0.0524
 SCENE_FIELDS = ("tolerance", "contact_time", "twist_window", "horizon", "friction", "restitution")
 CONSTANTS: tuple[tuple[ModuleType, str], ...] = (
     (planar, "STANDING"),
-    (predictor, "SETTLED"),
-    (score, "OFF_AXIS"),
-    (score, "OFFSET"),
-    (score, "SLOWEST"),
-    (transverse, "SLIPS"),
-    (transverse, "TOLERANCE"),
+    (points, "SETTLED"),
+    (impact, "OFF_AXIS"),
+    (impact, "OFFSET"),
+    (impact, "SLOWEST"),
+    (impact, "SLIPS"),
+    (impact, "TOLERANCE"),
 )
 
 
@@ -56,7 +57,7 @@ def load() -> list[Sample | Geometry]:
 
 def scored(scene: Scene, record: list[Sample | Geometry]) -> tuple[str, str, str]:
     """Count, median and 90 % of the scored relative errors."""
-    body = predictor.Predictor(scene)
+    body = Predictor(scene)
     scores = []
     for message in record:
         if isinstance(message, Geometry):
@@ -74,7 +75,7 @@ class Variation(NamedTuple):
     choice: str
     value: float
     scene: Scene
-    module: ModuleType = score
+    module: ModuleType = impact
     constant: str = "OFF_AXIS"
 
 

@@ -31,7 +31,7 @@ from impact_predictor.mechanics.transverse import Transverse, TransverseOutcome,
 from impact_predictor.mechanics.types import Outcome, Twist, TwoPointBody
 from impact_predictor.parameters.file import read_parameters
 from impact_predictor.parameters.validation import validate
-from impact_predictor.prediction import transverse
+from impact_predictor.prediction.impact import TOLERANCE
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.prediction.score import MEASURED
@@ -66,7 +66,7 @@ class Landing(NamedTuple):
             old=old._replace(friction=friction), new=new._replace(friction=friction, restitution=restitution)
         )
         if spatial and self.motion is not None:
-            after = solve_transverse_impact(body, self.before, self.motion, transverse.TOLERANCE).outcome.twist
+            after = solve_transverse_impact(body, self.before, self.motion, TOLERANCE).outcome.twist
         else:
             after = solve_impact(body, self.before).twist
         s = self.half_distance
@@ -117,8 +117,8 @@ def landings_of(scene: Scene, record: list[Sample | Geometry]) -> list[Landing]:
         return solve_impact(body, before, *choices)
 
     with (
-        patch.object(transverse, "solve_transverse_impact", spatial),
-        patch("impact_predictor.prediction.predictor.solve_impact", planar),
+        patch("impact_predictor.mechanics.transverse.solve_transverse_impact", spatial),
+        patch("impact_predictor.prediction.impact.solve_impact", planar),
     ):
         scores = replay(scene, record)
     landings = []

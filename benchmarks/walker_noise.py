@@ -26,9 +26,9 @@ from impact_predictor.bags.adapters import Adapted
 from impact_predictor.bags.adapters.known import readers
 from impact_predictor.bags.read import Bag
 from impact_predictor.parameters.file import read_values
+from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene, scenes_of
 from impact_predictor.prediction.types import Prediction
-from impact_predictor.prediction.walking.walker import Walker
 from impact_predictor.report.table import plain_table, show
 from impact_predictor.scenarios.comparison import Landings
 from impact_predictor.scenarios.matching import Announced
@@ -69,7 +69,7 @@ def scene() -> Scene:
 def run(record: Sequence[Adapted], machine: Scene, seed: int | None = None, on_robot: bool = False) -> Outcome:
     """Predict the landings of a record, with the noise of a seed."""
     rng = np.random.default_rng(seed)
-    walker, landings = Walker(machine), Landings({"": machine})
+    walker, landings = Predictor(machine), Landings({"": machine})
     answers: list[Prediction] = []
     for one in record:
         assert one.sample is not None

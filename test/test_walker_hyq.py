@@ -21,7 +21,7 @@ from scipy.spatial.transform import Rotation
 
 from impact_predictor.bags.read import read_messages, topics
 from impact_predictor.mechanics.types import Flag
-from impact_predictor.prediction.walking.walker import Walker
+from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.scenarios.warned import Warned
 
 ROOT = Path(__file__).parents[1]
@@ -171,7 +171,7 @@ def test_with_noise_none_is_missed_and_none_is_false(noise: ModuleType, seed: in
 
 def test_the_plan_brakes_its_feet_and_their_impacts_are_those_of_the_last_samples(noise: ModuleType) -> None:
     machine, samples, scores = noise.scene(), {}, []
-    walker = Walker(machine)
+    walker = Predictor(machine)
     for told in noise.plan():
         walker.set_geometry(told.geometry)
         prediction = walker.update(told.sample)

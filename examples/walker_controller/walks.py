@@ -14,9 +14,9 @@ from sensors import FEET, FRAME, geometry_of, sample_of
 from values import Announcement, Estimate, Machine
 
 from impact_predictor import Mode
+from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene, Walking
 from impact_predictor.prediction.types import Prediction
-from impact_predictor.prediction.walking.walker import Walker
 from impact_predictor.ros.messages import decode_polygon, encode_polygon
 from impact_predictor.scenarios.wheel import Hub
 from impact_predictor.scenarios.wheel_closed_forms import impact_friction, kept
@@ -115,7 +115,7 @@ def announced(prediction: Prediction) -> Announcement | None:
 
 def predicted(machine: Machine, scene: Scene) -> Announce:
     """What the predictor of a scene announces."""
-    predictor = Walker(scene)
+    predictor = Predictor(scene)
 
     def announce(made: Walk) -> Announcement | None:
         # Through the bytes of the message, which has float32.

@@ -15,7 +15,7 @@ from ..prediction.vectors import add, axes_of, dot, to_world
 from ..stamps import NANOSECONDS
 
 if TYPE_CHECKING:
-    from ..prediction.walking.walker import Walker
+    from ..prediction.contacts import Contacts
 
 MOVED: Final = 0.01
 """Contact points that are further than so many m from where they were first have moved."""
@@ -29,8 +29,8 @@ _MOST_NAMED: Final = 4
 class Points:
     """What was told about the contact points of one body, and what became of it."""
 
-    def __init__(self, scene: Scene, walker: Walker | None) -> None:
-        self._scene, self._walker = scene, walker
+    def __init__(self, scene: Scene, contacts: Contacts) -> None:
+        self._scene, self._contacts = scene, contacts
         self._left_out: tuple[str, ...] = ()
         self._first: Geometry | None = None
         self._last: Geometry | None = None
@@ -55,15 +55,12 @@ class Points:
 
     def take_joints(self, joints: Joints, status: Status) -> None:
         """Take a message of joint_states, and what became of it."""
-        assert self._walker is not None
-        assert self._walker.articulated is not None
-        model = self._walker.articulated
         if status is Status.WRONG_JOINTS:
             self._refused += 1
-            self._flaws[_wrong_joints(joints, model.body.joints)] += 1
-        elif self._walker.geometry is not None:
-            self._left_out = model.left_out
-            self.take_geometry(self._walker.geometry, status)
+            self._flaws[_wrong_joints(joints, self._contacts.joints)] += 1
+        elif self._contacts.geometry is not None:
+            self._left_out = self._contacts.unknown_joints
+            self.take_geometry(self._contacts.geometry, status)
 
     def take(self, prediction: Prediction) -> None:
         """Take the answer to a sample."""
@@ -109,7 +106,7 @@ class Points:
 
     def moving(self) -> str:
         """What is said of points that move against a body whose scene names no feet; "" where they do not."""
-        if self._walker is not None or 2 * self._moved <= self._messages:
+        if self._scene.walking is not None or 2 * self._moved <= self._messages:
             return ""
         return (
             f"the contact points are elsewhere than at first in {self._moved:,} of {self._messages:,} messages; "

@@ -87,20 +87,21 @@ class Run:
         if telling:
             from .points import Points
 
-            self.points = {body: Points(scenes[body], self.monitor.walkers.get(body)) for body in telling}
+            self.points = {body: Points(scenes[body], self.monitor.predictors[body].contacts) for body in telling}
         self._takers = {topic: self._taker(one) for one, topic in topics.items() if topic not in readers}
         for topic, read in readers.items():
             inputs = {one.kind: one for one, its_topic in topics.items() if its_topic == topic}
             takes = {kind: self._told(one) for kind, one in inputs.items() if kind != ODOM}
             self._takers[topic] = partial(self._take_adapted, read, inputs, takes)
-        if readers and self.monitor.walkers:
+        walking = {body: scene.walking for body, scene in scenes.items() if scene.walking is not None}
+        if walking:
+            from .gait import Gait
+
+            self.gaits = {body: Gait(one) for body, one in walking.items()}
+        if readers and walking:
             from ..scenarios.comparison import Landings
 
             self.landings = Landings(scenes)
-        if self.monitor.walkers:
-            from .gait import Gait
-
-            self.gaits = {body: Gait(one.walking) for body, one in scenes.items() if one.walking is not None}
         if knows_truth:
             from .truth import TrueEvents
 
@@ -154,8 +155,7 @@ class Run:
             return partial(self._set_geometry, body)
         if one.kind == JOINTS:
             return partial(self._set_joints, body)
-        update: Callable[[str, Any], Status] = monitor.set_wrench if one.kind == WRENCH else monitor.set_schedule
-        return lambda message, _: update(body, message)
+        return lambda message, _: monitor.tell(body, message)
 
     def _take_sample(self, stream: Stream, counts: list[int], log_time: int, data: bytes) -> None:
         self.samples += 1
@@ -231,12 +231,12 @@ class Run:
         self.points[body].take_geometry(geometry, status)
         if status is Status.ACCEPTED and self._drawing is not None:
             self._drawing.set_geometry(body, geometry)
-            if body in self.monitor.walkers:
+            if body in self.gaits:
                 self._draw(geometry.stamp, log_time)
         return status
 
     def _set_joints(self, body: str, joints: Joints, _: int) -> Status:
-        status = self.monitor.set_joints(body, joints)
+        status = self.monitor.tell(body, joints)
         self.points[body].take_joints(joints, status)
         return status
 

@@ -11,14 +11,14 @@ import numpy as np
 
 from ..mechanics.impact import solve_impact
 from ..mechanics.types import Twist, TwoPointBody
-from ..prediction.approach import Approach, approach_of
+from ..prediction.impact import Collision, LateralMotion, impact_across, lateral_motion
 from ..prediction.monitor import Monitor
-from ..prediction.planar import Across, Plane, Posture, across_of
+from ..prediction.planar import ImpactPlane, Posture
+from ..prediction.points import PointContacts, collision_of
 from ..prediction.predictor import Predictor
 from ..prediction.scene import Matrix3, Scene
 from ..prediction.score import MEASURED
-from ..prediction.transverse import impact_across
-from ..prediction.types import Prediction, Sample, Score, Touchdown, Vector3
+from ..prediction.types import Prediction, Sample, Score, Vector3
 from ..prediction.vectors import add, axes_of, cross, dot, to_world
 from ..stamps import NANOSECONDS
 
@@ -43,11 +43,11 @@ class Impact(NamedTuple):
     whether the contacts are edges that block the roll.
     """
 
-    plane: Plane
+    plane: ImpactPlane
     normal: Vector3
     body: TwoPointBody
     before: Twist
-    across: Across
+    across: LateralMotion
     angle: float
     blocked: bool
 
@@ -91,7 +91,7 @@ class ScoredTouchdown(NamedTuple):
         inertia = scaled(self.scene.inertia, factor)
         scene = self.scene._replace(friction=friction, restitution=restitution, inertia=inertia)
         sample, posture, points = self.start
-        approach = approach_of(scene, points, sample, posture)
+        approach = collision_of(scene, points, sample, posture)
         body = self.impact.body
         if approach is None or (approach.body.old is None) != (body.old is None):
             return self
@@ -137,11 +137,17 @@ def with_coefficients(body: TwoPointBody, coefficients: Coefficients) -> TwoPoin
     )
 
 
-def impact_of(sample: Sample, posture: Posture, approach: Approach) -> Impact:
-    """The impact at the end of an approach."""
-    _, plane, body, before, moved, lead_time, blocked, _, _ = approach
-    across = across_of(sample, posture, plane, lead_time)
-    return Impact(plane, posture.normal, body, before, across, moved.angle, blocked)
+def impact_of(sample: Sample, posture: Posture, collision: Collision) -> Impact:
+    """The impact of a collision."""
+    return Impact(
+        plane=collision.plane,
+        normal=posture.normal,
+        body=collision.body,
+        before=collision.before,
+        across=lateral_motion(sample, posture, collision.plane, collision.lead_time),
+        angle=collision.moved.angle,
+        blocked=collision.blocked,
+    )
 
 
 def scaled(inertia: Matrix3, factor: float) -> Matrix3:
@@ -164,7 +170,15 @@ class Observer(Predictor):
         self._samples: deque[Sample] = deque(maxlen=_REMEMBERED)
 
     def update(self, sample: Sample) -> Prediction:
+        contacts = self.contacts
+        assert isinstance(contacts, PointContacts)
+        before = contacts.collision
         prediction = super().update(sample)
+        if contacts.collision is not None and contacts.collision is not before:
+            seen, posture, collision = contacts.collision
+            fixed = self.scene.deck is None and not self.scene.radius
+            start = Start(seen, posture, contacts.points) if fixed else None
+            self._impacts.append((impact_of(seen, posture, collision), start))
         self._samples.append(sample)
         if prediction.score is not None:
             self._collect(prediction.score)
@@ -175,11 +189,6 @@ class Observer(Predictor):
         for score in scores:
             self._collect(score)
         return scores
-
-    def _touchdown(self, sample: Sample, posture: Posture, approach: Approach) -> Touchdown:
-        start = Start(sample, posture, self._points) if self.scene.deck is None and self._drum is None else None
-        self._impacts.append((impact_of(sample, posture, approach), start))
-        return super()._touchdown(sample, posture, approach)
 
     def _collect(self, score: Score) -> None:
         touchdown = score.touchdown

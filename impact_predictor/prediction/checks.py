@@ -7,6 +7,9 @@ from math import isfinite
 from .types import Sample, Status, Vector3
 from .vectors import dot
 
+PAUSE = 250_000_000
+"""ns without a message, or by which a clock goes back, after which a stream begins anew."""
+
 LARGEST = 1e24
 """Sum of the squares of position, velocity and angular velocity beyond which no body is and products overflow."""
 

@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from .deck.imu import Tilt
     from .deck.motion import RestingSupport
     from .deck.tracker import Deck
-    from .walking.walker import Walker
     from .watch.watch import Report, Watch
 
 OF_SUPPORT = frozenset({Status.NO_SUPPORT, Status.SUPPORT_STALE})
@@ -43,9 +42,9 @@ AGAIN = frozenset({Status.STAMP_REPEATED, Status.STAMP_WENT_BACK})
 class Monitor:
     """The bodies of some scenes, by their names, over the support that they share.
 
-    It has a `Predictor` for each body whose pose is measured, or a `Walker` for one with feet, a tracker of the support
-    if that moves, and a watch over the margins of bodies if their scenes ask for it. It routes between them and
-    computes nothing itself. Messages are taken as they arrive, and each stream in the order of its stamps.
+    It has a `Predictor` for each body whose pose is measured, a tracker of the support if that moves, and a watch over
+    the margins of bodies if their scenes ask for it. It routes between them and computes
+    nothing itself. Messages are taken as they arrive, and each stream in the order of its stamps.
     """
 
     def __init__(self, scenes: Mapping[str, Scene]) -> None:
@@ -68,18 +67,11 @@ class Monitor:
             from .deck.tracker import Deck
 
             self.deck = Deck(shared.deck, shared.gravity, shared.normal)
-        self.walkers: dict[str, Walker] = {}
-        if any(scene.walking is not None for scene in scenes.values()):
-            from .walking.walker import Walker
-
-            self.walkers = {body: Walker(scene) for body, scene in scenes.items() if scene.walking is not None}
-            # The model of a robot tells its mass.
-            self.scenes |= {body: walker.scene for body, walker in self.walkers.items()}
-        self.predictors: dict[str, Predictor | Walker] = {
-            body: self.walkers.get(body) or Predictor(scene, self.deck)
-            for body, scene in scenes.items()
-            if scene.source == "odom"
+        self.predictors = {
+            body: Predictor(scene, self.deck) for body, scene in scenes.items() if scene.source == "odom"
         }
+        # The model of a robot tells its mass.
+        self.scenes |= {body: predictor.scene for body, predictor in self.predictors.items()}
         if any(scene.watching is not None for scene in scenes.values()):
             if self.deck is None:
                 from .deck.motion import RestingSupport
@@ -110,20 +102,13 @@ class Monitor:
             InputError: there is no predictor for a scene.
         """
         others = {body: scene for body, scene in scenes.items() if scene != self._told[body]}
-        begun: dict[str, Predictor | Walker] = {}
-        for body, scene in others.items():
-            if body in self.walkers:
-                from .walking.walker import Walker
-
-                begun[body] = Walker(scene)
-            elif body in self.predictors:
-                begun[body] = Predictor(scene, self.deck)
+        begun = {body: Predictor(scene, self.deck) for body, scene in others.items() if body in self.predictors}
 
         def change() -> None:
             self._told |= others
             self.scenes |= others
             for body, other in begun.items():
-                self.predictors[body].become(other)  # type: ignore[arg-type]  # both are of one kind
+                self.predictors[body].become(other)
                 self.scenes[body] = other.scene
             if any(body in self._watched for body in others):
                 self.watch = self._begin_to_watch({body: self.scenes[body] for body in self._watched})
@@ -180,23 +165,15 @@ class Monitor:
 
     def set_geometry(self, body: str, geometry: Geometry) -> Status:
         """Take the contact points of a body."""
-        status = self.predictors[body].set_geometry(geometry)
+        status = self.tell(body, geometry)
         if self.watch is not None and status is Status.ACCEPTED and body in self._watched:
             self._points[body] = geometry.points
             self.watch.set_points(body, geometry.points)
         return status
 
-    def set_joints(self, body: str, joints: Joints) -> Status:
-        """Take the positions of the joints of a machine that walks."""
-        return self.walkers[body].set_joints(joints)
-
-    def set_wrench(self, body: str, wrench: Wrench) -> Status:
-        """Take what the force sensor of one of its feet measures."""
-        return self.walkers[body].set_wrench(wrench)
-
-    def set_schedule(self, body: str, schedule: Schedule) -> Status:
-        """Take when its feet are to stand."""
-        return self.walkers[body].set_schedule(schedule)
+    def tell(self, body: str, message: Geometry | Joints | Wrench | Schedule) -> Status:
+        """Take what is told about the contacts of a body; what became of the message."""
+        return self.predictors[body].tell(message)
 
     def silent(self, stamp: int) -> None:
         """Know that no message came until a stamp (ns), so that what is too old by then counts as lost."""

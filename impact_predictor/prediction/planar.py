@@ -10,12 +10,10 @@ from __future__ import annotations
 from math import copysign, hypot, sqrt
 from typing import NamedTuple
 
-from ..mechanics.impact import new_tuple
-from ..mechanics.motion import PlanarState
 from ..mechanics.types import Twist, Vector
 from .scene import Scene
-from .types import Quaternion, Sample, Vector3
-from .vectors import add, any_across, axes_of, combine, cross, dot, mean, times, to_body, to_world, total, turned
+from .types import Sample, Vector3
+from .vectors import add, any_across, axes_of, cross, dot, mean, times, to_body, to_world, total
 
 STANDING = 0.2
 """A point within the contact tolerance stands while it moves along the normal slower than this part of the fastest
@@ -30,6 +28,9 @@ ORIGIN = (0.0, 0.0, 0.0)
 TINY = 1e-100
 """Below it the square of a length or of a speed has lost its digits."""
 
+GRAZES = 1e-9
+"""m/s: what reaches the support slower only grazes it."""
+
 
 class Posture(NamedTuple):
     """A sample over the support: its axes in the world frame; in the body frame the support normal, the velocity of
@@ -43,7 +44,7 @@ class Posture(NamedTuple):
     rates: list[float]
 
 
-class Contacts(NamedTuple):
+class ActiveContacts(NamedTuple):
     """The points that stand, those that strike next together, and the mean gap of the standing ones."""
 
     old: tuple[int, ...]
@@ -51,7 +52,7 @@ class Contacts(NamedTuple):
     base: float
 
 
-class Plane(NamedTuple):
+class ImpactPlane(NamedTuple):
     """The impact plane, in the body frame, and the body in it.
 
     `axis` and `ahead` (d) are unit vectors; `old` (None in flight) and `new` the contacts from the mass centre along
@@ -71,16 +72,6 @@ class Plane(NamedTuple):
     offset: float
 
 
-class Across(NamedTuple):
-    """Motion across the impact plane: velocity of the mass centre along the axis (m/s), angular velocities about d
-    (roll) and about the support normal (yaw) in rad/s.
-    """
-
-    velocity: float
-    roll: float
-    yaw: float
-
-
 def posture_of(scene: Scene, points: tuple[Vector3, ...], sample: Sample) -> Posture:
     axes = axes_of(sample.orientation)
     normal = nx, ny, nz = to_body(axes, scene.normal)
@@ -91,10 +82,15 @@ def posture_of(scene: Scene, points: tuple[Vector3, ...], sample: Sample) -> Pos
     velocity = linear if center == ORIGIN else add(linear, cross(spin, center))
     gaps = [height + nx * x + ny * y + nz * z for x, y, z in points]
     rates = [rate + wx * x + wy * y + wz * z for x, y, z in points]
-    return new_tuple(Posture, (axes, normal, velocity, gaps, rates))
+    return Posture(axes=axes, normal=normal, velocity=velocity, gaps=gaps, rates=rates)
 
 
-def contacts_of(scene: Scene, posture: Posture) -> Contacts | None:
+def center_of(scene: Scene, sample: Sample, posture: Posture) -> Vector3:
+    """Where the mass centre is."""
+    return add(sample.position, to_world(posture.axes, scene.center_of_mass))
+
+
+def contacts_of(scene: Scene, posture: Posture) -> ActiveContacts | None:
     """Which points stand and which strike next; None where no point approaches.
 
     A point approaches faster than gravity moves it within the contact time; points that close within the contact time
@@ -119,7 +115,7 @@ def contacts_of(scene: Scene, posture: Posture) -> Contacts | None:
     new = [i for i, time in zip(closing, due, strict=True) if time <= last]
     if min([rates[i] for i in new]) >= slowest:
         return None
-    return new_tuple(Contacts, (tuple(old), tuple(new), base))
+    return ActiveContacts(tuple(old), tuple(new), base)
 
 
 def hardly(scene: Scene) -> float:
@@ -132,9 +128,9 @@ def plane_of(
     points: tuple[Vector3, ...],
     sample: Sample,
     posture: Posture,
-    contacts: Contacts,
+    contacts: ActiveContacts,
     gravity: Vector3 | None = None,
-) -> Plane:
+) -> ImpactPlane:
     """The impact plane of a posture's contacts; `gravity` in the frame of the sample is the scene's unless given."""
     n, spin, velocity = posture.normal, sample.angular, posture.velocity
     old, new, base = contacts
@@ -157,19 +153,18 @@ def plane_of(
         lateral += dot(axis, cross(spin, stood))
     rate = dot(axis, spin)
     gravity = to_body(posture.axes, scene.gravity if gravity is None else gravity)
-    plane = (
-        axis,
-        ahead,
-        stance,
-        (dot(ahead, struck), dot(n, struck)),
-        new_tuple(Twist, (dot(ahead, velocity), dot(n, velocity), -rate)),
-        (dot(ahead, gravity), dot(n, gravity), dot(axis, gravity)),
-        max(0.0, total([posture.gaps[i] for i in new]) / len(new) - base),
-        off_axis_of(spin, axis, rate),
-        lateral,
-        offset,
+    return ImpactPlane(
+        axis=axis,
+        ahead=ahead,
+        old=stance,
+        new=(dot(ahead, struck), dot(n, struck)),
+        twist=Twist(dot(ahead, velocity), dot(n, velocity), -rate),
+        gravity=(dot(ahead, gravity), dot(n, gravity), dot(axis, gravity)),
+        gap=max(0.0, total([posture.gaps[i] for i in new]) / len(new) - base),
+        off_axis=off_axis_of(spin, axis, rate),
+        lateral=lateral,
+        offset=offset,
     )
-    return new_tuple(Plane, plane)
 
 
 def off_axis_of(spin: Vector3, axis: Vector3, rate: float) -> float:
@@ -229,46 +224,3 @@ def inertia_about(scene: Scene, axis: Vector3, blocked: bool) -> float:
     )
     whole = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz)
     return whole / adjugate
-
-
-def across_of(sample: Sample, posture: Posture, plane: Plane, time: float) -> Across:
-    """The motion across the plane at a touchdown `time` after the sample: what the contacts leave as it is, and in
-    flight gravity.
-    """
-    pull = plane.gravity[2] if plane.old is None else 0.0
-    spin = sample.angular
-    return Across(dot(plane.axis, posture.velocity) + pull * time, dot(plane.ahead, spin), dot(posture.normal, spin))
-
-
-def in_space(
-    scene: Scene,
-    sample: Sample,
-    posture: Posture,
-    plane: Plane,
-    moved: PlanarState,
-    after: Twist,
-    across: Across,
-    time: float,
-) -> tuple[Vector3, Quaternion, Vector3, Vector3]:
-    """Position, orientation, linear and angular velocity of the body frame after an impact in the plane.
-
-    `moved` is the place of the mass centre from where it was at the sample, and the angle turned since, `time` ago;
-    `after` and `across` are the motion in the plane and across it after the impact.
-    """
-    axes, n, center = posture.axes, scene.normal, scene.center_of_mass
-    axis, roll, yaw = plane.axis, dot(plane.ahead, sample.angular), dot(posture.normal, sample.angular)
-    rotation = combine(-moved.angle, axis, roll * time, plane.ahead, yaw * time, posture.normal)
-    orientation = turned(sample.orientation, rotation)
-    now = axes_of(orientation)
-
-    along = to_world(axes, axis)
-    ahead = cross(along, n)
-    angular = to_body(now, combine(-after.omega, along, across.roll, ahead, across.yaw, n))
-    linear = to_body(now, combine(after.vx, ahead, after.vy, n, across.velocity, along))
-    pull = plane.gravity[2] if plane.old is None else 0.0
-    glide = (dot(axis, posture.velocity) + 0.5 * pull * time) * time
-    position = add(sample.position, combine(moved.x, ahead, moved.y, n, glide, along))
-    if center != ORIGIN:
-        linear = add(linear, cross(angular, center), -1.0)
-        position = add(add(position, to_world(axes, center)), to_world(now, center), -1.0)
-    return position, orientation, linear, angular

@@ -6,9 +6,9 @@ from collections import deque
 from collections.abc import Iterable
 from math import hypot
 
-from ..mechanics.types import Twist, TwoPointBody
+from ..mechanics.types import Twist
 from ..stamps import NANOSECONDS
-from .planar import Contacts, Plane, Posture, hardly
+from .planar import Posture
 from .scene import Scene
 from .types import Leftover, Sample, Score, Touchdown, Vector3
 from .vectors import cross, dot, to_world, total
@@ -16,25 +16,8 @@ from .vectors import cross, dot, to_world, total
 MEASURED = slice(1, 4)
 """Samples 2 to 4 after a touchdown: the first may average the impact itself, later ones see friction and bounces."""
 
-OFF_AXIS = 0.3
-"""A touchdown is planar up to this part of the angular velocity off the axis: 9 % of the turning energy."""
-
-OFFSET = 0.2
-"""... and up to this part of the contacts' half distance between their plane and the mass centre (in flight of the
-distance between contact and mass centre)."""
-
-SLOWEST = 4.0
-"""An impact can be told from rest when it approaches this many times faster than gravity moves it in a contact time."""
-
 LONGEST = 1000
 """How many predictions of one touchdown are remembered."""
-
-ONE_POINT, OUT_OF_PLANE, ONE_CORNER_FIRST, TOO_SLOW = (
-    int(flag) for flag in (Leftover.ONE_POINT, Leftover.OUT_OF_PLANE, Leftover.ONE_CORNER_FIRST, Leftover.TOO_SLOW)
-)
-
-LEFTOVERS = tuple(map(Leftover, range(1 + sum(Leftover))))
-"""By their bits, because making a flag is slow."""
 
 
 class Track:
@@ -135,29 +118,6 @@ def _at_zero(times: list[float], values: list[float]) -> float:
     mean = total(values) / len(values)
     slope = total([(t - middle) * v for t, v in zip(times, values, strict=True)])
     return mean - middle * slope / total([(t - middle) ** 2 for t in times])
-
-
-def leftover_of(
-    scene: Scene,
-    contacts: Contacts,
-    plane: Plane,
-    body: TwoPointBody,
-    approach: float,
-    half_distance: float,
-    spread: float,
-) -> Leftover:
-    """Why a touchdown is no planar two-point impact that can be scored, from the state before it alone."""
-    width = half_distance if body.old is not None else hypot(body.new.x, body.new.y)
-    leftover = 0
-    if body.old is None:
-        leftover |= ONE_POINT
-    if plane.off_axis > OFF_AXIS or plane.offset > OFFSET * width:
-        leftover |= OUT_OF_PLANE
-    if spread > scene.contact_time or (body.old is not None and len(contacts.old) > 1 and len(contacts.new) == 1):
-        leftover |= ONE_CORNER_FIRST
-    if approach < SLOWEST * hardly(scene):
-        leftover |= TOO_SLOW
-    return LEFTOVERS[leftover]
 
 
 def median(numbers: Iterable[float]) -> float:

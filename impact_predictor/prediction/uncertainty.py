@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from ..mechanics.batch import Outcomes, solve_impacts
 from ..mechanics.sensitivity import allowed_changes
 from ..mechanics.types import Contact, Mode, Twist, TwoPointBody
-from .planar import Plane, Posture
+from .planar import ImpactPlane, Posture
 from .scene import Scene
 from .types import Covariance, Quaternion, Sample, Uncertainty, Vector3
 from .vectors import axes_of, cross, times, to_body, to_world
@@ -86,7 +86,7 @@ class Sampler:
         impacts(self._body, Twist(0.0, 0.0, 0.0), at_rest, self._friction, self._restitution, scene.law)
 
     def uncertainty(
-        self, sample: Sample, posture: Posture, plane: Plane, body: TwoPointBody, before: Twist, after: Quaternion
+        self, sample: Sample, posture: Posture, plane: ImpactPlane, body: TwoPointBody, before: Twist, after: Quaternion
     ) -> Uncertainty:
         """The uncertainty of the impact of `body` that comes with the twist `before`, in the plane of a sample.
 

@@ -9,7 +9,7 @@ from ..prediction.score import median
 from ..prediction.types import Foot, Landing, Prediction
 
 if TYPE_CHECKING:
-    from ..prediction.walking.walker import Walker
+    from ..prediction.contacts import Contacts
 
 DISAGREES: Final = 0.5
 """The part of a second's samples above which a force sensor disagrees; while a foot lands or lifts each one does."""
@@ -20,12 +20,12 @@ _REMEMBERED: Final = 1000
 class FeetReport:
     """Counts what the answers tell of the feet of one body, which it calls by their names."""
 
-    def __init__(self, body: str, walker: Walker | None = None) -> None:
+    def __init__(self, body: str, contacts: Contacts | None = None) -> None:
         """Count for a body, "" being the name of a body alone, which may have a model of its joints."""
         self.flaw = ""
         """What is wrong with its force sensors in the last second, "" where nothing is."""
         self._prefix = f"{body}/feet" if body else "feet"
-        self._walker = walker
+        self._contacts = contacts
         self._feet: tuple[Foot, ...] = ()
         self._landings: Counter[str] = Counter()
         self._unannounced = 0
@@ -69,9 +69,8 @@ class FeetReport:
             "landings": str(self._landings.total()),
         }
         values |= {f"landings.{name}": str(count) for name, count in sorted(self._landings.items())}
-        model = self._walker and self._walker.articulated
-        if model and model.left_out:
-            values["joints_left_out"] = " ".join(model.left_out)
+        if self._contacts is not None and self._contacts.unknown_joints:
+            values["joints_left_out"] = " ".join(self._contacts.unknown_joints)
         if self._unannounced:
             values["landings.unannounced"] = str(self._unannounced)
         if self._time_errors:

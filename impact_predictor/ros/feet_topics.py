@@ -30,8 +30,8 @@ class _Kind(NamedTuple):
 
 _KINDS: Final = {
     CONTACT_GEOMETRY: _Kind(POLYGON, decode_polygon, Monitor.set_geometry),
-    JOINTS: _Kind(JOINT_STATE, decode_joints, Monitor.set_joints),
-    FORCE: _Kind(WRENCH, decode_wrench, Monitor.set_wrench),
+    JOINTS: _Kind(JOINT_STATE, decode_joints, Monitor.tell),
+    FORCE: _Kind(WRENCH, decode_wrench, Monitor.tell),
 }
 
 
@@ -48,5 +48,5 @@ def listen_to_feet(node: Node, reporter: Reporter, monitor: Monitor, body: str, 
 
 def listen_to_schedule(node: Node, reporter: Reporter, monitor: Monitor, body: str, topic: str) -> LatchedTopic:
     """Take when the feet of a body are to stand, which may have been published before."""
-    one = InputTopic(reporter, topic, decode_schedule, partial(monitor.set_schedule, body))
+    one = InputTopic(reporter, topic, decode_schedule, partial(monitor.tell, body))
     return LatchedTopic(node, one.take, topic, JOINT_TRAJECTORY)

@@ -43,11 +43,12 @@ class Reporter:
         self._support = inputs[0] if self._monitor.deck is not None else ""
         self.diagnostics = Diagnostics(self._name, perf_counter(), inputs)
         self.diagnostics.lost = None if self.on_lost is None else 0
-        walkers = self._monitor.walkers
-        if walkers:
+        feet = [body for body, scene in self._monitor.scenes.items() if scene.walking is not None]
+        if feet:
             from .feet_report import FeetReport
 
-            self.diagnostics.feet = {body: FeetReport(body, walker) for body, walker in walkers.items()}
+            predictors = self._monitor.predictors
+            self.diagnostics.feet = {body: FeetReport(body, predictors[body].contacts) for body in feet}
 
     def _on_lost(self, event: Any) -> None:
         self.diagnostics.lost = (self.diagnostics.lost or 0) + event.total_count_change

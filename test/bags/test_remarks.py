@@ -223,7 +223,7 @@ def steps_of_joints() -> list[Told]:
 def test_the_mass_is_that_of_the_model(modelled: Scene) -> None:
     # A trunk of 20 kg and four links of 1 kg.
     assert Monitor({"": modelled}).scenes[""].mass == pytest.approx(24.0)
-    assert Monitor({"": modelled._replace(mass=3.0)}).walkers[""].scene.mass == pytest.approx(24.0)
+    assert Monitor({"": modelled._replace(mass=3.0)}).predictors[""].scene.mass == pytest.approx(24.0)
 
 
 @pytest.mark.extras

@@ -14,9 +14,9 @@ from impact_predictor.bags.read import BagMessage, read_messages, topics
 from impact_predictor.bags.replay import replay
 from impact_predictor.bags.write import BagWriter
 from impact_predictor.parameters.validation import validate
+from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.prediction.types import Geometry, Prediction, Sample, Schedule, Status, Wrench
-from impact_predictor.prediction.walking.walker import Walker
 from impact_predictor.ros.messages import (
     JOINT_TRAJECTORY,
     ODOMETRY,
@@ -70,16 +70,16 @@ def write_bag(path: Path, messages: list[BagMessage], prefix: str = "") -> Path:
 
 
 def predicted_directly(messages: list[BagMessage]) -> list[tuple[str, int, bytes]]:
-    walker, answers = Walker(SCENE), []
+    walker, answers = Predictor(SCENE), []
     for topic, log_time, data in messages:
         if topic == "/odom":
             answers.append((log_time, walker.update(decode_odometry(data))))
         elif topic == "/contact_geometry":
             walker.set_geometry(decode_polygon(data))
         elif topic == "/contact_wrench":
-            walker.set_wrench(decode_wrench(data))
+            walker.tell(decode_wrench(data))
         else:
-            walker.set_schedule(decode_schedule(data))
+            walker.tell(decode_schedule(data))
     log_time, last = answers[-1]
     told = [
         (f"/impact_predictor/{name}", time, encoded)

@@ -10,7 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from impact_predictor.prediction.predictor import PAUSE, Predictor
+from impact_predictor.prediction.checks import PAUSE
+from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.prediction.types import Geometry, Prediction, Sample, Status, Vector3
 

@@ -368,22 +368,14 @@ def walking(**changes: Any) -> dict[str, Scene]:
     return scenes_of(validate({**given, "bodies": ["crate", "walker"], **WALKER, **changes}))
 
 
-def test_a_machine_that_walks_has_a_walker_in_the_place_of_its_predictor() -> None:
-    monitor = Monitor(walking())
-    assert isinstance(monitor.predictors["crate"], Predictor)
-    assert not isinstance(monitor.predictors["walker"], Predictor)
-    assert monitor.walkers == {"walker": monitor.predictors["walker"]}
-    assert Monitor(scenes()).walkers == {}
-
-
 def test_what_is_told_about_feet_goes_to_the_machine_that_has_them() -> None:
     monitor = Monitor(walking())
     feet = Geometry(SECOND, "walker", ((0.0, 0.2, -HEIGHT), (0.0, -0.2, -HEIGHT)))
     assert monitor.update("walker", standing(0, child_frame_id="walker")).status is Status.NO_GEOMETRY
     assert monitor.set_geometry("walker", feet) is Status.ACCEPTED
     assert monitor.set_geometry("walker", feet._replace(points=feet.points[:1])) is Status.FEET_CHANGED
-    assert monitor.set_wrench("walker", Wrench(SECOND, "left", (0.0, 0.0, 50.0))) is Status.ACCEPTED
-    assert monitor.set_schedule("walker", Schedule(SECOND, ("left",), (SECOND,), ((False,),))) is Status.ACCEPTED
+    assert monitor.tell("walker", Wrench(SECOND, "left", (0.0, 0.0, 50.0))) is Status.ACCEPTED
+    assert monitor.tell("walker", Schedule(SECOND, ("left",), (SECOND,), ((False,),))) is Status.ACCEPTED
     answer = monitor.update("walker", standing(0, child_frame_id="walker"))
     assert [(foot.name, foot.stands, foot.confirmed) for foot in answer.feet] == [
         ("left", True, True),

@@ -11,11 +11,14 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from impact_predictor.mechanics.impact import solve_impact
+from impact_predictor.mechanics.motion import PlanarState
 from impact_predictor.mechanics.types import Contact, Twist, TwoPointBody
-from impact_predictor.prediction.planar import Contacts, Plane
-from impact_predictor.prediction.predictor import PAUSE, Predictor
+from impact_predictor.prediction.checks import PAUSE
+from impact_predictor.prediction.impact import Collision, leftover_of
+from impact_predictor.prediction.planar import ActiveContacts, ImpactPlane
+from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene
-from impact_predictor.prediction.score import LONGEST, leftover_of
+from impact_predictor.prediction.score import LONGEST
 from impact_predictor.prediction.types import Geometry, Leftover, Prediction, Sample, Score, Status, Vector3
 
 PERIOD = 5_000_000
@@ -434,11 +437,13 @@ def test_what_waits_is_handed_out_one_score_for_each_sample_and_the_rest_at_the_
 
 def test_an_edge_whose_ends_close_one_after_the_other_is_not_scored() -> None:
     """They would close together at their present speeds, but at the speed of the impact they are further apart."""
-    contacts = Contacts((0, 1), (2, 3), 0.0)
-    plane = Plane((0, 1, 0), (1, 0, 0), (BACK, LOW), (FRONT, LOW), BEFORE, (0, -9.81, 0), 0.0, 0.0, 0.0, 0.0)
+    contacts = ActiveContacts((0, 1), (2, 3), 0.0)
+    plane = ImpactPlane((0, 1, 0), (1, 0, 0), (BACK, LOW), (FRONT, LOW), BEFORE, (0, -9.81, 0), 0.0, 0.0, 0.0, 0.0)
     body = TwoPointBody(1.0, 0.006, Contact(BACK, LOW, 1.2), Contact(FRONT, LOW, 1.2))
+    moved = PlanarState(0.0, 0.0, 0.0, *BEFORE)
+    collision = Collision(contacts, plane, body, BEFORE, moved, 0.0, True, 1.0, 1.0)
     for spread, leftover in ((0.0049, Leftover.NONE), (0.0051, Leftover.ONE_CORNER_FIRST)):
-        assert leftover_of(SCENE, contacts, plane, body, 1.0, 0.1, spread) is leftover
+        assert leftover_of(SCENE, collision, 0.1, spread) is leftover
 
 
 def test_the_memory_of_a_touchdown_that_never_comes_is_bounded() -> None:

@@ -12,9 +12,9 @@ from scipy.spatial.transform import Rotation
 from impact_predictor.mechanics.impact import solve_impact
 from impact_predictor.mechanics.transverse import Transverse, solve_transverse_impact
 from impact_predictor.mechanics.types import Contact, Flag, Twist, TwoPointBody, Validity
+from impact_predictor.prediction.impact import SLIPS, TOLERANCE
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene
-from impact_predictor.prediction.transverse import SLIPS, TOLERANCE
 from impact_predictor.prediction.types import Sample, Touchdown, Vector3
 
 ROUNDING = 1e-6

@@ -22,11 +22,11 @@ from ...mechanics.rocking.flight import Flight
 from ...mechanics.rocking.points import Points
 from ...mechanics.support import Felt, at_place
 from ...mechanics.types import Contact, TwoPointBody
-from ..planar import ORIGIN, Plane, Posture
+from ..planar import ORIGIN, ImpactPlane, Posture, center_of
 from ..scene import Scene
 from ..types import Moment, Sample, Vector3
 from ..vectors import add, cross, dot, times, to_world
-from .frame import center_of, pull_at
+from .frame import pull_at
 
 APART = 1e-6
 """Contacts nearer to each other in the plane than this part of their distance from the mass centre are one."""
@@ -124,7 +124,7 @@ def fall_over(
     moment: Moment,
     sample: Sample,
     posture: Posture,
-    plane: Plane,
+    plane: ImpactPlane,
     inertia: float,
     start: PlanarState,
     height: float,

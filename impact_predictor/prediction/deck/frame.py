@@ -1,4 +1,4 @@
-"""The frame of a moving support: a body's samples seen from there, where a body can be, and the way back to the world.
+"""The frame of a moving support: a body's samples seen from there, and the way back to the world.
 
 With R the support's rotation, p and v the place and the velocity of its origin, W its angular velocity (v and W along
 its own axes): a body at r in the support's frame moves there with R^T r' - v - W x r, where r' is its velocity in the
@@ -7,70 +7,8 @@ world, and turns with its angular velocity less W.
 
 from __future__ import annotations
 
-from math import hypot
-from typing import TYPE_CHECKING
-
-from ..planar import Posture, edge_of
-from ..scene import Scene
-from ..types import Felt, Moment, Prediction, Quaternion, Sample, Status, Vector3
+from ..types import Felt, Moment, Prediction, Quaternion, Sample, Vector3
 from ..vectors import add, axes_of, composed, cross, times, to_body, to_world, turned
-
-if TYPE_CHECKING:
-    from ..drum import Drum
-    from .tracker import Deck
-
-HIGH = 1.0
-"""A body is off its support when all of it is farther above than this part of its size. No impact throws it there: for
-a body of 1 m that takes 4.4 m/s, and one that topples keeps a contact, or one near it."""
-
-DEEP = 0.05
-"""A body is below its support when it reaches deeper than this part of its size ..."""
-
-DEEP_TOLERANCES = 4.0
-"""... and so many contact tolerances. A tolerance is about three standard deviations of the gap of a point that rests,
-and an orientation that is wrong by 3 degrees (0.05 rad) moves a point by 0.05 of the body's size."""
-
-
-class SupportFrame:
-    """The moving support of a scene as the frame of its body; without a `deck` nothing is known of it."""
-
-    def __init__(self, scene: Scene, deck: Deck | None, drum: Drum | None) -> None:
-        self.scene, self._deck, self._drum = scene, deck, drum
-        self._extent = scene.deck.extent if scene.deck is not None else ()
-        self._points: tuple[Vector3, ...] = ()
-        self._highest = self._deepest = 0.0
-
-    def seen(self, sample: Sample) -> tuple[Moment, Sample] | Status:
-        """The support at the sample's stamp, and the sample in its frame; or why there is none."""
-        if self._deck is None:
-            return Status.NO_SUPPORT
-        moment = self._deck.at(sample.stamp)
-        if isinstance(moment, Status):
-            return moment
-        relative = seen_from(moment, self.scene.frame, sample)
-        return Status.WRONG_FRAME if relative is None else (moment, relative)
-
-    def place_of(self, sample: Sample, posture: Posture, points: tuple[Vector3, ...]) -> Status:
-        """Whether a body can be where it is seen."""
-        if points != self._points:
-            self._points = points
-            size = self._drum.size if self._drum is not None else hypot(*edge_of(list(points)))
-            self._highest = HIGH * size
-            self._deepest = -(DEEP * size + DEEP_TOLERANCES * self.scene.tolerance)
-        lowest = min(posture.gaps)
-        if lowest < self._deepest:
-            return Status.BELOW_SUPPORT
-        if lowest > self._highest:
-            return Status.OFF_SUPPORT
-        if self._extent or self._drum is not None:
-            center = center_of(self.scene, sample, posture)
-            if self._drum is not None and self._drum.has_left(center):
-                return Status.OFF_SUPPORT
-            if self._extent:
-                back, front, right, left = self._extent
-                if not (back <= center[0] <= front and right <= center[1] <= left):
-                    return Status.OFF_SUPPORT
-        return Status.ACCEPTED
 
 
 def seen_from(moment: Moment, frame: str, sample: Sample) -> Sample | None:
@@ -159,8 +97,3 @@ def pull_at(felt: Felt, place: Vector3, velocity: Vector3) -> Vector3:
     outer = cross(spin, inner)
     gx, gy, gz = felt.gravity
     return gx - euler[0] - outer[0], gy - euler[1] - outer[1], gz - euler[2] - outer[2]
-
-
-def center_of(scene: Scene, sample: Sample, posture: Posture) -> Vector3:
-    """Where the mass centre is."""
-    return add(sample.position, to_world(posture.axes, scene.center_of_mass))

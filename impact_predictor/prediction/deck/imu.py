@@ -5,8 +5,7 @@ from __future__ import annotations
 from math import atan2, exp, hypot, isfinite, sqrt
 
 from ...stamps import NANOSECONDS
-from ..checks import UNIT, order_of
-from ..predictor import PAUSE
+from ..checks import PAUSE, UNIT, order_of
 from ..scene import Scene
 from ..types import Imu, Moment, Quaternion, Status, Vector3
 from ..vectors import add, any_across, axes_of, cross, dot, times, to_body, turned

@@ -7,8 +7,7 @@ from math import isfinite, sqrt
 from typing import TYPE_CHECKING
 
 from ...stamps import NANOSECONDS
-from ..checks import LARGEST, UNIT, order_of
-from ..predictor import PAUSE
+from ..checks import LARGEST, PAUSE, UNIT, order_of
 from ..scene import MovingDeck
 from ..types import Imu, Moment, Quaternion, Sample, Status, Vector3
 from ..vectors import add, axes_of, dot, times, to_world

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from ...stamps import NANOSECONDS
-from ..checks import LARGEST, order_of
-from ..predictor import PAUSE
+from ..checks import LARGEST, PAUSE, order_of
 from ..scene import Walking
 from ..types import Status, Wrench
 from ..vectors import dot

@@ -6,10 +6,8 @@ from collections.abc import Mapping
 from math import hypot, inf, sqrt
 
 from ...mechanics.contact_space import ContactOutcome, solve, unchanged
-from ...mechanics.impact import new_tuple
 from ...mechanics.types import Flag, Mode, Twist
-from ..approach import GRAZES
-from ..planar import ORIGIN, ROUNDING, TINY, edge_of, hardly, off_axis_of
+from ..planar import GRAZES, ORIGIN, ROUNDING, TINY, edge_of, hardly, off_axis_of
 from ..scene import Scene
 from ..types import Leftover, Sample, Status, Touchdown, Vector3
 from ..vectors import add, any_across, axes_of, cross, dot, mean, times, to_body, to_world
@@ -89,34 +87,31 @@ def touchdown_of(
     arms = [add(point, center, -1.0) for point in ((mean(stood), struck) if first else (struck,))]
     span = add(arms[-1], arms[0], -1.0)
     gaps = [dot(normal, points[i]) for i in new]
-    touchdown = (
-        lead_time,
-        outcome.mode,
-        planar_twist(base.linear, base.angular, center, ahead, normal, axis),
-        planar_twist(linear, angular, center, ahead, normal, axis),
-        outcome.impulses,
-        outcome.segments,
-        outcome.energy_lost,
-        outcome.flags | doubts(scene, outcome),
-        outcome.unique,
-        outcome.law,
-        first,
-        new,
-        to_world(axes, axis),
-        base.position,
-        base.orientation,
-        linear,
-        angular,
-        0.5 * hypot(dot(span, ahead), dot(span, normal)),
-        off_axis_of(base.angular, axis, dot(axis, base.angular)),
-        dot(axis, striking),
-        (max(gaps) - min(gaps)) / -c[2] if c[2] < 0.0 else 0.0,
-        max([abs(dot(axis, arm)) for arm in arms]),
-        leftover,
-        None,
-        None,
+    return Touchdown(
+        lead_time=lead_time,
+        mode=outcome.mode,
+        before=planar_twist(base.linear, base.angular, center, ahead, normal, axis),
+        after=planar_twist(linear, angular, center, ahead, normal, axis),
+        impulses=outcome.impulses,
+        segments=outcome.segments,
+        energy_lost=outcome.energy_lost,
+        flags=outcome.flags | doubts(scene, outcome),
+        unique=outcome.unique,
+        law=outcome.law,
+        old=first,
+        new=new,
+        axis=to_world(axes, axis),
+        position=base.position,
+        orientation=base.orientation,
+        linear=linear,
+        angular=angular,
+        half_distance=0.5 * hypot(dot(span, ahead), dot(span, normal)),
+        off_axis=off_axis_of(base.angular, axis, dot(axis, base.angular)),
+        lateral=dot(axis, striking),
+        closing_spread=(max(gaps) - min(gaps)) / -c[2] if c[2] < 0.0 else 0.0,
+        offset=max([abs(dot(axis, arm)) for arm in arms]),
+        leftover=leftover,
     )
-    return new_tuple(Touchdown, touchdown)
 
 
 def standing_with(scene: Scene, old: tuple[int, ...], new: tuple[int, ...]) -> tuple[int, ...]:

@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 from math import inf
 from statistics import mean
 
-from ...prediction.approach import ACCURACY
-from ...prediction.transverse import TOLERANCE
+from ...prediction.impact import TOLERANCE
+from ...prediction.points import ACCURACY
 from .impact_methods import ACROSS
 from .rows import ACCURACIES, ALL_SCENES, IMPACT, TOUCHDOWN, Choice, Default, Row, Scene
 

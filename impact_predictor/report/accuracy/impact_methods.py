@@ -13,7 +13,7 @@ from ...mechanics.batch import solve_impacts
 from ...mechanics.impact import solve_impact
 from ...mechanics.transverse import Transverse, solve_transverse_impact
 from ...mechanics.types import Contact, Mode, Twist
-from ...prediction.transverse import TOLERANCE
+from ...prediction.impact import TOLERANCE
 from .impact_scenes import After, Strike, joined
 from .methods import Method, always, method, over
 

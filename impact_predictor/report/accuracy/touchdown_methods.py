@@ -9,7 +9,7 @@ import numpy as np
 
 from ...mechanics.motion import next_touchdown
 from ...mechanics.types import Twist
-from ...prediction.approach import ACCURACY
+from ...prediction.points import ACCURACY
 from .methods import Method, method, over
 from .touchdown_equations import gap_of, slip_of, stance_of, striking, twist_rates
 from .touchdown_scenes import Falling, Landing

@@ -359,9 +359,9 @@ def test_over_a_support_at_rest_all_is_as_over_a_fixed_one(
     fixed = Predictor(scene._replace(deck=None, gravity=moment.felt.gravity))
     relative = placed.relative(0.0, start)
     expected = fixed.update(relative)
-    aboard = Predictor(scene, placed).update(relative)
-    assert aboard.touchdown == expected.touchdown
-    assert aboard.relative is relative
+    on_deck = Predictor(scene, placed).update(relative)
+    assert on_deck.touchdown == expected.touchdown
+    assert on_deck.relative is relative
     from_world_frame = Predictor(scene, placed).update(placed.sample(0.0, in_world(placed.support.motion(0.0), start)))
     same_touchdown(from_world_frame, expected, 1e-10)  # rounding of the way there, through a slip that is followed
 

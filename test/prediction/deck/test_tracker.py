@@ -11,9 +11,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from impact_predictor.prediction.checks import PAUSE
 from impact_predictor.prediction.deck.motion import ahead, rotation_between, turned_back
 from impact_predictor.prediction.deck.tracker import Deck
-from impact_predictor.prediction.predictor import PAUSE
 from impact_predictor.prediction.scene import MovingDeck
 from impact_predictor.prediction.types import Felt, Moment, Sample, Status, Vector3
 from impact_predictor.prediction.vectors import axes_of, composed, to_body, turned

@@ -11,7 +11,8 @@ import pytest
 from walker_sensors import noisy
 
 from impact_predictor.mechanics.types import Flag
-from impact_predictor.prediction.predictor import PAUSE
+from impact_predictor.prediction.checks import PAUSE
+from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene, Walking
 from impact_predictor.prediction.types import (
     Geometry,
@@ -28,7 +29,6 @@ from impact_predictor.prediction.vectors import add, axes_of, cross, to_body, tu
 from impact_predictor.prediction.walking.cubic import Frame
 from impact_predictor.prediction.walking.point import Point
 from impact_predictor.prediction.walking.stance import Ground
-from impact_predictor.prediction.walking.walker import Walker
 from impact_predictor.scenarios.comparison import Landings
 
 MS = 1_000_000
@@ -123,7 +123,7 @@ class Seen(NamedTuple):
 
 
 def walk(scene: Scene, messages: Iterable[Message]) -> Seen:
-    walker = Walker(scene)
+    walker = Predictor(scene)
     predictions = []
     for sample, geometry in messages:
         assert walker.set_geometry(geometry) is Status.ACCEPTED
@@ -421,7 +421,7 @@ def test_the_toe_of_a_foot_that_has_just_landed_on_its_heel_makes_no_false_alarm
     places = ((-0.1, 0.1, 0.0), (0.1, 0.1, 0.0), (-0.1, -0.1, 0.0), (0.1, -0.1, 0.0))
     courses = [swing(0.3, 0.6, speed=0.2), swing(0.3, 0.68, height=0.12), stands, stands]
     scene = machine(("left", "right"), points=2)
-    walker, landings = Walker(scene), Landings({"": scene})
+    walker, landings = Predictor(scene), Landings({"": scene})
     for sample, geometry in record(courses, 0.9, places=places):
         landings.tell("base", sample.stamp, (not START + 300 * MS < sample.stamp < START + 600 * MS, True))
         walker.set_geometry(geometry)
@@ -509,10 +509,10 @@ def test_a_foot_that_meets_the_ground_early_stands_from_then() -> None:
 
 
 def test_landings_are_told_late_or_early_against_the_plan() -> None:
-    walker = Walker(machine(has_schedule=True))
+    walker = Predictor(machine(has_schedule=True))
     swings, stance = (False, True, True, True), (True,) * 4
     times = (START + 300 * MS, START + 580 * MS)
-    assert walker.set_schedule(Schedule(START, FEET, times, (swings, stance))) is Status.ACCEPTED
+    assert walker.tell(Schedule(START, FEET, times, (swings, stance))) is Status.ACCEPTED
     late, scores = [], []
     for sample, geometry in record([swing(0.3, 0.6), stands, stands, stands], 0.8):
         walker.set_geometry(geometry)
@@ -527,11 +527,11 @@ def test_landings_are_told_late_or_early_against_the_plan() -> None:
 
 def test_a_force_sensor_confirms_and_never_decides() -> None:
     messages = record([swing(0.3, 0.6), stands, stands, stands], 0.8)
-    walker, blind = Walker(machine(force=20.0)), Walker(machine())
+    walker, blind = Predictor(machine(force=20.0)), Predictor(machine())
     for sample, geometry in messages:
         pressed = (0.0, 0.0, 0.0 if 300 * MS < sample.stamp - START < 600 * MS else 200.0)
-        assert walker.set_wrench(Wrench(sample.stamp, "LF", pressed)) is Status.ACCEPTED
-        assert walker.set_wrench(Wrench(sample.stamp, "RF", (0.0, 0.0, 1.0))) is Status.ACCEPTED
+        assert walker.tell(Wrench(sample.stamp, "LF", pressed)) is Status.ACCEPTED
+        assert walker.tell(Wrench(sample.stamp, "RF", (0.0, 0.0, 1.0))) is Status.ACCEPTED
         walker.set_geometry(geometry)
         blind.set_geometry(geometry)
         left, right, *others = walker.update(sample).feet
@@ -539,13 +539,13 @@ def test_a_force_sensor_confirms_and_never_decides() -> None:
         assert right.confirmed is False
         assert [foot.confirmed for foot in others] == [None, None]
     assert left.confirmed is True
-    assert walker.set_wrench(Wrench(START, "nose", (0.0, 0.0, 1.0))) is Status.WRONG_FRAME
-    assert walker.set_wrench(Wrench(START + 10**10, "LF", (math.nan, 0.0, 1.0))) is Status.NOT_FINITE
+    assert walker.tell(Wrench(START, "nose", (0.0, 0.0, 1.0))) is Status.WRONG_FRAME
+    assert walker.tell(Wrench(START + 10**10, "LF", (math.nan, 0.0, 1.0))) is Status.NOT_FINITE
 
 
 def test_geometry_may_follow_the_sample_of_its_stamp() -> None:
     messages = record([swing(0.3, 0.6), stands, stands, stands], 0.8)
-    walker = Walker(machine())
+    walker = Predictor(machine())
     walker.set_geometry(messages[0].geometry)
     told = []
     for sample, geometry in messages[1:]:
@@ -561,7 +561,7 @@ def test_geometry_between_the_samples_is_carried_with_the_base(offset: float) ->
     courses = [swing(0.3, 0.6), stands, stands, stands]
     fast = record(courses, 0.8, rate=RATE * 25)
     samples, feet = fast[500::25], fast[500 + round(10 * offset) :: 25]
-    walker, told = Walker(machine()), []
+    walker, told = Predictor(machine()), []
     messages = sorted([one.sample for one in samples] + [one.geometry for one in feet], key=lambda one: one.stamp)
     for message in messages:
         if isinstance(message, Geometry):
@@ -576,7 +576,7 @@ def test_geometry_between_the_samples_is_carried_with_the_base(offset: float) ->
 
 def test_odd_messages_get_a_named_status_and_the_walker_goes_on() -> None:
     messages = record([swing(0.3, 0.6), stands, stands, stands], 0.8)
-    walker = Walker(machine())
+    walker = Predictor(machine())
     sample, geometry = messages[0]
     assert walker.update(sample).status is Status.NO_GEOMETRY
     assert walker.set_geometry(geometry._replace(points=geometry.points[:3])) is Status.FEET_CHANGED
@@ -603,7 +603,7 @@ def test_odd_messages_get_a_named_status_and_the_walker_goes_on() -> None:
 
 def test_feet_far_below_the_ground_are_refused() -> None:
     messages = record([stands] * 4, 0.2)
-    walker = Walker(machine())
+    walker = Predictor(machine())
     sunk = [
         one._replace(sample=one.sample._replace(position=add(one.sample.position, (0.0, 0.0, -0.2))))
         for one in messages
@@ -620,7 +620,7 @@ def test_feet_far_below_the_ground_are_refused() -> None:
 
 def test_feet_that_are_told_no_more_are_stale() -> None:
     messages = record([stands] * 4, 0.4)
-    walker = Walker(machine(timeout=0.1))
+    walker = Predictor(machine(timeout=0.1))
     walker.set_geometry(messages[0].geometry)
     statuses = [walker.update(one.sample).status for one in messages]
     assert statuses == [Status.ACCEPTED] * 41 + [Status.GEOMETRY_STALE] * (len(messages) - 41)
@@ -634,7 +634,7 @@ def test_after_a_pause_or_a_new_clock_the_feet_are_learnt_anew() -> None:
     shifted = [Message(s._replace(stamp=s.stamp + later), g._replace(stamp=g.stamp + later)) for s, g in messages]
     seen = walk(machine(), messages[:200] + shifted)
     assert len(seen.scores) == 1
-    walker = Walker(machine())
+    walker = Predictor(machine())
     for sample, geometry in messages:
         walker.set_geometry(geometry)
         walker.update(sample)

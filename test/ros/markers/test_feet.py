@@ -8,9 +8,9 @@ from rosbags.typesys import Stores, get_typestore
 from trot import FEET, PERIOD, trot
 
 from impact_predictor.parameters.file import read_values
+from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.prediction.types import Prediction
-from impact_predictor.prediction.walking.walker import Walker
 from impact_predictor.ros.markers.message import CUBE_LIST, SPHERE_LIST
 from impact_predictor.ros.markers.scene import MarkerScene
 from impact_predictor.ros.messages import MARKER_ARRAY
@@ -23,7 +23,7 @@ LANDS = round(1.5 * PERIOD * 1e9)
 
 def seen_at(stamp: int) -> tuple[Prediction, dict[str, Any]]:
     """The answer at a stamp in ns, and what is drawn of it, by namespaces."""
-    walker, drawing = Walker(SCENE), MarkerScene({"": SCENE})
+    walker, drawing = Predictor(SCENE), MarkerScene({"": SCENE})
     for geometry, sample in trot(500.0, 2.0):
         walker.set_geometry(geometry)
         # Feet are drawn from the answers, wherever they were told.

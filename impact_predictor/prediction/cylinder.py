@@ -11,15 +11,23 @@ from __future__ import annotations
 from math import atan2, hypot, sqrt
 
 from ..errors import InputError
-from ..mechanics.impact import new_tuple
 from ..mechanics.motion import PlanarState
 from ..mechanics.rocking import next_strike
 from ..mechanics.support import FixedSupport
 from ..mechanics.types import Contact, Twist, TwoPointBody, Vector
-from .approach import GRAZES, Approach
 from .deck.approach import PlanarSupport, gravity_over, is_uniform
-from .deck.frame import center_of
-from .planar import Contacts, Plane, Posture, contacts_of, inertia_about, off_axis_of
+from .impact import Collision
+from .planar import (
+    GRAZES,
+    ActiveContacts,
+    ImpactPlane,
+    Posture,
+    center_of,
+    contacts_of,
+    inertia_about,
+    off_axis_of,
+)
+from .points import PointContacts
 from .scene import Scene
 from .types import Moment, Sample, Vector3
 from .vectors import add, axes_of, cross, dot, times, to_body, to_world
@@ -29,8 +37,10 @@ ASIDE = 0.5
 still balance over an edge of a support that leans by 30 degrees."""
 
 
-class Drum:
-    """The cylinder of a scene on its edges."""
+class CylinderContacts(PointContacts):
+    """The contacts of the cylinder of a scene with its edges."""
+
+    slips_across = False
 
     def __init__(self, scene: Scene) -> None:
         """Take the cylinder with `scene.radius` on `scene.edges`.
@@ -48,7 +58,8 @@ class Drum:
                 f"the edges at {first} and {second} do not carry a cylinder of radius {scene.radius} m; "
                 "give two that lie beside each other, nearer than its diameter"
             )
-        self.scene, self.size = scene, 2.0 * scene.radius
+        super().__init__(scene)
+        self.points, self.size = scene.edges, 2.0 * scene.radius
         self._ahead = times(level, 1.0 / width)
         self._along = cross(scene.normal, self._ahead)
         # From either edge to the other, and from there to the axis when it lies on both.
@@ -70,7 +81,7 @@ class Drum:
             distance = sqrt(dot(arm, arm))
             gaps.append(distance - scene.radius)
             rates.append(dot(arm, moves) / distance if distance > 0.0 else 0.0)
-        return new_tuple(Posture, (axes, to_body(axes, scene.normal), velocity, gaps, rates))
+        return Posture(axes=axes, normal=to_body(axes, scene.normal), velocity=velocity, gaps=gaps, rates=rates)
 
     def has_left(self, center: Vector3) -> bool:
         """Whether the axis, which runs through `center`, is beside its edges."""
@@ -78,8 +89,7 @@ class Drum:
         beyond = max(dot(self._ahead, add(center, second, -1.0)), -dot(self._ahead, add(center, first, -1.0)))
         return beyond > ASIDE * self.scene.radius
 
-    def approach_of(self, sample: Sample, posture: Posture, moment: Moment | None = None) -> Approach | None:
-        """As `approach.approach_of`."""
+    def collision_of(self, sample: Sample, posture: Posture, moment: Moment | None) -> Collision | None:
         scene = self.scene
         contacts = contacts_of(scene, posture)
         if contacts is None:
@@ -95,7 +105,7 @@ class Drum:
         plane = self._plane(sample, posture, moment, contacts, axis, ahead, (x, y))
         inertia = inertia_about(scene, plane.axis, blocked=True)
         vx, vy, omega = plane.twist
-        start = new_tuple(PlanarState, (x - vx * age, y - vy * age, -omega * age, vx, vy, omega))
+        start = PlanarState(x=x - vx * age, y=y - vy * age, angle=-omega * age, vx=vx, vy=vy, omega=omega)
         gx, gy, _ = plane.gravity
         support: FixedSupport | PlanarSupport
         if moment is None or is_uniform(moment, scene.horizon):
@@ -113,29 +123,29 @@ class Drum:
         if speed < GRAZES:
             return None
         new = (sides[fall.point],)
-        approach = (
-            Contacts(contacts.old, new, contacts.base),
-            plane,
-            body,
-            new_tuple(Twist, fall.state[3:]),
-            fall.state._replace(x=fall.state.x - x, y=fall.state.y - y),
-            max(0.0, fall.time - age),
-            True,
-            -posture.rates[new[0]],
-            speed,
+        state = fall.state
+        return Collision(
+            contacts=ActiveContacts(contacts.old, new, contacts.base),
+            plane=plane,
+            body=body,
+            before=Twist(state.vx, state.vy, state.omega),
+            moved=state._replace(x=state.x - x, y=state.y - y),
+            lead_time=max(0.0, fall.time - age),
+            blocked=True,
+            measured=-posture.rates[new[0]],
+            speed=speed,
         )
-        return new_tuple(Approach, approach)
 
     def _plane(
         self,
         sample: Sample,
         posture: Posture,
         moment: Moment | None,
-        contacts: Contacts,
+        contacts: ActiveContacts,
         axis: Vector3,
         ahead: Vector3,
         center: Vector,
-    ) -> Plane:
+    ) -> ImpactPlane:
         """The impact plane, in the body frame; `axis` and `ahead` are given in the support's frame, and the axis of the
         cylinder in the plane from the edge behind.
         """
@@ -144,17 +154,17 @@ class Drum:
         line = self._lines[0 if contacts.new[0] == 1 else 1]
         own_axis, own_ahead = to_body(axes, axis), to_body(axes, ahead)
         rate = dot(own_axis, sample.angular)
-        return Plane(
-            own_axis,
-            own_ahead,
-            (-center[0], -center[1]) if contacts.old else None,
-            (line[0] - center[0], line[1] - center[1]),
-            Twist(dot(own_ahead, velocity), dot(posture.normal, velocity), -rate),
-            (dot(ahead, gravity), dot(scene.normal, gravity), dot(axis, gravity)),
-            max(0.0, posture.gaps[contacts.new[0]] - contacts.base),
-            off_axis_of(sample.angular, own_axis, rate),
-            dot(own_axis, velocity),
-            0.0,
+        return ImpactPlane(
+            axis=own_axis,
+            ahead=own_ahead,
+            old=(-center[0], -center[1]) if contacts.old else None,
+            new=(line[0] - center[0], line[1] - center[1]),
+            twist=Twist(dot(own_ahead, velocity), dot(posture.normal, velocity), -rate),
+            gravity=(dot(ahead, gravity), dot(scene.normal, gravity), dot(axis, gravity)),
+            gap=max(0.0, posture.gaps[contacts.new[0]] - contacts.base),
+            off_axis=off_axis_of(sample.angular, own_axis, rate),
+            lateral=dot(own_axis, velocity),
+            offset=0.0,
         )
 
     def _body(self, forth: float, inertia: float) -> TwoPointBody:

@@ -1,4 +1,4 @@
-"""The predictor of a walking machine: samples of its base and of its feet in, a prediction for each sample out."""
+"""The contacts of a walking machine: when the points of its feet land, and the impacts they make."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from math import sqrt
 from typing import TYPE_CHECKING
 
 from ...stamps import NANOSECONDS
-from ..checks import LARGEST, check_numbers, order_of
+from ..checks import LARGEST, PAUSE, order_of
+from ..contacts import DEEP, DEEP_TOLERANCES, Contacts
 from ..planar import posture_of
-from ..predictor import PAUSE
 from ..scene import Scene, Walking
 from ..score import MEASURED, Pending, Track
 from ..types import (
@@ -17,11 +17,11 @@ from ..types import (
     Geometry,
     Joints,
     Landing,
-    Prediction,
+    Moment,
     Sample,
     Schedule,
-    Score,
     Status,
+    Touchdown,
     Wrench,
 )
 from ..vectors import add, axes_of, cross, dot, to_world
@@ -37,30 +37,22 @@ from .stance import Ground
 if TYPE_CHECKING:
     from .legs import Articulated
 
-DEEP = 0.05
-"""A foot is below the ground when it lies deeper than this part of the distance from its base ..."""
-
-DEEP_TOLERANCES = 4.0
-"""... and so many contact tolerances: more than noise makes of a gap, or 3 degrees of a wrong orientation."""
-
 REMEMBERED = 64
 """Samples that are kept for feet that are told later, and for landings that are noticed later."""
 
 
-class Walker:
-    """Predicts the landings of the feet of one machine.
+class FeetContacts(Contacts):
+    """The contacts of a machine that walks: the points of its feet, which move against its base.
 
-    `update` answers each sample of the base, in the order of their stamps; `set_geometry` or `set_joints` tell where
-    the feet are, before or after the sample of the same stamp; `set_wrench` what their force sensors measure,
-    `set_schedule` when they are planned to stand; `finish` ends the record.
+    Points, or joints, are told before or after the sample of the same stamp.
 
     Raises:
         InputError: the robot's model, or the inertia of the scene, is none.
     """
 
     def __init__(self, scene: Scene) -> None:
+        super().__init__(scene)
         assert scene.walking is not None
-        self.scene = scene
         self._walking: Walking = scene.walking
         self._articulated: Articulated | None = None
         if self._walking.robot is not None:
@@ -68,129 +60,98 @@ class Walker:
 
             self._articulated = Articulated(self._walking.robot)
             self.scene = scene = scene._replace(mass=self._articulated.body.mass)
+            self.joints = self._articulated.body.joints
         self._mechanism: Mechanism = self._articulated or Trunk(scene)
         self._timeout = round(self._walking.timeout * NANOSECONDS)
         self._count = len(self._walking.feet) * self._walking.points
         self._plan = Plan(self._walking.feet)
         self._forces = Forces(self._walking)
-        self._geometry: Geometry | None = None
         self._waiting: deque[Geometry] = deque(maxlen=REMEMBERED)
-        self._scores: deque[Score] = deque()
         self._recent: deque[Sample] = deque(maxlen=REMEMBERED)
+        self._dues: list[Due | None] = []
         self._begin()
 
-    @property
-    def geometry(self) -> Geometry | None:
-        """Where the feet are, as it was told last."""
-        return self._geometry
-
-    @property
-    def articulated(self) -> Articulated | None:
-        """The model of the robot; None where the feet are told of themselves."""
-        return self._articulated
-
-    def become(self, other: Walker) -> None:
-        """Go on as the machine of another scene: feet and plan stay known, and all that was seen begins anew."""
-        other._geometry, other._waiting, other._plan = self._geometry, self._waiting, self._plan
-        other._scores.extend(self.finish())
-        vars(self).update(vars(other))
-
-    def set_geometry(self, geometry: Geometry) -> Status:
-        """Take where the points of the feet are; what became of the message. A refused one leaves the last."""
-        points, velocities = geometry.points, geometry.velocities
-        if len(points) != self._count or len(velocities) not in (0, self._count):
-            return Status.FEET_CHANGED
-        if not sum([dot(vector, vector) for vector in points + velocities]) < LARGEST:
-            return Status.NOT_FINITE
-        last = None if self._geometry is None else self._geometry.stamp
-        status = order_of(geometry.stamp, last)
-        if status is Status.ACCEPTED:
-            self._geometry = geometry
-            self._waiting.append(geometry)
-            return self._see()
-        if last is not None and last - geometry.stamp > PAUSE:
-            self._geometry = None
-            self._waiting.clear()
-            self._forget()
-        return status
-
-    def set_joints(self, joints: Joints) -> Status:
-        """Take where the joints are, and the feet with them; what became of the message."""
+    def tell(self, message: Geometry | Joints | Wrench | Schedule) -> Status:
+        """Take where the points or the joints are, the force on a foot, or when the feet are planned to stand."""
+        if isinstance(message, Geometry):
+            return self._set_geometry(message)
+        if isinstance(message, Wrench):
+            return self._forces.set(message)
+        if isinstance(message, Schedule):
+            return self._plan.set(message)
         assert self._articulated is not None
-        geometry = self._articulated.geometry_of(joints)
-        return geometry if isinstance(geometry, Status) else self.set_geometry(geometry)
+        geometry = self._articulated.geometry_of(message)
+        self.unknown_joints = self._articulated.left_out
+        return geometry if isinstance(geometry, Status) else self._set_geometry(geometry)
 
-    def set_wrench(self, wrench: Wrench) -> Status:
-        """Take the force on a foot, which confirms its stance; what became of the message."""
-        return self._forces.set(wrench)
+    def follow(self, other: Contacts) -> None:
+        assert isinstance(other, FeetContacts)
+        self.geometry, self.frame_id = other.geometry, other.frame_id
+        self._waiting, self._plan = other._waiting, other._plan
 
-    def set_schedule(self, schedule: Schedule) -> Status:
-        """Take when the feet are planned to stand; what became of the message."""
-        return self._plan.set(schedule)
+    def check(self, stamp: int) -> Status:
+        if self.geometry is None:
+            return Status.NO_GEOMETRY
+        return Status.GEOMETRY_STALE if abs(stamp - self.geometry.stamp) > self._timeout else Status.ACCEPTED
 
-    def update(self, sample: Sample) -> Prediction:
-        """The prediction from a sample of the base: the landings ahead, every foot, and a score that is complete."""
-        status = self._check(sample)
-        if status is not Status.ACCEPTED:
-            return Prediction(status, sample)
-        landed = len(self._landed)
+    def take(self, sample: Sample, moment: Moment | None) -> Status:
+        self._settles = bool(self._landed)
+        self.stamp = sample.stamp
         self._recent.append(sample)
         self._twists.add(sample)
         self._see()
         status = self._found
         if status is Status.ACCEPTED and not self._points[0].course.frames:
             status = Status.NO_GEOMETRY
-        if status is not Status.ACCEPTED:
-            return Prediction(status, sample)
-        dues = [point.revise(sample.stamp, self._ground) for point in self._points]
-        touchdown = self._ahead.soonest(sample, dues)
-        if isinstance(touchdown, Status):
-            return Prediction(touchdown, sample)
-        feet = tuple([self._foot(number, sample.stamp, dues) for number in range(len(self._walking.feet))])
-        # What lands now is told with the next sample, which has less to do.
-        return Prediction(status, sample, touchdown, self._score() if landed or self._scores else None, feet=feet)
+        return status
 
-    def finish(self) -> tuple[Score, ...]:
-        """End the record: the scores not yet handed out, those without enough samples after them included."""
-        self._forget()
-        scores = tuple(self._scores)
-        self._scores.clear()
-        return scores
+    def touchdown(self) -> Touchdown | Status | None:
+        sample = self._recent[-1]
+        self._dues = [point.revise(sample.stamp, self._ground) for point in self._points]
+        touchdown = self._ahead.soonest(sample, self._dues)
+        # What lands now is told with the next sample, which has less to do.
+        if self._settles and not self.settled and not isinstance(touchdown, Status):
+            self._settle()
+        return touchdown
+
+    def feet(self) -> tuple[Foot, ...]:
+        stamp = self._recent[-1].stamp
+        return tuple([self._foot(number, stamp, self._dues) for number in range(len(self._walking.feet))])
+
+    def forget(self) -> None:
+        for landed in self._landed:
+            self._measure(landed.pending)
+            if (score := self._ahead.score(landed)) is not None:
+                self.settled.append(score)
+        self._recent.clear()
+        self.stamp = None
+        self._begin()
 
     def _begin(self) -> None:
         self._points = [Point(self.scene) for _ in range(self._count)]
         self._ground = Ground(self.scene)
         self._landed: deque[Landed] = deque()
+        self._settles = False
         self._twists = Twists()
         self._found = Status.ACCEPTED  # what became of the last geometry that met a sample
         self._ahead = Ahead(self.scene, self._mechanism, self._points, self._twists)
 
-    def _forget(self) -> None:
-        """Begin anew; what waits for its measurement will not get it."""
-        for landed in self._landed:
-            self._measure(landed.pending)
-            if (score := self._ahead.score(landed)) is not None:
-                self._scores.append(score)
-        self._recent.clear()
-        self._begin()
-
-    def _check(self, sample: Sample) -> Status:
-        status = check_numbers(sample)
-        if status is not Status.ACCEPTED:
-            return status
-        if self.scene.frame and sample.frame_id != self.scene.frame:
-            return Status.WRONG_FRAME
-        geometry = self._geometry
-        if geometry is None:
-            return Status.NO_GEOMETRY
-        if geometry.frame_id and sample.child_frame_id and sample.child_frame_id != geometry.frame_id:
-            return Status.WRONG_FRAME
-        last = self._recent[-1].stamp if self._recent else None
-        status = order_of(sample.stamp, last)
-        if last is not None and abs(sample.stamp - last) > PAUSE:
-            self._forget()
-        if status is Status.ACCEPTED and abs(sample.stamp - geometry.stamp) > self._timeout:
-            return Status.GEOMETRY_STALE
+    def _set_geometry(self, geometry: Geometry) -> Status:
+        points, velocities = geometry.points, geometry.velocities
+        if len(points) != self._count or len(velocities) not in (0, self._count):
+            return Status.FEET_CHANGED
+        if not sum([dot(vector, vector) for vector in points + velocities]) < LARGEST:
+            return Status.NOT_FINITE
+        last = None if self.geometry is None else self.geometry.stamp
+        status = order_of(geometry.stamp, last)
+        if status is Status.ACCEPTED:
+            self.geometry, self.frame_id = geometry, geometry.frame_id
+            self._waiting.append(geometry)
+            return self._see()
+        if last is not None and last - geometry.stamp > PAUSE:
+            self.geometry = None
+            self._waiting.clear()
+            self.forget()
         return status
 
     def _see(self) -> Status:
@@ -252,18 +213,16 @@ class Walker:
         self._landed.append(Landed(Pending(Track(), stamp), landing, last, self._ahead.seen(i, new, self._recent)))
         self._twists.begin(stamp)
 
-    def _score(self) -> Score | None:
-        """The next score that is complete; of its two impacts a sample computes one."""
-        if self._scores:
-            return self._scores.popleft()
+    def _settle(self) -> None:
+        """Settle the next landing that is complete; of its two impacts a sample computes one."""
         self._measure(self._landed[0].pending)
         if not self._landed[0].pending.complete:
-            return None
+            return
         landed = self._landed.popleft()
         if landed.seen is not None:
             self._landed.appendleft(self._ahead.struck(landed))
-            return None
-        return self._ahead.score(landed)
+        elif (score := self._ahead.score(landed)) is not None:
+            self.settled.append(score)
 
     def _measure(self, pending: Pending) -> None:
         """Hand the samples after a touchdown to it, once there are enough of them."""

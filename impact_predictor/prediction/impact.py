@@ -1,0 +1,229 @@
+"""The impact at the end of an approach: its outcome in the impact plane, the body after it in space, how sure it is."""
+
+from __future__ import annotations
+
+from math import cos, hypot, inf, sin
+from typing import TYPE_CHECKING, NamedTuple
+
+from ..mechanics.impact import solve_impact
+from ..mechanics.motion import PlanarState
+from ..mechanics.types import Outcome, Twist, TwoPointBody
+from .planar import ORIGIN, ActiveContacts, ImpactPlane, Posture, hardly, inertia_about
+from .scene import Scene
+from .types import Leftover, Quaternion, Sample, Touchdown, Vector3
+from .vectors import add, axes_of, combine, cross, dot, to_body, to_world, turned
+
+if TYPE_CHECKING:
+    from .uncertainty import Sampler
+
+SLIPS = 0.05
+"""A body slips across its plane from this part of the speed of its new contact in the plane: less changes the twist of
+a landing cube by less than 0.006 of that speed, and poses measure it to 0.01."""
+
+TOLERANCE = 5e-3
+"""Of each step of the path along the impulse: half of what poses measure twists to. Most steps err by far less."""
+
+OFF_AXIS = 0.3
+"""A touchdown is planar up to this part of the angular velocity off the axis: 9 % of the turning energy."""
+
+OFFSET = 0.2
+"""... and up to this part of the contacts' half distance between their plane and the mass centre (in flight of the
+distance between contact and mass centre)."""
+
+SLOWEST = 4.0
+"""An impact can be told from rest when it approaches this many times faster than gravity moves it in a contact time."""
+
+
+class Collision(NamedTuple):
+    """The collision that a sample shows to be ahead, before its impact.
+
+    `body` and its twist `before` are those of the impact, in the impact plane; `moved` how the body moves there until
+    then, from the sample's pose; `lead_time` in s; `blocked` whether its contacts are edges, off whose line it cannot
+    turn. `measured` is the speed in m/s at which the sample shows the new points to approach, `speed` that of the
+    touchdown.
+    """
+
+    contacts: ActiveContacts
+    plane: ImpactPlane
+    body: TwoPointBody
+    before: Twist
+    moved: PlanarState
+    lead_time: float
+    blocked: bool
+    measured: float
+    speed: float
+
+
+class LateralMotion(NamedTuple):
+    """Motion across the impact plane: velocity of the mass centre along the axis (m/s), angular velocities about d
+    (roll) and about the support normal (yaw) in rad/s.
+    """
+
+    velocity: float
+    roll: float
+    yaw: float
+
+
+class ImpactModel:
+    """How the body of a scene is struck; `slips_across` where friction may also oppose slip across the plane."""
+
+    def __init__(self, scene: Scene, slips_across: bool) -> None:
+        self._scene = scene
+        self._slips_across = slips_across and scene.transverse_slip and scene.law == "path" and scene.friction > 0.0
+        self._sampler: Sampler | None = None
+        # What is loaded for some scenes only is loaded now, not with the first touchdown.
+        if self._slips_across:
+            from ..mechanics import transverse  # noqa: F401
+        if scene.margins:
+            from ..mechanics import margins  # noqa: F401
+        if scene.samples:
+            from .uncertainty import Sampler
+
+            self._sampler = Sampler(scene)
+
+    def touchdown(self, sample: Sample, posture: Posture, collision: Collision) -> Touchdown:
+        """The touchdown at the end of an approach, with its impact."""
+        scene, contacts, plane, body = self._scene, collision.contacts, collision.plane, collision.body
+        before, angle = collision.before, collision.moved.angle
+        lateral = lateral_motion(sample, posture, plane, collision.lead_time)
+        slipped = None
+        if self._slips_across:
+            slipped = impact_across(scene, plane, posture.normal, body, before, lateral, angle, collision.blocked)
+        outcome, lateral = slipped or (solve_impact(body, before, scene.law, scene.validity), lateral)
+        position, orientation, linear, angular = in_space(scene, sample, posture, collision, outcome.twist, lateral)
+        gaps = [posture.gaps[i] for i in contacts.new]
+        spread = (max(gaps) - min(gaps)) / collision.speed
+        half_distance = 0.0
+        if body.old is not None:
+            half_distance = 0.5 * hypot(body.new.x - body.old.x, body.new.y - body.old.y)
+        uncertainty = planar = None
+        if self._sampler is not None:
+            uncertainty = self._sampler.uncertainty(sample, posture, plane, body, before, orientation)
+        if scene.margins:
+            planar = solve_impact(body, before, scene.law, scene.validity) if slipped else outcome
+        return Touchdown(
+            lead_time=collision.lead_time,
+            mode=outcome.mode,
+            before=before,
+            after=outcome.twist,
+            impulses=outcome.impulses,
+            segments=outcome.segments,
+            energy_lost=outcome.energy_lost,
+            flags=outcome.flags,
+            unique=outcome.unique,
+            law=outcome.law,
+            old=contacts.old if body.old is not None else (),
+            new=contacts.new,
+            axis=to_world(posture.axes, plane.axis),
+            position=position,
+            orientation=orientation,
+            linear=linear,
+            angular=angular,
+            half_distance=half_distance,
+            off_axis=plane.off_axis,
+            lateral=plane.lateral,
+            closing_spread=spread,
+            offset=plane.offset,
+            leftover=leftover_of(scene, collision, half_distance, spread),
+            uncertainty=uncertainty,
+            planar=planar,
+        )
+
+
+def lateral_motion(sample: Sample, posture: Posture, plane: ImpactPlane, time: float) -> LateralMotion:
+    """The motion across the plane at a touchdown `time` after the sample: what the contacts leave as it is, and in
+    flight gravity.
+    """
+    pull = plane.gravity[2] if plane.old is None else 0.0
+    spin = sample.angular
+    velocity = dot(plane.axis, posture.velocity) + pull * time
+    return LateralMotion(velocity, dot(plane.ahead, spin), dot(posture.normal, spin))
+
+
+def impact_across(
+    scene: Scene,
+    plane: ImpactPlane,
+    normal: Vector3,
+    body: TwoPointBody,
+    before: Twist,
+    lateral: LateralMotion,
+    angle: float,
+    blocked: bool,
+) -> tuple[Outcome, LateralMotion] | None:
+    """The impact of a body that also moves across its plane, and how it does so after it; None where it hardly slips.
+
+    `normal` is the support's, in the body frame, and `angle` how far the body has turned in the plane since. Where its
+    contacts are edges its roll is `blocked`.
+    """
+    # z = ahead cross normal is against the axis.
+    velocity, yaw = -lateral.velocity, lateral.yaw
+    roll = 0.0 if blocked else lateral.roll
+    new, old = body.new, body.old
+    slip = abs(velocity + roll * new.y - yaw * new.x)
+    if old is not None:
+        slip = max(slip, abs(velocity + roll * old.y - yaw * old.x))
+    vx, vy, omega = before
+    if slip <= SLIPS * hypot(vx - omega * new.y, vy + omega * new.x):
+        return None
+    from ..mechanics.transverse import Transverse, solve_transverse_impact  # only where a scene may need it
+
+    c, s = cos(angle), sin(angle)
+    upright = combine(c, normal, s, plane.ahead, 0.0, plane.axis)
+    yaw_inertia = inertia_about(scene, upright, blocked)
+    roll_inertia = inf
+    if not blocked:
+        roll_inertia = inertia_about(scene, combine(c, plane.ahead, -s, normal, 0.0, plane.axis), blocked)
+    motion = Transverse(velocity, roll, yaw, roll_inertia, yaw_inertia)
+    outcome, after, _ = solve_transverse_impact(body, before, motion, TOLERANCE, scene.validity)
+    return outcome, LateralMotion(-after.velocity, lateral.roll if blocked else after.roll, after.yaw)
+
+
+def in_space(
+    scene: Scene, sample: Sample, posture: Posture, collision: Collision, after: Twist, lateral: LateralMotion
+) -> tuple[Vector3, Quaternion, Vector3, Vector3]:
+    """Position, orientation, linear and angular velocity of the body frame after an impact in the plane.
+
+    `after` and `lateral` are the motion in the plane and across it after the impact.
+    """
+    plane, moved, time = collision.plane, collision.moved, collision.lead_time
+    axes, n, center = posture.axes, scene.normal, scene.center_of_mass
+    axis, roll, yaw = plane.axis, dot(plane.ahead, sample.angular), dot(posture.normal, sample.angular)
+    rotation = combine(-moved.angle, axis, roll * time, plane.ahead, yaw * time, posture.normal)
+    orientation = turned(sample.orientation, rotation)
+    now = axes_of(orientation)
+
+    along = to_world(axes, axis)
+    ahead = cross(along, n)
+    angular = to_body(now, combine(-after.omega, along, lateral.roll, ahead, lateral.yaw, n))
+    linear = to_body(now, combine(after.vx, ahead, after.vy, n, lateral.velocity, along))
+    pull = plane.gravity[2] if plane.old is None else 0.0
+    glide = (dot(axis, posture.velocity) + 0.5 * pull * time) * time
+    position = add(sample.position, combine(moved.x, ahead, moved.y, n, glide, along))
+    if center != ORIGIN:
+        linear = add(linear, cross(angular, center), -1.0)
+        position = add(add(position, to_world(axes, center)), to_world(now, center), -1.0)
+    return position, orientation, linear, angular
+
+
+def leftover_of(scene: Scene, collision: Collision, half_distance: float, spread: float) -> Leftover:
+    """Why a touchdown is no planar two-point impact that can be scored, from the state before it alone."""
+    contacts, plane, body = collision.contacts, collision.plane, collision.body
+    width = half_distance if body.old is not None else hypot(body.new.x, body.new.y)
+    leftover = 0
+    if body.old is None:
+        leftover |= ONE_POINT
+    if plane.off_axis > OFF_AXIS or plane.offset > OFFSET * width:
+        leftover |= OUT_OF_PLANE
+    if spread > scene.contact_time or (body.old is not None and len(contacts.old) > 1 and len(contacts.new) == 1):
+        leftover |= ONE_CORNER_FIRST
+    if collision.speed < SLOWEST * hardly(scene):
+        leftover |= TOO_SLOW
+    return LEFTOVERS[leftover]
+
+
+ONE_POINT, OUT_OF_PLANE, ONE_CORNER_FIRST, TOO_SLOW = (
+    int(flag) for flag in (Leftover.ONE_POINT, Leftover.OUT_OF_PLANE, Leftover.ONE_CORNER_FIRST, Leftover.TOO_SLOW)
+)
+
+LEFTOVERS = tuple(map(Leftover, range(1 + sum(Leftover))))
+"""By their bits, because making a flag is slow."""

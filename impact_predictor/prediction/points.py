@@ -1,0 +1,269 @@
+"""A body on contact points: the touchdown that a sample shows to be ahead, followed until it has happened."""
+
+from __future__ import annotations
+
+from collections import deque
+from math import cos, hypot, sin
+
+from ..mechanics.motion import PlanarState, next_touchdown
+from ..mechanics.types import Contact, Twist, TwoPointBody, Vector
+from ..stamps import NANOSECONDS
+from .checks import check_points
+from .contacts import DEEP, DEEP_TOLERANCES, Contacts
+from .impact import Collision, ImpactModel
+from .planar import (
+    GRAZES,
+    ImpactPlane,
+    Posture,
+    center_of,
+    contacts_of,
+    edge_of,
+    inertia_about,
+    plane_of,
+    posture_of,
+)
+from .scene import Scene
+from .score import Pending, Track
+from .types import Geometry, Joints, Moment, Sample, Schedule, Status, Touchdown, Vector3, Wrench
+from .vectors import total
+
+ACCURACY = 1e-6
+"""Of the motion before the touchdown, relative: a thousandth of what poses and twists are measured to."""
+
+SETTLED = 0.5
+"""A touchdown has happened when less than this part of the approach is left, within the contact tolerance, that the
+predicting sample measured: the approach predicted for the touchdown has gravity's gain on the way added to it."""
+
+HIGH = 1.0
+"""A body is off its moving support when all of it is farther above than this part of its size. No impact throws it
+there: for a body of 1 m that takes 4.4 m/s, and one that topples keeps a contact, or one near it."""
+
+
+class PointContacts(Contacts):
+    """The contacts of a rigid body on points."""
+
+    slips_across = True
+    """Whether friction may oppose slip across the impact plane."""
+
+    def __init__(self, scene: Scene) -> None:
+        super().__init__(scene)
+        self.points: tuple[Vector3, ...] = scene.points
+        self.size = 0.0
+        """Distance in m of the contact points that are furthest apart, where the support moves."""
+        self.collision: tuple[Sample, Posture, Collision] | None = None
+        """The last collision whose impact was computed, with the sample that shows it."""
+        self._impact = ImpactModel(scene, self.slips_across)
+        self._moment: Moment | None = None
+        self._track: Track | None = None
+        self._landed: Pending | None = None
+        self._pending: list[Pending] = []
+        self._recent: deque[tuple[Sample, Posture]] = deque(maxlen=4)
+        self._measure_size()
+
+    def tell(self, message: Geometry | Joints | Wrench | Schedule) -> Status:
+        assert isinstance(message, Geometry)
+        status = check_points(message.points)
+        if status is Status.ACCEPTED:
+            if message.points != self.points:
+                self.points = message.points
+                self._track = None
+                self._measure_size()
+            self.geometry = message
+            self.frame_id = message.frame_id
+        return status
+
+    def check(self, stamp: int) -> Status:
+        return Status.ACCEPTED if self.points else Status.NO_GEOMETRY
+
+    def follow(self, other: Contacts) -> None:
+        if other.geometry is not None:
+            self.tell(other.geometry)
+
+    def take(self, sample: Sample, moment: Moment | None) -> Status:
+        posture = self.posture_of(sample)
+        if moment is not None:
+            status = self._place_of(sample, posture)
+            if status is not Status.ACCEPTED:
+                return status
+        self.stamp = sample.stamp
+        self._moment = moment
+        self._measure(sample, posture)
+        self._recent.append((sample, posture))
+        return Status.ACCEPTED
+
+    def touchdown(self) -> Touchdown | Status | None:
+        sample, posture = self._recent[-1]
+        collision = self.collision_of(sample, posture, self._moment)
+        track = self._track
+        if collision is None or self._is_echo(collision, sample):
+            self._track = None
+            return None
+        if track is not None and set(collision.contacts.new).isdisjoint(track.last.new):
+            track = None
+        if track is None:
+            track = self._track = Track()
+        elif (
+            min(collision.lead_time, abs(track.lead_time(sample.stamp))) < self.scene.twist_window
+            or self._recent[-2][0].stamp <= track.stamp < sample.stamp
+        ):
+            # The impact itself may be in this twist, averaged or just begun: the last prediction stands.
+            return track.hold(sample.stamp)
+        touchdown = self._impact.touchdown(sample, posture, collision)
+        self.collision = sample, posture, collision
+        track.add(sample.stamp, touchdown, collision.measured)
+        return touchdown
+
+    def forget(self) -> None:
+        self.settled.extend([pending.unmeasured() for pending in self._pending])
+        self._pending.clear()
+        self._recent.clear()
+        self._track = self._landed = None
+        self.stamp = None
+
+    def posture_of(self, sample: Sample) -> Posture:
+        """The sample over the support."""
+        return posture_of(self.scene, self.points, sample)
+
+    def collision_of(self, sample: Sample, posture: Posture, moment: Moment | None) -> Collision | None:
+        """The collision that a sample shows to be ahead; None where there is none within the horizon."""
+        return collision_of(self.scene, self.points, sample, posture, moment)
+
+    def _measure_size(self) -> None:
+        if self.scene.deck is not None and self.points:
+            self.size = hypot(*edge_of(list(self.points)))
+
+    def _place_of(self, sample: Sample, posture: Posture) -> Status:
+        """Whether a body can be where it is seen on a moving support."""
+        scene, lowest = self.scene, min(posture.gaps)
+        if lowest < -(DEEP * self.size + DEEP_TOLERANCES * scene.tolerance):
+            return Status.BELOW_SUPPORT
+        if lowest > HIGH * self.size:
+            return Status.OFF_SUPPORT
+        center = center_of(scene, sample, posture)
+        if self.has_left(center):
+            return Status.OFF_SUPPORT
+        extent = () if scene.deck is None else scene.deck.extent
+        if extent:
+            back, front, right, left = extent
+            if not (back <= center[0] <= front and right <= center[1] <= left):
+                return Status.OFF_SUPPORT
+        return Status.ACCEPTED
+
+    def _measure(self, sample: Sample, posture: Posture) -> None:
+        """Hand the sample to the touchdowns that wait for it, and settle the tracked one if it has happened."""
+        for pending in self._pending:
+            pending.add(sample, posture)
+        while self._pending and self._pending[0].complete:
+            self.settled.append(self._pending.pop(0).score(self.scene))
+        track = self._track
+        if track is not None and self._has_landed(track, posture):
+            self._track = None
+            pending = Pending(track, min(track.stamp, sample.stamp))
+            for earlier in self._recent:
+                if earlier[0].stamp > pending.stamp:
+                    pending.add(*earlier)
+            pending.add(sample, posture)
+            self._pending.append(pending)
+            self._landed = pending
+
+    def _has_landed(self, track: Track, posture: Posture) -> bool:
+        gaps, rates = posture.gaps, posture.rates
+        old, new = track.last.old, track.last.new
+        gap = total([gaps[i] for i in new]) / len(new)
+        if old:
+            gap -= total([gaps[i] for i in old]) / len(old)
+        approach = -total([rates[i] for i in new]) / len(new)
+        return gap <= self.scene.tolerance and approach < SETTLED * track.approach
+
+    def _is_echo(self, collision: Collision, sample: Sample) -> bool:
+        """Whether the approach is what an averaged twist still has of the approach before the last touchdown."""
+        landed = self._landed
+        return (
+            landed is not None
+            and sample.stamp - landed.stamp < self.scene.twist_window * NANOSECONDS
+            and not set(collision.contacts.new).isdisjoint(landed.track.last.new)
+        )
+
+
+def collision_of(
+    scene: Scene, points: tuple[Vector3, ...], sample: Sample, posture: Posture, moment: Moment | None = None
+) -> Collision | None:
+    """The collision that a sample shows to be ahead; None where there is none within the horizon.
+
+    Over a moving support the sample is seen from there, and `moment` is the support at its stamp.
+    """
+    contacts = contacts_of(scene, posture)
+    if contacts is None:
+        return None
+    gravity = scene.gravity
+    if moment is not None:
+        from .deck.approach import fall_over, gravity_over, is_uniform  # only where the support moves
+
+        gravity = gravity_over(scene, moment, sample, posture)
+        if is_uniform(moment, scene.horizon):
+            moment = None
+    plane = plane_of(scene, points, sample, posture, contacts, gravity)
+    on_edge = len(contacts.old) > 1
+    inertia = inertia_about(scene, plane.axis, blocked=on_edge)
+    # An averaged twist is that of half its window ago: the motion is followed from there.
+    age = 0.5 * scene.twist_window
+    vx, vy, omega = plane.twist
+    old, new = plane.old, plane.new
+    if old is None:
+        striking: tuple[Vector, ...] = (new,)
+        height = plane.gap - new[1]
+    else:
+        striking = (old, new)
+        height = -old[1]
+    start = PlanarState(x=-vx * age, y=height - vy * age, angle=-omega * age, vx=vx, vy=vy, omega=omega)
+    if moment is None:
+        fall = next_touchdown(
+            start,
+            striking,
+            None if old is None else 0,
+            inertia / scene.mass,
+            scene.friction,
+            plane.gravity[:2],
+            scene.horizon + age,
+            ACCURACY,
+        )
+    else:
+        fall = fall_over(scene, moment, sample, posture, plane, inertia, start, height)
+    if fall.point != len(striking) - 1:
+        return None
+    x, y, angle, vx, vy, omega = fall.state
+    body = body_at(scene, plane, inertia, angle)
+    blocked = on_edge and body.old is not None and len(contacts.new) > 1
+    if on_edge and not blocked:
+        body = TwoPointBody(body.mass, inertia_about(scene, plane.axis, blocked=False), body.old, body.new)
+    if body.old is not None and body.old.x >= body.new.x:
+        return None  # it falls back, and other points strike before
+    speed = -(vy + omega * body.new.x)
+    if speed < GRAZES:
+        return None
+    measured = -total([posture.rates[i] for i in contacts.new]) / len(contacts.new)
+    return Collision(
+        contacts=contacts,
+        plane=plane,
+        body=body,
+        before=Twist(vx, vy, omega),
+        moved=PlanarState(x=x, y=y - height, angle=angle, vx=vx, vy=vy, omega=omega),
+        lead_time=max(0.0, fall.time - age),
+        blocked=blocked,
+        measured=measured,
+        speed=speed,
+    )
+
+
+def body_at(scene: Scene, plane: ImpactPlane, inertia: float, angle: float) -> TwoPointBody:
+    """The body when it has turned by `angle` in the impact plane and the new contact is on the support."""
+    c, s = cos(angle), sin(angle)
+    x, y = plane.new
+    new = Contact(c * x - s * y, s * x + c * y, scene.friction, restitution=scene.restitution)
+    if plane.old is None:
+        return TwoPointBody(scene.mass, inertia, None, new)
+    x, y = plane.old
+    if s * x + c * y - new.y > scene.tolerance:
+        return TwoPointBody(scene.mass, inertia, None, new)  # it has lifted on the way
+    # Where it stands both are on one level up to rounding; made exact, so that rounding does not make it a step.
+    return TwoPointBody(scene.mass, inertia, Contact(c * x - s * y, new.y, scene.friction), new)
