@@ -20,7 +20,7 @@ from impact_predictor.commands.simulate import EXAMPLES
 from impact_predictor.parameters.file import read_parameters
 from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction.scene import Scene
-from impact_predictor.report.motions import animation, wheel_animation
+from impact_predictor.report import film
 from impact_predictor.ros.messages import POLYGON, decode_polygon
 from impact_predictor.scenarios.truth import TRUTH_TOPIC
 
@@ -193,21 +193,20 @@ def test_the_animation_moves_and_ends_where_the_body_stays(folder: Path, argumen
     result = run(*arguments, "--animate", "one.gif")
     assert result.stdout.splitlines()[-1] == "Animation: one.gif"
     assert Path("one.gif").stat().st_size < 500_000
-    with Image.open("one.gif") as film:
-        assert 40 < film.n_frames < 220
+    with Image.open("one.gif") as moving:
+        assert 40 < moving.n_frames < 220
         frames = []
-        for k in (0, film.n_frames // 2, film.n_frames - 1):
-            film.seek(k)
-            assert is_drawn(film)
-            frames.append(np.asarray(film.convert("L"), float))
+        for k in (0, moving.n_frames // 2, moving.n_frames - 1):
+            moving.seek(k)
+            assert is_drawn(moving)
+            frames.append(np.asarray(moving.convert("L"), float))
     assert all(np.abs(one - other).max() > 100.0 for one, other in pairwise(frames))
 
 
 @pytest.fixture
 def few_frames(monkeypatch: pytest.MonkeyPatch) -> None:
     """A tenth of the frames of a moving picture, where only that it is made counts."""
-    monkeypatch.setattr(animation, "STEP", 10 * animation.STEP)
-    monkeypatch.setattr(wheel_animation, "STEP", 10 * wheel_animation.STEP)
+    monkeypatch.setattr(film, "STEP", 10 * film.STEP)
 
 
 @pytest.mark.slow
@@ -296,7 +295,7 @@ def test_what_is_interrupted_leaves_no_output_named_as_whole(
                 one.write_bytes(b"half")
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("impact_predictor.report.motions.animation.times_of", lambda rockings: [0.0, 0.1])
+    monkeypatch.setattr("impact_predictor.report.rocking_pictures.frames_of", lambda longest: [0.0, 0.1])
     arguments = ["rod", option, name]
     assert run(*arguments).exit_code == 0
     older = Path(name).read_bytes()

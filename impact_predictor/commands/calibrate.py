@@ -140,7 +140,7 @@ def write_scene(params: str, output: str, calibration: Calibration) -> None:
     """
     from ..calibration.scene_file import changed
     from ..report.calibration import changes_of
-    from ..report.whole import whole
+    from ..report.files import whole
 
     text = Path(params).read_text(encoding="utf-8")
     with whole(Path(output)) as partial:

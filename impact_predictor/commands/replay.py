@@ -126,7 +126,7 @@ def replay(
     from ..bags.find import bags_of
     from ..bags.replay import remapping
     from ..fleet.job import Job
-    from ..report.whole import named
+    from ..report.files import named
     from .fleet import folders_of, on_workers, one_by_one, outputs_of
     from .outcomes import Outcomes
     from .unfinished import tell_unfinished

@@ -114,8 +114,8 @@ def write(folder: Path, found: Report, fields: dict[str, Any]) -> None:
         InputError: a file cannot be written.
     """
     from ..report.accuracy.rows import write_csv
+    from ..report.files import whole
     from ..report.page.write import write_page
-    from ..report.whole import whole
 
     writers: dict[str, Callable[[Path], object]] = {
         DATA: lambda file: file.write_text(json.dumps(fields, indent=1, allow_nan=False), encoding="utf-8"),

@@ -18,7 +18,7 @@ from .simulate_deck import EXAMPLES as DECK_EXAMPLES
 from .simulate_deck import simulate_deck
 from .simulate_wheel import EXAMPLES as WHEEL_EXAMPLES
 from .simulate_wheel import simulate_wheel
-from .simulated_files import RATE, check_pictures, rate_of_bag, say_files
+from .simulated_files import RATE, check_pictures, draw_film, rate_of_bag, say_files
 
 if TYPE_CHECKING:
     from ..scenarios.rocking import Rocker, Rocking
@@ -225,11 +225,13 @@ def answer(
     if output is not None:
         write_bag(output, rockings, rate)
     if plot is not None:
-        from ..report.motions.figure import write_motion_figure
+        from ..report.rocking_pictures import write_rocking_figure
 
-        write_motion_figure(plot, rockings)
+        write_rocking_figure(plot, rockings)
     if animate is not None:
-        draw_animation(animate, rockings)
+        from ..report.rocking_pictures import rocking_film
+
+        draw_film(animate, rocking_film(rockings))
     say(rockings, as_json)
     if not as_json:
         say_files(output, plot, animate)
@@ -249,15 +251,6 @@ def write_bag(output: str, rockings: Sequence[Rocking], rate: float) -> None:
     samples = sum(actor.samples(rate) for actor in actors)
     with unfinished_is_told(output), progress(Path(output).name, total=samples) as tell:
         write_record(output, actors, rate, tell)
-
-
-def draw_animation(file: str, rockings: Sequence[Rocking]) -> None:
-    """Draw the moving picture."""
-    from ..report.motions.animation import times_of, write_animation
-    from .progress import progress
-
-    with progress(Path(file).name, "frames", len(times_of(rockings))) as tell:
-        write_animation(file, rockings, tell)
 
 
 def say(rockings: Sequence[Rocking], as_json: bool) -> None:

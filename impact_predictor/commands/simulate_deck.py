@@ -13,11 +13,11 @@ from click.core import ParameterSource
 
 from .examples import examples
 from .limits import Whole
-from .simulated_files import check_pictures
+from .simulated_files import check_pictures, draw_film, say_files
 
 if TYPE_CHECKING:
     from ..mechanics.support import MovingSupport
-    from ..report.motions.course import Courses
+    from ..report.deck_pictures import DeckMotion
     from ..scenarios.deck.voyage import Voyage
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -141,20 +141,18 @@ def simulate_deck(
             f"--deck-rate {deck_rate:g} is too slow: after support.timeout, {timeout:g} s, a message tells nothing more"
         )
     sensors = Sensors(rate, deck_rate, noise, seed)
-    courses = courses_for(plot, animate, duration)
-    seen = {} if courses is None else {"seen": courses.taking}
+    motion = motion_for(plot, animate, duration)
+    seen = {} if motion is None else {"seen": motion.taking}
     what = "simulated deck" if output is None else Path(output).name
     unit = "s" if output is None else "messages"
     work = total(scenes, duration, output is not None, sensors)
     with unfinished_is_told(output), progress(what, unit, work) as tell:
         voyage = sail(scenes, deck, duration, contacts, output, sensors, tell, **seen)
-    if courses is not None:
-        draw(deck, courses, plot, animate)
+    if motion is not None:
+        draw(deck, motion, plot, animate)
     say(voyage, as_json)
     if not as_json:
-        for name, file in (("Bag", output), ("Picture", plot), ("Animation", animate)):
-            if file is not None:
-                click.echo(f"{name}: {file}")
+        say_files(output, plot, animate)
     return 1 if voyage.broke_off else 0
 
 
@@ -173,7 +171,7 @@ def check_options(*, recorded: bool) -> None:
             raise click.UsageError(f"{option} is {why}")
 
 
-def courses_for(plot: str | None, animate: str | None, duration: float) -> Courses | None:
+def motion_for(plot: str | None, animate: str | None, duration: float) -> DeckMotion | None:
     """What takes up the motions for pictures, where some are asked for.
 
     Raises:
@@ -181,24 +179,22 @@ def courses_for(plot: str | None, animate: str | None, duration: float) -> Cours
     """
     if plot is None and animate is None:
         return None
-    from ..report.motions.course import Courses
+    from ..report.deck_pictures import DeckMotion
 
     check_pictures(plot, animate)
-    return Courses(duration)
+    return DeckMotion(duration)
 
 
-def draw(deck: MovingSupport, courses: Courses, plot: str | None, animate: str | None) -> None:
+def draw(deck: MovingSupport, motion: DeckMotion, plot: str | None, animate: str | None) -> None:
     """Draw the pictures that are asked for."""
     if plot is not None:
-        from ..report.motions.deck_figure import write_deck_figure
+        from ..report.deck_pictures import write_deck_figure
 
-        write_deck_figure(plot, deck, courses.all)
+        write_deck_figure(plot, deck, motion.units)
     if animate is not None:
-        from ..report.motions.deck_animation import deck_frames, write_deck_animation
-        from .progress import progress
+        from ..report.deck_pictures import deck_film
 
-        with progress(Path(animate).name, "frames", len(deck_frames(courses.all))) as tell:
-            write_deck_animation(animate, deck, courses.all, tell)
+        draw_film(animate, deck_film(deck, motion.units))
 
 
 def deck_of(

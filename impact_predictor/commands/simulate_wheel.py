@@ -13,7 +13,7 @@ import click
 from ..mechanics.impact import LAWS
 from .examples import examples
 from .limits import Number, Whole
-from .simulated_files import RATE, check_pictures, rate_of_bag, say_files
+from .simulated_files import RATE, check_pictures, draw_film, rate_of_bag, say_files
 
 if TYPE_CHECKING:
     from ..scenarios.wheel import Rolling
@@ -107,11 +107,13 @@ def simulate_wheel(
     if output is not None:
         write_bag(output, rolling, rate)
     if plot is not None:
-        from ..report.motions.wheel_figure import write_wheel_figure
+        from ..report.wheel_pictures import write_wheel_figure
 
         write_wheel_figure(plot, rolling)
     if animate is not None:
-        draw_animation(animate, rolling)
+        from ..report.wheel_pictures import wheel_film
+
+        draw_film(animate, wheel_film(rolling))
     say(rolling, as_json)
     if not as_json:
         say_files(output, plot, animate)
@@ -127,15 +129,6 @@ def write_bag(output: str, rolling: Rolling, rate: float) -> None:
     actor = wheel_actor(rolling)
     with unfinished_is_told(output), progress(Path(output).name, total=actor.samples(rate)) as tell:
         write_record(output, [actor], rate, tell)
-
-
-def draw_animation(file: str, rolling: Rolling) -> None:
-    """Draw the moving picture."""
-    from ..report.motions.wheel_animation import wheel_frames, write_wheel_animation
-    from .progress import progress
-
-    with progress(Path(file).name, "frames", len(wheel_frames(rolling))) as tell:
-        write_wheel_animation(file, rolling, tell)
 
 
 def say(rolling: Rolling, as_json: bool) -> None:

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Final
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
 
 import click
 
 from ..mechanics.bodies import refuse
+
+if TYPE_CHECKING:
+    from ..report.film import Film
 
 RATE: Final = 1000.0
 """Samples of a bag for each second, unless told otherwise."""
@@ -33,13 +37,22 @@ def check_pictures(plot: str | None, animate: str | None) -> None:
         InputError: the format is another one, or there is no such folder.
     """
     if plot is not None:
-        from ..report.figure import check_figure
+        from ..report.plot import check_picture
 
-        check_figure(plot)
+        check_picture(plot)
     if animate is not None:
-        from ..report.motions.animation import check_animation
+        from ..report.plot import check_film
 
-        check_animation(animate)
+        check_film(animate)
+
+
+def draw_film(path: str, film: Film) -> None:
+    """Draw a moving picture, with a progress bar."""
+    from ..report.film import write_film
+    from .progress import progress
+
+    with progress(Path(path).name, "frames", len(film.times)) as tell:
+        write_film(path, film, tell)
 
 
 def say_files(output: str | None, plot: str | None, animate: str | None) -> None:

@@ -15,8 +15,8 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from ..mechanics.types import Mode, Twist
+from .files import named, whole
 from .summary import LeadTimeErrors, TouchdownRow, errors_of, words
-from .whole import named, whole
 
 SUFFIXES: Final = (".png", ".svg")
 

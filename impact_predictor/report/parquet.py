@@ -10,7 +10,7 @@ from typing import Any, Final, NamedTuple
 
 from ..errors import need
 from ..mechanics.types import Twist
-from .whole import named, whole
+from .files import named, whole
 
 _GROUP: Final = 10_000
 """Rows that are written at a time: few enough for any memory, many enough to be read fast."""

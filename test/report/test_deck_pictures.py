@@ -14,9 +14,20 @@ from impact_predictor.mechanics.rocking import End
 from impact_predictor.mechanics.support import MovingSupport, Wave, harmonic_support
 from impact_predictor.prediction.scene import MovingDeck, Scene
 from impact_predictor.prediction.types import Vector3
-from impact_predictor.report.motions.course import Course, Courses, margin_used, moments, outline_of
-from impact_predictor.report.motions.deck_animation import LONGEST, deck_frames, write_deck_animation
-from impact_predictor.report.motions.deck_figure import busiest, title_of, write_deck_figure
+from impact_predictor.report.deck_pictures import (
+    LONGEST,
+    DeckMotion,
+    UnitMotion,
+    busiest,
+    deck_film,
+    deck_frames,
+    margin_used,
+    moments,
+    outline_of,
+    title_of,
+    write_deck_figure,
+)
+from impact_predictor.report.film import write_film
 from impact_predictor.scenarios.deck.cargo import follow, units_of
 
 matplotlib.use("agg")
@@ -50,28 +61,28 @@ def deck() -> MovingSupport:
 
 
 @pytest.fixture(scope="module")
-def courses(deck: MovingSupport) -> list[Course]:
-    found = Courses(DURATION)
+def units(deck: MovingSupport) -> list[UnitMotion]:
+    found = DeckMotion(DURATION)
     for unit in units_of(SCENES):
         for _ in found.taking(unit, follow(unit, deck.at(*unit.foot), DURATION)):
             pass
-    return found.all
+    return found.units
 
 
-def test_a_course_is_the_motion_from_the_decks_origin(deck: MovingSupport, courses: list[Course]) -> None:
-    for course in courses:
-        unit = course.unit
+def test_a_course_is_the_motion_from_the_decks_origin(deck: MovingSupport, units: list[UnitMotion]) -> None:
+    for one in units:
+        unit = one.unit
         (span, *_) = follow(unit, deck.at(*unit.foot), DURATION)
-        for time in course.times[course.times < course.ended][::200]:
-            state, seen = span.state(np.array([time])), course.at(float(time))
-            # At its own moments a course has what the motion tells, but for rounding.
+        for time in one.times[one.times < one.ended][::200]:
+            state, seen = span.state(np.array([time])), one.at(float(time))
+            # At its own moments a one has what the motion tells, but for rounding.
             assert seen.x == pytest.approx(float(state.x[0]) + unit.foot[0], abs=1e-12)
             assert seen.y == pytest.approx(float(state.y[0]) + unit.foot[1], abs=1e-12)
             assert seen.angle == pytest.approx(float(state.angle[0]), abs=1e-12)
 
 
-def test_units_rock_slide_topple_and_stay(courses: list[Course]) -> None:
-    crate, cabinet, pallet, tank = courses
+def test_units_rock_slide_topple_and_stay(units: list[UnitMotion]) -> None:
+    crate, cabinet, pallet, tank = units
     assert not crate.impacts
     assert np.abs(crate.slid).max() == 0.0
     assert np.abs(crate.tilt).max() == 0.0
@@ -86,17 +97,17 @@ def test_units_rock_slide_topple_and_stay(courses: list[Course]) -> None:
 
 
 def test_a_margin_is_used_up_when_a_unit_leaves_its_rest_and_not_before(
-    deck: MovingSupport, courses: list[Course]
+    deck: MovingSupport, units: list[UnitMotion]
 ) -> None:
-    for course in courses:
-        used = margin_used(deck, course.unit, course.times)
-        step = course.times[1]
-        if not course.onsets:
+    for one in units:
+        used = margin_used(deck, one.unit, one.times)
+        step = one.times[1]
+        if not one.onsets:
             assert used.max() < 1.0
             continue
-        first = course.onsets[0].stamp * 1e-9
-        assert (used[course.times < first - step] < 1.0).all()
-        assert margin_used(deck, course.unit, np.array([first])) == pytest.approx(1.0, abs=1e-3)
+        first = one.onsets[0].stamp * 1e-9
+        assert (used[one.times < first - step] < 1.0).all()
+        assert margin_used(deck, one.unit, np.array([first])) == pytest.approx(1.0, abs=1e-3)
 
 
 def test_an_outline_is_the_box_seen_along_the_deck() -> None:
@@ -117,24 +128,24 @@ def test_an_outline_of_a_cylinder_is_round() -> None:
     assert np.hypot(*outline_of(unit).T) == pytest.approx(0.4)
 
 
-def test_the_moving_picture_shows_the_seconds_in_which_most_units_move(courses: list[Course]) -> None:
-    frames = deck_frames(courses)
+def test_the_moving_picture_shows_the_seconds_in_which_most_units_move(units: list[UnitMotion]) -> None:
+    frames = deck_frames(units)
     assert frames[-1] - frames[0] == pytest.approx(LONGEST, abs=0.1)
-    onsets = [onset.stamp * 1e-9 for course in courses for onset in course.onsets]
+    onsets = [onset.stamp * 1e-9 for one in units for onset in one.onsets]
     assert sum(frames[0] <= onset <= frames[-1] for onset in onsets) >= 0.5 * len(onsets)
 
 
-def test_the_moving_picture_of_a_calm_deck_or_a_short_one_is_not_empty(courses: list[Course]) -> None:
-    assert len(deck_frames(courses[:1])) > 100
-    short = Course(courses[0].unit, moments(1.0))
+def test_the_moving_picture_of_a_calm_deck_or_a_short_one_is_not_empty(units: list[UnitMotion]) -> None:
+    assert len(deck_frames(units[:1])) > 100
+    short = UnitMotion(units[0].unit, moments(1.0))
     assert deck_frames([short])[-1] <= 1.0
 
 
-def test_the_busiest_units_are_drawn_and_the_title_says_so(courses: list[Course]) -> None:
-    shown = busiest(courses, 2)
-    assert [course.unit.name for course in shown] == ["cabinet", "tank"]
-    impacts = sum(len(course.impacts) for course in courses)
-    assert title_of(courses, 2) == f"4 units on a rolling deck: {impacts} impacts, 1 toppled; the 2 that moved most"
+def test_the_busiest_units_are_drawn_and_the_title_says_so(units: list[UnitMotion]) -> None:
+    shown = busiest(units, 2)
+    assert [one.unit.name for one in shown] == ["cabinet", "tank"]
+    impacts = sum(len(one.impacts) for one in units)
+    assert title_of(units, 2) == f"4 units on a rolling deck: {impacts} impacts, 1 toppled; the 2 that moved most"
 
 
 def test_moments_of_a_long_motion_are_not_too_many() -> None:
@@ -143,13 +154,13 @@ def test_moments_of_a_long_motion_are_not_too_many() -> None:
 
 
 def test_the_pictures_are_written_the_same_every_time(
-    deck: MovingSupport, courses: list[Course], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    deck: MovingSupport, units: list[UnitMotion], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("impact_predictor.report.motions.deck_animation.LONGEST", 0.6)
+    monkeypatch.setattr("impact_predictor.report.deck_pictures.LONGEST", 0.6)
     told: list[int] = []
     for name in ("one", "two"):
-        write_deck_figure(tmp_path / f"{name}.svg", deck, courses)
-        write_deck_animation(tmp_path / f"{name}.gif", deck, courses, told.append)
+        write_deck_figure(tmp_path / f"{name}.svg", deck, units)
+        write_film(tmp_path / f"{name}.gif", deck_film(deck, units), told.append)
     for suffix in ("svg", "gif"):
         assert (tmp_path / f"one.{suffix}").read_bytes() == (tmp_path / f"two.{suffix}").read_bytes()
     with Image.open(tmp_path / "one.gif") as film:

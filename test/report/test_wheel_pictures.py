@@ -11,17 +11,18 @@ import numpy as np
 import pytest
 
 from impact_predictor.errors import InputError
-from impact_predictor.report.motions.wheel_animation import wheel_frames
-from impact_predictor.report.motions.wheel_figure import (
+from impact_predictor.report.film import write_film
+from impact_predictor.report.motions.wheel_words import as_json, sentences
+from impact_predictor.report.wheel_pictures import (
+    WheelScene,
     rate_of,
-    spokes_of,
     stance_of,
     stances,
     steady_rates,
     title_of,
+    wheel_film,
     write_wheel_figure,
 )
-from impact_predictor.report.motions.wheel_words import as_json, sentences
 from impact_predictor.scenarios.wheel import Hub, Rolling, Stand, Wheel, roll
 
 matplotlib.use("agg")
@@ -74,7 +75,7 @@ def test_a_stance_is_named(tips: tuple[tuple[int, str], ...], name: str) -> None
 
 def test_the_spokes_that_are_drawn_end_where_the_standing_one_touches_the_slope(slips: Rolling) -> None:
     state = slips.world(1.5)
-    tips = spokes_of(slips.wheel, state)
+    tips = np.array([one.points[1] for one in WheelScene(slips).outlines(1.5) if len(one.points) == 2])
     standing = slips.stood(1.5)[0][0]
     out = np.array([np.sin(radians(5.0)), np.cos(radians(5.0))])
     assert tips[standing] @ out == pytest.approx(0.0, abs=1e-12)
@@ -116,7 +117,7 @@ def test_a_wheel_that_slides_is_told_with_its_speed_and_one_that_came_to_rest_wi
 
 def test_the_moving_picture_lasts_as_long_as_one_can_look(slips: Rolling, stops: Rolling) -> None:
     for rolling in (slips, stops):
-        frames = wheel_frames(rolling)
+        frames = wheel_film(rolling).times
         assert 10 < len(frames) < 170
         assert frames[-1] >= rolling.time
 
@@ -130,5 +131,7 @@ def test_a_picture_of_any_end_is_written(tmp_path: Path, stops: Rolling) -> None
 
 
 def test_a_picture_of_another_format_is_refused(tmp_path: Path, slips: Rolling) -> None:
-    with pytest.raises(InputError):
+    with pytest.raises(InputError, match=r"wheel\.pdf is no picture"):
         write_wheel_figure(tmp_path / "wheel.pdf", slips)
+    with pytest.raises(InputError, match=r"wheel\.png is no moving picture"):
+        write_film(tmp_path / "wheel.png", wheel_film(slips))

@@ -7,7 +7,7 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from ..whole import whole
+from ..files import whole
 
 
 def render(template: str, **fields: Any) -> str:

@@ -4,17 +4,13 @@ from __future__ import annotations
 
 import itertools
 from math import degrees, radians
-from pathlib import Path
 
 import matplotlib
 import numpy as np
 import pytest
 
-from impact_predictor.errors import InputError
-from impact_predictor.report.motions.animation import SPEEDS, speed_of, times_of
-from impact_predictor.report.motions.figure import curve_of, stance_of, stances
-from impact_predictor.report.motions.stage import Stage, placed
-from impact_predictor.report.whole import whole
+from impact_predictor.report.film import SPEEDS
+from impact_predictor.report.rocking_pictures import RockingScene, curves_of, rocking_film, stance_of, stances
 from impact_predictor.scenarios.rocking import Rocking, release, rocking_cylinder, rocking_rod
 
 matplotlib.use("agg")
@@ -26,7 +22,7 @@ def rod() -> Rocking:
 
 
 def test_a_curve_is_the_motion_with_a_gap_at_each_impact(rod: Rocking) -> None:
-    curve = curve_of(rod.run, end=1.1)
+    curve = curves_of(rod.run, end=1.1)
     gaps = np.isnan(curve.time)
     assert (np.isnan(curve.omega) == gaps).all()
     assert gaps.sum() >= len(rod.run.impacts)
@@ -67,51 +63,31 @@ def test_the_stances_follow_each_other_until_the_body_rests(rod: Rocking) -> Non
     assert all(one[1] == other[0] for one, other in itertools.pairwise(found))
 
 
-def test_the_moving_picture_lasts_as_long_as_one_can_look(rod: Rocking) -> None:
+def test_the_film_lasts_as_long_as_one_can_look(rod: Rocking) -> None:
     for duration in (1e-4, 0.01, 0.3, 2.0, 9.9, 40.0):
         motion = release(rod.rocker, radians(30.0), duration=duration)
-        times = times_of([motion])
-        assert speed_of([motion]) in SPEEDS
-        assert 2 <= len(times) < 170
-        assert times[-1] >= motion.run.time
-    assert speed_of([rod]) == 0.1
+        film = rocking_film([motion])
+        assert film.speed in SPEEDS
+        assert 2 <= len(film.times) < 170
+        assert film.times[-1] >= motion.run.time
+    assert rocking_film([rod]).speed == 0.1
 
 
 def test_a_body_is_seen_whole_wherever_it_goes(rod: Rocking) -> None:
-    from matplotlib.figure import Figure
-
     drum = release(rocking_cylinder(0.3, radians(40.0), radians(40.0), 1.0, None, None, 0.0), radians(15.0))
     for rocking in (rod, drum):
-        stage = Stage(Figure().add_subplot(), rocking, 0.1)
-        low, high = stage.extent()
-        reach = max(np.hypot(x, y) for x, y in rocking.rocker.outline or [(0.3, 0.0)])
+        scene = RockingScene(rocking)
         for time in np.linspace(0.0, rocking.run.time, 50):
-            state = rocking.run.state(float(time))
-            stage.show(float(time))
-            if rocking.rocker.outline:
-                corners = placed(np.array(rocking.rocker.outline), state)
-            else:
-                corners = np.array([(state.x - reach, state.y), (state.x + reach, state.y + reach)])
-            # The extent is looked at in 400 moments.
-            assert (corners >= low - 1e-3).all()
-            assert (corners <= high + 1e-3).all()
+            corners = np.concatenate([one.points for one in scene.outlines(float(time)) if one.face != "none"])
+            # The extent is looked at in 400 moments; the names of the contacts are below them.
+            assert (corners[:, 0] >= scene.low[0] - 1e-3).all()
+            assert (corners <= scene.high + 1e-3).all()
 
 
-def test_a_file_that_fails_is_not_there_and_an_older_one_stays(tmp_path: Path) -> None:
-    path = tmp_path / "file"
-    path.write_text("older")
-
-    def fail(error: BaseException) -> None:
-        with whole(path) as partial:
-            assert partial == tmp_path / "file.partial"
-            partial.write_text("half")
-            raise error
-
-    with pytest.raises(KeyboardInterrupt):
-        fail(KeyboardInterrupt())
-    with pytest.raises(InputError, match="file cannot be written: No space left"):
-        fail(OSError(28, "No space left on device"))
-    assert [(one.name, one.read_text()) for one in tmp_path.iterdir()] == [("file", "older")]
-    with whole(path) as partial:
-        partial.write_text("newer")
-    assert [(one.name, one.read_text()) for one in tmp_path.iterdir()] == [("file", "newer")]
+def test_each_impact_flashes_where_the_body_strikes(rod: Rocking) -> None:
+    (view,) = rocking_film([rod]).rows[0]
+    assert len(view.flashes) == len(rod.run.impacts)
+    first = view.flashes[0]
+    assert first.words == f"impact 1: {rod.run.impacts[0].outcome.mode.name}"
+    assert first.place == pytest.approx([0.1, 0.0], abs=1e-9)  # B, 0.1 m ahead of A, on the support
+    assert view.flashes[-1].words == "impacts accumulate"

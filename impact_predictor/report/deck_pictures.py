@@ -1,0 +1,416 @@
+"""Cargo on a rolling deck as pictures: what the deck does to each unit, and a film of the seconds with most motion."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator, Sequence
+from math import degrees, hypot, pi
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..mechanics.motion import PlanarState
+from ..mechanics.rocking import End
+from ..mechanics.support import MovingSupport
+from ..mechanics.types import Mode
+from ..prediction.scene import Watching
+from ..prediction.watch.onset import Onset, motions
+from ..prediction.watch.standing import Standing
+from ..ros.markers.shapes import box_of
+from ..scenarios.deck.cargo import CargoUnit, Span
+from ..scenarios.truth import TrueImpact, TrueOnset
+from ..stamps import NANOSECONDS
+from ..wording import counted, words
+from .film import CLOSED, LINE, OPEN, STEP, SUPPORT, Curve, Film, Flash, Outline, View, box, circle, placed, turned
+from .modes import EDGE, MODES, PALETTE
+from .plot import GREY, Axes, Line2D, Patch, picture
+
+LONGEST: Final = 12.0
+"""Seconds of a motion that a film shows, in real time: those in which most units move."""
+MARGINS: Final = ("#dfe6e1", "#f2a91a", "#d62728")
+"""Colours of a margin that is used little, enough to warn, and up."""
+LEVELS: Final = ("#8fc9a3", *MARGINS[1:])
+"""The same of a unit of the film."""
+ROLL, HEAVE, TILT, SLID = PALETTE[0], "#8a6d3b", "#1a1a1a", PALETTE[2]
+SEA, HULL = "#9cc4dd", "#5d6b78"
+
+_MOST: Final = 200_000
+"""Moments of a picture of a long motion; a rocking unit takes a second or so to and fro."""
+_MOMENT: Final = 0.05
+"""Seconds between the moments of a picture of a shorter one."""
+_NEAR: Final = 3
+"""Units that the film shows from near by."""
+_TILTS, _SLIDES = 0.003, 0.02
+"""A unit of the film moves that is turned by so many rad, or slides at so many m/s."""
+_TILTED, _SLID = pi / 1800.0, 0.005
+"""A tilt of so many rad, and a slide of so many m, are told."""
+_STRIP: Final = 0.09
+"""Part of a lane's height on which its margin is drawn."""
+_HALF_BEAM: Final = 6.0
+"""Half the breadth in m of a deck whose extent nobody tells."""
+
+
+def moments(duration: float) -> NDArray[np.float64]:
+    """Times in s at which a picture of a motion needs the state of each unit."""
+    return np.linspace(0.0, duration, min(_MOST, max(2, round(duration / _MOMENT) + 1)))
+
+
+class UnitMotion:
+    """The motion of one unit at `times` (s), in the deck's plane from the deck's origin; NaN where it is not followed.
+
+    `impacts` and `onsets` of it; `end` says how it ended, and `ended` when (s).
+    """
+
+    def __init__(self, unit: CargoUnit, times: NDArray[np.float64]) -> None:
+        """Begin with nothing known."""
+        self.unit, self.times = unit, times
+        self.impacts: list[TrueImpact] = []
+        self.onsets: list[TrueOnset] = []
+        self.end, self.ended = End.TIME_UP, 0.0
+        self._states: NDArray[np.float64] = np.full((6, len(times)), np.nan)
+
+    def taking(self, spans: Iterable[Span]) -> Iterator[Span]:
+        """The spans of the motion, each taken up as it passes."""
+        for span in spans:
+            within = (self.times >= span.start) & (self.times <= span.time)
+            if within.any():
+                self._states[:, within] = np.array(span.state(self.times[within]))
+                self._states[:2, within] += np.array(self.unit.foot)[:, None]
+            self.impacts += span.impacts
+            self.onsets += span.onsets
+            self.end, self.ended = span.end, span.time
+            yield span
+
+    def at(self, time: float) -> PlanarState:
+        """The state at a time in s; the last one that is known where it is not followed any more."""
+        known = max(1, int(np.searchsorted(self.times, self.ended, side="right")))
+        return PlanarState(*(float(np.interp(time, self.times[:known], part[:known])) for part in self._states))
+
+    @property
+    def toppled(self) -> bool:
+        """Whether it has overturned."""
+        return self.end is End.OVERTURNED
+
+    @property
+    def tilt(self) -> NDArray[np.float64]:
+        """Angles in rad from how it stood."""
+        return np.asarray(self._states[2] - self.unit.start.angle)
+
+    @property
+    def slid(self) -> NDArray[np.float64]:
+        """Ways in m along the deck of the lower one of its contacts from where it stood; 0 for a cylinder on edges."""
+        body, (x, _, angle, *_) = self.unit.body, self._states
+        assert body.old is not None
+        if self.unit.scene.radius > 0.0:
+            return np.asarray(0.0 * angle)
+        c, s = np.cos(angle), np.sin(angle)
+        old, new = body.old, body.new
+        old_is_lower = s * old.x + c * old.y < s * new.x + c * new.y
+        turns = np.where(old_is_lower, (c - 1.0) * old.x - s * old.y, (c - 1.0) * new.x - s * new.y)
+        return np.asarray(turns + x - self.unit.foot[0] - self.unit.start.x)
+
+    @property
+    def moves(self) -> NDArray[np.bool_]:
+        """Whether it moves on the deck so that a film shows it."""
+        with np.errstate(invalid="ignore"):
+            return np.asarray((np.abs(self.tilt) > _TILTS) | (np.abs(self._states[3]) > _SLIDES))
+
+
+class DeckMotion:
+    """The motions of all units of a deck over `duration` (s), for its pictures, once its spans have passed `taking`."""
+
+    def __init__(self, duration: float) -> None:
+        """Begin with no unit."""
+        self.times = moments(duration)
+        self.units: list[UnitMotion] = []
+
+    def taking(self, unit: CargoUnit, spans: Iterable[Span]) -> Iterator[Span]:
+        """The spans of a unit, taken up as they pass."""
+        motion = UnitMotion(unit, self.times)
+        self.units.append(motion)
+        return motion.taking(spans)
+
+
+def outline_of(unit: CargoUnit) -> NDArray[np.float64]:
+    """The outline (n, 2) in m of a unit seen along the deck, from its mass centre, while it stands."""
+    scene, body = unit.scene, unit.body
+    assert body.old is not None
+    if scene.radius > 0.0:
+        return circle(hypot(body.old.x, body.old.y))
+    (low, high), center = box_of(scene.points, scene.center_of_mass), scene.center_of_mass
+    c, s = np.cos(scene.yaw), np.sin(scene.yaw)
+    across = [s * (x - center[0]) + c * (y - center[1]) for x in (low[0], high[0]) for y in (low[1], high[1])]
+    return box(min(across), max(across), low[2] - center[2], high[2] - center[2])
+
+
+def margin_used(deck: MovingSupport, unit: CargoUnit, times: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The larger part that is used of the margins of a unit against sliding and tipping, where it began: 1 at the
+    onset. `deck` is the support's motion, of its own frame.
+    """
+    stance = Standing(unit.scene).stance
+    none = np.zeros_like(times)
+    if stance is None:
+        return none
+    felt = deck.felt_at(times)
+    gravity = np.stack([none, felt[:, 0], felt[:, 1]], axis=1)
+    angular, turning = (np.stack([felt[:, k], none, none], axis=1) for k in (2, 3))
+    margins = Onset([stance]).margins(motions(gravity, angular, turning))
+    return np.asarray(np.maximum(margins.slide, margins.tip)[0])
+
+
+def busiest(units: Sequence[UnitMotion], most: int) -> list[UnitMotion]:
+    """The units that turned or slid most, in the order in which they were given."""
+    chosen = sorted(units, key=lambda one: (one.toppled, len(one.impacts), _greatest(one.slid)), reverse=True)[:most]
+    return [one for one in units if one in chosen]
+
+
+def _greatest(values: NDArray[np.float64]) -> float:
+    return float(np.nanmax(np.abs(values)))
+
+
+def title_of(units: Sequence[UnitMotion], shown: int) -> str:
+    """What happened, in words."""
+    impacts = sum(len(one.impacts) for one in units)
+    toppled = sum(one.toppled for one in units)
+    them = f"{len(units)} units" if len(units) > 1 else "One unit"
+    said = f"{them} on a rolling deck: {counted(impacts, 'impact')}" + (f", {toppled} toppled" if toppled else "")
+    return said + (f"; the {shown} that moved most" if shown < len(units) else "")
+
+
+def write_deck_figure(path: str | os.PathLike[str], deck: MovingSupport, units: Sequence[UnitMotion]) -> None:
+    """Draw the deck above, and below the units that moved most, into a PNG or SVG file.
+
+    Raises:
+        InputError: the file cannot be written, or is of another format.
+    """
+    shown, times = busiest(units, 6), units[0].times
+    with picture(path, 10.0, 2.6 + 1.25 * len(shown)) as figure:
+        upper, *lanes = figure.subplots(1 + len(shown), 1, sharex=True, height_ratios=(1.25, *[1.0] * len(shown)))
+        upper.set_title(title_of(units, len(shown)), fontweight="bold")
+        motion = deck.motion(times)
+        _draw_curve(upper, times, np.degrees(motion.angle), ROLL, "deck roll (°)")
+        heave = upper.twinx()
+        _draw_curve(heave, times, motion.y - np.mean(motion.y), HEAVE, "heave (m)", linestyle=(0, (4, 1.5)))
+        heave.grid(visible=False)
+        for axes, unit in zip(lanes, shown, strict=True):
+            _draw_unit(axes, deck, unit)
+        lanes[-1].set(xlim=(0.0, times[-1]), xlabel="time (s)")
+        figure.align_ylabels()
+        figure.legend(handles=_signs(shown), loc="outside lower center", ncols=5, columnspacing=1.4, handletextpad=0.5)
+
+
+def _draw_curve(
+    axes: Axes, times: NDArray[np.float64], values: NDArray[np.float64], colour: str, label: str, **looks: Any
+) -> None:
+    """A curve about 0 with its axis in its colour."""
+    axes.plot(times, values, color=colour, linewidth=1.4, **looks)
+    axes.axhline(0.0, color=GREY, linewidth=0.8, zorder=1)
+    axes.set_ylabel(label, color=colour)
+    high = 1.2 * max(float(np.nanmax(np.abs(values))), 1e-3)
+    axes.set_ylim(-high, high)
+
+
+def _draw_unit(axes: Axes, deck: MovingSupport, unit: UnitMotion) -> None:
+    times, tilt = unit.times, np.degrees(unit.tilt)
+    if _greatest(unit.slid) > _SLID:
+        slid = axes.twinx()
+        _draw_curve(slid, times, unit.slid, SLID, "slid (m)")
+        slid.grid(visible=False)
+        slid.set_ylim(1.35 * slid.get_ylim()[0], slid.get_ylim()[1])
+    # A unit that has toppled would leave no room for how it rocked before.
+    rocked = tilt if not unit.toppled else np.where(times < unit.ended - 2.0, tilt, np.nan)
+    high = 1.3 * max(10.0 * degrees(_TILTED), float(np.nanmax(np.abs(rocked), initial=0.0)))
+    axes.plot(times, tilt, color=TILT, linewidth=1.2)
+    axes.axhline(0.0, color=GREY, linewidth=0.8, zorder=1)
+    axes.set(ylim=(-1.35 * high, high), ylabel="tilt (°)")
+    axes.set_title(_fate(unit), fontsize=10, pad=3)
+    _draw_margin(axes, times, margin_used(deck, unit.unit, times))
+    for mode in sorted({impact.mode for impact in unit.impacts}):
+        at = [impact.stamp / NANOSECONDS for impact in unit.impacts if impact.mode is mode]
+        axes.plot(at, np.zeros(len(at)), color=MODES[mode].colour, **_sign(mode))
+    if unit.toppled:
+        axes.plot([unit.ended], [0.0], "X", color=MARGINS[2], markersize=11, markeredgecolor="white", zorder=5)
+
+
+def _sign(mode: Mode) -> dict[str, Any]:
+    sign = {"marker": MODES[mode].marker, "markersize": 6.5, "markeredgecolor": EDGE}
+    return {**sign, "markeredgewidth": 0.6, "linestyle": "", "zorder": 4}
+
+
+def _fate(unit: UnitMotion) -> str:
+    """What became of a unit, in words."""
+    said = [counted(len(unit.impacts), "impact")] if unit.impacts else []
+    if not unit.toppled and _greatest(unit.tilt) > _TILTED:
+        said.append(f"tilts {degrees(_greatest(unit.tilt)):.2g}°")
+    if _greatest(unit.slid) > _SLID:
+        said.append(f"slides {_greatest(unit.slid):.2g} m")
+    if unit.toppled:
+        said.append(f"topples at {unit.ended:.0f} s")
+    elif unit.end is not End.TIME_UP:
+        said.append(f"is lost at {unit.ended:.0f} s")
+    return f"{unit.unit.name}: {', '.join(said) or 'stays where it is'}"
+
+
+def _draw_margin(axes: Axes, times: NDArray[np.float64], used: NDArray[np.float64]) -> None:
+    """A strip along the bottom: how much of the margin against sliding and tipping is used."""
+    # Never thinner than can be seen.
+    half = max(0.5 * (times[1] - times[0]), 8e-4 * (times[-1] - times[0]))
+    axes.axvspan(times[0], times[-1], 0.0, _STRIP, color=MARGINS[0], linewidth=0.0)
+    for least, colour in ((Watching().warn, MARGINS[1]), (1.0, MARGINS[2])):
+        over = np.flatnonzero(np.diff(np.concatenate([[False], used >= least, [False]]).astype(int)))
+        for first, last in over.reshape(-1, 2):
+            begin, end = times[first] - half, times[last - 1] + half
+            axes.axvspan(begin, end, 0.0, _STRIP, color=colour, linewidth=0.0)
+
+
+def _signs(units: Sequence[UnitMotion]) -> list[Any]:
+    """The legend."""
+    modes = sorted({impact.mode for one in units for impact in one.impacts})
+    handles: list[Any] = [
+        Line2D([], [], color=MODES[mode].colour, label=f"impact: {words(mode.name)}", **_sign(mode)) for mode in modes
+    ]
+    if any(one.toppled for one in units):
+        sign: dict[str, Any] = {"marker": "X", "markersize": 10, "markeredgecolor": "white", "linestyle": ""}
+        handles.append(Line2D([], [], color=MARGINS[2], label="topples", **sign))
+    warn = Watching().warn
+    names = (f"margin: up to {warn:g} used", f"{warn:g} to 1", "used up: slides or tips")
+    return handles + [Patch(facecolor=colour, label=name) for colour, name in zip(MARGINS, names, strict=True)]
+
+
+def deck_frames(units: Sequence[UnitMotion]) -> list[float]:
+    """The times in s of the frames: the part of the motion in which most units move, a little before them included."""
+    times = units[0].times
+    step = float(times[1] - times[0])
+    busy = np.sum([one.moves for one in units], axis=0, dtype=float)
+    length = min(len(times), round(LONGEST / step))
+    sums = np.convolve(busy, np.ones(length), mode="valid")
+    best = np.flatnonzero(sums >= sums.max() - 1e-9)
+    # In the middle of those that show as much.
+    begin = float(times[best[len(best) // 2]]) if sums.max() > 0.0 else 0.0
+    end = min(begin + LONGEST, float(times[-1]))
+    return [begin + STEP * k for k in range(max(2, 1 + int((end - begin) / STEP)))]
+
+
+def deck_film(deck: MovingSupport, units: Sequence[UnitMotion]) -> Film:
+    """The film of a deck in real time: the vessel above, the busiest units near by, its roll and the impacts below."""
+    times = deck_frames(units)
+    near = [UnitScene(deck, one, times) for one in busiest(units, _NEAR)]
+    impacts = sorted(impact.stamp / NANOSECONDS for one in near for impact in one.motion.impacts)
+    warn = f"{100.0 * Watching().warn:.0f}"
+    names = (f"margin up to {warn} % used", f"{warn} to 100 %", "used up, or it moves")
+    seen = np.array(times)
+    return Film(
+        title="",
+        rows=[[_vessel_view(deck, near, times)], [one.view() for one in near]],
+        heights=[1.6, 1.7],
+        curves=[Curve(seen, np.degrees(deck.motion(seen).angle), ROLL)],
+        curves_title="roll (°) against time (s), and the impacts",
+        speed=1.0,
+        times=times,
+        ticks=[time for time in impacts if times[0] <= time <= times[-1]],
+        legend=list(zip(LEVELS, names, strict=True)),
+    )
+
+
+class UnitScene:
+    """One unit on its piece of the deck; what it does, and how much of its margin is used, in words."""
+
+    def __init__(self, deck: MovingSupport, motion: UnitMotion, times: Sequence[float]) -> None:
+        """Look at the motion at some times (s), to know how much room it needs."""
+        self._deck, self.motion, self.outline = deck, motion, outline_of(motion.unit)
+        self._used = margin_used(deck, motion.unit, motion.times)
+        unit, body = motion.unit, motion.unit.body
+        assert body.old is not None
+        self._contacts = np.array([(body.old.x, body.old.y), (body.new.x, body.new.y)])
+        self._is_disc = unit.scene.radius > 0.0
+        start = unit.start._replace(x=unit.start.x + unit.foot[0], y=unit.start.y + unit.foot[1])
+        self._edges = placed(self._contacts, start)
+        standing = placed(self.outline, start)[:, 0]
+        self._pivot = np.array([0.5 * (standing.min() + standing.max()), self._edges[:, 1].min()])
+        seen = np.concatenate([self._camera(placed(self.outline, motion.at(time)), time) for time in times[::5]])
+        low, high = seen.min(axis=0), seen.max(axis=0)
+        self._middle, self._size = 0.5 * (low + high), max(float((high - low).max()), 1e-3)
+
+    def view(self) -> View:
+        """The view by a camera that goes with the deck but stays upright; port is on the left."""
+        (x, y), half = self._middle, 0.575 * self._size
+        window = (x + 1.3 * half, x - 1.3 * half, y - half, y + half)
+        flashes = []
+        for impact in self.motion.impacts:
+            time, contacts = impact.stamp / NANOSECONDS, self.motion.unit.contacts
+            place = self._places(self.motion.at(time))[contacts.index(impact.new) if impact.new in contacts else 1]
+            flashes.append(Flash(time, impact.mode.name, place))
+        name = self.motion.unit.name
+        return View(name, lambda time: window, self._outlines, self._caption, flashes, self._camera)
+
+    def colour(self, time: float) -> str:
+        """Red while it moves, else by how much of its margin is used."""
+        moves, used, _ = self._doing(time)
+        return LEVELS[2 if moves or used >= 1.0 else 1 if used >= Watching().warn else 0]
+
+    def _outlines(self, time: float) -> list[Outline]:
+        state, far = self.motion.at(time), 3.0 * self._size
+        shown = [Outline(box(-far, far, -0.05 * self._size, 0.0) + self._pivot, SUPPORT, size=0.0)]
+        shown.append(Outline(placed(self.outline, state), self.colour(time), LINE))
+        for place in self._places(state):
+            closed = self._is_disc or place[1] - self._pivot[1] < 1e-3
+            shown.append(Outline(place[None], CLOSED if closed else OPEN, CLOSED, 6.0, "o"))
+        return shown
+
+    def _places(self, state: PlanarState) -> NDArray[np.float64]:
+        return self._edges if self._is_disc else placed(self._contacts, state)
+
+    def _caption(self, time: float) -> tuple[str, str]:
+        return self._doing(time)[2], "none"
+
+    def _doing(self, time: float) -> tuple[bool, float, str]:
+        """Whether it moves on the deck, how much of its margin is used, and what it does in words."""
+        motion, state = self.motion, self.motion.at(time)
+        used = float(np.interp(time, motion.times, self._used))
+        tilt = degrees(state.angle - motion.unit.start.angle)
+        if motion.toppled and time >= motion.ended:
+            return True, used, "has toppled"
+        if abs(tilt) > 0.03:
+            return True, used, f"rocks, tilted by {abs(tilt):.2g}°"
+        if abs(state.vx) > _SLIDES:
+            return True, used, f"slides at {abs(state.vx):.2g} m/s"
+        return False, used, f"stands, {100.0 * min(used, 9.99):.0f} % of its margin used"
+
+    def _camera(self, points: NDArray[np.float64], time: float) -> NDArray[np.float64]:
+        return np.asarray(turned(points - self._pivot, float(self._deck.motion(time).angle)) + self._pivot)
+
+
+def _vessel_view(deck: MovingSupport, units: Sequence[UnitScene], times: Sequence[float]) -> View:
+    """The vessel in still water with its units, seen from astern: it rolls, heaves and sways; port is on the left."""
+    scene, motion = units[0].motion.unit.scene, deck.motion(np.array(times))
+    extent = scene.deck.extent if scene.deck is not None else ()
+    half = max(abs(extent[2]), abs(extent[3])) if extent else _HALF_BEAM
+    middle = np.array([np.mean(motion.x), np.mean(motion.y)])
+    depth, water = 0.42 * half, -0.16 * half
+    # From the deck's edge down to the bilge and over the keel, to the other edge.
+    side = [(half, 0.0), (0.98 * half, -0.5 * depth), (0.86 * half, -0.9 * depth), (0.6 * half, -depth)]
+    hull = np.array(side + [(-y, z) for y, z in reversed(side)])
+    high = 2.0 * max(float(one.outline[:, 1].max()) for one in units)
+    heave = float(np.abs(motion.y - middle[1]).max())
+    low, top = -0.45 * half - heave, max(0.5 * half, high + 0.1 * half) + heave
+    aside = 2.1 * (top - low)
+
+    def outlines(time: float) -> list[Outline]:
+        now = deck.motion(time)
+        state = PlanarState(now.x - middle[0], now.y - middle[1], now.angle, 0.0, 0.0, 0.0)
+        shown = [
+            Outline(placed(placed(one.outline, one.motion.at(time)), state), one.colour(time), LINE, 0.8)
+            for one in units
+        ]
+        shown.append(Outline(placed(hull, state), HULL, LINE, 1.0))
+        sea = box(-aside, aside, -2.0 * half, water)
+        signs = np.array([(0.93 * aside, 0.6 * water), (-0.9 * aside, 0.6 * water)])
+        names = ("$\\mathrm{port}$", "$\\mathrm{starboard}$")
+        sizes = (20.0, 42.0)
+        marks = [
+            Outline(at[None], LINE, "none", size, name) for at, size, name in zip(signs, sizes, names, strict=True)
+        ]
+        return [*shown, Outline(sea, f"{SEA}b0", size=0.0), *marks]
+
+    return View("", lambda time: (aside, -aside, low, top), outlines)
