@@ -162,7 +162,7 @@ def check_offline(environment: Environment) -> None:
     if not replayed["touchdowns"]:
         raise InstallError("replay found no touchdown in the recorded tosses")
     tables = environment.run(command, "replay", bag, "--params", scene).stdout
-    if "lead time" not in tables:
+    if "touchdowns scored" not in tables:
         raise InstallError(f"replay printed no table:\n{tables}")
 
 

@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
+import os
 import re
 import struct
 import zlib
+from abc import ABC, abstractmethod
 from bisect import bisect_left
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections import defaultdict
+from collections.abc import Collection, Iterator
 from operator import itemgetter
+from pathlib import Path
 from typing import BinaryIO, Final, NamedTuple
 
 from .compression import LARGEST, decompressed
 
 UNKNOWN: Final = -1
 """Number of messages that nothing tells."""
+
+_DAMAGE: Final = (ValueError, LookupError, struct.error)
+"""What reading damaged records raises."""
 
 
 class Flaw(Exception):
@@ -24,7 +31,7 @@ class Flaw(Exception):
         self.place = place
 
 
-class Channel(NamedTuple):
+class BagChannel(NamedTuple):
     """What is recorded of a topic.
 
     `encoding` is that of the messages ("cdr", "ros1" or what cannot be read), `definition` that of their type, in the
@@ -41,8 +48,8 @@ class Channel(NamedTuple):
     announced: int = UNKNOWN
 
 
-class Message(NamedTuple):
-    """A message in a chunk; `place` is that of the chunk in the file, `log_time` in ns."""
+class RawMessage(NamedTuple):
+    """A message in a file; `place` is that of its chunk, `log_time` in ns."""
 
     log_time: int
     place: int
@@ -53,96 +60,164 @@ class Message(NamedTuple):
 class Chunk(NamedTuple):
     """Messages that lie together: `place` is where they begin in the file, `start` their first log time in ns.
 
-    `data` are place and length of their bytes, `size` the number that they have without compression, `crc` the checksum
-    of those, or 0. Bytes beyond the end of the file were cut off: `whole` is False. `channels` are those that have
-    messages here, as far as that is told.
+    `begin` and `length` are those of their bytes, `size` the number that they have without compression, `crc` the
+    checksum of those, or 0. Bytes beyond the end of the file were cut off: `whole` is False. `channels` are those that
+    have messages here, as far as that is known.
     """
 
     place: int
     start: int
-    data: tuple[int, int]
-    compression: str
+    begin: int
+    length: int
     size: int
-    crc: int
     whole: bool
-    channels: frozenset[int] | None
+    compression: str = ""
+    crc: int = 0
+    channels: frozenset[int] | None = None
 
+    def unpacked(self, file: BinaryIO) -> bytes:
+        """Its bytes without compression; of a chunk that was cut off, those that there are.
 
-def unpacked(chunk: Chunk, file: BinaryIO) -> bytes:
-    """The bytes of a chunk without compression; of one that was cut off, those that there are.
-
-    Raises:
-        Flaw: they are damaged.
-    """
-    size = max(chunk.size, chunk.data[1])
-    if size > LARGEST:
-        raise Flaw(chunk.place, f"a chunk says that it has {size:,} bytes, more than the {LARGEST:,} that any may have")
-    file.seek(chunk.data[0])
-    data = file.read(chunk.data[1])
-    try:
-        # Damaged bytes may become any number of others: one more than there should be is enough to know.
-        data = decompressed(data, chunk.compression, chunk.size + 1)
-    except KeyError as error:
-        raise Flaw(chunk.place, f"a chunk is compressed by {chunk.compression!r}, which is not known") from error
-    except Exception as error:
-        raise Flaw(chunk.place, "a chunk cannot be decompressed") from error
-    if chunk.whole and len(data) != chunk.size:
-        raise Flaw(chunk.place, f"a chunk has {len(data)} bytes instead of {chunk.size}")
-    if chunk.whole and chunk.crc and zlib.crc32(data) != chunk.crc:
-        raise Flaw(chunk.place, "the checksum of a chunk is wrong")
-    return data
-
-
-def in_order(chunks: Iterable[Chunk], load: Callable[[Chunk], Iterable[Message]]) -> Iterator[Message]:
-    """The messages of chunks by their log times, those of one log time in the order of the file.
-
-    A chunk is loaded when its first message is due. From where one is damaged on nothing is used any more; what lies
-    before it is.
-
-    Raises:
-        Flaw: that of the first chunk that is damaged, after all messages before it.
-    """
-    by_time = itemgetter(0, 1)
-    waiting: list[Message] = []
-    flaw: Flaw | None = None
-    for chunk in sorted(chunks, key=lambda one: (one.start, one.place)):
-        if flaw is not None and chunk.place >= flaw.place:
-            continue
-        due = bisect_left(waiting, (chunk.start, chunk.place), key=by_time)
-        yield from waiting[:due]
-        del waiting[:due]
+        Raises:
+            Flaw: they are damaged.
+        """
+        size = max(self.size, self.length)
+        if size > LARGEST:
+            what = f"a chunk says that it has {size:,} bytes, more than the {LARGEST:,} that any may have"
+            raise Flaw(self.place, what)
+        file.seek(self.begin)
+        data = file.read(self.length)
         try:
-            messages = list(load(chunk))
-            if any(message.log_time < chunk.start for message in messages):
-                raise Flaw(chunk.place, "a chunk has messages from before its beginning")
-        except Flaw as found:
-            flaw = found
-            waiting = [message for message in waiting if message.place < found.place]
-            continue
-        waiting = sorted(waiting + messages, key=by_time)
-    yield from waiting
-    if flaw is not None:
-        raise flaw
+            # Damaged bytes may become any number of others: one more than there should be is enough to know.
+            data = decompressed(data, self.compression, self.size + 1)
+        except KeyError as error:
+            raise Flaw(self.place, f"a chunk is compressed by {self.compression!r}, which is not known") from error
+        except Exception as error:
+            raise Flaw(self.place, "a chunk cannot be decompressed") from error
+        if self.whole and len(data) != self.size:
+            raise Flaw(self.place, f"a chunk has {len(data)} bytes instead of {self.size}")
+        if self.whole and self.crc and zlib.crc32(data) != self.crc:
+            raise Flaw(self.place, "the checksum of a chunk is wrong")
+        return data
 
 
-def wanted_of(chunks: Iterable[Chunk], wanted: Collection[int]) -> list[Chunk]:
-    """The chunks that have messages of some channels, or do not tell."""
-    return [one for one in chunks if one.channels is None or not one.channels.isdisjoint(wanted)]
+class ChunkedFile(ABC):
+    """A file that is read up to its first damage outside of chunks, which is its `flaw`."""
+
+    def __init__(self, path: Path) -> None:
+        """Find the chunks and channels of a file; messages are read when they are asked for.
+
+        Raises:
+            OSError: it cannot be read.
+        """
+        self._file: BinaryIO = path.open("rb")
+        self.size = os.fstat(self._file.fileno()).st_size
+        self.flaw: Flaw | None = None
+        self._channels: dict[int, BagChannel] = {}
+        self._lists_channels = False
+        self._chunks: list[Chunk] = []
+        self._counts: dict[int, int] = defaultdict(int)
+        self._counts_are_whole = False
+        try:
+            self._scan()
+            self._counts_are_whole = True
+        except Flaw as flaw:
+            self.flaw = flaw
+            if self._chunks:
+                # What tells of its channels may be cut off.
+                self._chunks[-1] = self._chunks[-1]._replace(channels=None)
+        try:
+            self._look_into_chunks()
+        except Flaw as flaw:
+            self.flaw = flaw
+
+    @property
+    def channels(self) -> list[BagChannel]:
+        """In the order of their ids."""
+        known = self._counts_are_whole
+        return [
+            channel._replace(announced=self._counts.get(id_, 0) if known else UNKNOWN)
+            for id_, channel in sorted(self._channels.items())
+        ]
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+
+    def messages(self, wanted: Collection[int]) -> Iterator[RawMessage]:
+        """The messages of some channels by their log times, those of one log time in the order of the file.
+
+        A chunk is loaded when its first message is due, and not where none of the channels is in it. From where one is
+        damaged on nothing is used any more; what lies before it is.
+
+        Raises:
+            Flaw: the file is damaged, after all messages before that.
+        """
+        by_time = itemgetter(0, 1)
+        waiting: list[RawMessage] = []
+        flaw: Flaw | None = None
+        for chunk in sorted(self._chunks, key=lambda one: (one.start, one.place)):
+            if chunk.channels is not None and chunk.channels.isdisjoint(wanted):
+                continue
+            if flaw is not None and chunk.place >= flaw.place:
+                continue
+            due = bisect_left(waiting, (chunk.start, chunk.place), key=by_time)
+            yield from waiting[:due]
+            del waiting[:due]
+            try:
+                waiting = sorted(waiting + self._loaded(chunk, wanted), key=by_time)
+            except Flaw as found:
+                flaw = found
+                waiting = [message for message in waiting if message.place < found.place]
+        yield from waiting
+        flaw = flaw or self.flaw
+        if flaw is not None:
+            raise flaw
+
+    def _loaded(self, chunk: Chunk, wanted: Collection[int]) -> list[RawMessage]:
+        data = chunk.unpacked(self._file)
+        try:
+            messages = self._messages(chunk, data, wanted)
+        except _DAMAGE as error:
+            raise Flaw(chunk.place, "a chunk is damaged") from error
+        if any(message.log_time < chunk.start for message in messages):
+            raise Flaw(chunk.place, "a chunk has messages from before its beginning")
+        return messages
+
+    def _look_into_chunks(self) -> None:
+        """Take what only the chunks themselves tell of their channels.
+
+        Raises:
+            Flaw: a chunk is damaged.
+        """
+        for number, chunk in enumerate(self._chunks):
+            listed = self._lists_channels if chunk.channels is None else chunk.channels <= self._channels.keys()
+            if listed:
+                continue
+            try:
+                self._chunks[number] = self._learn_from(chunk, chunk.unpacked(self._file))
+            except _DAMAGE as error:
+                if chunk.whole:
+                    raise Flaw(chunk.place, "a chunk is damaged") from error
+
+    @abstractmethod
+    def _scan(self) -> None:
+        """Go from record to record, and take chunks, channels and numbers of messages.
+
+        Raises:
+            Flaw: a record is damaged or cut off.
+        """
+
+    @abstractmethod
+    def _learn_from(self, chunk: Chunk, data: bytes) -> Chunk:
+        """Take the channels in the bytes of a chunk; the chunk as it is known then. Raises any of `_DAMAGE`."""
+
+    @staticmethod
+    @abstractmethod
+    def _messages(chunk: Chunk, data: bytes, wanted: Collection[int]) -> list[RawMessage]:
+        """The whole messages of some channels in the bytes of a chunk. Raises any of `_DAMAGE`."""
 
 
 def ros2_name(type_name: str) -> str:
     """The name that a type of ROS 1 has in ROS 2."""
     return re.sub(r"^(\w+)/(\w+)$", r"\1/msg/\2", type_name)
-
-
-def text(data: bytes, at: int) -> tuple[str, int]:
-    """A string behind its length in 4 bytes, and where it ends.
-
-    Raises:
-        ValueError, struct.error: there is no such string.
-    """
-    (length,) = struct.unpack_from("<I", data, at)
-    end = at + 4 + length
-    if end > len(data):
-        raise ValueError("a string ends beyond its record")
-    return data[at + 4 : end].decode(), end

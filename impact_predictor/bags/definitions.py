@@ -8,7 +8,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Final
 
 from ..errors import InputError
-from .chunks import Channel
+from .chunks import BagChannel
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
@@ -17,7 +17,7 @@ _HEADER: Final = "std_msgs/msg/Header"
 _IDL: Final = f"{'=' * 80}\nIDL: "
 
 
-def typestore_of(path: str | os.PathLike[str], channels: Collection[Channel]) -> Typestore:
+def typestore_of(path: str | os.PathLike[str], channels: Collection[BagChannel]) -> Typestore:
     """The types of the messages of some channels.
 
     Raises:

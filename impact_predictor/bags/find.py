@@ -1,13 +1,14 @@
-"""Where bags are: a file, a folder of one recording, a folder of many, or a pattern of names."""
+"""Where bags are, as a file, a folder of one recording, of many, or a pattern of names, and what they are called."""
 
 from __future__ import annotations
 
 import os
 import re
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from glob import glob, has_magic
-from pathlib import Path
-from typing import Final
+from pathlib import Path, PurePath
+from typing import Any, Final
 
 from ..errors import InputError
 
@@ -84,6 +85,75 @@ def parts_of(folder: Path) -> list[Path]:
     return files if [file.name.removesuffix(COMPRESSED) for file in files] == parts else []
 
 
+def files_of(path: Path) -> tuple[list[Path], dict[tuple[str, str], int], str]:
+    """The files of a bag in order, how many messages each topic and type has, and what is wrong with their folder.
+
+    The numbers are empty where no metadata tell them, and what is wrong is "" where nothing is.
+
+    Raises:
+        InputError: it is not there, or is no bag.
+    """
+    if not path.exists():
+        raise InputError(f"{path} does not exist; give {KINDS}")
+    if not path.is_dir():
+        if not storage_of(path):
+            raise InputError(f"{path} is not a bag; give {KINDS}")
+        return [path], {}, ""
+    flaw = ""
+    if (path / METADATA).exists():
+        try:
+            names, counts = _metadata(path / METADATA)
+        except ValueError as error:
+            flaw = f"its {METADATA} is damaged ({error})"
+        else:
+            # Only names: a bag does not decide which folder is read.
+            files = [path / PurePath(name).name for name in names]
+            missing = [number for number, file in enumerate(files) if not file.is_file()]
+            if missing:
+                flaw = f"its file {files[missing[0]].name} is missing"
+                files = files[: missing[0]]
+            return files, counts, flaw
+    files = parts_of(path)
+    if files:
+        return files, {}, flaw
+    several = [file for file in path.iterdir() if storage_of(file) in STORAGES]
+    if several:
+        raise InputError(
+            f"{path} has {len(several)} recordings but no {METADATA} that orders them; "
+            "make it with `ros2 bag reindex`, or give one of the files"
+        )
+    raise InputError(f"{path} is not a bag: it has neither {METADATA} nor a recording; give {KINDS}")
+
+
+def _metadata(path: Path) -> tuple[list[str], dict[tuple[str, str], int]]:
+    """The names of the files, and how many messages each topic has.
+
+    Raises:
+        ValueError: they do not say so.
+    """
+    from ruamel.yaml import YAML
+    from ruamel.yaml.error import YAMLError
+
+    try:
+        about: Any = YAML(typ="safe").load(path.read_text())["rosbag2_bagfile_information"]
+        names = list(about["relative_file_paths"])
+        if not all(isinstance(name, str) for name in names):
+            raise ValueError("a file without a name")
+        counts: dict[tuple[str, str], int] = {}
+        for one in about["topics_with_message_count"]:
+            topic, count = one["topic_metadata"], one["message_count"]
+            if not (isinstance(topic["name"], str) and isinstance(topic["type"], str) and isinstance(count, int)):
+                raise ValueError("a topic without a name, a type or a count")
+            counts[topic["name"], topic["type"]] = count
+    except KeyError as error:
+        raise ValueError(f"no {error.args[0]}") from error
+    except (OSError, UnicodeDecodeError, YAMLError, TypeError, AttributeError) as error:
+        raise ValueError("it is not what a recorder writes") from error
+    if not all(storage_of(Path(name)) in STORAGES for name in names):
+        raise ValueError("it names a file that is no recording")
+    return names, counts
+
+
 def natural(paths: Iterable[Path]) -> list[Path]:
     """Paths in the order in which a person would list them."""
 
@@ -124,3 +194,45 @@ def _matching(pattern: str) -> Iterator[Path]:
             yield from _below(path)
         elif storage_of(path) and path.parent not in bags:
             yield path
+
+
+def name_of(bag: str | os.PathLike[str]) -> str:
+    """What a bag is called without its folder and suffix."""
+    path = Path(bag).resolve()
+    return path.name.removesuffix(COMPRESSED).removesuffix(storage_of(path)) if storage_of(path) else path.name
+
+
+def names_of(bags: Sequence[str | os.PathLike[str]]) -> list[Path]:
+    """What each of several bags is called, in their order.
+
+    That is `run`, or where there are several of this name `monday/run` and `tuesday/run`. Two bags of one folder that
+    differ by their suffixes alone keep these.
+
+    Raises:
+        InputError: a bag is there twice.
+    """
+    paths = [Path(bag).resolve() for bag in bags]
+    plain = [path.parent / name_of(path) for path in paths]
+    counts = Counter(plain)
+    full = [path if counts[short] > 1 else short for path, short in zip(paths, plain, strict=True)]
+    twice = [path for path, count in Counter(full).items() if count > 1]
+    if twice:
+        raise InputError(f"the predictions of {twice[0]} would be written for two bags; give each bag once")
+    return told_apart(full)
+
+
+def told_apart(paths: Sequence[Path]) -> list[Path]:
+    """The last part of each path, and as many before it as tell it from the others; never the root.
+
+    What is given twice cannot be told apart, and stays alike.
+    """
+    parts = [path.relative_to(path.anchor).parts for path in paths]
+    depths = [1] * len(parts)
+    while True:
+        tails = [part[-depth:] for part, depth in zip(parts, depths, strict=True)]
+        counted = Counter(tails)
+        short = [k for k, tail in enumerate(tails) if counted[tail] > 1 and depths[k] < len(parts[k])]
+        if not short:
+            return [Path(*tail) for tail in tails]
+        for k in short:
+            depths[k] += 1

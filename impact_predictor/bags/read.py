@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Collection, Iterator, Mapping
+import tempfile
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
@@ -12,10 +13,15 @@ from typing import Any, Final, NamedTuple
 from ..errors import InputError
 from ..ros.messages import MalformedMessage
 from ..wording import counted
-from .chunks import UNKNOWN, Channel, Flaw
-from .compression import ZSTD_MAGIC, decompressed_message
-from .parts import Part, Recording, opened
+from .chunks import UNKNOWN, BagChannel, Flaw
+from .compression import ZSTD_MAGIC, decompress_file, decompressed_message
+from .find import COMPRESSED, files_of, storage_of
+from .mcap_file import McapFile
+from .ros1_file import Ros1File
+from .sqlite_file import SqliteFile
 
+MessageFile = McapFile | Ros1File | SqliteFile
+_FORMATS: Final[dict[str, Callable[[Path], MessageFile]]] = {".mcap": McapFile, ".db3": SqliteFile, ".bag": Ros1File}
 _ENCODINGS: Final = ("cdr", "ros1")
 _REPAIRS: Final = {
     ".mcap": "repair a copy with `mcap recover`",
@@ -37,6 +43,14 @@ class BagMessage(NamedTuple):
     data: bytes
 
 
+class OpenFile(NamedTuple):
+    """An open file of a recording; `flaw` is what is known to be wrong with it as a file."""
+
+    path: Path
+    file: MessageFile
+    flaw: Flaw | None
+
+
 class Bag:
     """A bag that is open; a context manager. However much is asked of it, it is looked through, and decompressed, once.
 
@@ -50,9 +64,14 @@ class Bag:
             InputError: it is not there, is no bag, or cannot be read.
         """
         self.path = Path(path)
+        files, self._counts, self._flaw = files_of(self.path)
         with ExitStack() as stack:
-            self._recording = opened(self.path, stack)
+            try:
+                self._files = [_opened(file, stack) for file in files]
+            except OSError as error:
+                raise InputError(f"{path} cannot be read: {error.strerror or error}") from error
             self._stack = stack.pop_all()
+        self._channels = [channel for one in self._files for channel in one.file.channels]
 
     def __enter__(self) -> Bag:
         """Nothing more is to be done."""
@@ -68,10 +87,13 @@ class Bag:
         Raises:
             InputError: the bag is so damaged that none can be read.
         """
-        types = _types(_channels(self._recording))
-        if not types:
-            _check_whole(self.path, self._recording)
-        return types
+        if not self._channels:
+            self._check_whole()
+        types: dict[str, set[str]] = {}
+        for one in self._channels:
+            name = one.type_name if one.encoding in _ENCODINGS else f"{one.type_name} as {one.encoding}"
+            types.setdefault(one.topic, set()).add(name)
+        return {topic: " and ".join(sorted(types[topic])) for topic in sorted(types)}
 
     def messages(self, wanted: Mapping[str, str]) -> Iterator[BagMessage]:
         """The messages of some topics in the order of their log times, read while they are asked for.
@@ -83,10 +105,13 @@ class Bag:
             InputError: the bag lacks a topic, or a topic has another type; while reading: the bag is damaged, after
                 every message before the damage.
         """
-        selected = _select(self.path, self._recording, wanted)
-        ros1 = [one for one in selected if one.encoding == "ros1"]
-        to_cdr = _ros1_converter(self.path, ros1) if ros1 else None
-        return _stream(self.path, self._recording, wanted, to_cdr)
+        ros1 = [one for one in self._select(wanted) if one.encoding == "ros1"]
+        to_cdr = None
+        if ros1:
+            from .definitions import typestore_of
+
+            to_cdr = typestore_of(self.path, ros1).ros1_to_cdr
+        return self._stream(wanted, to_cdr)
 
     def decoders(self, wanted: Mapping[str, str]) -> dict[str, Callable[[bytes], Any]]:
         """What makes objects of the messages (in CDR) of some topics, by the definitions that the bag itself holds.
@@ -96,9 +121,108 @@ class Bag:
         """
         from .definitions import typestore_of
 
-        selected = _select(self.path, self._recording, wanted)
+        selected = self._select(wanted)
         typestore = typestore_of(self.path, selected)
         return {one.topic: partial(typestore.deserialize_cdr, typename=one.type_name) for one in selected}
+
+    def _select(self, wanted: Mapping[str, str]) -> list[BagChannel]:
+        """The channels of the wanted topics."""
+        selected = [one for one in self._channels if _is_wanted(one, wanted)]
+        lacking = wanted.keys() - {one.topic for one in selected}
+        for topic, type_name in wanted.items():
+            if topic in lacking:
+                raise InputError(self._why_lacking(topic, type_name))
+        return selected
+
+    def _why_lacking(self, topic: str, type_name: str) -> str:
+        """Why a topic cannot be read as a type.
+
+        Raises:
+            InputError: the bag is damaged, and the topic may be in what is lost.
+        """
+        of_topic = [one for one in self._channels if one.topic == topic]
+        for one in of_topic or [one for one in self._channels if one.type_name == type_name]:
+            if one.encoding not in _ENCODINGS:
+                return (
+                    f"the topic {one.topic} ({one.type_name or 'no type'}) of {self.path} is recorded as "
+                    f"{one.encoding!r}, but CDR is needed, as `ros2 bag record` writes it; record or convert it so"
+                )
+        types = self.topics()
+        if not of_topic:
+            self._check_whole()
+            return f"{self.path} has no topic {topic} of type {type_name}; it has {listing(types, type_name)}"
+        has = f"has the type {types[topic]}" if types[topic] else "tells no type"
+        return (
+            f"the topic {topic} of {self.path} {has}, but {type_name} is needed; "
+            f"give another topic by --remap, or record it as {type_name}"
+        )
+
+    def _stream(
+        self, wanted: Mapping[str, str], to_cdr: Callable[[bytes, str], memoryview] | None
+    ) -> Iterator[BagMessage]:
+        announced = self._announced(wanted)
+        read = first = last = 0
+        for one in self._files:
+            chosen = {channel.id: channel for channel in one.file.channels if _is_wanted(channel, wanted)}
+            names = {id_: channel.topic for id_, channel in chosen.items()}
+            ros1 = {id_ for id_, channel in chosen.items() if channel.encoding == "ros1"}
+            try:
+                for log_time, _, channel, data in one.file.messages(chosen):
+                    if data[:4] == ZSTD_MAGIC:
+                        data = decompressed_message(data)
+                    if to_cdr is not None and channel in ros1:
+                        data = bytes(to_cdr(data, chosen[channel].type_name))
+                    yield BagMessage(names[channel], log_time, data)
+                    first = first if read else log_time
+                    last = log_time
+                    read += 1
+                if one.flaw is not None:
+                    raise one.flaw
+            # Damaged messages may raise anything from the depths of a converter, not only its own errors.
+            except Exception as error:
+                where = f" after {counted(read, 'message')}"
+                if read:
+                    where += f", {(last - first) / 1e9:.3f} s after the first"
+                reason = self._reason(one, one.flaw or error, max(0, announced - read))
+                raise InputError(self._damaged(reason, where)) from error
+        if self._flaw:
+            raise InputError(self._damaged(self._flaw, f" after {counted(read, 'message')}"))
+        if read < announced:
+            raise InputError(self._damaged(f"only {read:,} of {counted(announced, 'message')} are there"))
+
+    def _announced(self, wanted: Mapping[str, str]) -> int:
+        """How many messages there should be: at least so many."""
+        if self._counts:
+            return sum(self._counts.get(topic, 0) for topic in wanted.items())
+        counts = [one.announced for one in self._channels if wanted.get(one.topic) == one.type_name]
+        return 0 if UNKNOWN in counts else sum(counts)
+
+    def _check_whole(self) -> None:
+        """Refuse a bag so damaged that what is asked for may be in what is lost."""
+        if self._flaw:
+            raise InputError(self._damaged(self._flaw))
+        for one in self._files:
+            flaw = one.flaw or one.file.flaw
+            if flaw is not None:
+                raise InputError(self._damaged(self._reason(one, flaw, 0)))
+
+    def _reason(self, one: OpenFile, error: Exception, lost: int) -> str:
+        """What is wrong, where, and what is lost by it."""
+        said = [" ".join(str(error).split()).rstrip(".") or type(error).__name__]
+        if isinstance(error, Flaw) and error.place > 0:
+            said[0] += f", at byte {error.place:,} of {one.file.size:,}"
+        if len(self._files) > 1:
+            said[0] += f" of {one.path.name}"
+            unread = len(self._files) - self._files.index(one) - 1
+            if unread:
+                said.append("the file after it was not read" if unread == 1 else f"the {unread} after it were not read")
+        if lost:
+            said.append(f"{counted(lost, 'message')} {'is' if lost == 1 else 'are'} lost")
+        return "; ".join(said)
+
+    def _damaged(self, reason: str, where: str = "") -> str:
+        repair = _REPAIRS.get(self.path.suffix, "repair a copy with `ros2 bag reindex`")
+        return f"{self.path} is damaged or cut off{where} ({reason}); {repair}, or record it again"
 
 
 def topics(path: str | os.PathLike[str]) -> dict[str, str]:
@@ -137,126 +261,18 @@ def listing(types: Mapping[str, str], type_name: str) -> str:
     return named if more <= 0 else f"{named} and {more} more"
 
 
-def _channels(recording: Recording) -> list[Channel]:
-    return [channel for part in recording.parts for channel in part.file.channels]
+def _is_wanted(channel: BagChannel, wanted: Mapping[str, str]) -> bool:
+    return wanted.get(channel.topic) == channel.type_name and channel.encoding in _ENCODINGS
 
 
-def _types(channels: Collection[Channel]) -> dict[str, str]:
-    types: dict[str, set[str]] = {}
-    for one in channels:
-        name = one.type_name if one.encoding in _ENCODINGS else f"{one.type_name} as {one.encoding}"
-        types.setdefault(one.topic, set()).add(name)
-    return {topic: " and ".join(sorted(types[topic])) for topic in sorted(types)}
-
-
-def _select(path: Path, recording: Recording, wanted: Mapping[str, str]) -> list[Channel]:
-    """The channels of the wanted topics."""
-    channels = _channels(recording)
-    types = _types(channels)
-    for topic, type_name in wanted.items():
-        of_topic = [one for one in channels if one.topic == topic]
-        if any(one.type_name == type_name and one.encoding in _ENCODINGS for one in of_topic):
-            continue
-        similar = of_topic or [one for one in channels if one.type_name == type_name]
-        foreign = [one for one in similar if one.encoding not in _ENCODINGS]
-        if foreign:
-            raise InputError(_wrongly_encoded(path, foreign[0]))
-        if not of_topic:
-            _check_whole(path, recording)
-            raise InputError(f"{path} has no topic {topic} of type {type_name}; it has {listing(types, type_name)}")
-        has = f"has the type {types[topic]}" if types[topic] else "tells no type"
-        raise InputError(
-            f"the topic {topic} of {path} {has}, but {type_name} is needed; "
-            f"give another topic by --remap, or record it as {type_name}"
-        )
-    return [one for one in channels if wanted.get(one.topic) == one.type_name and one.encoding in _ENCODINGS]
-
-
-def _wrongly_encoded(path: Path, channel: Channel) -> str:
-    what = f"{channel.topic} ({channel.type_name or 'no type'}) of {path} is recorded as {channel.encoding!r}"
-    return f"the topic {what}, but CDR is needed, as `ros2 bag record` writes it; record or convert it so"
-
-
-Converter = Callable[[bytes, str], memoryview]
-
-
-def _ros1_converter(path: Path, channels: Collection[Channel]) -> Converter:
-    from .definitions import typestore_of
-
-    return typestore_of(path, channels).ros1_to_cdr
-
-
-def _stream(
-    path: Path, recording: Recording, wanted: Mapping[str, str], to_cdr: Converter | None
-) -> Iterator[BagMessage]:
-    announced = _announced(recording, wanted)
-    read = first = last = 0
-    for part in recording.parts:
-        chosen = {
-            one.id: one
-            for one in part.file.channels
-            if wanted.get(one.topic) == one.type_name and one.encoding in _ENCODINGS
-        }
-        names = {id_: one.topic for id_, one in chosen.items()}
-        ros1 = {id_ for id_, one in chosen.items() if one.encoding == "ros1"}
-        try:
-            for log_time, _, channel, data in part.file.messages(chosen):
-                if data[:4] == ZSTD_MAGIC:
-                    data = decompressed_message(data)
-                if to_cdr is not None and channel in ros1:
-                    data = bytes(to_cdr(data, chosen[channel].type_name))
-                yield BagMessage(names[channel], log_time, data)
-                first = first if read else log_time
-                last = log_time
-                read += 1
-            if part.flaw is not None:
-                raise part.flaw
-        # Damaged messages may raise anything from the depths of a converter, not only its own errors.
-        except Exception as error:
-            where = f" after {counted(read, 'message')}"
-            if read:
-                where += f", {(last - first) / 1e9:.3f} s after the first"
-            lost = max(0, announced - read)
-            raise InputError(_unreadable(path, _reason(part, part.flaw or error, recording, lost), where)) from error
-    if recording.flaw:
-        raise InputError(_unreadable(path, recording.flaw, f" after {counted(read, 'message')}"))
-    if read < announced:
-        raise InputError(_unreadable(path, f"only {read:,} of {counted(announced, 'message')} are there"))
-
-
-def _announced(recording: Recording, wanted: Mapping[str, str]) -> int:
-    """How many messages there should be: at least so many."""
-    if recording.counts:
-        return sum(recording.counts.get(topic, 0) for topic in wanted.items())
-    counts = [one.announced for one in _channels(recording) if wanted.get(one.topic) == one.type_name]
-    return 0 if UNKNOWN in counts else sum(counts)
-
-
-def _check_whole(path: Path, recording: Recording) -> None:
-    """Refuse a bag so damaged that what is asked for may be in what is lost."""
-    if recording.flaw:
-        raise InputError(_unreadable(path, recording.flaw))
-    for part in recording.parts:
-        flaw = part.flaw or part.file.flaw
-        if flaw is not None:
-            raise InputError(_unreadable(path, _reason(part, flaw, recording, 0)))
-
-
-def _reason(part: Part, error: Exception, recording: Recording, lost: int) -> str:
-    """What is wrong, where, and what is lost by it."""
-    said = [" ".join(str(error).split()).rstrip(".") or type(error).__name__]
-    if isinstance(error, Flaw) and error.place > 0:
-        said[0] += f", at byte {error.place:,} of {part.file.size:,}"
-    if len(recording.parts) > 1:
-        said[0] += f" of {part.path.name}"
-        unread = len(recording.parts) - recording.parts.index(part) - 1
-        if unread:
-            said.append("the file after it was not read" if unread == 1 else f"the {unread} after it were not read")
-    if lost:
-        said.append(f"{counted(lost, 'message')} {'is' if lost == 1 else 'are'} lost")
-    return "; ".join(said)
-
-
-def _unreadable(path: Path, reason: str, where: str = "") -> str:
-    repair = _REPAIRS.get(path.suffix, "repair a copy with `ros2 bag reindex`")
-    return f"{path} is damaged or cut off{where} ({reason}); {repair}, or record it again"
+def _opened(path: Path, stack: ExitStack) -> OpenFile:
+    """Open a file, decompressed as a whole where it is compressed as a whole."""
+    storage, flaw = path, None
+    if path.name.endswith(COMPRESSED):
+        folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="impact_predictor_")))
+        storage = folder / f"bag{storage_of(path)}"
+        if not decompress_file(path, storage):
+            flaw = Flaw(storage.stat().st_size, "its compressed bytes are damaged or cut off")
+    file = _FORMATS[storage_of(path)](storage)
+    stack.callback(file.close)
+    return OpenFile(path, file, flaw)

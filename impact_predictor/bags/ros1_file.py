@@ -10,8 +10,7 @@ import struct
 from collections.abc import Collection, Iterator
 from typing import Final
 
-from .chunked_file import ChunkedFile
-from .chunks import UNKNOWN, Channel, Chunk, Flaw, Message, ros2_name, unpacked
+from .chunks import UNKNOWN, BagChannel, Chunk, ChunkedFile, Flaw, RawMessage, ros2_name
 
 MAGIC: Final = b"#ROSBAG V2.0\n"
 
@@ -80,7 +79,7 @@ class Ros1File(ChunkedFile):
     def _chunk(self, fields: Fields, place: int, begin: int, length: int) -> Chunk:
         there = max(0, min(length, self.size - begin))
         compression = fields[b"compression"].decode()
-        return Chunk(place, 0, (begin, there), compression, _number(fields[b"size"]), 0, there == length, None)
+        return Chunk(place, 0, begin, there, _number(fields[b"size"]), there == length, compression)
 
     def _take_index(self, fields: Fields, data: bytes) -> None:
         """Take where the messages of one connection are in the last chunk."""
@@ -95,40 +94,31 @@ class Ros1File(ChunkedFile):
 
     def _learn(self, fields: Fields, data: bytes) -> None:
         """Take a connection."""
-        told = _fields(data)
+        about = _fields(data)
         id_ = _number(fields[b"conn"])
         # As ROS 2 writes them.
         topic = re.sub("/+", "/", fields[b"topic"].decode())
-        type_name = ros2_name(told[b"type"].decode())
-        definition = told[b"message_definition"].decode(errors="replace")
-        self._channels.setdefault(id_, Channel(id_, topic, type_name, "ros1", "ros1msg", definition))
+        type_name = ros2_name(about[b"type"].decode())
+        definition = about[b"message_definition"].decode(errors="replace")
+        self._channels.setdefault(id_, BagChannel(id_, topic, type_name, "ros1", "ros1msg", definition))
 
-    def _look_into_chunks(self) -> None:
-        for number, chunk in enumerate(self._chunks):
-            if chunk.channels is not None and chunk.channels <= self._channels.keys():
-                continue
-            times = []
-            try:
-                for fields, data in _records(chunk, unpacked(chunk, self._file)):
-                    if fields[b"op"][0] == _CONNECTION:
-                        self._learn(fields, data)
-                    elif fields[b"op"][0] == _MESSAGE:
-                        times.append(_time(fields[b"time"]))
-            except (ValueError, KeyError, IndexError, struct.error) as error:
-                raise Flaw(chunk.place, "a chunk is damaged") from error
-            self._chunks[number] = chunk._replace(start=min(times, default=0), channels=None)
+    def _learn_from(self, chunk: Chunk, data: bytes) -> Chunk:
+        times = []
+        for fields, body in _records(chunk, data):
+            if fields[b"op"][0] == _CONNECTION:
+                self._learn(fields, body)
+            elif fields[b"op"][0] == _MESSAGE:
+                times.append(_time(fields[b"time"]))
+        return chunk._replace(start=min(times, default=0), channels=None)
 
     @staticmethod
-    def _messages(chunk: Chunk, data: bytes, wanted: Collection[int]) -> list[Message]:
+    def _messages(chunk: Chunk, data: bytes, wanted: Collection[int]) -> list[RawMessage]:
         found = []
-        try:
-            for fields, body in _records(chunk, data):
-                if fields[b"op"] == b"\x02":
-                    channel = _number(fields[b"conn"])
-                    if channel in wanted:
-                        found.append(Message(_time(fields[b"time"]), chunk.place, channel, body))
-        except (KeyError, struct.error) as error:
-            raise Flaw(chunk.place, "a chunk is damaged") from error
+        for fields, body in _records(chunk, data):
+            if fields[b"op"] == b"\x02":
+                channel = _number(fields[b"conn"])
+                if channel in wanted:
+                    found.append(RawMessage(_time(fields[b"time"]), chunk.place, channel, body))
         return found
 
 
@@ -143,9 +133,9 @@ def _records(chunk: Chunk, data: bytes) -> Iterator[tuple[Fields, bytes]]:
             if begin + more > len(data):
                 raise ValueError("cut off")
             fields = _fields(data[place + 4 : begin - 4])
-        except (ValueError, struct.error) as error:
+        except (ValueError, struct.error):
             if chunk.whole:
-                raise Flaw(chunk.place, "a chunk is damaged") from error
+                raise
             return
         yield fields, data[begin : begin + more]
         place = begin + more

@@ -1,22 +1,29 @@
-"""Reading SQLite files of rosbag2, as far as they go."""
+"""Reading SQLite files of rosbag2, as far as they go.
+
+The database reads them itself. Where it finds them damaged or cut off, it loses what the tree that leads to the
+messages does not reach any more (of a file cut in the middle often all of them), though the leaves of the tree are
+there: then the messages are taken from the pages of the file. Source: https://www.sqlite.org/fileformat.html, sections
+1.6 and 2.1.
+"""
 
 from __future__ import annotations
 
 import sqlite3
+import struct
 from collections.abc import Collection, Iterator
 from pathlib import Path
-from typing import Final
+from typing import BinaryIO, Final, NamedTuple
 
-from .chunks import Channel, Flaw, Message
+from .chunks import BagChannel, Flaw, RawMessage
 
 _DAMAGED: Final = "SQLite finds it damaged"
+_LEAF: Final = 0x0D
+_INTEGERS: Final = {1: 1, 2: 2, 3: 3, 4: 4, 5: 6, 6: 8, 8: 0, 9: 0}
+"""Bytes of the integers of each serial type; the last two are 0 and 1 themselves."""
 
 
 class SqliteFile:
-    """A file that the database itself reads, and where that finds it damaged, its pages one by one.
-
-    `flaw` is the damage that is known before messages are read.
-    """
+    """A file of one database; `flaw` is the damage that is known before messages are read."""
 
     def __init__(self, path: Path) -> None:
         """Find the topics of a file.
@@ -26,15 +33,12 @@ class SqliteFile:
         """
         self._path = path
         with path.open("rb") as file:
-            head = file.read(100)
+            self._layout = _Layout(file.read(100))
         self.size = path.stat().st_size
         self.flaw: Flaw | None = None
-        self.channels: list[Channel] = []
-        page = int.from_bytes(head[16:18], "big")
-        page = 65536 if page == 1 else page
-        pages = int.from_bytes(head[28:32], "big") if head[24:28] == head[92:96] else 0
+        self.channels: list[BagChannel] = []
         # The database itself would fill up a page that was cut off with zeros.
-        self._cut = len(head) < 100 or pages * page > self.size or self.size % max(page, 1) > 0
+        self._cut = self._layout.cuts(self.size)
         if self._cut:
             self.flaw = Flaw(self.size, "it is cut off")
         elif path.with_name(f"{path.name}-wal").exists() and path.with_name(f"{path.name}-wal").stat().st_size:
@@ -53,7 +57,7 @@ class SqliteFile:
         """Close the file."""
         self._database.close()
 
-    def messages(self, wanted: Collection[int]) -> Iterator[Message]:
+    def messages(self, wanted: Collection[int]) -> Iterator[RawMessage]:
         """The messages of some topics in the order of their log times.
 
         Raises:
@@ -69,20 +73,21 @@ class SqliteFile:
             for log_time, row, topic, data in self._database.execute(select, tuple(wanted)):
                 if not (isinstance(log_time, int) and isinstance(data, bytes)):
                     raise sqlite3.DatabaseError("a message has no time or no bytes")
-                yield Message(log_time, 0, topic, data)
+                yield RawMessage(log_time, 0, topic, data)
                 last = log_time, row
         except sqlite3.Error as error:
-            from .sqlite_pages import rows_of
-
             flaw = flaw or Flaw(0, f"{_DAMAGED}: {error}")
-            topics = {channel.id for channel in self.channels}
-            for log_time, row, topic, data in rows_of(self._path, topics, wanted):
-                if last is None or (log_time, row) > last:
-                    yield Message(log_time, 0, topic, data)
+            with self._path.open("rb") as file:
+                for row in self._whole_rows(file):
+                    if row.topic in wanted and (last is None or (row.log_time, row.id) > last):
+                        data = self._layout.record(file, row)
+                        if data is None:
+                            break
+                        yield RawMessage(row.log_time, 0, row.topic, data)
         if flaw is not None:
             raise flaw
 
-    def _read_channels(self) -> list[Channel]:
+    def _read_channels(self) -> list[BagChannel]:
         database = self._database
         # What is computed when it is read would let a file decide what is done, and for how long.
         computed = "SELECT 1 FROM sqlite_master WHERE type IN ('table', 'view') AND rootpage = 0"
@@ -96,6 +101,125 @@ class SqliteFile:
                 definitions[name] = (str(schema), str(definition))
         topics = database.execute("SELECT id, name, type, serialization_format FROM topics ORDER BY id")
         return [
-            Channel(int(id_), str(topic), str(type_name), str(encoding), *definitions.get(type_name, ("", "")))
+            BagChannel(int(id_), str(topic), str(type_name), str(encoding), *definitions.get(type_name, ("", "")))
             for id_, topic, type_name, encoding in topics
         ]
+
+    def _whole_rows(self, file: BinaryIO) -> list[_MessageRow]:
+        """The messages by their log times, as their pages have them: all up to the first that is missing."""
+        topics = {channel.id for channel in self.channels}
+        rows = {row.id: row for row in self._layout.rows(file) if row.topic in topics}
+        # The recorder numbers them from 1 on.
+        number = 1
+        while number in rows:
+            number += 1
+        return sorted(row for id_, row in rows.items() if id_ < number)
+
+
+class _MessageRow(NamedTuple):
+    """A message: where its record begins, how long it is, how much of that lies in its page, and of that its head."""
+
+    log_time: int
+    id: int
+    topic: int
+    place: int
+    size: int
+    local: int
+    head: int
+
+
+class _Layout:
+    """The pages of a file by its first 100 bytes; of a file that has none of them nothing is read."""
+
+    def __init__(self, head: bytes) -> None:
+        page, reserved, changes, pages, counted = struct.unpack(">16xHxxB3xII60xI4x", head.ljust(100, b"\0"))
+        self._page: int = 65536 if page == 1 else page
+        self._usable: int = self._page - reserved
+        # Only a version that counts the pages says how many there are.
+        self._pages = pages if len(head) == 100 and changes == counted else 0
+        self._whole = len(head) == 100
+
+    def cuts(self, size: int) -> bool:
+        """Whether a file of so many bytes is cut off."""
+        return not self._whole or self._pages * self._page > size or size % max(self._page, 1) > 0
+
+    def rows(self, file: BinaryIO) -> Iterator[_MessageRow]:
+        """The messages whose cells are in any page, as far as it is there."""
+        if not self._whole or self._page < 512 or self._page & (self._page - 1) or self._usable < 480:
+            return
+        # The first page is that of the schema.
+        place = self._page
+        file.seek(place)
+        while len(page := file.read(self._page)) >= 8:
+            if page[0] == _LEAF:
+                (count,) = struct.unpack_from(">H", page, 3)
+                for at in range(8, min(8 + 2 * count, len(page) - 1), 2):
+                    row = self._row(page, struct.unpack_from(">H", page, at)[0], place)
+                    if row is not None:
+                        yield row
+            place += self._page
+
+    def _row(self, page: bytes, at: int, place: int) -> _MessageRow | None:
+        """The message of a cell; None where it is none, or not all there."""
+        try:
+            size, at = _varint(page, at)
+            id_, begin = _varint(page, at)
+            columns, at = _varint(page, begin)
+            types = []
+            while at < begin + columns:
+                kind, at = _varint(page, at)
+                types.append(kind)
+            null, topic_kind, time_kind, data_kind = types
+            if null or data_kind < 12 or data_kind % 2:
+                return None
+            topic, at = _integer(page, at, topic_kind)
+            log_time, at = _integer(page, at, time_kind)
+        except (LookupError, ValueError):
+            return None
+        local = self._local(size)
+        if at - begin + (data_kind - 12) // 2 != size or begin + local > len(page):
+            return None
+        return _MessageRow(log_time, id_, topic, place + begin, size, local, at - begin)
+
+    def _local(self, size: int) -> int:
+        """How many bytes of a record are in the page of its cell."""
+        most, least = self._usable - 35, (self._usable - 12) * 32 // 255 - 23
+        if size <= most:
+            return size
+        fitting = least + (size - least) % (self._usable - 4)
+        return fitting if fitting <= most else least
+
+    def record(self, file: BinaryIO, row: _MessageRow) -> bytes | None:
+        """The data of a message, or None where they are not all there."""
+        file.seek(row.place)
+        data = bytearray(file.read(row.local))
+        following = file.read(4)
+        while len(data) < row.size:
+            page = int.from_bytes(following, "big")
+            file.seek(max(0, page - 1) * self._page)
+            following = file.read(4)
+            more = file.read(min(self._usable - 4, row.size - len(data)))
+            if page < 2 or not more:
+                return None
+            data += more
+        return bytes(data[row.head :])
+
+
+def _varint(data: bytes, at: int) -> tuple[int, int]:
+    """A number of one to nine bytes, and where it ends."""
+    number = 0
+    for _ in range(8):
+        byte = data[at]
+        at += 1
+        number = number << 7 | byte & 0x7F
+        if byte < 0x80:
+            return number, at
+    return number << 8 | data[at], at + 1
+
+
+def _integer(data: bytes, at: int, kind: int) -> tuple[int, int]:
+    """A value of a serial type, and where it ends."""
+    end = at + _INTEGERS[kind]
+    if end > len(data):
+        raise IndexError
+    return (kind - 8 if kind >= 8 else int.from_bytes(data[at:end], "big", signed=True)), end

@@ -23,7 +23,7 @@ class Baseline:
         Raises:
             InputError: it cannot be read, is the run of one bag where several are given, or lacks the only one.
         """
-        from ..bags.names import names_of
+        from ..bags.find import names_of
         from ..report.baseline import Limits
         from ..report.earlier import Earlier
 

@@ -27,7 +27,7 @@ def outputs_of(bags: Sequence[str], output: str | None) -> list[Path | None]:
     folder = Path(output)
     if folder.suffix == ".mcap":
         raise InputError(f"{output} is one file, but {len(bags)} bags are given; give the name of a folder")
-    from ..bags.names import names_of
+    from ..bags.find import names_of
 
     files = [folder / f"{name}.mcap" for name in names_of(bags)]
     if not folder.absolute().parent.exists():

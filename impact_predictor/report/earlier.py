@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from ..bags.names import name_of
+from ..bags.find import name_of
 from ..bags.read import read_messages, topics
 from ..bags.stream import NODE
 from ..errors import InputError

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from ..bags.find import names_of
 from ..bags.inputs import remapping
-from ..bags.names import names_of
 from ..errors import InputError
 from ..parameters.file import read_values
 from .checks import Check, baseline_check, checks_of

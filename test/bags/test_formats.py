@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 import sqlite3
 from pathlib import Path
+from typing import BinaryIO
 
 import pytest
 from mcap.writer import CompressionType
@@ -13,8 +14,8 @@ from rosbags.rosbag1 import Writer as Ros1Writer
 from rosbags.rosbag2 import StoragePlugin
 from rosbags.rosbag2.enums import CompressionMode
 
-from impact_predictor.bags import chunked_file, mcap_file, parts, ros1_file
-from impact_predictor.bags.chunks import Chunk, unpacked
+from impact_predictor.bags import read as reading
+from impact_predictor.bags.chunks import Chunk
 from impact_predictor.bags.read import BagMessage, read_messages, topics
 from impact_predictor.bags.replay import replay
 from impact_predictor.errors import InputError
@@ -126,20 +127,20 @@ def test_metadata_lead_to_no_file_outside_of_their_folder(tmp_path: Path) -> Non
         assert "its file bag.mcap is missing" in refusal(bag)
 
 
-@pytest.mark.parametrize(("kind", "module"), [("mcap", mcap_file), ("bag", ros1_file)])
+@pytest.mark.parametrize("kind", ["mcap", "bag"])
 def test_chunks_without_wanted_topics_are_not_even_decompressed(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, kind: str, module: object
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, kind: str
 ) -> None:
     path = tmp_path / f"a.{kind}"
     bag = write_ros1(path, MESSAGES) if kind == "bag" else write_mcap(path, MESSAGES)
     opened: list[int] = []
+    unpacked = Chunk.unpacked
 
-    def counted(chunk: Chunk, *arguments: object) -> bytes:
+    def counted(chunk: Chunk, file: BinaryIO) -> bytes:
         opened.append(chunk.place)
-        return unpacked(chunk, *arguments)  # type: ignore[arg-type]
+        return unpacked(chunk, file)
 
-    for user in (module, chunked_file):
-        monkeypatch.setattr(user, "unpacked", counted)
+    monkeypatch.setattr(Chunk, "unpacked", counted)
     assert read(path) == MESSAGES
     every = len(opened)
     opened.clear()
@@ -155,13 +156,13 @@ def test_a_compressed_file_is_decompressed_once_for_all_that_a_replay_asks_of_it
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     bag = write_ros2(tmp_path / "bag", MESSAGES, StoragePlugin.MCAP, CompressionMode.FILE)
-    decompress, decompressed = parts.decompress_file, list[Path]()
+    decompress, decompressed = reading.decompress_file, list[Path]()
 
     def counted(source: Path, target: Path) -> bool:
         decompressed.append(target)
         return decompress(source, target)
 
-    monkeypatch.setattr(parts, "decompress_file", counted)
+    monkeypatch.setattr(reading, "decompress_file", counted)
     scene = Scene(0.37, ((1e-3, 0.0, 0.0), (0.0, 1e-3, 0.0), (0.0, 0.0, 1e-3)), 0.2)
     assert replay(bag, scene).samples > 0.9 * COUNT
     (target,) = decompressed

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from impact_predictor.bags.names import names_of
+from impact_predictor.bags.find import names_of
 from impact_predictor.errors import InputError
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from statistics import median
 from typing import Final, NamedTuple
 
-from ....bags.names import told_apart
+from ....bags.find import told_apart
 from ....prediction.types import Leftover
 from ....stamps import NANOSECONDS
 from ...spread import Spread, from_json, together
