@@ -15,7 +15,7 @@ from ..wording import counted
 if TYPE_CHECKING:
     from ..bags.replay import Result
     from ..fleet.job import Outcome
-    from ..report.page.replays.kept import Kept
+    from ..report.page.answers import Kept
     from ..report.parquet import TouchdownTable
     from ..report.picture import Picture
     from .baseline import Baseline

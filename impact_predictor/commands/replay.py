@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from contextlib import ExitStack, closing
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from ..errors import InputError
+from ..errors import InputError, need
 from .examples import examples
 from .limits import Number, Whole
 
 if TYPE_CHECKING:
     from ..prediction.scene import Scene
-    from ..report.page.replays.kept import Kept
+    from ..report.page.answers import Kept
     from ..report.parquet import TouchdownTable
     from ..report.picture import Picture
     from .baseline import Baseline
@@ -53,7 +54,11 @@ if TYPE_CHECKING:
     metavar="FILE",
     help="Draw errors and velocities, of a walking machine its gait, into a .png or .svg file.",
 )
-@click.option("--report", metavar="FILE", help="Write a page about all bags into one .html file.")
+@click.option(
+    "--report",
+    metavar="FILE",
+    help="Write a page about all bags into one .html file; any other name is a folder with a page for each bag too.",
+)
 @click.option(
     "--table",
     metavar="FILE",
@@ -142,10 +147,10 @@ def replay(
         picture = Picture(figure)
     answers: Kept | None = None
     if report is not None:
-        from ..report.page.replay import write_replay_page
-        from ..report.page.replays.kept import Kept
+        from ..report.page.answers import Kept
 
-        named(report, "page", (".html",))
+        need("plotly")
+        named(report, "page", (".html",) if Path(report).suffix else ("",))
         answers = Kept()
     earlier: Baseline | None = None
     if baseline is not None:
@@ -188,8 +193,10 @@ def replay(
             told.tell_file("Picture", picture.path)
         if report is not None and answers is not None:
             from ..parameters.file import read_values
+            from ..report.page.replay import write_replay_page, write_replay_pages
 
-            write_replay_page(report, answers, read_values(params))
+            write = write_replay_page if Path(report).suffix else write_replay_pages
+            write(report, answers, read_values(params))
             told.tell_file("Page", report)
     if table is not None:
         told.tell_file("Table", table)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from .chart import LARGE, NARROW, draw_chart
 from .data import Entry, Point, points_by_method, points_of_all
-from .sections import Cell, Figure, Section, Table
+from .oldsections import Cell, Figure, Section, Table
 from .study import Study
 from .words import accuracy_words, name_of, neat, time_words
 

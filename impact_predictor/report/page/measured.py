@@ -13,7 +13,7 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from .chart import NARROW, WIDE, Shape
 from .data import Entry, Point, measured_scenes, points_of
-from .sections import Cell, Figure, Section, Table
+from .oldsections import Cell, Figure, Section, Table
 from .study import Study
 from .svg import INK, PAPER, STYLE, Mark, family_colour, svg_of
 from .words import name_of, neat, percent, share, time_words, tooltip, unanswered

@@ -1,23 +1,40 @@
-"""The page of a replay, made from the JSON answers of its bags alone."""
+"""The page of a replay, made from the JSON answers of its bags alone: its title, its headlines and its sections."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from statistics import median
+from typing import Any, Final
 
-from ... import __version__
-from .render import render, write
-from .replays.answers import Answer, used
-from .replays.bags import bags
-from .replays.heads import headlines_of, lead_of, title_of
-from .replays.modes import modes
-from .replays.spreads import cost_section, early
-from .replays.unused import scene, unused
-from .replays.velocities import velocities
-from .replays.when import anchors_of, when
-from .sections import Section
+from ...scenarios.matching import NEAREST
+from ...stamps import NANOSECONDS
+from ...wording import counted
+from ..summary import WHY, quantile
+from . import sections
+from .answers import (
+    NOTHING,
+    Answer,
+    SpanErrors,
+    announced,
+    confusion,
+    costs,
+    errors_ahead,
+    found_of,
+    landings_of,
+    names_of,
+    scored_of,
+    touchdowns_of,
+    uncompared,
+    used,
+    velocity_errors,
+    worst_of,
+)
+from .document import Headline, page, script_beside, script_inside, time_words, within_words, write_html
+
+AHEAD: Final = 0.02
+"""Seconds before a touchdown, from which on the errors of the times are told."""
 
 
 def write_replay_page(
@@ -34,32 +51,164 @@ def write_replay_page(
     Raises:
         InputError: the file cannot be written.
     """
-    write(Path(path), page_of_replay(answers, values))
+    write_html(Path(path), page_of_replay(answers, values))
 
 
-def page_of_replay(answers: Sequence[Answer], values: Mapping[str, Any] | None = None) -> str:
-    """The page as HTML."""
-    return render(
-        "replay.html",
-        made={"version": __version__},
-        title=title_of(answers),
-        lead=[lead_of(answers)],
-        headlines=headlines_of(answers),
-        sections=sections_of(answers, values),
+def write_replay_pages(
+    folder: str | os.PathLike[str], answers: Sequence[Answer], values: Mapping[str, Any] | None = None
+) -> None:
+    """Write a folder: index.html about all bags, a page for each, and one file of plotly's script that they share.
+
+    Raises:
+        InputError: a file cannot be written.
+    """
+    folder = Path(folder)
+    script = script_beside(folder)
+    links = {}
+    for place, answer in enumerate(answers):
+        if "error" not in answer:
+            # The name of a bag is no name of a file: it comes from elsewhere.
+            links[place] = f"bag-{place + 1}.html"
+            write_html(folder / links[place], page_of_replay([answer], values, script))
+    write_html(folder / "index.html", page_of_replay(answers, values, script, links))
+
+
+def page_of_replay(
+    answers: Sequence[Answer],
+    values: Mapping[str, Any] | None = None,
+    script: str | None = None,
+    links: Mapping[int, str] | None = None,
+) -> str:
+    """The page as HTML; `script` is plotly's, inside unless given, `links` where the bags lead, by their places."""
+    places = [k for k, one in enumerate(answers) if one.get("touchdowns") or one.get("true_touchdowns")]
+    drawn = sorted(worst_of(answers, places, sections.DRAWN))
+    all_sections = (
+        sections.bags(answers, links or {place: f"#bag-{place + 1}" for place in drawn}),
+        sections.when(answers, drawn),
+        sections.velocities(answers),
+        sections.modes(answers),
+        sections.ahead(answers),
+        sections.cost(answers),
+        sections.unused(answers),
+        sections.scene(values),
     )
+    there = [section for section in all_sections if section is not None]
+    script = script_inside() if script is None else script
+    return page(title_of(answers), [lead_of(answers)], headlines_of(answers), there, script)
 
 
-def sections_of(answers: Sequence[Answer], values: Mapping[str, Any] | None) -> list[Section]:
-    """The sections in the order in which a stranger reads them."""
-    found, anchors = used(answers), anchors_of(answers)
-    sections = [
-        bags(answers, anchors),
-        when(answers, anchors),
-        velocities(found),
-        modes(found),
-        early(found),
-        cost_section(found),
-        unused(answers),
-        scene(values),
-    ]
-    return [section for section in sections if section]
+def title_of(answers: Sequence[Answer]) -> str:
+    """How many touchdowns, how early and how right, in one line."""
+    times, errors, time = announced(answers), velocity_errors(used(answers)), error_at(answers)
+    if not times:
+        number = sum(1 for _ in touchdowns_of(answers))
+        return f"{counted(number, 'touchdown')} predicted, none compared" if number else "No touchdown was predicted"
+    there, landings = found_of(answers), list(landings_of(answers))
+    if there is not None and all("truth" in answer for answer in used(answers)):
+        noun = "landing" if landings and not errors.number else "touchdown"
+        many = f"{there.found:,} of {counted(there.there, noun)}"
+    elif landings and not errors.number:
+        many = announced_of(landings)
+    else:
+        many = counted(len(times), "touchdown")
+    said = f"{many} first predicted {time_words(median(times))} ahead"
+    if errors.number:
+        return f"{said}, half of the last predictions within {within_words(errors.median)}"
+    return said if time is None else f"{said}, half of their times within {time_words(time.errors.p50)}"
+
+
+def announced_of(landings: Sequence[Answer]) -> str:
+    """How many landings of feet there were, and how many of them were announced where that is not all."""
+    number = sum(one["time_error"] is not None for one in landings)
+    all_landings = counted(len(landings), "landing")
+    return all_landings if number == len(landings) else f"{number:,} of {all_landings}"
+
+
+def error_at(answers: Sequence[Answer]) -> SpanErrors | None:
+    """The errors in s of the times told 20 ms ahead or somewhat more; None where nothing tells the true ones."""
+    spans = errors_ahead(answers, "time_errors_ahead")
+    return next((one for one in spans if one.begin >= AHEAD and one.errors.number), None)
+
+
+def lead_of(answers: Sequence[Answer]) -> str:
+    """Which bags these are."""
+    samples = counted(sum(answer["samples"] for answer in used(answers)), "sample")
+    if len(answers) > 1:
+        failed = sum("error" in answer for answer in answers)
+        unread = f"; {failed:,} of them could not be read" if failed else ""
+        return f"{len(answers):,} records, {samples}, went through the predictor as if they came live{unread}."
+    begin, end = (answers[0].get(name) for name in ("begin", "end"))
+    over = "" if begin is None or end is None else f" over {time_words((end - begin) / NANOSECONDS)}"
+    return f"The record {names_of(answers)[0]}, {samples}{over}, went through the predictor as if it came live."
+
+
+def headlines_of(answers: Sequence[Answer]) -> list[Headline]:
+    """How many touchdowns, how right, how early, and at what cost."""
+    if next(touchdowns_of(answers), None) is None:
+        return []
+    found = [_many(answers), _right(answers), _early(answers), _cost(answers)]
+    return [one for one in found if one is not None]
+
+
+def _many(answers: Sequence[Answer]) -> Headline:
+    there, landings = found_of(answers), list(landings_of(answers))
+    if there is None and landings:
+        return Headline("How many", f"{announced_of(landings)} announced", "Their motion shows when feet landed.")
+    if there is None:
+        number, reasons = sum(1 for _ in scored_of(answers)), uncompared(answers)
+        others = sum(1 for _ in touchdowns_of(answers)) - number
+        because = "because" if len(reasons) == 1 else "most often because"
+        said = "".join(f", {because} {WHY[reason]}" for reason, _ in reasons.most_common(1))
+        more = f"{others:,} more could not be{said}." if others else "That is all that were predicted."
+        return Headline("How many", f"{number:,} compared with measured velocities", more)
+    missed = there.there - there.found
+    alarms = counted(there.false, "false alarm") if there.false else "no false alarm"
+    more = f"{f'{missed:,}' if missed else 'None'} missed, {alarms}."
+    if missed:
+        more += f" A touchdown is found where a prediction before it told its time to {NEAREST / 1e6:.0f} ms."
+    truths = [answer["truth"] for answer in used(answers) if "truth" in answer]
+    if unseen := sum(truth["unresolved"] for truth in truths):
+        more += f" {counted(unseen, 'more impact')} cannot be seen in the samples: too slow, or too soon after another."
+    if len(truths) < (all_bags := sum(1 for _ in used(answers))):
+        more += f" The truth is known of {len(truths):,} of {all_bags:,} bags."
+    return Headline("How many", f"{there.found:,} of {there.there:,} found", more)
+
+
+def _right(answers: Sequence[Answer]) -> Headline | None:
+    errors, time, counts = velocity_errors(used(answers)), error_at(answers), confusion(answers)
+    span = "" if time is None else f"{time.begin * 1e3:.0f} to {time.end * 1e3:.0f} ms ahead"
+    if errors.number:
+        truths = [("truth" in answer) for answer in used(answers)]
+        of = "the true ones" if any(truths) else "the measured ones"
+        of += ", or the measured ones where a bag does not tell them" if any(truths) and not all(truths) else ""
+        more = (
+            f"So close are half of the velocities after the impact to {of}; 90 % are within {within_words(errors.p90)}."
+        )
+        if counts:
+            right = sum(count for (true, told), count in counts.items() if true == told)
+            both = sum(count for pair, count in counts.items() if NOTHING not in pair)
+            more += f" The mode is right in {right:,} of {both:,}."
+        if time is not None:
+            more += f" The time told {span} is {time_words(time.errors.p50)} wrong in the median."
+        return Headline("How right", f"velocities within {within_words(errors.median)}", more)
+    if time is None:
+        return None
+    more = f"So close are half of the times that were told {span}; 90 % are within {time_words(time.errors.p90)}."
+    return Headline("How right", f"times within {time_words(time.errors.p50)}", more)
+
+
+def _early(answers: Sequence[Answer]) -> Headline | None:
+    times = announced(answers)
+    if not times:
+        return None
+    more = f"The first prediction of each, in the median. 90 % came at least {time_words(quantile(times, 0.1))} ahead"
+    latest = "only as it happened" if min(times) < 1e-6 else f"{time_words(min(times))} ahead"
+    return Headline("How early", f"{time_words(median(times))} ahead", f"{more}, the latest one {latest}.")
+
+
+def _cost(answers: Sequence[Answer]) -> Headline | None:
+    spread = costs(answers)
+    if spread.p50 is None or spread.p99 is None:
+        return None
+    more = f"In the median, without reading and writing; 99 % take less than {time_words(1e-6 * spread.p99)}."
+    return Headline("At what cost", f"{time_words(1e-6 * spread.p50)} a sample", more)

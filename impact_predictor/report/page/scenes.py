@@ -8,7 +8,7 @@ from itertools import groupby
 from .chart import NARROW, WIDE, draw_chart
 from .data import Entry, Point, choices_of, front_of, points_of, seen
 from .looks import marker_svg
-from .sections import Cell, Figure, Key, Section, Table
+from .oldsections import Cell, Figure, Key, Section, Table
 from .study import Study
 from .words import accuracy_words, error_words, name_of, neat, share, time_words, unanswered
 

@@ -9,9 +9,9 @@ from typing import Any
 from .choosing import choosing, headline
 from .data import Entry
 from .measured import measured
+from .oldsections import Section
 from .render import render, write
 from .scenes import scenes
-from .sections import Section
 from .study import Study, accuracies_of, studies_of
 from .words import accuracy_words, neat
 
