@@ -1,19 +1,21 @@
-"""Levels that rise at once, and fall when their reason has stayed away for long enough."""
+"""Levels of bodies under watch, why each is what it is, and what a report says of it."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from enum import IntEnum
-from typing import Final
+from math import degrees, inf
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ...mechanics.types import Mode
 from ...stamps import NANOSECONDS
-from ..scene import Watching
-
-Array = NDArray[np.float64]
-Numbers = NDArray[np.int64]
+from ..remedies import REMEDIES
+from ..scene import Scene, Watching
+from ..types import Status, Touchdown, Vector3
+from .standing import BodyMotion, Standing
 
 
 class Level(IntEnum):
@@ -29,16 +31,23 @@ GRAVITY: Final = (Level.OK, Level.WARN, Level.STALE, Level.ERROR)
 """From the least to the gravest: that something tips is graver than that nothing is known."""
 
 OK, WARN, STALE, ERROR = (GRAVITY.index(level) for level in (Level.OK, Level.WARN, Level.STALE, Level.ERROR))
-"""Places in that order."""
+"""Ranks in that order."""
+
+SILENT: Final = frozenset({Status.NO_SUPPORT, Status.SUPPORT_STALE, Status.BODY_STALE, Status.NO_GEOMETRY})
+"""Where nothing is known, rather than something wrong, the level is STALE; every other status is an ERROR."""
+
+OFF_ITS_FEET: Final = frozenset({BodyMotion.ROCKS, BodyMotion.LIFTS})
+
+UNKNOWN: Final = "unknown"
 
 _RAISED: Final = np.array([[WARN], [STALE], [ERROR]])
 _NEVER: Final = -(2**62)
 
 
 class Levels:
-    """Levels of several bodies, by the thresholds of each, as their places in the order of gravity.
+    """Levels of several bodies, by the thresholds of each, as their ranks in the order of gravity.
 
-    `places` are the levels; `changed` tells that one is another than when this was last set to false.
+    `changed` tells that one is another than when this was last set to false.
     """
 
     def __init__(self, watchings: Sequence[Watching]) -> None:
@@ -47,35 +56,35 @@ class Levels:
         self._hysteresis = np.array([one.hysteresis for one in watchings])
         self._hold = np.array([one.hold * NANOSECONDS for one in watchings])
         count = len(watchings)
-        self.places: Numbers = np.zeros(count, dtype=np.int64)
+        self.ranks: NDArray[np.int64] = np.zeros(count, dtype=np.int64)
         self.changed = True
-        self._justified: Numbers = np.full((len(_RAISED), count), _NEVER)
+        self._justified: NDArray[np.int64] = np.full((len(_RAISED), count), _NEVER)
 
-    def update(self, stamp: int, used: Array, other: Numbers) -> None:
-        """Take the parts (n,) of the margins that are used up at a stamp in ns, and the places that `other` reasons
-        ask for at least.
+    def update(self, stamp: int, used: NDArray[np.float64], other: NDArray[np.int64]) -> None:
+        """Take the parts (n,) of the margins that are used up at a stamp in ns, and the ranks that `other` reasons ask
+        for at least.
         """
         # What is below a threshold but within the hysteresis holds up a level, and does not raise one.
         kept = np.maximum(self._asked(used + self._hysteresis), other)
-        places = np.maximum(np.maximum(self._asked(used), other), np.minimum(kept, self.places))
-        justified = places >= _RAISED
+        ranks = np.maximum(np.maximum(self._asked(used), other), np.minimum(kept, self.ranks))
+        justified = ranks >= _RAISED
         self._justified[justified] = stamp
-        held = (self.places >= _RAISED) & (stamp - self._justified < self._hold)
-        places = np.maximum(places, (held * _RAISED).max(axis=0))
-        if (places != self.places).any():
-            self.places = places
+        held = (self.ranks >= _RAISED) & (stamp - self._justified < self._hold)
+        ranks = np.maximum(ranks, (held * _RAISED).max(axis=0))
+        if (ranks != self.ranks).any():
+            self.ranks = ranks
             self.changed = True
 
     def quiet(self, number: int, stamp: int) -> bool:
         """Whether nothing justifies the level of a body at the last stamp but that it is held."""
-        place = int(self.places[number])
-        return place > OK and bool(self._justified[place - 1, number] < stamp)
+        rank = int(self.ranks[number])
+        return rank > OK and bool(self._justified[rank - 1, number] < stamp)
 
     def release(self, number: int) -> None:
         """Do not hold that nothing was known of a body: it is known for the first time."""
-        if self.places[number] == STALE:
-            self.places = self.places.copy()
-            self.places[number] = OK
+        if self.ranks[number] == STALE:
+            self.ranks = self.ranks.copy()
+            self.ranks[number] = OK
             self._justified[:, number] = _NEVER
             self.changed = True
 
@@ -83,7 +92,206 @@ class Levels:
         """Hold nothing that was before."""
         self._justified[:] = _NEVER
 
-    def _asked(self, used: Array) -> Numbers:
-        """The places that used parts ask for."""
-        asked: Numbers = np.where(used >= self._error, ERROR, np.where(used >= self._warn, WARN, OK))
+    def _asked(self, used: NDArray[np.float64]) -> NDArray[np.int64]:
+        """The ranks that used parts ask for."""
+        asked: NDArray[np.int64] = np.where(used >= self._error, ERROR, np.where(used >= self._warn, WARN, OK))
         return asked
+
+
+class MarginsUsed(NamedTuple):
+    """The parts of the margins against tipping about an edge, by its name, and against sliding that are used up."""
+
+    tip: float
+    edge: str
+    slide: float
+
+
+class BodyOutlook(NamedTuple):
+    """What the watch finds for one body: its `status` or that of the support; the margins `used`, None where support or
+    body are not known; whether it weighs nothing (`lifted`); the times in s until it tips and slides, inf where it does
+    not, and until it `strikes`, with the mode; the `barrier` in J that it takes to topple over `barrier_edge`.
+    """
+
+    status: Status
+    used: MarginsUsed | None
+    lifted: bool
+    time_to_tip: float
+    time_to_slide: float
+    strikes: tuple[float, Mode] | None
+    barrier: float = inf
+    barrier_edge: str = ""
+
+
+class WatchedBody:
+    """A body by its name: how it stands, its status, and why its level is what it is."""
+
+    def __init__(self, name: str, scene: Scene) -> None:
+        self.name, self.scene = name, scene
+        self.watching = scene.watching or Watching()
+        self.standing = Standing(scene)
+        self.status = Status.ACCEPTED
+        if scene.source != "none":
+            self.status = Status.BODY_STALE
+        if scene.needs_geometry:
+            self.status = Status.NO_GEOMETRY
+        self.heard = False
+        """Whether its source was ever heard."""
+        self.top = MarginsUsed(0.0, "", 0.0)
+        """Where the margins were used up most since the level rose."""
+        self.why = ""
+        """What else raised it."""
+        self.raised = 0
+        """The stamp in ns of what is the later one of both."""
+        self._strike: tuple[int, Mode] | None = None
+        rolls = scene.radius > 0.0
+        self._verbs = ("rolls", "rolling", "spins", "spinning") if rolls else ("tips", "tipping", "slides", "sliding")
+
+    @property
+    def known(self) -> bool:
+        """Whether its margins mean something: a body that has fallen silent is taken to stand as it stood."""
+        return self.status in (Status.ACCEPTED, Status.BODY_STALE)
+
+    def rank(self) -> int:
+        """The rank of the level that it asks for, its margins left aside."""
+        standing, asked = self.standing, rank_of(self.status)
+        if standing.toppled or standing.slid or standing.motion in OFF_ITS_FEET:
+            return max(asked, ERROR)
+        if not standing.solid and self.status is not Status.NO_GEOMETRY:
+            return max(asked, ERROR)
+        return asked
+
+    def struck(self, stamp: int, touchdown: Touchdown | None) -> bool:
+        """Take the touchdown that a sample announces, or that it announces none; whether the last one has happened.
+
+        What a body that stands announces is noise of its twist.
+        """
+        happened = self._strike is not None and self._strike[0] <= stamp
+        self._strike = None
+        if touchdown is not None and touchdown.lead_time > 0.0 and self.standing.motion in OFF_ITS_FEET:
+            self._strike = stamp + round(touchdown.lead_time * NANOSECONDS), touchdown.mode
+        return happened
+
+    def strikes(self, stamp: int) -> tuple[float, Mode] | None:
+        """The time in s until the touchdown ahead, and its mode."""
+        if self._strike is None or self._strike[0] < stamp:
+            return None
+        return (self._strike[0] - stamp) / NANOSECONDS, self._strike[1]
+
+    def set_points(self, points: tuple[Vector3, ...]) -> bool:
+        """Take its contact points; it stands anew on them if they are others."""
+        if points == self.scene.points and self.status is not Status.NO_GEOMETRY:
+            return False
+        self.scene = self.scene._replace(points=points)
+        self.standing = Standing(self.scene)
+        if self.status is Status.NO_GEOMETRY:
+            self.status = Status.BODY_STALE if self.scene.source != "none" else Status.ACCEPTED
+        return True
+
+    def begin_anew(self) -> None:
+        """Wait for no stamp any more, but for its source to be heard."""
+        self._strike = None
+        self.heard = False
+        if self.status is Status.ACCEPTED and self.scene.source != "none":
+            self.status = Status.BODY_STALE
+
+    def reasons(self, outlook: BodyOutlook) -> list[str]:
+        """What raises the level besides the margins, the gravest first."""
+        found, standing, used = [], self.standing, outlook.used
+        if outlook.status is not Status.ACCEPTED:
+            found.append(f"{outlook.status.name}: {REMEDIES[outlook.status]}")
+        elif not standing.solid:
+            found.append("stands on a single point: look at its contact points and at how it is placed")
+        if standing.toppled:
+            found.append("has toppled: it lies on another side")
+        if standing.motion is BodyMotion.ROCKS:
+            tilt = "" if standing.tilt is None else f", tilted by {degrees(standing.tilt):.1f} degrees"
+            found.append(standing.motion.value + tilt + self._short_of_toppling(outlook))
+        elif standing.motion is BodyMotion.LIFTS:
+            found.append(standing.motion.value)
+        if standing.slid:
+            found.append(standing.slid)
+        if outlook.strikes is not None:
+            time, mode = outlook.strikes
+            found.append(f"strikes in {time:.2f} s: {mode.name}")
+        if used is not None:
+            tips, _, slides, _ = self._verbs
+            for part, time, verb in (
+                (used.tip, outlook.time_to_tip, tips),
+                (used.slide, outlook.time_to_slide, slides),
+            ):
+                if part < 1.0 and 0.0 < time < inf:
+                    found.append(f"{verb} in {time:.1f} s if the deck goes on so")
+        return found
+
+    def past_reason(self) -> str:
+        """Why its level rose, in words."""
+        words = [self.why] if self.why else []
+        if max(self.top.tip, self.top.slide) >= self.watching.warn:
+            words.append(self._margins(self.top))
+        return "; ".join(words)
+
+    def message(self, outlook: BodyOutlook, held: float | None) -> str:
+        """The message of a report; `held` is how long ago (s) the level was raised, where nothing justifies it now."""
+        words, used, motion = self.reasons(outlook), outlook.used, self.standing.motion
+        held_fast = used is None or max(used.tip, used.slide) < 1.0
+        if not words and motion is not BodyMotion.UNKNOWN and held_fast:
+            words.append(motion.value)
+        if outlook.lifted:
+            words.append("weighs nothing on the deck: it lifts off")
+        elif used is not None:
+            words.append(self._margins(used))
+        past = "" if held is None else f" ({held:.1f} s ago: {self.past_reason()})"
+        return "; ".join(words) + past
+
+    def values(self, outlook: BodyOutlook, per_hour: tuple[float, float, float]) -> dict[str, str]:
+        """The values of a report, always the same in the same order; `per_hour` are tips, slides and impacts."""
+        used, tilt, (tips, slides, impacts) = outlook.used, self.standing.tilt, per_hour
+        energy = max(0.0, outlook.barrier - self.standing.kinetic)
+        margins = dict.fromkeys(
+            ("slide_ratio", "tip_ratio", "edge", "time_to_tip", "time_to_slide", "energy_to_topple"), UNKNOWN
+        )
+        if used is not None:
+            margins = {
+                "slide_ratio": f"{used.slide:.3f}",
+                "tip_ratio": f"{used.tip:.3f}",
+                "edge": used.edge or "none",
+                "time_to_tip": f"{outlook.time_to_tip:.2f}",
+                "time_to_slide": f"{outlook.time_to_slide:.2f}",
+                "energy_to_topple": f"{energy:.3f}",
+            }
+        return {
+            **margins,
+            "tilt": UNKNOWN if tilt is None else f"{tilt:.4f}",
+            "slides_per_hour": f"{slides:.1f}",
+            "tips_per_hour": f"{tips:.1f}",
+            "impacts_per_hour": f"{impacts:.1f}" if self.scene.source == "odom" else UNKNOWN,
+            "status": outlook.status.name,
+        }
+
+    def _margins(self, used: MarginsUsed) -> str:
+        """The parts of the margins that are used up, in words, the larger one first."""
+        tips, tipping, slides, sliding = self._verbs
+        about = ""
+        if used.edge:
+            about = f" {'over' if self.scene.radius else 'about'} its {used.edge} edge"
+        found = []
+        for part, does, doing, where in ((used.tip, tips, tipping, about), (used.slide, slides, sliding, "")):
+            near = "near " if part >= self.watching.warn else ""
+            found.append((part, (does if part >= 1.0 else near + doing) + where))
+        (first, what), (second, other) = sorted(found, key=lambda one: -one[0])
+        return f"{what}: {first:.2f} of the margin used; {other}: {second:.2f}"
+
+    def _short_of_toppling(self, outlook: BodyOutlook) -> str:
+        if outlook.used is None or not outlook.barrier_edge:
+            return ""
+        energy = outlook.barrier - self.standing.kinetic
+        if energy > 0.0:
+            return f", {energy:.3g} J short of toppling over its {outlook.barrier_edge} edge"
+        return f", would topple over its {outlook.barrier_edge} edge if the deck stayed so"
+
+
+def rank_of(status: Status) -> int:
+    """The rank of the level that a status asks for."""
+    if status is Status.ACCEPTED:
+        return OK
+    return STALE if status in SILENT else ERROR

@@ -1,4 +1,4 @@
-"""How near bodies on a moving support are to sliding and to tipping, all of them at once.
+"""How near bodies on a moving support are to sliding and to tipping, all of them at once, and how often they are over.
 
 At rest on the support a body feels at its mass centre r the acceleration a = g - W' x r - W x (W x r): g what is felt
 at the frame's origin, W the support's angular velocity. It slides when the friction that holds it does not suffice,
@@ -21,9 +21,7 @@ from numpy.typing import NDArray
 
 from ..types import Felt, Vector3
 from ..vectors import add, any_across, cross, times
-from .stance import Stance
-
-Array = NDArray[np.float64]
+from .stance import StandingBody
 
 FULL: Final = 99.0
 """The ratio of a body that nothing holds: it weighs nothing on the support, or its mass centre is beyond an edge."""
@@ -38,15 +36,21 @@ _MOTIONS: Final = 12
 """Numbers of a support's motion: g, W', and the products xx, yy, zz, xy, xz, yz of W."""
 
 
-class Margins(NamedTuple):
+LEAST_WATCHED: Final = 60.0
+"""s: a shorter watch is told as one of a minute, so that a single onset is not a thousand per hour."""
+
+HOUR: Final = 3600.0
+
+
+class OnsetMargins(NamedTuple):
     """Arrays (n,) over the bodies; of several times (n, times).
 
     `slide` and `tip` are the parts that are used up of the margins, from 0 over 1 (the onset) to FULL; `edge` the one
     that is nearest to tipping, by its number; `lifted` where nothing presses the body on the support.
     """
 
-    slide: Array
-    tip: Array
+    slide: NDArray[np.float64]
+    tip: NDArray[np.float64]
     edge: NDArray[np.intp]
     lifted: NDArray[np.bool_]
 
@@ -54,11 +58,13 @@ class Margins(NamedTuple):
 class Barriers(NamedTuple):
     """Arrays (n,) over the bodies: the work in J against what they feel until they topple over the easiest `edge`."""
 
-    work: Array
+    work: NDArray[np.float64]
     edge: NDArray[np.intp]
 
 
-def motions(gravity: Array, angular: Array, turning: Array) -> Array:
+def motions(
+    gravity: NDArray[np.float64], angular: NDArray[np.float64], turning: NDArray[np.float64]
+) -> NDArray[np.float64]:
     """The numbers (12, times) of a support's motion: what is felt at its origin in m/s^2, its angular velocity in rad/s
     and its derivative, each (times, 3), along its axes.
     """
@@ -66,7 +72,7 @@ def motions(gravity: Array, angular: Array, turning: Array) -> Array:
     return np.concatenate((gravity.T, turning.T, (x * x, y * y, z * z, x * y, x * z, y * z)))
 
 
-def motion_of(felt: Felt) -> Array:
+def motion_of(felt: Felt) -> NDArray[np.float64]:
     """As `motions`, (12,) of one time."""
     (gx, gy, gz), (x, y, z), (tx, ty, tz) = felt
     return np.array((gx, gy, gz, tx, ty, tz, x * x, y * y, z * z, x * y, x * z, y * z))
@@ -75,17 +81,17 @@ def motion_of(felt: Felt) -> Array:
 class Onset:
     """The bodies of some stances; `replace` gives one another."""
 
-    def __init__(self, stances: Sequence[Stance]) -> None:
+    def __init__(self, stances: Sequence[StandingBody]) -> None:
         self._stances = list(stances)
         self._width = 0
         self._changed = set(range(len(stances)))
 
-    def replace(self, number: int, stance: Stance) -> None:
+    def replace(self, number: int, stance: StandingBody) -> None:
         """Let a body stand otherwise from now on."""
         self._stances[number] = stance
         self._changed.add(number)
 
-    def margins(self, motion: Array) -> Margins:
+    def margins(self, motion: NDArray[np.float64]) -> OnsetMargins:
         """The margins at a support's `motions` (12, times), or (12,) at one time."""
         numbers = self._numbers(motion)
         rolling = self._drum_slide(numbers) if self._drums else None
@@ -94,7 +100,7 @@ class Onset:
         np.hypot(numbers[:, 1], used[:, 0], out=used[:, 0])
         used[:, 0][used[:, 0] <= _ROUNDING * np.abs(weight[:, 0])] = 0.0
         limits = self._limits * weight
-        ratios: Array = np.full(used.shape, FULL)
+        ratios: NDArray[np.float64] = np.full(used.shape, FULL)
         np.divide(used, limits, out=ratios, where=limits > 0.0)
         if self._smooth:
             ratios[self._smooth, 0] = np.where(used[self._smooth, 0] > 0.0, FULL, 0.0)
@@ -106,10 +112,10 @@ class Onset:
         tips = ratios[:, 1:]
         edge = tips.argmax(axis=1)
         if motion.ndim == 2:
-            return Margins(ratios[:, 0], tips.max(axis=1), edge, lifted)
-        return Margins(ratios[:, 0, 0], tips.max(axis=1)[:, 0], edge[:, 0], lifted[:, 0])
+            return OnsetMargins(ratios[:, 0], tips.max(axis=1), edge, lifted)
+        return OnsetMargins(ratios[:, 0, 0], tips.max(axis=1)[:, 0], edge[:, 0], lifted[:, 0])
 
-    def barriers(self, motion: Array) -> Barriers:
+    def barriers(self, motion: NDArray[np.float64]) -> Barriers:
         """The work until the bodies topple, at a support's `motions` (12,) at one time.
 
         The mass centre must get to where it is highest against the acceleration felt, on its way about the edge: the
@@ -127,7 +133,7 @@ class Onset:
         edge = work.argmin(axis=1)
         return Barriers(np.maximum(work[np.arange(len(work)), edge], 0.0), edge)
 
-    def _numbers(self, motion: Array) -> Array:
+    def _numbers(self, motion: NDArray[np.float64]) -> NDArray[np.float64]:
         """For each body what presses it on the support, its two parts along it, and what tips it about each edge, in
         m/s^2 and m^2/s^2, as (n, 3 + edges, times).
         """
@@ -135,7 +141,7 @@ class Onset:
             self._renew()
         return (self._rows @ motion).reshape(len(self._stances), 3 + self._width, -1)
 
-    def _drum_slide(self, numbers: Array) -> Array:
+    def _drum_slide(self, numbers: NDArray[np.float64]) -> NDArray[np.float64]:
         """The part of the friction on their edges that cylinders use against spinning, and against slip along the axis.
 
         While one spins, both reactions are on the same side of their cones; where they cannot be so together it rolls
@@ -153,7 +159,7 @@ class Onset:
         whole = np.hypot(push, weight)
         held = friction * np.where(both & (one >= 0.0) & (other >= 0.0), one + other, whole)
         wanted[wanted <= _ROUNDING * whole] = 0.0
-        ratios: Array = np.where(wanted > 0.0, FULL, 0.0)
+        ratios: NDArray[np.float64] = np.where(wanted > 0.0, FULL, 0.0)
         np.divide(wanted, held, out=ratios, where=held > 0.0)
         return ratios
 
@@ -200,7 +206,7 @@ class Onset:
         self._height, self._mass = np.zeros((count, width)), np.zeros(count)
         self._absent = np.ones((count, width), dtype=bool)
 
-    def _roll(self, stances: Sequence[Stance]) -> None:
+    def _roll(self, stances: Sequence[StandingBody]) -> None:
         """Collect what counts for cylinders alone: the directions from their edges to their axes along (ahead, normal),
         whether they lie on both, and their radii.
         """
@@ -214,7 +220,43 @@ class Onset:
         self._rolling = arms, both, radius, self._limits[self._drums, 0], self._height[self._drums, :1]
 
 
-def first_times(ratios: Array, times: Array) -> Array:
+class OnsetCounts:
+    """How often each of some bodies began to tip and to slide, and struck.
+
+    Onsets are counted as motion-induced interruptions are: each time that the part of the margin which is used up
+    passes 1, a body that stands freely would begin to slide or to tip (Graham, Motion-induced interruptions as ship
+    operability criteria, Naval Engineers Journal, 1990). Here each body feels its own acceleration, and the next onset
+    counts once the part has been below 1 by a hysteresis.
+    """
+
+    def __init__(self, hysteresis: NDArray[np.float64]) -> None:
+        count = len(hysteresis)
+        self._again = 1.0 - hysteresis
+        self._over = np.zeros((2, count), dtype=bool)
+        self._onsets = np.zeros((2, count), dtype=np.int64)
+        self._impacts = [0] * count
+        self._seconds = 0.0
+
+    def update(self, tip: NDArray[np.float64], slide: NDArray[np.float64], seconds: float) -> None:
+        """Take the parts (n,) of the margins used up, so many s after those before."""
+        self._seconds += seconds
+        used = np.array((tip, slide))
+        over = used >= 1.0
+        self._onsets += over > self._over
+        self._over = over | (self._over & (used > self._again))
+
+    def struck(self, number: int) -> None:
+        """Count an impact of a body."""
+        self._impacts[number] += 1
+
+    def per_hour(self, number: int) -> tuple[float, float, float]:
+        """Tips, slides and impacts of a body per hour of the time watched."""
+        scale = HOUR / max(self._seconds, LEAST_WATCHED)
+        tips, slides = self._onsets[:, number].tolist()
+        return tips * scale, slides * scale, self._impacts[number] * scale
+
+
+def first_times(ratios: NDArray[np.float64], times: NDArray[np.float64]) -> NDArray[np.float64]:
     """When each row of ratios (n, times) first reaches 1, linear between the times; inf where it does not."""
     over = ratios >= 1.0
     number = over.argmax(axis=1)
@@ -231,7 +273,7 @@ def _unit_across(normal: Vector3) -> Vector3:
     return times(across, 1.0 / hypot(*across))
 
 
-def _felt_rows(r: Array) -> Array:
+def _felt_rows(r: NDArray[np.float64]) -> NDArray[np.float64]:
     """a = g - W' x r - W x (W x r) as rows (n, 3, 12) of the numbers of the motion, for r (n, 3)."""
     x, y, z = r.T
     rows = np.zeros((len(r), 3, _MOTIONS))
@@ -245,7 +287,7 @@ def _felt_rows(r: Array) -> Array:
     return rows
 
 
-def _spin_rows(along: Array, inertia: Array) -> Array:
+def _spin_rows(along: NDArray[np.float64], inertia: NDArray[np.float64]) -> NDArray[np.float64]:
     """e . (I W' + W x I W) as rows (n, edges, 12), for directions e (n, edges, 3) and tensors I (n, 3, 3)."""
     rows = np.zeros((*along.shape[:2], _MOTIONS))
     rows[:, :, 3:6] = along @ inertia

@@ -25,7 +25,7 @@ class Edge(NamedTuple):
     name: str
 
 
-class Stance(NamedTuple):
+class StandingBody(NamedTuple):
     """A body on its support, in the support's frame.
 
     `center` of mass in m, `inertia` about it in kg m^2 along the support's axes, `normal` of the support, the `edges`
@@ -41,7 +41,7 @@ class Stance(NamedTuple):
     radius: float = 0.0
 
 
-class Pose(NamedTuple):
+class BodyPose(NamedTuple):
     """Where a body frame is in the support's frame: its origin in m, its axes."""
 
     position: Vector3
@@ -56,9 +56,9 @@ class Pose(NamedTuple):
         return to_body(self.axes, add(point, self.position, -1.0))
 
 
-def placed(scene: Scene) -> Pose:
+def placed(scene: Scene) -> BodyPose:
     """The pose in which the scene places the body."""
-    return Pose(scene.place, axes_of(turned((0.0, 0.0, 0.0, 1.0), times(scene.normal, scene.yaw))))
+    return BodyPose(scene.place, axes_of(turned((0.0, 0.0, 0.0, 1.0), times(scene.normal, scene.yaw))))
 
 
 def outline(points: list[Vector3], up: Vector3) -> list[Vector3]:

@@ -10,7 +10,7 @@ from ..planar import edge_of
 from ..scene import Scene
 from ..types import Quaternion, Sample, Vector3
 from ..vectors import add, axes_of, cross, dot, times, to_body, to_world, total
-from .stance import Edge, Pose, Stance, edges_of, inertia_in_support, outline, placed, side
+from .stance import BodyPose, Edge, StandingBody, edges_of, inertia_in_support, outline, placed, side
 
 COARSE: Final = 5e-4
 """Part of a body's size below which no gap counts, however fine the contact tolerance: neither cargo nor decks are so
@@ -32,7 +32,7 @@ SETTLES: Final = 1e-10
 """1/ns, in 10 s: poses drift slowly, and a body stands where it was seen on the mean of about so long."""
 
 
-class Motion(Enum):
+class BodyMotion(Enum):
     """What a body does, in words."""
 
     UNKNOWN = "is not measured"
@@ -52,8 +52,8 @@ class Standing:
 
     def __init__(self, scene: Scene) -> None:
         self._scene = scene
-        self.stance: Stance
-        self.motion = Motion.UNKNOWN
+        self.stance: StandingBody
+        self.motion = BodyMotion.UNKNOWN
         self.tilt: float | None = None
         self.toppled = False
         self.slid = ""
@@ -77,7 +77,7 @@ class Standing:
 
     def update(self, sample: Sample) -> bool:
         """Take a sample relative to the support; whether the stance has changed."""
-        pose = Pose(sample.position, axes_of(sample.orientation))
+        pose = BodyPose(sample.position, axes_of(sample.orientation))
         feet = [pose.place(foot) for foot in self._feet]
         gaps = self._gaps(pose, feet)
         lowest, highest = min(gaps), max(gaps)
@@ -90,16 +90,16 @@ class Standing:
         self.tilt = self._tilt_of(pose)
         self.slid = ""
         self.kinetic = 0.0
-        motion = Motion.STANDS
+        motion = BodyMotion.STANDS
         if highest - lowest > self._clear:
-            motion = Motion.ROCKS
+            motion = BodyMotion.ROCKS
         if lowest > self._clear:
-            motion = Motion.LIFTS
-        self._off = 0 if motion is Motion.STANDS else self._off + 1
-        self.motion = motion if self._off >= CONFIRMED else Motion.STANDS
-        if self.motion is Motion.ROCKS:
+            motion = BodyMotion.LIFTS
+        self._off = 0 if motion is BodyMotion.STANDS else self._off + 1
+        self.motion = motion if self._off >= CONFIRMED else BodyMotion.STANDS
+        if self.motion is BodyMotion.ROCKS:
             self.kinetic = self._kinetic_energy(sample)
-        if self.motion is not Motion.STANDS:
+        if self.motion is not BodyMotion.STANDS:
             self._anchor = []
         elif self._off == 0:
             self._slide(sample.stamp, pose, feet)
@@ -112,14 +112,14 @@ class Standing:
         # It turns about the foot that is lowest then.
         heights = [dot(self._scene.normal, to_world(axes, foot)) for foot in self._feet]
         foot = self._feet[heights.index(min(heights))] if heights else (0.0, 0.0, 0.0)
-        pose = Pose(add(nominal.place(foot), to_world(axes, foot), -1.0), axes)
+        pose = BodyPose(add(nominal.place(foot), to_world(axes, foot), -1.0), axes)
         self.tilt = self._tilt_of(pose)
         gaps = [height - min(heights) for height in heights]
         leans = self.tilt > LEANS and (not gaps or max(gaps) > self._clear)
-        self.motion = Motion.ROCKS if leans else Motion.STANDS
+        self.motion = BodyMotion.ROCKS if leans else BodyMotion.STANDS
         return self._draw(pose, [pose.place(foot) for foot in self._feet], gaps)
 
-    def _rest(self, pose: Pose) -> None:
+    def _rest(self, pose: BodyPose) -> None:
         """Let it stand on what touches the support in a pose."""
         scene = self._scene
         self._up = to_body(pose.axes, scene.normal)
@@ -131,7 +131,7 @@ class Standing:
         self._own = self._feet
         self._draw(pose, [pose.place(foot) for foot in self._feet], [0.0] * len(self._feet))
 
-    def _lies_otherwise(self, pose: Pose) -> bool:
+    def _lies_otherwise(self, pose: BodyPose) -> bool:
         """Whether it stands on another side than before, which is then the one it stands on."""
         scene = self._scene
         up = to_body(pose.axes, scene.normal)
@@ -150,14 +150,14 @@ class Standing:
         self.toppled = not set(feet) <= set(self._own)
         return True
 
-    def _standing_points(self, pose: Pose) -> list[Vector3]:
+    def _standing_points(self, pose: BodyPose) -> list[Vector3]:
         """The points (body frame) that are as low as the lowest one."""
         up, points = to_body(pose.axes, self._scene.normal), self._scene.points
         heights = [dot(up, point) for point in points]
         highest = min(heights) + self._touch
         return [point for point, height in zip(points, heights, strict=True) if height <= highest]
 
-    def _gaps(self, pose: Pose, feet: list[Vector3]) -> list[float]:
+    def _gaps(self, pose: BodyPose, feet: list[Vector3]) -> list[float]:
         """How far the feet are from the support, or a cylinder from its edges, in m."""
         scene = self._scene
         if not scene.radius:
@@ -169,7 +169,7 @@ class Standing:
             gaps.append(hypot(*add(arm, self._axis, -dot(arm, self._axis))) - scene.radius)
         return gaps
 
-    def _tilt_of(self, pose: Pose) -> float:
+    def _tilt_of(self, pose: BodyPose) -> float:
         cosine = dot(self._up, to_body(pose.axes, self._scene.normal))
         return acos(max(-1.0, min(1.0, cosine)))
 
@@ -179,7 +179,7 @@ class Standing:
         momentum = [dot(row, spin) for row in scene.inertia]
         return 0.5 * (scene.mass * dot(velocity, velocity) + total(p * w for p, w in zip(momentum, spin, strict=True)))
 
-    def _slide(self, stamp: int, pose: Pose, feet: list[Vector3]) -> None:
+    def _slide(self, stamp: int, pose: BodyPose, feet: list[Vector3]) -> None:
         """Compare where the feet are with where they stood; a cylinder's are where it then lay on its edges."""
         scene, since = self._scene, stamp - self._last
         self._last = stamp
@@ -211,19 +211,19 @@ class Standing:
         self.slid = f"{verb}, by {distance:.3f} m"
         self._settle(pose, feet)
 
-    def _settle(self, pose: Pose, feet: list[Vector3]) -> None:
+    def _settle(self, pose: BodyPose, feet: list[Vector3]) -> None:
         self._anchor, self._moved, self._seen_standing = feet, 0, 1
         if self._scene.radius:
             self._anchor = [self._at_center(edge, pose) for edge in self._scene.edges]
             self._feet = [pose.body(foot) for foot in self._anchor]
 
-    def _draw(self, pose: Pose, feet: list[Vector3], gaps: list[float]) -> bool:
+    def _draw(self, pose: BodyPose, feet: list[Vector3], gaps: list[float]) -> bool:
         """Make the stance anew if the body has moved since the last one; whether it did."""
         scene, normal = self._scene, self._scene.normal
         center = pose.place(scene.center_of_mass)
         if scene.radius:
             feet = [center]
-        rocks = self.motion is Motion.ROCKS
+        rocks = self.motion is BodyMotion.ROCKS
         if self._drawn and rocks is self._drawn_rocking and _within(feet, self._drawn, self._touch):
             return False
         self._drawn, self._drawn_rocking = feet, rocks
@@ -238,15 +238,22 @@ class Standing:
             if found and rocks:
                 found = [min(found, key=lambda pair: dot(normal, pair[0].point) + dot(normal, pair[1]))]
             edges = [edge for edge, _ in found]
-        inertia = inertia_in_support(scene.inertia, pose.axes)
-        self.stance = Stance(scene.mass, scene.friction, normal, center, inertia, tuple(edges), scene.radius)
+        self.stance = StandingBody(
+            mass=scene.mass,
+            friction=scene.friction,
+            normal=normal,
+            center=center,
+            inertia=inertia_in_support(scene.inertia, pose.axes),
+            edges=tuple(edges),
+            radius=scene.radius,
+        )
         return True
 
-    def _at_center(self, edge: Vector3, pose: Pose) -> Vector3:
+    def _at_center(self, edge: Vector3, pose: BodyPose) -> Vector3:
         """The point of an edge of the support that is nearest to a cylinder's mass centre."""
         return add(edge, self._axis, dot(self._axis, add(pose.place(self._scene.center_of_mass), edge, -1.0)))
 
-    def _on_edges(self, pose: Pose) -> Pose:
+    def _on_edges(self, pose: BodyPose) -> BodyPose:
         """A cylinder put on its edges."""
         scene = self._scene
         first, second = scene.edges[:2]
@@ -259,7 +266,7 @@ class Standing:
         middle = times(add(first, second), 0.5)
         aside = dot(self._axis, add(pose.place(scene.center_of_mass), middle, -1.0))
         center = add(add(middle, up, high), self._axis, aside)
-        return Pose(add(center, to_world(pose.axes, scene.center_of_mass), -1.0), pose.axes)
+        return BodyPose(add(center, to_world(pose.axes, scene.center_of_mass), -1.0), pose.axes)
 
 
 def _within(points: list[Vector3], others: list[Vector3], distance: float) -> bool:

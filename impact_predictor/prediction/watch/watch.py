@@ -11,15 +11,13 @@ from math import inf
 from typing import Final, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...stamps import NANOSECONDS
 from ..scene import MovingDeck, Scene
 from ..types import Moment, Quaternion, Sample, Status, Touchdown, Vector3
-from .counts import OnsetCounts
-from .levels import GRAVITY, OK, WARN, Array, Level, Levels, Numbers
-from .onset import Onset, first_times, motion_of, motions
-from .unit import Unit, place_of
-from .words import Known, Used, message, reasons, values
+from .levels import GRAVITY, OK, WARN, BodyOutlook, Level, Levels, MarginsUsed, WatchedBody, rank_of
+from .onset import Onset, OnsetCounts, OnsetMargins, first_times, motion_of, motions
 
 __all__ = ["Level", "Report", "Watch"]
 
@@ -33,9 +31,7 @@ FORECAST_EVERY: Final = 250_000_000
 """ns from one look ahead to the next."""
 
 FORECAST_TIMES: Final = 50
-"""How many times ahead are looked at: 0.1 s apart in the usual horizon of 5 s, in which no deck rolls to and fro."""
-
-Forecast = Callable[[Array], tuple[Array, ...]]
+"""How many times ahead are looked at: 0.1 s apart in a horizon of 5 s, in which no deck rolls to and fro."""
 
 
 class Report(NamedTuple):
@@ -54,29 +50,36 @@ class Watch:
     Time is that of the support's stamps.
     """
 
-    def __init__(self, scenes: Mapping[str, Scene], forecast: Forecast) -> None:
-        self._units = [Unit(name, scene) for name, scene in scenes.items()]
+    def __init__(
+        self,
+        scenes: Mapping[str, Scene],
+        forecast: Callable[[NDArray[np.float64]], tuple[NDArray[np.float64], ...]],
+    ) -> None:
+        self._bodies = bodies = [WatchedBody(name, scene) for name, scene in scenes.items()]
         self._numbers = {name: number for number, name in enumerate(scenes)}
         self._forecast = forecast
-        units = self._units
-        self._onset = Onset([unit.standing.stance for unit in units])
-        self._levels = Levels([unit.watching for unit in units])
-        self._counts = OnsetCounts(np.array([unit.watching.hysteresis for unit in units]))
-        self._timeout = int((units[0].scene.deck or MovingDeck()).timeout * NANOSECONDS)
-        self._warn = np.array([unit.watching.warn for unit in units])
-        self._horizons = np.array([unit.watching.horizon for unit in units])
+        count, watchings = len(bodies), [body.watching for body in bodies]
+        self._onset = Onset([body.standing.stance for body in bodies])
+        self._levels = Levels(watchings)
+        self._counts = OnsetCounts(np.array([one.hysteresis for one in watchings]))
+        self._timeout = int((bodies[0].scene.deck or MovingDeck()).timeout * NANOSECONDS)
+        self._warn = np.array([one.warn for one in watchings])
+        self._horizons = np.array([one.horizon for one in watchings])
         self._times = np.linspace(0.0, float(self._horizons.max()), FORECAST_TIMES + 1)
-        self._measured = np.array([unit.scene.source != "none" for unit in units])
-        self._heard: Numbers = np.zeros(len(units), dtype=np.int64)
-        self._others: Numbers = np.array([unit.place() for unit in units])
+        self._measured = np.array([body.scene.source != "none" for body in bodies])
+        self._heard = np.zeros(count, dtype=np.int64)
+        self._others = np.array([body.rank() for body in bodies])
         self._support = Status.NO_SUPPORT
-        self._motion: Array = np.zeros(12)
-        self._tip, self._slide, self._used, self._top = (np.zeros(len(units)) for _ in range(4))
-        self._edge = np.zeros(len(units), dtype=np.intp)
-        self._lifted = np.zeros(len(units), dtype=bool)
-        self._time_to_tip: Array = np.full(len(units), inf)
-        self._time_to_slide: Array = np.full(len(units), inf)
-        self._due: Numbers = np.zeros(len(units), dtype=np.int64)
+        self._motion = np.zeros(12)
+        self._margins = OnsetMargins(
+            slide=np.zeros(count),
+            tip=np.zeros(count),
+            edge=np.zeros(count, dtype=np.intp),
+            lifted=np.zeros(count, dtype=bool),
+        )
+        self._used, self._top = np.zeros(count), np.zeros(count)
+        self._time_to_tip, self._time_to_slide = np.full(count, inf), np.full(count, inf)
+        self._due = np.zeros(count, dtype=np.int64)
         self._looked: int | None = None
         self._judged: int | None = None
         self._now: int | None = None
@@ -91,16 +94,18 @@ class Watch:
         known, self._support = self._support is Status.ACCEPTED, Status.ACCEPTED
         if not self._begun:
             self._begun = True
-            for number in range(len(self._units)):
+            for number in range(len(self._bodies)):
                 self._levels.release(number)
         since = moment.stamp - judged if judged is not None and known else None
         if since is not None and 0 <= since < JUDGED_EVERY:
             return
         self._judged = moment.stamp
         self._motion = motion_of(moment.felt)
-        self._slide, self._tip, self._edge, self._lifted = self._onset.margins(self._motion)
-        self._used = np.maximum(self._slide, self._tip)
-        self._counts.update(self._tip, self._slide, since / NANOSECONDS if since and since <= self._timeout else 0.0)
+        self._margins = margins = self._onset.margins(self._motion)
+        self._used = np.maximum(margins.slide, margins.tip)
+        self._counts.update(
+            margins.tip, margins.slide, since / NANOSECONDS if since and since <= self._timeout else 0.0
+        )
         if self._looked is None or not 0 <= moment.stamp - self._looked < FORECAST_EVERY:
             self._look_ahead(moment.stamp)
         self._hush(moment.stamp)
@@ -109,31 +114,31 @@ class Watch:
     def update_body(self, body: str, relative: Sample, touchdown: Touchdown | None) -> None:
         """Take a body's pose and twist relative to the support, and the touchdown that they announce."""
         number = self._numbers[body]
-        unit = self._units[number]
+        watched = self._bodies[number]
         self._hear(number, relative.stamp)
-        stance = unit.standing.update(relative)
-        if unit.struck(relative.stamp, touchdown):
+        stance = watched.standing.update(relative)
+        if watched.struck(relative.stamp, touchdown):
             self._counts.struck(number)
         self._changed(number, stance)
 
     def update_tilt(self, body: str, stamp: int, orientation: Quaternion) -> None:
         """Take a body's orientation relative to the support."""
         number = self._numbers[body]
-        unit = self._units[number]
+        watched = self._bodies[number]
         self._hear(number, stamp)
-        self._changed(number, unit.standing.lean(orientation))
+        self._changed(number, watched.standing.lean(orientation))
 
     def set_points(self, body: str, points: tuple[Vector3, ...]) -> None:
         """Take the contact points of a body, in its frame."""
         number = self._numbers[body]
-        if self._units[number].set_points(points):
+        if self._bodies[number].set_points(points):
             self._changed(number, True)
 
     def support_lost(self, status: Status, stamp: int) -> None:
         """Know that nothing is known of the support at a stamp in ns, and why."""
         self._go_on(stamp)
         self._support = status
-        self._used = np.zeros(len(self._units))
+        self._used = np.zeros(len(self._bodies))
         self._time_to_tip[:] = self._time_to_slide[:] = inf
         self._judged = self._looked = None
         self._judge()
@@ -141,7 +146,7 @@ class Watch:
     def body_lost(self, body: str, status: Status, stamp: int) -> None:
         """Know that nothing is known of a body at a stamp in ns, and why."""
         number = self._numbers[body]
-        self._units[number].status = status
+        self._bodies[number].status = status
         self._changed(number, False)
 
     def reports(self) -> tuple[Report, ...]:
@@ -153,7 +158,7 @@ class Watch:
         self._told = now
         work, edges = self._onset.barriers(self._motion)
         return tuple(
-            self._report(number, now, float(work[number]), int(edges[number])) for number in range(len(self._units))
+            self._report(number, now, float(work[number]), int(edges[number])) for number in range(len(self._bodies))
         )
 
     def _go_on(self, stamp: int) -> None:
@@ -162,9 +167,9 @@ class Watch:
             self._levels.begin_anew()
             self._judged = self._looked = self._told = None
             self._begun = False
-            for number, unit in enumerate(self._units):
-                unit.begin_anew()
-                self._others[number] = unit.place()
+            for number, watched in enumerate(self._bodies):
+                watched.begin_anew()
+                self._others[number] = watched.rank()
             self._heard[:] = self._now = stamp
         self._now = stamp if self._now is None else max(stamp, self._now)
 
@@ -180,10 +185,10 @@ class Watch:
     def _hear(self, number: int, stamp: int) -> None:
         """A body's source is heard, at the time that the support's stamps tell."""
         self._heard[number] = stamp if self._now is None else self._now
-        unit = self._units[number]
-        unit.status = Status.ACCEPTED
-        if not unit.heard:
-            unit.heard = True
+        watched = self._bodies[number]
+        watched.status = Status.ACCEPTED
+        if not watched.heard:
+            watched.heard = True
             self._levels.release(number)
 
     def _hush(self, stamp: int) -> None:
@@ -191,87 +196,71 @@ class Watch:
         quiet = self._measured & (stamp - self._heard > self._timeout)
         if quiet.any():
             for number in np.flatnonzero(quiet).tolist():
-                unit = self._units[number]
-                if unit.status is Status.ACCEPTED:
-                    unit.status = Status.BODY_STALE
-                    self._others[number] = unit.place()
+                watched = self._bodies[number]
+                if watched.status is Status.ACCEPTED:
+                    watched.status = Status.BODY_STALE
+                    self._others[number] = watched.rank()
 
     def _changed(self, number: int, stance: bool) -> None:
         """Something of a body is known anew; its level rises at once."""
-        unit = self._units[number]
+        watched = self._bodies[number]
         if stance:
-            self._onset.replace(number, unit.standing.stance)
-        self._others[number] = place = unit.place()
+            self._onset.replace(number, watched.standing.stance)
+        self._others[number] = rank = watched.rank()
         if self._now is None:
             return
-        if place > self._levels.places[number]:
+        if rank > self._levels.ranks[number]:
             self._judge()
-        elif unit.standing.slid:
+        elif watched.standing.slid:
             self._remember(number)
 
     def _judge(self) -> None:
         assert self._now is not None
         self._judged_at = self._now
-        others = self._others
-        if self._support is not Status.ACCEPTED:
-            others = np.maximum(others, place_of(self._support))
-        else:
-            others = np.maximum(others, self._due)
-        before = self._levels.places
+        known = self._support is Status.ACCEPTED
+        others = np.maximum(self._others, self._due if known else rank_of(self._support))
+        before = self._levels.ranks
         self._levels.update(self._now, self._used, others)
-        places = self._levels.places
-        if places is not before:
-            anew = (places > before) | (places == OK)
-            self._top[anew] = 0.0
-            for number in np.flatnonzero(anew).tolist():
-                self._units[number].top = Used(0.0, "", 0.0)
-                self._remember(number)
+        ranks = self._levels.ranks
+        anew = (ranks > before) | ((ranks == OK) & (ranks != before))
+        self._top[anew] = 0.0
+        for number in np.flatnonzero(anew).tolist():
+            self._bodies[number].top = MarginsUsed(0.0, "", 0.0)
+            self._remember(number)
         more = (self._used > self._top) & (self._used >= self._warn)
         if more.any():
             self._top[more] = self._used[more]
             for number in np.flatnonzero(more).tolist():
-                self._units[number].top, self._units[number].raised = self._used_of(number), self._now
+                self._bodies[number].top, self._bodies[number].raised = self._used_of(number), self._now
 
     def _remember(self, number: int) -> None:
         """Keep what raises the level of a body now, for when it is only held."""
         assert self._now is not None
-        unit = self._units[number]
-        unit.why, unit.raised = "; ".join(reasons(self._known(number, inf, -1))), self._now
+        body = self._bodies[number]
+        body.why, body.raised = "; ".join(body.reasons(self._outlook(number, inf, -1))), self._now
 
-    def _used_of(self, number: int) -> Used:
-        edges = self._units[number].standing.stance.edges
-        edge = edges[self._edge[number]].name if self._edge[number] < len(edges) else ""
-        return Used(float(self._tip[number]), edge, float(self._slide[number]))
+    def _used_of(self, number: int) -> MarginsUsed:
+        margins, edges = self._margins, self._bodies[number].standing.stance.edges
+        edge = edges[margins.edge[number]].name if margins.edge[number] < len(edges) else ""
+        return MarginsUsed(float(margins.tip[number]), edge, float(margins.slide[number]))
 
-    def _known(self, number: int, work: float, edge: int) -> Known:
-        """What is known of a body now; `work` in J topples it over its edge of that number."""
-        unit = self._units[number]
-        standing, edges = unit.standing, unit.standing.stance.edges
-        status = unit.status
-        if status in (Status.ACCEPTED, Status.BODY_STALE) and self._support is not Status.ACCEPTED:
-            status = self._support  # a body that is refused for the support's sake is not silent
-        felt = self._support is Status.ACCEPTED and unit.known and self._judged is not None
-        tips, slides, impacts = self._counts.per_hour(number)
+    def _outlook(self, number: int, work: float, edge: int) -> BodyOutlook:
+        """What is found for a body now; `work` in J topples it over its edge of that number."""
         assert self._now is not None
-        return Known(
+        body = self._bodies[number]
+        edges, status = body.standing.stance.edges, body.status
+        if body.known and self._support is not Status.ACCEPTED:
+            status = self._support  # a body that is refused for the support's sake is not silent
+        felt = self._support is Status.ACCEPTED and body.known and self._judged is not None
+        return BodyOutlook(
             status=status,
-            rolls=bool(unit.scene.radius),
-            solid=standing.solid,
-            motion=standing.motion,
-            tilt=standing.tilt,
-            toppled=standing.toppled,
-            slid=standing.slid,
-            kinetic=standing.kinetic,
-            strike=unit.strike(self._now),
             used=self._used_of(number) if felt else None,
-            lifted=felt and bool(self._lifted[number]),
+            lifted=felt and bool(self._margins.lifted[number]),
             time_to_tip=self._until(self._time_to_tip[number]),
             time_to_slide=self._until(self._time_to_slide[number]),
+            strikes=body.strikes(self._now),
             barrier=work,
             barrier_edge=edges[edge].name if 0 <= edge < len(edges) else "",
-            slides_per_hour=slides,
-            tips_per_hour=tips,
-            impacts_per_hour=impacts if unit.scene.source == "odom" else None,
         )
 
     def _until(self, time: float) -> float:
@@ -281,12 +270,16 @@ class Watch:
         return max(0.0, float(time) - (self._now - self._looked) / NANOSECONDS)
 
     def _report(self, number: int, now: int, work: float, edge: int) -> Report:
-        unit = self._units[number]
-        known = self._known(number, work, edge)
+        body, outlook = self._bodies[number], self._outlook(number, work, edge)
         held = None
         if self._levels.quiet(number, self._judged_at):
-            held = (now - unit.raised) / NANOSECONDS, unit.reason()
-        elif words := reasons(known):
-            unit.why, unit.raised = "; ".join(words), now
-        level = GRAVITY[self._levels.places[number]]
-        return Report(unit.name, now, level, message(known, unit.watching, held), values(known))
+            held = (now - body.raised) / NANOSECONDS
+        elif words := body.reasons(outlook):
+            body.why, body.raised = "; ".join(words), now
+        return Report(
+            body=body.name,
+            stamp=now,
+            level=GRAVITY[self._levels.ranks[number]],
+            message=body.message(outlook, held),
+            values=body.values(outlook, self._counts.per_hour(number)),
+        )

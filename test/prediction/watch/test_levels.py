@@ -19,7 +19,7 @@ def run(used: object, watching: Watching = WATCHING, other: int = OK) -> list[in
     levels, found = Levels([watching]), []
     for k, part in enumerate(np.asarray(used, dtype=float).tolist()):
         levels.update(round(k * STEP * 1e9), np.array([part]), np.array([other]))
-        found.append(int(levels.places[0]))
+        found.append(int(levels.ranks[0]))
     return found
 
 
@@ -54,7 +54,7 @@ def test_that_nothing_is_known_is_graver_than_a_warning_and_less_than_an_error()
     levels = Levels([WATCHING])
     for stamp, used, other, place in ((0, 0.8, OK, WARN), (1, 0.0, STALE, STALE), (2, 1.2, STALE, ERROR)):
         levels.update(stamp, np.array([used]), np.array([other]))
-        assert levels.places[0] == place
+        assert levels.ranks[0] == place
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -82,4 +82,4 @@ def test_small_noise_within_the_hysteresis_changes_a_level_once(seed: int) -> No
 def test_each_body_has_its_own_thresholds() -> None:
     levels = Levels([WATCHING, Watching(warn=0.3, error=0.4), Watching(warn=2.0, error=3.0)])
     levels.update(0, np.array([0.5, 0.5, 1.5]), np.zeros(3, dtype=np.int64))
-    assert levels.places.tolist() == [OK, ERROR, OK]
+    assert levels.ranks.tolist() == [OK, ERROR, OK]

@@ -1,4 +1,4 @@
-"""Margins against sliding and tipping: against the planar formulas, statics in space, and the simulated motion."""
+"""OnsetMargins against sliding and tipping: against the planar formulas, statics in space, and the simulated motion."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from scipy.spatial.transform import Rotation
 from impact_predictor import TwoPointBody, cylinder, plate
 from impact_predictor.mechanics.rocking import rock, standing
 from impact_predictor.mechanics.support import MovingSupport, Wave, harmonic_support
-from impact_predictor.prediction.watch.onset import FULL, Margins, Onset, first_times, motions
-from impact_predictor.prediction.watch.stance import Edge, Stance, edges_of, outline
+from impact_predictor.prediction.watch.onset import FULL, Onset, OnsetMargins, first_times, motions
+from impact_predictor.prediction.watch.stance import Edge, StandingBody, edges_of, outline
 
 ROUNDING = 1e-11
 """Some thousands of roundings of numbers of size one: a ratio divides by levers down to a tenth."""
@@ -28,18 +28,18 @@ def motion(gravity: Any, angular: Any = (0.0, 0.0, 0.0), turning: Any = (0.0, 0.
     return motions(*(np.array([part], dtype=float) for part in (gravity, angular, turning)))[:, 0]
 
 
-def on_points(points: Any, center: Any, mass: float, inertia: Any, friction: float, normal: Any = UP) -> Stance:
+def on_points(points: Any, center: Any, mass: float, inertia: Any, friction: float, normal: Any = UP) -> StandingBody:
     """A body on points of the support."""
     corners = outline([tuple(map(float, point)) for point in points], normal)
     edges = tuple(edge for edge, _ in edges_of(corners, normal))
-    return Stance(mass, friction, normal, tuple(map(float, center)), tuple(map(tuple, inertia)), edges)
+    return StandingBody(mass, friction, normal, tuple(map(float, center)), tuple(map(tuple, inertia)), edges)
 
 
-def of_one(stance: Stance, *felt: Any) -> Margins:
+def of_one(stance: StandingBody, *felt: Any) -> OnsetMargins:
     return Onset([stance]).margins(motion(*felt))
 
 
-def planar(body: TwoPointBody, x: float = 0.0) -> Stance:
+def planar(body: TwoPointBody, x: float = 0.0) -> StandingBody:
     """A body of the plane (y forward, z up) with contact 0 at x, by its two points alone."""
     assert body.old is not None
     feet = [(0.0, x, 0.0), (0.0, x + body.new.x - body.old.x, 0.0)]
@@ -47,7 +47,7 @@ def planar(body: TwoPointBody, x: float = 0.0) -> Stance:
     return on_points(feet, (0.0, x - body.old.x, -body.old.y), body.mass, tensor, body.old.friction)
 
 
-def on_edges(body: TwoPointBody) -> Stance:
+def on_edges(body: TwoPointBody) -> StandingBody:
     """A cylinder in the same plane over two edges of the support, the first one at the origin."""
     assert body.old is not None
     line = [(0.0, 0.0, 0.0), (0.0, body.new.x - body.old.x, body.new.y - body.old.y)]
@@ -55,7 +55,7 @@ def on_edges(body: TwoPointBody) -> Stance:
     center = (0.0, -body.old.x, -body.old.y)
     inertia = tuple(map(tuple, np.diag([body.inertia, 1.0, 1.0]).tolist()))
     radius = math.hypot(body.old.x, body.old.y)
-    return Stance(body.mass, body.old.friction, UP, center, inertia, edges, radius)
+    return StandingBody(body.mass, body.old.friction, UP, center, inertia, edges, radius)
 
 
 def test_in_a_plane_the_margins_are_those_of_the_planar_formulas() -> None:
@@ -111,11 +111,11 @@ def test_in_space_it_tips_where_no_pushing_reactions_can_hold_it() -> None:
     assert RANDOM_STANCES // 10 < tipping < RANDOM_STANCES - RANDOM_STANCES // 10
 
 
-def first_onset(stance: Stance, support: MovingSupport, end: float) -> tuple[float, Margins]:
+def first_onset(stance: StandingBody, support: MovingSupport, end: float) -> tuple[float, OnsetMargins]:
     """The first time at which a ratio reaches 1 over a planar support, and the margins then."""
     onset = Onset([stance])
 
-    def margins(time: float) -> Margins:
+    def margins(time: float) -> OnsetMargins:
         x, y, rate, spin_up = support.felt_exactly(time)
         return onset.margins(motion((0.0, x, y), (rate, 0.0, 0.0), (spin_up, 0.0, 0.0)))
 
@@ -151,7 +151,7 @@ ROLL = harmonic_support(angle=(Wave(0.5, 1.2),), y=(Wave(0.5, 1.7),))
     ],
 )
 def test_a_simulated_body_leaves_its_rest_when_the_ratio_reaches_one(
-    body: TwoPointBody, stance_of: Callable[[TwoPointBody], Stance], support: MovingSupport, kind: str
+    body: TwoPointBody, stance_of: Callable[[TwoPointBody], StandingBody], support: MovingSupport, kind: str
 ) -> None:
     """The simulation is told nothing of margins: it looks for the reactions that hold the body."""
     run = rock(body, standing(body, 0.0), support, duration=10.0)

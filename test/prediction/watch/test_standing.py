@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.prediction.types import Sample, Vector3
-from impact_predictor.prediction.watch.standing import CONFIRMED, Motion, Standing
+from impact_predictor.prediction.watch.standing import CONFIRMED, BodyMotion, Standing
 
 CORNERS = tuple((x, y, z) for x in (-0.4, 0.4) for y in (-0.3, 0.3) for z in (-0.5, 0.5))
 INERTIA = ((5.0, 0.0, 0.0), (0.0, 6.0, 0.0), (0.0, 0.0, 3.0))
@@ -48,7 +48,7 @@ def tipped(angle: float, pivot: Vector3 = (0.0, 0.3, -0.5), axis: str = "x", sig
 
 def test_a_body_stands_where_it_is_placed_before_anything_is_measured() -> None:
     standing = Standing(CRATE)
-    assert standing.motion is Motion.UNKNOWN
+    assert standing.motion is BodyMotion.UNKNOWN
     assert standing.tilt is None
     assert standing.solid
     assert len(standing.stance.edges) == 4
@@ -60,7 +60,7 @@ def test_a_body_stands_where_it_is_placed_before_anything_is_measured() -> None:
 def test_a_measured_body_at_rest_stands_with_all_its_edges() -> None:
     standing = Standing(CRATE._replace(yaw=0.0))
     assert not standing.update(sample((2.001, 1.0, 0.501)))  # as near as the contact tolerance: nothing is new
-    assert standing.motion is Motion.STANDS
+    assert standing.motion is BodyMotion.STANDS
     assert standing.tilt == pytest.approx(0.0)
     assert standing.update(sample((2.1, 1.0, 0.5)))
     assert standing.stance.center == (2.1, 1.0, 0.5)
@@ -72,7 +72,7 @@ def test_a_body_that_rocks_has_the_one_edge_it_turns_about(angle: float) -> None
     standing = Standing(CRATE._replace(yaw=0.0))
     standing.update(sample((2.0, 1.0, 0.5)))
     assert shown(standing, tipped(angle))
-    assert standing.motion is Motion.ROCKS
+    assert standing.motion is BodyMotion.ROCKS
     assert standing.tilt == pytest.approx(angle)
     (edge,) = standing.stance.edges
     assert edge.name == "port"
@@ -91,7 +91,7 @@ def test_the_energy_of_rocking_is_that_of_the_motion_relative_to_the_support() -
 def test_a_body_in_the_air_is_off_the_deck() -> None:
     standing = Standing(CRATE)
     shown(standing, sample((2.0, 1.0, 0.6)))
-    assert standing.motion is Motion.LIFTS
+    assert standing.motion is BodyMotion.LIFTS
 
 
 def test_a_body_that_moves_along_the_deck_slides_and_noise_does_not() -> None:
@@ -123,7 +123,7 @@ def test_a_body_on_another_side_has_toppled_and_stands_there() -> None:
     assert not standing.toppled
     standing.update(tipped(0.5 * math.pi))
     assert standing.toppled
-    assert standing.motion is Motion.STANDS
+    assert standing.motion is BodyMotion.STANDS
     assert standing.tilt == pytest.approx(0.5 * math.pi)
     assert len(standing.stance.edges) == 4
     # Its mass centre is as far from its new edges as it was high.
@@ -160,7 +160,7 @@ def test_the_side_on_which_it_is_first_seen_is_its_own() -> None:
     standing.update(tipped(0.5 * math.pi))
     assert not standing.toppled
     assert standing.tilt == pytest.approx(0.0, abs=1e-7)
-    assert standing.motion is Motion.STANDS
+    assert standing.motion is BodyMotion.STANDS
 
 
 def test_a_planar_body_stands_on_two_points_and_rocks_on_one() -> None:
@@ -169,7 +169,7 @@ def test_a_planar_body_stands_on_two_points_and_rocks_on_one() -> None:
     standing.update(sample((2.0, 1.0, 0.5)))
     assert [edge.name for edge in standing.stance.edges] == ["starboard", "port"]
     shown(standing, tipped(0.1))
-    assert standing.motion is Motion.ROCKS
+    assert standing.motion is BodyMotion.ROCKS
     assert [edge.name for edge in standing.stance.edges] == ["port"]
     standing.update(tipped(0.5 * math.pi))
     assert standing.toppled
@@ -177,7 +177,7 @@ def test_a_planar_body_stands_on_two_points_and_rocks_on_one() -> None:
 
 def test_a_tilt_alone_tells_rocking_but_no_misalignment_of_sensors() -> None:
     standing = Standing(CRATE._replace(yaw=0.0))
-    for angle, motion in ((0.01, Motion.STANDS), (0.1, Motion.ROCKS), (0.0, Motion.STANDS)):
+    for angle, motion in ((0.01, BodyMotion.STANDS), (0.1, BodyMotion.ROCKS), (0.0, BodyMotion.STANDS)):
         standing.lean(sample((0.0, 0.0, 0.0), Rotation.from_euler("x", -angle)).orientation)
         assert standing.motion is motion
         assert standing.tilt == pytest.approx(angle, abs=1e-7)
@@ -191,7 +191,7 @@ def test_a_drum_rolls_over_an_edge_spins_and_leaves() -> None:
     standing = Standing(DRUM)
     assert [edge.name for edge in standing.stance.edges] == ["starboard", "port"]
     standing.update(sample((2.0, 1.0, HIGH)))
-    assert standing.motion is Motion.STANDS
+    assert standing.motion is BodyMotion.STANDS
     angle = 0.2
     dy, dz = -0.1, HIGH
     y, z = (
@@ -199,15 +199,15 @@ def test_a_drum_rolls_over_an_edge_spins_and_leaves() -> None:
         dz * math.cos(angle) - dy * math.sin(angle),
     )
     shown(standing, sample((2.0, y, z), Rotation.from_euler("x", -angle), time=0.1))
-    assert standing.motion is Motion.ROCKS
+    assert standing.motion is BodyMotion.ROCKS
     assert [edge.name for edge in standing.stance.edges] == ["port"]
     standing.update(sample((2.0, 1.0, HIGH), time=0.2))
-    assert standing.motion is Motion.STANDS
+    assert standing.motion is BodyMotion.STANDS
     assert not standing.slid
     shown(standing, sample((2.0, 1.0, HIGH), Rotation.from_euler("x", 0.1), time=0.3))
     assert standing.slid.startswith("spins on its edges, by 0.030 m")
     shown(standing, sample((2.0, 2.0, 0.3), time=0.4))
-    assert standing.motion is Motion.LIFTS
+    assert standing.motion is BodyMotion.LIFTS
 
 
 def test_a_drum_that_is_placed_roughly_lies_on_its_edges() -> None:
@@ -227,7 +227,7 @@ def test_a_body_of_a_very_fine_contact_tolerance_is_not_taken_to_rock_by_noise()
         standing.update(
             sample((2.0, 1.0, 0.5 + 1e-4 * (-1) ** k), Rotation.from_euler("x", 1e-4 * (k % 3)), time=0.1 * k)
         )
-        assert standing.motion is Motion.STANDS
+        assert standing.motion is BodyMotion.STANDS
         assert not standing.toppled
 
 
@@ -236,7 +236,7 @@ def test_a_single_outlier_is_neither_rocking_nor_a_slide() -> None:
     for k in range(30):
         seen = (tipped(0.1), sample((2.0, 1.1, 0.5)), sample((2.0, 1.0, 0.7)))[k // 10] if k % 10 == 5 else None
         standing.update((seen or sample((2.0, 1.0, 0.5)))._replace(stamp=k * 50_000_000))
-        assert standing.motion is Motion.STANDS
+        assert standing.motion is BodyMotion.STANDS
         assert not standing.slid
         assert len(standing.stance.edges) == 4
 
@@ -248,5 +248,5 @@ def test_noise_of_a_pose_within_the_contact_tolerance_raises_nothing(seed: int) 
     for k in range(2000):
         x, y, z = rng.normal((2.0, 1.0, 0.5), 0.0015).tolist()
         standing.update(sample((x, y, z), Rotation.from_rotvec(rng.normal(0.0, 0.0015, 3)), time=0.05 * k))
-        assert standing.motion is Motion.STANDS
+        assert standing.motion is BodyMotion.STANDS
         assert not standing.slid
