@@ -58,7 +58,7 @@ def calibrate(
     from ..calibration.fit import calibrate as fit
     from ..report.calibration import as_json as fields_of
     from ..report.calibration import unscored
-    from ..report.summary import words
+    from ..wording import words
     from .compiling import compiling_is_said
     from .progress import progress
 

@@ -53,9 +53,9 @@ class Outcomes:
         # What is said of many bags is said once.
         self._notes: Counter[str] = Counter()
         if not as_json:
-            from ..report.tally import Together
+            from ..report.tally import ReplayTally
 
-            self._together = Together()
+            self._together = ReplayTally()
 
     def take(self, outcome: Outcome, output: Path | None) -> None:
         """Say what became of a bag.

@@ -135,7 +135,7 @@ def compare_runs(was: Sequence[Happened], now: Sequence[Happened], limits: Limit
     changes += [Change(one.stamp, one.body, one.foot, Kind.APPEARED, None, one.mode) for one in new]
     order = list(Kind)
     changes.sort(key=lambda change: (change.stamp, change.body, change.foot, order.index(change.kind)))
-    start = first_stamp(sorted(now or was, key=lambda one: one.stamp))
+    start = first_stamp(sorted(one.stamp for one in now or was))
     return Comparison(tuple(changes), len(was), len(now), alike, start)
 
 

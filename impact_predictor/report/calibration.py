@@ -12,9 +12,9 @@ from ..calibration.fit import Calibration
 from ..calibration.scene_file import Change, number_text
 from ..calibration.search import FOLDS, Estimate
 from ..prediction.types import Leftover, Score
-from ..wording import counted
-from .summary import Errors, summarize, words
-from .table import percent, plain_table
+from ..wording import counted, percent, words
+from .summary import Errors, summarize
+from .table import plain_table
 
 NAMES: Final = ("friction", "restitution", "inertia")
 PARAMETERS: Final = {"friction": "contact.friction", "restitution": "contact.restitution", "inertia": "body.inertia"}

@@ -9,9 +9,9 @@ from typing import Any, Final
 from rich.console import Console
 from rich.table import Table
 
-from ..wording import counted
+from ..wording import NONE, counted, percent
 from .baseline import Change, Comparison, Kind
-from .table import NONE, percent, plain_table, show
+from .table import plain_table, show
 
 MOST_ROWS: Final = 20
 """Changes that are listed unless all are asked for."""

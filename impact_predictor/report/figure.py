@@ -15,8 +15,9 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from ..mechanics.types import Mode, Twist
+from ..wording import words
 from .files import named, whole
-from .summary import LeadTimeErrors, TouchdownRow, errors_of, words
+from .summary import LeadTimeErrors, TouchdownRow, errors_of
 
 SUFFIXES: Final = (".png", ".svg")
 

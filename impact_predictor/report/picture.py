@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 from .figure import check_figure, write_figure
 from .gait import MOST, Machine, machines_of, write_gait
 from .summary import LEAD_TIME_EDGES, TouchdownRow, errors_ahead, row_of
-from .tally import Tally
+from .tally import TouchdownTally
 
 if TYPE_CHECKING:
     from ..bags.replay import Result
@@ -32,7 +32,7 @@ class Picture:
         self._names: list[str] = []
         self._bags = 0
         self._machines: list[Machine] = []
-        self._tally = Tally()
+        self._tally = TouchdownTally()
         self._scored: list[TouchdownRow] = []
         # Lead time and error in turns.
         self._ahead = array("d")

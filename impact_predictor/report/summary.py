@@ -162,11 +162,6 @@ def without_bag(said: str, bag: str) -> str:
     return said.replace(f"in {bag}, ", "").replace(bag, "it")
 
 
-def words(name: str) -> str:
-    """The name of an enum's member as text."""
-    return name.lower().replace("_", " ")
-
-
 def as_json(result: Result) -> dict[str, Any]:
     """A replay as JSON: SI units, twists as [vx, vy, omega], stamps in ns, relative errors as fractions of 1."""
     rows = [row_of(*settled) for settled in result.settled]

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, NamedTuple
 from ..errors import InputError
 from ..mechanics.types import Twist
 from ..report.landings import error_ahead
-from ..report.summary import errors_of, reasons, row_of, words
-from ..report.table import first_stamp, percent
-from ..wording import counted
+from ..report.summary import errors_of, reasons, row_of
+from ..report.table import first_stamp
+from ..wording import counted, percent, words
 from .tolerances import Tolerances
 
 if TYPE_CHECKING:
@@ -98,7 +98,7 @@ def _touchdowns(result: Result, tolerances: Tolerances) -> Iterator[Check]:
     """A check for each touchdown, numbered in the order of time; times are those of the tables of `replay`."""
     settled = sorted(result.settled, key=lambda one: one.score.stamp)
     rows = [row_of(*one) for one in settled]
-    start = first_stamp(rows)
+    start = first_stamp(row.stamp for row in rows)
     several = len({one.body for one in settled}) > 1
     for number, (one, row) in enumerate(zip(settled, rows, strict=True), 1):
         landing = one.score.landing

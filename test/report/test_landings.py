@@ -12,8 +12,8 @@ from rich.table import Table
 from impact_predictor.bags.replay import Result, Settled
 from impact_predictor.mechanics.types import Flag, Mode, Twist
 from impact_predictor.prediction.types import Landing, Leftover, Score
-from impact_predictor.report.landing_tally import landing_sentences
 from impact_predictor.report.landings import (
+    LandingRow,
     error_ahead,
     feet_table,
     landing_as_json,
@@ -22,6 +22,7 @@ from impact_predictor.report.landings import (
 )
 from impact_predictor.report.replay import print_replay
 from impact_predictor.report.table import show
+from impact_predictor.report.tally import LandingTally
 
 TOUCHDOWN = touchdowns.TOUCHDOWN._replace(
     before=Twist(0.5, 0.0, 0.0),
@@ -49,6 +50,13 @@ def printed(table: Table, width: int) -> str:
     text = io.StringIO()
     show(Console(file=text, width=width), table)
     return text.getvalue()
+
+
+def landing_sentences(landings: list[LandingRow]) -> list[str]:
+    tally = LandingTally()
+    for one in landings:
+        tally.add(one)
+    return tally.sentences()
 
 
 def replayed(settled: list[Settled], width: int = 80) -> str:
@@ -143,7 +151,7 @@ def test_times_of_day_are_counted_from_the_first_landing() -> None:
 
 def test_what_landings_say_together() -> None:
     one = landings_of([landed(1.0)])
-    assert landing_sentences(one)[0].startswith("1 landing of 1 foot, each told 100 ms ahead or earlier; ")
+    assert landing_sentences(one)[0].startswith("1 landing of 1 foot, each predicted 100 ms ahead or earlier; ")
     assert landing_sentences(one)[1] == "Predicted modes: 1 PIVOT_SLIDE."
     assert landing_sentences(one)[2] == (
         "Speeds are those of the last sample in the air, 0.123 m/s in the median, at most 0.123 m/s; impulses are "
@@ -180,10 +188,10 @@ def test_landings_that_nobody_announced_are_said_and_never_silent() -> None:
     missed = landed(1.0, history=())
     table = printed(landings_table(landings_of([missed]), 120), 120)
     assert table.split()[table.split().index("LF") + 1] == "-"
-    assert "1 landing of 1 foot, none of them announced" in landing_sentences(landings_of([missed]))[0]
+    assert "1 landing of 1 foot, none of them predicted" in landing_sentences(landings_of([missed]))[0]
     said = landing_sentences(landings_of([missed, landed(2.0), landed(3.0, "RF")]))
-    assert said[0].startswith("3 landings of 2 feet, 2 of them told 100 ms ahead or earlier")
-    assert said[1].startswith("1 landing was not announced")
+    assert said[0].startswith("3 landings of 2 feet, 2 of them predicted 100 ms ahead or earlier")
+    assert said[1].startswith("1 landing was not predicted")
 
 
 def test_the_parts_of_a_foot_are_named_and_a_second_contact_hides_no_lead_time_of_the_first() -> None:
@@ -196,6 +204,7 @@ def test_the_parts_of_a_foot_are_named_and_a_second_contact_hides_no_lead_time_o
     assert "LF heel" in printed(feet_table(landings), 120)
     said = landing_sentences(landings)[0]
     assert said.startswith(
-        "1 landing of 1 foot, each told 100 ms ahead or earlier, besides 1 second contact of feet that stood already; "
+        "1 landing of 1 foot, each predicted 100 ms ahead or earlier, besides 1 second contact of feet that stood "
+        "already; "
     )
     assert landing_as_json(toe.score.landing)["point"] == "toe"  # type: ignore[arg-type]

@@ -18,14 +18,14 @@ def test_the_truth_is_said_in_whole_sentences() -> None:
     found, missed, right, time, unseen = truth_sentences(Truth(4, 1, 2, 3, 0.75, 0.0123, 1.5e-6))
     assert found == "Against the truth in the bag: 3 of 4 touchdowns found, 2 false alarms."
     assert missed == (
-        "A touchdown is found where a prediction before it told its time to 20 ms; the other was announced too late, "
+        "A touchdown is found where a prediction before it has its time to 20 ms; the other was predicted too late, "
         "too far off, or not at all."
     )
     assert right == (
         "Of those found, 75.0 % have the right mode; the velocities after them are within 1.2 % of the true ones in "
         "the median."
     )
-    assert time == "The time told 20 ms ahead is 1.5 us wrong in the median."
+    assert time == "The time predicted 20 ms ahead is 1.5 us wrong in the median."
     assert unseen.startswith("3 more impacts cannot be seen at this rate of samples")
 
 
@@ -35,7 +35,7 @@ def test_of_landings_the_truth_tells_times_alone() -> None:
     )
     assert truth_sentences(truth) == [
         "Against the truth in the bag: 49 of 49 touchdowns found, 0 false alarms.",
-        "The time told 20 ms ahead is 1.1 ms wrong in the median, that told 50 ms ahead 1.6 ms.",
+        "The time predicted 20 ms ahead is 1.1 ms wrong in the median, that predicted 50 ms ahead 1.6 ms.",
         "The first prediction of each came 63 ms ahead of it or earlier.",
     ]
 

@@ -10,9 +10,10 @@ from rich.console import Console
 from rich.table import Table
 
 from impact_predictor.mechanics.types import Mode, Twist
+from impact_predictor.report.replay import lead_time_table, touchdown_table
 from impact_predictor.report.summary import Errors, LeadTimeErrors, TouchdownRow
-from impact_predictor.report.table import lead_time_table, show, touchdown_table
-from impact_predictor.report.tally import Tally
+from impact_predictor.report.table import show
+from impact_predictor.report.tally import TouchdownTally
 
 ROW = TouchdownRow(
     body="cube",
@@ -111,16 +112,16 @@ SCORED = "A touchdown is scored where the samples after it show the velocities t
 
 
 def test_conclusions_count_the_scored_and_explain_the_others() -> None:
-    assert Tally([ROW, UNSCORED, UNMEASURED]).sentences() == [
+    assert TouchdownTally([ROW, UNSCORED, UNMEASURED]).sentences() == [
         "1 of 3 touchdowns scored: relative error 12.3 % in the median, 90 % below 12.3 %.",
         f"{SCORED} for 2, for one or several reasons each:",
         "  1 out of plane: the body also turned off the plane of the impact, or its contacts lay beside it",
         "  1 one corner first: one corner of the edge that struck came before the other",
         "  1 too short: the record ended, or paused, too soon after",
     ]
-    assert Tally([]).sentences() == ["No touchdown was predicted."]
-    assert Tally([UNMEASURED]).sentences()[0] == "0 of 1 touchdown scored."
-    assert Tally([UNMEASURED]).sentences()[1] == f"{SCORED} for 1:"
-    assert Tally([ROW]).sentences() == [
+    assert TouchdownTally([]).sentences() == ["No touchdown was predicted."]
+    assert TouchdownTally([UNMEASURED]).sentences()[0] == "0 of 1 touchdown scored."
+    assert TouchdownTally([UNMEASURED]).sentences()[1] == f"{SCORED} for 1:"
+    assert TouchdownTally([ROW]).sentences() == [
         "1 of 1 touchdown scored: relative error 12.3 % in the median, 90 % below 12.3 %."
     ]
