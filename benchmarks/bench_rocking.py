@@ -19,9 +19,8 @@ from pathlib import Path
 from time import perf_counter
 
 from impact_predictor import TwoPointBody, cylinder, plate, rod
-from impact_predictor.mechanics.motion import PlanarState
-from impact_predictor.mechanics.rocking import Run, next_strike, rock, standing
-from impact_predictor.mechanics.support import Felt, MovingSupport, Wave, harmonic_support
+from impact_predictor.mechanics.motion import PlanarState, Trajectory, next_strike, rock, standing
+from impact_predictor.mechanics.motion.support import FrameAcceleration, MovingSupport, Wave, harmonic_support
 
 REPEATS = 5
 HORIZON, STRIKES = 0.25, 1000
@@ -29,7 +28,7 @@ RODS = tuple(rod(0.4, 0.0, a, a, mass=0.3, friction=1e3) for a in (0.1, 0.075, 0
 ALONE = """
 from math import radians
 from impact_predictor import rod
-from impact_predictor.mechanics.rocking import rock, standing
+from impact_predictor.mechanics.motion import rock, standing
 for a in (0.1, 0.075, 0.05):
     body = rod(0.4, 0.0, a, a, mass=0.3, friction=1e3)
     rock(body, standing(body, radians(30.0)))
@@ -50,7 +49,7 @@ def show(name: str, times: tuple[float, float], unit: float = 1e3, per: float = 
     print(f"{times[0] * unit / per:10.2f} {times[1] * unit / per:10.2f}   {name}")
 
 
-def rods() -> list[Run]:
+def rods() -> list[Trajectory]:
     return [rock(body, standing(body, math.radians(30.0))) for body in RODS]
 
 
@@ -111,7 +110,7 @@ class Told:
 
     period, gravity = math.inf, 9.81
 
-    def felt(self, time: float) -> Felt:
+    def felt(self, time: float) -> FrameAcceleration:
         return 0.3 + (0.4 - 0.1 * time) * time, -9.7 + (0.5 + 0.3 * time) * time, 0.05 + 0.1 * time, 0.1
 
 
@@ -127,7 +126,7 @@ def strike_case(name: str, body: TwoPointBody, start: PlanarState, old: int | No
     show(f"{exact[0] * 1e6:8.2f}   {name}: {comes}", fast, 1e6)
 
 
-def sample(run: Run) -> object:
+def sample(run: Trajectory) -> object:
     import numpy as np
 
     return run.state(np.linspace(0.0, run.time, 1000))
@@ -135,7 +134,7 @@ def sample(run: Run) -> object:
 
 def deck_case(name: str, body: TwoPointBody, support: MovingSupport) -> None:
     """Time ten minutes on a deck, and say what happened."""
-    runs: list[Run] = []
+    runs: list[Trajectory] = []
 
     def follow() -> None:
         # A new support each time: it keeps what it has worked out.

@@ -33,9 +33,9 @@ from impact_predictor.mechanics.compliant.impact import compliant_impact
 from impact_predictor.mechanics.compliant.integrator import METHODS, Status
 from impact_predictor.mechanics.compliant.motion import compliant_motion
 from impact_predictor.mechanics.impact import solve_impact
+from impact_predictor.mechanics.motion import rock, standing
+from impact_predictor.mechanics.motion.support import FixedSupport, Wave, harmonic_support
 from impact_predictor.mechanics.problem import see
-from impact_predictor.mechanics.rocking import rock, standing
-from impact_predictor.mechanics.support import FixedSupport, Wave, harmonic_support
 from impact_predictor.mechanics.types import Flag, Mode, Twist, Vector
 
 STIFFNESSES = (1e4, 1e6, 1e8, 1e10, 1e12)

@@ -9,9 +9,8 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from impact_predictor import TwoPointBody, cylinder, plate
-from impact_predictor.mechanics.motion import PlanarState
-from impact_predictor.mechanics.rocking import rock, standing
-from impact_predictor.mechanics.support import Wave, harmonic_support
+from impact_predictor.mechanics.motion import PlanarState, rock, standing
+from impact_predictor.mechanics.motion.support import Wave, harmonic_support
 from impact_predictor.prediction.scene import MovingDeck, Scene
 from impact_predictor.prediction.types import Sample, Vector3
 from impact_predictor.scenarios.sensors import ACROSS, Mount, poses

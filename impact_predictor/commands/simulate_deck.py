@@ -16,7 +16,7 @@ from .limits import Whole
 from .simulated_files import check_pictures, draw_film, say_files
 
 if TYPE_CHECKING:
-    from ..mechanics.support import MovingSupport
+    from ..mechanics.motion.support import MovingSupport
     from ..report.deck_pictures import DeckMotion
     from ..scenarios.deck.voyage import Voyage
 

@@ -11,9 +11,8 @@ from __future__ import annotations
 from math import atan2, hypot, sqrt
 
 from ..errors import InputError
-from ..mechanics.motion import PlanarState
-from ..mechanics.rocking import next_strike
-from ..mechanics.support import FixedSupport
+from ..mechanics.motion import PlanarState, next_strike
+from ..mechanics.motion.support import FixedSupport
 from ..mechanics.types import Contact, Twist, TwoPointBody, Vector
 from .deck.approach import PlanarSupport, gravity_over, is_uniform
 from .impact import Collision

@@ -9,7 +9,7 @@ from typing import Any, Final
 from rich.console import Console
 from rich.table import Table
 
-from ..mechanics.rocking import End
+from ..mechanics.motion import End
 from ..scenarios.deck.voyage import Followed, Voyage
 from ..scenarios.truth import TrueImpact
 from ..stamps import NANOSECONDS

@@ -10,9 +10,8 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from ..mechanics.motion import PlanarState
-from ..mechanics.rocking import End
-from ..mechanics.support import MovingSupport
+from ..mechanics.motion import End, PlanarState
+from ..mechanics.motion.support import MovingSupport
 from ..mechanics.types import Mode
 from ..prediction.scene import Watching
 from ..prediction.watch.onset import Onset, motions

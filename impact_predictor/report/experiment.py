@@ -9,8 +9,7 @@ from ..errors import InputError
 from ..mechanics.answer import VALIDITY
 from ..mechanics.bodies import rod
 from ..mechanics.impact import solve_impact
-from ..mechanics.motion import next_touchdown
-from ..mechanics.rocking import standing
+from ..mechanics.motion import next_touchdown, standing
 from ..mechanics.types import Flag, Mode, Outcome, Twist, TwoPointBody
 
 LENGTH: Final = 0.4

@@ -10,8 +10,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..mechanics.motion import PlanarState
-from ..mechanics.rocking import End, Run
+from ..mechanics.motion import End, PlanarState, Trajectory
 from ..scenarios.rocking import Rocking
 from .film import (
     BODY,
@@ -65,7 +64,7 @@ class MotionCurves(NamedTuple):
     angle: NDArray[np.float64]
 
 
-def curves_of(run: Run, end: float, points: int = _POINTS) -> MotionCurves:
+def curves_of(run: Trajectory, end: float, points: int = _POINTS) -> MotionCurves:
     """The motion up to `end` in s, in `points` for that time; it stays where it has ended."""
     times: list[NDArray[np.float64]] = []
     for phase in run.phases:
@@ -82,7 +81,7 @@ def curves_of(run: Run, end: float, points: int = _POINTS) -> MotionCurves:
     return MotionCurves(time, states.omega + gap, np.degrees(states.angle) + gap)
 
 
-def stances(run: Run, end: float) -> list[tuple[float, float, str]]:
+def stances(run: Trajectory, end: float) -> list[tuple[float, float, str]]:
     """Begin and end (s) of how a run stands on its contacts, one after the other, until `end`."""
     found: list[tuple[float, float, str]] = []
     for phase in run.phases:

@@ -12,9 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..bags.write import BagWriter
-from ..mechanics.motion import PlanarState
-from ..mechanics.rocking import End, Run
-from ..mechanics.support import MovingSupport
+from ..mechanics.motion import End, PlanarState, Trajectory
+from ..mechanics.motion.support import MovingSupport
 from ..mechanics.types import Vector
 from ..prediction.scene import MovingDeck, Scene
 from ..prediction.types import Geometry
@@ -85,7 +84,7 @@ class Actor(NamedTuple):
         return 1 + int(self.duration * rate)
 
 
-def rocking_actor(name: str, run: Run) -> Actor:
+def rocking_actor(name: str, run: Trajectory) -> Actor:
     """A body that moves on two points of it."""
     old, new = run.body.old, run.body.new
     assert old is not None

@@ -7,8 +7,8 @@ from typing import Final, NamedTuple
 
 from ..errors import InputError
 from ..mechanics.bodies import Number, cylinder, plate, refuse, rod
-from ..mechanics.rocking import End, Run, rock, standing
-from ..mechanics.support import FixedSupport
+from ..mechanics.motion import End, Trajectory, rock, standing
+from ..mechanics.motion.support import FixedSupport
 from ..mechanics.types import TwoPointBody, Vector
 
 STICKS: Final = 100.0
@@ -34,7 +34,7 @@ class Rocking(NamedTuple):
     """A body and how it rocked."""
 
     rocker: Rocker
-    run: Run
+    run: Trajectory
 
     @property
     def broke_off(self) -> bool:

@@ -16,7 +16,7 @@ from ..ros.cdr import OK, DiagnosticForm, MalformedMessage, decode_diagnostic_ar
 from ..stamps import NANOSECONDS
 
 if TYPE_CHECKING:
-    from ..mechanics.rocking import Strike
+    from ..mechanics.motion import RockingImpact
     from .sensors import MotionPlane
 
 TRUTH_TOPIC: Final = "/truth/impacts"
@@ -69,7 +69,7 @@ class TrueOnset(NamedTuple):
 
 
 def true_impact(
-    strike: Strike,
+    strike: RockingImpact,
     name: str,
     plane: MotionPlane,
     tilt: float = 0.0,

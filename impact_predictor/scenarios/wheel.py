@@ -15,10 +15,8 @@ import numpy as np
 
 from ..errors import InputError
 from ..mechanics.bodies import not_negative, positive, refuse
-from ..mechanics.motion import PlanarState
-from ..mechanics.rocking import End, Run, Strike, rock, standing
-from ..mechanics.rocking.flight import in_world
-from ..mechanics.support import FixedSupport
+from ..mechanics.motion import End, PlanarState, RockingImpact, Trajectory, rock, standing
+from ..mechanics.motion.support import FixedSupport, in_world
 from ..mechanics.types import Contact, TwoPointBody, Vector
 
 _MOST_EVENTS: Final = 10_000
@@ -99,7 +97,7 @@ class RollingPart(NamedTuple):
 
     first: int
     start: float
-    run: Run
+    run: Trajectory
 
 
 class WheelStrike(NamedTuple):
@@ -107,7 +105,7 @@ class WheelStrike(NamedTuple):
 
     old: int | None
     new: int
-    strike: Strike
+    strike: RockingImpact
 
 
 class Stand(NamedTuple):

@@ -10,7 +10,7 @@ from __future__ import annotations
 from math import cos, inf, sin, sqrt
 from typing import NamedTuple
 
-from ..mechanics.turning_stance import turn
+from ..mechanics.motion.pivot import turn
 from .wheel import Hub, Wheel
 
 

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from impact_predictor import TwoPointBody
-from impact_predictor.mechanics.support import Support
+from impact_predictor.mechanics.motion.support import Support
 
 
 class Touch(NamedTuple):

@@ -8,9 +8,8 @@ import pytest
 from impact_predictor import Contact, TwoPointBody, plate
 from impact_predictor.mechanics.compliant.integrator import Status
 from impact_predictor.mechanics.compliant.motion import compliant_motion
-from impact_predictor.mechanics.motion import PlanarState
-from impact_predictor.mechanics.rocking import rock, standing
-from impact_predictor.mechanics.support import FixedSupport, Wave, harmonic_support
+from impact_predictor.mechanics.motion import PlanarState, rock, standing
+from impact_predictor.mechanics.motion.support import FixedSupport, Wave, harmonic_support
 
 PLATE = plate(1.0, 2.0, 10.0, 0.9)
 """Friction holds it, so that it rocks."""

@@ -21,7 +21,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from scipy.special import ellipkinc
 
-from impact_predictor.mechanics.motion import Fall, Motion, PlanarState, next_touchdown
+from impact_predictor.mechanics.motion import Fall, MotionKind, PlanarState, next_touchdown
 from impact_predictor.mechanics.types import Vector
 
 GOLDEN = json.loads((Path(__file__).parent / "golden" / "motion.json").read_text())
@@ -86,8 +86,8 @@ class Reference:
 
     def __init__(self, case: Case, max_step: float, tolerance: float = 1e-12) -> None:
         self.case, self.max_step, self.tolerance = case, max_step, tolerance
-        self.motion, self.slip = Motion.FLIGHT, 0.0
-        self.trail: list[Motion] = []
+        self.motion, self.slip = MotionKind.FLIGHT, 0.0
+        self.trail: list[MotionKind] = []
 
     def contact(self, y: Any) -> tuple[Vector, Any, Any]:
         """Lever of the stance contact, compliance of its velocity, and the acceleration it has without a reaction."""
@@ -99,10 +99,10 @@ class Reference:
 
     def reaction(self, y: Any) -> tuple[float, float]:
         """(T, N) for a mass of 1."""
-        if self.motion is Motion.FLIGHT:
+        if self.motion is MotionKind.FLIGHT:
             return 0.0, 0.0
         _, compliance, free = self.contact(y)
-        if self.motion is Motion.TURNING:
+        if self.motion is MotionKind.TURNING:
             tangential, normal = np.linalg.solve(compliance, -free)
             return float(tangential), float(normal)
         drag = -self.slip * self.case.friction
@@ -132,17 +132,17 @@ class Reference:
 
     def settle(self, y: Any) -> None:
         """Go on to the motion that the state allows."""
-        if self.motion is Motion.TURNING and self.case.friction < HELD:
+        if self.motion is MotionKind.TURNING and self.case.friction < HELD:
             outside = [side for side in (1.0, -1.0) if self.margin(y, side) < -1e-12]
             if outside:
-                self.motion, self.slip = Motion.SLIDING, -outside[0]
+                self.motion, self.slip = MotionKind.SLIDING, -outside[0]
                 if len(outside) == 2 and not self.slips(y):
                     self.slip = -self.slip
-        if self.motion is Motion.SLIDING and self.contact(y)[2][1] > 0.0:
-            self.motion = Motion.FLIGHT
+        if self.motion is MotionKind.SLIDING and self.contact(y)[2][1] > 0.0:
+            self.motion = MotionKind.FLIGHT
         self.trail.append(self.motion)
 
-    def watched(self, start: float) -> list[tuple[Event, Motion | int]]:
+    def watched(self, start: float) -> list[tuple[Event, MotionKind | int]]:
         """What may end the present motion, each with the motion that follows or the point that touches."""
         case = self.case
 
@@ -155,13 +155,13 @@ class Reference:
         def stop(time: float, y: Any) -> float:
             return self.slip * self.slip_of(y) if time > start + 1e-9 else 1.0
 
-        standing_on = None if self.motion is Motion.FLIGHT else case.stance
-        watched: list[tuple[Event, Motion | int]]
+        standing_on = None if self.motion is MotionKind.FLIGHT else case.stance
+        watched: list[tuple[Event, MotionKind | int]]
         watched = [(touch(index), index) for index in range(len(case.points)) if index != standing_on]
-        if self.motion is Motion.TURNING and case.friction < HELD:
-            watched += [(edge(1.0), Motion.SLIDING), (edge(-1.0), Motion.SLIDING)]
-        if self.motion is Motion.SLIDING:
-            watched += [(stop, Motion.TURNING), (lambda _, y: self.reaction(y)[1], Motion.FLIGHT)]
+        if self.motion is MotionKind.TURNING and case.friction < HELD:
+            watched += [(edge(1.0), MotionKind.SLIDING), (edge(-1.0), MotionKind.SLIDING)]
+        if self.motion is MotionKind.SLIDING:
+            watched += [(stop, MotionKind.TURNING), (lambda _, y: self.reaction(y)[1], MotionKind.FLIGHT)]
         for event, _ in watched:
             event.terminal, event.direction = True, -1  # type: ignore[attr-defined]
         return watched
@@ -171,7 +171,7 @@ class Reference:
         y, time = np.array(case.state), 0.0
         if case.stance is not None:
             slip = self.slip_of(y)
-            self.motion = Motion.SLIDING if abs(slip) > 1e-12 and case.friction < HELD else Motion.TURNING
+            self.motion = MotionKind.SLIDING if abs(slip) > 1e-12 and case.friction < HELD else MotionKind.TURNING
             self.slip = np.sign(slip)
         for _ in range(20):
             self.settle(y)
@@ -190,17 +190,17 @@ class Reference:
             if run.status == 0:
                 return math.inf, -1, y
             what = next(what for (_, what), times in zip(watched, run.t_events, strict=True) if len(times))
-            if not isinstance(what, Motion):
+            if not isinstance(what, MotionKind):
                 return time, what, y
-            if what is Motion.SLIDING:
+            if what is MotionKind.SLIDING:
                 self.slip = 1.0 if self.margin(y, -1.0) < self.margin(y, 1.0) else -1.0
-            if what is Motion.TURNING:
+            if what is MotionKind.TURNING:
                 y[3] -= self.slip_of(y)
             self.motion = what
         raise AssertionError("the reference changes its motion without end")
 
 
-def drawn(rng: random.Random, kind: Motion) -> Case:
+def drawn(rng: random.Random, kind: MotionKind) -> Case:
     """A body of two to five points and a stance on its lowest one, or thrown, over a support that slopes."""
     points = tuple(
         (radius * math.cos(bearing), radius * math.sin(bearing))
@@ -210,13 +210,13 @@ def drawn(rng: random.Random, kind: Motion) -> Case:
     gravity = 9.81 * math.sin(slope), -9.81 * math.cos(slope)
     heights = [from_centre(angle, point)[1] for point in points]
     lowest = heights.index(min(heights))
-    friction = rng.choice([0.1, 0.2, 0.4, 0.8, 1.2, HELD if kind is Motion.TURNING else 0.6])
+    friction = rng.choice([0.1, 0.2, 0.4, 0.8, 1.2, HELD if kind is MotionKind.TURNING else 0.6])
     rho_squared = rng.uniform(0.02, 0.2)
-    if kind is Motion.FLIGHT:
+    if kind is MotionKind.FLIGHT:
         height = rng.uniform(0.0, 1.0) - heights[lowest]
         thrown = PlanarState(0.0, height, angle, rng.uniform(-2, 2), rng.uniform(-3, 3), rng.uniform(-30, 30))
         return Case(thrown, points, None, rho_squared, friction, gravity, 3.0)
-    slip = rng.uniform(-2.0, 2.0) * rng.choice([0.01, 1.0]) if kind is Motion.SLIDING else 0.0
+    slip = rng.uniform(-2.0, 2.0) * rng.choice([0.01, 1.0]) if kind is MotionKind.SLIDING else 0.0
     omega = rng.uniform(-8.0, 8.0) * rng.choice([0.0, 0.1, 1.0, 1.0])
     state = standing(points[lowest], angle, omega, slip, 0.3)
     return Case(state, points, lowest, rho_squared, friction, gravity, 3.0)
@@ -229,7 +229,7 @@ def test_golden_falls_come_out_to_rounding(fall: dict[str, str]) -> None:
     found = Case(standing(points[0], angle, omega), points, 0, rho_squared, HELD, (0.0, -gravity)).fall()
     assert found.time == pytest.approx(time, rel=ROUNDING)
     assert found.state.omega == pytest.approx(rate, rel=ROUNDING)
-    assert (found.point, found.motion) == (1, Motion.TURNING)
+    assert (found.point, found.motion) == (1, MotionKind.TURNING)
 
 
 @pytest.mark.parametrize("rod", GOLDEN["rocking"], ids=lambda rod: f"a={rod['a']}")
@@ -247,7 +247,7 @@ def test_the_rods_of_figure_2_rock_from_support_to_support_as_in_40_digits(rod: 
         stance, angle, omega = fall.point, fall.state.angle, ratio * fall.state.omega
 
 
-def agrees(case: Case, max_step: float) -> list[Motion]:
+def agrees(case: Case, max_step: float) -> list[MotionKind]:
     """Compare with the reference; the motions it went through."""
     reference = Reference(case, max_step)
     time, point, state = reference.fall()
@@ -260,16 +260,16 @@ def agrees(case: Case, max_step: float) -> list[Motion]:
     return reference.trail
 
 
-@pytest.mark.parametrize("kind", Motion, ids=lambda kind: kind.name.lower())
-def test_drawn_bodies_touch_down_as_an_integration_in_the_world_frame_says(kind: Motion) -> None:
+@pytest.mark.parametrize("kind", MotionKind, ids=lambda kind: kind.name.lower())
+def test_drawn_bodies_touch_down_as_an_integration_in_the_world_frame_says(kind: MotionKind) -> None:
     rng = random.Random(8)  # the bodies drawn go through every change of motion, and none jams
-    changes: set[tuple[Motion, Motion]] = set()
+    changes: set[tuple[MotionKind, MotionKind]] = set()
     for _ in range(30):
         # The reference sees an event only between two of its steps; spin makes them short.
-        changes.update(pairwise(agrees(drawn(rng, kind), 0.003 if kind is Motion.FLIGHT else 0.01)))
-    if kind is not Motion.FLIGHT:
-        slip_starts, slip_stops = (Motion.TURNING, Motion.SLIDING), (Motion.SLIDING, Motion.TURNING)
-        assert {slip_starts, slip_stops, (Motion.SLIDING, Motion.FLIGHT)} <= changes
+        changes.update(pairwise(agrees(drawn(rng, kind), 0.003 if kind is MotionKind.FLIGHT else 0.01)))
+    if kind is not MotionKind.FLIGHT:
+        slip_starts, slip_stops = (MotionKind.TURNING, MotionKind.SLIDING), (MotionKind.SLIDING, MotionKind.TURNING)
+        assert {slip_starts, slip_stops, (MotionKind.SLIDING, MotionKind.FLIGHT)} <= changes
 
 
 def condition(case: Case, fall: Fall) -> float:
@@ -330,7 +330,7 @@ def test_a_stance_that_slips_is_followed_to_1e_9_of_time_and_twist(
 def test_a_coarser_tolerance_keeps_itself() -> None:
     rng = random.Random(29)
     for _ in range(300):
-        case = drawn(rng, Motion.SLIDING)
+        case = drawn(rng, MotionKind.SLIDING)
         fine, coarse = case.fall(), case._replace(tolerance=1e-6).fall()
         assert (coarse.point, coarse.motion) == (fine.point, fine.motion)
         if fine.point >= 0:
@@ -341,9 +341,9 @@ def test_a_stance_without_friction_keeps_the_energy() -> None:
     rng = random.Random(31)
     touched = 0
     for _ in range(200):
-        case = drawn(rng, Motion.SLIDING)._replace(friction=0.0)
+        case = drawn(rng, MotionKind.SLIDING)._replace(friction=0.0)
         found = case.fall()
-        if found.point < 0 or found.motion is Motion.FLIGHT:
+        if found.point < 0 or found.motion is MotionKind.FLIGHT:
             continue
         touched += 1
         before, after = (energy(state, case.rho_squared, case.gravity) for state in (case.state, found.state))
@@ -375,11 +375,11 @@ def test_a_stance_that_can_neither_stick_nor_be_left_slips_the_one_way_that_keep
         for mirror in (1.0, -1.0):
             points = ((-0.25 * mirror, -0.3), (0.5 * mirror, -0.2))
             trail = agrees(Case(standing(points[0], 0.0, mirror * omega), points, 0, 0.02, friction), 1e-3)
-            assert trail == [Motion.SLIDING]
+            assert trail == [MotionKind.SLIDING]
 
 
-@pytest.mark.parametrize("kind", Motion, ids=lambda kind: kind.name.lower())
-def test_a_mirrored_body_falls_the_mirrored_way(kind: Motion) -> None:
+@pytest.mark.parametrize("kind", MotionKind, ids=lambda kind: kind.name.lower())
+def test_a_mirrored_body_falls_the_mirrored_way(kind: MotionKind) -> None:
     rng = random.Random(5)
     for _ in range(50):
         case = drawn(rng, kind)
@@ -396,9 +396,9 @@ def test_a_mirrored_body_falls_the_mirrored_way(kind: Motion) -> None:
         assert (-x, y, -angle, -vx, vy, -omega) == pytest.approx(tuple(fall.state), rel=ROUNDING, abs=ROUNDING)
 
 
-@pytest.mark.parametrize("kind", Motion, ids=lambda kind: kind.name.lower())
+@pytest.mark.parametrize("kind", MotionKind, ids=lambda kind: kind.name.lower())
 @pytest.mark.parametrize(("length", "second"), [(1e-3, 1.0), (1.0, 1e4), (250.0, 0.01)])
-def test_units_of_length_and_time_do_not_matter(kind: Motion, length: float, second: float) -> None:
+def test_units_of_length_and_time_do_not_matter(kind: MotionKind, length: float, second: float) -> None:
     rng = random.Random(7)
     speed = length / second
 
@@ -424,8 +424,8 @@ def test_units_of_length_and_time_do_not_matter(kind: Motion, length: float, sec
             assert found.state[3:5] == pytest.approx(expected[3:5], rel=1e-10, abs=1e-10 * speed)
 
 
-@pytest.mark.parametrize("kind", Motion, ids=lambda kind: kind.name.lower())
-def test_the_point_that_strikes_is_on_the_support_and_moves_down_while_the_stance_stays(kind: Motion) -> None:
+@pytest.mark.parametrize("kind", MotionKind, ids=lambda kind: kind.name.lower())
+def test_the_point_that_strikes_is_on_the_support_and_moves_down_while_the_stance_stays(kind: MotionKind) -> None:
     rng = random.Random(11)
     for _ in range(100):
         case = drawn(rng, kind)
@@ -436,11 +436,11 @@ def test_the_point_that_strikes_is_on_the_support_and_moves_down_while_the_stanc
         assert velocity(found.state, case.points[found.point])[1] <= 0.0
         for point in case.points:
             assert gap(found.state, point) >= -ROUNDING
-        if found.motion is not Motion.FLIGHT:
+        if found.motion is not MotionKind.FLIGHT:
             assert case.stance is not None
             tangential, normal = velocity(found.state, case.points[case.stance])
             assert normal == pytest.approx(0.0, abs=4e-15)
-            if found.motion is Motion.TURNING:
+            if found.motion is MotionKind.TURNING:
                 assert tangential == pytest.approx(0.0, abs=4e-15)
 
 
@@ -448,7 +448,7 @@ def test_turning_keeps_the_energy() -> None:
     rng = random.Random(13)
     turned = 0
     for _ in range(100):
-        case = drawn(rng, Motion.TURNING)._replace(friction=HELD)
+        case = drawn(rng, MotionKind.TURNING)._replace(friction=HELD)
         found = case.fall()
         if found.point < 0:
             continue
@@ -568,7 +568,7 @@ def test_no_touchdown_is_told_beyond_the_horizon() -> None:
     ]
     hopper = ((0.0, -0.5), (0.2, 0.5))
     lifts = Case(standing(hopper[0], 0.9, -4.9), hopper, 0, 0.05, 0.3)
-    motions = Motion.TURNING, Motion.SLIDING, Motion.FLIGHT, Motion.FLIGHT
+    motions = MotionKind.TURNING, MotionKind.SLIDING, MotionKind.FLIGHT, MotionKind.FLIGHT
     for case, motion in zip([*cases, lifts], motions, strict=True):
         time = case.fall().time
         assert case._replace(horizon=1.000001 * time).fall().time == pytest.approx(time, rel=SLIDING)
@@ -649,7 +649,7 @@ def test_a_body_that_spins_fast_and_falls_far_strikes_within_half_a_turn_of_bein
 def test_slip_starts_where_the_stance_would_leave_its_friction_cone() -> None:
     state = standing(PLATE[0], 0.4, 0.0)
     falls = [Case(state, PLATE, 0, RHO_SQUARED, friction).fall() for friction in (HELD, 0.8, 0.6, 0.4, 0.2, 0.0)]
-    assert [fall.motion for fall in falls] == [Motion.TURNING] * 3 + [Motion.SLIDING] * 3
+    assert [fall.motion for fall in falls] == [MotionKind.TURNING] * 3 + [MotionKind.SLIDING] * 3
     assert falls[0] == falls[1] == falls[2]
     # The less it is held, the further the foot slides back and the sooner the plate is down.
     times, places = [fall.time for fall in falls[2:]], [fall.state.x for fall in falls[2:]]
@@ -663,7 +663,7 @@ def test_slip_starts_where_the_stance_would_leave_its_friction_cone() -> None:
 def test_a_slip_of_one_rounding_is_none() -> None:
     state = standing(PLATE[0], 0.4, -1.0)
     sticking = Case(state, PLATE, 0, RHO_SQUARED, 1.5).fall()
-    assert sticking.motion is Motion.TURNING
+    assert sticking.motion is MotionKind.TURNING
     nudged = Case(state._replace(vx=math.nextafter(state.vx, 1.0)), PLATE, 0, RHO_SQUARED, 1.5).fall()
     assert nudged == sticking
 
@@ -671,7 +671,7 @@ def test_a_slip_of_one_rounding_is_none() -> None:
 def test_a_slip_that_stops_on_the_way_sticks() -> None:
     slipping = Case(standing(PLATE[0], 0.4, 0.0, 0.02), PLATE, 0, RHO_SQUARED, 1.5).fall()
     sticking = Case(standing(PLATE[0], 0.4, 0.0), PLATE, 0, RHO_SQUARED, 1.5).fall()
-    assert slipping.motion is Motion.TURNING
+    assert slipping.motion is MotionKind.TURNING
     assert slipping.time == pytest.approx(sticking.time, rel=0.02)
     # It moved by half the slip over the time it took to stop.
     assert 0.0 < slipping.state.x - sticking.state.x < 1e-4
@@ -701,8 +701,8 @@ def test_a_stance_that_would_have_to_pull_is_left(slip: float) -> None:
     found = Case(state, PLATE, 0, RHO_SQUARED, 0.5).fall()
     flying = Case(state, PLATE, None, RHO_SQUARED, 0.5).fall()
     assert found == flying
-    assert found.motion is Motion.FLIGHT
-    assert Case(state, PLATE, 0, RHO_SQUARED, HELD).fall().motion is Motion.TURNING
+    assert found.motion is MotionKind.FLIGHT
+    assert Case(state, PLATE, 0, RHO_SQUARED, HELD).fall().motion is MotionKind.TURNING
 
 
 def test_a_foot_that_lifts_is_not_struck_by_its_own_lift() -> None:
@@ -712,7 +712,7 @@ def test_a_foot_that_lifts_is_not_struck_by_its_own_lift() -> None:
     for _ in range(300):
         state = standing(hopper[0], rng.uniform(0.5, 1.2), rng.uniform(-6.0, -3.0))
         found = Case(state, hopper, 0, rng.uniform(0.03, 0.2), rng.uniform(0.05, 0.6)).fall()
-        if found.motion is Motion.FLIGHT:
+        if found.motion is MotionKind.FLIGHT:
             lifted += 1
             assert velocity(found.state, hopper[found.point])[1] < -0.01
     assert lifted > 100

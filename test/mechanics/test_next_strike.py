@@ -18,10 +18,16 @@ from newton_in_world import newton, touch
 from scipy.integrate import solve_ivp
 
 from impact_predictor import Contact, InputError, TwoPointBody, cylinder, plate
-from impact_predictor.mechanics.motion import Fall, Motion, PlanarState, next_touchdown
-from impact_predictor.mechanics.rocking import next_strike, rock, standing
-from impact_predictor.mechanics.rocking.flight import from_world, in_world
-from impact_predictor.mechanics.support import FixedSupport, MovingSupport, SupportMotion, Wave, harmonic_support
+from impact_predictor.mechanics.motion import Fall, MotionKind, PlanarState, next_strike, next_touchdown, rock, standing
+from impact_predictor.mechanics.motion.support import (
+    FixedSupport,
+    MovingSupport,
+    SupportMotion,
+    Wave,
+    from_world,
+    harmonic_support,
+    in_world,
+)
 
 G = 9.81
 AGREES = 1e-9
@@ -138,7 +144,7 @@ CASES = {
     "drum spins and rolls": (DRUM, standing(DRUM, 0.376, -1.0, -0.6), ["-O", "SO"], {"constant", "harmonic"}),
     "drum leaves its edge": (DRUM, standing(DRUM, 0.223, -5.073), ["+O", "OO"], {"harmonic"}),
 }
-MOTIONS = {"S": Motion.TURNING, "+": Motion.SLIDING, "-": Motion.SLIDING, "O": Motion.FLIGHT}
+MOTIONS = {"S": MotionKind.TURNING, "+": MotionKind.SLIDING, "-": MotionKind.SLIDING, "O": MotionKind.FLIGHT}
 
 
 @pytest.mark.parametrize(
@@ -282,11 +288,11 @@ def test_in_flight_a_contact_below_the_support_strikes_at_once_when_it_moves_dow
     start = standing(CRATE, 0.05)
     falls = start._replace(y=start.y - 1e-3, vy=-0.2)
     fall = next_strike(CRATE, falls, None, Told(CONSTANT), 1.0)
-    assert fall == Fall(0.0, 0, falls, Motion.FLIGHT)
+    assert fall == Fall(0.0, 0, falls, MotionKind.FLIGHT)
     rises = next_strike(CRATE, falls._replace(vy=0.6), None, Told(CONSTANT), 1.0)
     assert rises is not None
     assert rises.time > 0.05
-    assert rises.motion is Motion.FLIGHT
+    assert rises.motion is MotionKind.FLIGHT
 
 
 def test_of_two_contacts_below_the_support_the_faster_one_strikes() -> None:
@@ -342,14 +348,14 @@ def test_the_period_of_a_support_bounds_the_steps_so_that_no_swing_is_missed() -
 
     fall = next_strike(CRATE, start, 0, Kicked(0.004), 1.0)
     assert fall is not None
-    assert fall.motion is Motion.FLIGHT
+    assert fall.motion is MotionKind.FLIGHT
 
 
 def test_the_next_strike_needs_no_numpy() -> None:
     code = """
 import math, sys
 from impact_predictor import plate
-from impact_predictor.mechanics.rocking import next_strike, standing
+from impact_predictor.mechanics.motion import next_strike, standing
 class Support:
     period, gravity = math.inf, 9.81
     def felt(self, time):

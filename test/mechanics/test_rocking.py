@@ -15,9 +15,8 @@ import numpy as np
 import pytest
 
 from impact_predictor import Contact, InputError, Mode, TwoPointBody, cylinder, plate, rod
-from impact_predictor.mechanics.motion import Motion, PlanarState, next_touchdown
-from impact_predictor.mechanics.rocking import End, Run, rock, standing
-from impact_predictor.mechanics.support import FixedSupport
+from impact_predictor.mechanics.motion import End, MotionKind, PlanarState, Trajectory, next_touchdown, rock, standing
+from impact_predictor.mechanics.motion.support import FixedSupport
 
 GOLDEN = json.loads((Path(__file__).parent / "golden" / "motion.json").read_text())["rocking"]
 G = 9.81
@@ -89,7 +88,7 @@ def test_unequal_arms_lose_two_ratios_in_turn() -> None:
     assert run.end is End.RESTS
 
 
-def limit_by_brute_force(run: Run, ratio: float) -> float:
+def limit_by_brute_force(run: Trajectory, ratio: float) -> float:
     """The accumulation from the last two followed impacts and the ratio of a cycle, known from the impact law."""
     times = [strike.time for strike in run.impacts]
     return times[-1] + (times[-1] - times[-3]) * ratio / (1.0 - ratio)
@@ -124,7 +123,7 @@ def test_every_impact_is_the_next_touchdown() -> None:
             assert time + fall.time == pytest.approx(strike.time, rel=1e-9)
             assert fall.state == pytest.approx(strike.before, rel=1e-7, abs=1e-9)
             state, time, stance = strike.after, strike.time, strike.new
-        assert kinds <= {Motion.TURNING, Motion.SLIDING}
+        assert kinds <= {MotionKind.TURNING, MotionKind.SLIDING}
         assert len(run.impacts) >= 4
 
 

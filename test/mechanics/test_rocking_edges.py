@@ -10,10 +10,9 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from impact_predictor import cylinder, plate
-from impact_predictor.mechanics.motion import Motion
-from impact_predictor.mechanics.rocking import next_strike, rock, standing
-from impact_predictor.mechanics.rocking.tail import Tail
-from impact_predictor.mechanics.support import Felt, FixedSupport, Wave, harmonic_support
+from impact_predictor.mechanics.motion import MotionKind, next_strike, rock, standing
+from impact_predictor.mechanics.motion.accumulation import FollowedImpact, ImpactSequence
+from impact_predictor.mechanics.motion.support import FixedSupport, FrameAcceleration, Wave, harmonic_support
 
 G = 9.81
 
@@ -80,7 +79,7 @@ class Recoil:
     def __init__(self, start: float) -> None:
         self.start = start
 
-    def felt(self, time: float) -> Felt:
+    def felt(self, time: float) -> FrameAcceleration:
         return 0.0, math.sin(self.PACE * max(0.0, time - self.start)), 0.0, 0.0
 
     def away(self, time: float) -> float:
@@ -112,7 +111,7 @@ class Swell:
     def __init__(self, least: float, part: float) -> None:
         self.least, self.period = least, part * 2.0 * math.pi / self.pace
 
-    def felt(self, time: float) -> Felt:
+    def felt(self, time: float) -> FrameAcceleration:
         swing = 0.5 * (1.0 - math.cos(self.pace * (time - 0.05)))
         return 0.0, -self.least - (G - self.least) * swing, 0.0, 0.0
 
@@ -127,7 +126,7 @@ def test_a_contact_that_lifts_off_within_a_step_is_not_missed() -> None:
         assert found.motion is finely.motion
         assert found.time == pytest.approx(finely.time, abs=1e-7)  # grazing lift-offs amplify what is left
         motions.append(found.motion)
-    assert set(motions) == {Motion.TURNING, Motion.FLIGHT}
+    assert set(motions) == {MotionKind.TURNING, MotionKind.FLIGHT}
 
 
 @pytest.mark.parametrize(("edge", "states"), [(0, ["SO", "+O"]), (1, ["OS", "O-"])])
@@ -174,26 +173,27 @@ def _slips_where_the_cone_ends(edge: int, angle: float, omega: float, states: li
     )
 
 
-def tail_of(slips: float, now: float, count: int) -> list[object]:
-    """What a tail says after each of some impacts, each the one before halved; the slip falls to `slips` at its end."""
-    tail = Tail(time=0.3, speed=3.0, length=1.0, tolerance=1e-12)
+def limits_of(slips: float, now: float, count: int) -> list[object]:
+    """What is said after each of some impacts, each the one before halved; the slip falls to `slips` at their end."""
+    sequence = ImpactSequence(time=0.3, speed=3.0, length=1.0, tolerance=1e-12)
     found: list[object] = []
     for k in range(count):
         shrinks = 0.5**k
-        found.append(tail.add((0, 1, 2), 0.01 * shrinks, (0.0, shrinks, 0.0, slips + (now - slips) * shrinks)))
+        place = 0.0, shrinks, 0.0, slips + (now - slips) * shrinks
+        found.append(sequence.add(FollowedImpact((0, 1, 2), 0.01 * shrinks, place)))
     return found
 
 
 def test_impacts_are_summed_while_the_slip_goes_on() -> None:
-    assert tail_of(slips=0.9, now=1.0, count=8)[-1] is not None
+    assert limits_of(slips=0.9, now=1.0, count=8)[-1] is not None
 
 
 def test_impacts_are_not_summed_across_the_end_of_the_slip() -> None:
     """The friction that acts until the impacts end would reverse the slip: so it stops before, and all is different."""
-    assert tail_of(slips=-0.1, now=30.0, count=8) == [None] * 8
+    assert limits_of(slips=-0.1, now=30.0, count=8) == [None] * 8
 
 
 def test_impacts_are_not_summed_while_they_take_most_of_the_slip() -> None:
-    found = tail_of(slips=0.1, now=30.0, count=12)
+    found = limits_of(slips=0.1, now=30.0, count=12)
     # After the k-th impact what is left, 0.1, is less than half of 0.1 + 29.9/2^(k-1) until k is 10.
     assert [limit is None for limit in found] == [True] * 9 + [False] * 3

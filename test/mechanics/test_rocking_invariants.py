@@ -15,10 +15,9 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from impact_predictor import Contact, Flag, TwoPointBody, cylinder, plate
-from impact_predictor.mechanics.motion import PlanarState
-from impact_predictor.mechanics.rocking import End, Run, rock, standing
-from impact_predictor.mechanics.rocking.bodies import shape_of
-from impact_predictor.mechanics.support import FixedSupport, Support, Wave, harmonic_support
+from impact_predictor.mechanics.motion import End, PlanarState, Trajectory, rock, standing
+from impact_predictor.mechanics.motion.equations import rocking_body
+from impact_predictor.mechanics.motion.support import FixedSupport, Support, Wave, harmonic_support
 
 G = 9.81
 frictions = st.one_of(st.sampled_from([0.0, 0.3, 1.0, 1e3]), st.floats(0.02, 3.0))
@@ -76,7 +75,7 @@ def size_of(body: TwoPointBody) -> float:
     return math.hypot(body.new.x - body.old.x, body.new.y - body.old.y)
 
 
-def energy(run: Run, state: PlanarState) -> float:
+def energy(run: Trajectory, state: PlanarState) -> float:
     gx, gy, _, _ = run.support.felt(0.0)
     body = run.body
     kinetic = 0.5 * (state.vx**2 + state.vy**2 + body.inertia / body.mass * state.omega**2)
@@ -106,7 +105,7 @@ def test_contacts_never_go_into_the_support(data: st.DataObject) -> None:
     body = data.draw(bodies)
     support: Support = data.draw(st.one_of(fixed, moving))
     run = rock(body, data.draw(starts(body)), support, duration=5.0)
-    shape = shape_of(body)
+    shape = rocking_body(body)
     states = run.state(np.linspace(0.0, run.time, 300))
     far = size_of(body) + np.abs(states.x).max()
     for x, y, angle, *_ in np.array(states).T:

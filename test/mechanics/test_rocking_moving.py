@@ -12,9 +12,8 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from impact_predictor import Contact, InputError, TwoPointBody, cylinder, plate
-from impact_predictor.mechanics.motion import PlanarState
-from impact_predictor.mechanics.rocking import End, Run, rock, standing
-from impact_predictor.mechanics.support import (
+from impact_predictor.mechanics.motion import End, PlanarState, Trajectory, rock, standing
+from impact_predictor.mechanics.motion.support import (
     FixedSupport,
     MovingSupport,
     SupportMotion,
@@ -38,7 +37,7 @@ DECK = harmonic_support(
 ).at(4.0, 2.5)
 
 
-def worst_phase(run: Run, shortest: float = 1e-3) -> float:
+def worst_phase(run: Trajectory, shortest: float = 1e-3) -> float:
     """How far phases that begin alike end apart, integrated in the world and as followed."""
     worst = 0.0
     for start, end, states in run.phases:

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from impact_predictor.mechanics.rocking import End
-from impact_predictor.mechanics.support import MovingSupport, Wave, harmonic_support
+from impact_predictor.mechanics.motion import End
+from impact_predictor.mechanics.motion.support import MovingSupport, Wave, harmonic_support
 from impact_predictor.prediction.scene import MovingDeck, Scene
 from impact_predictor.prediction.types import Vector3
 from impact_predictor.report.deck_pictures import (

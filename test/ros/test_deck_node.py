@@ -13,7 +13,7 @@ import pytest
 
 from impact_predictor.bags.read import read_messages, topics
 from impact_predictor.bags.replay import replay
-from impact_predictor.mechanics.support import Wave, harmonic_support
+from impact_predictor.mechanics.motion.support import Wave, harmonic_support
 from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction.inputs import inputs_of
 from impact_predictor.prediction.scene import scenes_of

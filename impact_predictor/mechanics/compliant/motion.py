@@ -14,7 +14,7 @@ import numpy as np
 from scipy import integrate
 
 from ..motion import PlanarState
-from ..support import FixedSupport, Support
+from ..motion.support import FixedSupport, Support
 from ..types import Contact, TwoPointBody, Vector
 from .force import Compliance, damping_ratio, force, slopes
 from .integrator import METHODS, Array, Status, run

@@ -15,12 +15,8 @@ from __future__ import annotations
 
 from math import cos, floor, hypot, inf, pi
 
-from ...mechanics.motion import Fall, Motion, PlanarState
-from ...mechanics.rocking import next_strike
-from ...mechanics.rocking.arcs import Happening
-from ...mechanics.rocking.flight import Flight
-from ...mechanics.rocking.points import Points
-from ...mechanics.support import Felt, at_place
+from ...mechanics.motion import Fall, MotionKind, PlanarState, next_strike
+from ...mechanics.motion.support import FrameAcceleration, at_place
 from ...mechanics.types import Contact, TwoPointBody
 from ..planar import ORIGIN, ImpactPlane, Posture, center_of
 from ..scene import Scene
@@ -40,11 +36,6 @@ NODES = tuple(cos(k * pi / 14.0) for k in (5, 3, 1))
 
 SQUARES = tuple(node * node for node in NODES)
 
-TOLERANCE = 1e-9
-"""Error allowed to a step of a flight, relative to what happens in it; as that of `next_strike`."""
-
-MOST_STEPS = 1000
-
 
 class PlanarSupport:
     """A moving support as an impact plane sees it, from `age` s before the moment on.
@@ -63,9 +54,9 @@ class PlanarSupport:
         self._axis = cross(normal, ahead)
         self._velocity = times(self._axis, lateral)
         self.gravity = hypot(*moment.felt.gravity)
-        self._parts: dict[int, tuple[Felt, ...]] = {}
+        self._parts: dict[int, tuple[FrameAcceleration, ...]] = {}
 
-    def felt(self, time: float) -> Felt:
+    def felt(self, time: float) -> FrameAcceleration:
         """Acceleration felt at rest at the origin, ahead and along the normal; rate and angular acceleration, CCW.
 
         From polynomials through seven values for each quarter of a second, because a motion asks a hundred times. Of
@@ -77,13 +68,13 @@ class PlanarSupport:
             part = self._parts[number] = self._fit((number + 0.5) * PART)
         return at_place(part, (time / PART - number) * 2.0 - 1.0)
 
-    def felt_exactly(self, time: float) -> Felt:
+    def felt_exactly(self, time: float) -> FrameAcceleration:
         felt = self._later(time - self._age)
         pull = pull_at(felt, self._place, self._velocity)
         axis = self._axis
         return dot(self._ahead, pull), dot(self._normal, pull), -dot(axis, felt.angular), -dot(axis, felt.turning)
 
-    def _fit(self, middle: float) -> tuple[Felt, ...]:
+    def _fit(self, middle: float) -> tuple[FrameAcceleration, ...]:
         """Coefficients of the polynomials about the middle of a part, the highest power first."""
         half, felt = 0.5 * PART, self.felt_exactly
         steps = [half * node for node in NODES]
@@ -138,36 +129,17 @@ def fall_over(
     ahead = to_world(posture.axes, plane.ahead)
     support = PlanarSupport(moment, age, place, ahead, scene.normal, dot(plane.axis, posture.velocity))
     new = Contact(*plane.new, scene.friction)
+    duration = scene.horizon + age
     if plane.old is None:
-        return flight_of(scene.mass, inertia, new, start, support, scene.horizon + age)
+        fall = next_strike(TwoPointBody(scene.mass, inertia, None, new), start, None, support, duration)
+        return never(start) if fall is None else fall._replace(point=0)
     old = Contact(*plane.old, scene.friction)
     fall = None
     if hypot(new.x - old.x, new.y - old.y) > APART * (hypot(new.x, new.y) + hypot(old.x, old.y)):
-        fall = next_strike(TwoPointBody(scene.mass, inertia, old, new), start, 0, support, scene.horizon + age)
+        fall = next_strike(TwoPointBody(scene.mass, inertia, old, new), start, 0, support, duration)
     return never(start) if fall is None else fall
-
-
-def flight_of(
-    mass: float, inertia: float, new: Contact, start: PlanarState, support: PlanarSupport, duration: float
-) -> Fall:
-    """When a body in flight touches with its contact `new`, its point 0."""
-    # A shape has two contacts: the one opposite to this one is above it until this one touches.
-    shape = Points(TwoPointBody(mass, inertia, new._replace(x=-new.x, y=-new.y), new))
-    state = start._replace(angle=shape.own_angle(start.angle))
-    gaps = [max(0.0, shape.gap(i, state.x, state.y, state.angle)) for i in (0, 1)]
-    if gaps[1] == 0.0 and shape.gap_rate(1, state) < 0.0:
-        return Fall(0.0, 0, start, Motion.FLIGHT)
-    try:
-        flight = Flight(shape, support, 0.0, state, (gaps[0], gaps[1]), TOLERANCE)
-        landing = flight.follow(duration, MOST_STEPS)
-    except ArithmeticError:  # numbers so large or so small that their products are none
-        return never(start)
-    if landing.happening is not Happening.TOUCHES or landing.contact != 1:
-        return never(start)
-    turned = landing.state.angle - state.angle
-    return Fall(landing.time, 0, landing.state._replace(angle=start.angle + turned), Motion.FLIGHT)
 
 
 def never(state: PlanarState) -> Fall:
     """No touchdown."""
-    return Fall(inf, -1, state, Motion.FLIGHT)
+    return Fall(time=inf, point=-1, state=state, motion=MotionKind.FLIGHT)

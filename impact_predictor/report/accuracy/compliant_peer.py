@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 from ...mechanics.compliant.impact import compliant_impact
 from ...mechanics.compliant.integrator import Status
 from ...mechanics.compliant.motion import compliant_motion
-from ...mechanics.support import FixedSupport
+from ...mechanics.motion.support import FixedSupport
 from ...mechanics.types import Contact, Twist, TwoPointBody
 from .impact_scenes import After, Strike
 from .methods import Method, over

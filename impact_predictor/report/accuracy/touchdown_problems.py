@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from random import Random
 
-from ...mechanics.motion import Motion
+from ...mechanics.motion import MotionKind
 from .touchdown_equations import slip_of, stance_of
 from .touchdown_scenes import SCENES, SEED, Falling
 
@@ -21,7 +21,7 @@ def falls(name: str, count: int) -> list[Falling]:
     source, found = Random(f"{SEED} {name}"), list[Falling]()
     while len(found) < count:
         fall = draw(source, len(found))
-        if motion is Motion.FLIGHT or all_the_way(fall):
+        if motion is MotionKind.FLIGHT or all_the_way(fall):
             found.append(fall)
     return found
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from random import Random
 from typing import NamedTuple
 
-from ...mechanics.motion import Motion, PlanarState
+from ...mechanics.motion import MotionKind, PlanarState
 from ...mechanics.types import Twist, Vector
 from .rows import TOUCHDOWN, Scene
 
@@ -120,62 +120,62 @@ def thrown(source: Random, number: int) -> Falling:
 
 QUADRATURE = "quadrature of the energy integral in 40 digits"
 
-SCENES: dict[str, tuple[str, str, str, Callable[[Random, int], Falling], Motion]] = {
+SCENES: dict[str, tuple[str, str, str, Callable[[Random, int], Falling], MotionKind]] = {
     "rod": (
         "Rod over two supports",
         "A rod of 0.4 m turns about one of two supports, 0.1 m from its middle, and falls onto the other.",
         QUADRATURE,
         turning(ROD),
-        Motion.TURNING,
+        MotionKind.TURNING,
     ),
     "plate": (
         "Crate on a floor",
         "A crate of 1 m by 0.6 m has been tipped about an edge and falls back.",
         QUADRATURE,
         turning(CRATE),
-        Motion.TURNING,
+        MotionKind.TURNING,
     ),
     "cylinder": (
         "Cylinder between edges",
         "A cylinder of 0.1 m radius rolls over an edge onto the next one, 80 degrees apart.",
         QUADRATURE,
         turning(CYLINDER),
-        Motion.TURNING,
+        MotionKind.TURNING,
     ),
     "slender": (
         "Slender plate",
         "A plate a hundred times as long as high falls flat.",
         QUADRATURE,
         turning(rectangle(1.0, 0.01)),
-        Motion.TURNING,
+        MotionKind.TURNING,
     ),
     "squat": (
         "Tall block",
         "A block eight times as high as long rocks on its narrow foot.",
         QUADRATURE,
         turning(rectangle(0.2, 1.6)),
-        Motion.TURNING,
+        MotionKind.TURNING,
     ),
     "balance": (
         "Out of balance",
         "A crate is released 1e-6 to 0.1 rad from its balance.",
         QUADRATURE,
         leaving_balance,
-        Motion.TURNING,
+        MotionKind.TURNING,
     ),
     "sliding": (
         "Sliding stance",
         "The edge on which a crate stands slips while the crate falls, friction 0.2.",
         "extrapolation in 40 digits",
         slipping,
-        Motion.SLIDING,
+        MotionKind.SLIDING,
     ),
     "flight": (
         "Flight",
         "A crate is thrown, turning; the first of its corners strikes.",
         "root of the corner's path in 40 digits",
         thrown,
-        Motion.FLIGHT,
+        MotionKind.FLIGHT,
     ),
 }
 """Title, description, reference, what draws a problem, and the motion that leads to the touchdown."""

@@ -8,8 +8,7 @@ from typing import Any, Final
 from rich.console import Console
 from rich.table import Table
 
-from ...mechanics.motion import PlanarState
-from ...mechanics.rocking import Accumulation, End, Run
+from ...mechanics.motion import Accumulation, End, PlanarState, Trajectory
 from ...mechanics.types import TwoPointBody
 from ...scenarios.rocking import Rocking
 from ..table import plain_table, show
@@ -29,7 +28,7 @@ MOST_ROWS: Final = 12
 """Impacts that are listed; the others of an accumulation say no more."""
 
 
-def as_json(run: Run) -> dict[str, Any]:
+def as_json(run: Trajectory) -> dict[str, Any]:
     """A motion as JSON: times in s, angular velocities as magnitudes in rad/s.
 
     `accumulation_time` is when impacts last accumulated so that both contacts stayed closed; null if they never did.
@@ -64,7 +63,7 @@ def print_motion(console: Console, rocking: Rocking) -> None:
         _say(console, sentence)
 
 
-def impact_table(run: Run) -> Table:
+def impact_table(run: Trajectory) -> Table:
     """The first impacts of a motion."""
     table = plain_table()
     rounding = ROUNDING * max([_turning(strike.before, run.body) for strike in run.impacts])
@@ -95,7 +94,7 @@ def _turning(state: PlanarState, body: TwoPointBody) -> float:
     return abs(state.omega) + hypot(state.vx, state.vy) / hypot(body.new.x, body.new.y)
 
 
-def sentences(run: Run) -> list[str]:
+def sentences(run: Trajectory) -> list[str]:
     """What came after the impacts that are listed, and how the motion ended."""
     said = []
     more = len(run.impacts) - MOST_ROWS

@@ -16,9 +16,8 @@ from numpy.typing import NDArray
 
 from ...errors import InputError
 from ...mechanics.bodies import wedged
-from ...mechanics.motion import PlanarState
-from ...mechanics.rocking import End, Run, Strike, rock, standing
-from ...mechanics.support import MovingSupport
+from ...mechanics.motion import End, PlanarState, RockingImpact, Trajectory, rock, standing
+from ...mechanics.motion.support import MovingSupport
 from ...mechanics.types import Contact, TwoPointBody, Vector
 from ...prediction.planar import inertia_about
 from ...prediction.scene import Scene
@@ -212,11 +211,11 @@ def _later(support: MovingSupport, since: float) -> MovingSupport:
     return MovingSupport(lambda time: support.motion(since + time), support.period, support.gravity)
 
 
-def _state_at(run: Run, since: float, times: NDArray[np.float64]) -> PlanarState:
+def _state_at(run: Trajectory, since: float, times: NDArray[np.float64]) -> PlanarState:
     return run.state(times - since)
 
 
-def _onsets(name: str, run: Run, rested: bool, since: float) -> Iterator[TrueOnset]:
+def _onsets(name: str, run: Trajectory, rested: bool, since: float) -> Iterator[TrueOnset]:
     """Where a unit left its rest; `rested`: whether it was at rest right before the run."""
     for phase in run.phases:
         still = phase.states == STILL
@@ -236,7 +235,7 @@ class Borders:
     def __init__(self) -> None:
         self._known: dict[tuple[float, ...], float] = {}
 
-    def of(self, strike: Strike) -> float:
+    def of(self, strike: RockingImpact) -> float:
         """See `truth.border_of`."""
         before = strike.outcome.before
         assert before is not None

@@ -19,10 +19,8 @@ from ...errors import InputError
 from ...mechanics.compliant.integrator import Status
 from ...mechanics.compliant.motion import CompliantMotion, compliant_motion
 from ...mechanics.impact import solve_impact
-from ...mechanics.motion import PlanarState
-from ...mechanics.rocking import End
-from ...mechanics.rocking.flight import from_world
-from ...mechanics.support import MovingSupport
+from ...mechanics.motion import End, PlanarState
+from ...mechanics.motion.support import MovingSupport, from_world
 from ...mechanics.types import Contact, Mode, Twist, TwoPointBody
 from ...stamps import NANOSECONDS
 from ..sensors import ACROSS

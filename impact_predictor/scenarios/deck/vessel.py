@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from ...bags.read import read_messages, topics
 from ...errors import InputError
-from ...mechanics.support import MovingSupport, SupportMotion, sampled_support
+from ...mechanics.motion.support import MovingSupport, SupportMotion, sampled_support
 from ...ros.messages import ODOMETRY, MalformedMessage, decode_odometry
 from ...stamps import NANOSECONDS
 from .sea import Waves

@@ -11,10 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import InputError
-from ...mechanics.motion import PlanarState
-from ...mechanics.rocking import End
-from ...mechanics.rocking.flight import in_world
-from ...mechanics.support import MovingSupport
+from ...mechanics.motion import End, PlanarState
+from ...mechanics.motion.support import MovingSupport, in_world
 from ...prediction.scene import Scene, shared_by
 from ..record import Sensors, deck_messages, messages_in, write_messages
 from ..truth import ONSET_TOPIC, TRUTH_TOPIC, TrueImpact, TrueOnset

@@ -21,10 +21,15 @@ from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
 from impact_predictor import Contact, InputError, TwoPointBody, cylinder, plate, solve_impact
-from impact_predictor.mechanics.motion import PlanarState
-from impact_predictor.mechanics.rocking import rock, standing
-from impact_predictor.mechanics.rocking.flight import from_world, in_world
-from impact_predictor.mechanics.support import MovingSupport, SupportMotion, Wave, harmonic_support
+from impact_predictor.mechanics.motion import PlanarState, rock, standing
+from impact_predictor.mechanics.motion.support import (
+    MovingSupport,
+    SupportMotion,
+    Wave,
+    from_world,
+    harmonic_support,
+    in_world,
+)
 from impact_predictor.mechanics.types import Outcome, Twist
 from impact_predictor.prediction.deck.frame import post_impact
 from impact_predictor.prediction.deck.motion import ahead as constant

@@ -11,8 +11,8 @@ import pytest
 
 from impact_predictor.errors import InputError
 from impact_predictor.mechanics.bodies import cylinder, plate
-from impact_predictor.mechanics.rocking import End, rock
-from impact_predictor.mechanics.support import FixedSupport, MovingSupport, Wave, harmonic_support
+from impact_predictor.mechanics.motion import End, rock
+from impact_predictor.mechanics.motion.support import FixedSupport, MovingSupport, Wave, harmonic_support
 from impact_predictor.prediction.scene import MovingDeck, Scene
 from impact_predictor.scenarios.deck import cargo as deck_module
 from impact_predictor.scenarios.deck.cargo import CargoUnit, Span, follow, unit_of, units_of

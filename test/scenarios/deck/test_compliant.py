@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from impact_predictor.errors import InputError
-from impact_predictor.mechanics.rocking import End, standing
-from impact_predictor.mechanics.support import MovingSupport, Wave, harmonic_support
+from impact_predictor.mechanics.motion import End, standing
+from impact_predictor.mechanics.motion.support import MovingSupport, Wave, harmonic_support
 from impact_predictor.prediction.scene import MovingDeck, Scene
 from impact_predictor.scenarios.deck import compliant as compliant_deck
 from impact_predictor.scenarios.deck.cargo import follow, unit_of

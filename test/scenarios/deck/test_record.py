@@ -10,8 +10,8 @@ import pytest
 
 from impact_predictor.bags.read import read_messages, topics
 from impact_predictor.errors import InputError
-from impact_predictor.mechanics.rocking import End
-from impact_predictor.mechanics.support import MovingSupport, Wave, harmonic_support
+from impact_predictor.mechanics.motion import End
+from impact_predictor.mechanics.motion.support import MovingSupport, Wave, harmonic_support
 from impact_predictor.prediction.scene import MovingDeck, Scene
 from impact_predictor.prediction.types import Imu, Sample
 from impact_predictor.prediction.vectors import axes_of

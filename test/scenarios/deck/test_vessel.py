@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from impact_predictor.errors import InputError
-from impact_predictor.mechanics.support import Wave, harmonic_support
+from impact_predictor.mechanics.motion.support import Wave, harmonic_support
 from impact_predictor.scenarios.deck.sea import SeaState, Waves, waves_of
 from impact_predictor.scenarios.deck.vessel import ResponseTable, SecondOrder, Vessel, deck_in, read_vessel
 

@@ -1,11 +1,11 @@
 """The next touchdown of a rigid planar body over a fixed straight support.
 
 The support is the line y = 0, x along it and y out of it; gravity is uniform and may have a part along the support (a
-slope). A body moves in stretches, and each ends with an event:
+slope). A body moves in phasees, and each ends with an event:
 
 - flight: the mass centre is thrown, the angular velocity stays; the first point to reach the support strikes;
-- turning about a stance contact that sticks (`turning_stance`);
-- sliding over a stance contact that slips (`sliding_stance`).
+- turning about a stance contact that sticks (`pivot`);
+- sliding over a stance contact that slips (`slip`).
 
 Where a slipping contact jams (Painleve: no finite reaction keeps it on the support) its slip stops at once by a
 tangential impact, and the body goes on turning about it.
@@ -17,33 +17,22 @@ import math
 from enum import IntEnum
 from typing import NamedTuple
 
-from .first_root import first_descent
-from .sliding_stance import slide
-from .stretch import End
-from .turning_stance import turn
-from .types import Vector
+from ..types import Vector
+from .events import Event, first_descent
+from .pivot import turn
+from .slip import slide
+from .support import PlanarState
 
 _ROUNDING = 8.0 * 2.0**-52
 """A few units in the last place of a value that is a sum of a few terms."""
 _FULL_TURN = 2.0 * math.pi
 _SLIP_ROUNDING = 1e-12
 """A slip this small, relative to the speeds it is the difference of, is none: states come through conversions."""
-_MAX_STRETCHES = 32
+_MAX_PHASES = 32
 """More has only a body that hangs through its support and swings there."""
 
 
-class PlanarState(NamedTuple):
-    """Place of the mass centre (m), angle (rad), its velocity (m/s) and angular velocity (rad/s), CCW positive."""
-
-    x: float
-    y: float
-    angle: float
-    vx: float
-    vy: float
-    omega: float
-
-
-class Motion(IntEnum):
+class MotionKind(IntEnum):
     """How a body moves."""
 
     FLIGHT = 0
@@ -64,7 +53,7 @@ class Fall(NamedTuple):
     time: float
     point: int
     state: PlanarState
-    motion: Motion
+    motion: MotionKind
 
 
 _Arm = tuple[float, float, float, int]
@@ -111,43 +100,36 @@ def next_touchdown(
         slip = 0.0
     direction = (slip > 0.0) - (slip < 0.0)
 
-    for _ in range(_MAX_STRETCHES):
+    for _ in range(_MAX_PHASES):
         travel, next_points = _ahead(arms, start, turned)
         if direction:
-            stretch = slide(
-                (arm_x, arm_y),
-                omega,
-                slip,
-                direction * friction,
-                travel,
-                rho_squared,
-                gravity,
-                horizon - time,
-                tolerance,
-            )
+            drag, left = direction * friction, horizon - time
+            phase = slide((arm_x, arm_y), omega, slip, drag, travel, rho_squared, gravity, left, tolerance)
         else:
-            stretch = turn((arm_x, arm_y), omega, travel, rho_squared, friction, gravity)
-        time += stretch.time
-        if stretch.end is End.NEVER or not time <= horizon:
+            phase = turn((arm_x, arm_y), omega, travel, rho_squared, friction, gravity)
+        time += phase.time
+        if phase.event is Event.NEVER or not time <= horizon:
             break
-        turned += stretch.turned
-        angle, omega, slip, contact_x = start + turned, stretch.omega, stretch.slip, contact_x + stretch.moved
+        turned += phase.turned
+        angle, omega, slip, contact_x = start + turned, phase.omega, phase.slip, contact_x + phase.moved
         arm_x, arm_y = _from_contact(foot_x, foot_y, angle)
-        now = PlanarState(contact_x + arm_x, arm_y, angle, slip - omega * arm_y, omega * arm_x, omega)
-        motion = Motion.SLIDING if direction else Motion.TURNING
-        if stretch.end is End.TOUCHES:
-            return Fall(time, next_points[stretch.direction > 0], now, motion)
-        if stretch.end is End.LIFTS:
+        vx, vy = slip - omega * arm_y, omega * arm_x
+        now = PlanarState(x=contact_x + arm_x, y=arm_y, angle=angle, vx=vx, vy=vy, omega=omega)
+        motion = MotionKind.SLIDING if direction else MotionKind.TURNING
+        if phase.event is Event.TOUCHES:
+            return Fall(time=time, point=next_points[phase.direction > 0], state=now, motion=motion)
+        if phase.event is Event.LIFTS:
             fall = _fly(now, points, gravity, horizon - time, stance)
-            return Fall(time + fall.time, fall.point, state if fall.point < 0 else fall.state, fall.motion)
-        if stretch.end is End.TURNS:
+            return fall._replace(time=time + fall.time, state=state if fall.point < 0 else fall.state)
+        if phase.event is Event.TURNS_BACK:
             continue
         start, turned = angle, 0.0
-        if stretch.end is End.JAMS:
+        if phase.event is Event.JAMS:
             # The impulse acts at the contact, so the angular momentum about it stays.
             omega -= arm_y * slip / (rho_squared + arm_x * arm_x + arm_y * arm_y)
-        direction, slip = (stretch.direction if stretch.end is End.SLIPS else 0), 0.0
-    return Fall(math.inf, -1, state, Motion.SLIDING if direction else Motion.TURNING)
+        direction, slip = (phase.event is Event.SLIPS) - (phase.event is Event.SLIPS_BACK), 0.0
+    motion = MotionKind.SLIDING if direction else MotionKind.TURNING
+    return Fall(time=math.inf, point=-1, state=state, motion=motion)
 
 
 def _from_contact(foot_x: float, foot_y: float, angle: float) -> Vector:
@@ -194,22 +176,19 @@ def _fly(
     sine, cosine = math.sin(angle), math.cos(angle)
     time, struck = math.inf, -1
     for index, (point_x, point_y) in enumerate(points):
-        wave = point_x * sine + point_y * cosine, point_x * cosine - point_y * sine, omega
-        strikes = first_descent(y, vy, gravity[1], (wave,), min(time, horizon), index == leaving)
+        sinusoid = point_x * sine + point_y * cosine, point_x * cosine - point_y * sine, omega
+        strikes = first_descent(y, vy, gravity[1], (sinusoid,), min(time, horizon), index == leaving)
         if strikes < time:
             time, struck = strikes, index
     if struck < 0:
-        return Fall(time, struck, state, Motion.FLIGHT)
-    return Fall(
-        time,
-        struck,
-        PlanarState(
-            x + (vx + 0.5 * gravity[0] * time) * time,
-            y + (vy + 0.5 * gravity[1] * time) * time,
-            angle + omega * time,
-            vx + gravity[0] * time,
-            vy + gravity[1] * time,
-            omega,
-        ),
-        Motion.FLIGHT,
+        return Fall(time=time, point=struck, state=state, motion=MotionKind.FLIGHT)
+    gx, gy = gravity
+    now = PlanarState(
+        x=x + (vx + 0.5 * gx * time) * time,
+        y=y + (vy + 0.5 * gy * time) * time,
+        angle=angle + omega * time,
+        vx=vx + gx * time,
+        vy=vy + gy * time,
+        omega=omega,
     )
+    return Fall(time=time, point=struck, state=now, motion=MotionKind.FLIGHT)

@@ -17,35 +17,33 @@ _FOLLOWED = 8
 _SLOWEST = 0.9999
 """A factor nearer to 1 is not told from 1."""
 
-Values = tuple[float, float, float, float]
-"""u (rad), w (rad/s), z (m) and s (m/s) after an impact."""
 
+class FollowedImpact(NamedTuple):
+    """An impact, `since` s after the one before: `kind` is old contact (-1: none), new contact and which ones leave.
 
-Key = tuple[int, int, int]
-"""Old contact (-1: none), new contact and mode of an impact."""
+    `place` is u (rad), w (rad/s), z (m) and s (m/s) after it.
+    """
 
-
-class _Row(NamedTuple):
-    key: Key
+    kind: tuple[int, int, int]
     since: float
-    values: Values
+    place: tuple[float, float, float, float]
 
 
 class Limit(NamedTuple):
     """Where impacts accumulate.
 
-    Time `after` the last one and a bound on its `error` (s); the values there; the contacts that are closed then; how
+    Time `after` the last one and a bound on its `error` (s); the place there; the contacts that are closed then; how
     many impacts were seen.
     """
 
     after: float
     error: float
-    values: Values
+    place: tuple[float, float, float, float]
     contacts: tuple[int, ...]
     impacts: int
 
 
-class Tail:
+class ImpactSequence:
     """Watches the impacts of a body for an accumulation."""
 
     def __init__(self, time: float, speed: float, length: float, tolerance: float) -> None:
@@ -55,35 +53,33 @@ class Tail:
 
     def forget(self) -> None:
         """Begin a new sequence."""
-        self.rows: list[_Row] = []
+        self.rows: list[FollowedImpact] = []
         self.impacts = 0
 
-    def add(self, key: Key, since: float, values: Values) -> Limit | None:
-        """One more impact, `since` s after the one before; the limit when the rest can be summed."""
+    def add(self, impact: FollowedImpact) -> Limit | None:
+        """One more impact; the limit when the rest can be summed."""
         rows = self.rows
-        rows.append(_Row(key, since, values))
+        rows.append(impact)
         self.impacts += 1
         if len(rows) > _KEPT:
             del rows[0]
         if self.impacts < _FOLLOWED:
             return None
         for period in range(1, _LONGEST_CYCLE + 1):
-            if len(rows) > 3 * period and all(rows[-k].key == rows[-k - period].key for k in range(1, 2 * period + 1)):
+            again = range(1, 2 * period + 1)
+            if len(rows) > 3 * period and all(rows[-k].kind == rows[-k - period].kind for k in again):
                 return self._limit(period)
         return None
 
     def _limit(self, period: int) -> Limit | None:
         rows = self.rows
-        cycles = [
-            sum(row.since for row in rows[len(rows) - (k + 1) * period : len(rows) - k * period]) for k in range(3)
-        ]
-        last, before, first = cycles
+        first, before, last = (self._time_of(len(rows) - k * period, period) for k in (3, 2, 1))
         if not 0.0 < last < _SLOWEST * before or not before < _SLOWEST * first:
             return None
         part, part_before = last / (before - last), before / (first - before)
         after = last * part
         error = abs(after + last - before * part_before) * max(1.0, part)
-        now, once, twice = (rows[-1 - k * period].values for k in range(3))
+        now, once, twice = (rows[-1 - k * period].place for k in range(3))
         limits = [a + (a - b) * part for a, b in zip(now, once, strict=True)]
         earlier = [b + (b - c) * part_before for b, c in zip(once, twice, strict=True)]
         off = [abs(a - b) * max(1.0, part) for a, b in zip(limits, earlier, strict=True)]
@@ -97,5 +93,13 @@ class Tail:
             s = 0.0
         elif s * now[3] < 0.0 or abs(s) < 0.5 * abs(now[3]):
             return None  # the slip ends before the impacts do
-        contacts = {contact for row in rows[-period:] for contact in row.key[:2] if contact >= 0}
-        return Limit(after, error, (u, w, z, s), tuple(sorted(contacts)), self.impacts)
+        contacts = {contact for row in rows[-period:] for contact in row.kind[:2] if contact >= 0}
+        place = u, w, z, s
+        return Limit(after=after, error=error, place=place, contacts=tuple(sorted(contacts)), impacts=self.impacts)
+
+    def _time_of(self, start: int, period: int) -> float:
+        """How long a cycle takes that starts with a row."""
+        time = 0.0
+        for row in self.rows[start : start + period]:
+            time += row.since
+        return time

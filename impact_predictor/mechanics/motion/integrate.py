@@ -1,4 +1,4 @@
-"""Steps of two coupled coordinates: turning about a contact, and slip.
+"""Steps of two coupled coordinates, such as turning about a contact and slip, and dense output of them.
 
 Gragg's midpoint rule with extrapolation (Bulirsch and Stoer, Numer. Math. 8, 1966): the order rises until a step
 settles, so that the tiny hops of accumulating impacts cost a few evaluations and long arcs take long steps, and
@@ -22,19 +22,15 @@ _GAINS = tuple(
 """What the difference of two results of extrapolation counts in the next one (Aitken and Neville, in the square)."""
 GROWTH = (0.3, 3.0, 4.0, 3.0, 2.0, 1.3, 0.9)
 """Factor on the next step, by the rows of extrapolation that this one took (0: it did not settle)."""
-_CLOSE = 1e-7
-"""After a Newton step this small, relative to the root, what is left is its square."""
-
 NEAR = 1e-6
 """Way of a nudge, relative to the step that it is within: its third power is rounding."""
 _ROUNDING = 1e-13
 """Part of the accelerations that is rounding: they may be small differences of large ones."""
+_DENSE = 1e-12
+"""Error of the rates of dense output, relative to the rates."""
 
 Rate = Callable[[float, float, float, float, float], tuple[float, float]]
 """Accelerations (turning, slip) from time, turned angle, its rate, slipped way and its rate."""
-
-Value = tuple[float, float]
-"""A condition, not negative until its event, and its rate (NaN where it is not known)."""
 
 
 class Instant(NamedTuple):
@@ -108,26 +104,10 @@ def nudged(rate: Rate, now: Instant, h: float) -> Instant:
     return Instant(time + h, u, w, z, s, *rate(time + h, u, w, z, s))
 
 
-def root(condition: Callable[[float], Value], high: float, guess: float) -> float:
-    """Where in 0..high a condition (value, rate) falls to zero: Newton's method, kept in its bracket by bisection."""
-    low = 0.0
-    for _ in range(60):
-        value, slope = condition(guess)
-        if value >= 0.0:
-            low = guess
-        else:
-            high = guess
-        better = guess - value / slope if slope < 0.0 else math.inf
-        if not low <= better <= high:
-            better = 0.5 * (low + high)
-        if abs(better - guess) <= _CLOSE * better:
-            return better
-        guess = better
-    return guess
-
-
-class Piece(NamedTuple):
-    """Dense output between two instants: polynomials of degree 8 in -1..1 through both ends and the middle."""
+class DensePiece(NamedTuple):
+    """Dense output between two instants: polynomials in -1..1 through the rates and accelerations at both ends and in
+    the middle, the highest power first, integrated from the start.
+    """
 
     start: float
     end: float
@@ -143,7 +123,7 @@ class Piece(NamedTuple):
         return u, (w / half if half else w), z, (s / half if half else s)
 
 
-def values_at(found: list[Piece], time: Any) -> tuple[Any, Any, Any, Any]:
+def values_at(found: list[DensePiece], time: Any) -> tuple[Any, Any, Any, Any]:
     """u, w, z and s at a time, or at an array of times, within pieces that follow each other."""
     if isinstance(time, (float, int)):
         return found[max(0, bisect_right(found, time, key=lambda piece: piece.start) - 1)].at(time)
@@ -156,16 +136,13 @@ def values_at(found: list[Piece], time: Any) -> tuple[Any, Any, Any, Any]:
     return values[0], values[1], values[2], values[3]
 
 
-def pieces(rate: Rate, now: Instant, end: Instant, scale: Vector, tolerance: float, depth: int = 5) -> list[Piece]:
+def pieces(rate: Rate, now: Instant, end: Instant, scale: Vector, tolerance: float, depth: int = 6) -> list[DensePiece]:
     """Polynomials from one instant of a step to another, halved until they agree with the step itself."""
     h, length = end.time - now.time, scale[0]
     middle, _ = step(rate, now, 0.5 * h, scale, tolerance)
-    piece = Piece(
-        now.time,
-        end.time,
-        _through(0.5 * h, (now.u, now.w, now.alpha), (middle.u, middle.w, middle.alpha), (end.u, end.w, end.alpha)),
-        _through(0.5 * h, (now.z, now.s, now.beta), (middle.z, middle.s, middle.beta), (end.z, end.s, end.beta)),
-    )
+    u = _through(0.5 * h, now.u, (now.w, middle.w, end.w), (now.alpha, middle.alpha, end.alpha))
+    z = _through(0.5 * h, now.z, (now.s, middle.s, end.s), (now.beta, middle.beta, end.beta))
+    piece = DensePiece(start=now.time, end=end.time, u=u, z=z)
     if depth:
         quarter, rows = step(rate, now, 0.25 * h, scale, tolerance)
         _, w, _, s = piece.at(quarter.time)
@@ -179,46 +156,19 @@ def pieces(rate: Rate, now: Instant, end: Instant, scale: Vector, tolerance: flo
     return [piece]
 
 
-_DENSE = 1e-12
-"""Error of the rates of dense output, relative to the rates."""
-_NOISE = 1e-12
-"""Rounding of places above this part of the way between them would spoil the rates."""
-
-
 def _through(
-    half: float, low: tuple[float, float, float], middle: tuple[float, float, float], high: tuple[float, float, float]
+    half: float, start: float, rates: tuple[float, float, float], accelerations: tuple[float, float, float]
 ) -> tuple[float, ...]:
-    """Coefficients, the highest power first, of the polynomial with three values, rates and accelerations."""
-    if 4.0 * math.ulp(middle[0]) > _NOISE * half * (abs(low[1]) + abs(high[1])):
-        return _through_rates(half, low, middle, high)
+    """Coefficients of the polynomial from a first value with these rates and accelerations at both ends and between."""
     square = half * half
-    c0, c1, c2 = middle[0], half * middle[1], 0.5 * square * middle[2]
-    rise, fall = high[0] - c0, low[0] - c0
-    a, b, c = 0.5 * (rise + fall) - c2, 0.5 * half * (high[1] - low[1]) - 2.0 * c2, 0.5 * square * (high[2] + low[2])
-    c -= 2.0 * c2
-    c8 = 0.125 * (c - 9.0 * b + 24.0 * a)
-    c6 = 0.5 * (b - 4.0 * a) - 2.0 * c8
-    c4 = a - c6 - c8
-    a, b, c = 0.5 * (rise - fall) - c1, 0.5 * half * (high[1] + low[1]) - c1, 0.5 * square * (high[2] - low[2])
-    c7 = 0.125 * (c - 7.0 * b + 15.0 * a)
-    c5 = 0.5 * (b - 3.0 * a) - 2.0 * c7
-    c3 = a - c5 - c7
-    return c8, c7, c6, c5, c4, c3, c2, c1, c0
-
-
-def _through_rates(
-    half: float, low: tuple[float, float, float], middle: tuple[float, float, float], high: tuple[float, float, float]
-) -> tuple[float, ...]:
-    """As `_through`, from the rates and accelerations and the first value alone."""
-    square = half * half
-    c0, c1 = half * middle[1], square * middle[2]
-    even, odd = 0.5 * half * (high[1] + low[1]) - c0, 0.5 * half * (high[1] - low[1]) - c1
-    even_rate, odd_rate = 0.5 * square * (high[2] - low[2]), 0.5 * square * (high[2] + low[2]) - c1
+    c0, c1 = half * rates[1], square * accelerations[1]
+    even, odd = 0.5 * half * (rates[2] + rates[0]) - c0, 0.5 * half * (rates[2] - rates[0]) - c1
+    even_rate = 0.5 * square * (accelerations[2] - accelerations[0])
+    odd_rate = 0.5 * square * (accelerations[2] + accelerations[0]) - c1
     c4, c5 = 0.5 * even_rate - even, 0.5 * (odd_rate - 3.0 * odd)
     c2, c3 = even - c4, odd - c5
     rising = c5 / 6.0, c4 / 5.0, c3 / 4.0, c2 / 3.0, c1 / 2.0, c0
-    start = c5 / 6.0 - c4 / 5.0 + c3 / 4.0 - c2 / 3.0 + c1 / 2.0 - c0
-    return (*rising, low[0] - start)
+    return (*rising, start - (c5 / 6.0 - c4 / 5.0 + c3 / 4.0 - c2 / 3.0 + c1 / 2.0 - c0))
 
 
 def _value_and_slope(coefficients: tuple[float, ...], x: Any) -> tuple[Any, Any]:

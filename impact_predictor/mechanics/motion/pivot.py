@@ -1,4 +1,4 @@
-"""A body that turns about a stance contact which sticks: one stretch of it.
+"""A body that turns about a contact which sticks on a fixed support, in closed form.
 
 (rho^2 + R^2) phi'' = -g R cos(phi + beta), (R, beta) the polar place of the mass centre seen from the contact, as in
 eq. (2.1) and (2.5) of Polukoshko and Sokolova with the height of the mass centre. Energy gives the rate and the
@@ -8,18 +8,39 @@ reaction at every angle, Carlson's integral R_F the time.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
-from .first_root import first_descent
-from .stretch import End, Stretch
-from .types import Vector
+from ..types import Vector
+from .events import Event, first_descent
 
 _ROUNDING = 8.0 * 2.0**-52
 """A few units in the last place of a value that is a sum of a few terms."""
 _FULL_TURN = 2.0 * math.pi
 
 
-def turn(arm: Vector, omega: float, travel: Vector, rho_squared: float, friction: float, gravity: Vector) -> Stretch:
-    """Follow a stance that sticks until its first event; arguments as those of `slide`."""
+class Pivot(NamedTuple):
+    """A phase of turning about one point of a fixed support, which sticks or slips, and how it ends.
+
+    `time` it lasts in s; `turned` meanwhile in rad, CCW positive; `omega` in rad/s and `slip`, the velocity of the
+    contact in m/s, at its end; `moved`, how far the contact slipped, in m; `direction` +1 or -1, of the turning.
+    """
+
+    event: Event
+    time: float
+    turned: float
+    omega: float
+    slip: float = 0.0
+    moved: float = 0.0
+    direction: int = 0
+
+
+def turn(arm: Vector, omega: float, travel: Vector, rho_squared: float, friction: float, gravity: Vector) -> Pivot:
+    """Turn about a contact that sticks until the first event.
+
+    `arm` from the contact to the mass centre in m; `omega` in rad/s; `travel` how far in rad the body can turn
+    clockwise and counter-clockwise until another point touches; `rho_squared` in m^2; `gravity` in m/s^2. The event
+    is TOUCHES, SLIPS, SLIPS_BACK, TURNS_BACK or NEVER.
+    """
     weight, radius = math.hypot(*gravity), math.hypot(*arm)
     inertia = rho_squared + radius * radius
     stiffness = radius * weight / inertia if radius > 0.0 else 0.0
@@ -29,7 +50,9 @@ def turn(arm: Vector, omega: float, travel: Vector, rho_squared: float, friction
     direction = (fall > 0.0) - (fall < 0.0)
     reach = travel[direction > 0] if direction else math.inf
     if reach <= 0.0:
-        return Stretch(End.TOUCHES if omega else End.NEVER, 0.0, 0.0, omega, direction=direction)
+        return Pivot(
+            event=Event.TOUCHES if omega else Event.NEVER, time=0.0, turned=0.0, omega=omega, direction=direction
+        )
     lean, rate = direction * tilt, abs(omega)
     crest = _to_standstill(stiffness, lean, rate) if direction else 0.0
     last = min(reach, crest, _FULL_TURN)
@@ -47,15 +70,35 @@ def turn(arm: Vector, omega: float, travel: Vector, rho_squared: float, friction
         if slip_at <= last:
             end_rate = _rate(stiffness, lean, rate, slip_at)
             time = _swing(stiffness, lean, rate, slip_at, end_rate)
-            return Stretch(End.SLIPS, time, direction * slip_at, direction * end_rate, direction=slip_direction)
+            event = Event.SLIPS if slip_direction > 0 else Event.SLIPS_BACK
+            return Pivot(event=event, time=time, turned=direction * slip_at, omega=direction * end_rate)
     if reach <= crest and reach < math.inf:
         end_rate = _rate(stiffness, lean, rate, reach)
         time = _swing(stiffness, lean, rate, reach, end_rate)
-        return Stretch(End.TOUCHES, time, direction * reach, direction * end_rate, direction=direction)
+        turned, omega = direction * reach, direction * end_rate
+        return Pivot(event=Event.TOUCHES, time=time, turned=turned, omega=omega, direction=direction)
     if rate > 0.0 and crest < math.inf:
         time = _swing(stiffness, lean, rate, crest, 0.0)
-        return Stretch(End.TURNS, time, direction * crest, 0.0)
-    return Stretch(End.NEVER, 0.0, 0.0, omega)
+        return Pivot(event=Event.TURNS_BACK, time=time, turned=direction * crest, omega=0.0)
+    return Pivot(event=Event.NEVER, time=0.0, turned=0.0, omega=omega)
+
+
+def roll(arm: Vector, omega: float, travel: Vector, rho_squared: float, friction: float, gravity: Vector) -> Pivot:
+    """As `turn`, for a disc about an edge: its normal turns with it."""
+    pivot = turn(arm, omega, travel, rho_squared, math.inf, gravity)
+    if not pivot.turned:
+        return pivot
+    direction = 1.0 if pivot.turned > 0.0 else -1.0
+    nearest, event = math.inf, Event.NEVER
+    for slip, slips in ((1.0, Event.SLIPS), (-1.0, Event.SLIPS_BACK)):
+        at = _first_slip_of_disc(arm, omega, direction, slip, rho_squared, friction, gravity, abs(pivot.turned))
+        if at < nearest:
+            nearest, event = at, slips
+    if nearest == 0.0:
+        return Pivot(event=event, time=0.0, turned=0.0, omega=omega)
+    if nearest < math.inf:
+        return turn(arm, omega, (nearest, nearest), rho_squared, math.inf, gravity)._replace(event=event)
+    return pivot
 
 
 def _to_standstill(stiffness: float, lean: float, rate: float) -> float:
@@ -158,3 +201,32 @@ def _first_slip(reaction: tuple[float, float, float], tilt: float, direction: in
     if min(inside, inside_last) > 0.125 * (abs(spin) + 6.0 * pull) * last * last:
         return math.inf
     return first_descent(level, 0.0, 0.0, ((*single, 1.0), (*double, 2.0)), last)
+
+
+def _first_slip_of_disc(
+    arm: Vector,
+    omega: float,
+    direction: float,
+    slip: float,
+    rho_squared: float,
+    friction: float,
+    gravity: Vector,
+    last: float,
+) -> float:
+    """How far in rad a disc turns about an edge until friction cannot hold it against the slip +1 or -1.
+
+    With the angle x turned, energy gives omega^2, and f N + slip T is a constant, a cosine and a sine of x.
+    """
+    (dx, dy), (gx, gy) = arm, gravity
+    radius = math.hypot(dx, dy)
+    inertia = rho_squared + radius * radius
+    # g . d and d x g turn into each other; N = -(g . d)/R - omega^2 R, T = rho^2 (d x g)/(R I), and omega^2 grows by
+    # twice what g . d does, over I.
+    along, across = gx * dx + gy * dy, dx * gy - dy * gx
+    load = friction * (1.0 / radius + 2.0 * radius / inertia)
+    drag = slip * rho_squared / (radius * inertia)
+    level = friction * radius * (2.0 * along / inertia - omega * omega)
+    cosine, sine = -load * along + drag * across, direction * (-load * across - drag * along)
+    if level + cosine < 0.0:
+        return 0.0
+    return first_descent(level, 0.0, 0.0, ((cosine, sine, 1.0),), last)

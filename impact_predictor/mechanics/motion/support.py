@@ -12,18 +12,18 @@ from collections.abc import Callable, Sequence
 from functools import cache
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
-from ..errors import InputError
-from .bodies import sine_and_cosine
-from .types import Vector
+from ...errors import InputError
+from ..bodies import sine_and_cosine
+from ..types import Vector
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-Felt = tuple[float, float, float, float]
+FrameAcceleration = tuple[float, float, float, float]
 """Acceleration felt at rest at the origin, along the support's axes (m/s^2); rate (rad/s); angular acceleration."""
 
-Part = tuple[tuple[float, ...], ...]
+Polynomials = tuple[tuple[float, ...], ...]
 """Coefficients of the polynomials of the four numbers felt, the highest power first; empty where they do not fit."""
 
 _NODES = 10
@@ -38,6 +38,17 @@ _FIT = 1e-12
 """Where the last two terms of a polynomial are above this part of the first ones the motion is evaluated itself."""
 
 
+class PlanarState(NamedTuple):
+    """Place of the mass centre (m), angle (rad), its velocity (m/s) and angular velocity (rad/s), CCW positive."""
+
+    x: float
+    y: float
+    angle: float
+    vx: float
+    vy: float
+    omega: float
+
+
 class FeltSupport(Protocol):
     """What motion between two impacts asks of a support; any object that answers it will do."""
 
@@ -49,7 +60,7 @@ class FeltSupport(Protocol):
     def gravity(self) -> float:
         """Gravity in m/s^2."""
 
-    def felt(self, time: float) -> Felt:
+    def felt(self, time: float) -> FrameAcceleration:
         """What a body at rest at the frame's origin feels at a time in s."""
 
 
@@ -81,7 +92,7 @@ class FixedSupport(NamedTuple):
     def period(self) -> float:
         return math.inf
 
-    def felt(self, time: float) -> Felt:
+    def felt(self, time: float) -> FrameAcceleration:
         """What a body feels at rest: gravity in the support's axes."""
         return -self.gravity * math.sin(self.slope), -self.gravity * math.cos(self.slope), 0.0, 0.0
 
@@ -113,7 +124,7 @@ class MovingSupport:
         if not 0.0 < period < math.inf:
             raise InputError(f"period of the moving support is {period}; give a finite number of seconds above 0")
         self.function, self.period, self.gravity, self.origin = function, period, gravity, origin
-        self._parts: dict[int, Part] = {}
+        self._parts: dict[int, Polynomials] = {}
         self._takes_arrays = True
 
     def at(self, x: float, y: float) -> MovingSupport:
@@ -152,7 +163,7 @@ class MovingSupport:
                 self._takes_arrays = False
         return np.array([self.felt_exactly(time) for time in times.tolist()], dtype=float)
 
-    def felt(self, time: float) -> Felt:
+    def felt(self, time: float) -> FrameAcceleration:
         """What a body feels at rest at the origin, from polynomials in time: a sum of many waves costs no more."""
         width = _PART * self.period
         number = math.floor(time / width)
@@ -163,7 +174,7 @@ class MovingSupport:
             return self.felt_exactly(time)
         return at_place(part, (time / width - number) * 2.0 - 1.0)
 
-    def _fit(self, number: int, width: float) -> Part:
+    def _fit(self, number: int, width: float) -> Polynomials:
         """The polynomials of one part; none where they do not fit."""
         import numpy as np
 
@@ -173,7 +184,7 @@ class MovingSupport:
         waves[0] *= 0.5
         push, rate = np.abs(values[:, :2]).max(), np.abs(values[:, 2]).max()
         size = np.array([push, push, rate, rate / width]) + np.abs(waves).sum(axis=0)
-        part: Part = ()
+        part: Polynomials = ()
         if (np.abs(waves[-2:]).sum(axis=0) <= _FIT * size).all():
             part = tuple(map(tuple, (_powers() @ waves)[::-1].tolist()))
         if len(self._parts) >= _MAX_PARTS:
@@ -185,7 +196,7 @@ class MovingSupport:
 Support = FixedSupport | MovingSupport
 
 
-def at_place(part: Part, s: float) -> Felt:
+def at_place(part: Polynomials, s: float) -> FrameAcceleration:
     """What is felt at a place of a part, where s runs from -1 to 1: its polynomials, the highest power first."""
     x = y = w = a = 0.0
     for cx, cy, cw, ca in part:
@@ -194,6 +205,37 @@ def at_place(part: Part, s: float) -> Felt:
         w = w * s + cw
         a = a * s + ca
     return x, y, w, a
+
+
+def in_world(motion: SupportMotion, state: PlanarState) -> PlanarState:
+    """A state in a support's frame as one in the world's axes."""
+    x, y, angle, vx, vy, omega = state
+    sine, cosine = sine_and_cosine(motion.angle)
+    px, py = cosine * x - sine * y, sine * x + cosine * y
+    return PlanarState(
+        motion.x + px,
+        motion.y + py,
+        motion.angle + angle,
+        motion.vx - motion.rate * py + cosine * vx - sine * vy,
+        motion.vy + motion.rate * px + sine * vx + cosine * vy,
+        motion.rate + omega,
+    )
+
+
+def from_world(motion: SupportMotion, state: PlanarState) -> PlanarState:
+    """A state in the world's axes as one in a support's frame."""
+    x, y, angle, vx, vy, omega = state
+    sine, cosine = sine_and_cosine(motion.angle)
+    px, py = x - motion.x, y - motion.y
+    ux, uy = vx - motion.vx + motion.rate * py, vy - motion.vy - motion.rate * px
+    return PlanarState(
+        cosine * px + sine * py,
+        cosine * py - sine * px,
+        angle - motion.angle,
+        cosine * ux + sine * uy,
+        cosine * uy - sine * ux,
+        omega - motion.rate,
+    )
 
 
 class Wave(NamedTuple):
@@ -291,9 +333,7 @@ def _powers() -> NDArray[np.float64]:
     """Coefficients of powers, the lowest first, from those of Chebyshev's polynomials."""
     import numpy as np
 
-    polynomials = np.polynomial.chebyshev
-    return np.stack([np.pad(polynomials.cheb2poly(row), (0, _NODES - 1 - k)) for k, row in enumerate(_units())], axis=1)
-
-
-def _units() -> list[list[float]]:
-    return [[0.0] * k + [1.0] for k in range(_NODES)]
+    powers = np.zeros((_NODES, _NODES))
+    for k, unit in enumerate(np.eye(_NODES)):
+        powers[: k + 1, k] = np.polynomial.chebyshev.cheb2poly(unit)
+    return powers

@@ -1,21 +1,18 @@
-"""What a rocking motion was: its impacts, accumulations, phases and end, and its state at any time."""
+"""The trajectory of a body that rocks: its impacts, accumulations, phases and end, and its state at any time."""
 
 from __future__ import annotations
 
 from bisect import bisect_right
+from collections.abc import Sequence
 from enum import IntEnum
 from typing import Any, NamedTuple
 
-from ..motion import PlanarState
-from ..support import Support
 from ..types import Outcome, TwoPointBody
-from .arcs import Arc
-from .flight import Flight, in_world
+from .phases import MotionPhase
+from .support import PlanarState, Support, in_world
 
 STATES = "OS+-"
 """Letters of the contact states: open, sticks, slips along +t and along -t."""
-
-Stretch = Arc | Flight
 
 
 class End(IntEnum):
@@ -37,7 +34,7 @@ class End(IntEnum):
     """A number is not finite or out of its range."""
 
 
-class Strike(NamedTuple):
+class RockingImpact(NamedTuple):
     """An impact at `time` (s) of contact `new` of a body that stood on contact `old`, or on none.
 
     States are in the support's frame; `outcome` is that of `solve_impact`.
@@ -71,7 +68,7 @@ class Accumulation(NamedTuple):
 
 
 class Phase(NamedTuple):
-    """A stretch between two events (s); `states` of contacts 0 and 1: O open, S sticks, + or - slips along +t or -t.
+    """A phase between two events (s); `states` of contacts 0 and 1: O open, S sticks, + or - slips along +t or -t.
 
     "OO" is flight, "SO" turning about contact 0, "SS" rest, "++" sliding on both.
     """
@@ -81,7 +78,7 @@ class Phase(NamedTuple):
     states: str
 
 
-class Run:
+class Trajectory:
     """A rocking motion, in the support's frame, from `start` to `time` (s)."""
 
     def __init__(
@@ -89,14 +86,14 @@ class Run:
         body: TwoPointBody,
         support: Support,
         law: str,
-        stretches: list[Stretch],
-        shift: float,
-        end: End,
-        time: float,
         start: PlanarState,
-        impacts: list[Strike],
-        accumulations: list[Accumulation],
-        jams: list[float],
+        time: float,
+        end: End,
+        shift: float = 0.0,
+        phases: Sequence[MotionPhase] = (),
+        impacts: Sequence[RockingImpact] = (),
+        accumulations: Sequence[Accumulation] = (),
+        jams: Sequence[float] = (),
     ) -> None:
         self.body, self.support, self.law = body, support, law
         self.end, self.time = end, time
@@ -104,19 +101,20 @@ class Run:
         self.jams = tuple(jams)
         """Times (s) at which slip that no finite reaction can go with ended at once (Painleve)."""
         self._start, self._shift = start, shift
-        self._stretches = [one for one in stretches[:-1] if one.end > one.start] + stretches[-1:]
-        self._starts = [one.start for one in self._stretches]
+        self._phases = [one for one in phases[:-1] if one.end > one.start]
+        self._phases += phases[-1:]
+        self._starts = [one.start for one in self._phases]
 
     @property
     def phases(self) -> tuple[Phase, ...]:
-        """The stretches between events."""
-        return tuple(Phase(one.start, one.end, STATES[one.a] + STATES[one.b]) for one in self._stretches)
+        """The phases between events."""
+        return tuple(Phase(one.start, one.end, STATES[one.a] + STATES[one.b]) for one in self._phases)
 
     def states(self, time: float) -> str:
         """Contact states at a time, as those of `Phase`."""
-        if not self._stretches:
+        if not self._phases:
             return "OO"
-        one = self._stretches[max(0, bisect_right(self._starts, time) - 1)]
+        one = self._phases[max(0, bisect_right(self._starts, time) - 1)]
         return STATES[one.a] + STATES[one.b]
 
     def state(self, time: Any) -> PlanarState:
@@ -125,9 +123,9 @@ class Run:
         At an impact it is the state after it; before the start and after the end it is the state there.
         """
         if isinstance(time, (float, int)):
-            if not self._stretches:
+            if not self._phases:
                 return self._start
-            one = self._stretches[max(0, bisect_right(self._starts, time) - 1)]
+            one = self._phases[max(0, bisect_right(self._starts, time) - 1)]
             state = one.at(min(max(float(time), one.start), one.end))
             return state._replace(angle=state.angle + self._shift)
         import numpy as np
@@ -135,7 +133,7 @@ class Run:
         times = np.atleast_1d(np.asarray(time, dtype=float))
         flat = times.ravel()
         values = np.empty((6, flat.size))
-        if not self._stretches:
+        if not self._phases:
             values[:] = np.array(self._start)[:, None]
         else:
             place = np.clip(np.searchsorted(self._starts, flat, side="right") - 1, 0, None)
@@ -143,7 +141,7 @@ class Run:
             borders = np.flatnonzero(np.diff(place[order])) + 1
             for chosen in np.split(order, borders):
                 if chosen.size:
-                    one = self._stretches[place[chosen[0]]]
+                    one = self._phases[place[chosen[0]]]
                     values[:, chosen] = np.array(
                         np.broadcast_arrays(*one.at(np.clip(flat[chosen], one.start, one.end)))
                     )

@@ -1,0 +1,198 @@
+"""What ends a phase of motion, and where within a step, a sweep or a phase known in closed form a condition falls to 0.
+
+A condition is positive until its event.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from enum import IntEnum
+
+Condition = tuple[float, float]
+"""A value, not negative until its event, and its rate (NaN where it is not known)."""
+Sinusoid = tuple[float, float, float]
+"""Amplitudes of cosine and sine, and their rate."""
+
+_ROUNDING = 8.0 * 2.0**-52
+"""A few units in the last place of a value that is a sum of a few terms."""
+_MAX_ADVANCES = 1000
+"""Several times what the worst grazing needs."""
+_CLOSE = 1e-7
+"""After a Newton step this small, relative to the root, what is left is its square."""
+_NEWTON_STEPS = 4
+"""On a cubic, from its secant."""
+_BEYOND = 2.0
+"""A place beyond a step, which goes from 0 to 1."""
+
+
+class Event(IntEnum):
+    """What ends a phase."""
+
+    TOUCHES = 0
+    """An open contact reaches the support."""
+    OVERTURNS = 1
+    STOPS = 2
+    """The slip is zero."""
+    LIFTS = 3
+    """The support would have to pull at a contact (so a body leaves it where it might as well press on, Painleve)."""
+    SLIPS = 4
+    """A contact that stuck begins to slip along +t."""
+    SLIPS_BACK = 5
+    YIELDS = 6
+    """A body that rested on both contacts begins to move."""
+    JAMS = 7
+    """No finite reaction keeps the slipping contact on the support (Painleve)."""
+    TURNS_BACK = 8
+    """The angular velocity is zero and changes its sign."""
+    BALANCES = 9
+    """At rest on one contact for ever."""
+    TIME_IS_UP = 10
+    TAKES_TOO_LONG = 11
+    """As many steps as are allowed came first."""
+    NEVER = 12
+    """Nothing happens any more, or nothing within the horizon."""
+
+
+def first_descent(
+    level: float, slope: float, curvature: float, sinusoids: tuple[Sinusoid, ...], last: float, leaving: bool = False
+) -> float:
+    """First s in 0..last at which a condition is not positive and falls; inf when there is none.
+
+    The condition is level + slope s + curvature s^2 / 2 + the sum of (c cos(r s) + q sin(r s)) over the sinusoids
+    (c, q, r). Its derivatives have known bounds, so from each s a step is known in which it cannot vanish: the steps
+    add up to the first root, quadratically, and pass none. A condition that begins at zero or below it must rise first;
+    one that is `leaving` zero, at rest, does not begin with a fall, whatever an inexact start says.
+    """
+    amplitude = speed = bend = jolt = snap = 0.0
+    for cosine_part, sine_part, rate in sinusoids:
+        size, rate = math.hypot(cosine_part, sine_part), abs(rate)
+        amplitude += size
+        speed += size * rate
+        bend += size * rate * rate
+        jolt += size * rate * rate * rate
+        snap += size * rate * rate * rate * rate
+    fall = max(0.0, bend - curvature)
+    s = 0.0
+    for _ in range(_MAX_ADVANCES):
+        if not s <= last or s == math.inf:
+            break
+        base, base_rate = level + (slope + 0.5 * curvature * s) * s, slope + curvature * s
+        value, change, bow, jerk = base, base_rate, curvature, 0.0
+        for cosine_part, sine_part, rate in sinusoids:
+            cosine, sine = math.cos(rate * s), math.sin(rate * s)
+            here, ahead = cosine_part * cosine + sine_part * sine, sine_part * cosine - cosine_part * sine
+            value += here
+            change += rate * ahead
+            bow -= rate * rate * here
+            jerk -= rate * rate * rate * ahead
+        if leaving and s == 0.0:
+            bow = max(0.0, bow)
+        top_speed, top_bend = abs(slope) + abs(curvature) * s + speed, abs(curvature) + bend
+        rounding = _ROUNDING * (abs(level) + amplitude + top_speed * s)
+        if value > rounding:
+            step = _safe_step(value, change, fall)
+            if base > amplitude:
+                step = max(step, _safe_step(base - amplitude, base_rate, max(0.0, -curvature)))
+        elif abs(change) > _ROUNDING * (top_speed + top_bend * s):
+            if change < 0.0:
+                return s
+            step = _safe_step(change, bow, jolt)
+        elif abs(bow) > _ROUNDING * (top_bend + jolt * s):
+            if bow < 0.0:
+                return s
+            step = _safe_step(bow, jerk, snap)
+        elif jerk > _ROUNDING * jolt:
+            step = _safe_step(0.0, jerk, snap)
+        else:
+            return s if jolt > 0.0 else math.inf
+        if s + step == s:
+            return s  # within rounding of zero, in sinusoids too fast for the rounding of s
+        s += step
+    return math.inf
+
+
+def _safe_step(value: float, rate: float, fall: float) -> float:
+    """The longest step in which value + rate s - fall s^2/2 stays positive."""
+    root = math.sqrt(rate * rate + 2.0 * fall * value)
+    if rate > 0.0:
+        return (rate + root) / fall if fall > 0.0 else math.inf
+    return 2.0 * value / (root - rate) if root > rate else math.inf
+
+
+def cubic(value: float, slope: float, end_value: float, end_slope: float) -> tuple[float, float]:
+    """Square and cube of the cubic on 0..1 with these values and slopes at its ends."""
+    rise = end_value - value
+    return 3.0 * rise - 2.0 * slope - end_slope, slope + end_slope - 2.0 * rise
+
+
+def dip(value: float, slope: float, end_value: float, end_slope: float) -> float:
+    """Where on 0..1 a condition that is positive at both ends may fall to zero between them; beyond 1 if it does not.
+
+    The tangents at the two ends of a dip meet below it.
+    """
+    if value <= 0.0 or end_value <= 0.0 or not slope < 0.0 < end_slope:
+        return _BEYOND
+    at = (end_value - value - end_slope) / (slope - end_slope)
+    return at if value + slope * at <= 0.0 else _BEYOND
+
+
+def fall(value: float, slope: float, end_value: float, end_slope: float, noise: float = 0.0) -> float:
+    """Where on 0..1 a condition with these values and slopes falls to zero or might; beyond 1 where it does not."""
+    square, cube = cubic(value, slope, end_value, end_slope)
+    if value <= noise:
+        # It begins at zero; the root that is not there.
+        root = math.sqrt(max(0.0, square * square - 4.0 * slope * cube))
+        numerator, denominator = (-square - root, 2.0 * cube) if square > 0.0 else (2.0 * slope, root - square)
+        at = numerator / denominator if denominator else 0.0
+        return (at if 0.0 < at <= 1.0 else 0.0) if end_value < -noise else _BEYOND
+    if end_value > 0.0:
+        return dip(value, slope, end_value, end_slope)
+    low, high, at = 0.0, 1.0, value / (value - end_value)
+    for _ in range(_NEWTON_STEPS):
+        here, change = value + at * (slope + at * (square + at * cube)), slope + at * (2.0 * square + 3.0 * at * cube)
+        low, high = (at, high) if here > 0.0 else (low, at)
+        at = at - here / change if change < 0.0 else high
+        at = at if low <= at <= high else 0.5 * (low + high)
+    return at
+
+
+def newton_root(condition: Callable[[float], Condition], high: float, guess: float) -> float:
+    """Where in 0..high a condition falls to zero: Newton's method, kept in its bracket by bisection."""
+    low = 0.0
+    for _ in range(60):
+        value, slope = condition(guess)
+        if value >= 0.0:
+            low = guess
+        else:
+            high = guess
+        better = guess - value / slope if slope < 0.0 else math.inf
+        if not low <= better <= high:
+            better = 0.5 * (low + high)
+        if abs(better - guess) <= _CLOSE * better:
+            return better
+        guess = better
+    return guess
+
+
+def bracketed_root(condition: Callable[[float], Condition], high: float, value: float, high_value: float) -> float:
+    """Where in 0..high a condition without a rate falls to zero: the false position with Illinois' weights."""
+    low, start = 0.0, value
+    side = 0
+    at = high
+    for _ in range(80):
+        at = (low * high_value - high * value) / (high_value - value) if value > 0.0 else 0.5 * (low + high)
+        here, _ = condition(at)
+        if abs(here) <= 1e-14 * (abs(start) + abs(high_value)) or high - low <= 1e-15 * high:
+            break
+        if here > 0.0:
+            low, value = at, here
+            if side == 1:
+                high_value *= 0.5
+            side = 1
+        else:
+            high, high_value = at, here
+            if side == -1:
+                value *= 0.5
+            side = -1
+    return at
