@@ -11,12 +11,12 @@ import click
 
 from ..errors import InputError
 from ..mechanics.impact import LAWS
-from ..report.maps.parameters import SUBJECTS, Axis, Parameter, fixed_values, option_of
+from ..report.map import SUBJECTS, Axis, MapParameter, fixed_values, option_of
 from .examples import examples
 from .limits import Whole
 
 if TYPE_CHECKING:
-    from ..report.maps.modes import ModeMap
+    from ..report.map import ModeMap
 
 PICTURES: Final = (".png", ".svg")
 SUFFIXES: Final = (*PICTURES, ".csv")
@@ -123,7 +123,7 @@ def command_of(name: str) -> click.Command:
     )(draw)
 
 
-def help_of(parameter: Parameter) -> str:
+def help_of(parameter: MapParameter) -> str:
     """The help of an option: meaning, unit and what it is unless given."""
     unit = f", {parameter.unit}" if parameter.unit else ""
     default = f"{parameter.default:g}" if parameter.default is not None else parameter.otherwise
@@ -149,7 +149,7 @@ def answer(
     for file in files:
         check_output(file)
 
-    from ..report.maps.modes import map_modes
+    from ..report.map import map_modes
     from .compiling import compiling_is_said
     from .progress import progress
 
@@ -158,17 +158,17 @@ def answer(
     for file in files:
         write(file, modes)
     if as_json:
-        from ..report.maps.data import summary_of
+        from ..report.map import summary_of
 
         click.echo(json.dumps(summary_of(modes), indent=2, allow_nan=False))
         return
 
     from rich.console import Console
 
-    from ..report.maps.data import table_of
+    from ..report.map import shares_table
     from ..report.table import show
 
-    show(Console(), table_of(modes))
+    show(Console(), shares_table(modes))
     for file in files:
         click.echo(f"{'Picture' if file.suffix.lower() in PICTURES else 'Data'}: {file}")
 
@@ -192,13 +192,13 @@ def write(file: Path, modes: ModeMap) -> None:
         InputError: the file cannot be written.
     """
     if file.suffix.lower() == ".csv":
-        from ..report.maps.data import write_csv
+        from ..report.map import write_csv
 
         write_csv(file, modes)
     else:
-        from ..report.maps.figure import write_figure
+        from ..report.map_figure import write_map
 
-        write_figure(file, modes)
+        write_map(file, modes)
 
 
 for _name in SUBJECTS:

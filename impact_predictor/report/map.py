@@ -1,0 +1,420 @@
+"""Maps of modes over two parameters (the paper, Fig. 5 and Fig. 7) by the general laws: bodies, data and words."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable, Mapping
+from math import inf, pi
+from pathlib import Path
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from rich.table import Table
+
+from ..errors import InputError
+from ..mechanics.batch import Outcomes, solve_impacts
+from ..mechanics.bodies import cylinder, plate, refuse, rod
+from ..mechanics.impact import states_of
+from ..mechanics.types import Flag, Mode, Twist, TwoPointBody
+from .files import whole
+from .modes import MODES
+from .table import Column, table_of
+
+OMEGA: Final = -1.0
+"""Angular velocity before the impact (rad/s); without a slip the mode does not depend on it."""
+
+
+class MapParameter(NamedTuple):
+    """A parameter: its symbol in the picture, unit and meaning; its value, or what it follows, unless given.
+
+    `together` is its meaning where another parameter follows it.
+    """
+
+    symbol: str
+    unit: str
+    meaning: str
+    default: float | None = None
+    otherwise: str = ""
+    together: str = ""
+
+
+class Axis(NamedTuple):
+    """A parameter along an axis of the map, from `low` to `high`."""
+
+    name: str
+    low: float
+    high: float
+
+
+class Subject(NamedTuple):
+    """A body of which maps are drawn, and what its map shows unless something else is asked for."""
+
+    parameters: dict[str, MapParameter]
+    x: Axis
+    y: Axis
+    build: Callable[[Mapping[str, Any]], TwoPointBody]
+    title: str
+
+
+CONTACTS: Final = {
+    "friction": MapParameter("f", "", "friction coefficient of both contacts", 0.5),
+    "friction_old": MapParameter("f_A", "", "friction coefficient of the old contact A", None, "friction"),
+    "friction_new": MapParameter("f_B", "", "friction coefficient of the new contact B", None, "friction"),
+    "restitution": MapParameter("e", "", "restitution at the new contact B", 0.0),
+    "slip": MapParameter("v_{tA}", "m/s", "slip of the old contact A before the impact, at ω = −1 rad/s", 0.0),
+}
+
+
+def plate_of(values: Mapping[str, Any]) -> TwoPointBody:
+    length = values["length"]
+    height = values["height"] if "height" in values else values["delta"] * length
+    inertia, a, b = (values.get(name) for name in ("inertia", "a", "b"))
+    return plate(length, height, 1.0, values.get("friction", 0.0), inertia, a, b, values["restitution"])
+
+
+def rod_of(values: Mapping[str, Any]) -> TwoPointBody:
+    length, thickness, a = (values[name] for name in ("length", "thickness", "a"))
+    inertia, b = values.get("inertia"), values.get("b", a)
+    return rod(length, thickness, a, b, 1.0, values.get("friction", 0.0), inertia, values["restitution"])
+
+
+def cylinder_of(values: Mapping[str, Any]) -> TwoPointBody:
+    ahead = values.get("gamma_new", values["gamma"])
+    refuse(
+        {"gamma + gamma-new": values["gamma"] + ahead},
+        lambda value: (value > 0.0) & (value < 180.0),
+        "angles in degrees with a sum between 0 and 180",
+    )
+    return cylinder(
+        values["radius"],
+        values["gamma"] * (pi / 180.0),
+        1.0,
+        values.get("friction", 0.0),
+        ahead * (pi / 180.0),
+        values.get("inertia"),
+        values["restitution"],
+    )
+
+
+def inertia_of(otherwise: str) -> MapParameter:
+    return MapParameter("J/m", "m²", "inertia about the mass centre by mass", None, otherwise)
+
+
+SUBJECTS: Final = {
+    "plate": Subject(
+        {
+            "delta": MapParameter("δ = H/L", "", "height by length", 1.0),
+            "length": MapParameter("L", "m", "length", 1.0),
+            "height": MapParameter("H", "m", "height, in the place of δ"),
+            "a": MapParameter("a", "m", "distance of the old contact A behind the mass centre", None, "L/2"),
+            "b": MapParameter("b", "m", "distance of the new contact B ahead of the mass centre", None, "L/2"),
+            "inertia": inertia_of("(L² + H²)/12"),
+            **CONTACTS,
+        },
+        Axis("delta", 0.0, 2.0),
+        Axis("friction", 0.0, 1.5),
+        plate_of,
+        "Plate on a floor",
+    ),
+    "rod": Subject(
+        {
+            "length": MapParameter("l", "m", "length", 0.4),
+            "thickness": MapParameter("h", "m", "thickness", 0.005),
+            "a": MapParameter(
+                "a",
+                "m",
+                "distance of the old support A behind the middle",
+                0.1,
+                together="distance of the supports from the middle",
+            ),
+            "b": MapParameter("b", "m", "distance of the new support B ahead of the middle", None, "a"),
+            "inertia": inertia_of("l²/12"),
+            **CONTACTS,
+        },
+        Axis("a", 0.0, 0.2),
+        Axis("friction", 0.0, 0.05),
+        rod_of,
+        "Rod over two supports",
+    ),
+    "cylinder": Subject(
+        {
+            "gamma": MapParameter(
+                "γ_1",
+                "°",
+                "central angle of the old edge A behind the vertical",
+                45.0,
+                together="central angle γ of each edge from the vertical",
+            ),
+            "gamma_new": MapParameter("γ_2", "°", "central angle of the new edge B ahead of it", None, "gamma"),
+            "radius": MapParameter("R", "m", "radius", 1.0),
+            "inertia": inertia_of("R²/2"),
+            **CONTACTS,
+        },
+        Axis("gamma", 0.0, 90.0),
+        Axis("friction", 0.0, 1.5),
+        cylinder_of,
+        "Cylinder between two edges",
+    ),
+}
+
+
+def fixed_values(subject: Subject, axes: tuple[Axis, Axis], given: Mapping[str, float]) -> dict[str, float]:
+    """The parameters that are the same all over the map: as given, else their defaults.
+
+    Raises:
+        InputError: an axis is none of the parameters, or is given as a number too, or has no extent.
+    """
+    names = [axis.name for axis in axes]
+    for axis in axes:
+        if axis.name not in subject.parameters:
+            allowed = ", ".join(map(option_of, subject.parameters))
+            raise InputError(f"there is no parameter {axis.name!r} for an axis; give one of {allowed}")
+        if axis.name in given:
+            name = option_of(axis.name)
+            raise InputError(f"{name} is an axis of the map and --{name} a number; leave one of them out")
+        if not -inf < axis.low < axis.high < inf:
+            raise InputError(
+                f"the axis {option_of(axis.name)} goes from {axis.low:g} to {axis.high:g}; "
+                "give two finite numbers, the lower one first"
+            )
+    if names[0] == names[1]:
+        raise InputError(f"both axes, --x and --y, are {option_of(names[0])}; give two parameters")
+    chosen = {*names, *given}
+    if {"friction_old", "friction_new"} <= chosen:
+        chosen.add("friction")  # it is the friction of none
+    if {"delta", "height"} <= chosen:
+        raise InputError("delta and height are one thing, height = delta length; leave one of them out")
+    defaults = {
+        name: parameter.default
+        for name, parameter in subject.parameters.items()
+        if parameter.default is not None and name not in chosen and not (name == "delta" and "height" in chosen)
+    }
+    return {name: value for name, value in {**defaults, **given}.items() if name not in names}
+
+
+def problem_at(subject: Subject, values: Mapping[str, Any]) -> tuple[TwoPointBody, Twist]:
+    """The body with these parameters, and its twist right before the impact.
+
+    Raises:
+        InputError: a parameter is out of its range.
+    """
+    body = subject.build(values)
+    old, new = body.old, body.new
+    assert old is not None  # each of the bodies stands on one
+    for name in ("friction_old", "friction_new"):
+        if name in values:
+            refuse({name: values[name]}, lambda value: (value >= 0.0) & (value < inf), "a finite number, 0 or above")
+    body = body._replace(
+        old=old._replace(friction=values.get("friction_old", old.friction)),
+        new=new._replace(friction=values.get("friction_new", new.friction)),
+    )
+    (nx, ny), slip, turning = old.normal, values["slip"], body.turning(OMEGA)
+    refuse({"slip": slip}, lambda value: abs(value) <= 1e6, "a number of at most 1e6")
+    return body, Twist(turning.vx + slip * ny, turning.vy - slip * nx, turning.omega)
+
+
+def option_of(name: str) -> str:
+    """The name of a parameter as it is written on the command line."""
+    return name.replace("_", "-")
+
+
+CELLS_AT_ONCE = 100_000
+"""Cells that are solved between two calls of the progress bar; both laws keep their outcomes of that many."""
+
+
+class ModeMap(NamedTuple):
+    """What impacts do over the middles of a grid of cells; arrays (rows, columns), y growing with the row.
+
+    `mode` numbers of Mode and `segments` contact states by the `law`; `unique` whether it allows no other answer;
+    `omega_ratio` of angular velocities, after by before; `energy_lost` as part of the kinetic energy before. Whatever
+    the `law`: whether the impulse path is `jammed`, and whether it and the total law are `path_unique`, `total_unique`.
+    """
+
+    subject: str
+    x: Axis
+    y: Axis
+    fixed: dict[str, float]
+    law: str
+    mode: NDArray[np.uint8]
+    segments: NDArray[np.int64]
+    omega_ratio: NDArray[np.float64]
+    energy_lost: NDArray[np.float64]
+    jammed: NDArray[np.bool_]
+    path_unique: NDArray[np.bool_]
+    total_unique: NDArray[np.bool_]
+
+    @property
+    def unique(self) -> NDArray[np.bool_]:
+        return self.path_unique if self.law == "path" else self.total_unique
+
+
+def middles(axis: Axis, count: int) -> NDArray[np.float64]:
+    """The middles of `count` cells along an axis."""
+    return axis.low + (axis.high - axis.low) * ((np.arange(count) + 0.5) / count)
+
+
+def map_modes(
+    name: str,
+    x: Axis,
+    y: Axis,
+    fixed: dict[str, float],
+    law: str,
+    resolution: int,
+    tell: Callable[[int], object] = lambda cells: None,
+) -> ModeMap:
+    """The modes of the body `name` over `resolution` cells along each axis; `fixed` are all other parameters.
+
+    `tell` is told how many cells are done.
+
+    Raises:
+        InputError: a parameter is out of its range.
+    """
+    subject, columns, rows = SUBJECTS[name], middles(x, resolution), middles(y, resolution)
+    shape = (resolution, resolution)
+    fields: Any = [np.empty(shape, kind) for kind in (np.uint8, np.int64, float, float, bool, bool, bool)]
+    step = max(1, CELLS_AT_ONCE // resolution)
+    for start in range(0, resolution, step):
+        block = slice(start, min(start + step, resolution))
+        values = {**fixed, x.name: columns, y.name: rows[block, None]}
+        for field, part in zip(fields, solve_block(*problem_at(subject, values), law), strict=True):
+            field[block] = part
+        tell(block.stop * resolution)
+    return ModeMap(name, x, y, fixed, law, *fields)
+
+
+def solve_block(body: TwoPointBody, twist: Twist, law: str) -> tuple[NDArray[Any], ...]:
+    """The arrays of a ModeMap, for some of its rows."""
+    path, total = solve_impacts(body, twist, "path"), solve_impacts(body, twist, "total")
+    outcomes: Outcomes = path if law == "path" else total
+    vx, vy, omega = twist
+    before = 0.5 * (body.mass * (vx * vx + vy * vy) + body.inertia * omega * omega)
+    return (
+        outcomes.mode,
+        outcomes.segments,
+        outcomes.twist[..., 2] / OMEGA,
+        outcomes.energy_lost / before,
+        (path.flags & np.uint16(Flag.JAMMED)) != 0,
+        path.unique,
+        total.unique,
+    )
+
+
+def shares(modes: ModeMap) -> dict[Mode, float]:
+    """The part of the map that each mode takes, of those that occur."""
+    counts = np.bincount(modes.mode.ravel(), minlength=len(Mode))
+    return {mode: float(counts[mode] / modes.mode.size) for mode in Mode if counts[mode]}
+
+
+def write_csv(path: Path, modes: ModeMap) -> None:
+    """Write a line for each cell: its parameters, and the fields of a ModeMap.
+
+    Raises:
+        InputError: the file cannot be written.
+    """
+    rows, columns = modes.mode.shape
+    x, y = middles(modes.x, columns).tolist(), middles(modes.y, rows).tolist()
+    names = [mode.name for mode in Mode]
+    flags = ("unique", "jammed", "path_unique", "total_unique")
+    with whole(path) as partial, partial.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow([modes.x.name, modes.y.name, "mode", "segments", *flags, "omega_ratio", "energy_lost"])
+        for row in range(rows):
+            writer.writerows(
+                zip(
+                    x,
+                    [y[row]] * columns,
+                    [names[mode] for mode in modes.mode[row]],
+                    [" ".join(states_of(code)) for code in modes.segments[row].tolist()],
+                    *(getattr(modes, flag)[row].astype(int).tolist() for flag in flags),
+                    modes.omega_ratio[row].tolist(),
+                    modes.energy_lost[row].tolist(),
+                    strict=True,
+                )
+            )
+
+
+def summary_of(modes: ModeMap) -> dict[str, Any]:
+    """What a map shows, in the names and units of the command line: shares are parts of its area."""
+    return {
+        "body": modes.subject,
+        "law": modes.law,
+        "x": modes.x._asdict(),
+        "y": modes.y._asdict(),
+        "fixed": modes.fixed,
+        "resolution": modes.mode.shape[0],
+        "shares": {mode.name: share for mode, share in shares(modes).items()},
+        "jammed": float(np.mean(modes.jammed)),
+        "path_not_unique": float(np.mean(~modes.path_unique)),
+        "total_not_unique": float(np.mean(~modes.total_unique)),
+    }
+
+
+def shares_table(modes: ModeMap) -> Table:
+    """The modes of a map, and how much of it each takes."""
+    rows = [(mode.name, share, meaning_of(mode)) for mode, share in shares(modes).items()]
+    rows += [("", float(np.mean(region)), meaning) for region, meaning in ambiguous(modes) if region.any()]
+    columns = [
+        Column("mode", lambda row: row[0], left=True),
+        Column("% of the map", lambda row: f"{100.0 * row[1]:.1f}"),
+        Column("", lambda row: row[2], left=True, fold=30),
+    ]
+    return table_of(columns, rows)
+
+
+def meaning_of(mode: Mode) -> str:
+    """The meaning of a mode with the names that the contacts have on maps, A and B."""
+    meaning = MODES[mode].meaning
+    names = {"the old contact": "A", "the old one": "A", "the new contact": "B", "the new one": "B"}
+    for words, name in {**names, "both contacts": "A and B"}.items():
+        meaning = meaning.replace(words, name)
+    return meaning
+
+
+def ambiguous(modes: ModeMap) -> tuple[tuple[NDArray[np.bool_], str], ...]:
+    """Where a law has no single answer, and what to say of it and of the answer that the map shows there."""
+    jam, path, total = (
+        ("what follows the tangential impact at A that resolves the jam", "one of its answers", "the path law")
+        if modes.law == "path"
+        else ("the total law", "the total law", "the answer nearest to that of the path")
+    )
+    return (
+        (modes.jammed, f"the impulse path jams (Painlevé): shown is {jam}"),
+        (~modes.path_unique, f"the impulse path is not unique: shown is {path}"),
+        (~modes.total_unique, f"the total law is not unique: shown is {total}"),
+    )
+
+
+def given_in(modes: ModeMap) -> set[str]:
+    """The parameters that are given, or an axis; the others follow from them."""
+    return {*modes.fixed, modes.x.name, modes.y.name}
+
+
+def axis_label(axis: Axis, modes: ModeMap) -> str:
+    """Symbols, meaning and unit of what changes along an axis."""
+    parameters = SUBJECTS[modes.subject].parameters
+    parameter, symbols, meaning = parameters[axis.name], [parameters[axis.name].symbol], parameters[axis.name].meaning
+    for name, other in parameters.items():
+        if parameter.together and other.otherwise == axis.name and name not in given_in(modes):
+            symbols, meaning = [*symbols, other.symbol], parameter.together
+    unit = f" ({parameter.unit})" if parameter.unit else ""
+    return f"{' = '.join(map(italic, symbols))}, {meaning}{unit}"
+
+
+def conditions(modes: ModeMap) -> str:
+    """What is the same all over the map."""
+    parameters, said = SUBJECTS[modes.subject].parameters, []
+    for name, parameter in parameters.items():
+        leader, symbol = parameter.otherwise, italic(parameter.symbol)
+        if name in modes.fixed:
+            if name != "slip" or modes.fixed[name] != 0.0:
+                unit = f" {parameter.unit}" if parameter.unit not in ("", "°") else parameter.unit
+                said.append(f"{symbol} = {modes.fixed[name]:g}{unit}")
+        elif leader not in ("", "friction", modes.x.name, modes.y.name) and name not in given_in(modes):
+            said.append(f"{symbol} = {italic(parameters[leader].symbol if leader in parameters else leader)}")
+    return ", ".join((*said, f"{modes.law} law"))
+
+
+def italic(symbol: str) -> str:
+    """A symbol as a formula has it, if it is one letter with or without an index."""
+    return f"${symbol}$" if len(symbol) == 1 or "_" in symbol else symbol
