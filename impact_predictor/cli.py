@@ -12,9 +12,9 @@ from . import __version__
 from .commands.bench import bench
 from .commands.calibrate import calibrate
 from .commands.demo import demo
-from .commands.examples import examples
 from .commands.explain import explain
 from .commands.map import map_
+from .commands.options import examples
 from .commands.replay import replay
 from .commands.report import report
 from .commands.simulate import simulate

@@ -11,7 +11,7 @@ from click.testing import CliRunner, Result
 from impact_predictor.bags.read import topics
 from impact_predictor.bags.write import BagWriter
 from impact_predictor.cli import main
-from impact_predictor.commands.unfinished import tell_unfinished
+from impact_predictor.commands.progress import say_unfinished
 
 ROOT = Path(__file__).parents[1]
 REPLAY = ["replay", "--params", str(ROOT / "config/rocking_rod.yaml")]
@@ -117,7 +117,7 @@ def test_of_many_unfinished_bags_the_first_are_named(folder: Path, capsys: pytes
             writer.write("/mode", "std_msgs/msg/UInt8", 0, bytes([0, 1, 0, 0, 1]))
             raise KeyboardInterrupt
     outputs = [Path(f"{number}.mcap") for number in range(9)]
-    tell_unfinished(outputs)
+    say_unfinished(outputs)
     (line,) = capsys.readouterr().err.splitlines()
     assert "stays as bags in 0.mcap.partial/bag, 1.mcap.partial/bag, 2.mcap.partial/bag and 1 more, until" in line
 
@@ -126,8 +126,8 @@ def test_the_workers_of_a_scheduler_go_on_and_what_they_write_is_left_alone(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with BagWriter("out.mcap"):
-        tell_unfinished([Path("out.mcap")], "tcp://localhost:8786")
+        say_unfinished([Path("out.mcap")], "tcp://localhost:8786")
         assert Path("out.mcap.partial").is_dir()
     assert "finish the bags that they have begun" in capsys.readouterr().err
-    tell_unfinished([None], "tcp://localhost:8786")
+    say_unfinished([None], "tcp://localhost:8786")
     assert capsys.readouterr().err == ""

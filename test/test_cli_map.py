@@ -10,7 +10,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from impact_predictor.cli import main
-from impact_predictor.commands.compiling import NOTE, compiling_is_said
+from impact_predictor.commands.progress import COMPILING, compiling_is_said
 
 BODIES = ["plate", "rod", "cylinder"]
 DOCS = Path(__file__).parents[1] / "docs"
@@ -143,7 +143,7 @@ def test_the_first_compilation_is_said_once(capsys: pytest.CaptureFixture[str]) 
     twice = numba.njit(lambda value: 2.0 * value)
     with compiling_is_said():
         assert twice(1.0) + twice(1) == 4.0
-    assert capsys.readouterr().err == f"{NOTE}\n"
+    assert capsys.readouterr().err == f"{COMPILING}\n"
     with compiling_is_said():
         assert twice(2.0) == 4.0
     assert capsys.readouterr().err == ""

@@ -14,7 +14,7 @@ from PIL import Image
 
 from impact_predictor.bags.read import topics
 from impact_predictor.cli import main
-from impact_predictor.commands.simulate_wheel import EXAMPLES, STICKS
+from impact_predictor.commands.simulate import EXAMPLES, STICKS
 from impact_predictor.parameters.file import read_values
 from impact_predictor.scenarios.truth import TRUTH_TOPIC
 
@@ -39,7 +39,7 @@ def simulated(*arguments: str) -> Any:
 
 
 def test_the_example_of_a_point_mass_ends_with_its_known_rates() -> None:
-    answer = simulated(*shlex.split(EXAMPLES[1])[3:-1])
+    answer = simulated(*shlex.split(EXAMPLES["wheel"][1])[3:-1])
     assert set(answer) == {"impacts", "steps", "speed", "steady", "impact_friction", "time", "end"}
     assert (answer["end"], answer["steps"], len(answer["impacts"])) == ("STEPS_DONE", 40, 40)
     last = answer["impacts"][-1]
@@ -176,6 +176,6 @@ def test_a_mistake_is_told_in_one_sentence_and_nothing_is_written(
 
 def test_the_examples_of_the_help_name_options_that_exist() -> None:
     text = run("--help").stdout
-    for line in EXAMPLES:
+    for line in EXAMPLES["wheel"]:
         assert line in text
         assert all(word in text for word in shlex.split(line) if word.startswith("-"))

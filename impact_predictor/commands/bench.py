@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from ..mechanics.impact import LAWS
-from .examples import examples
 from .experiment import experiment
-from .limits import Whole
+from .options import Whole, examples
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -68,8 +67,7 @@ def invariants(count: int, seed: int, law: str, as_json: bool) -> int:
     what was found so far.
     """
     from ..mechanics.soak import Soak
-    from .compiling import compiling_is_said
-    from .progress import progress
+    from .progress import compiling_is_said, progress
 
     soak = Soak(count, seed, LAWS if law == "both" else (law,))
     began, interrupted = perf_counter(), False

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from ..errors import InputError
-from .examples import examples
-from .limits import Whole
+from .options import BAGS, PARAMS, examples, json_flag, remap_option, seed_option, text
 from .outcomes import DAMAGED, FAILED
 from .replay import read_scenes
 
@@ -29,15 +28,13 @@ if TYPE_CHECKING:
         "impact-predictor calibrate run.mcap --params scene.yaml --remap odom:=/cube/odom --json",
     ),
 )
-@click.argument("bags", nargs=-1, required=True, metavar="BAG...")
-@click.option("--params", required=True, metavar="FILE", help="ROS 2 parameter file of the scene.")
-@click.option(
-    "-r", "--remap", multiple=True, metavar="FROM:=TO", help="Topic of an input, as for replay; may be repeated."
-)
-@click.option("-o", "--output", metavar="FILE", help="Write the parameter file with the fitted values in it.")
-@click.option("--figure", metavar="FILE", help="Draw the fit into a .png or .svg file.")
-@click.option("--seed", type=Whole(min=0), default=0, show_default=True, help="Which resamples and folds.")
-@click.option("--json", "as_json", is_flag=True, help="Print JSON only.")
+@BAGS
+@PARAMS
+@remap_option("Topic of an input, as for replay; may be repeated.")
+@text("-o", "--output", metavar="FILE", help_text="Write the parameter file with the fitted values in it.")
+@text("--figure", metavar="FILE", help_text="Draw the fit into a .png or .svg file.")
+@seed_option("Which resamples and folds.")
+@json_flag()
 def calibrate(
     bags: tuple[str, ...],
     params: str,
@@ -59,8 +56,7 @@ def calibrate(
     from ..report.calibration import as_json as fields_of
     from ..report.calibration import unscored
     from ..wording import words
-    from .compiling import compiling_is_said
-    from .progress import progress
+    from .progress import compiling_is_said, progress
 
     scenes, topics = read_scenes(params), remapping(remap)
     if output is not None and not Path(output).resolve().parent.is_dir():

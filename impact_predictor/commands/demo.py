@@ -6,8 +6,7 @@ from pathlib import Path
 
 import click
 
-from .examples import examples
-from .limits import Whole
+from .options import Whole, examples
 
 
 @click.command(

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from .examples import examples
-from .limits import Number
+from .options import Real, examples
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -31,10 +30,10 @@ VERY_CLOSE: Final = ((10, 200), (10, 100), (20, 200), (50, 200))
     short_help="Predict the paper's falling rods, beside what it observed.",
     epilog=examples("impact-predictor bench experiment", "impact-predictor bench experiment --angle 30 --json"),
 )
-@click.option("--friction", type=Number(0.0, 100.0), default=0.4, show_default=True, help="Of rod and supports.")
+@click.option("--friction", type=Real(0.0, 100.0), default=0.4, show_default=True, help="Of rod and supports.")
 @click.option(
     "--angle",
-    type=Number(0.0, 90.0, min_open=True, max_open=True),
+    type=Real(0.0, 90.0, min_open=True, max_open=True),
     default=15.0,
     show_default=True,
     metavar="DEGREES",

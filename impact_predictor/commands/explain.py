@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from .examples import examples
+from .options import examples
 
 
 @click.command(

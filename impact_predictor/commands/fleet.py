@@ -63,8 +63,7 @@ def folders_of(outputs: Sequence[Path | None]) -> Iterator[None]:
 def one_by_one(job: Job, bags: Sequence[str], outputs: Sequence[Path | None]) -> Generator[Outcome]:
     """What became of each bag, replayed here."""
     from ..fleet.job import replay_bag
-    from .compiling import compiling_is_said
-    from .progress import progress
+    from .progress import compiling_is_said, progress
 
     samples = any(scene.samples for scene in job.scenes.values())
     for number, (bag, output) in enumerate(zip(bags, outputs, strict=True), 1):

@@ -10,10 +10,8 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from ..errors import InputError
-from ..mechanics.impact import LAWS
 from ..report.map import SUBJECTS, Axis, MapParameter, fixed_values, option_of
-from .examples import examples
-from .limits import Whole
+from .options import LAW, Whole, examples, json_flag, number, together
 
 if TYPE_CHECKING:
     from ..report.map import ModeMap
@@ -77,30 +75,17 @@ def command_of(name: str) -> click.Command:
         given = {name: value for name, value in parameters.items() if value is not None}
         answer(name, axes, fixed_values(subject, axes, given), law, resolution, output, as_json)
 
-    decorators: list[Callable[[Any], Any]] = [
-        click.option(f"--{option_of(parameter)}", parameter, type=float, help=help_of(says))
-        for parameter, says in subject.parameters.items()
-    ]
-    for option, axis, where in (("--x", subject.x, "along"), ("--y", subject.y, "upwards")):
-        default = f"{option_of(axis.name)} {axis.low:g} {axis.high:g}"
-        decorators.append(
-            click.option(
-                option,
-                type=(str, float, float),
-                metavar="NAME LOW HIGH",
-                help=f"Parameter that grows {where}, by its name above. [default: {default}]",
-            )
-        )
-    decorators += [
-        click.option("--law", type=click.Choice(LAWS), default="path", show_default=True, help="Impact law."),
-        click.option(
-            "--resolution",
-            type=Whole(2, MOST_CELLS),
-            default=1000,
-            show_default=True,
-            metavar="N",
-            help="Cells along each axis.",
-        ),
+    def axis(option: str, default: Axis, where: str) -> Callable[[Any], Any]:
+        shown = f"{option_of(default.name)} {default.low:g} {default.high:g}"
+        says = f"Parameter that grows {where}, by its name above. [default: {shown}]"
+        return click.option(option, type=(str, float, float), metavar="NAME LOW HIGH", help=says)
+
+    options = together(
+        *[number(f"--{option_of(one)}", help_of(says)) for one, says in subject.parameters.items()],
+        axis("--x", subject.x, "along"),
+        axis("--y", subject.y, "upwards"),
+        LAW,
+        number("--resolution", "Cells along each axis.", 1000, type=Whole(2, MOST_CELLS), metavar="N"),
         click.option(
             "-o",
             "--output",
@@ -110,17 +95,15 @@ def command_of(name: str) -> click.Command:
             help="Picture (.png, .svg) or data (.csv); may be repeated. "
             f"[default: map_{name}.png, with --json no file]",
         ),
-        click.option("--json", "as_json", is_flag=True, help="Print the shares of the modes as JSON."),
-    ]
-    for decorate in reversed(decorators):
-        draw = decorate(draw)
+        json_flag("Print the shares of the modes as JSON."),
+    )
     body, shown = WHAT[name]
     return click.command(
         name,
         short_help=f"{body}.",
         help=f"{body}: {shown}, or what else you ask for.",
         epilog=examples(*EXAMPLES[name]),
-    )(draw)
+    )(options(draw))
 
 
 def help_of(parameter: MapParameter) -> str:
@@ -150,8 +133,7 @@ def answer(
         check_output(file)
 
     from ..report.map import map_modes
-    from .compiling import compiling_is_said
-    from .progress import progress
+    from .progress import compiling_is_said, progress
 
     with compiling_is_said(), progress(name, "cells", resolution * resolution) as tell:
         modes = map_modes(name, *axes, fixed, law, resolution, tell)

@@ -1,11 +1,14 @@
-"""A progress bar on standard error."""
+"""What is said on standard error while work goes on: how far it is, that numba compiles, and what Ctrl-C leaves."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
+
+import click
 
 if TYPE_CHECKING:
     from rich.progress import Progress, TaskID
@@ -13,9 +16,13 @@ if TYPE_CHECKING:
 PATIENCE: Final = 1.0
 """Seconds of work before a bar appears."""
 
+COMPILING: Final = "note: compiling the impact laws, once for this machine (about 15 s)"
+NAMED: Final = 3
+"""Unfinished bags that are named; of more the number is given."""
 
-class Bar:
-    """A bar that is told how much is done."""
+
+class ProgressBar:
+    """A bar that shows how much is done."""
 
     def __init__(self, progress: Progress, task: TaskID) -> None:
         """Show it when the work has taken its time."""
@@ -29,40 +36,91 @@ class Bar:
             self._progress.start()
 
     def hide(self) -> None:
-        """Take it away until it is told again, so that something else can be printed."""
+        """Take it away until more is done, so that something else can be printed."""
         if self._progress.live.is_started:
             self._progress.stop()
 
 
 @contextmanager
-def progress(label: str, unit: str = "samples", total: int | None = None) -> Iterator[Bar]:
+def progress(label: str, unit: str = "samples", total: int | None = None) -> Iterator[ProgressBar]:
     """A bar while work goes on that takes more than a second, on a terminal; gone when it is done."""
+    from rich import progress as rich
     from rich.console import Console
-    from rich.progress import (
-        BarColumn,
-        Progress,
-        ProgressColumn,
-        TaskProgressColumn,
-        TextColumn,
-        TimeElapsedColumn,
-        TimeRemainingColumn,
-    )
 
     console = Console(stderr=True)
-    times: list[ProgressColumn] = [TimeElapsedColumn()]
+    times: list[rich.ProgressColumn] = [rich.TimeElapsedColumn()]
     if total is not None:
-        times.append(TimeRemainingColumn())
-    bar = Progress(
-        TextColumn("{task.description}", markup=False),
-        BarColumn(),
-        TextColumn(f"{{task.completed:,}} {unit}"),
-        TaskProgressColumn(show_speed=True),
+        times.append(rich.TimeRemainingColumn())
+    bar = rich.Progress(
+        rich.TextColumn("{task.description}", markup=False),
+        rich.BarColumn(),
+        rich.TextColumn(f"{{task.completed:,}} {unit}"),
+        rich.TaskProgressColumn(show_speed=True),
         *times,
         console=console,
         transient=True,
         disable=not console.is_terminal,
     )
     try:
-        yield Bar(bar, bar.add_task(label, total=total))
+        yield ProgressBar(bar, bar.add_task(label, total=total))
     finally:
         bar.stop()
+
+
+@contextmanager
+def compiling_is_said() -> Iterator[None]:
+    """Say so when numba compiles meanwhile, instead of taking what it compiled before."""
+    try:
+        from numba.core import event
+    except ImportError:
+        yield
+        return
+
+    class Say(event.Listener):
+        said = False
+
+        def on_start(self, event: Any) -> None:
+            if not self.said:
+                self.said = True
+                click.echo(COMPILING, err=True)
+
+        def on_end(self, event: Any) -> None:
+            """Nothing is said then."""
+
+    with event.install_listener("numba:compile", Say()):
+        yield
+
+
+def say_unfinished(outputs: Sequence[Path | None], scheduler: str | None = None) -> None:
+    """Name the bags that are left unfinished of some outputs, where their writers were stopped.
+
+    The workers of a scheduler are not: they write the bags to the end that they have begun.
+    """
+    files = [output for output in outputs if output is not None]
+    if not files:
+        return
+    if scheduler is not None:
+        click.echo("note: the workers of the scheduler finish the bags that they have begun, and write them", err=True)
+        return
+    from ..bags.write import left_of
+
+    left = [str(bag) for bag in map(left_of, files) if bag is not None]
+    if left:
+        more = f" and {len(left) - NAMED:,} more" if len(left) > NAMED else ""
+        stay, them = ("stays as a bag in", "it") if len(left) == 1 else ("stays as bags in", "them")
+        click.echo(
+            f"note: what was written until Ctrl-C {stay} {', '.join(left[:NAMED])}{more}, until the next run with this "
+            f"-o replaces {them}",
+            err=True,
+        )
+
+
+@contextmanager
+def writing(output: str, unit: str = "samples", total: int | None = None) -> Iterator[ProgressBar]:
+    """A bar while a bag is written; the bag that Ctrl-C leaves unfinished is named."""
+    try:
+        with progress(Path(output).name, unit, total) as bar:
+            yield bar
+    except KeyboardInterrupt:
+        say_unfinished([Path(output)])
+        raise

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from ..errors import InputError, need
-from .examples import examples
-from .limits import Number, Whole
+from .options import BAGS, PARAMS, Real, Whole, examples, json_flag, number, remap_option, text
 
 if TYPE_CHECKING:
     from ..prediction.scene import Scene
@@ -32,76 +31,57 @@ if TYPE_CHECKING:
         "impact-predictor replay runs --params scene.yaml --workers 2 --table results.parquet",
     ),
 )
-@click.argument("bags", nargs=-1, required=True, metavar="BAG...")
-@click.option("--params", required=True, metavar="FILE", help="ROS 2 parameter file of the scene.")
-@click.option(
-    "-r",
-    "--remap",
-    multiple=True,
-    metavar="FROM:=TO",
-    help="Topic of an input: odom, contact_geometry, joint_states, crate/odom, support/odom ...; may be repeated.",
-)
-@click.option(
+@BAGS
+@PARAMS
+@remap_option("Topic of an input: odom, contact_geometry, joint_states, crate/odom, support/odom ...; may be repeated.")
+@text(
     "-o",
     "--output",
     metavar="NAME",
-    help="Write the predictions: NAME.mcap is one file, any other name a rosbag2 folder; with several bags, "
+    help_text="Write the predictions: NAME.mcap is one file, any other name a rosbag2 folder; with several bags, "
     "a folder with one file for each. The folder that it is in must be there.",
 )
 @click.option("--markers", is_flag=True, help="Write the markers for RViz and Foxglove too, into the output.")
-@click.option(
+@text(
     "--figure",
     metavar="FILE",
-    help="Draw errors and velocities, of a walking machine its gait, into a .png or .svg file.",
+    help_text="Draw errors and velocities, of a walking machine its gait, into a .png or .svg file.",
 )
-@click.option(
+@text(
     "--report",
     metavar="FILE",
-    help="Write a page about all bags into one .html file; any other name is a folder with a page for each bag too.",
+    help_text="Write a page about all bags into one .html file; any other name is a folder with a page for each bag too.",
 )
-@click.option(
+@text(
     "--table",
     metavar="FILE",
-    help="Write the touchdowns of all bags into one .parquet file; docs/fleets.md has its columns.",
+    help_text="Write the touchdowns of all bags into one .parquet file; docs/fleets.md has its columns.",
 )
 @click.option("--all", "every", is_flag=True, help="List every touchdown, not only the first scored ones.")
-@click.option(
-    "--json",
-    "as_json",
-    is_flag=True,
-    help="Print JSON only: an object, or a list for several bags; docs/replay.md has its keys and units.",
-)
-@click.option(
+@json_flag("Print JSON only: an object, or a list for several bags; docs/replay.md has its keys and units.")
+@number(
     "--workers",
+    "Replay so many bags at a time, each in a process of its own.",
+    1,
     type=Whole(min=1),
-    default=1,
-    show_default=True,
     metavar="N",
-    help="Replay so many bags at a time, each in a process of its own.",
 )
-@click.option(
+@text(
     "--scheduler",
     metavar="ADDRESS",
-    help="Replay the bags on the workers of this Dask scheduler, as in tcp://host:8786; they open the same paths.",
+    help_text="Replay the bags on the workers of this Dask scheduler, as in tcp://host:8786; they open the same paths.",
 )
-@click.option(
+@text(
     "--baseline",
     metavar="RUN",
-    help="Tell what has changed against an earlier run: what it wrote with -o, or printed with --json.",
+    help_text="Tell what has changed against an earlier run: what it wrote with -o, or printed with --json.",
 )
-@click.option(
-    "--baseline-time",
-    type=Number(min=0.0),
-    default=1e-3,
-    show_default=True,
-    help="Times that differ by up to so many s have not changed.",
-)
-@click.option(
+@number("--baseline-time", "Times that differ by up to so many s have not changed.", 1e-3, type=Real(min=0.0))
+@number(
     "--baseline-error",
-    type=Number(min=0.0),
-    default=0.01,
-    show_default=True,
-    help="Errors and velocities that differ by up to this part of 1 have not changed.",
+    "Errors and velocities that differ by up to this part of 1 have not changed.",
+    0.01,
+    type=Real(min=0.0),
 )
 def replay(
     bags: tuple[str, ...],
@@ -134,7 +114,7 @@ def replay(
     from ..report.files import named
     from .fleet import folders_of, on_workers, one_by_one, outputs_of
     from .outcomes import Outcomes
-    from .unfinished import tell_unfinished
+    from .progress import say_unfinished
 
     if markers and output is None:
         raise InputError("--markers are written into an output: give its name with -o")
@@ -184,7 +164,7 @@ def replay(
                     f"note: stopped after {told.number:,} of {len(bags):,} bags; what they gave is kept", err=True
                 )
             if isinstance(error, KeyboardInterrupt):
-                tell_unfinished(outputs[told.number :], scheduler)
+                say_unfinished(outputs[told.number :], scheduler)
             if stopped is None:
                 raise
         told.finish()

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from ..errors import InputError, need
-from .examples import examples
+from .options import examples
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -98,8 +98,7 @@ def measured(quick: bool, folder: Path | None) -> Report:
     need("mpmath", "scipy")
     from ..report.accuracy.study import FULL, QUICK, steps
     from ..report.accuracy.study import report as measure
-    from .compiling import compiling_is_said
-    from .progress import progress
+    from .progress import compiling_is_said, progress
 
     size = QUICK if quick else FULL
     command = "impact-predictor report" + (" --quick" if quick else "") + (f" -o {folder}" if folder else " --json")

@@ -1,31 +1,28 @@
-"""`impact-predictor simulate`: bodies that rock from contact to contact, as a table, a picture or a bag."""
+"""`impact-predictor simulate`: bodies that rock or roll from contact to contact, as a table, a picture or a bag."""
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Sequence
+from functools import partial
 from math import radians
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, Final
 
 import click
 
 from ..mechanics.bodies import refuse
-from ..mechanics.impact import LAWS
-from .examples import examples
-from .limits import Number
+from .options import ACUTE, LAW, F, Whole, examples, json_flag, number, together
 from .simulate_deck import EXAMPLES as DECK_EXAMPLES
 from .simulate_deck import simulate_deck
-from .simulate_wheel import EXAMPLES as WHEEL_EXAMPLES
-from .simulate_wheel import simulate_wheel
-from .simulated_files import RATE, check_pictures, draw_film, rate_of_bag, say_files
+from .simulated import RATES_AS_MAGNITUDES, Products, as_json_option, picture_options, record_options
 
 if TYPE_CHECKING:
+    from rich.console import Console
+
     from ..scenarios.rocking import Rocker, Rocking
 
-F = TypeVar("F", bound=Callable[..., Any])
-
-ACUTE: dict[str, Any] = {"type": Number(-90.0, 90.0, min_open=True, max_open=True), "metavar": "DEGREES"}
+STEPS: Final = 20
+STICKS: Final = 100.0
+"""Friction against which no spoke slips; that of config/wheel.yaml, too."""
 
 EXAMPLES = {
     "rod": (
@@ -42,64 +39,43 @@ EXAMPLES = {
         "impact-predictor simulate cylinder --radius 0.3 --gamma 40 --angle 15 --animate cylinder.gif",
         "impact-predictor simulate cylinder --gamma 50 --gamma-new 30 --friction 0.5 --plot cylinder.svg",
     ),
+    "wheel": (
+        "impact-predictor simulate wheel --plot wheel.png --animate wheel.gif -o wheel.mcap",
+        "impact-predictor simulate wheel --slope 4.583662361046586 --inertia 1e-12 --gravity 9.8 --steps 40 --json",
+        "impact-predictor simulate wheel --slope 3 --omega 1.5 --animate stop.gif",
+        "impact-predictor simulate wheel --friction 0.35 --plot slips.png",
+    ),
 }
-"""Of each body; the second ones of rod and plate make pictures of the documentation."""
+"""Of each body; the second ones of rod and plate make pictures of the documentation.
 
-
-def number(name: str, default: float | None, help_text: str, **more: Any) -> Callable[[F], F]:
-    """An option that takes one number."""
-    more = {"type": float, **more}
-    return click.option(name, default=default, show_default=default is not None, help=help_text, **more)
+The second one of the wheel is the point mass on the slope of 0.08 rad; the fourth one has less friction than it needs.
+"""
 
 
 def motion_options(angle: float) -> Callable[[F], F]:
     """The options that every body has: how it begins, by which laws it moves, and what is made of it."""
-    options: tuple[Callable[[Any], Any], ...] = (
-        number("--angle", angle, "Angle at which it is released at rest, degrees; negative stands on B.", **ACUTE),
-        number("--mass", 1.0, "Mass, kg."),
-        number("--inertia", None, "Inertia about the mass centre, kg m^2 (a homogeneous body's unless given)."),
-        number("--friction", None, "Coulomb friction coefficient (it sticks unless given)."),
-        number("--restitution", 0.0, "Restitution of a contact that strikes, 0 (plastic) to 1."),
-        click.option("--law", type=click.Choice(LAWS), default="path", show_default=True, help="Impact law."),
-        number("--slope", 0.0, "Slope of the support, degrees; positive is uphill from A to B.", **ACUTE),
-        number("--gravity", 9.81, "Gravity, m/s^2."),
-        number("--duration", 10.0, "Longest time that is simulated, s."),
-        click.option("--plot", metavar="FILE", help="Draw angular velocity and angle into a .png or .svg file."),
-        click.option("--animate", metavar="FILE", help="Draw a moving picture into a .gif file."),
-        click.option(
-            "--json",
-            "as_json",
-            is_flag=True,
-            help="Print JSON, rates as magnitudes: an object, or a list for several rods.",
-        ),
+    return together(
+        number("--angle", "Angle at which it is released at rest, degrees; negative stands on B.", angle, **ACUTE),
+        number("--mass", "Mass, kg.", 1.0),
+        number("--inertia", "Inertia about the mass centre, kg m^2 (a homogeneous body's unless given)."),
+        number("--friction", "Coulomb friction coefficient (it sticks unless given)."),
+        number("--restitution", "Restitution of a contact that strikes, 0 (plastic) to 1.", 0.0),
+        LAW,
+        number("--slope", "Slope of the support, degrees; positive is uphill from A to B.", 0.0, **ACUTE),
+        number("--gravity", "Gravity, m/s^2.", 9.81),
+        number("--duration", "Longest time that is simulated, s.", 10.0),
+        picture_options("angular velocity and angle", "a moving picture"),
+        json_flag(f"{RATES_AS_MAGNITUDES}: an object, or a list for several rods."),
     )
-
-    def decorate(command: F) -> F:
-        for option in reversed(options):
-            command = option(command)
-        return command
-
-    return decorate
-
-
-def bag_options(command: F) -> F:
-    """The options of a body of which a bag can be written: points over a straight support."""
-    command = click.option("--rate", type=float, help=f"Samples of the bag for each second. [default: {RATE:g}]")(
-        command
-    )
-    return click.option(
-        "-o",
-        "--output",
-        metavar="BAG",
-        help="Write a bag for `replay`, with the true impacts: NAME.mcap is one file, any other name a rosbag2 folder.",
-    )(command)
 
 
 @click.group(
     short_help="Simulate bodies that rock, as a table, a picture or a bag.",
     no_args_is_help=False,
     epilog=examples(
-        *(line for lines in EXAMPLES.values() for line in lines[:2]), *WHEEL_EXAMPLES[:1], *DECK_EXAMPLES[:1]
+        *(line for body in ("rod", "plate", "cylinder") for line in EXAMPLES[body][:2]),
+        EXAMPLES["wheel"][0],
+        DECK_EXAMPLES[0],
     ),
 )
 def simulate() -> None:
@@ -111,25 +87,20 @@ def simulate() -> None:
 
 
 simulate.add_command(simulate_deck)
-simulate.add_command(simulate_wheel)
 
 
 @simulate.command("rod", short_help="A rod over two supports.", epilog=examples(*EXAMPLES["rod"]))
-@number("--length", 0.4, "Length, m.")
-@number("--thickness", 0.0, "Thickness, m.")
-@number("--a", None, "Support A behind the middle, m; may be repeated for several rods. [default: 0.1]", multiple=True)
-@number("--b", None, "Support B ahead of the middle, m, once for each rod (as --a unless given).", multiple=True)
+@number("--length", "Length, m.", 0.4)
+@number("--thickness", "Thickness, m.", 0.0)
+@number("--a", "Support A behind the middle, m; may be repeated for several rods. [default: 0.1]", multiple=True)
+@number("--b", "Support B ahead of the middle, m, once for each rod (as --a unless given).", multiple=True)
 @motion_options(angle=30.0)
-@bag_options
+@record_options
 def simulate_rod(
     length: float,
     thickness: float,
     a: tuple[float, ...],
     b: tuple[float, ...],
-    mass: float,
-    friction: float | None,
-    inertia: float | None,
-    restitution: float,
     **options: Any,
 ) -> int:
     """A rod over two supports, the paper's Fig. 2; one for each --a."""
@@ -141,52 +112,38 @@ def simulate_rod(
         raise click.UsageError(
             f"--a is given {len(behind)} times but --b {len(ahead)} times: give one of each for every rod"
         )
-    return answer(
-        [
-            rocking_rod(length, thickness, one_a, one_b, mass, friction, inertia, restitution)
-            for one_a, one_b in zip(behind, ahead, strict=True)
-        ],
-        **options,
-    )
+    return answer([partial(rocking_rod, length, thickness, *ab) for ab in zip(behind, ahead, strict=True)], **options)
 
 
 @simulate.command("plate", epilog=examples(*EXAMPLES["plate"]))
-@number("--length", 1.0, "Length, m.")
-@number("--height", 1.6, "Height, m.")
-@number("--a", None, "Contact A behind the mass centre, m (half the length unless given).")
-@number("--b", None, "Contact B ahead of the mass centre, m (half the length unless given).")
+@number("--length", "Length, m.", 1.0)
+@number("--height", "Height, m.", 1.6)
+@number("--a", "Contact A behind the mass centre, m (half the length unless given).")
+@number("--b", "Contact B ahead of the mass centre, m (half the length unless given).")
 @motion_options(angle=10.0)
-@bag_options
+@record_options
 def simulate_plate(
     length: float,
     height: float,
     a: float | None,
     b: float | None,
-    mass: float,
-    friction: float | None,
-    inertia: float | None,
-    restitution: float,
     **options: Any,
 ) -> int:
     """A plate, crate or block on a flat floor."""
     from ..scenarios.rocking import rocking_plate
 
-    return answer([rocking_plate(length, height, a, b, mass, friction, inertia, restitution)], **options)
+    return answer([partial(rocking_plate, length, height, a, b)], **options)
 
 
 @simulate.command("cylinder", epilog=examples(*EXAMPLES["cylinder"]))
-@number("--radius", 0.3, "Radius, m.")
-@number("--gamma", 40.0, "Central angle of the edge A behind the vertical, degrees.")
-@number("--gamma-new", None, "Central angle of the edge B ahead of the vertical, degrees (--gamma unless given).")
+@number("--radius", "Radius, m.", 0.3)
+@number("--gamma", "Central angle of the edge A behind the vertical, degrees.", 40.0)
+@number("--gamma-new", "Central angle of the edge B ahead of the vertical, degrees (--gamma unless given).")
 @motion_options(angle=15.0)
 def simulate_cylinder(
     radius: float,
     gamma: float,
     gamma_new: float | None,
-    mass: float,
-    friction: float | None,
-    inertia: float | None,
-    restitution: float,
     **options: Any,
 ) -> int:
     """A cylinder that rolls from edge to edge.
@@ -198,74 +155,107 @@ def simulate_cylinder(
     ahead = gamma if gamma_new is None else gamma_new
     between = "angles in degrees with a sum between 0 and 180"
     refuse({"the angle between the edges": gamma + ahead}, lambda value: 0.0 < value < 180.0, between)
-    return answer(
-        [rocking_cylinder(radius, radians(gamma), radians(ahead), mass, friction, inertia, restitution)], **options
-    )
+    return answer([partial(rocking_cylinder, radius, radians(gamma), radians(ahead))], **options)
 
 
 def answer(
-    rockers: Sequence[Rocker],
+    bodies: Sequence[Callable[..., Rocker]],
+    mass: float,
+    friction: float | None,
+    inertia: float | None,
+    restitution: float,
     angle: float,
     slope: float,
     gravity: float,
     law: str,
     duration: float,
-    plot: str | None,
-    animate: str | None,
-    as_json: bool,
-    output: str | None = None,
-    rate: float | None = None,
+    **asked: Any,
 ) -> int:
     """Simulate the bodies, write what is asked for and say what happened; the exit status, 1 where it broke off."""
-    rate = rate_of_bag(rate, output)
-    check_pictures(plot, animate)
+    products = Products(**asked)
+    products.check()
+    from ..report.motions.words import as_json
     from ..scenarios.rocking import release
 
+    rockers = [body(mass, friction, inertia, restitution) for body in bodies]
     rockings = [release(rocker, radians(angle), radians(slope), gravity, law, duration) for rocker in rockers]
-    if output is not None:
-        write_bag(output, rockings, rate)
-    if plot is not None:
-        from ..report.rocking_pictures import write_rocking_figure
+    if products.output is not None:
+        from ..scenarios.record import rocking_actor
 
-        write_rocking_figure(plot, rockings)
-    if animate is not None:
-        from ..report.rocking_pictures import rocking_film
+        names = [one.rocker.name for one in rockings]
+        names = [f"{name}_{k}" for k, name in enumerate(names, 1)] if len(names) > 1 else names
+        products.record([rocking_actor(name, one.run) for name, one in zip(names, rockings, strict=True)])
+    if products.draws:
+        from ..report.rocking_pictures import rocking_film, write_rocking_figure
 
-        draw_film(animate, rocking_film(rockings))
-    say(rockings, as_json)
-    if not as_json:
-        say_files(output, plot, animate)
+        products.draw(lambda path: write_rocking_figure(path, rockings), partial(rocking_film, rockings))
+    answers = [as_json(rocking.run) for rocking in rockings]
+    products.say(lambda: answers if len(answers) > 1 else answers[0], partial(show, rockings))
     return 1 if any(rocking.broke_off for rocking in rockings) else 0
 
 
-def write_bag(output: str, rockings: Sequence[Rocking], rate: float) -> None:
-    """Write the motions into one bag."""
-    from ..scenarios.record import rocking_actor, write_record
-    from .progress import progress
-    from .unfinished import unfinished_is_told
-
-    actors = [
-        rocking_actor(f"{rocking.rocker.name}_{k}" if len(rockings) > 1 else rocking.rocker.name, rocking.run)
-        for k, rocking in enumerate(rockings, 1)
-    ]
-    samples = sum(actor.samples(rate) for actor in actors)
-    with unfinished_is_told(output), progress(Path(output).name, total=samples) as tell:
-        write_record(output, actors, rate, tell)
-
-
-def say(rockings: Sequence[Rocking], as_json: bool) -> None:
-    """Print what happened."""
-    if as_json:
-        from ..report.motions.words import as_json as fields_of
-
-        answers = [fields_of(rocking.run) for rocking in rockings]
-        click.echo(json.dumps(answers if len(answers) > 1 else answers[0], allow_nan=False))
-        return
-    from rich.console import Console
-
+def show(rockings: Sequence[Rocking], console: Console) -> None:
+    """Print what happened to each body."""
     from ..report.motions.words import print_motion
 
     for k, rocking in enumerate(rockings):
         if k:
             click.echo()
-        print_motion(Console(), rocking)
+        print_motion(console, rocking)
+
+
+@simulate.command("wheel", short_help="A rimless wheel down a slope.", epilog=examples(*EXAMPLES["wheel"]))
+@number("--slope", "Slope of the ground, degrees; positive is downhill ahead.", 5.0, **ACUTE)
+@number("--alpha", "Half the angle between two spokes, degrees: 180 divided by their number.", 22.5, metavar="DEGREES")
+@number("--leg", "Length of the spokes, m.", 1.0)
+@number("--mass", "Mass, kg.", 1.0)
+@number("--inertia", "Inertia about the mass centre, kg m^2, above 0; a point mass has hardly any.", 0.1)
+@number("--omega", "Rate at which it is let go over its first spoke, rad/s; positive rolls ahead.", 0.0)
+@number("--gravity", "Gravity, m/s^2.", 9.81)
+@number("--friction", "Coulomb friction coefficient (it sticks unless given).")
+@LAW
+@click.option(
+    "--steps", type=Whole(min=1), help=f"Steps to make, ahead or backwards. [default: {STEPS}, or those of --duration]"
+)
+@number("--duration", "Longest time that is simulated, s. [default: 60]")
+@picture_options("the wheel, its rate and its stance", "a moving picture")
+@as_json_option
+@record_options
+def simulate_wheel(
+    slope: float,
+    alpha: float,
+    leg: float,
+    mass: float,
+    inertia: float,
+    omega: float,
+    gravity: float,
+    friction: float | None,
+    law: str,
+    steps: int | None,
+    duration: float | None,
+    **asked: Any,
+) -> int:
+    """A rimless wheel: spokes without a rim roll down a slope, one after the other, until they stop.
+
+    It is let go with spoke 0 at right angles to the slope. Each spoke strikes without bouncing; where friction does not
+    hold it, it slips. What is printed tells the steady rolling by its closed form, too.
+    """
+    from ..report.motions.wheel_words import as_json, print_rolling
+    from ..scenarios.wheel import Hub, RollEnd, Wheel, roll
+
+    products = Products(**asked)
+    products.check()
+    if steps is None and duration is None:
+        steps = STEPS
+    hub = Hub(mass, inertia, leg, STICKS if friction is None else friction, radians(slope), gravity)
+    rolling = roll(Wheel(hub, radians(alpha)), omega, steps, 60.0 if duration is None else duration, law)
+    if products.output is not None:
+        from ..scenarios.record import wheel_actor
+
+        products.record([wheel_actor(rolling)])
+    if products.draws:
+        from ..report.wheel_pictures import wheel_film, write_wheel_figure
+
+        products.draw(lambda path: write_wheel_figure(path, rolling), partial(wheel_film, rolling))
+    products.say(partial(as_json, rolling), lambda console: print_rolling(console, rolling))
+    return 1 if rolling.end is RollEnd.LOST else 0

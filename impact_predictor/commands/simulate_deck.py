@@ -2,25 +2,18 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Callable
 from math import pi
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, TypeVar
+from typing import TYPE_CHECKING, Any, Final
 
 import click
 from click.core import ParameterSource
 
-from .examples import examples
-from .limits import Whole
-from .simulated_files import check_pictures, draw_film, say_files
+from .options import choice, examples, number, seed_option, text, together
+from .progress import progress, writing
+from .simulated import Products, as_json_option, bag_option, picture_options
 
 if TYPE_CHECKING:
     from ..mechanics.motion.support import MovingSupport
-    from ..report.deck_pictures import DeckMotion
-    from ..scenarios.deck.voyage import Voyage
-
-F = TypeVar("F", bound=Callable[..., Any])
 
 SCENE: Final = "config/deck_crate.yaml"
 DURATION: Final = 3600.0
@@ -56,50 +49,28 @@ _NOISE: Final = (
 )
 
 
-def numbers(command: F) -> F:
-    """The options that take one number each."""
-    for name, what in reversed(_NOISE):
-        command = click.option(name, type=float, default=0.0, help=f"Standard deviation of the {what}. [default: 0]")(
-            command
-        )
-    for name, default, text in reversed((*_SEA, *_RATES)):
-        command = click.option(name, type=float, default=default, show_default=True, help=text)(command)
-    return command
-
-
 @click.command("deck", short_help="Cargo on the deck of a vessel in a sea.", epilog=examples(*EXAMPLES))
-@click.option("--params", metavar="FILE", help=f"Parameter file of the units. [default: {SCENE}]")
-@click.option("--duration", type=float, help=f"Seconds to simulate. [default: {DURATION:g}, or the recorded deck's]")
-@click.option("--seed", type=Whole(min=0), default=SEED, show_default=True, help="Makes the sea and the noise.")
-@click.option(
-    "--spectrum",
-    type=click.Choice(["jonswap", "pm"]),
-    default="jonswap",
-    show_default=True,
-    help="Of the waves: JONSWAP or Pierson and Moskowitz.",
+@text("--params", metavar="FILE", help_text=f"Parameter file of the units. [default: {SCENE}]")
+@number("--duration", f"Seconds to simulate. [default: {DURATION:g}, or the recorded deck's]")
+@seed_option("Makes the sea and the noise.", SEED)
+@choice("--spectrum", "Of the waves: JONSWAP or Pierson and Moskowitz.", "jonswap", "pm", default="jonswap")
+@together(*[number(name, says, default) for name, default, says in (*_SEA, *_RATES)])
+@together(
+    *[number(name, f"Standard deviation of the {what}. [default: 0]", 0.0, show_default=False) for name, what in _NOISE]
 )
-@numbers
-@click.option("--rao", metavar="CSV", help="Responses of the vessel, in the place of those by --roll-period.")
-@click.option("--record", metavar="BAG", help="A recorded deck in the place of a sea: its roll, sway and heave.")
-@click.option(
-    "--record-topic", metavar="TOPIC", default="", help="Odometry of the recorded deck, where there are more."
-)
-@click.option(
+@text("--rao", metavar="CSV", help_text="Responses of the vessel, in the place of those by --roll-period.")
+@text("--record", metavar="BAG", help_text="A recorded deck in the place of a sea: its roll, sway and heave.")
+@text("--record-topic", metavar="TOPIC", help_text="Odometry of the recorded deck, where there are more.", default="")
+@choice(
     "--contacts",
-    type=click.Choice(["rigid", "compliant"]),
+    "By impact laws, or stiff springs with dampers and friction: slow, and independent of every impact law.",
+    "rigid",
+    "compliant",
     default="rigid",
-    show_default=True,
-    help="By impact laws, or stiff springs with dampers and friction: slow, and independent of every impact law.",
 )
-@click.option("--plot", metavar="FILE", help="Draw the deck, and the units that moved most, into a .png or .svg file.")
-@click.option("--animate", metavar="FILE", help="Draw a moving picture of the liveliest seconds into a .gif file.")
-@click.option("--json", "as_json", is_flag=True, help="Print JSON, rates as magnitudes.")
-@click.option(
-    "-o",
-    "--output",
-    metavar="BAG",
-    help="Write a bag for `replay`, with the truth: NAME.mcap is one file, any other name a rosbag2 folder.",
-)
+@picture_options("the deck, and the units that moved most,", "a moving picture of the liveliest seconds")
+@as_json_option
+@bag_option("the truth")
 def simulate_deck(
     params: str | None,
     duration: float | None,
@@ -125,12 +96,10 @@ def simulate_deck(
     from ..scenarios.deck.voyage import gravity_of, sail, total
     from ..scenarios.record import Sensors
     from ..scenarios.sensors import SensorNoise
-    from .progress import progress
-    from .unfinished import unfinished_is_told
 
     check_options(recorded=record is not None)
     scenes = scenes_of(read_values(find(SCENE) if params is None else params))
-    noise = SensorNoise(*[options.pop(name.removeprefix("--").replace("-", "_")) for name, _ in _NOISE])
+    noise = SensorNoise(*[options.pop(parameter_of(name)) for name, _ in _NOISE])
     deck, longest = deck_of(record, seed, gravity_of(scenes), **options)
     duration = min(longest, DURATION) if duration is None else duration
     if duration > longest:
@@ -141,19 +110,31 @@ def simulate_deck(
             f"--deck-rate {deck_rate:g} is too slow: after support.timeout, {timeout:g} s, a message tells nothing more"
         )
     sensors = Sensors(rate, deck_rate, noise, seed)
-    motion = motion_for(plot, animate, duration)
+    products = Products(plot=plot, animate=animate, as_json=as_json, output=output)
+    products.check()
+    motion = None
+    if products.draws:
+        from ..report.deck_pictures import DeckMotion, deck_film, write_deck_figure
+
+        motion = DeckMotion(duration)
     seen = {} if motion is None else {"seen": motion.taking}
-    what = "simulated deck" if output is None else Path(output).name
-    unit = "s" if output is None else "messages"
     work = total(scenes, duration, output is not None, sensors)
-    with unfinished_is_told(output), progress(what, unit, work) as tell:
+    shown = progress("simulated deck", "s", work) if output is None else writing(output, "messages", work)
+    with shown as tell:
         voyage = sail(scenes, deck, duration, contacts, output, sensors, tell, **seen)
     if motion is not None:
-        draw(deck, motion, plot, animate)
-    say(voyage, as_json)
-    if not as_json:
-        say_files(output, plot, animate)
+        units = motion.units
+        products.draw(lambda path: write_deck_figure(path, deck, units), lambda: deck_film(deck, units))
+    from ..report.deck import as_json as fields_of
+    from ..report.deck import print_voyage
+
+    products.say(lambda: fields_of(voyage), lambda console: print_voyage(console, voyage))
     return 1 if voyage.broke_off else 0
+
+
+def parameter_of(option: str) -> str:
+    """The name that click gives to the value of an option."""
+    return option.removeprefix("--").replace("-", "_")
 
 
 def check_options(*, recorded: bool) -> None:
@@ -163,38 +144,12 @@ def check_options(*, recorded: bool) -> None:
         UsageError: such an option was given.
     """
     context = click.get_current_context()
-    sea = ("spectrum", "rao", *[name.removeprefix("--").replace("-", "_") for name, _, _ in _SEA])
+    sea = ("spectrum", "rao", *[parameter_of(name) for name, _, _ in _SEA])
     for name in sea if recorded else ("record_topic",):
         if context.get_parameter_source(name) is ParameterSource.COMMANDLINE:
             option = "--" + name.replace("_", "-")
             why = "of a sea, but --record takes a recorded deck" if recorded else "of a recorded deck: give --record"
             raise click.UsageError(f"{option} is {why}")
-
-
-def motion_for(plot: str | None, animate: str | None, duration: float) -> DeckMotion | None:
-    """What takes up the motions for pictures, where some are asked for.
-
-    Raises:
-        InputError: they cannot be written.
-    """
-    if plot is None and animate is None:
-        return None
-    from ..report.deck_pictures import DeckMotion
-
-    check_pictures(plot, animate)
-    return DeckMotion(duration)
-
-
-def draw(deck: MovingSupport, motion: DeckMotion, plot: str | None, animate: str | None) -> None:
-    """Draw the pictures that are asked for."""
-    if plot is not None:
-        from ..report.deck_pictures import write_deck_figure
-
-        write_deck_figure(plot, deck, motion.units)
-    if animate is not None:
-        from ..report.deck_pictures import deck_film
-
-        draw_film(animate, deck_film(deck, motion.units))
 
 
 def deck_of(
@@ -229,17 +184,3 @@ def deck_of(
         vessel = read_vessel(rao, deck_height)
     waves = waves_of(SeaState(hs, tp, spectrum, gamma), seed)
     return deck_in(waves, vessel, gravity), float("inf")
-
-
-def say(voyage: Voyage, as_json: bool) -> None:
-    """Print what happened."""
-    if as_json:
-        from ..report.deck import as_json as fields_of
-
-        click.echo(json.dumps(fields_of(voyage), allow_nan=False))
-        return
-    from rich.console import Console
-
-    from ..report.deck import print_voyage
-
-    print_voyage(Console(), voyage)

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from math import hypot, isfinite, radians
-from typing import Any, TypeVar
+from typing import Any
 
 import click
 
@@ -14,39 +13,22 @@ from ..mechanics.bodies import cylinder, fraction, not_negative, plate, positive
 from ..mechanics.impact import LAWS, solve_impact
 from ..mechanics.problem import approach
 from ..mechanics.types import Contact, Flag, Mode, Outcome, Twist, TwoPointBody
-from .examples import examples
+from .options import choice, examples, json_flag, number, together
 
-F = TypeVar("F", bound=Callable[..., Any])
-
-
-def number(name: str, help_text: str, **more: Any) -> Callable[[F], F]:
-    """An option that takes one number."""
-    return click.option(name, type=float, show_default=True, help=help_text, **more)
-
-
-def impact_options(command: F) -> F:
-    """The options that every body has: how it moves, by which law it is solved, how the answer looks."""
-    for decorate in reversed(
-        (
-            number("--restitution", "Restitution at the new contact, 0 (plastic) to 1.", default=0.0),
-            number("--omega", "Angular velocity about the old contact at rest, rad/s; clockwise is negative."),
-            click.option(
-                "--twist",
-                type=(float, float, float),
-                callback=lambda context, option, parts: None if parts is None else Twist(*parts),
-                metavar="VX VY OMEGA",
-                help="Velocity of the mass centre (m/s) and angular velocity (rad/s), in the place of --omega.",
-            ),
-            click.option(
-                "--law", type=click.Choice([*LAWS, "both"]), default="path", show_default=True, help="Impact law."
-            ),
-            click.option(
-                "--json", "as_json", is_flag=True, help="Print JSON: an object, or a list of two for both laws."
-            ),
-        )
-    ):
-        command = decorate(command)
-    return command
+impact_options = together(
+    number("--restitution", "Restitution at the new contact, 0 (plastic) to 1.", 0.0),
+    number("--omega", "Angular velocity about the old contact at rest, rad/s; clockwise is negative."),
+    click.option(
+        "--twist",
+        type=(float, float, float),
+        callback=lambda context, option, parts: None if parts is None else Twist(*parts),
+        metavar="VX VY OMEGA",
+        help="Velocity of the mass centre (m/s) and angular velocity (rad/s), in the place of --omega.",
+    ),
+    choice("--law", "Impact law.", *LAWS, "both", default="path"),
+    json_flag("Print JSON: an object, or a list of two for both laws."),
+)
+"""The options that every body has: how it moves, by which law it is solved, how the answer looks."""
 
 
 @click.group(
@@ -95,7 +77,7 @@ def solve_plate(omega: float | None, twist: Twist | None, law: str, as_json: boo
     ),
 )
 @number("--length", "Length, m.", required=True)
-@number("--thickness", "Thickness, m.", default=0.0)
+@number("--thickness", "Thickness, m.", 0.0)
 @number("--a", "Distance of the old support behind the middle, m.", required=True)
 @number("--b", "Distance of the new support ahead of the middle, m.", required=True)
 @number("--mass", "Mass, kg.", required=True)
@@ -137,8 +119,9 @@ def solve_cylinder(
     return answer(cylinder(gamma=radians(gamma), gamma_new=radians(ahead), **shape), omega, twist, law, as_json)
 
 
-POINT = (float, float, float)
-PAIR = (float, float)
+PLACE: dict[str, Any] = {"type": (float, float, float), "metavar": "X Y FRICTION"}
+NORMAL: dict[str, Any] = {"type": (float, float), "metavar": "X Y", "default": (0.0, 1.0)}
+VELOCITY: dict[str, Any] = {"type": (float, float), "metavar": "X Y", "default": (0.0, 0.0)}
 
 
 @solve.command(
@@ -151,31 +134,13 @@ PAIR = (float, float)
 )
 @number("--mass", "Mass, kg.", required=True)
 @number("--inertia", "Inertia about the mass centre, kg m^2.", required=True)
-@click.option("--old", type=POINT, metavar="X Y FRICTION", help="Old contact, seen from the mass centre, m.")
+@click.option("--old", **PLACE, help="Old contact, seen from the mass centre, m.")
 @click.option("--no-old", is_flag=True, help="No old contact: a one-point impact, with --twist.")
-@click.option(
-    "--new", type=POINT, metavar="X Y FRICTION", required=True, help="New contact, seen from the mass centre, m."
-)
-@click.option(
-    "--old-normal",
-    type=PAIR,
-    metavar="X Y",
-    default=(0.0, 1.0),
-    help="Direction out of the support, of any length. [default: 0 1]",
-)
-@click.option(
-    "--new-normal",
-    type=PAIR,
-    metavar="X Y",
-    default=(0.0, 1.0),
-    help="Direction out of the support, of any length. [default: 0 1]",
-)
-@click.option(
-    "--old-velocity", type=PAIR, metavar="X Y", default=(0.0, 0.0), help="Velocity of the support, m/s. [default: 0 0]"
-)
-@click.option(
-    "--new-velocity", type=PAIR, metavar="X Y", default=(0.0, 0.0), help="Velocity of the support, m/s. [default: 0 0]"
-)
+@click.option("--new", **PLACE, required=True, help="New contact, seen from the mass centre, m.")
+@click.option("--old-normal", **NORMAL, help="Direction out of the support, of any length. [default: 0 1]")
+@click.option("--new-normal", **NORMAL, help="Direction out of the support, of any length. [default: 0 1]")
+@click.option("--old-velocity", **VELOCITY, help="Velocity of the support, m/s. [default: 0 0]")
+@click.option("--new-velocity", **VELOCITY, help="Velocity of the support, m/s. [default: 0 0]")
 @impact_options
 def solve_body(
     mass: float,
