@@ -31,8 +31,8 @@ if TYPE_CHECKING:
 @BAGS
 @PARAMS
 @remap_option("Topic of an input, as for replay; may be repeated.")
-@text("-o", "--output", metavar="FILE", help_text="Write the parameter file with the fitted values in it.")
-@text("--figure", metavar="FILE", help_text="Draw the fit into a .png or .svg file.")
+@text("-o", "--output", "FILE", "Write the parameter file with the fitted values in it.")
+@text("--figure", "FILE", "Draw the fit into a .png or .svg file.")
 @seed_option("Which resamples and folds.")
 @json_flag()
 def calibrate(

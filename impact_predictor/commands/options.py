@@ -72,9 +72,10 @@ def number(name: str, help_text: str, default: float | None = None, **more: Any)
     return click.option(name, **{"type": float, "show_default": True, "help": help_text, **given, **more})
 
 
-def text(*names: str, metavar: str, help_text: str, **more: Any) -> Callable[[F], F]:
-    """An option that takes a name."""
-    return click.option(*names, metavar=metavar, help=help_text, **more)
+def text(*declared: str, **more: Any) -> Callable[[F], F]:
+    """An option that takes a name: what it is called, what stands for the name in the help, and what it says."""
+    *names, metavar, says = declared
+    return click.option(*names, metavar=metavar, help=says, **more)
 
 
 def choice(name: str, help_text: str, *choices: str, default: str) -> Callable[[F], F]:
@@ -105,12 +106,12 @@ def together(*options: Callable[[Any], Any]) -> Callable[[F], F]:
 
 BAGS: Final = click.argument("bags", nargs=-1, required=True, metavar="BAG...")
 LAW: Final = choice("--law", "Impact law.", *LAWS, default="path")
-PARAMS: Final = text("--params", metavar="FILE", help_text="ROS 2 parameter file of the scene.", required=True)
+PARAMS: Final = text("--params", "FILE", "ROS 2 parameter file of the scene.", required=True)
 
 
 def remap_option(help_text: str) -> Callable[[F], F]:
     """The option that gives topics to inputs."""
-    return text("-r", "--remap", metavar="FROM:=TO", help_text=help_text, multiple=True)
+    return text("-r", "--remap", "FROM:=TO", help_text, multiple=True)
 
 
 def examples(*lines: str) -> str:

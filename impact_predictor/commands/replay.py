@@ -37,25 +37,25 @@ if TYPE_CHECKING:
 @text(
     "-o",
     "--output",
-    metavar="NAME",
-    help_text="Write the predictions: NAME.mcap is one file, any other name a rosbag2 folder; with several bags, "
+    "NAME",
+    "Write the predictions: NAME.mcap is one file, any other name a rosbag2 folder; with several bags, "
     "a folder with one file for each. The folder that it is in must be there.",
 )
 @click.option("--markers", is_flag=True, help="Write the markers for RViz and Foxglove too, into the output.")
 @text(
     "--figure",
-    metavar="FILE",
-    help_text="Draw errors and velocities, of a walking machine its gait, into a .png or .svg file.",
+    "FILE",
+    "Draw errors and velocities, of a walking machine its gait, into a .png or .svg file.",
 )
 @text(
     "--report",
-    metavar="FILE",
-    help_text="Write a page about all bags into one .html file; any other name is a folder with a page for each bag too.",
+    "FILE",
+    "Write a page about all bags into one .html file; any other name is a folder with a page for each bag too.",
 )
 @text(
     "--table",
-    metavar="FILE",
-    help_text="Write the touchdowns of all bags into one .parquet file; docs/fleets.md has its columns.",
+    "FILE",
+    "Write the touchdowns of all bags into one .parquet file; docs/fleets.md has its columns.",
 )
 @click.option("--all", "every", is_flag=True, help="List every touchdown, not only the first scored ones.")
 @json_flag("Print JSON only: an object, or a list for several bags; docs/replay.md has its keys and units.")
@@ -68,13 +68,13 @@ if TYPE_CHECKING:
 )
 @text(
     "--scheduler",
-    metavar="ADDRESS",
-    help_text="Replay the bags on the workers of this Dask scheduler, as in tcp://host:8786; they open the same paths.",
+    "ADDRESS",
+    "Replay the bags on the workers of this Dask scheduler, as in tcp://host:8786; they open the same paths.",
 )
 @text(
     "--baseline",
-    metavar="RUN",
-    help_text="Tell what has changed against an earlier run: what it wrote with -o, or printed with --json.",
+    "RUN",
+    "Tell what has changed against an earlier run: what it wrote with -o, or printed with --json.",
 )
 @number("--baseline-time", "Times that differ by up to so many s have not changed.", 1e-3, type=Real(min=0.0))
 @number(

@@ -50,7 +50,7 @@ _NOISE: Final = (
 
 
 @click.command("deck", short_help="Cargo on the deck of a vessel in a sea.", epilog=examples(*EXAMPLES))
-@text("--params", metavar="FILE", help_text=f"Parameter file of the units. [default: {SCENE}]")
+@text("--params", "FILE", f"Parameter file of the units. [default: {SCENE}]")
 @number("--duration", f"Seconds to simulate. [default: {DURATION:g}, or the recorded deck's]")
 @seed_option("Makes the sea and the noise.", SEED)
 @choice("--spectrum", "Of the waves: JONSWAP or Pierson and Moskowitz.", "jonswap", "pm", default="jonswap")
@@ -58,9 +58,9 @@ _NOISE: Final = (
 @together(
     *[number(name, f"Standard deviation of the {what}. [default: 0]", 0.0, show_default=False) for name, what in _NOISE]
 )
-@text("--rao", metavar="CSV", help_text="Responses of the vessel, in the place of those by --roll-period.")
-@text("--record", metavar="BAG", help_text="A recorded deck in the place of a sea: its roll, sway and heave.")
-@text("--record-topic", metavar="TOPIC", help_text="Odometry of the recorded deck, where there are more.", default="")
+@text("--rao", "CSV", "Responses of the vessel, in the place of those by --roll-period.")
+@text("--record", "BAG", "A recorded deck in the place of a sea: its roll, sway and heave.")
+@text("--record-topic", "TOPIC", "Odometry of the recorded deck, where there are more.", default="")
 @choice(
     "--contacts",
     "By impact laws, or stiff springs with dampers and friction: slow, and independent of every impact law.",

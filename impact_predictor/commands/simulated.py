@@ -26,15 +26,15 @@ RATE: Final = 1000.0
 def picture_options(figure: str, film: str) -> Callable[[F], F]:
     """The options that ask for pictures, of what each shows."""
     return together(
-        text("--plot", metavar="FILE", help_text=f"Draw {figure} into a .png or .svg file."),
-        text("--animate", metavar="FILE", help_text=f"Draw {film} into a .gif file."),
+        text("--plot", "FILE", f"Draw {figure} into a .png or .svg file."),
+        text("--animate", "FILE", f"Draw {film} into a .gif file."),
     )
 
 
 def bag_option(truth: str) -> Callable[[F], F]:
     """The option that asks for a bag with what is true."""
     says = f"Write a bag for `replay`, with {truth}: NAME.mcap is one file, any other name a rosbag2 folder."
-    return text("-o", "--output", metavar="BAG", help_text=says)
+    return text("-o", "--output", "BAG", says)
 
 
 RATES_AS_MAGNITUDES: Final = "Print JSON, rates as magnitudes"
