@@ -17,21 +17,17 @@ from pathlib import Path
 from statistics import median
 from time import perf_counter
 from typing import Any
-from unittest.mock import patch
 
 import click
 import numpy as np
 from compliant_cases import BODIES, FIRM, FIRMER, cases, difference, disputed, moving, place, velocities
+from compliant_impact import METHODS, compliant_impact
 from rich.console import Console
 from rich.table import Table
 
 from impact_predictor.mechanics.answer import mode_of
 from impact_predictor.mechanics.bodies import cylinder, plate, rod
-from impact_predictor.mechanics.compliant import equations, impact
-from impact_predictor.mechanics.compliant.force import damping_ratio
-from impact_predictor.mechanics.compliant.impact import compliant_impact
-from impact_predictor.mechanics.compliant.integrator import METHODS, Status
-from impact_predictor.mechanics.compliant.motion import compliant_motion
+from impact_predictor.mechanics.compliant import STAYS, compliant_motion, damping_ratio
 from impact_predictor.mechanics.impact import solve_impact
 from impact_predictor.mechanics.motion import rock, standing
 from impact_predictor.mechanics.motion.support import FixedSupport, Wave, harmonic_support
@@ -51,17 +47,14 @@ def orders(errors: list[float]) -> str:
     return f"{math.log(errors[1] / errors[-2]) / math.log(STIFFNESSES[-2] / STIFFNESSES[1]):.2f}"
 
 
-def touching(equations: Any, state: Any) -> Any:
-    """In the place of `loaded`: the old contact starts without its load."""
-    return equations
-
-
 def stiffness_errors(name: str, gravity: Vector, loaded: bool = True) -> tuple[list[float], list[float]]:
     """Differences from the limit and from the path law at each of the `STIFFNESSES`."""
     body, twist = moving(name)
     limit, path = compliant_impact(body, twist, math.inf, tolerance=1e-10), solve_impact(body, twist)
-    with patch.object(impact, "loaded", equations.loaded if loaded else touching):
-        found = [compliant_impact(body, twist, k, gravity=gravity, tolerance=1e-10).twist for k in STIFFNESSES]
+    found = [
+        compliant_impact(body, twist, k, gravity=gravity, tolerance=1e-10, start_loaded=loaded).twist
+        for k in STIFFNESSES
+    ]
     return [difference(body, one, limit.twist, twist) for one in found], [
         difference(body, one, path.twist, twist) for one in found
     ]
@@ -95,7 +88,7 @@ def ratio_table(count: int) -> Table:
                     for case, end, answer in zip(some, found, answers, strict=True)
                 ]
                 same = [
-                    end.mode == mode_of(impact.STAYS * case.speed, *velocities(case.body, answer.twist))
+                    end.mode == mode_of(STAYS * case.speed, *velocities(case.body, answer.twist))
                     for case, end, answer in zip(some, found, answers, strict=True)
                 ]
                 modes.append(f"{100.0 * float(np.mean(same)):.0f}")
@@ -134,7 +127,7 @@ def law_table(count: int) -> Table:
                     end = compliant_impact(
                         case.body, case.twist, math.inf, ratio=1e12, damping=FIRMER, regularisation=1e-5
                     )
-                    if end.status is Status.OVER:
+                    if end.over:
                         errors.append(difference(case.body, end.twist, case.path.twist, case.twist))
             if errors:
                 name = f"{kind}, A opens and closes again" if again else kind
@@ -226,7 +219,7 @@ def slow_table(count: int) -> Table:
             row = []
             for omega in speeds:
                 end = compliant_impact(body, body.turning(-omega), k, gravity=DOWN)
-                mode = end.mode.name if end.status is Status.OVER else end.status.name
+                mode = end.mode.name if end.over else "no end"
                 row.append(f"{mode} {9.81 * math.sqrt(0.3 / k) / (0.02 * omega):.2g}")
             table.add_row(f"{k:.0e}", f"{e:g}", *row)
     table.caption = "After the mode: g sqrt(m / k) / V. The rigid law gives FLIGHT at any speed."
@@ -252,7 +245,7 @@ def cost_table(count: int) -> Table:
         for k in STIFFNESSES:
             end, ms = timed(partial(compliant_impact, body, twist, k, method=method), 3)
             error = difference(body, end.twist, exact[k], twist)
-            row.append(f"{end.evaluations} {ms:.0f} ms {error:.0e}" if end.status is Status.OVER else end.status.name)
+            row.append(f"{end.evaluations} {ms:.0f} ms {error:.0e}" if end.over else "no end")
         table.add_row(method, *row)
     return table
 
@@ -273,11 +266,10 @@ def motion_table(count: int) -> Table:
                     1.0,
                     stiffness=k,
                     method=method,
-                    evaluations=1_000_000,
                 ),
                 1,
             )
-            row.append(f"{run.evaluations} {1e-3 * ms:.2f} s" if run.status is Status.OVER else run.status.name)
+            row.append(f"{run.evaluations} {1e-3 * ms:.2f} s" if run.complete else "failed")
         table.add_row(method, *row)
     return table
 

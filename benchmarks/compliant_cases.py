@@ -7,10 +7,10 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
+from compliant_impact import compliant_impact
 from numpy.typing import NDArray
 
 from impact_predictor.mechanics.bodies import plate
-from impact_predictor.mechanics.compliant.impact import compliant_impact
 from impact_predictor.mechanics.impact import solve_impact
 from impact_predictor.mechanics.random_problems import problems_of
 from impact_predictor.mechanics.types import Contact, Flag, Mode, Outcome, Twist, TwoPointBody

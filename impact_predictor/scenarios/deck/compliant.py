@@ -9,22 +9,22 @@ a regularised contact creeps before it slides.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import cos, hypot, pi, sin
+from math import cos, pi, sin
 from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import brentq
 
 from ...errors import InputError
-from ...mechanics.compliant.integrator import Status
-from ...mechanics.compliant.motion import CompliantMotion, compliant_motion
+from ...mechanics.compliant import CompliantMotion, compliant_motion
 from ...mechanics.impact import solve_impact
 from ...mechanics.motion import End, PlanarState
 from ...mechanics.motion.support import MovingSupport, from_world
 from ...mechanics.types import Contact, Mode, Twist, TwoPointBody
 from ...stamps import NANOSECONDS
 from ..sensors import ACROSS
-from ..truth import TrueImpact, border_of
+from ..truth import TrueImpact, border_of, half_distance
 from .cargo import CargoUnit, Span
 
 SPAN: Final = 10.0
@@ -53,8 +53,6 @@ PRESSED: Final = 2.0
 
 PART: Final = 0.02
 """A velocity above this part of the approach is one: out of the support the contact opens, along it it slips."""
-
-_HALVINGS: Final = 50
 
 
 class _Contacts(NamedTuple):
@@ -88,20 +86,20 @@ def follow_compliant(unit: CargoUnit, support: MovingSupport, duration: float, l
             regularisation=REGULARISATION,
             method=METHOD,
         )
-        until = motion.time
-        if motion.status is not Status.OVER:
-            end = End.NO_SOLUTION
-        seen = _Seen(unit, support, motion)
-        times = motion.way.ts
+        if not motion.complete:
+            raise InputError(
+                f"{unit.name} cannot be followed on compliant contacts beyond {motion.time:g} s; try rigid"
+            )
+        until, seen, times = motion.time, _Stretch(unit, support, motion), motion.way.ts
         over = np.abs(seen.state(times).angle - unit.start.angle) > 0.5 * pi
         if over.any():
             end, until = End.OVERTURNED, float(times[over.argmax()])
         impacts = tuple(seen.impacts(times[times <= until], last_open, law))
-        yield Span(time, until, seen.state, impacts, (), (), end)
+        yield Span(start=time, time=until, state=seen.state, impacts=impacts, onsets=(), sums=(), end=end)
         state, time = PlanarState(*[float(part) for part in seen.state(until)]), until
 
 
-class _Seen:
+class _Stretch:
     """A stretch of compliant motion, seen from the support."""
 
     def __init__(self, unit: CargoUnit, support: MovingSupport, motion: CompliantMotion) -> None:
@@ -141,7 +139,7 @@ class _Seen:
                 if is_open[k + 1]:
                     last_open[i] = float(times[k + 1])
                     continue
-                at = self._closing(i, float(times[k]), float(times[k + 1]))
+                at = float(brentq(lambda time, i=i: self.contacts(time).gaps[i], times[k], times[k + 1], xtol=1e-16))
                 if last_open[i] >= 0.0 and at - last_open[i] > OPEN:
                     closings.append((at, i))
                 last_open[i] = -1.0
@@ -149,15 +147,6 @@ class _Seen:
             impact = self._impact(at, new, float(times[-1]), law)
             if impact is not None:
                 yield impact
-
-    def _closing(self, i: int, low: float, high: float) -> float:
-        for _ in range(_HALVINGS):
-            middle = 0.5 * (low + high)
-            if self.contacts(middle).gaps[i] > 0.0:
-                low = middle
-            else:
-                high = middle
-        return high
 
     def _over(self, start: float, end: float) -> float:
         """When the contacts press no more than at rest."""
@@ -185,36 +174,31 @@ class _Seen:
         slips = abs(float(then.slips[new])) > least + 10.0 * REGULARISATION
         body = self._body(before, new, stood)
         twist, twist_after = (Twist(float(one.vx), float(one.vy), float(one.omega)) for one in (before, after))
-        half = 0.5 * hypot(*np.subtract(*self.points)) if stood else hypot(*self.points[new])
         return TrueImpact(
-            round(at * NANOSECONDS),
-            unit.name,
-            _mode(stood and not leaves[1 - new], not leaves[new], slips),
-            unit.contacts[1 - new] if stood else (),
-            unit.contacts[new],
-            approach,
-            half,
-            _energy(body, twist) - _energy(body, twist_after),
-            ACROSS.vector(twist.vx, twist.vy),
-            ACROSS.spin(twist.omega),
-            ACROSS.vector(twist_after.vx, twist_after.vy),
-            ACROSS.spin(twist_after.omega),
-            border_of(solve_impact(body, twist, law)),
+            stamp=round(at * NANOSECONDS),
+            body=unit.name,
+            mode=_mode(stood and not leaves[1 - new], not leaves[new], slips),
+            old=unit.contacts[1 - new] if stood else (),
+            new=unit.contacts[new],
+            approach=approach,
+            half_distance=half_distance(body),
+            energy_lost=_energy(body, twist) - _energy(body, twist_after),
+            linear_before=ACROSS.vector(twist.vx, twist.vy),
+            angular_before=ACROSS.spin(twist.omega),
+            linear_after=ACROSS.vector(twist_after.vx, twist_after.vy),
+            angular_after=ACROSS.spin(twist_after.omega),
+            border=border_of(solve_impact(body, twist, law)),
         )
 
     def _body(self, state: PlanarState, new: int, stood: bool) -> TwoPointBody:
         """The unit as an impact law sees it."""
-        c, s = cos(state.angle), sin(state.angle)
-        old, other = (
-            Contact(c * px - s * py, s * px + c * py, contact.friction, (0.0, 1.0), contact.restitution)
-            for (px, py), contact in (self._contact(1 - new), self._contact(new))
-        )
-        return TwoPointBody(self.unit.body.mass, self.unit.body.inertia, old if stood else None, other)
-
-    def _contact(self, i: int) -> tuple[tuple[float, float], Contact]:
-        contact = (self.unit.body.old, self.unit.body.new)[i]
-        assert contact is not None
-        return self.points[i], contact
+        body, (c, s) = self.unit.body, (cos(state.angle), sin(state.angle))
+        contacts = []
+        for contact in (body.old, body.new):
+            assert contact is not None
+            x, y = c * contact.x - s * contact.y, s * contact.x + c * contact.y
+            contacts.append(Contact(x, y, contact.friction, (0.0, 1.0), contact.restitution))
+        return TwoPointBody(body.mass, body.inertia, contacts[1 - new] if stood else None, contacts[new])
 
 
 def _mode(old_stays: bool, new_stays: bool, slips: bool) -> Mode:
