@@ -8,7 +8,7 @@ from impact_predictor.bags.write import BagWriter
 from impact_predictor.demo import play, read_recording, run_demo
 from impact_predictor.errors import InputError
 from impact_predictor.resources import find
-from impact_predictor.ros.cdr import OK, DiagnosticForm
+from impact_predictor.ros.cdr import OK, diagnostic_array, diagnostic_status, pairs_of
 from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY
 from impact_predictor.ros.recorder import NODE, TOPICS
 
@@ -40,7 +40,7 @@ SCORE = {
 
 
 def message(values):
-    return DiagnosticForm("impact_predictor/test", *values).fill(0, "", OK, "", "", list(values.values()))
+    return diagnostic_array(0, "", [diagnostic_status(OK, "impact_predictor/test", "", "", pairs_of(values))])
 
 
 def predicted(milliseconds_before, vx, new="2 3"):

@@ -15,7 +15,7 @@ from ..prediction.monitor import Monitor
 from ..prediction.scene import Scene
 from ..prediction.types import Geometry, Imu, Joints, Sample, Status
 from ..ros import messages
-from ..ros.messages import DIAGNOSTIC_ARRAY, MARKER_ARRAY, MalformedMessage, decode_odometry
+from ..ros.messages import DIAGNOSTIC_ARRAY, MARKER_ARRAY, MalformedMessage, decode_odometry, encode_reports
 from .read import BagMessage, UnusableMessage
 from .stream import NODE, Settled, Stream, Write
 
@@ -264,8 +264,6 @@ class Run:
         if self._drawing is not None:
             self._drawing.take_reports(reports)
         if self._write is not None:
-            from ..ros.messages.reports import encode_reports
-
             stamp = max(report.stamp for report in reports)
             self._write("/diagnostics", DIAGNOSTIC_ARRAY, log_time, encode_reports(reports, stamp))
 

@@ -68,7 +68,7 @@ class BodyTopics:
         self._latched = LatchedTopic(self._node, self._on_geometry, topic, POLYGON)
 
     def _listen_to_imu(self, topic: str) -> Any:
-        from .messages.imu import decode_imu
+        from .messages import decode_imu
 
         def draw(drawing: MarkerScene, imu: Imu) -> None:
             drawing.take_tilt(self._body, imu.stamp, self._monitor.tilts[self._body])

@@ -7,7 +7,7 @@ A string is its length with the closing NUL as uint32, the UTF-8 text and the NU
 from __future__ import annotations
 
 import struct
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache, wraps
 from struct import Struct
 from typing import Final, NamedTuple, TypeVar
@@ -162,13 +162,16 @@ def check_end(data: bytes, end: int, sequences: int = 0) -> None:
 _PADDING: Final = (b"\0\0\0\0", b"\0\0\0", b"\0\0", b"\0")
 _pack_length = LITTLE_ENDIAN.length.pack
 _pack_stamp = LITTLE_ENDIAN.stamp.pack
+_SHORT: Final = 64
+_LENGTHS: Final = tuple([_pack_length(size + 1) for size in range(_SHORT)])
+"""The lengths of short strings with their NUL, by those without."""
 
 
 def string(text: str) -> bytes:
     """A string, padded so that whatever follows is aligned to four bytes."""
     raw = text.encode()
     size = len(raw)
-    return _pack_length(size + 1) + raw + _PADDING[size & 3]
+    return (_LENGTHS[size] if size < _SHORT else _pack_length(size + 1)) + raw + _PADDING[size & 3]
 
 
 def stamp(nanoseconds: int) -> bytes:
@@ -193,70 +196,45 @@ def add_doubles(data: bytearray, numbers: Sequence[float]) -> None:
         data += struct.pack(f"<{len(numbers)}d", *numbers)
 
 
-_ONE_STATUS: Final = tuple(struct.pack("<IBxxx", 1, level) for level in (OK, WARN, ERROR, STALE))
-
-
-@lru_cache(maxsize=64)
-def _frame(name: str) -> bytes:
-    return string(name)
+_name = lru_cache(maxsize=1024)(string)
+"""A string that comes again and again: a key, the name of a status, a frame."""
 
 
 class StatusBytes(NamedTuple):
-    """A diagnostic_msgs/DiagnosticStatus for `diagnostic_array`: its level, and the rest, `padding` bytes too long."""
+    """A diagnostic_msgs/DiagnosticStatus for `diagnostic_array`: its level, and the rest, the last `padding` bytes of
+    which only align what follows.
+    """
 
     level: int
-    rest: bytes
+    parts: list[bytes]
     padding: int
 
 
-class DiagnosticForm:
-    """A diagnostic_msgs/DiagnosticStatus whose name and keys are prepared once for many values."""
+def pairs_of(values: Mapping[str, str]) -> list[bytes]:
+    """The values of a status by their keys: each key and each value is a `string`."""
+    return [part for key, value in values.items() for part in (_name(key), string(value))]
 
-    def __init__(self, name: str, *keys: str) -> None:
-        """Prepare the name and the keys, in the order of the values."""
-        self._name = string(name)
-        self._keys = [string(key) for key in keys]
-        self._count = _pack_length(len(keys))
 
-    def fill(
-        self, nanoseconds: int, frame_id: str, level: int, message: str, hardware_id: str, values: list[str]
-    ) -> bytes:
-        """A diagnostic_msgs/DiagnosticArray of this status alone, stamped in ns; `level` as in DiagnosticStatus."""
-        parts = [LITTLE_ENDIAN_HEADER, stamp(nanoseconds), _frame(frame_id), _ONE_STATUS[level]]
-        self._append(parts, message, hardware_id, values)
-        # The padding of the last value pads the whole, as DDS does, so that a bag holds what a topic carried.
-        return b"".join(parts)
-
-    def status(self, level: int, message: str, hardware_id: str, values: list[str]) -> StatusBytes:
-        """This status with one value for each key, for an array of several."""
-        parts: list[bytes] = []
-        self._append(parts, message, hardware_id, values)
-        return StatusBytes(level, b"".join(parts), len(parts[-1]) - 1 if values else 0)
-
-    def _append(self, parts: list[bytes], message: str, hardware_id: str, values: list[str]) -> None:
-        parts += (self._name, string(message), _frame(hardware_id), self._count)
-        append = parts.append
-        for key, value in zip(self._keys, values, strict=True):
-            raw = value.encode()
-            size = len(raw)
-            append(key)
-            append(_pack_length(size + 1))
-            append(raw)
-            append(_PADDING[size & 3])
+def diagnostic_status(level: int, name: str, message: str, hardware_id: str, pairs: list[bytes]) -> StatusBytes:
+    """A diagnostic_msgs/DiagnosticStatus; `level` is one of OK, WARN, ERROR and STALE, `pairs` as of `pairs_of`."""
+    head = [_name(name), string(message), _name(hardware_id), _pack_length(len(pairs) // 2)]
+    # The first byte is the lowest of the length.
+    return StatusBytes(level, head + pairs, -pairs[-1][0] & 3 if pairs else 0)
 
 
 def diagnostic_array(nanoseconds: int, frame_id: str, statuses: Sequence[StatusBytes]) -> bytes:
     """A diagnostic_msgs/DiagnosticArray of statuses, stamped in ns."""
-    data = bytearray(LITTLE_ENDIAN_HEADER + stamp(nanoseconds) + _frame(frame_id) + _pack_length(len(statuses)))
+    parts = [LITTLE_ENDIAN_HEADER, stamp(nanoseconds), _name(frame_id), _pack_length(len(statuses))]
     padding = 0
-    for level, rest, its_padding in statuses:
+    for level, own, its_padding in statuses:
         # A level is a byte, which needs no alignment: it follows at once on the last text before it.
-        del data[len(data) - padding :]
-        data.append(level)
-        data += bytes(-len(data) & 3)
-        data += rest
+        if padding:
+            parts[-1] = parts[-1][:-padding]
+        parts.append(bytes((level, *bytes(padding - 1 & 3))))
+        parts += own
         padding = its_padding
-    return bytes(data)
+    # The padding of the last value pads the whole, as DDS does, so that a bag holds what a topic carried.
+    return b"".join(parts)
 
 
 class Diagnostic(NamedTuple):

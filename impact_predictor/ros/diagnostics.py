@@ -11,7 +11,7 @@ from ..prediction.remedies import REMEDIES
 from ..prediction.score import median
 from ..prediction.types import Score, Status
 from ..stamps import NANOSECONDS
-from .cdr import ERROR, OK, WARN, DiagnosticForm, StatusBytes
+from .cdr import ERROR, OK, WARN, StatusBytes, diagnostic_status, pairs_of
 
 if TYPE_CHECKING:
     from .feet_report import FeetReport
@@ -163,9 +163,9 @@ class Diagnostics:
 
     def report(self, now: float) -> StatusBytes:
         """Everything, as one status of a diagnostic_msgs/DiagnosticArray."""
-        values = self._values(now)
-        form = DiagnosticForm(f"{self._name}: predictions", *values)
-        return form.status(self.level, self.message, self._body, list(values.values()))
+        return diagnostic_status(
+            self.level, f"{self._name}: predictions", self.message, self._body, pairs_of(self._values(now))
+        )
 
     def _values(self, now: float) -> dict[str, str]:
         second = self._second

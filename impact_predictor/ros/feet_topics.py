@@ -15,8 +15,16 @@ from ..prediction.types import Status
 from .endpoints import subscription
 from .input_topic import InputTopic
 from .latched_topic import LatchedTopic
-from .messages.inputs import JOINT_STATE, JOINT_TRAJECTORY, POLYGON, WRENCH, decode_polygon
-from .messages.walking import decode_joints, decode_schedule, decode_wrench
+from .messages.inputs import (
+    JOINT_STATE,
+    JOINT_TRAJECTORY,
+    POLYGON,
+    WRENCH,
+    decode_joints,
+    decode_polygon,
+    decode_schedule,
+    decode_wrench,
+)
 from .reporter import Reporter
 
 

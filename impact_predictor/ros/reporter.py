@@ -13,7 +13,7 @@ from .cdr import diagnostic_array
 from .diagnostics import Diagnostics, Refused
 from .endpoints import Outlet, publisher
 from .markers.topic import MarkerTopic
-from .messages import DIAGNOSTIC_ARRAY
+from .messages.outputs import DIAGNOSTIC_ARRAY, encode_reports, unit_status
 
 if TYPE_CHECKING:
     from ..prediction.monitor import Monitor
@@ -102,8 +102,6 @@ class Reporter:
         """Publish the reports on the units that are due."""
         reports = self._due()
         if reports:
-            from .messages.reports import encode_reports
-
             stamp = max(report.stamp for report in reports)
             self._outlet.send(encode_reports(reports, stamp, self._name))
 
@@ -122,9 +120,7 @@ class Reporter:
         if self._outlet.listeners():
             statuses = [self.diagnostics.report(perf_counter())]
             if self._units:
-                from .messages.reports import status_of
-
-                statuses += [status_of(report, self._name) for report in self._due()]
+                statuses += [unit_status(report, self._name) for report in self._due()]
             stamp = self._node.get_clock().now().nanoseconds
             self._outlet.send(diagnostic_array(stamp, "", statuses))
 

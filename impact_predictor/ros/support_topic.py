@@ -23,7 +23,7 @@ def listen_to_support(node: Node, reporter: Reporter, monitor: Monitor, topic: s
     decode: Any = decode_odometry
     update: Any = monitor.update_support
     if kind == SENSOR:
-        from .messages.imu import decode_imu
+        from .messages import decode_imu
 
         type_name, decode, update = IMU, decode_imu, monitor.update_support_imu
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 from ..mechanics.problem import approach
 from ..mechanics.types import Mode, Outcome, TwoPointBody
 from ..prediction.types import Vector3
-from ..ros.cdr import OK, DiagnosticForm, MalformedMessage, decode_diagnostic_array
+from ..ros.cdr import OK, MalformedMessage, decode_diagnostic_array, diagnostic_array, diagnostic_status, pairs_of
 from ..stamps import NANOSECONDS
 
 if TYPE_CHECKING:
@@ -27,8 +27,6 @@ _KEYS: Final = (
     *("stamp", "body", "mode", "old", "new", "approach", "half_distance", "energy_lost", "border"),
     *(f"{name}.{axis}" for name in _VECTORS for axis in "xyz"),
 )
-_FORM: Final = DiagnosticForm("truth/impact", *_KEYS)
-_ONSET_FORM: Final = DiagnosticForm("truth/onset", "stamp", "body", "slides", "lifts")
 
 
 class TrueImpact(NamedTuple):
@@ -136,7 +134,9 @@ def encode_true_impact(impact: TrueImpact, frame_id: str) -> bytes:
         *[repr(float(part)) for part in (impact.approach, impact.half_distance, impact.energy_lost, impact.border)],
         *[repr(float(part)) for name in _VECTORS for part in getattr(impact, name)],
     ]
-    return _FORM.fill(impact.stamp, frame_id, OK, impact.mode.name, impact.body, values)
+    named = dict(zip(_KEYS, values, strict=True))
+    status = diagnostic_status(OK, "truth/impact", impact.mode.name, impact.body, pairs_of(named))
+    return diagnostic_array(impact.stamp, frame_id, [status])
 
 
 def decode_true_impacts(data: bytes) -> list[TrueImpact]:
@@ -164,8 +164,14 @@ def _impact(values: dict[str, str]) -> TrueImpact:
 def encode_true_onset(onset: TrueOnset, frame_id: str) -> bytes:
     """A diagnostic_msgs/DiagnosticArray stamped with the onset."""
     said = " and ".join(word for word, holds in (("slides", onset.slides), ("lifts", onset.lifts)) if holds)
-    values = [str(onset.stamp), onset.body, *("true" if one else "false" for one in (onset.slides, onset.lifts))]
-    return _ONSET_FORM.fill(onset.stamp, frame_id, OK, said, onset.body, values)
+    values = {
+        "stamp": str(onset.stamp),
+        "body": onset.body,
+        "slides": "true" if onset.slides else "false",
+        "lifts": "true" if onset.lifts else "false",
+    }
+    status = diagnostic_status(OK, "truth/onset", said, onset.body, pairs_of(values))
+    return diagnostic_array(onset.stamp, frame_id, [status])
 
 
 def decode_true_onsets(data: bytes) -> list[TrueOnset]:

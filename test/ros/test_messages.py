@@ -5,8 +5,10 @@ Samples are random with a fixed seed; numbers must come through exactly, since n
 
 import json
 import random
+import re
 import struct
 from contextlib import suppress
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -51,6 +53,15 @@ from impact_predictor.ros.messages import (
     encode_prediction,
     encode_reports,
     encode_score,
+)
+from impact_predictor.ros.messages.fields import (
+    FOOT,
+    LANDING,
+    MARGINS,
+    PREDICTION,
+    SCORE,
+    TOUCHDOWN,
+    UNCERTAINTY,
 )
 
 TYPESTORE = get_typestore(Stores.ROS2_JAZZY)
@@ -375,6 +386,14 @@ def test_a_prediction_names_every_field_of_its_touchdown_that_no_other_output_ha
     when_asked_for = {"uncertainty", "planar"}
     fields = {field.rstrip("s") for field in set(Touchdown._fields) - in_post_impact - when_asked_for}
     assert fields <= {name.rstrip("s") for name in named}
+
+
+def test_the_documentation_has_every_field_of_the_messages_with_its_unit_and_meaning() -> None:
+    page = (Path(__file__).parents[2] / "docs/prediction.md").read_text()
+    documented = re.findall(r"^\| ([\w.]+) \| (.*?) \| (.*?) \|$", page.partition("### Keys of")[2], re.MULTILINE)
+    tables = (PREDICTION, TOUCHDOWN, UNCERTAINTY, MARGINS, FOOT, SCORE, LANDING)
+    declared = [(one.key, one.unit, one.meaning) for table in tables for one in table.fields]
+    assert [one for one in documented if one[0] != "key"] == declared
 
 
 def test_a_prediction_tells_its_uncertainty_and_its_margins_where_they_are_asked_for() -> None:

@@ -3,10 +3,6 @@
 The node takes and publishes these bytes as they are and a bag holds them as they are, so both give the same.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 from ..cdr import Diagnostic, MalformedMessage, decode_diagnostic_array
 from .inputs import (
     IMU,
@@ -15,10 +11,18 @@ from .inputs import (
     ODOMETRY,
     POLYGON,
     WRENCH,
+    decode_imu,
+    decode_joints,
     decode_odometry,
     decode_polygon,
+    decode_schedule,
+    decode_wrench,
+    encode_imu,
+    encode_joints,
     encode_odometry,
     encode_polygon,
+    encode_schedule,
+    encode_wrench,
 )
 from .outputs import (
     DIAGNOSTIC_ARRAY,
@@ -29,13 +33,9 @@ from .outputs import (
     encode_mode,
     encode_post_impact,
     encode_prediction,
+    encode_reports,
     encode_score,
 )
-
-if TYPE_CHECKING:
-    from .imu import decode_imu, encode_imu
-    from .reports import encode_reports
-    from .walking import decode_joints, decode_schedule, decode_wrench, encode_joints, encode_schedule, encode_wrench
 
 __all__ = [
     "DIAGNOSTIC_ARRAY",
@@ -70,19 +70,3 @@ __all__ = [
     "encode_score",
     "encode_wrench",
 ]
-
-LATER = {
-    **dict.fromkeys(("decode_imu", "encode_imu"), "imu"),
-    **dict.fromkeys(("decode_joints", "decode_wrench", "decode_schedule"), "walking"),
-    **dict.fromkeys(("encode_joints", "encode_wrench", "encode_schedule"), "walking"),
-    "encode_reports": "reports",
-}
-"""Names that are loaded when they are asked for, and their modules: not every scene has them."""
-
-
-def __getattr__(name: str) -> object:
-    if name not in LATER:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from importlib import import_module
-
-    return getattr(import_module(f"{__name__}.{LATER[name]}"), name)

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import cache, lru_cache
-from typing import Final, NamedTuple
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from ...mechanics.types import Flag, Mode
-from ...prediction.types import Leftover, Prediction, Sample, Score, Status, Touchdown
+from ...prediction.types import Foot, Landing, Leftover, Prediction, Sample, Score, Status, Touchdown
 from ...stamps import NANOSECONDS
-from ..cdr import LITTLE_ENDIAN_HEADER, OK, WARN, DiagnosticForm, diagnostic_array
+from ..cdr import LITTLE_ENDIAN_HEADER, OK, WARN, StatusBytes, diagnostic_array, diagnostic_status, pairs_of
+from .fields import FOOT, LANDING, MARGINS, PREDICTION, SCORE, TOUCHDOWN, UNCERTAINTY, text
 from .inputs import ODOMETRY, encode_odometry
+
+if TYPE_CHECKING:
+    from ...prediction.watch.watch import Report
+
+NODE: Final = "impact_predictor"
+"""The name of the node, which begins those of its units."""
 
 UINT8: Final = "std_msgs/msg/UInt8"
 DIAGNOSTIC_ARRAY: Final = "diagnostic_msgs/msg/DiagnosticArray"
@@ -59,178 +65,104 @@ def encode_mode(prediction: Prediction) -> bytes:
     return _MODES[Mode.NO_IMPACT if touchdown is None else touchdown.mode]
 
 
-_DOUBTFUL_ON_FEET: Final = Flag.JAMMED | Flag.ENERGY_GAINED | Flag.LAST_RESORT | Flag.NO_SOLUTION | Flag.INVALID_INPUT
-"""Feet that land together are how a machine trots; any other body has its reasons to strike twice at once."""
-_DOUBTFUL_FLAGS: Final = _DOUBTFUL_ON_FEET | Flag.BOTH_STRUCK
-_DOUBTFUL_LEFTOVERS: Final = Leftover.OUT_OF_PLANE | Leftover.ONE_CORNER_FIRST | Leftover.TOO_SLOW
-
-_MODE_NAMES: Final = tuple(mode.name for mode in sorted(Mode))
-_STATUS_NAMES: Final = tuple(status.name for status in sorted(Status))
-
-
-@lru_cache(maxsize=256, typed=True)
-def _names(flags: Flag | Leftover) -> str:
-    return "|".join(flag.name or "" for flag in type(flags) if flag & flags) or "NONE"
-
-
-_NO_TOUCHDOWN: Final = DiagnosticForm("impact_predictor/prediction", "status", "stamp", "mode")
-_TOUCHDOWN_KEYS: Final = (
-    *("status", "stamp", "mode", "law", "unique", "flags", "leftover", "segments", "old", "new", "lead_time"),
-    *("before.vx", "before.vy", "before.omega", "after.vx", "after.vy", "after.omega", "energy_lost"),
-    *("impulse.old.normal", "impulse.old.tangent", "impulse.new.normal", "impulse.new.tangent"),
-    *("axis.x", "axis.y", "axis.z", "half_distance", "off_axis", "lateral", "closing_spread", "offset"),
+_DOUBTFUL_ON_FEET: Final = int(
+    Flag.JAMMED | Flag.ENERGY_GAINED | Flag.LAST_RESORT | Flag.NO_SOLUTION | Flag.INVALID_INPUT
 )
-
-
-@cache
-def _touchdown_form(uncertainty: bool, margins: bool) -> DiagnosticForm:
-    keys: tuple[str, ...] = _TOUCHDOWN_KEYS
-    if uncertainty or margins:
-        from ..confidence import MARGIN_KEYS, UNCERTAINTY_KEYS
-
-        keys += (UNCERTAINTY_KEYS if uncertainty else ()) + (MARGIN_KEYS if margins else ())
-    return DiagnosticForm("impact_predictor/prediction", *keys)
+"""Feet that land together are how a machine trots; any other body has its reasons to strike twice at once."""
+_DOUBTFUL_FLAGS: Final = _DOUBTFUL_ON_FEET | int(Flag.BOTH_STRUCK)
+_DOUBTFUL_LEFTOVERS: Final = int(Leftover.OUT_OF_PLANE | Leftover.ONE_CORNER_FIRST | Leftover.TOO_SLOW)
 
 
 def encode_prediction(prediction: Prediction) -> bytes:
     """A diagnostic_msgs/DiagnosticArray with everything about the answer to one sample, stamped like the sample.
 
-    Its keys are the fields of `Touchdown` and have their units; `stamp` is the sample's in ns; contact indices are
-    separated by spaces, flags by "|", segments by spaces; every number reads back as the same double. Where the scene
-    asks for them, keys of `confidence` follow. Without a touchdown only `status`, `stamp` and `mode` are there. The
-    level is WARN where the answer deserves less trust. A status for each foot of a walking machine follows.
+    The tables of `fields` have its keys: PREDICTION, with a touchdown TOUCHDOWN, UNCERTAINTY and MARGINS where the
+    scene asks for them, and FOOT in a status for each foot of a walking machine. The level is WARN where the answer
+    deserves less trust.
     """
-    sample = prediction.sample
-    touchdown = prediction.touchdown
-    status = _STATUS_NAMES[prediction.status]
+    sample, touchdown = prediction.sample, prediction.touchdown
+    pairs: list[bytes] = []
+    PREDICTION.add_to(pairs, prediction)
     if touchdown is None:
-        form = _NO_TOUCHDOWN
         accepted = prediction.status is Status.ACCEPTED
         level = OK if accepted else WARN
-        message = "no touchdown within the horizon" if accepted else f"sample refused: {status}"
-        values = [status, str(sample.stamp), Mode.NO_IMPACT.name]
+        message = "no touchdown within the horizon" if accepted else f"sample refused: {text(prediction.status)}"
     else:
-        form = _touchdown_form(touchdown.uncertainty is not None, touchdown.planar is not None)
         level = WARN if _is_doubtful(touchdown, _DOUBTFUL_ON_FEET if prediction.feet else _DOUBTFUL_FLAGS) else OK
-        message = f"{_MODE_NAMES[touchdown.mode]} in {touchdown.lead_time * 1e3:.1f} ms"
-        values = [status, str(sample.stamp), *_touchdown_values(touchdown)]
-        if touchdown.uncertainty is not None or touchdown.planar is not None:
-            from ..confidence import margin_values, uncertainty_values  # only where the scene asks for it
-
-            values += uncertainty_values(touchdown) + margin_values(touchdown)
-    if prediction.feet:
-        from .feet import statuses_of  # only where the scene has them
-
-        first = form.status(level, message, sample.child_frame_id, values)
-        return diagnostic_array(sample.stamp, sample.frame_id, [first, *statuses_of(prediction.feet)])
-    return form.fill(sample.stamp, sample.frame_id, level, message, sample.child_frame_id, values)
+        message = f"{text(touchdown.mode)} in {touchdown.lead_time * 1e3:.1f} ms"
+        TOUCHDOWN.add_to(pairs, touchdown)
+        if touchdown.uncertainty is not None:
+            UNCERTAINTY.add_to(pairs, touchdown.uncertainty)
+        if touchdown.planar is not None:
+            MARGINS.add_to(pairs, touchdown.planar.margins)
+    first = diagnostic_status(level, "impact_predictor/prediction", message, sample.child_frame_id, pairs)
+    return diagnostic_array(sample.stamp, sample.frame_id, [first, *map(_foot_status, prediction.feet)])
 
 
-def _is_doubtful(touchdown: Touchdown, flags: Flag) -> bool:
-    return bool(not touchdown.unique or touchdown.flags & flags or touchdown.leftover & _DOUBTFUL_LEFTOVERS)
+def _is_doubtful(touchdown: Touchdown, flags: int) -> bool:
+    # As integers: what & makes of two flags is a flag again, which takes longer.
+    is_odd = int(touchdown.flags) & flags or int(touchdown.leftover) & _DOUBTFUL_LEFTOVERS
+    return bool(not touchdown.unique or is_odd)
 
 
-def _touchdown_values(touchdown: Touchdown) -> list[str]:
-    numbers = [
-        touchdown.lead_time,
-        *touchdown.before,
-        *touchdown.after,
-        touchdown.energy_lost,
-        *touchdown.impulses[0],
-        *touchdown.impulses[1],
-        *touchdown.axis,
-        touchdown.half_distance,
-        touchdown.off_axis,
-        touchdown.lateral,
-        touchdown.closing_spread,
-        touchdown.offset,
-    ]
-    return [
-        _MODE_NAMES[touchdown.mode],
-        touchdown.law,
-        "true" if touchdown.unique else "false",
-        _names(touchdown.flags),
-        _names(touchdown.leftover),
-        " ".join(touchdown.segments),
-        " ".join(map(str, touchdown.old)),
-        " ".join(map(str, touchdown.new)),
-        *map(_text, numbers),
-    ]
-
-
-_SCORE_KEYS: Final = (
-    *("stamp", "mode", "scored", "leftover", "flags", "law", "old", "new", "announced", "lead_time", "half_distance"),
-    *("off_axis", "lateral", "closing_spread", "offset"),
-    *("before.vx", "before.vy", "before.omega", "predicted.vx", "predicted.vy", "predicted.omega"),
-)
-_MEASURED_KEYS: Final = ("measured.vx", "measured.vy", "measured.omega")
-
-
-@cache
-def _score_form(*more_keys: str) -> DiagnosticForm:
-    return DiagnosticForm("impact_predictor/score", *_SCORE_KEYS, *more_keys)
+def _foot_status(foot: Foot) -> StatusBytes:
+    """A foot, whose name is the hardware; the level is WARN where its force sensor does not agree."""
+    message = "stands" if foot.stands else "swings"
+    if not foot.stands and foot.lead_time is not None:
+        message += f", lands in {foot.lead_time * 1e3:.1f} ms"
+    level = OK
+    if foot.confirmed is False:
+        level, message = WARN, f"{message}, but its force sensor does not agree"
+    pairs: list[bytes] = []
+    FOOT.add_to(pairs, foot)
+    return diagnostic_status(level, "impact_predictor/foot", message, foot.name, pairs)
 
 
 def encode_score(prediction: Prediction) -> bytes | None:
     """A diagnostic_msgs/DiagnosticArray of the touchdown that the sample settled, or None where it settled none.
 
-    Stamped, like its post-impact state, with the predicted touchdown. Keys and units as in `encode_prediction`;
-    `announced` is the time in s before the touchdown of the first prediction with its contacts; the measured twist and
-    the relative error are left out where there is none. More keys tell of a foot that has landed. The level is WARN
-    where it is not scored, or where the force sensor of a foot that has landed does not agree.
+    Stamped, like its post-impact state, with the predicted touchdown. The tables SCORE and LANDING of `fields` have its
+    keys. The level is WARN where it is not scored, or where the force sensor of a foot that has landed does not agree.
     """
     score = prediction.score
     if score is None:
         return None
-    touchdown, landing = score.touchdown, score.landing
-    history, is_trusted, message = score.history, score.scored, _score_message(score)
-    more: dict[str, str] = {}
-    if score.measured is not None:
-        more = dict(zip(_MEASURED_KEYS, map(_text, score.measured), strict=True))
-    if score.relative_error is not None:
-        more["relative_error"] = _text(score.relative_error)
+    pairs: list[bytes] = []
+    SCORE.add_to(pairs, score)
+    message, trusted = _score_message(score), score.scored
+    landing = score.landing
     if landing is not None:
-        from .feet import landing_in_words, landing_values  # only where the scene has feet
-
-        more |= landing_values(landing)
-        history, is_trusted = landing.history, landing.confirmed is not False
-        message = f"{landing_in_words(landing)}: {message}"
-    numbers = (
-        history[0][0] if history else touchdown.lead_time,
-        touchdown.lead_time,
-        touchdown.half_distance,
-        touchdown.off_axis,
-        touchdown.lateral,
-        touchdown.closing_spread,
-        touchdown.offset,
-        *touchdown.before,
-        *touchdown.after,
-    )
-    values = [
-        str(score.stamp),
-        _MODE_NAMES[touchdown.mode],
-        "true" if score.scored else "false",
-        _names(score.leftover),
-        _names(touchdown.flags),
-        touchdown.law,
-        " ".join(map(str, touchdown.old)),
-        " ".join(map(str, touchdown.new)),
-        *map(_text, numbers),
-        *more.values(),
-    ]
-    level = OK if is_trusted else WARN
-    sample = prediction.sample
-    return _score_form(*more).fill(score.stamp, sample.frame_id, level, message, sample.child_frame_id, values)
-
-
-def _text(number: float) -> str:
-    return repr(float(number))
+        LANDING.add_to(pairs, landing)
+        message = f"{_landing_message(landing)}: {message}"
+        trusted = landing.confirmed is not False
+    sample, level = prediction.sample, OK if trusted else WARN
+    status = diagnostic_status(level, "impact_predictor/score", message, sample.child_frame_id, pairs)
+    return diagnostic_array(score.stamp, sample.frame_id, [status])
 
 
 def _score_message(score: Score) -> str:
-    announced = f"{_MODE_NAMES[score.touchdown.mode]} predicted {score.touchdown.lead_time * 1e3:.1f} ms ahead"
+    announced = f"{text(score.touchdown.mode)} predicted {score.touchdown.lead_time * 1e3:.1f} ms ahead"
     error = "nothing to compare" if score.relative_error is None else f"error {score.relative_error:.3f}"
-    return f"{announced}, {error}" + ("" if score.scored else f", not scored: {_names(score.leftover)}")
+    return f"{announced}, {error}" + ("" if score.scored else f", not scored: {text(score.leftover)}")
+
+
+def _landing_message(landing: Landing) -> str:
+    """Which foot has landed, and how well that was foretold."""
+    name = f"{landing.foot} {landing.point or ''}".rstrip()
+    if not landing.history:
+        return f"{name} has landed, which was not announced"
+    return f"{name} has landed, time error {landing.history[-1][1] * 1e3:.1f} ms"
+
+
+def encode_reports(reports: Iterable[Report], nanoseconds: int, node: str = NODE) -> bytes:
+    """A diagnostic_msgs/DiagnosticArray with one status for each unit that a node watches, stamped in ns."""
+    return diagnostic_array(nanoseconds, "", [unit_status(report, node) for report in reports])
+
+
+def unit_status(report: Report, node: str = NODE) -> StatusBytes:
+    """A unit under watch: its level, what was exceeded, its values; the hardware is the body."""
+    name = f"{node}/unit/{report.body}" if report.body else f"{node}/unit"
+    return diagnostic_status(report.level, name, report.message, report.body, pairs_of(report.values))
 
 
 class Output(NamedTuple):

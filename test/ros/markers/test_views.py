@@ -21,8 +21,13 @@ from impact_predictor.bags.replay import NODE
 from impact_predictor.prediction.scene import MovingDeck, Scene, Watching
 from impact_predictor.prediction.types import Felt, Moment
 from impact_predictor.prediction.watch.watch import Report, Watch
-from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY, MARKER_ARRAY, OUTPUTS, decode_diagnostic_array
-from impact_predictor.ros.messages.reports import encode_reports
+from impact_predictor.ros.messages import (
+    DIAGNOSTIC_ARRAY,
+    MARKER_ARRAY,
+    OUTPUTS,
+    decode_diagnostic_array,
+    encode_reports,
+)
 
 CONFIG = Path(__file__).parents[3] / "config"
 TYPESTORE = get_typestore(Stores.ROS2_JAZZY)

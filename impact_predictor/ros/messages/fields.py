@@ -1,0 +1,230 @@
+"""What `~/prediction` and `~/score` tell: a table for each record, which makes the messages and their documentation.
+
+A field is added by a line in its table, at its place in the message; docs/prediction.md has the same lines.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+from operator import attrgetter
+from typing import TYPE_CHECKING, Any, Final, Generic, TypeVar
+
+from ...mechanics.types import Flag, Mode
+from ...prediction.types import Covariance, Foot, Landing, Leftover, Prediction, Score, Status, Touchdown, Uncertainty
+from ..cdr import string
+
+if TYPE_CHECKING:
+    from ...mechanics.margins import Margin, Margins
+
+Source = TypeVar("Source")
+
+
+@dataclass(frozen=True, slots=True)
+class Field(Generic[Source]):
+    """A value of a message: its key, its unit ("" for a text) and meaning, and how a record tells it.
+
+    A field whose value is None is left out of the message.
+    """
+
+    key: str
+    unit: str
+    meaning: str
+    get: Callable[[Source], object]
+
+
+@lru_cache(maxsize=256, typed=True)
+def names(flags: Flag | Leftover) -> str:
+    """The names of flags, or NONE."""
+    return "|".join(flag.name or "" for flag in type(flags) if flag & flags) or "NONE"
+
+
+_TEXTS: Final[dict[type, Callable[[Any], str]]] = {
+    **dict.fromkeys((str, int), str),
+    bool: lambda value: "true" if value else "false",
+    tuple: lambda items: " ".join(map(str, items)),
+    # What an enumeration makes of `name` takes ten times as long.
+    **dict.fromkeys((Covariance, Mode, Status), attrgetter("_name_")),
+    **dict.fromkeys((Flag, Leftover), names),
+}
+
+
+def text(value: object) -> str:
+    """A value as a message has it: flags separated by "|", items of a tuple by spaces; every number reads back."""
+    known = _TEXTS.get(type(value))
+    # What else there is are numbers, perhaps those of NumPy.
+    return repr(float(value)) if known is None else known(value)  # type: ignore[arg-type]
+
+
+class Table(Generic[Source]):
+    """The fields of a record, in the order of the message."""
+
+    def __init__(self, *fields: Field[Source]) -> None:
+        self.fields = fields
+        self._prepared = [(string(field.key), field.get) for field in fields]
+
+    def add_to(self, pairs: list[bytes], record: Source) -> None:
+        """Append the keys and values of a record to those of a status (see `pairs_of`)."""
+        for key, get in self._prepared:
+            value = get(record)
+            if value is not None:
+                pairs += (key, string(repr(value) if type(value) is float else text(value)))
+
+
+PREDICTION: Final = Table[Prediction](
+    Field("status", "", "what became of the sample", lambda it: it.status),
+    Field("stamp", "ns", "of the sample", lambda it: it.sample.stamp),
+    Field(
+        "mode",
+        "",
+        "of the impact; NO_IMPACT where no touchdown lies within the horizon",
+        lambda it: Mode.NO_IMPACT if it.touchdown is None else it.touchdown.mode,
+    ),
+)
+"""Of each sample; without a touchdown there is no more."""
+
+TOUCHDOWN: Final = Table[Touchdown](
+    Field("law", "", "path or total", lambda it: it.law),
+    Field("unique", "", "whether the law has one answer", lambda it: it.unique),
+    Field("flags", "", "what is odd about the impact, or NONE", lambda it: it.flags),
+    Field("leftover", "", "why the touchdown is no planar two-point impact, or NONE", lambda it: it.leftover),
+    Field("segments", "", "contact states along the impulse, old contact first", lambda it: it.segments),
+    Field("old", "", "indices of the points that stand", lambda it: it.old),
+    Field("new", "", "indices of the points that strike", lambda it: it.new),
+    Field("lead_time", "s", "from the stamp of the sample to the touchdown", lambda it: it.lead_time),
+    Field("before.vx", "m/s", "mass centre right before the impact, along the support", lambda it: it.before.vx),
+    Field("before.vy", "m/s", "the same along the normal", lambda it: it.before.vy),
+    Field("before.omega", "rad/s", "angular velocity before, minus that about the axis", lambda it: it.before.omega),
+    Field("after.vx", "m/s", "mass centre right after the impact, along the support", lambda it: it.after.vx),
+    Field("after.vy", "m/s", "the same along the normal", lambda it: it.after.vy),
+    Field("after.omega", "rad/s", "angular velocity after, minus that about the axis", lambda it: it.after.omega),
+    Field("energy_lost", "J", "energy lost in the impact", lambda it: it.energy_lost),
+    Field("impulse.old.normal", "N s", "on the old contact", lambda it: it.impulses[0][0]),
+    Field("impulse.old.tangent", "N s", "on the old contact", lambda it: it.impulses[0][1]),
+    Field("impulse.new.normal", "N s", "on the new contact", lambda it: it.impulses[1][0]),
+    Field("impulse.new.tangent", "N s", "on the new contact", lambda it: it.impulses[1][1]),
+    Field("axis.x", "1", "unit vector about which the body turns, in the world: its x", lambda it: it.axis[0]),
+    Field("axis.y", "1", "its y", lambda it: it.axis[1]),
+    Field("axis.z", "1", "its z", lambda it: it.axis[2]),
+    Field("half_distance", "m", "half the distance of the two contacts", lambda it: it.half_distance),
+    Field("off_axis", "1", "part of the angular velocity off the axis, 0 to 1", lambda it: it.off_axis),
+    Field("lateral", "m/s", "velocity along the axis", lambda it: it.lateral),
+    Field(
+        "closing_spread", "s", "between the closing of the two ends of the striking edge", lambda it: it.closing_spread
+    ),
+    Field("offset", "m", "of the contacts from the plane of the mass centre", lambda it: it.offset),
+)
+"""Of the touchdown ahead."""
+
+
+def _probability(mode: Mode) -> Field[Uncertainty]:
+    return Field(f"probability.{mode.name}", "1", "of this mode", lambda it: it.probabilities[mode])
+
+
+UNCERTAINTY: Final = Table[Uncertainty](
+    Field("covariance", "", "that of the sample's twist was USED or REFUSED", lambda it: it.given),
+    *map(_probability, sorted(Mode)),
+    Field("mean.vx", "m/s", "mean of after.vx", lambda it: it.mean.vx),
+    Field("mean.vy", "m/s", "mean of after.vy", lambda it: it.mean.vy),
+    Field("mean.omega", "rad/s", "mean of after.omega", lambda it: it.mean.omega),
+    Field("deviation.vx", "m/s", "standard deviation of after.vx", lambda it: it.deviation.vx),
+    Field("deviation.vy", "m/s", "standard deviation of after.vy", lambda it: it.deviation.vy),
+    Field("deviation.omega", "rad/s", "standard deviation of after.omega", lambda it: it.deviation.omega),
+)
+"""How sure the impact is, where the scene has `uncertainty.samples`."""
+
+
+def _margin(
+    name: str, unit: str, change: str, get: Callable[[Margins], Margin]
+) -> tuple[Field[Margins], Field[Margins]]:
+    """The nearest change that changes the mode, and the mode beyond."""
+
+    def beyond(margins: Margins) -> object:
+        mode = get(margins).mode
+        return "NONE" if mode is None else mode
+
+    nearest = f"nearest {change} that changes the mode, up or down, or inf"
+    return (
+        Field(f"margin.{name}", unit, nearest, lambda it: get(it).change),
+        Field(f"margin.{name}.mode", "", "the mode beyond, or NONE", beyond),
+    )
+
+
+MARGINS: Final = Table["Margins"](
+    *_margin("friction", "1", "change of the friction of both contacts", lambda it: it.friction),
+    *_margin("center", "m", "shift of the mass centre along the line of the contacts", lambda it: it.center),
+    *_margin("height", "m", "shift of the mass centre across that line", lambda it: it.height),
+    *_margin("reach", "m", "shift of the new contact along the support", lambda it: it.reach),
+    *_margin("slip", "m/s", "change of the velocity of the old contact along the support", lambda it: it.slip),
+)
+"""How far the impact is from another mode, where the scene has `margins: true`."""
+
+FOOT: Final = Table[Foot](
+    Field("name", "", "of the foot", lambda it: it.name),
+    Field("stands", "", "whether it stands, as its motion shows", lambda it: it.stands),
+    Field("since", "ns", "stamp from which it does, 0 from the beginning", lambda it: it.since),
+    Field("gap", "m", "of its lowest point above the ground", lambda it: it.gap),
+    Field("approach", "m/s", "speed at which that point nears the ground", lambda it: it.approach),
+    Field(
+        "lead_time", "s", "until it lands; left out where no landing lies within the horizon", lambda it: it.lead_time
+    ),
+    Field("landing_speed", "m/s", "speed at which it lands", lambda it: it.landing_speed),
+    Field("late", "s", "after the planned landing; left out without a plan", lambda it: it.late),
+    Field("confirmed", "", "whether its force sensor agrees; left out without one", lambda it: it.confirmed),
+    Field("place.x", "m", "where it lands, in the frame of the sample: x", lambda it: it.place and it.place[0]),
+    Field("place.y", "m", "its y", lambda it: it.place and it.place[1]),
+    Field("place.z", "m", "its z", lambda it: it.place and it.place[2]),
+)
+"""Of each foot of a walking machine, in a status of its own."""
+
+
+def announced(score: Score) -> float:
+    """The lead time in s of the first prediction of a touchdown, or of the landing that it is."""
+    history = score.history if score.landing is None else score.landing.history
+    return history[0][0] if history else score.touchdown.lead_time
+
+
+def _of_touchdown(*keys: str, new: tuple[str, ...] = ()) -> tuple[Field[Score], ...]:
+    """Fields of the touchdown that is scored, perhaps by new keys."""
+    fields = {field.key: field for field in TOUCHDOWN.fields}
+    return tuple(map(_of_score, [fields[key] for key in keys], new or keys))
+
+
+def _of_score(field: Field[Touchdown], key: str) -> Field[Score]:
+    return Field(key, field.unit, field.meaning, lambda score: field.get(score.touchdown))
+
+
+SCORE: Final = Table[Score](
+    Field("stamp", "ns", "of the predicted touchdown; of a foot, when it came to stand", lambda it: it.stamp),
+    Field("mode", "", "that was predicted", lambda it: it.touchdown.mode),
+    Field("scored", "", "whether the record can tell", lambda it: it.scored),
+    Field("leftover", "", "why it cannot, or NONE", lambda it: it.leftover),
+    *_of_touchdown("flags", "law", "old", "new"),
+    Field("announced", "s", "lead time of the first prediction with these contacts", lambda it: announced(it)),
+    *_of_touchdown("lead_time", "half_distance", "off_axis", "lateral", "closing_spread", "offset"),
+    *_of_touchdown("before.vx", "before.vy", "before.omega"),
+    *_of_touchdown(*("after.vx", "after.vy", "after.omega"), new=("predicted.vx", "predicted.vy", "predicted.omega")),
+    Field(
+        "measured.vx", "m/s", "what the samples after it show, as after.vx", lambda it: it.measured and it.measured.vx
+    ),
+    Field("measured.vy", "m/s", "as after.vy", lambda it: it.measured and it.measured.vy),
+    Field("measured.omega", "rad/s", "as after.omega", lambda it: it.measured and it.measured.omega),
+    Field(
+        "relative_error",
+        "1",
+        "of the predicted twist; left out where there is nothing to compare",
+        lambda it: it.relative_error,
+    ),
+)
+"""Of a touchdown that has happened."""
+
+LANDING: Final = Table[Landing](
+    Field("foot", "", "that has landed", lambda it: it.foot),
+    Field("late", "s", "after the plan; left out without one", lambda it: it.late),
+    Field("confirmed", "", "whether its force sensor agrees; left out without one", lambda it: it.confirmed),
+    Field("speed", "m/s", "of the foot in its last frame in the air", lambda it: it.speed),
+    Field("point", "", "heel or toe; left out for all of a foot", lambda it: it.point),
+    Field("time_error", "s", "of the last announcement", lambda it: float(it.history[-1][1]) if it.history else None),
+)
+"""Of a foot that has landed, besides its impact."""
