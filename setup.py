@@ -22,10 +22,11 @@ EXTRAS = {
     "ros": ["ros-jazzy-common-interfaces", "ros-jazzy-rclpy[fastrtps]"],
     # Pictures: figures, maps, moving ones.
     "plot": ["contourpy>=1.0", "matplotlib>=3.6", "pillow>=9.2", "scipy>=1.11"],
-    "page": ["jinja2>=3.1", "markupsafe>=2.0", "plotly>=6.0"],
+    "page": ["plotly>=6.0"],
     "calibrate": ["scipy>=1.11"],
     # References of `impact-predictor report`.
-    "report": ["matplotlib>=3.6", "mpmath>=1.3", "scipy>=1.11"],
+    # `impact-predictor report`.
+    "report": ["plotly>=6.0", "scipy>=1.11"],
     "fast": ["numba"],
     # Many bags at a time, and their touchdowns as Parquet.
     "fleet": ["dask>=2024.1", "distributed>=2024.1", "pyarrow>=16"],
@@ -37,7 +38,7 @@ EXTRAS = {
     "browser": ["playwright>=1.45"],
     # Models of robots, for the tests.
     "robots": ["example-robot-data>=4.0"],
-    "test": ["hypothesis", "pytest", "pytest-xdist"],
+    "test": ["hypothesis", "mpmath>=1.3", "pytest", "pytest-xdist"],
 }
 ALL = ("plot", "page", "calibrate", "report", "fast", "fleet", "articulated", "peers")
 """What brings a command or an option; ROS from PyPI is never mixed with a sourced one, so it is asked for by name."""
@@ -59,7 +60,7 @@ setup(
     ],
     python_requires=">=3.10",
     packages=find_packages(include=[NAME, f"{NAME}.*"]),
-    package_data={NAME: ["py.typed"], f"{NAME}.report.page": ["page.css", "page.js", "templates/*"]},
+    package_data={NAME: ["py.typed"], f"{NAME}.report.page": ["page.css", "page.js"]},
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
         (SHARE, ["package.xml"]),

@@ -10,10 +10,7 @@ EXTRAS: Final = {
     "contourpy": ("contourpy", "plot"),
     "dask": ("dask", "fleet"),
     "distributed": ("distributed", "fleet"),
-    "jinja2": ("jinja2", "page"),
-    "markupsafe": ("markupsafe", "page"),
     "matplotlib": ("matplotlib", "plot"),
-    "mpmath": ("mpmath", "report"),
     "mujoco": ("mujoco", "peers"),
     "numba": ("numba", "fast"),
     "pinocchio": ("pin", "articulated"),
@@ -36,7 +33,7 @@ def missing(module: str) -> InputError | None:
     package, extra = EXTRAS[name]
     return InputError(
         f"this needs {package}, which is not installed: `pip install {package}`, "
-        f"or install impact_predictor with the extra `{extra}`"
+        f"or `pip install 'impact_predictor[{extra}]'`"
     )
 
 

@@ -6,29 +6,41 @@ import csv
 import json
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 from click.testing import CliRunner, Result
 
 from impact_predictor.cli import main
 from impact_predictor.report.accuracy import study
-from impact_predictor.report.accuracy.choices import USED, choices_of, defaults_of
-from impact_predictor.report.accuracy.rows import IMPACT, TOUCHDOWN, Errors, Family, Report, Row, Scene
+from impact_predictor.report.accuracy.measure import (
+    IMPACT,
+    TOUCHDOWN,
+    AccuracyScene,
+    choices_of,
+    default_of,
+    row_of,
+)
 
-SCENES = [Scene("plate", question, "Plate", "A plate.", "exact") for question in (TOUCHDOWN, IMPACT)]
-NO_ERROR = Errors(0.0, 1e-15, 1e-15)
+SCENES = [AccuracyScene("plate", question, "Plate", "A plate.", "exact") for question in (TOUCHDOWN, IMPACT)]
 
 
-def made_up(size: study.Size, command: str, tell: object) -> Report:
+def made_up(size: study.Size, command: str, tell: object) -> dict[str, Any]:
     """A report that nobody measured."""
+    used = {TOUCHDOWN: ("next_touchdown", "tolerance = 1e-06"), IMPACT: ("path law", "")}
     rows = [
-        Row(question, "plate", name, name, setting, 20.0, 25.0, time, NO_ERROR, None, 10, 0)
-        for question, time in ((TOUCHDOWN, NO_ERROR), (IMPACT, None))
-        for name, setting in [USED[question]]
+        row_of(scene, (name, name, setting), [20.0], [1e-15] if scene.question == TOUCHDOWN else None, [1e-15])
+        for scene, (name, setting) in zip(SCENES, used.values(), strict=True)
     ]
-    families = [Family(row.family, "What the node uses.") for row in rows]
-    said = study.made(command) | {"falls": str(size.falls)}
-    return Report(said, defaults_of(rows, SCENES), ["A note."], families, SCENES, rows, choices_of(rows, SCENES), [])
+    return {
+        "made": study.made(command) | {"falls": str(size.falls)},
+        "node": {row["question"]: default_of(used[row["question"]], [row], ["plate"]) for row in rows},
+        "notes": ["A note."],
+        "families": [{"name": row["family"], "says": "What the node uses."} for row in rows],
+        "scenes": [scene._asdict() for scene in SCENES],
+        "rows": rows,
+        "choices": choices_of(rows, SCENES),
+    }
 
 
 @pytest.fixture(autouse=True)
@@ -94,8 +106,10 @@ def test_a_page_that_cannot_be_written_leaves_no_part_behind(folder: Path) -> No
     assert not list(folder.rglob("*.partial"))
 
 
-def test_without_mpmath_the_report_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "mpmath", None)
+def test_without_plotly_the_report_says_what_to_install_before_it_measures(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "plotly", None)
     result = run("-o", "out")
     assert result.exit_code == 2
-    assert "needs mpmath" in result.stderr
+    assert "needs plotly" in result.stderr
+    assert "`pip install 'impact_predictor[page]'`" in result.stderr
+    assert run("--json").exit_code == 0

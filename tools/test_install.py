@@ -176,10 +176,10 @@ def check_extras(environment: Environment) -> None:
         ("page", *replay, "--report", "page.html"),
         ("fleet", *replay, "--table", "table.parquet"),
         ("calibrate", "calibrate", *replay[1:]),
-        ("report", "report", "-o", "accuracy"),
+        ("page", "report", "-o", "accuracy"),
     ):
         said = environment.run(f"{environment.prefix}/bin/impact-predictor", *command, status=None).stderr
-        if said.count("\n") != 1 or f"the extra `{extra}`" not in said:
+        if said.count("\n") != 1 or f"impact_predictor[{extra}]" not in said:
             raise InstallError(f"{' '.join(command)} should name the extra {extra} in one line, but said:\n{said}")
 
 

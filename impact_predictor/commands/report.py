@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import os
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -15,8 +15,6 @@ from .options import examples
 
 if TYPE_CHECKING:
     from rich.table import Table
-
-    from ..report.accuracy.rows import Report
 
 PAGE: Final = "report.html"
 DATA: Final = "report.json"
@@ -43,20 +41,17 @@ CELLS: Final = "report.csv"
 def report(output: Path | None, quick: bool, as_json: bool) -> None:
     """Compare error and run time of many methods for touchdowns and impacts.
 
-    Every method meets the same problems, beside a reference of 40 digits: extrapolation, quadrature, integration, time
-    stepping, compliant contacts, closed forms, the laws of this program, and MuJoCo where it is installed. The recorded
-    tosses of a cube are scored by what was measured. One page shows error over run time, and which method to choose for
-    a wanted accuracy; the same stands in a JSON and a CSV file.
+    Every method meets the same problems: extrapolation, integration by scipy, the laws of this program one at a time
+    and over arrays, compliant contacts, and MuJoCo where it is installed. The recorded tosses of a cube are scored by
+    what was measured. One page shows error over run time, and which method to choose for a wanted accuracy; the same
+    stands in a JSON and a CSV file.
     """
     folder = output or (None if as_json else Path("report"))
     if folder is not None:
         make(folder)
-    found = measured(quick, folder)
-    from ..report.accuracy.rows import to_json
-
-    fields = to_json(found)
+    fields = measured(quick, folder)
     if folder is not None:
-        write(folder, found, fields)
+        write(folder, fields)
     if as_json:
         click.echo(json.dumps(fields, allow_nan=False))
         return
@@ -65,11 +60,11 @@ def report(output: Path | None, quick: bool, as_json: bool) -> None:
 
     from ..report.table import show
 
-    show(Console(), table_of(found))
-    for question, default in found.node.items():
-        name = ", ".join(filter(None, (default.method, default.setting)))
-        click.echo(f"The node answers the {question} by {name}: {default.why}")
-    for note in found.notes:
+    show(Console(), table_of(fields))
+    for question, used in fields["node"].items():
+        click.echo(f"The node answers the {question} by {', '.join(filter(None, (used['method'], used['setting'])))}:")
+        click.echo(used["why"])
+    for note in fields["notes"]:
         click.echo(f"note: {note}", err=True)
     assert folder is not None
     click.echo(f"Page: {folder / PAGE}")
@@ -89,58 +84,53 @@ def make(folder: Path) -> None:
         raise InputError(f"the folder {folder} cannot be written into; give another name")
 
 
-def measured(quick: bool, folder: Path | None) -> Report:
-    """The report, with a bar on standard error.
+def measured(quick: bool, folder: Path | None) -> dict[str, Any]:
+    """The report as its JSON has it, with a bar on standard error.
 
     Raises:
-        InputError: what the references are computed with is not installed.
+        InputError: what it is made with is not installed.
     """
-    need("mpmath", "scipy")
-    from ..report.accuracy.study import FULL, QUICK, steps
-    from ..report.accuracy.study import report as measure
+    need(*(["plotly"] if folder else []), "scipy")
+    from ..report.accuracy import study
     from .progress import compiling_is_said, progress
 
-    size = QUICK if quick else FULL
+    size = study.QUICK if quick else study.FULL
     command = "impact-predictor report" + (" --quick" if quick else "") + (f" -o {folder}" if folder else " --json")
-    with compiling_is_said(), progress("report", "methods", steps(size)) as tell:
-        return measure(size, command, tell)
+    with compiling_is_said(), progress("report", "methods", study.steps(size)) as tell:
+        return study.report(size, command, tell)
 
 
-def write(folder: Path, found: Report, fields: dict[str, Any]) -> None:
-    """Write page, JSON and CSV: each under another name first, so that none is ever there by half.
+def write(folder: Path, fields: dict[str, Any]) -> None:
+    """Write JSON, CSV and page: each under another name first, so that none is ever there by half.
 
     Raises:
         InputError: a file cannot be written.
     """
-    from ..report.accuracy.rows import write_csv
+    from ..report.accuracy.page import write_accuracy_page
     from ..report.files import whole
-    from ..report.page.write import write_page
 
-    writers: dict[str, Callable[[Path], object]] = {
-        DATA: lambda file: file.write_text(json.dumps(fields, indent=1, allow_nan=False), encoding="utf-8"),
-        CELLS: lambda file: write_csv(file, found.rows),
-        PAGE: lambda file: write_page(file, fields),
-    }
-    for name, writer in writers.items():
-        with whole(folder / name) as partial:
-            writer(partial)
+    with whole(folder / DATA) as partial:
+        partial.write_text(json.dumps(fields, indent=1, allow_nan=False), encoding="utf-8")
+    with whole(folder / CELLS) as partial, partial.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, list(fields["rows"][0]), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(fields["rows"])
+    write_accuracy_page(folder / PAGE, fields)
 
 
-def table_of(found: Report) -> Table:
-    """The cheapest method for each wanted accuracy that holds on every computed scene, and what the node uses."""
-    from ..report.accuracy.rows import ACCURACIES, ALL_SCENES
-    from ..report.table import plain_table
+def table_of(fields: dict[str, Any]) -> Table:
+    """The cheapest method for each wanted accuracy that holds on every computed scene of a question."""
+    from ..report.accuracy.measure import ALL_SCENES
+    from ..report.table import Column, table_of
 
-    table = plain_table()
-    table.add_column("question", no_wrap=True)
-    table.add_column("error below", justify="right", no_wrap=True)
-    table.add_column("cheapest method that is so good on every scene", no_wrap=True)
-    table.add_column("us", justify="right", no_wrap=True)
-    for question, scene, accuracy, row in found.choices:
-        if scene == ALL_SCENES:
-            name = "-" if row is None else ", ".join(filter(None, (row.method, row.setting)))
-            first = accuracy == ACCURACIES[0]
-            if first and table.row_count:
-                table.add_section()
-            table.add_row(question if first else "", f"{accuracy:.0e}", name, "-" if row is None else f"{row.us:.3g}")
-    return table
+    columns = [
+        Column("question", lambda one: one["question"], left=True),
+        Column("error below", lambda one: f"{one['accuracy']:.0e}"),
+        Column(
+            "cheapest method that is so good on every scene",
+            lambda one: ", ".join(filter(None, (one["method"], one["setting"]))) or "-",
+            left=True,
+        ),
+        Column("us", lambda one: "-" if one["us"] is None else f"{one['us']:.3g}"),
+    ]
+    return table_of(columns, [one for one in fields["choices"] if one["scene"] == ALL_SCENES])

@@ -95,7 +95,7 @@ def test_what_the_extra_brings_is_missed_in_one_sentence(
     assert (result.exit_code, result.stdout) == (2, "")
     (line,) = result.stderr.splitlines()
     assert line.startswith(f"error: this needs {missing}, which is not installed")
-    assert line.endswith("the extra `fleet`")
+    assert line.endswith("`pip install 'impact_predictor[fleet]'`")
 
 
 @pytest.mark.slow  # in a fresh process

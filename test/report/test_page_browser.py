@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
@@ -12,6 +13,7 @@ import pytest
 from replay_answers import TOSSES, TRUE, UNREADABLE, WALK, answer, touchdown
 
 from impact_predictor.parameters.file import read_values
+from impact_predictor.report.accuracy.page import write_accuracy_page
 from impact_predictor.report.page.replay import write_replay_page, write_replay_pages
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
@@ -92,18 +94,19 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     answers, values = [TRUE, WALK, TOSSES, UNREADABLE], read_values("config/cube_tosses.yaml")
     write_replay_page(folder / "replay.html", answers, values)
     write_replay_pages(folder / "week", answers, values)
+    write_accuracy_page(folder / "report.html", json.loads((Path(__file__).parent / "page_report.json").read_text()))
     return folder
 
 
 @pytest.mark.parametrize("width", [WIDE, NARROW])
-@pytest.mark.parametrize("name", ["replay.html", "week/index.html"])
+@pytest.mark.parametrize(("name", "count"), [("replay.html", 8), ("week/index.html", 8), ("report.html", 2)])
 def test_the_page_draws_every_chart_inside_the_window_and_asks_no_network(
-    visit: Open, folder: Path, name: str, width: int
+    visit: Open, folder: Path, name: str, count: int, width: int
 ) -> None:
     file = folder / name
     with visit(file, width) as (page, _, requests):
         charts = page.evaluate(CHARTS)
-        assert len(charts) == 8
+        assert len(charts) == count
         assert all(one["drawn"] and one["traces"] and one["right"] <= width for one in charts)
         assert page.evaluate("document.documentElement.scrollWidth") <= width
     beside = [file.with_name("plotly.min.js").as_uri()] if "/" in name else []

@@ -12,8 +12,7 @@ from typing import Any, NamedTuple
 
 from mpmath import mp
 
-from ...mechanics.types import Twist
-from .touchdown_scenes import Falling, Landing
+from impact_predictor.report.accuracy.touchdowns import Arrival, FallingBody
 
 Real = Any
 """A number of mpmath."""
@@ -29,14 +28,14 @@ LOOKS = 1000
 """How often the flight is looked at for its first strike."""
 
 
-class Reference(NamedTuple):
+class Touchdown40(NamedTuple):
     """A touchdown: time in s and twist in 40 digits."""
 
     time: Real
     twist: tuple[Real, Real, Real]
 
 
-def reference_of(fall: Falling) -> Reference:
+def reference_of(fall: FallingBody) -> Touchdown40:
     """The touchdown of a body that goes on moving as it moves now."""
     with mp.workdps(DIGITS + GUARD):
         if fall.stance is None:
@@ -46,7 +45,7 @@ def reference_of(fall: Falling) -> Reference:
         return sliding(fall, slip) if abs(slip) > 1e-12 * speeds else turning(fall)
 
 
-def arm_of(fall: Falling, angle: Real) -> tuple[Real, Real]:
+def arm_of(fall: FallingBody, angle: Real) -> tuple[Real, Real]:
     """The mass centre from the stance contact, at an angle."""
     assert fall.stance is not None
     x, y = map(mp.mpf, fall.points[fall.stance])
@@ -54,7 +53,7 @@ def arm_of(fall: Falling, angle: Real) -> tuple[Real, Real]:
     return s * y - c * x, -s * x - c * y
 
 
-def turning(fall: Falling) -> Reference:
+def turning(fall: FallingBody) -> Touchdown40:
     """omega^2 = 2 k (cos(rest) - cos(lean)), the lean from the balance; and with lean = rest + s^2 no root is left."""
     x, y = arm_of(fall, mp.mpf(0))
     k = -mp.mpf(fall.gravity[1]) * mp.hypot(x, y) / (mp.mpf(fall.rho_squared) + x * x + y * y)
@@ -78,10 +77,10 @@ def turning(fall: Falling) -> Reference:
     end = mp.atan2(x, y)
     before = mp.mpf(0) if lean <= rest else time_to(lean)
     rate = -mp.sqrt(2 * k * (mp.cos(rest) - mp.cos(end)))
-    return Reference(time_to(end) + (before if omega > 0 else -before), (-rate * y, rate * x, rate))
+    return Touchdown40(time_to(end) + (before if omega > 0 else -before), (-rate * y, rate * x, rate))
 
 
-def sliding(fall: Falling, slip: Real) -> Reference:
+def sliding(fall: FallingBody, slip: Real) -> Touchdown40:
     """Square of the rate, time and slip over the angle, to where B touches."""
     drag = mp.sign(slip) * mp.mpf(fall.friction)
     rho_squared, gravity = mp.mpf(fall.rho_squared), mp.mpf(fall.gravity[1])
@@ -99,7 +98,7 @@ def sliding(fall: Falling, slip: Real) -> Reference:
     square, time, after = extrapolated(slopes, mp.mpf(fall.state.angle), mp.mpf(0), start)
     x, y = arm_of(fall, mp.mpf(0))
     omega = -mp.sqrt(square)
-    return Reference(time, (after - omega * y, omega * x, omega))
+    return Touchdown40(time, (after - omega * y, omega * x, omega))
 
 
 def extrapolated(
@@ -129,7 +128,7 @@ def extrapolated(
     return values
 
 
-def flight(fall: Falling) -> Reference:
+def flight(fall: FallingBody) -> Touchdown40:
     """The earliest root of the gaps, found on a fine grid and then polished."""
     x, y, angle, vx, vy, omega = map(mp.mpf, fall.state)
     pull_x, pull_y = map(mp.mpf, fall.gravity)
@@ -149,20 +148,14 @@ def flight(fall: Falling) -> Reference:
         )
     struck = (each for each in gaps if each(first) > 0 >= each(until))
     time = min(mp.findroot(each, (first, until), solver="anderson", tol=mp.mpf(10) ** -(2 * DIGITS)) for each in struck)
-    return Reference(time, (vx + pull_x * time, vy + pull_y * time, omega))
+    return Touchdown40(time, (vx + pull_x * time, vy + pull_y * time, omega))
 
 
-def time_error(landing: Landing, reference: Reference) -> float:
-    """Error of the time, relative to the time until the touchdown."""
-    return float(abs(mp.mpf(landing.time) - reference.time) / reference.time)
-
-
-def distance(twist: Twist, reference: tuple[Real, Real, Real], rho_squared: float) -> float:
-    """How far a twist is from the reference, as `size_of` has it."""
-    return size_of([mp.mpf(v) - w for v, w in zip(twist, reference, strict=True)], rho_squared)
-
-
-def size_of(twist: Any, rho_squared: float) -> float:
-    """Size of a twist in m/s, by its kinetic energy: hypot(vx, vy, rho omega)."""
-    vx, vy, omega = map(mp.mpf, twist)
-    return float(mp.sqrt(vx * vx + vy * vy + rho_squared * omega * omega))
+def errors_of(fall: FallingBody, arrival: Arrival) -> tuple[float, float]:
+    """Error of the time, relative to it, and of the twist, relative to its size by the kinetic energy."""
+    with mp.workdps(DIGITS):
+        right, rho = reference_of(fall), mp.sqrt(fall.rho_squared)
+        weights = (1, 1, rho)
+        apart = [w * (mp.mpf(v) - u) for v, u, w in zip(arrival.twist, right.twist, weights, strict=True)]
+        size = [w * u for u, w in zip(right.twist, weights, strict=True)]
+        return float(abs(arrival.time - right.time) / right.time), float(mp.norm(apart) / mp.norm(size))

@@ -1,0 +1,266 @@
+"""The next touchdown: bodies on their way to it, methods that tell it, and what they are held against.
+
+The reference is the motion integrated to 13 digits by scipy, with equations of motion that share no code with the
+program's own `next_touchdown`. It is right to about 1e-10; smaller errors are not told apart.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import partial
+from math import atan2, cos, hypot, inf, pi, sin, sqrt
+from random import Random
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from ...mechanics.motion import PlanarState, next_touchdown
+from ...mechanics.types import Twist, Vector
+from ...prediction.points import ACCURACY
+from .measure import TOUCHDOWN, AccuracyScene, Method
+
+GRAVITY: Final = (0.0, -9.81)
+SLIPS: Final = 0.2
+"""Friction of a stance that slips all the way; one that sticks is held."""
+
+HORIZON: Final = 20.0
+"""s within which scipy looks for the touchdown."""
+
+FINEST: Final = 1e-13
+"""Relative tolerance of the reference."""
+
+
+class FallingBody(NamedTuple):
+    """What `next_touchdown` is asked: state, points and stance, rho^2 in m^2, friction, gravity in m/s^2."""
+
+    state: PlanarState
+    points: tuple[Vector, ...]
+    stance: int | None
+    rho_squared: float
+    friction: float
+    gravity: Vector = GRAVITY
+
+
+class Arrival(NamedTuple):
+    """A touchdown: the time until then in s, and the twist of the mass centre right before it strikes."""
+
+    time: float
+    twist: Twist
+
+
+class Outline(NamedTuple):
+    """A body seen at its touchdown: A lies `a` behind, B `b` ahead of and both `height` below the mass centre (m)."""
+
+    a: float
+    b: float
+    height: float
+    rho_squared: float
+
+    def falling(self, angle: float, omega: float, slip: float = 0.0, friction: float = inf) -> FallingBody:
+        """The body with B raised by `angle`, turning about A with `omega`, while A slips with `slip` (m/s)."""
+        c, s = cos(angle), sin(angle)
+        x, y = c * self.a - s * self.height, s * self.a + c * self.height  # of the mass centre from A
+        state = PlanarState(x, y, angle, slip - omega * y, omega * x, omega)
+        return FallingBody(state, ((-self.a, -self.height), (self.b, -self.height)), 0, self.rho_squared, friction)
+
+
+def rectangle(length: float, height: float) -> Outline:
+    """A homogeneous plate on its long or short side."""
+    return Outline(0.5 * length, 0.5 * length, 0.5 * height, (length * length + height * height) / 12.0)
+
+
+ROD: Final = Outline(0.1, 0.1, 0.005, 0.4**2 / 12.0)
+CRATE: Final = rectangle(1.0, 0.6)
+CYLINDER: Final = Outline(0.1 * sin(0.7), 0.1 * sin(0.7), 0.1 * cos(0.7), 0.5 * 0.1**2)
+
+
+def turning(outline: Outline, source: Random) -> FallingBody:
+    """A fall about A: of a body that was at rest between a twentieth and nine tenths of the way to its balance."""
+    balance = atan2(outline.a, outline.height)
+    arm = hypot(outline.a, outline.height)
+    stiffness = -GRAVITY[1] * arm / (outline.rho_squared + arm * arm)
+    rest = balance * source.uniform(0.05, 0.9)
+    angle = rest * source.choice((1.0, source.uniform(0.1, 0.95), source.uniform(0.1, 0.95)))
+    speed = sqrt(2.0 * stiffness * max(0.0, cos(balance - rest) - cos(balance - angle)))
+    return outline.falling(angle, speed if source.random() < 0.1 else -speed)
+
+
+def leaving_balance(source: Random) -> FallingBody:
+    """A crate at rest, leaning from its balance by 1e-4 to 0.1 rad: most of its fall it hardly moves."""
+    return CRATE.falling(atan2(CRATE.a, CRATE.height) - 10.0 ** source.uniform(-4.0, -1.0), 0.0)
+
+
+def slipping(source: Random) -> FallingBody:
+    """A crate whose standing edge slips forwards or back."""
+    slip = source.choice((-1.0, 1.0)) * source.uniform(1.0, 2.0)
+    return CRATE.falling(source.uniform(0.02, 0.2), -source.uniform(0.2, 1.5), slip, SLIPS)
+
+
+def thrown(source: Random) -> FallingBody:
+    """A crate in the air; any of its corners can strike."""
+    x, y = CRATE.b, CRATE.height
+    vx, vy, omega = source.uniform(-2.0, 2.0), source.uniform(-2.0, 2.0), source.uniform(-6.0, 6.0)
+    state = PlanarState(0.0, source.uniform(0.7, 1.5), source.uniform(-pi, pi), vx, vy, omega)
+    return FallingBody(state, ((-x, -y), (x, -y), (x, y), (-x, y)), None, CRATE.rho_squared, SLIPS)
+
+
+SCENES: Final[dict[str, tuple[str, str, Callable[[Random], FallingBody]]]] = {
+    "rod": (
+        "Rod over two supports",
+        "A rod of 0.4 m turns about one of two supports, 0.1 m from its middle, and falls onto the other.",
+        partial(turning, ROD),
+    ),
+    "plate": (
+        "Crate on a floor",
+        "A crate of 1 m by 0.6 m has been tipped about an edge and falls back.",
+        partial(turning, CRATE),
+    ),
+    "cylinder": (
+        "Cylinder between edges",
+        "A cylinder of 0.1 m radius rolls over an edge onto the next one, 80 degrees apart.",
+        partial(turning, CYLINDER),
+    ),
+    "balance": ("Out of balance", "A crate is released 1e-4 to 0.1 rad from its balance.", leaving_balance),
+    "sliding": (
+        "Sliding stance",
+        "The edge on which a crate stands slips while the crate falls, friction 0.2.",
+        slipping,
+    ),
+    "flight": ("Flight", "A crate is thrown, turning; the first of its corners strikes.", thrown),
+}
+"""Title, description, and what draws a body."""
+
+
+def scenes() -> Iterator[AccuracyScene]:
+    """The scenes of this question."""
+    for name, (title, description, _) in SCENES.items():
+        yield AccuracyScene(name, TOUCHDOWN, title, description, "the motion integrated by scipy to 13 digits")
+
+
+def falls(name: str, count: int) -> list[FallingBody]:
+    """`count` bodies of a scene, always the same."""
+    source = Random(f"4 {name}")
+    return [SCENES[name][2](source) for _ in range(count)]
+
+
+def accelerations(fall: FallingBody, state: Any) -> tuple[float, float, float]:
+    """Acceleration of the mass centre (m/s^2) and angular acceleration (rad/s^2) of a body in a state.
+
+    A stance sticks where its friction is infinite, else it goes on slipping as it does at first.
+    """
+    if fall.stance is None:
+        return (*fall.gravity, 0.0)
+    _, _, angle, vx, _, omega = state
+    (px, py), c, s, g = fall.points[fall.stance], cos(angle), sin(angle), fall.gravity[1]
+    x, y, square = s * py - c * px, -s * px - c * py, omega * omega  # of the mass centre from the contact
+    if fall.friction == inf:
+        alpha, slide = g * x / (fall.rho_squared + x * x + y * y), 0.0
+    else:
+        drag = fall.friction if vx + omega * y > 0.0 else -fall.friction
+        lever = x + drag * y
+        alpha = (square * y + g) * lever / (fall.rho_squared + x * lever)
+        slide = alpha * y + square * x - drag * (alpha * x - square * y - g)
+    return slide - alpha * y - square * x, alpha * x - square * y, alpha
+
+
+def gap(fall: FallingBody, state: Any) -> float:
+    """Height of the lowest point that does not stand (m)."""
+    c, s = cos(state[2]), sin(state[2])
+    others = (point for index, point in enumerate(fall.points) if index != fall.stance)
+    return float(state[1]) + min(s * x + c * y for x, y in others)
+
+
+def integrated(fall: FallingBody, tolerance: float) -> Arrival | None:
+    """scipy's DOP853 up to the event that a point touches."""
+
+    def rates(_: float, state: Any) -> Any:
+        return (*state[3:], *accelerations(fall, state))
+
+    def touches(_: float, state: Any) -> float:
+        return gap(fall, state)
+
+    touches.terminal, touches.direction = True, -1.0  # type: ignore[attr-defined]
+    found = solve_ivp(rates, (0.0, HORIZON), fall.state, "DOP853", rtol=tolerance, atol=tolerance, events=touches)
+    if not found.t_events[0].size:
+        return None
+    return Arrival(float(found.t_events[0][0]), Twist(*found.y_events[0][0][3:].tolist()))
+
+
+def reference_of(fall: FallingBody) -> Arrival:
+    """The touchdown to 13 digits: the event of the integration, then Newton's method on whole integrations."""
+    found = integrated(fall, FINEST)
+    assert found is not None
+    time = found.time
+    for _ in range(2):
+        end = solve_ivp(
+            lambda _, state: (*state[3:], *accelerations(fall, state)),
+            (0.0, time),
+            fall.state,
+            "DOP853",
+            rtol=FINEST,
+            atol=1e-15,
+        ).y[:, -1]
+        step = 1e-6
+        ahead = np.array(end) + step * np.array([*end[3:], *accelerations(fall, end)])
+        time -= gap(fall, end) * step / (gap(fall, ahead) - gap(fall, end))
+    return Arrival(time, Twist(*end[3:].tolist()))
+
+
+def extrapolated(fall: FallingBody, accelerated: bool) -> Arrival | None:
+    """The first root of the parabolas of the gaps, with their rates of now and, if so, their accelerations of now."""
+    state = fall.state
+    ax, ay, alpha = accelerations(fall, state) if accelerated else (0.0, 0.0, 0.0)
+    c, s, omega = cos(state.angle), sin(state.angle), state.omega
+    first = inf
+    for index, (px, py) in enumerate(fall.points):
+        if index != fall.stance:
+            x, y = c * px - s * py, s * px + c * py
+            bend = ay + alpha * x - omega * omega * y if accelerated else 0.0
+            first = min(first, _descent(state.y + y, state.vy + omega * x, bend))
+    if first == inf:
+        return None
+    return Arrival(first, Twist(state.vx + ax * first, state.vy + ay * first, omega + alpha * first))
+
+
+def _descent(height: float, rate: float, acceleration: float) -> float:
+    """First t > 0 at which height + rate t + acceleration t^2 / 2 is zero, inf if there is none."""
+    square = rate * rate - 2.0 * acceleration * height
+    down = sqrt(square) - rate if square >= 0.0 else 0.0
+    return 2.0 * height / down if down > 0.0 else inf
+
+
+def own(fall: FallingBody) -> Arrival | None:
+    """The program's own predictor."""
+    end = next_touchdown(*fall, tolerance=ACCURACY)
+    return Arrival(end.time, Twist(end.state.vx, end.state.vy, end.state.omega)) if end.point >= 0 else None
+
+
+FAMILIES: Final = {
+    "constant twist": "The gap of the new contact goes on closing at the rate that it has now.",
+    "constant acceleration": "Gap and twist go on with the accelerations that they have now.",
+    "DOP853": "scipy's solve_ivp of order 8 with adaptive steps; its event function is the gap.",
+    "next_touchdown": "What the node uses: closed forms where the stance sticks, steps within a tolerance where it slips,"
+    " safe root finding in flight.",
+}
+"""What the methods do."""
+
+METHODS: Final = [
+    Method("constant twist", "constant twist", "", lambda fall: extrapolated(fall, False)),
+    Method("constant acceleration", "constant acceleration", "", lambda fall: extrapolated(fall, True)),
+    *(
+        Method("DOP853", "scipy DOP853 with an event", f"rtol = {rtol:g}", partial(integrated, tolerance=rtol))
+        for rtol in (1e-3, 1e-6, 1e-9)
+    ),
+    Method("next_touchdown", "next_touchdown", f"tolerance = {ACCURACY:g}", own),
+]
+USED: Final = ("next_touchdown", f"tolerance = {ACCURACY:g}")
+"""What the node uses."""
+
+
+def errors_of(fall: FallingBody, answer: Arrival, reference: Arrival) -> tuple[float, float]:
+    """Error of the time, relative to it, and of the twist at the touchdown, relative to its size."""
+    (vx, vy, omega), rho = reference.twist, sqrt(fall.rho_squared)
+    wx, wy, turning = answer.twist
+    apart = hypot(wx - vx, wy - vy, rho * (turning - omega))
+    return abs(answer.time - reference.time) / reference.time, apart / hypot(vx, vy, rho * omega)

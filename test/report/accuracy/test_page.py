@@ -1,0 +1,78 @@
+"""The page of error against run time: what it says and draws of page_report.json, a report of few scenes."""
+
+from __future__ import annotations
+
+import copy
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from read_page import PageReader, traces
+
+from impact_predictor.errors import InputError
+from impact_predictor.report.accuracy.measure import error_of
+from impact_predictor.report.accuracy.page import accuracy_page, write_accuracy_page
+
+REPORT: dict[str, Any] = json.loads((Path(__file__).parents[1] / "page_report.json").read_text())
+
+
+def read(report: dict[str, Any]) -> PageReader:
+    return PageReader(accuracy_page(report, script=""))
+
+
+@pytest.mark.parametrize("question", ["touchdown", "impact"])
+def test_the_picture_of_a_question_has_a_point_for_each_method_on_each_scene(question: str) -> None:
+    report = copy.deepcopy(REPORT)
+    report["rows"] = [row for row in report["rows"] if row["question"] == question]
+    (figure,) = read(report).figures.values()
+    names = {scene["name"]: scene["title"] for scene in report["scenes"] if not scene["measured"]}
+    drawn = {
+        (family, text): (x, y)
+        for family, trace in traces(figure).items()
+        for text, x, y in zip(trace["text"], trace["x"], trace["y"], strict=True)
+    }
+    expected = {}
+    for row in report["rows"]:
+        if row["scene"] in names and error_of(row) < float("inf"):
+            name = ", ".join(filter(None, (row["method"], row["setting"])))
+            expected[row["family"], f"{name}<br>{names[row['scene']]}"] = (row["us"], max(error_of(row), 1e-16))
+    assert drawn == expected
+    assert figure["layout"]["yaxis"]["type"] == figure["layout"]["xaxis"]["type"] == "log"
+
+
+def test_the_tables_have_the_choices_and_all_numbers() -> None:
+    page = read(REPORT)
+    choices, numbers = page.tables["touchdown"]
+    assert choices[0] == ["scene", *(f"error below {accuracy}" for accuracy in ("0.01", "0.0001", "1e-06", "1e-09"))]
+    assert choices[-1][0] == "on all scenes"
+    assert all(cell.startswith("next_touchdown tolerance = 1e-06") for cell in choices[-1][1:])
+    rows = [row for row in REPORT["rows"] if row["question"] == "touchdown"]
+    assert len(numbers) == len(rows) + 1
+    across = next(row for row in page.tables["impact"][0] if row[0] == "Slip across the plane")
+    assert across[-1] == "none"
+    assert page.tables["measured"][0][1][0] == "path law, slip across"
+
+
+def test_the_headlines_say_what_the_node_uses_and_why() -> None:
+    page = read(REPORT)
+    for used in REPORT["node"].values():
+        assert f"{used['method']}, {used['setting']}" in page.text
+        assert used["why"] in page.text
+
+
+def test_names_of_a_report_cannot_become_part_of_the_page() -> None:
+    report, evil = copy.deepcopy(REPORT), "<script>alert(1)</script>"
+    report["made"]["machine"] = report["scenes"][0]["title"] = evil
+    for row in report["rows"]:
+        row["family"] = row["setting"] = evil
+    text = accuracy_page(report, script="")
+    assert "<script>alert" not in text
+    assert evil in PageReader(text).text
+
+
+def test_a_report_with_little_in_it_makes_a_page_too(tmp_path: Path) -> None:
+    report = REPORT | {"rows": [], "choices": [], "node": {}, "families": []}
+    assert read(report).figures == {}
+    with pytest.raises(InputError, match="cannot be written: No such file or directory"):
+        write_accuracy_page(tmp_path / "nowhere" / "report.html", report)
