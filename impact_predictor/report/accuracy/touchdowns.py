@@ -240,8 +240,8 @@ FAMILIES: Final = {
     "constant twist": "The gap of the new contact goes on closing at the rate that it has now.",
     "constant acceleration": "Gap and twist go on with the accelerations that they have now.",
     "DOP853": "scipy's solve_ivp of order 8 with adaptive steps; its event function is the gap.",
-    "next_touchdown": "What the node uses: closed forms where the stance sticks, steps within a tolerance where it slips,"
-    " safe root finding in flight.",
+    "next_touchdown": "What the node uses: closed forms where the stance sticks, steps within a tolerance where it "
+    "slips, safe root finding in flight.",
 }
 """What the methods do."""
 
