@@ -174,7 +174,7 @@ def answer(
     """Simulate the bodies, write what is asked for and say what happened; the exit status, 1 where it broke off."""
     products = Products(**asked)
     products.check()
-    from ..report.motions.words import as_json
+    from ..report.simulation import rocking_as_json
     from ..scenarios.rocking import release
 
     rockers = [body(mass, friction, inertia, restitution) for body in bodies]
@@ -189,19 +189,19 @@ def answer(
         from ..report.rocking_pictures import rocking_film, write_rocking_figure
 
         products.draw(lambda path: write_rocking_figure(path, rockings), partial(rocking_film, rockings))
-    answers = [as_json(rocking.run) for rocking in rockings]
+    answers = [rocking_as_json(rocking.run) for rocking in rockings]
     products.say(lambda: answers if len(answers) > 1 else answers[0], partial(show, rockings))
     return 1 if any(rocking.broke_off for rocking in rockings) else 0
 
 
 def show(rockings: Sequence[Rocking], console: Console) -> None:
     """Print what happened to each body."""
-    from ..report.motions.words import print_motion
+    from ..report.simulation import print_rocking
 
     for k, rocking in enumerate(rockings):
         if k:
             click.echo()
-        print_motion(console, rocking)
+        print_rocking(console, rocking)
 
 
 @simulate.command("wheel", short_help="A rimless wheel down a slope.", epilog=examples(*EXAMPLES["wheel"]))
@@ -240,7 +240,7 @@ def simulate_wheel(
     It is let go with spoke 0 at right angles to the slope. Each spoke strikes without bouncing; where friction does not
     hold it, it slips. What is printed tells the steady rolling by its closed form, too.
     """
-    from ..report.motions.wheel_words import as_json, print_rolling
+    from ..report.simulation import print_rolling, rolling_as_json
     from ..scenarios.wheel import Hub, RollEnd, Wheel, roll
 
     products = Products(**asked)
@@ -257,5 +257,5 @@ def simulate_wheel(
         from ..report.wheel_pictures import wheel_film, write_wheel_figure
 
         products.draw(lambda path: write_wheel_figure(path, rolling), partial(wheel_film, rolling))
-    products.say(partial(as_json, rolling), lambda console: print_rolling(console, rolling))
+    products.say(partial(rolling_as_json, rolling), lambda console: print_rolling(console, rolling))
     return 1 if rolling.end is RollEnd.LOST else 0

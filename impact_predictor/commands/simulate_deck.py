@@ -125,10 +125,9 @@ def simulate_deck(
     if motion is not None:
         units = motion.units
         products.draw(lambda path: write_deck_figure(path, deck, units), lambda: deck_film(deck, units))
-    from ..report.deck import as_json as fields_of
-    from ..report.deck import print_voyage
+    from ..report.simulation import print_voyage, voyage_as_json
 
-    products.say(lambda: fields_of(voyage), lambda console: print_voyage(console, voyage))
+    products.say(lambda: voyage_as_json(voyage), lambda console: print_voyage(console, voyage))
     return 1 if voyage.broke_off else 0
 
 

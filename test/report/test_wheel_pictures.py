@@ -12,7 +12,7 @@ import pytest
 
 from impact_predictor.errors import InputError
 from impact_predictor.report.film import write_film
-from impact_predictor.report.motions.wheel_words import as_json, sentences
+from impact_predictor.report.simulation import rolling_as_json, rolling_sentences
 from impact_predictor.report.wheel_pictures import (
     WheelScene,
     rate_of,
@@ -85,15 +85,15 @@ def test_the_spokes_that_are_drawn_end_where_the_standing_one_touches_the_slope(
 def test_titles_and_sentences_say_what_rolls_and_what_it_needs(slips: Rolling, stops: Rolling) -> None:
     assert title_of(slips.wheel) == "A rimless wheel of 8 spokes with friction 0.35 on a slope of 5°"
     assert title_of(stops.wheel) == "A rimless wheel of 8 spokes that does not slip on a slope of 3°"
-    assert "between them 0.375327; it has 0.35" in sentences(slips)[-1]
-    assert sentences(slips)[-2].startswith(
+    assert "between them 0.375327; it has 0.35" in rolling_sentences(slips)[-1]
+    assert rolling_sentences(slips)[-2].startswith(
         "Without slip it would come to steady rolling, closed form: 1.605412029 rad/s"
     )
     last = slips.impacts[-1].strike
     really = f"in its last impact it slows down from {-last.before.omega:.9f} to {-last.after.omega:.9f} rad/s"
-    assert sentences(slips)[-3] == f"Its spokes slip: {really}"
-    assert sentences(stops)[-1].startswith("On this slope it does not keep rolling")
-    assert as_json(stops)["steady"] is None
+    assert rolling_sentences(slips)[-3] == f"Its spokes slip: {really}."
+    assert rolling_sentences(stops)[-1].startswith("On this slope it does not keep rolling")
+    assert rolling_as_json(stops)["steady"] is None
 
 
 def test_steady_rolling_is_drawn_downhill_and_not_where_there_is_none(slips: Rolling) -> None:
@@ -107,10 +107,10 @@ def test_steady_rolling_is_drawn_downhill_and_not_where_there_is_none(slips: Rol
 
 def test_a_wheel_that_slides_is_told_with_its_speed_and_one_that_came_to_rest_without() -> None:
     wheel = Wheel(Hub(inertia=0.1, friction=0.0, slope=radians(5.0)))
-    slides = sentences(roll(wheel, 0.0, steps=None, duration=2.0))
+    slides = rolling_sentences(roll(wheel, 0.0, steps=None, duration=2.0))
     # g sin(slope) for two seconds.
-    assert slides[1] == "Its spokes slip: in the end its hub moves at 1.71 m/s and it does not turn"
-    rests = sentences(roll(wheel._replace(hub=wheel.hub._replace(friction=0.2)), 0.0))
+    assert slides[1] == "Its spokes slip: in the end its hub moves at 1.71 m/s and it does not turn."
+    rests = rolling_sentences(roll(wheel._replace(hub=wheel.hub._replace(friction=0.2)), 0.0))
     assert "it rests on two spokes, 0 steps and 0.905 m down the slope" in rests[0]
     assert rests[1].startswith("Without slip")
 

@@ -1,1 +1,0 @@
-"""A simulated motion in words, as curves and as a moving picture."""
