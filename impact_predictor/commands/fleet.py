@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from ..errors import InputError
 
 if TYPE_CHECKING:
-    from ..fleet.job import Job, Outcome
+    from ..fleet.job import BagOutcome, Job
 
 
 def outputs_of(bags: Sequence[str], output: str | None) -> list[Path | None]:
@@ -60,7 +60,7 @@ def folders_of(outputs: Sequence[Path | None]) -> Iterator[None]:
                 folder.rmdir()
 
 
-def one_by_one(job: Job, bags: Sequence[str], outputs: Sequence[Path | None]) -> Generator[Outcome]:
+def one_by_one(job: Job, bags: Sequence[str], outputs: Sequence[Path | None]) -> Generator[BagOutcome]:
     """What became of each bag, replayed here."""
     from ..fleet.job import replay_bag
     from .progress import compiling_is_said, progress
@@ -75,7 +75,7 @@ def one_by_one(job: Job, bags: Sequence[str], outputs: Sequence[Path | None]) ->
 
 def on_workers(
     job: Job, bags: Sequence[str], outputs: Sequence[Path | None], workers: int, scheduler: str | None
-) -> Generator[Outcome]:
+) -> Generator[BagOutcome]:
     """What became of each bag, in their order, replayed by so many processes here or by the workers of a scheduler.
 
     Raises:

@@ -10,11 +10,10 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from ..errors import InputError
-from ..report.map import SUBJECTS, Axis, MapParameter, fixed_values, option_of
 from .options import LAW, Whole, examples, json_flag, number, together
 
 if TYPE_CHECKING:
-    from ..report.map import ModeMap
+    from ..report.map import Axis, MapParameter, ModeMap
 
 PICTURES: Final = (".png", ".svg")
 SUFFIXES: Final = (*PICTURES, ".csv")
@@ -44,8 +43,21 @@ WHAT: Final = {
 """Each body, and what its map shows unless something else is asked for."""
 
 
+class Maps(click.Group):
+    """A command for each body, made when it is asked for: its options are the parameters of the body."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """The names of the bodies."""
+        return list(WHAT)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """The command of a body."""
+        return command_of(cmd_name) if cmd_name in WHAT else None
+
+
 @click.group(
     "map",
+    cls=Maps,
     short_help="Draw which mode follows an impact, over two parameters.",
     no_args_is_help=False,
     epilog=examples(*(lines[0] for lines in EXAMPLES.values()), EXAMPLES["plate"][2]),
@@ -60,6 +72,8 @@ def map_() -> None:
 
 def command_of(name: str) -> click.Command:
     """The command that draws maps of one body: its parameters are options."""
+    from ..report.map import SUBJECTS, fixed_values, option_of
+
     subject = SUBJECTS[name]
 
     def draw(
@@ -115,7 +129,7 @@ def help_of(parameter: MapParameter) -> str:
 
 
 def axis_of(given: tuple[str, float, float] | None, default: Axis) -> Axis:
-    return default if given is None else Axis(given[0].replace("-", "_"), *given[1:])
+    return default if given is None else type(default)(given[0].replace("-", "_"), *given[1:])
 
 
 def answer(
@@ -181,7 +195,3 @@ def write(file: Path, modes: ModeMap) -> None:
         from ..report.map_figure import write_map
 
         write_map(file, modes)
-
-
-for _name in SUBJECTS:
-    map_.add_command(command_of(_name))

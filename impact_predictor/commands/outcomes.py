@@ -1,24 +1,27 @@
-"""What `impact-predictor replay` says of bags, one after the other, and of all of them at the end."""
+"""What `impact-predictor replay` makes of bags: words of each and of all, a picture, a page, a table, and changes."""
 
 from __future__ import annotations
 
 import json
 from collections import Counter
+from collections.abc import Sequence
+from contextlib import ExitStack
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import click
 
+from ..errors import InputError, need
 from ..report.summary import without_bag
 from ..wording import counted
 
 if TYPE_CHECKING:
     from ..bags.replay import Result
-    from ..fleet.job import Outcome
+    from ..fleet.job import BagOutcome
+    from ..report.baseline import Happened
     from ..report.page.answers import Kept
     from ..report.parquet import TouchdownTable
     from ..report.picture import Picture
-    from .baseline import Baseline
 
 CHANGED: Final = 1
 """Exit status where something has changed against a baseline."""
@@ -31,33 +34,64 @@ MANY: Final = 20
 """Bags above which each has one line on standard output, not its tables, and one kind of note is said once."""
 
 
-class Outcomes:
+class Wanted(NamedTuple):
+    """What is asked for of the replays: files, or None; every touchdown in words; JSON; and what counts as a change."""
+
+    figure: str | None
+    report: str | None
+    table: str | None
+    every: bool
+    as_json: bool
+    baseline: str | None
+    baseline_time: float
+    baseline_error: float
+
+    @property
+    def answers(self) -> bool:
+        """Whether the JSON of each bag is needed."""
+        return self.as_json or self.report is not None or self.table is not None
+
+
+class ReplayReport:
     """Takes what became of each bag, says it, and hands it on to what is made of all of them; it keeps none."""
 
-    def __init__(
-        self,
-        bags: int,
-        every: bool,
-        as_json: bool,
-        baseline: Baseline | None,
-        table: TouchdownTable | None,
-        picture: Picture | None,
-        answers: Kept | None,
-    ) -> None:
-        """Say it of so many bags, with `every` touchdown or `as_json`; `answers` take the JSON of each."""
+    def __init__(self, bags: Sequence[str], wanted: Wanted, stack: ExitStack) -> None:
+        """Begin, so that what cannot be made is refused before a bag is read; the stack ends the table.
+
+        Raises:
+            InputError: something cannot be written, or the earlier run cannot be read.
+        """
         self.number = 0
-        self._bags, self._every, self._as_json = bags, every, as_json
-        self._baseline, self._table, self._picture, self._answers = baseline, table, picture, answers
         self.replayed = 0
+        self._bags, self._wanted = len(bags), wanted
         self._failed = self._damaged = False
         # What is said of many bags is said once.
         self._notes: Counter[str] = Counter()
-        if not as_json:
+        self._picture: Picture | None = None
+        self._answers: Kept | None = None
+        self._table: TouchdownTable | None = None
+        self._baseline = None if wanted.baseline is None else Baseline(wanted.baseline, bags, wanted)
+        if wanted.figure is not None:
+            from ..report.picture import Picture
+
+            self._picture = Picture(wanted.figure)
+        if wanted.report is not None:
+            from ..report.files import named
+            from ..report.page.answers import Kept
+
+            need("plotly")
+            named(wanted.report, "page", (".html",) if Path(wanted.report).suffix else ("",))
+            self._answers = Kept()
+        if wanted.table is not None:
+            from ..report.parquet import TouchdownTable
+
+            self._table = stack.enter_context(TouchdownTable(wanted.table))
+        if not wanted.as_json:
             from ..report.tally import ReplayTally
 
             self._together = ReplayTally()
 
-    def take(self, outcome: Outcome, output: Path | None) -> None:
+    def take(self, outcome: BagOutcome, output: Path | None) -> None:
         """Say what became of a bag.
 
         Raises:
@@ -71,10 +105,10 @@ class Outcomes:
             self._say(result)
             self.replayed += 1
             if output is not None and self._bags <= MANY:
-                self.tell_file("Predictions", output)
+                self._say_file("Predictions", output)
             if self._baseline is not None:
-                answer |= self._baseline.judge(result, self._every, self._as_json)
-        if self._as_json:
+                answer |= self._baseline.judge(result)
+        if self._wanted.as_json:
             # A list is printed as it grows, so that thousands of bags need no memory.
             before = ("[" if not self.number else ", ") if self._bags > 1 else ""
             click.echo(f"{before}{json.dumps(answer, allow_nan=False)}", nl=False)
@@ -84,21 +118,32 @@ class Outcomes:
             self._answers.append(answer)
         self.number += 1
 
-    def finish(self) -> None:
-        """Say what all bags say together."""
+    def finish(self, params: str) -> None:
+        """Say what all bags say together, and write the picture and the page, with the values of a parameter file."""
         for note, count in self._notes.items():
             click.echo(f"note: of {counted(count, 'bag')}: {note}", err=True)
-        if self._as_json:
+        if self._wanted.as_json:
             click.echo("]" if self._bags > 1 else "")
         elif self.replayed > 1:
             click.echo(f"\n{self.replayed:,} bags together")
             for sentence in self._together.sentences():
                 click.echo(sentence)
+        if self._picture is not None and self.replayed:
+            self._picture.write()
+            self._say_file("Picture", self._picture.path)
+        page = self._wanted.report
+        if page is not None and self._answers is not None:
+            from ..parameters.file import read_values
+            from ..report.page.replay import write_replay_page, write_replay_pages
 
-    def tell_file(self, what: str, path: str | Path) -> None:
-        """Say where something was written."""
-        if not self._as_json:
-            click.echo(f"{what}: {path}")
+            write = write_replay_page if Path(page).suffix else write_replay_pages
+            write(page, self._answers, read_values(params))
+            self._say_file("Page", page)
+
+    def say_table(self) -> None:
+        """Say where the table is, when the stack has ended it."""
+        if self._wanted.table is not None:
+            self._say_file("Table", self._wanted.table)
 
     @property
     def status(self) -> int:
@@ -108,6 +153,11 @@ class Outcomes:
         if self._damaged:
             return DAMAGED
         return CHANGED if self._baseline is not None and self._baseline.has_changed else 0
+
+    def _say_file(self, what: str, path: str | Path) -> None:
+        """Say where something was written."""
+        if not self._wanted.as_json:
+            click.echo(f"{what}: {path}")
 
     def _say(self, result: Result) -> None:
         """Say what was chosen or is wrong on standard error, and on standard output what was found."""
@@ -124,14 +174,64 @@ class Outcomes:
             self._damaged = True
         if self._picture is not None:
             self._picture.add(result)
-        if self._as_json:
+        if self._wanted.as_json:
             return
         self._together.add(result.settled)
         from ..report.replay import concluded, print_replay
 
-        if self._bags > MANY and not self._every:
+        if self._bags > MANY and not self._wanted.every:
             click.echo(f"{result.bag}: {concluded(result.settled)[0]}")
             return
         from rich.console import Console
 
-        print_replay(Console(), result, self._every)
+        print_replay(Console(), result, self._wanted.every)
+
+
+class Baseline:
+    """An earlier run of some bags; it is read at once, because the output may take its place."""
+
+    def __init__(self, path: str, bags: Sequence[str], wanted: Wanted) -> None:
+        """Read it.
+
+        Raises:
+            InputError: it cannot be read, is the run of one bag where several are given, or lacks the only one.
+        """
+        from ..bags.find import names_of
+        from ..report.earlier import Earlier
+
+        self.has_changed = False
+        self._path, self._wanted = path, wanted
+        self._runs: dict[str, tuple[Happened, ...]] = {}
+        self._missing: dict[str, InputError] = {}
+        earlier = Earlier(path)
+        earlier.check_of_several(len(bags))
+        for bag, name in zip(bags, names_of(bags), strict=True):
+            try:
+                self._runs[bag] = earlier.touchdowns_of(bag, name)
+            except InputError as flaw:  # noqa: PERF203 (each bag is missed by itself)
+                self._missing[bag] = flaw
+        if len(bags) == 1 and self._missing:
+            raise next(iter(self._missing.values()))
+
+    def judge(self, result: Result) -> dict[str, Any]:
+        """Print what has changed (the first changes, or every one), or give it as JSON.
+
+        A bag that the earlier run does not have is a change: nothing vouches for it.
+        """
+        from ..report.baseline import Limits, compare_runs, run_of
+        from ..report.changes import as_json, print_changes
+
+        if result.bag in self._missing:
+            self.has_changed = True
+            flaw = str(self._missing[result.bag])
+            click.echo(f"note: {flaw}", err=True)
+            return {"baseline": {"file": self._path, "error": flaw}} if self._wanted.as_json else {}
+        limits = Limits(self._wanted.baseline_time, self._wanted.baseline_error)
+        compared = compare_runs(self._runs[result.bag], run_of(result), limits)
+        self.has_changed |= bool(compared.changes)
+        if self._wanted.as_json:
+            return {"baseline": as_json(compared, self._path)}
+        from rich.console import Console
+
+        print_changes(Console(), compared, self._path, self._wanted.every)
+        return {}

@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 from contextlib import ExitStack, closing
-from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..errors import InputError, need
+from ..errors import InputError
 from .options import BAGS, PARAMS, Real, Whole, examples, json_flag, number, remap_option, text
+from .progress import say_unfinished
 
 if TYPE_CHECKING:
     from ..prediction.scene import Scene
-    from ..report.page.answers import Kept
-    from ..report.parquet import TouchdownTable
-    from ..report.picture import Picture
-    from .baseline import Baseline
 
 
 @click.command(
@@ -89,16 +85,9 @@ def replay(
     remap: tuple[str, ...],
     output: str | None,
     markers: bool,
-    figure: str | None,
-    report: str | None,
-    table: str | None,
-    every: bool,
-    as_json: bool,
     workers: int,
     scheduler: str | None,
-    baseline: str | None,
-    baseline_time: float,
-    baseline_error: float,
+    **wanted: Any,
 ) -> int:
     """Predict the touchdowns in recorded bags as the node would, and score them by what was recorded after them.
 
@@ -111,78 +100,43 @@ def replay(
     from ..bags.find import bags_of
     from ..bags.replay import remapping
     from ..fleet.job import Job
-    from ..report.files import named
     from .fleet import folders_of, on_workers, one_by_one, outputs_of
-    from .outcomes import Outcomes
-    from .progress import say_unfinished
+    from .outcomes import ReplayReport, Wanted
 
     if markers and output is None:
         raise InputError("--markers are written into an output: give its name with -o")
     bags = tuple(bags_of(bags))
-    job = Job(read_scenes(params), remapping(remap), markers, as_json or table is not None or report is not None)
-    picture: Picture | None = None
-    if figure is not None:
-        from ..report.picture import Picture
-
-        picture = Picture(figure)
-    answers: Kept | None = None
-    if report is not None:
-        from ..report.page.answers import Kept
-
-        need("plotly")
-        named(report, "page", (".html",) if Path(report).suffix else ("",))
-        answers = Kept()
-    earlier: Baseline | None = None
-    if baseline is not None:
-        from .baseline import Baseline
-
-        earlier = Baseline(baseline, bags, baseline_time, baseline_error)
+    asked = Wanted(**wanted)
+    job = Job(read_scenes(params), remapping(remap), markers, asked.answers)
     stopped: BaseException | None = None
     with ExitStack() as stack:
-        touchdowns: TouchdownTable | None = None
-        if table is not None:
-            from ..report.parquet import TouchdownTable
-
-            touchdowns = stack.enter_context(TouchdownTable(table))
+        report = ReplayReport(bags, asked, stack)
         outputs = outputs_of(bags, output)
         stack.enter_context(folders_of(outputs))
         if scheduler is not None or min(workers, len(bags)) > 1:
             outcomes = on_workers(job, bags, outputs, workers, scheduler)
         else:
             outcomes = one_by_one(job, bags, outputs)
-        told = Outcomes(len(bags), every, as_json, earlier, touchdowns, picture, answers)
         try:
             with closing(outcomes):
                 for outcome, its_output in zip(outcomes, outputs, strict=True):
                     if outcome.error and len(bags) == 1:
                         raise InputError(outcome.error)
-                    told.take(outcome, its_output)
+                    report.take(outcome, its_output)
         except (KeyboardInterrupt, InputError) as error:
-            if told.number:
+            done = report.number
+            if done:
                 stopped = error
-                click.echo(
-                    f"note: stopped after {told.number:,} of {len(bags):,} bags; what they gave is kept", err=True
-                )
+                click.echo(f"note: stopped after {done:,} of {len(bags):,} bags; what they gave is kept", err=True)
             if isinstance(error, KeyboardInterrupt):
-                say_unfinished(outputs[told.number :], scheduler)
+                say_unfinished(outputs[done:], scheduler)
             if stopped is None:
                 raise
-        told.finish()
-        if picture is not None and told.replayed:
-            picture.write()
-            told.tell_file("Picture", picture.path)
-        if report is not None and answers is not None:
-            from ..parameters.file import read_values
-            from ..report.page.replay import write_replay_page, write_replay_pages
-
-            write = write_replay_page if Path(report).suffix else write_replay_pages
-            write(report, answers, read_values(params))
-            told.tell_file("Page", report)
-    if table is not None:
-        told.tell_file("Table", table)
+        report.finish(params)
+    report.say_table()
     if stopped is not None:
         raise stopped
-    return told.status
+    return report.status
 
 
 def read_scenes(params: str) -> dict[str, Scene]:

@@ -15,7 +15,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Final
 
 from ..errors import InputError, need
-from .job import Job, Outcome, failed, replay_bag
+from .job import BagOutcome, Job, failed, replay_bag
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -122,7 +122,7 @@ class Fleet:
         self._suspects: deque[int] = deque()
         self._tried: set[int] = set()
 
-    def outcomes(self, tell: Callable[[int], None]) -> Iterator[Outcome]:
+    def outcomes(self, tell: Callable[[int], None]) -> Iterator[BagOutcome]:
         """What became of each bag, in their order; `tell` is told now and then how many are done.
 
         Raises:
@@ -176,7 +176,7 @@ class Fleet:
         self._suspects.append(index)
         del self._futures[index]
 
-    def _outcome(self, index: int) -> Outcome | None:
+    def _outcome(self, index: int) -> BagOutcome | None:
         """What became of a bag; None where that is not known yet."""
         from distributed import KilledWorker
         from distributed.comm import CommClosedError
@@ -185,7 +185,7 @@ class Fleet:
         if future is None or not future.done():
             return None
         try:
-            outcome: Outcome = future.result()
+            outcome: BagOutcome = future.result()
         except KilledWorker:
             # What is done and not told yet is lost with its worker too.
             if index not in self._tried:

@@ -20,7 +20,7 @@ class Job(NamedTuple):
     answers: bool = False
 
 
-class Outcome(NamedTuple):
+class BagOutcome(NamedTuple):
     """What became of a bag: its result and, where it is wanted, the JSON; without a result `error` says why.
 
     It grows with the touchdowns of the bag, not with its samples, so that it is fit to be sent.
@@ -32,12 +32,12 @@ class Outcome(NamedTuple):
     error: str = ""
 
 
-def failed(bag: str, error: str) -> Outcome:
+def failed(bag: str, error: str) -> BagOutcome:
     """The outcome of a bag that was not replayed, and why in one sentence."""
-    return Outcome(bag, None, {"bag": bag, "error": error}, error)
+    return BagOutcome(bag, None, {"bag": bag, "error": error}, error)
 
 
-def replay_bag(job: Job, bag: str, output: Path | None, progress: Callable[[int], None] | None = None) -> Outcome:
+def replay_bag(job: Job, bag: str, output: Path | None, progress: Callable[[int], None] | None = None) -> BagOutcome:
     """Replay a bag into an output, if any; `progress` is told now and then how many samples are done."""
     try:
         result = replay(bag, job.scenes, job.remap, output, progress, job.markers)
@@ -50,10 +50,10 @@ def replay_bag(job: Job, bag: str, output: Path | None, progress: Callable[[int]
         from ..report.summary import as_json
 
         answer = as_json(result)
-    return Outcome(bag, result._replace(costs=(), matches=()), answer)
+    return BagOutcome(bag, result._replace(costs=(), matches=()), answer)
 
 
-def renamed(outcome: Outcome, names: Mapping[str, str]) -> Outcome:
+def renamed(outcome: BagOutcome, names: Mapping[str, str]) -> BagOutcome:
     """An outcome that calls its bag and what else it speaks of by other names, a name for each path."""
 
     def said(words: str) -> str:
@@ -72,4 +72,4 @@ def renamed(outcome: Outcome, names: Mapping[str, str]) -> Outcome:
     answer = {key: said(value) if isinstance(value, str) else value for key, value in answer.items()}
     if "notes" in answer:
         answer["notes"] = list(map(said, answer["notes"]))
-    return Outcome(said(outcome.bag), result, answer, said(outcome.error))
+    return BagOutcome(said(outcome.bag), result, answer, said(outcome.error))

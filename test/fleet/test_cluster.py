@@ -19,7 +19,7 @@ from impact_predictor.cli import main
 from impact_predictor.errors import InputError
 from impact_predictor.fleet import cluster
 from impact_predictor.fleet.cluster import Fleet
-from impact_predictor.fleet.job import Job, Outcome, replay_bag
+from impact_predictor.fleet.job import BagOutcome, Job, replay_bag
 
 distributed = pytest.importorskip("distributed", reason="needs the extra fleet (make test-extras)")
 
@@ -42,7 +42,7 @@ class Worker:
     def nthreads(self) -> dict[str, int]:
         return {"a": 1, "b": 1}
 
-    def submit(self, work: Callable[..., Outcome], job: Job, bag: str, output: Path | None, pure: bool) -> Promise:
+    def submit(self, work: Callable[..., BagOutcome], job: Job, bag: str, output: Path | None, pure: bool) -> Promise:
         assert work is replay_bag
         assert not pure  # a bag is replayed even if one of its name was before
         self.tried.append(bag)
@@ -70,13 +70,13 @@ class Promise:
     def exception(self) -> Exception:
         return distributed.KilledWorker(self.bag, None, 0)
 
-    def result(self) -> Outcome:
+    def result(self) -> BagOutcome:
         if self.status == "error":
             raise self.exception()
-        return Outcome(self.bag, None, {"bag": self.bag})
+        return BagOutcome(self.bag, None, {"bag": self.bag})
 
 
-def told(worker: Worker, bags: list[str], monkeypatch: pytest.MonkeyPatch) -> list[Outcome]:
+def told(worker: Worker, bags: list[str], monkeypatch: pytest.MonkeyPatch) -> list[BagOutcome]:
     monkeypatch.setattr(distributed, "wait", worker.wait)
     return list(Fleet(worker, JOB, bags, [None] * len(bags)).outcomes(lambda done: None))
 

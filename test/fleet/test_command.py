@@ -16,7 +16,7 @@ from impact_predictor.cli import main
 from impact_predictor.commands import fleet, outcomes
 from impact_predictor.commands.replay import read_scenes
 from impact_predictor.fleet import cluster
-from impact_predictor.fleet.job import Job, Outcome, failed, replay_bag
+from impact_predictor.fleet.job import BagOutcome, Job, failed, replay_bag
 
 SCENE = str(Path(__file__).parents[2] / "config/cube_tosses.yaml")
 
@@ -32,7 +32,7 @@ def many(monkeypatch: pytest.MonkeyPatch, bags: list[str]) -> list[str]:
     assert outcome.result is not None
     result = outcome.result
 
-    def told(job: Job, given: tuple[str, ...], outputs: list[Path | None]) -> Iterator[Outcome]:
+    def told(job: Job, given: tuple[str, ...], outputs: list[Path | None]) -> Iterator[BagOutcome]:
         for number, bag in enumerate(given):
             same = outcome._replace(bag=bag, result=result._replace(bag=bag), answer=outcome.answer | {"bag": bag})
             yield failed(bag, f"{bag} is no bag") if number == 1 else same
@@ -67,7 +67,7 @@ def test_after_ctrl_c_what_is_done_is_told_as_if_it_had_been_all(
 ) -> None:
     told = fleet.one_by_one
 
-    def interrupted(*asked: object) -> Iterator[Outcome]:
+    def interrupted(*asked: object) -> Iterator[BagOutcome]:
         outcomes = told(*asked)  # type: ignore[arg-type]
         yield from (next(outcomes) for _ in range(3))
         raise KeyboardInterrupt
@@ -116,7 +116,7 @@ def test_a_scheduler_gets_absolute_paths_and_what_is_told_has_the_names_that_wer
     class Sent:
         def __init__(self, client: None, job: Job, bags: list[str], outputs: list[Path]) -> None:
             sent.extend([*bags, *map(str, outputs)])
-            self.outcomes: Callable[[object], Iterator[Outcome]] = lambda bar: map(
+            self.outcomes: Callable[[object], Iterator[BagOutcome]] = lambda bar: map(
                 replay_bag, [job] * len(bags), bags, outputs
             )
 
