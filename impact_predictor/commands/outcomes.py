@@ -18,7 +18,7 @@ from ..wording import counted
 if TYPE_CHECKING:
     from ..bags.replay import Result
     from ..fleet.job import BagOutcome
-    from ..report.baseline import Happened
+    from ..report.baseline import RunTouchdown
     from ..report.page.answers import Kept
     from ..report.parquet import TouchdownTable
     from ..report.picture import Picture
@@ -201,7 +201,7 @@ class Baseline:
 
         self.has_changed = False
         self._path, self._wanted = path, wanted
-        self._runs: dict[str, tuple[Happened, ...]] = {}
+        self._runs: dict[str, tuple[RunTouchdown, ...]] = {}
         self._missing: dict[str, InputError] = {}
         earlier = Earlier(path)
         earlier.check_of_several(len(bags))
@@ -218,19 +218,18 @@ class Baseline:
 
         A bag that the earlier run does not have is a change: nothing vouches for it.
         """
-        from ..report.baseline import Limits, compare_runs, run_of
-        from ..report.changes import as_json, print_changes
+        from ..report.baseline import ChangeLimits, compare_runs, comparison_as_json, print_changes, run_of
 
         if result.bag in self._missing:
             self.has_changed = True
             flaw = str(self._missing[result.bag])
             click.echo(f"note: {flaw}", err=True)
             return {"baseline": {"file": self._path, "error": flaw}} if self._wanted.as_json else {}
-        limits = Limits(self._wanted.baseline_time, self._wanted.baseline_error)
+        limits = ChangeLimits(self._wanted.baseline_time, self._wanted.baseline_error)
         compared = compare_runs(self._runs[result.bag], run_of(result), limits)
         self.has_changed |= bool(compared.changes)
         if self._wanted.as_json:
-            return {"baseline": as_json(compared, self._path)}
+            return {"baseline": comparison_as_json(compared, self._path)}
         from rich.console import Console
 
         print_changes(Console(), compared, self._path, self._wanted.every)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
@@ -15,14 +15,14 @@ from ..bags.stream import NODE
 from ..errors import InputError
 from ..mechanics.types import Twist
 from ..ros.messages import DIAGNOSTIC_ARRAY, MalformedMessage, decode_diagnostic_array
-from .baseline import Happened, happened
+from .baseline import RunTouchdown, touchdown_of
 
 _HINT: Final = "give what `impact-predictor replay` wrote with -o, or printed with --json"
 _OTHER_JSON: Final = (KeyError, TypeError, ValueError, AttributeError)
 """What comes of taking another JSON for that of a replay."""
 
 
-def read_earlier(path: str | os.PathLike[str], bag: str | os.PathLike[str]) -> tuple[Happened, ...]:
+def read_earlier(path: str | os.PathLike[str], bag: str | os.PathLike[str]) -> tuple[RunTouchdown, ...]:
     """The touchdowns of an earlier run of a bag; raises what `Earlier` does."""
     return Earlier(path).touchdowns_of(bag)
 
@@ -58,7 +58,7 @@ class Earlier:
                 "several wrote: its folder (-o), or its --json"
             )
 
-    def touchdowns_of(self, bag: str | os.PathLike[str], name: str | os.PathLike[str] = "") -> tuple[Happened, ...]:
+    def touchdowns_of(self, bag: str | os.PathLike[str], name: str | os.PathLike[str] = "") -> tuple[RunTouchdown, ...]:
         """The touchdowns of a bag, which has a `name` in a run of several (`names_of`; without one that of its file).
 
         There it may also be called by more of its path: there were more bags in the earlier run.
@@ -88,32 +88,29 @@ class _Runs:
     """The JSON of a run of one bag, or of several by their paths and by their names."""
 
     def __init__(self, answer: Any) -> None:
-        self._only = None if isinstance(answer, list) else answer
-        self._by_path: dict[str, list[Any]] = defaultdict(list)
+        self.is_of_one = not isinstance(answer, list)
+        self._all = [answer] if self.is_of_one else answer
         self._by_name: dict[str, list[Any]] = defaultdict(list)
-        for run in answer if isinstance(answer, list) else ():
-            self._by_path[run["bag"]].append(run)
-            self._by_name[name_of(run["bag"])].append(run)
+        for run in () if self.is_of_one else answer:
+            for key in {run["bag"], name_of(run["bag"])}:
+                self._by_name[key].append(run)
 
-    @property
-    def is_of_one(self) -> bool:
-        return self._only is not None
-
-    def touchdowns_of(self, path: Path, bag: str, names: Sequence[Path]) -> tuple[Happened, ...]:
-        run = self._only
-        if run is None:
-            same = self._by_path.get(bag) or self._called(name_of(bag), names)
+    def touchdowns_of(self, path: Path, bag: str, names: Sequence[Path]) -> tuple[RunTouchdown, ...]:
+        same = self._all
+        if not self.is_of_one:
+            same = [run for run in self._by_name[bag] if run["bag"] == bag]
+            if not same:
+                same = self._called(name_of(bag), names)
             if len(same) != 1 or "error" in same[0]:
                 raise InputError(f"the baseline {path} has no run of {bag}; replay that bag with --json again")
-            (run,) = same
         try:
-            return tuple(happened(fields) for fields in run["touchdowns"])
+            return tuple(map(touchdown_of, same[0]["touchdowns"]))
         except _OTHER_JSON as error:
             raise InputError(f"the baseline {path} is not the JSON of a replay; {_HINT}") from error
 
     def _called(self, last: str, names: Sequence[Path]) -> list[Any]:
         """The runs of a bag by the shortest of its names that no other run has."""
-        same = self._by_name.get(last, [])
+        same = self._by_name[last]
         for name in names:
             same = [run for run in same if _ends_with(run["bag"], name)]
             if len(same) < 2:
@@ -138,49 +135,35 @@ def _runs_of(path: Path) -> _Runs:
         raise InputError(f"the baseline {path} is not the JSON of a replay; {_HINT}") from error
 
 
-def _read_bag(path: Path) -> tuple[Happened, ...]:
+def _read_bag(path: Path) -> tuple[RunTouchdown, ...]:
     recorded = topics(path)
-    told = [topic for topic in recorded if f"{NODE}/" in topic and topic.endswith("/prediction")]
-    if not told:
+    predictions = [topic for topic in recorded if f"{NODE}/" in topic and topic.endswith("/prediction")]
+    if not predictions:
         raise InputError(f"the baseline {path} has no predictions: no topic {NODE}/prediction; {_HINT}")
     # A run without any touchdown has no scores.
-    scores = [topic.removesuffix("prediction") + "score" for topic in told]
-    wanted = {topic: DIAGNOSTIC_ARRAY for topic in scores if topic in recorded}
+    topics_of_scores = [topic.removesuffix("prediction") + "score" for topic in predictions]
+    wanted = {topic: DIAGNOSTIC_ARRAY for topic in topics_of_scores if topic in recorded}
     if not wanted:
         return ()
     found = []
     for topic, _, data in read_messages(path, wanted):
         body = topic.rpartition(f"{NODE}/")[2].removesuffix("score").strip("/")
         try:
-            found += [_told(body or one.hardware_id, one.values) for one in decode_diagnostic_array(data)]
+            found += [
+                touchdown_of(_fields(body or one.hardware_id, one.values)) for one in decode_diagnostic_array(data)
+            ]
         except (MalformedMessage, KeyError, ValueError) as error:
             raise InputError(f"the baseline {path} has a message on {topic} that is no score; {_HINT}") from error
     return tuple(found)
 
 
-def _told(body: str, values: dict[str, str]) -> Happened:
-    """The touchdown of a message on `~/score`."""
-
-    def twist(name: str) -> Twist:
-        return Twist(*(float(values[f"{name}.{part}"]) for part in Twist._fields))
-
-    def number(name: str) -> float | None:
-        return float(values[name]) if name in values else None
-
-    def points(name: str) -> tuple[int, ...]:
-        return tuple(map(int, values[name].split()))
-
-    scored = values["scored"] == "true"
-    return Happened(
-        body,
-        values.get("foot", ""),
-        int(values["stamp"]),
-        (points("old"), points("new")) if "old" in values else None,
-        values["mode"],
-        twist("before"),
-        twist("predicted"),
-        float(values["half_distance"]),
-        scored,
-        number("relative_error") if scored else None,
-        number("time_error"),
-    )
+def _fields(body: str, values: Mapping[str, str]) -> dict[str, Any]:
+    """What the JSON of a replay has of the touchdown of a message on `~/score`."""
+    twists = {
+        f"{name}_twist": [float(values[f"{name}.{part}"]) for part in Twist._fields] for name in ("before", "predicted")
+    }
+    contacts = {name: map(int, values[name].split()) for name in ("old", "new") if name in values}
+    errors = {name: float(values[name]) for name in ("relative_error", "time_error") if name in values}
+    numbers = {"stamp": values["stamp"], "half_distance": float(values["half_distance"])}
+    others = {"body": body, "foot": values.get("foot", ""), "mode": values["mode"], "relative_error": None}
+    return {**others, **twists, **contacts, **errors, **numbers, "scored": values["scored"] == "true"}

@@ -157,8 +157,7 @@ def _landing_check(name: str, settled: Settled, landing: Landing, tolerance: flo
 
 def baseline_check(result: Result, earlier: Earlier, name: str | PathLike[str] = "") -> Check:
     """Whether a run is as an earlier one, which may be of several bags; `name` tells its bag from the others."""
-    from ..report.baseline import compare_runs, run_of
-    from ..report.changes import concluded, sentences
+    from ..report.baseline import compare_runs, concluded, run_of, sentences
 
     try:
         compared = compare_runs(earlier.touchdowns_of(result.bag, name), run_of(result))

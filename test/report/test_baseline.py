@@ -12,24 +12,33 @@ from hypothesis import strategies as st
 from rich.console import Console
 
 from impact_predictor.mechanics.types import Twist
-from impact_predictor.report.baseline import Comparison, Happened, Kind, Limits, compare_runs
-from impact_predictor.report.changes import as_json, concluded, print_changes, sentences
+from impact_predictor.report.baseline import (
+    ChangeKind,
+    ChangeLimits,
+    RunComparison,
+    RunTouchdown,
+    compare_runs,
+    comparison_as_json,
+    concluded,
+    print_changes,
+    sentences,
+)
 
 MS = 1_000_000
-STOP = Happened(
+STOP = RunTouchdown(
     "crate", "", 1000 * MS, ((0, 1), (2, 3)), "STOP", Twist(1.0, 0.0, -2.0), Twist(0.5, 0.0, -1.0), 0.5, True, 0.1, None
 )
 LATER = STOP._replace(stamp=2000 * MS, contacts=((2, 3), (0, 1)), mode="SLIDE", error=0.05)
 LANDED = STOP._replace(body="robot", foot="LF", scored=False, error=None, time_error=0.002)
 
 
-def kinds(was: list[Happened], now: list[Happened]) -> list[Kind]:
+def kinds(was: list[RunTouchdown], now: list[RunTouchdown]) -> list[ChangeKind]:
     return [change.kind for change in compare_runs(was, now).changes]
 
 
 def test_a_run_against_itself_has_not_changed() -> None:
     run = [STOP, LATER, LANDED, STOP._replace(body="drum", error=None, scored=False)]
-    assert compare_runs(run, run) == Comparison((), 4, 4, 4)
+    assert compare_runs(run, run) == RunComparison((), 4, 4, 4)
     assert compare_runs(run, run[::-1]).changes == ()
 
 
@@ -53,38 +62,40 @@ RUNS = st.lists(
 
 
 @given(RUNS)
-def test_whatever_run_against_itself_has_not_changed(run: list[Happened]) -> None:
-    assert compare_runs(run, run, Limits(0.0, 0.0)) == Comparison((), len(run), len(run), len(run))
+def test_whatever_run_against_itself_has_not_changed(run: list[RunTouchdown]) -> None:
+    assert compare_runs(run, run, ChangeLimits(0.0, 0.0)) == RunComparison((), len(run), len(run), len(run))
 
 
 @given(RUNS, RUNS)
-def test_two_runs_the_other_way_round_have_changed_too(was: list[Happened], now: list[Happened]) -> None:
+def test_two_runs_the_other_way_round_have_changed_too(was: list[RunTouchdown], now: list[RunTouchdown]) -> None:
     there, back = compare_runs(was, now), compare_runs(now, was)
     assert bool(there.changes) == bool(back.changes)
-    assert there.were - len([one for one in there.changes if one.kind is Kind.VANISHED]) == (
-        there.are - len([one for one in there.changes if one.kind is Kind.APPEARED])
+    assert there.were - len([one for one in there.changes if one.kind is ChangeKind.VANISHED]) == (
+        there.are - len([one for one in there.changes if one.kind is ChangeKind.APPEARED])
     )
 
 
 def test_two_empty_runs_are_the_same() -> None:
-    assert compare_runs([], []) == Comparison((), 0, 0, 0)
+    assert compare_runs([], []) == RunComparison((), 0, 0, 0)
 
 
 @pytest.mark.parametrize(
     ("changes", "kind", "was", "now"),
     [
-        ({"mode": "SLIDE"}, Kind.MODE, "STOP", "SLIDE"),
-        ({"stamp": 1002 * MS}, Kind.MOVED, 1000 * MS, 1002 * MS),
-        ({"error": 0.2}, Kind.WORSE, 0.1, 0.2),
-        ({"error": 0.02}, Kind.BETTER, 0.1, 0.02),
-        ({"scored": False, "error": None}, Kind.SCORED, "scored", "not scored"),
-        ({"contacts": ((0, 1), (4, 5))}, Kind.CONTACTS, "0 1 then 2 3", "0 1 then 4 5"),
-        ({"contacts": ((), (4,))}, Kind.CONTACTS, "0 1 then 2 3", "none then 4"),
+        ({"mode": "SLIDE"}, ChangeKind.MODE, "STOP", "SLIDE"),
+        ({"stamp": 1002 * MS}, ChangeKind.MOVED, 1000 * MS, 1002 * MS),
+        ({"error": 0.2}, ChangeKind.WORSE, 0.1, 0.2),
+        ({"error": 0.02}, ChangeKind.BETTER, 0.1, 0.02),
+        ({"scored": False, "error": None}, ChangeKind.SCORED, "scored", "not scored"),
+        ({"contacts": ((0, 1), (4, 5))}, ChangeKind.CONTACTS, "0 1 then 2 3", "0 1 then 4 5"),
+        ({"contacts": ((), (4,))}, ChangeKind.CONTACTS, "0 1 then 2 3", "none then 4"),
         # 0.04 rad/s at half a metre, against hypot(1, 2 * 0.5) m/s before it: 1.4 %.
-        ({"predicted": Twist(0.5, 0.0, -1.04)}, Kind.VELOCITIES, (0.5, 0.0, -1.0), (0.5, 0.0, -1.04)),
+        ({"predicted": Twist(0.5, 0.0, -1.04)}, ChangeKind.VELOCITIES, (0.5, 0.0, -1.0), (0.5, 0.0, -1.04)),
     ],
 )
-def test_a_change_is_told_with_what_was_and_what_is(changes: dict[str, Any], kind: Kind, was: Any, now: Any) -> None:
+def test_a_change_is_told_with_what_was_and_what_is(
+    changes: dict[str, Any], kind: ChangeKind, was: Any, now: Any
+) -> None:
     compared = compare_runs([STOP, LATER], [STOP._replace(**changes), LATER])
     assert [change[3:] for change in compared.changes] == [(kind, was, now)]
     assert (compared.were, compared.are, compared.alike) == (2, 2, 1)
@@ -98,23 +109,23 @@ def test_a_change_is_told_with_what_was_and_what_is(changes: dict[str, Any], kin
 def test_what_stays_within_the_limits_has_not_changed(changes: dict[str, Any]) -> None:
     changed = STOP._replace(**changes)
     assert compare_runs([STOP], [changed]).changes == ()
-    assert len(compare_runs([STOP], [changed], Limits(0.0, 0.0)).changes) == 1
+    assert len(compare_runs([STOP], [changed], ChangeLimits(0.0, 0.0)).changes) == 1
 
 
 def test_touchdowns_come_and_go() -> None:
-    assert kinds([STOP], [STOP, LATER]) == [Kind.APPEARED]
-    assert kinds([STOP, LATER], [LATER]) == [Kind.VANISHED]
+    assert kinds([STOP], [STOP, LATER]) == [ChangeKind.APPEARED]
+    assert kinds([STOP, LATER], [LATER]) == [ChangeKind.VANISHED]
     # Farther apart than any two announcements of one touchdown.
-    assert kinds([STOP], [STOP._replace(stamp=1021 * MS)]) == [Kind.VANISHED, Kind.APPEARED]
-    assert kinds([STOP], [STOP._replace(body="drum")]) == [Kind.VANISHED, Kind.APPEARED]
-    assert kinds([LANDED], [LANDED._replace(foot="RF")]) == [Kind.VANISHED, Kind.APPEARED]
+    assert kinds([STOP], [STOP._replace(stamp=1021 * MS)]) == [ChangeKind.VANISHED, ChangeKind.APPEARED]
+    assert kinds([STOP], [STOP._replace(body="drum")]) == [ChangeKind.VANISHED, ChangeKind.APPEARED]
+    assert kinds([LANDED], [LANDED._replace(foot="RF")]) == [ChangeKind.VANISHED, ChangeKind.APPEARED]
 
 
 def test_touchdowns_close_together_are_told_apart_by_their_contacts() -> None:
     first, second = STOP, STOP._replace(stamp=1006 * MS, contacts=((2, 3), (4, 5)), mode="SLIDE")
     # Each has moved by 4 ms, so that the other one is nearer.
     later = [one._replace(stamp=one.stamp + 4 * MS) for one in (first, second)]
-    assert kinds([first, second], later) == [Kind.MOVED, Kind.MOVED]
+    assert kinds([first, second], later) == [ChangeKind.MOVED, ChangeKind.MOVED]
     # A run from before contacts were told has times alone.
     untold = [one._replace(contacts=None) for one in (first, second)]
     assert kinds(untold, [first, second]) == []
@@ -122,11 +133,11 @@ def test_touchdowns_close_together_are_told_apart_by_their_contacts() -> None:
 
 def test_of_a_landing_the_error_of_its_time_counts_whatever_its_sign() -> None:
     assert kinds([LANDED], [LANDED._replace(time_error=-0.002)]) == []
-    assert kinds([LANDED], [LANDED._replace(time_error=-0.004)]) == [Kind.WORSE]
-    assert kinds([LANDED], [LANDED._replace(time_error=0.0)]) == [Kind.BETTER]
+    assert kinds([LANDED], [LANDED._replace(time_error=-0.004)]) == [ChangeKind.WORSE]
+    assert kinds([LANDED], [LANDED._replace(time_error=0.0)]) == [ChangeKind.BETTER]
 
 
-def printed(compared: Comparison, every: bool = False) -> str:
+def printed(compared: RunComparison, every: bool = False) -> str:
     text = io.StringIO()
     print_changes(Console(file=text, width=80), compared, "old.mcap", every)
     return text.getvalue()
@@ -201,7 +212,7 @@ def test_times_of_day_are_counted_from_the_first_touchdown() -> None:
 
 
 def test_the_json_has_every_change_in_plain_units() -> None:
-    answer = json.loads(json.dumps(as_json(compare_runs(MANY, CHANGED), "old.mcap"), allow_nan=False))
+    answer = json.loads(json.dumps(comparison_as_json(compare_runs(MANY, CHANGED), "old.mcap"), allow_nan=False))
     assert (answer["file"], answer["touchdowns_before"], answer["touchdowns"], answer["unchanged"]) == (
         "old.mcap",
         6,

@@ -16,7 +16,7 @@ from impact_predictor.bags.write import BagWriter
 from impact_predictor.errors import InputError
 from impact_predictor.mechanics.types import Twist
 from impact_predictor.prediction.types import Landing, Leftover, Prediction, Score, Status
-from impact_predictor.report.baseline import Happened, happened
+from impact_predictor.report.baseline import RunTouchdown, touchdown_of
 from impact_predictor.report.earlier import Earlier, read_earlier
 from impact_predictor.report.summary import as_json
 from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY
@@ -66,9 +66,9 @@ def test_bag_and_json_of_a_run_tell_the_same_to_the_last_bit(tmp_path: Path, jso
     for body, name in (("", "cube"), ("crate", "crate")):
         told = read_earlier(json_of(run(name)), "run.mcap")
         assert told == read_earlier(write_run(tmp_path / f"{name}.mcap", body), "run.mcap")
-        assert told == tuple(map(happened, run(name)["touchdowns"]))
+        assert told == tuple(map(touchdown_of, run(name)["touchdowns"]))
         first, unscored, _, landed = told
-        assert first == Happened(
+        assert first == RunTouchdown(
             name,
             "",
             1_004_000_000,
