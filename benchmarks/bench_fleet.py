@@ -27,7 +27,7 @@ from impact_predictor.bags.write import BagWriter
 from impact_predictor.commands.replay import read_scenes
 from impact_predictor.fleet.cluster import Fleet, connected
 from impact_predictor.fleet.job import Job
-from impact_predictor.report.page.answers import Kept
+from impact_predictor.report.page.found import Kept
 from impact_predictor.report.parquet import TouchdownTable
 from impact_predictor.resources import find
 from impact_predictor.ros.messages import ODOMETRY, POLYGON

@@ -15,7 +15,7 @@ from typing import Any
 from impact_predictor.bags.replay import replay
 from impact_predictor.parameters.file import read_values
 from impact_predictor.prediction.scene import scenes_of
-from impact_predictor.report.page.answers import Kept
+from impact_predictor.report.page.found import Kept
 from impact_predictor.report.page.replay import write_replay_page
 from impact_predictor.report.summary import as_json
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from ..bags.replay import Result
     from ..fleet.job import BagOutcome
     from ..report.baseline import RunTouchdown
-    from ..report.page.answers import Kept
+    from ..report.page.found import Kept
     from ..report.parquet import TouchdownTable
     from ..report.picture import Picture
 
@@ -77,7 +77,7 @@ class ReplayReport:
             self._picture = Picture(wanted.figure)
         if wanted.report is not None:
             from ..report.files import named
-            from ..report.page.answers import Kept
+            from ..report.page.found import Kept
 
             need("plotly")
             named(wanted.report, "page", (".html",) if Path(wanted.report).suffix else ("",))

@@ -82,7 +82,7 @@ def plot(traces: Iterable[Mapping[str, Any]], height: int = 380, **layout: Any) 
     look = {
         "template": "none",
         "height": height,
-        "margin": {"l": 64, "r": 16, "t": 16, "b": 48},
+        "margin": {"l": 64, "r": 16, "t": 40, "b": 48},
         "paper_bgcolor": "rgba(0,0,0,0)",
         "plot_bgcolor": "rgba(0,0,0,0)",
         "font": {"size": 13, "family": "system-ui, sans-serif"},
@@ -95,6 +95,26 @@ def plot(traces: Iterable[Mapping[str, Any]], height: int = 380, **layout: Any) 
     figure.update_xaxes(gridcolor=f"{GREY}40", zeroline=False, title_standoff=8)
     figure.update_yaxes(gridcolor=f"{GREY}40", zeroline=False, title_standoff=8)
     return figure
+
+
+def marks(name: str, points: Iterable[tuple[float, float, str]], **look: Any) -> dict[str, Any]:
+    """A trace of marks: the place of each, and the text that a reader sees who points at it; lines with `mode`."""
+    return {"type": "scatter", "mode": "markers", "name": safe(name), **_told(points), **look}
+
+
+def bars(points: Iterable[tuple[float, float, str]], **look: Any) -> dict[str, Any]:
+    """A trace of bars, as `marks`."""
+    return {"type": "bar", "textposition": "none", "showlegend": False, **_told(points), **look}
+
+
+def _told(points: Iterable[tuple[float, float, str]]) -> dict[str, Any]:
+    x, y, texts = zip(*points, strict=True)
+    return {"x": list(x), "y": list(y), "text": [safe(text) for text in texts], "hoverinfo": "text"}
+
+
+def titled(title: str, **axis: Any) -> dict[str, Any]:
+    """An axis with its title, quantity and unit."""
+    return {"title": {"text": title}, **axis}
 
 
 def safe(text: str) -> str:

@@ -12,26 +12,9 @@ from ...scenarios.matching import NEAREST
 from ...stamps import NANOSECONDS
 from ...wording import counted
 from ..summary import WHY, quantile
-from . import sections
-from .answers import (
-    NOTHING,
-    Answer,
-    SpanErrors,
-    announced,
-    confusion,
-    costs,
-    errors_ahead,
-    found_of,
-    landings_of,
-    names_of,
-    scored_of,
-    touchdowns_of,
-    uncompared,
-    used,
-    velocity_errors,
-    worst_of,
-)
+from . import compared, found, sections
 from .document import Headline, page, script_beside, script_inside, time_words, within_words, write_html
+from .found import Answer, SpanErrors
 
 AHEAD: Final = 0.02
 """Seconds before a touchdown, from which on the errors of the times are told."""
@@ -81,12 +64,12 @@ def page_of_replay(
 ) -> str:
     """The page as HTML; `script` is plotly's, inside unless given, `links` where the bags lead, by their places."""
     places = [k for k, one in enumerate(answers) if one.get("touchdowns") or one.get("true_touchdowns")]
-    drawn = sorted(worst_of(answers, places, sections.DRAWN))
+    drawn = sorted(found.worst_of(answers, places, sections.DRAWN))
     all_sections = (
         sections.bags(answers, links or {place: f"#bag-{place + 1}" for place in drawn}),
         sections.when(answers, drawn),
-        sections.velocities(answers),
-        sections.modes(answers),
+        compared.velocities(answers),
+        compared.modes(answers),
         sections.ahead(answers),
         sections.cost(answers),
         sections.unused(answers),
@@ -99,12 +82,12 @@ def page_of_replay(
 
 def title_of(answers: Sequence[Answer]) -> str:
     """How many touchdowns, how early and how right, in one line."""
-    times, errors, time = announced(answers), velocity_errors(used(answers)), error_at(answers)
+    times, errors, time = found.announced(answers), found.velocity_errors(found.used(answers)), error_at(answers)
     if not times:
-        number = sum(1 for _ in touchdowns_of(answers))
+        number = sum(1 for _ in found.touchdowns_of(answers))
         return f"{counted(number, 'touchdown')} predicted, none compared" if number else "No touchdown was predicted"
-    there, landings = found_of(answers), list(landings_of(answers))
-    if there is not None and all("truth" in answer for answer in used(answers)):
+    there, landings = found.found_of(answers), list(found.landings_of(answers))
+    if there is not None and all("truth" in answer for answer in found.used(answers)):
         noun = "landing" if landings and not errors.number else "touchdown"
         many = f"{there.found:,} of {counted(there.there, noun)}"
     elif landings and not errors.number:
@@ -126,37 +109,37 @@ def announced_of(landings: Sequence[Answer]) -> str:
 
 def error_at(answers: Sequence[Answer]) -> SpanErrors | None:
     """The errors in s of the times told 20 ms ahead or somewhat more; None where nothing tells the true ones."""
-    spans = errors_ahead(answers, "time_errors_ahead")
+    spans = found.errors_ahead(answers, "time_errors_ahead")
     return next((one for one in spans if one.begin >= AHEAD and one.errors.number), None)
 
 
 def lead_of(answers: Sequence[Answer]) -> str:
     """Which bags these are."""
-    samples = counted(sum(answer["samples"] for answer in used(answers)), "sample")
+    samples = counted(sum(answer["samples"] for answer in found.used(answers)), "sample")
     if len(answers) > 1:
         failed = sum("error" in answer for answer in answers)
         unread = f"; {failed:,} of them could not be read" if failed else ""
         return f"{len(answers):,} records, {samples}, went through the predictor as if they came live{unread}."
     begin, end = (answers[0].get(name) for name in ("begin", "end"))
     over = "" if begin is None or end is None else f" over {time_words((end - begin) / NANOSECONDS)}"
-    return f"The record {names_of(answers)[0]}, {samples}{over}, went through the predictor as if it came live."
+    return f"The record {found.names_of(answers)[0]}, {samples}{over}, went through the predictor as if it came live."
 
 
 def headlines_of(answers: Sequence[Answer]) -> list[Headline]:
     """How many touchdowns, how right, how early, and at what cost."""
-    if next(touchdowns_of(answers), None) is None:
+    if next(found.touchdowns_of(answers), None) is None:
         return []
-    found = [_many(answers), _right(answers), _early(answers), _cost(answers)]
-    return [one for one in found if one is not None]
+    known = [_many(answers), _right(answers), _early(answers), _cost(answers)]
+    return [one for one in known if one is not None]
 
 
 def _many(answers: Sequence[Answer]) -> Headline:
-    there, landings = found_of(answers), list(landings_of(answers))
+    there, landings = found.found_of(answers), list(found.landings_of(answers))
     if there is None and landings:
         return Headline("How many", f"{announced_of(landings)} announced", "Their motion shows when feet landed.")
     if there is None:
-        number, reasons = sum(1 for _ in scored_of(answers)), uncompared(answers)
-        others = sum(1 for _ in touchdowns_of(answers)) - number
+        number, reasons = sum(1 for _ in found.scored_of(answers)), found.uncompared(answers)
+        others = sum(1 for _ in found.touchdowns_of(answers)) - number
         because = "because" if len(reasons) == 1 else "most often because"
         said = "".join(f", {because} {WHY[reason]}" for reason, _ in reasons.most_common(1))
         more = f"{others:,} more could not be{said}." if others else "That is all that were predicted."
@@ -166,19 +149,19 @@ def _many(answers: Sequence[Answer]) -> Headline:
     more = f"{f'{missed:,}' if missed else 'None'} missed, {alarms}."
     if missed:
         more += f" A touchdown is found where a prediction before it told its time to {NEAREST / 1e6:.0f} ms."
-    truths = [answer["truth"] for answer in used(answers) if "truth" in answer]
+    truths = [answer["truth"] for answer in found.used(answers) if "truth" in answer]
     if unseen := sum(truth["unresolved"] for truth in truths):
         more += f" {counted(unseen, 'more impact')} cannot be seen in the samples: too slow, or too soon after another."
-    if len(truths) < (all_bags := sum(1 for _ in used(answers))):
+    if len(truths) < (all_bags := sum(1 for _ in found.used(answers))):
         more += f" The truth is known of {len(truths):,} of {all_bags:,} bags."
     return Headline("How many", f"{there.found:,} of {there.there:,} found", more)
 
 
 def _right(answers: Sequence[Answer]) -> Headline | None:
-    errors, time, counts = velocity_errors(used(answers)), error_at(answers), confusion(answers)
+    errors, time, counts = found.velocity_errors(found.used(answers)), error_at(answers), found.confusion(answers)
     span = "" if time is None else f"{time.begin * 1e3:.0f} to {time.end * 1e3:.0f} ms ahead"
     if errors.number:
-        truths = [("truth" in answer) for answer in used(answers)]
+        truths = [("truth" in answer) for answer in found.used(answers)]
         of = "the true ones" if any(truths) else "the measured ones"
         of += ", or the measured ones where a bag does not tell them" if any(truths) and not all(truths) else ""
         more = (
@@ -186,7 +169,7 @@ def _right(answers: Sequence[Answer]) -> Headline | None:
         )
         if counts:
             right = sum(count for (true, told), count in counts.items() if true == told)
-            both = sum(count for pair, count in counts.items() if NOTHING not in pair)
+            both = sum(count for pair, count in counts.items() if found.NOTHING not in pair)
             more += f" The mode is right in {right:,} of {both:,}."
         if time is not None:
             more += f" The time told {span} is {time_words(time.errors.p50)} wrong in the median."
@@ -198,7 +181,7 @@ def _right(answers: Sequence[Answer]) -> Headline | None:
 
 
 def _early(answers: Sequence[Answer]) -> Headline | None:
-    times = announced(answers)
+    times = found.announced(answers)
     if not times:
         return None
     more = f"The first prediction of each, in the median. 90 % came at least {time_words(quantile(times, 0.1))} ahead"
@@ -207,7 +190,7 @@ def _early(answers: Sequence[Answer]) -> Headline | None:
 
 
 def _cost(answers: Sequence[Answer]) -> Headline | None:
-    spread = costs(answers)
+    spread = found.costs(answers)
     if spread.p50 is None or spread.p99 is None:
         return None
     more = f"In the median, without reading and writing; 99 % take less than {time_words(1e-6 * spread.p99)}."

@@ -13,8 +13,8 @@ from ...stamps import NANOSECONDS
 from ...wording import words
 from ..modes import EDGE, MODES
 from ..summary import quantile
-from .answers import Answer, begin_of
-from .document import GREY, part_words, plot, safe, signed_ms, time_words
+from .document import GREY, bars, marks, part_words, plot, safe, signed_ms, time_words, titled
+from .found import Answer, begin_of
 
 if TYPE_CHECKING:
     from plotly.graph_objects import Figure as PlotlyFigure
@@ -121,7 +121,7 @@ def timeline(answer: Answer) -> tuple[PlotlyFigure, list[str]]:
         traces,
         height=120 + LANE * len(lanes),
         margin={"l": 16, "r": 16, "t": 40, "b": 48},
-        xaxis={"title": {"text": "time in the record, s"}, "range": [-0.01 * cuts.shown, 1.01 * cuts.shown]},
+        xaxis=titled("time in the record, s", range=[-0.01 * cuts.shown, 1.01 * cuts.shown]),
         yaxis={
             "tickvals": [-number for number in range(len(lanes))],
             "ticktext": [safe(name_of(lane)) for lane in lanes],
@@ -176,21 +176,10 @@ def _marks(lanes: Sequence[Lane], cuts: Cuts) -> list[dict[str, Any]]:
     traces = [back | {"line": {"color": GREY, "width": 1.5}, "hoverinfo": "skip"}] if back_x else []
     # What is faint lies below what counts.
     for name, faint in [(name, faint) for faint in (True, False) for name in in_order(mark.mark for mark, _ in drawn)]:
-        group = [one for one in drawn if one[0].mark == name and one[0].faint == faint]
-        if not group:
-            continue
-        traces.append(
-            {
-                "type": "scatter",
-                "mode": "markers",
-                "name": f"{name}, faint" if faint else name,
-                "x": [cuts.at(mark.stamp) for mark, _ in group],
-                "y": [y for _, y in group],
-                "text": [safe(mark.said) for mark, _ in group],
-                "hoverinfo": "text",
-                "marker": look_of(name) | {"opacity": 0.3 if faint else 1.0},
-            }
-        )
+        points = [(cuts.at(mark.stamp), y, mark.said) for mark, y in drawn if mark.mark == name and mark.faint == faint]
+        if points:
+            look = look_of(name) | {"opacity": 0.3 if faint else 1.0}
+            traces.append(marks(f"{name}, faint" if faint else name, points, marker=look))
     return traces
 
 
@@ -199,41 +188,21 @@ def _columns(lane: Lane, y: int, cuts: Cuts) -> list[dict[str, Any]]:
     width = cuts.shown / COLUMNS
     counts = Counter(min(int(cuts.at(mark.stamp) / width), COLUMNS - 1) for mark in lane.marks)
     most = max(counts.values(), default=1)
-    trace = {
-        "type": "bar",
-        "name": safe(lane.name),
-        "showlegend": False,
-        "x": [(place + 0.5) * width for place in counts],
-        "y": [0.8 * count / most for count in counts.values()],
-        "base": y - 0.4,
-        "width": width,
-        "text": [f"{count:,} marks" for count in counts.values()],
-        "textposition": "none",
-        "hoverinfo": "text",
-        "marker": {"color": BLUE},
-    }
-    return [trace] if counts else []
+    points = [((at + 0.5) * width, 0.8 * count / most, f"{count:,} marks") for at, count in counts.items()]
+    return [bars(points, base=y - 0.4, width=width, marker={"color": BLUE})] if points else []
 
 
 def _stances(lane: Lane, y: int, cuts: Cuts, begin: int) -> list[dict[str, Any]]:
     """Bars from when a foot comes to stand until it leaves."""
-    known = [(first, cuts.at(first), last, cuts.at(last)) for first, last in lane.stances]
-    times = [(round((first - begin) * 1e-9, 3), round((last - begin) * 1e-9, 3)) for first, _, last, _ in known]
-    trace = {
-        "type": "bar",
-        "orientation": "h",
-        "name": safe(lane.name),
-        "showlegend": False,
-        "x": [end - start for _, start, _, end in known],
-        "base": [start for _, start, _, _ in known],
-        "y": [y] * len(known),
-        "width": 0.5,
-        "text": [f"stands from {first:.3f} to {last:.3f} s" for first, last in times],
-        "textposition": "none",
-        "hoverinfo": "text",
-        "marker": {"color": GREY if lane.name == TRUTH else BLUE},
-    }
-    return [trace] if known else []
+    points = []
+    for first, last in lane.stances:
+        said = f"stands from {(first - begin) / NANOSECONDS:.3f} to {(last - begin) / NANOSECONDS:.3f} s"
+        points.append((cuts.at(last) - cuts.at(first), y, said))
+    if not points:
+        return []
+    base = [cuts.at(first) for first, _ in lane.stances]
+    look = {"color": GREY if lane.name == TRUTH else BLUE}
+    return [bars(points, orientation="h", base=base, width=0.5, marker=look)]
 
 
 def _errors(lane: Lane, y: int, cuts: Cuts) -> list[dict[str, Any]]:
@@ -241,19 +210,12 @@ def _errors(lane: Lane, y: int, cuts: Cuts) -> list[dict[str, Any]]:
     if not lane.errors:
         return []
     heights = [0.8 * min(error / highest(lane), 1.0) for _, error in lane.errors]
-    trace = {
-        "type": "scatter",
-        "mode": "markers",
-        "name": lane.name,
-        "showlegend": False,
-        "x": [cuts.at(stamp) for stamp, _ in lane.errors],
-        "y": [y - 0.4 + height for height in heights],
-        "error_y": {"array": [0.0] * len(heights), "arrayminus": heights, "width": 0, "thickness": 2, "color": BLUE},
-        "text": [f"relative error {part_words(error)}" for _, error in lane.errors],
-        "hoverinfo": "text",
-        "marker": {"color": BLUE, "size": 3},
-    }
-    return [trace]
+    points = [
+        (cuts.at(stamp), y - 0.4 + height, f"relative error {part_words(error)}")
+        for (stamp, error), height in zip(lane.errors, heights, strict=True)
+    ]
+    stems = {"array": [0.0] * len(heights), "arrayminus": heights, "width": 0, "thickness": 2, "color": BLUE}
+    return [marks(lane.name, points, error_y=stems, showlegend=False, marker={"color": BLUE, "size": 3})]
 
 
 def cuts_of(answer: Answer, lanes: Iterable[Lane]) -> Cuts:
