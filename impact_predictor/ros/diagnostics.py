@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 from ..prediction.remedies import REMEDIES
 from ..prediction.score import median
-from ..prediction.types import Score, Status
+from ..prediction.types import Foot, Landing, Prediction, Score, Status
 from ..stamps import NANOSECONDS
 from .cdr import ERROR, OK, WARN, StatusBytes, diagnostic_status, pairs_of
 
 if TYPE_CHECKING:
-    from .feet_report import FeetReport
+    from ..prediction.contacts import Contacts
 
 STALE_AFTER: Final = 1.0
 """Seconds without a sample after which the input counts as stale."""
@@ -23,7 +23,7 @@ COMPARABLE: Final = 10.0
 """Stamps further than this many seconds from the clock were not taken from it, so that no latency follows from them."""
 
 
-class Refused(NamedTuple):
+class Refusal(NamedTuple):
     """Why a message was refused: the relative name of its input, and its status."""
 
     input: str
@@ -66,7 +66,7 @@ class Diagnostics:
         self._name = name
         self._body = ""
         self._accepted = 0
-        self._refused: Counter[Refused] = Counter()
+        self._refused: Counter[Refusal] = Counter()
         self._others = 0
         self._dropped = 0
         self._last: dict[str, float] = {}
@@ -75,7 +75,7 @@ class Diagnostics:
         self._scored = 0
         self._errors: deque[float] = deque(maxlen=1000)
         self._second = _Second()
-        self._refused_now: Counter[Refused] = Counter()
+        self._refused_now: Counter[Refusal] = Counter()
         self._begin_second(now)
 
     def _begin_second(self, now: float) -> None:
@@ -114,7 +114,7 @@ class Diagnostics:
         waited_for = self.level == ERROR or (self.level == WARN and now - was > STALE_AFTER)
         return waited_for and self._judge(now)
 
-    def refused(self, now: float, reason: Refused) -> bool:
+    def refused(self, now: float, reason: Refusal) -> bool:
         """Count a refused message."""
         self._refused[reason] += 1
         self._refused_now[reason] += 1
@@ -124,7 +124,7 @@ class Diagnostics:
         """Count samples that were dropped because newer ones waited behind them."""
         self._dropped += count
 
-    def is_news(self, reason: Refused) -> bool:
+    def is_news(self, reason: Refusal) -> bool:
         """Whether a message is the first in this second to be refused for a reason, and so worth a line in the log."""
         kind = reason.input.rpartition("/")[2], reason.status
         news = kind not in self._told
@@ -247,3 +247,74 @@ class Diagnostics:
         if self.publishers[silent[0]]:
             return f"no sample yet{where}{more}"
         return f"no sample yet{where}{more}: nobody publishes " + ("there" if where else f"on {silent[0]}")
+
+
+DISAGREES: Final = 0.5
+"""The part of a second's samples above which a force sensor disagrees; while a foot lands or lifts each one does."""
+
+_REMEMBERED: Final = 1000
+
+
+class FeetReport:
+    """Counts what the answers tell of the feet of one body, which it calls by their names."""
+
+    def __init__(self, body: str, contacts: Contacts | None = None) -> None:
+        """Count for a body, "" being the name of a body alone, which may have a model of its joints."""
+        self.flaw = ""
+        """What is wrong with its force sensors in the last second, "" where nothing is."""
+        self._prefix = f"{body}/feet" if body else "feet"
+        self._contacts = contacts
+        self._feet: tuple[Foot, ...] = ()
+        self._landings: Counter[str] = Counter()
+        self._unannounced = 0
+        self._late: deque[float] = deque(maxlen=_REMEMBERED)
+        self._time_errors: deque[float] = deque(maxlen=_REMEMBERED)
+        self._begin_second()
+
+    def _begin_second(self) -> None:
+        self._samples = 0
+        self._disagreed: Counter[str] = Counter()
+
+    def take(self, prediction: Prediction) -> None:
+        """Count an answer."""
+        self._feet = prediction.feet
+        self._samples += 1
+        for foot in prediction.feet:
+            if foot.confirmed is False:
+                self._disagreed[foot.name] += 1
+        if prediction.score is not None and prediction.score.landing is not None:
+            self._landed(prediction.score.landing)
+
+    def _landed(self, landing: Landing) -> None:
+        self._landings[landing.foot] += 1
+        if landing.late is not None:
+            self._late.append(landing.late)
+        if landing.history:
+            self._time_errors.append(abs(landing.history[-1][1]))
+        else:
+            self._unannounced += 1
+
+    def second_over(self) -> None:
+        """Sum up the second that ends, and begin the next."""
+        disagree = [name for name, count in sorted(self._disagreed.items()) if count > DISAGREES * self._samples]
+        self.flaw = f"{self._prefix}: the force sensor of {' and '.join(disagree)} does not agree" if disagree else ""
+        self._begin_second()
+
+    def values(self) -> dict[str, str]:
+        """Keys and values of /diagnostics; times in s, and what nobody knows is left out."""
+        values = {
+            "standing": " ".join([foot.name for foot in self._feet if foot.stands]) or "none",
+            "landings": str(self._landings.total()),
+        }
+        values |= {f"landings.{name}": str(count) for name, count in sorted(self._landings.items())}
+        if self._contacts is not None and self._contacts.unknown_joints:
+            values["joints_left_out"] = " ".join(self._contacts.unknown_joints)
+        if self._unannounced:
+            values["landings.unannounced"] = str(self._unannounced)
+        if self._time_errors:
+            values["landings.median_time_error"] = f"{median(self._time_errors):.4f}"
+        if self._late:
+            values["landings.early"] = str(sum([late < 0.0 for late in self._late]))
+            values["landings.late"] = str(sum([late > 0.0 for late in self._late]))
+            values["landings.median_late"] = f"{median(self._late):.4f}"
+        return {f"{self._prefix}.{key}": value for key, value in values.items()}

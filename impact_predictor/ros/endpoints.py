@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from heapq import merge
+from itertools import chain, cycle, islice
+from math import inf
+from operator import itemgetter
+from time import perf_counter
 from typing import Any, Final
 
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.node import Node
-from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.qos_overriding_options import QoSOverridingOptions
 
 from .process import message_class
@@ -56,3 +62,182 @@ def subscription(
         event_callbacks=SubscriptionEventCallbacks(message_lost=lost, use_default_callbacks=False),
         qos_overriding_options=QoSOverridingOptions.with_default_policies(),
     )
+
+
+LONGEST: Final = 0.1
+"""Seconds that a node may spend on samples that wait before it drops all of them but the newest."""
+
+
+class Backlog:
+    """What waits on the topics of one body when the executor hands over a sample.
+
+    A node that was held up for a moment answers what it missed. One that cannot keep up drops samples, and then answers
+    the newest alone until none waits behind it any more, so that it is never behind by more than `longest` and one
+    answer. What else is told about the body meanwhile is heard, between the samples as it came between them. A user
+    who makes the subscription reliable wants every sample: then none is dropped.
+    """
+
+    def __init__(
+        self, samples: Any, others: Iterable[Any], answer: Callable[[bytes], None], longest: float = LONGEST
+    ) -> None:
+        """Watch a subscription to samples and those to all else that the answers depend on, each to bytes.
+
+        `answer` takes a sample, and `longest` is in s.
+        """
+        self._samples, self._others, self._answer = samples, others, answer
+        self._longest = inf if samples.qos_profile.reliability == ReliabilityPolicy.RELIABLE else longest
+        self._is_behind = False
+
+    def take(self, sample: bytes) -> int:
+        """Answer a sample that the executor hands over, and what waits behind it; how many samples were dropped."""
+        waiting = _waiting_on(self._samples, self._answer)
+        if not waiting:
+            self._is_behind = False
+            self._answer(sample)
+            return 0
+        began, newest, dropped = perf_counter(), waiting[-1], 0
+        told = [_waiting_on(other, other.callback) for other in self._others]
+        # What came on one topic stays in its order, also where the clock was set back meanwhile.
+        for message in [(0, self._answer, sample), *merge(*told, waiting, key=itemgetter(0))]:
+            _, take, data = message
+            if take is self._answer and message is not newest:
+                self._is_behind = self._is_behind or perf_counter() - began > self._longest
+                if self._is_behind:
+                    dropped += 1
+                    continue
+            take(data)
+        return dropped
+
+
+_Message = tuple[int, Callable[[bytes], None], bytes]
+
+
+def _waiting_on(subscription: Any, take: Callable[[bytes], None]) -> list[_Message]:
+    """The messages that wait on a subscription: when each came (ns), who takes it, and its bytes."""
+    found: list[_Message] = []
+    # Whoever publishes faster than this takes must not keep the node here.
+    while len(found) < QUEUE:
+        message = subscription.handle.take_message(subscription.msg_type, True)
+        if message is None:
+            break
+        data, about = message
+        found.append((about["received_timestamp"], take, data))
+    return found
+
+
+LIVE: Final = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
+
+# History is kept for reliable subscriptions only.
+LATCHED: Final = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+REMEMBERED: Final = 16
+"""Messages that may have come on one subscription before they come on the other."""
+
+
+class Once:
+    """Passes on each message of two subscriptions to one topic once, whichever has it first."""
+
+    def __init__(self, take: Callable[[bytes], None]) -> None:
+        self._take = take
+        self._only_live: deque[bytes] = deque(maxlen=REMEMBERED)
+        self._only_latched: deque[bytes] = deque(maxlen=REMEMBERED)
+
+    def live(self, data: bytes) -> None:
+        """A message of the volatile subscription."""
+        self._pass_on(data, self._only_live, self._only_latched)
+
+    def latched(self, data: bytes) -> None:
+        """A message of the transient-local subscription."""
+        self._pass_on(data, self._only_latched, self._only_live)
+
+    def _pass_on(self, data: bytes, here: deque[bytes], there: deque[bytes]) -> None:
+        if data in there:
+            there.remove(data)
+        else:
+            here.append(data)
+            self._take(data)
+
+
+class LatchedTopic:
+    """A topic of messages that stay true until the next, from publishers of either durability.
+
+    A volatile subscription matches every publisher, but gets nothing that was published before it was there; a
+    transient-local one gets that, but does not match volatile publishers, and both sides are warned of the misfit. So
+    the transient-local one is added once there is a publisher for it, and what comes twice is taken once.
+    """
+
+    def __init__(self, node: Node, take: Callable[[bytes], None], topic: str, type_name: str) -> None:
+        self._node = node
+        self._topic = topic
+        self._once = Once(take)
+        self._type = message_class(type_name)
+        self._events = SubscriptionEventCallbacks(use_default_callbacks=False)
+        self._has_latched = False
+        self.live = node.create_subscription(
+            self._type,
+            topic,
+            self._once.live,
+            LIVE,
+            raw=True,
+            event_callbacks=self._events,
+            qos_overriding_options=QoSOverridingOptions.with_default_policies(),
+        )
+
+    def look_for_history(self) -> None:
+        """Ask for what was published before, if there is a publisher that keeps it."""
+        if self._has_latched:
+            return
+        topic = self.live.topic_name
+        for publisher in self._node.get_publishers_info_by_topic(topic):
+            qos = publisher.qos_profile
+            if (qos.durability, qos.reliability) == (DurabilityPolicy.TRANSIENT_LOCAL, ReliabilityPolicy.RELIABLE):
+                self._has_latched = True
+                self._node.create_subscription(
+                    self._type, self._topic, self._once.latched, LATCHED, raw=True, event_callbacks=self._events
+                )
+                return
+
+
+AT_ONCE: Final = 25
+"""Endpoints that are looked at in one turn: that takes a millisecond, for which no message has to wait."""
+
+
+class Misfits:
+    """The endpoints of other nodes that do not match those of this one."""
+
+    def __init__(self, node: Node, subscriptions: Iterable[Any], publishers: Iterable[Any]) -> None:
+        self._node = node
+        ours = [*((one, True) for one in subscriptions), *((one, False) for one in publishers)]
+        self._found: dict[str, list[str]] = {one.topic_name: [] for one, _ in ours}
+        self._turns = cycle(ours)
+        self._at_once = min(AT_ONCE, len(ours))
+
+    def look(self) -> list[str]:
+        """A text for each that is known, with topic, node and reason; looks at some of many topics in their turn."""
+        for ours, is_subscription in islice(self._turns, self._at_once):
+            find = self._publishers if is_subscription else self._subscriptions
+            self._found[ours.topic_name] = list(find(ours))
+        return list(chain.from_iterable(self._found.values()))
+
+    def _publishers(self, ours: Any) -> Iterator[str]:
+        for theirs in self._node.get_publishers_info_by_topic(ours.topic_name):
+            if reason := _reason(theirs.qos_profile, ours.qos_profile):
+                yield f"the publisher on {ours.topic_name} from {theirs.node_name} {reason}"
+
+    def _subscriptions(self, ours: Any) -> Iterator[str]:
+        for theirs in self._node.get_subscriptions_info_by_topic(ours.topic_name):
+            if reason := _reason(ours.qos_profile, theirs.qos_profile):
+                yield f"this node's publisher on {ours.topic_name} for {theirs.node_name} {reason}"
+
+
+def _reason(offered: QoSProfile, requested: QoSProfile) -> str:
+    """Why a publisher does not match a subscription, or "".
+
+    Only the two policies that differ in practice: rclpy's own comparison takes an unset deadline for one of zero.
+    """
+    best_effort, volatile = ReliabilityPolicy.BEST_EFFORT, DurabilityPolicy.VOLATILE
+    if offered.reliability == best_effort and requested.reliability == ReliabilityPolicy.RELIABLE:
+        return "is best effort, but the subscription wants reliable"
+    if offered.durability == volatile and requested.durability == DurabilityPolicy.TRANSIENT_LOCAL:
+        return "is volatile, but the subscription wants transient local"
+    return ""

@@ -17,11 +17,11 @@ from ..parameters.validation import is_of_every_node
 from ..prediction.inputs import inputs_of
 from ..prediction.monitor import Monitor
 from ..prediction.scene import Scene, scenes_of
-from .body_topics import BodyTopics
+from .endpoints import Misfits
 from .node_parameters import NodeParameters, check_qos_overrides
 from .process import sentence
-from .qos import Misfits
 from .reporter import Reporter
+from .topics import BodyTopics, listen_to_support
 
 
 class PredictorNode(Node):
@@ -65,8 +65,6 @@ class PredictorNode(Node):
         # What is subscribed to first is served first when messages wait on several; the samples come last.
         for topic, kind, body in inputs_of(scenes):
             if body is None:
-                from .support_topic import listen_to_support
-
                 self._inputs[topic] = listen_to_support(self, reporter, self._monitor, topic, kind)
                 of_support.append(self._inputs[topic])
             elif (expected := self._bodies[body].listen(topic, kind)) is not None:

@@ -2,22 +2,63 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 from rclpy.node import Node
 
-from ..prediction.types import Prediction, Score, Status
+from ..prediction.scene import Scene
+from ..prediction.types import Geometry, Prediction, Score, Status
 from ..stamps import NANOSECONDS
 from .cdr import diagnostic_array
-from .diagnostics import Diagnostics, Refused
+from .diagnostics import Diagnostics, FeetReport, Refusal
 from .endpoints import Outlet, publisher
-from .markers.topic import MarkerTopic
-from .messages.outputs import DIAGNOSTIC_ARRAY, encode_reports, unit_status
+from .messages.outputs import DIAGNOSTIC_ARRAY, MARKER_ARRAY, encode_reports, unit_status
 
 if TYPE_CHECKING:
     from ..prediction.monitor import Monitor
     from ..prediction.watch.watch import Report
+    from .markers.scene import MarkerScene
+
+
+class MarkerTopic:
+    """Publishes what a drawing of the scenes shows; `drawing` is there while somebody looks."""
+
+    def __init__(self, node: Node, scenes: Mapping[str, Scene]) -> None:
+        self.publisher = publisher(node, "~/markers", MARKER_ARRAY)
+        self.drawing: MarkerScene | None = None
+        self._scenes = scenes
+        self._geometries: dict[str, Geometry] = {}
+
+    def set_geometry(self, body: str, geometry: Geometry) -> None:
+        """Take the contact points of a body that are no parameters, for now or later."""
+        self._geometries[body] = geometry
+        if self.drawing is not None:
+            self.drawing.set_geometry(body, geometry)
+
+    def begin_anew(self) -> None:
+        """Draw from now on what the scenes have become."""
+        self.drawing = None
+        self.look_for_viewers()
+
+    def look_for_viewers(self) -> None:
+        """Begin to draw when somebody looks, and end when nobody does any more."""
+        if not self.publisher.get_subscription_count():
+            self.drawing = None
+        elif self.drawing is None:
+            from .markers.scene import MarkerScene
+
+            self.drawing = MarkerScene(self._scenes)
+            for body, geometry in self._geometries.items():
+                self.drawing.set_geometry(body, geometry)
+
+    def show(self, stamp: int) -> None:
+        """Publish the drawing if the time for it has come."""
+        if self.drawing is not None:
+            data = self.drawing.due(stamp)
+            if data is not None:
+                self.publisher.publish(data)
 
 
 class Reporter:
@@ -45,8 +86,6 @@ class Reporter:
         self.diagnostics.lost = None if self.on_lost is None else 0
         feet = [body for body, scene in self._monitor.scenes.items() if scene.walking is not None]
         if feet:
-            from .feet_report import FeetReport
-
             predictors = self._monitor.predictors
             self.diagnostics.feet = {body: FeetReport(body, predictors[body].contacts) for body in feet}
 
@@ -81,7 +120,7 @@ class Reporter:
             self.refuse(name, status)
             return
         now = perf_counter()
-        if name == self._support or not self._support or self._time is None:
+        if name in self.diagnostics.publishers and (name == self._support or not self._support or self._time is None):
             self._time = stamp, now
         if self.diagnostics.taken(now, name):
             self.report()
@@ -90,7 +129,7 @@ class Reporter:
 
     def refuse(self, name: str, status: Status) -> None:
         """A message on an input was refused."""
-        reason = Refused(name, status)
+        reason = Refusal(name, status)
         if self.diagnostics.refused(perf_counter(), reason):
             self.report()
         if self.diagnostics.is_news(reason):

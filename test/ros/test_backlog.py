@@ -13,8 +13,8 @@ from nav_msgs.msg import Odometry
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from test_node import FIXED_POINTS, SCENE, odometry
 
-from impact_predictor.ros import backlog
-from impact_predictor.ros.backlog import LONGEST, Backlog
+from impact_predictor.ros import endpoints
+from impact_predictor.ros.endpoints import LONGEST, Backlog
 from impact_predictor.ros.messages import decode_diagnostic_array
 from impact_predictor.ros.processes import Child
 
@@ -46,7 +46,7 @@ def samples(*numbers):
 def clock(monkeypatch):
     """A clock that goes on by as many seconds as are appended."""
     passed = [0.0]
-    monkeypatch.setattr(backlog, "perf_counter", lambda: sum(passed))
+    monkeypatch.setattr(endpoints, "perf_counter", lambda: sum(passed))
     return passed
 
 

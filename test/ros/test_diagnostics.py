@@ -4,10 +4,10 @@ from impact_predictor.mechanics.types import Flag, Mode, Twist
 from impact_predictor.prediction.remedies import REMEDIES
 from impact_predictor.prediction.types import Leftover, Score, Status, Touchdown
 from impact_predictor.ros.cdr import ERROR, OK, WARN, decode_diagnostic_array, diagnostic_array
-from impact_predictor.ros.diagnostics import STALE_AFTER, Diagnostics, Refused
+from impact_predictor.ros.diagnostics import STALE_AFTER, Diagnostics, Refusal
 
 SECOND = 1_000_000_000
-BAD = Refused("odom", Status.NOT_FINITE)
+BAD = Refusal("odom", Status.NOT_FINITE)
 
 
 @pytest.fixture
@@ -93,7 +93,7 @@ def test_a_second_of_nothing_but_refused_messages_is_an_error_until_a_sample_is_
 
 def test_samples_that_wait_for_the_geometry_are_a_warning_however_long_it_takes(diagnostics):
     for second in range(3):
-        diagnostics.refused(second + 0.5, Refused("odom", Status.NO_GEOMETRY))
+        diagnostics.refused(second + 0.5, Refusal("odom", Status.NO_GEOMETRY))
         diagnostics.second_over(second + 1.0)
         assert diagnostics.level == WARN
     assert "publish them on contact_geometry or give body.contact_points" in report(diagnostics).message
@@ -119,7 +119,7 @@ def test_an_endpoint_that_qos_keeps_away_is_a_warning_that_names_it(diagnostics)
 def test_every_status_that_occurred_has_a_counter_for_its_input(diagnostics):
     for _ in range(3):
         diagnostics.refused(0.1, BAD)
-    diagnostics.refused(0.2, Refused("contact_geometry", Status.TOO_FEW_POINTS))
+    diagnostics.refused(0.2, Refusal("contact_geometry", Status.TOO_FEW_POINTS))
     diagnostics.second_over(1.0)
     diagnostics.refused(1.1, BAD)
     values = report(diagnostics).values
@@ -193,5 +193,5 @@ def test_gaps_are_those_of_one_input_and_the_same_reason_on_several_is_news_once
         diagnostics.accepted(now, name, round(now * SECOND), 0, 50e-6, 80e-6)
     diagnostics.second_over(1.0)
     assert report(diagnostics).values["samples.largest_gap"] == "0.3000"
-    reasons = [Refused(f"{body}/odom", Status.SUPPORT_STALE) for body in "ab"]
+    reasons = [Refusal(f"{body}/odom", Status.SUPPORT_STALE) for body in "ab"]
     assert [diagnostics.is_news(reason) for reason in reasons] == [True, False]

@@ -18,7 +18,7 @@ from impact_predictor.prediction.types import (
     Touchdown,
 )
 from impact_predictor.ros.cdr import OK, WARN, Diagnostic
-from impact_predictor.ros.feet_report import FeetReport
+from impact_predictor.ros.diagnostics import FeetReport
 from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY, decode_diagnostic_array, encode_prediction, encode_score
 
 NOTHING, LEVEL, UNKNOWN = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), (0.0,) * 36

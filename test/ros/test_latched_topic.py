@@ -2,7 +2,7 @@ import pytest
 
 pytest.importorskip("rclpy", reason="the node needs ROS 2: source it, or install the extra `ros`")
 
-from impact_predictor.ros.latched_topic import REMEMBERED, Once
+from impact_predictor.ros.endpoints import REMEMBERED, Once
 
 
 @pytest.fixture

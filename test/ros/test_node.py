@@ -195,14 +195,14 @@ def test_publishers_and_subscribers_that_qos_keeps_apart_from_the_node_are_named
 @pytest.fixture
 def node_without_peers(monkeypatch):
     """The node in this process, and the names of what it encodes."""
-    from impact_predictor.ros import body_topics, predictor_node
+    from impact_predictor.ros import predictor_node, topics
 
     encoded = []
 
     def counting(name, output):
         return output._replace(encode=lambda prediction: encoded.append(name) or output.encode(prediction))
 
-    monkeypatch.setattr(body_topics, "OUTPUTS", {name: counting(name, output) for name, output in OUTPUTS.items()})
+    monkeypatch.setattr(topics, "OUTPUTS", {name: counting(name, output) for name, output in OUTPUTS.items()})
     rclpy.init(args=["--ros-args", "--params-file", str(SCENE), *FIXED_POINTS])
     node = predictor_node.PredictorNode()
     yield node, encoded

@@ -21,7 +21,8 @@ from impact_predictor.parameters.file import read_parameters
 from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction.scene import scenes_of
 from impact_predictor.prediction.types import Geometry, Joints, Schedule, Wrench
-from impact_predictor.ros import body_topics, predictor_node
+from impact_predictor.ros import predictor_node
+from impact_predictor.ros import topics as node_topics
 from impact_predictor.ros.cdr import OK
 from impact_predictor.ros.messages import (
     ODOMETRY,
@@ -192,8 +193,8 @@ def test_a_walking_machine_is_told_by_the_node_what_the_replay_tells_byte_for_by
         if data is not None:
             told[output.topic_name].append(data)
 
-    monkeypatch.setattr(body_topics, "Outlet", lambda publisher: publisher)
-    monkeypatch.setattr(body_topics, "_publish", publish)
+    monkeypatch.setattr(node_topics, "Outlet", lambda publisher: publisher)
+    monkeypatch.setattr(node_topics, "_publish", publish)
     rclpy.init(args=list(arguments_of(values)))
     node = predictor_node.PredictorNode()
     take = {one.topic_name: one.callback for one in node.subscriptions}

@@ -36,6 +36,9 @@ _SURFACE: Final[Colour] = (0.62, 0.66, 0.70, 1.0)
 _LINES: Final[Colour] = (0.85, 0.88, 0.91, 1.0)
 _PLUMB: Final[Colour] = (0.98, 0.85, 0.30, 1.0)
 
+_FLAT: Final = 0.05
+"""Size of the mark where a foot lands, in that of the machine."""
+
 _CONTACTS: Final = (
     ("standing", CUBE_LIST, 1.0, _STANDING),
     ("striking", SPHERE_LIST, 1.5, _STRIKING),
@@ -129,9 +132,7 @@ def draw_unit(unit: Unit, stamp: int, letter: float) -> list[Marker]:
     drawn = [Marker("units", unit.number, shape.shape, place, turned, shape.scale, colour, shape.lines)]
     drawn += _points(unit, axes) if unit.scene.radius == 0.0 else _edges(unit)
     if unit.feet:
-        from .feet import draw_landings  # only where the scene has feet
-
-        drawn += draw_landings(unit, letter)
+        drawn += _draw_landings(unit, letter)
     words = [unit.name if level is None else f"{unit.name} {LEVELS[level]}".lstrip()]
     if level and unit.message:
         words += unit.message.split("\n")
@@ -211,9 +212,7 @@ def _draw_touchdown(unit: Unit, touchdown: Touchdown) -> list[Marker]:
         if not indices or max(indices) >= contacts_of(unit):
             continue
         if unit.feet:
-            from .feet import place_of
-
-            place, normal = place_of(unit, indices), scene.normal
+            place, normal = _place_of(unit, indices), scene.normal
         elif scene.radius > 0.0:
             place = mean([scene.edges[i] for i in indices])
             arm = add(center, place, -1.0)
@@ -274,3 +273,35 @@ def _arrow(namespace: str, number: int, start: Vector3, tip: Vector3, width: flo
 def label(namespace: str, number: int, place: Vector3, letter: float, words: str) -> Marker:
     """Words at a place, so high that a `letter` is so many m high."""
     return Marker(namespace, number, TEXT, place, scale=(0.0, 0.0, letter), colour=_LETTERS, text=words)
+
+
+def _draw_landings(unit: Unit, letter: float) -> list[Marker]:
+    """A mark where each swinging foot lands, a line to it from the foot, and the foot's name with the time until then.
+
+    A `letter` is so many m high.
+    """
+    drawn: list[Marker] = []
+    lines: list[Vector3] = []
+    places: list[Vector3] = []
+    for k, foot in enumerate(unit.feet):
+        if foot.place is None or foot.position is None or foot.lead_time is None:
+            continue
+        places.append(foot.place)
+        lines += [foot.position, foot.place]
+        words = f"{foot.name} {1e3 * foot.lead_time:.0f} ms"
+        above = add(foot.place, unit.scene.normal, letter)
+        drawn.append(label("feet/text", len(unit.feet) * unit.number + k, above, 0.6 * letter, words))
+    if places:
+        size = _FLAT * unit.shape.size
+        where = unit.number, LINE_LIST, NOWHERE, UNTURNED, (0.3 * size, 0.0, 0.0), LANDING
+        drawn.append(Marker("feet/path", *where, tuple(lines)))
+        marks = unit.number, SPHERE_LIST, NOWHERE, UNTURNED, (size, size, size), LANDING
+        drawn.append(Marker("feet/landing", *marks, tuple(places)))
+    return drawn
+
+
+def _place_of(unit: Unit, indices: tuple[int, ...]) -> Vector3:
+    """The middle of the feet to which points of some indices belong: where they land, or else where they are."""
+    each = 1 if unit.scene.walking is None else unit.scene.walking.points
+    feet = [unit.feet[number] for number in sorted({i // each for i in indices})]
+    return mean([foot.place or foot.position or NOWHERE for foot in feet])

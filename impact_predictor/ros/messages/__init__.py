@@ -6,6 +6,7 @@ The node takes and publishes these bytes as they are and a bag holds them as the
 from ..cdr import Diagnostic, MalformedMessage, decode_diagnostic_array
 from .inputs import (
     IMU,
+    INPUT_TYPES,
     JOINT_STATE,
     JOINT_TRAJECTORY,
     ODOMETRY,
@@ -40,6 +41,7 @@ from .outputs import (
 __all__ = [
     "DIAGNOSTIC_ARRAY",
     "IMU",
+    "INPUT_TYPES",
     "JOINT_STATE",
     "JOINT_TRAJECTORY",
     "MARKER_ARRAY",

@@ -6,8 +6,9 @@ trajectory_msgs/JointTrajectory.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import lru_cache
-from typing import Final
+from typing import Any, Final, NamedTuple
 
 from ...prediction.types import Geometry, Imu, Joints, Sample, Schedule, Wrench
 from ...stamps import NANOSECONDS
@@ -243,3 +244,21 @@ def encode_schedule(schedule: Schedule) -> bytes:
 
 def _headed(nanoseconds: int, frame_id: str) -> bytearray:
     return bytearray(LITTLE_ENDIAN_HEADER + stamp(nanoseconds) + string(frame_id))
+
+
+class InputType(NamedTuple):
+    """How the messages on an input travel: the name of their type, and what reads their bytes."""
+
+    name: str
+    decode: Callable[[bytes], Any]
+
+
+INPUT_TYPES: Final = {
+    "odom": InputType(ODOMETRY, decode_odometry),
+    "imu": InputType(IMU, decode_imu),
+    "contact_geometry": InputType(POLYGON, decode_polygon),
+    "joint_states": InputType(JOINT_STATE, decode_joints),
+    "contact_wrench": InputType(WRENCH, decode_wrench),
+    "schedule": InputType(JOINT_TRAJECTORY, decode_schedule),
+}
+"""The types of the messages on each kind of input (see `impact_predictor.prediction.inputs`)."""

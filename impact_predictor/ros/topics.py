@@ -1,33 +1,69 @@
-"""The topics of one body, and what becomes of its messages."""
+"""The topics of the support and of each body, and what becomes of their messages."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from contextlib import suppress
 from functools import partial
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from rclpy.duration import Duration
 from rclpy.node import Node
 
-from ..prediction.inputs import IMU as SENSOR
-from ..prediction.inputs import ODOM, SCHEDULE
-from ..prediction.types import Imu, Prediction, Sample, Score, Status
-from .backlog import LONGEST, Backlog
-from .endpoints import Outlet, publisher, subscription
-from .input_topic import InputTopic
-from .messages import IMU, ODOMETRY, OUTPUTS, POLYGON, MalformedMessage, decode_odometry, decode_polygon
+from ..prediction.inputs import CONTACT_GEOMETRY, IMU, ODOM, SCHEDULE
+from ..prediction.monitor import Monitor
+from ..prediction.types import Geometry, Imu, Prediction, Sample, Score, Status
+from .endpoints import LONGEST, Backlog, LatchedTopic, Outlet, publisher, subscription
+from .messages import INPUT_TYPES, ODOMETRY, OUTPUTS, MalformedMessage, decode_odometry
 from .reporter import Reporter
-
-if TYPE_CHECKING:
-    from ..prediction.monitor import Monitor
-    from .latched_topic import LatchedTopic
-    from .markers.scene import MarkerScene
 
 LAST_WORDS: Final = Duration(seconds=1)
 """How long the node waits at its end until its last score is received."""
+
+
+class InputTopic:
+    """Decodes the messages on a topic, hands them over and tells the reporter what became of them.
+
+    `update` hands a message to the monitor, and `accepted` takes one that the monitor has accepted.
+    """
+
+    def __init__(
+        self,
+        reporter: Reporter,
+        name: str,
+        kind: str,
+        update: Callable[[Any], Status],
+        accepted: Callable[[Any], None] | None = None,
+    ) -> None:
+        self._reporter, self._name, self._update, self._accepted = reporter, name, update, accepted
+        self._decode = INPUT_TYPES[kind].decode
+
+    def take(self, data: bytes) -> None:
+        """A message, as bytes."""
+        try:
+            message = self._decode(data)
+        except MalformedMessage:
+            self._reporter.refuse(self._name, Status.MALFORMED)
+            return
+        status = self._update(message)
+        if self._accepted is not None and status is Status.ACCEPTED:
+            self._accepted(message)
+        self._reporter.took(self._name, status, message.stamp)
+
+
+def listen_to_support(node: Node, reporter: Reporter, monitor: Monitor, topic: str, kind: str) -> Any:
+    """Take the pose and twist of the support on a topic, or what a sensor on it measures; its subscription."""
+
+    def draw(message: Sample | Imu) -> None:
+        drawing = reporter.markers.drawing
+        if drawing is not None and monitor.deck is not None and monitor.deck.last is not None:
+            drawing.take_support(monitor.deck.last)
+            reporter.markers.show(message.stamp)
+
+    update: Any = monitor.update_support_imu if kind == IMU else monitor.update_support
+    one = InputTopic(reporter, topic, kind, update, draw)
+    return subscription(node, topic, INPUT_TYPES[kind].name, one.take, reporter.on_lost)
 
 
 class BodyTopics:
@@ -48,34 +84,33 @@ class BodyTopics:
         """Take messages of a kind from a topic; its subscription where they are to keep coming, else None."""
         if kind == ODOM:
             return self._listen_to_odom(topic)
-        if kind == SENSOR:
-            return self._listen_to_imu(topic)
-        if self._monitor.scenes[self._body].walking is None:
-            return self._listen_to_geometry(topic)
-        from .feet_topics import listen_to_feet, listen_to_schedule
-
-        about = self._node, self._reporter, self._monitor, self._body, topic
-        if kind == SCHEDULE:
-            self._latched = listen_to_schedule(*about)
+        monitor, body = self._monitor, self._body
+        update: Callable[[Any], Status] = partial(monitor.tell, body)
+        accepted: Callable[[Any], None] | None = None
+        is_fixed = monitor.scenes[body].walking is None
+        if kind == IMU:
+            update, accepted = partial(monitor.update_imu, body), self._draw_tilt
+        elif kind == CONTACT_GEOMETRY:
+            update, accepted = partial(monitor.set_geometry, body), self._draw_points if is_fixed else None
+        one = InputTopic(self._reporter, topic, kind, update, accepted)
+        type_name = INPUT_TYPES[kind].name
+        # Feet move, and what was published of them before is of no use.
+        if kind == SCHEDULE or (kind == CONTACT_GEOMETRY and is_fixed):
+            self._latched = LatchedTopic(self._node, one.take, topic, type_name)
             return None
-        self._others.append(listen_to_feet(*about, kind))
-        return self._others[-1]
+        found = subscription(self._node, topic, type_name, one.take, self._reporter.on_lost)
+        if kind != IMU:
+            self._others.append(found)
+        return found
 
-    def _listen_to_geometry(self, topic: str) -> None:
-        from .latched_topic import LatchedTopic
+    def _draw_points(self, geometry: Geometry) -> None:
+        self._reporter.markers.set_geometry(self._body, geometry)
 
-        self._geometry_name = topic
-        self._latched = LatchedTopic(self._node, self._on_geometry, topic, POLYGON)
-
-    def _listen_to_imu(self, topic: str) -> Any:
-        from .messages import decode_imu
-
-        def draw(drawing: MarkerScene, imu: Imu) -> None:
-            drawing.take_tilt(self._body, imu.stamp, self._monitor.tilts[self._body])
-
-        update = partial(self._monitor.update_imu, self._body)
-        one = InputTopic(self._reporter, topic, decode_imu, update, draw)
-        return subscription(self._node, topic, IMU, one.take, self._reporter.on_lost)
+    def _draw_tilt(self, imu: Imu) -> None:
+        markers = self._reporter.markers
+        if markers.drawing is not None:
+            markers.drawing.take_tilt(self._body, imu.stamp, self._monitor.tilts[self._body])
+            markers.show(imu.stamp)
 
     def _listen_to_odom(self, topic: str) -> Any:
         """Take the state from a topic, and publish the answers; its subscription."""
@@ -95,16 +130,6 @@ class BodyTopics:
         """Ask for contact points, or a plan, that were published before, if there may be any."""
         if self._latched is not None:
             self._latched.look_for_history()
-
-    def _on_geometry(self, data: bytes) -> None:
-        status = Status.MALFORMED
-        with suppress(MalformedMessage):
-            geometry = decode_polygon(data)
-            status = self._monitor.set_geometry(self._body, geometry)
-        if status is Status.ACCEPTED:
-            self._reporter.markers.set_geometry(self._body, geometry)
-        else:
-            self._reporter.refuse(self._geometry_name, status)
 
     def _on_odometry(self, data: bytes) -> None:
         if dropped := self._backlog.take(data):
