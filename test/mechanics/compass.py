@@ -9,12 +9,10 @@ Ruina and Coleman, "The simplest walking model: stability, complexity, and scali
 from __future__ import annotations
 
 from math import cos, sin
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import solve_ivp
-from scipy.optimize import root
 
 from impact_predictor.mechanics.contact_space import ContactOutcome, solve
 
@@ -36,68 +34,6 @@ class Compass(NamedTuple):
     @property
     def leg(self) -> float:
         return self.to_foot + self.to_hip
-
-
-class Gait(NamedTuple):
-    """The compass right after an impact: its legs lean by -`angle` and `angle` (rad), the standing one backwards.
-
-    `stance` and `swing` are the rates (rad/s) of the standing leg and of the other one, forwards.
-    """
-
-    angle: float
-    stance: float
-    swing: float
-
-
-class Step(NamedTuple):
-    """A step: its time (s), angles and rates of standing leg and other leg before the impact, and the gait after it."""
-
-    time: float
-    angles: tuple[float, float]
-    rates: tuple[float, float]
-    after: Gait
-
-
-def step(compass: Compass, start: Gait, duration: float = 10.0) -> Step | None:
-    """Follow a compass whose feet do not slip from one impact to the next; None where it falls.
-
-    The other foot scuffs the ground as it swings past, as with straight legs it must; that is ignored, and it strikes
-    when it comes down ahead. Angles count forwards, from the slope's normal.
-    """
-
-    def slope_of_state(_: float, state: NDArray[np.float64]) -> list[float]:
-        return [state[2], state[3], *_accelerations(compass, *state)]
-
-    def lands(_: float, state: NDArray[np.float64]) -> float:
-        # A foot ahead is above the ground while the sum of the angles is negative. Swinging past it may be below.
-        return float(state[0] + state[1]) if state[0] > state[1] else 1.0
-
-    def falls(_: float, state: NDArray[np.float64]) -> float:
-        return 1.5 - max(abs(float(state[0])), abs(float(state[1])))
-
-    lands.terminal = falls.terminal = True  # type: ignore[attr-defined]
-    lands.direction = 1.0  # type: ignore[attr-defined]
-    first = [-start.angle, start.angle, start.stance, start.swing]
-    found: Any = solve_ivp(
-        slope_of_state, (0.0, duration), first, "DOP853", events=(lands, falls), rtol=3e-14, atol=1e-15
-    )
-    if not len(found.t_events[0]):
-        return None
-    theta, psi, stance, swing = map(float, found.y_events[0][0])
-    after = after_impact(compass, (theta, psi), (stance, swing))
-    return Step(float(found.t_events[0][0]), (theta, psi), (stance, swing), Gait(theta, *after))
-
-
-def fixed_point(compass: Compass, near: Gait) -> Gait:
-    """The gait near another one that each step repeats."""
-
-    def change(gait: NDArray[np.float64]) -> NDArray[np.float64]:
-        landed = step(compass, Gait(*gait))
-        return np.array(landed.after) - gait if landed is not None else np.full(3, 1.0)
-
-    found: Any = root(change, np.array(near), tol=1e-13)
-    assert float(np.max(np.abs(found.fun))) < 1e-10
-    return Gait(*map(float, found.x))
 
 
 def after_impact(compass: Compass, angles: tuple[float, float], rates: tuple[float, float]) -> tuple[float, float]:
@@ -163,19 +99,3 @@ def inertia_of(compass: Compass, theta: float, psi: float) -> NDArray[np.float64
 def _free_rates(compass: Compass, theta: float, stance: float, swing: float) -> NDArray[np.float64]:
     """Velocities of the hip and rates of the legs while the foot of the first one stands."""
     return np.array([compass.leg * cos(theta) * stance, -compass.leg * sin(theta) * stance, stance, swing])
-
-
-def _accelerations(compass: Compass, theta: float, psi: float, stance: float, swing: float) -> tuple[float, float]:
-    """Angular accelerations of the legs while the foot of the first one stands; the second row is for unit mass."""
-    hip, m, a, b, gamma, g, inertia = compass
-    leg = a + b
-    between = theta - psi
-    own, coupling = hip * leg * leg + m * (a * a + leg * leg) + inertia, -leg * b * cos(between)
-    others = b * b + inertia / m
-    turning = m * leg * b * sin(between) * swing * swing + (hip * leg + m * (a + leg)) * g * sin(theta + gamma)
-    swinging = -leg * b * sin(between) * stance * stance - b * g * sin(psi + gamma)
-    determinant = own * others - m * coupling * coupling
-    return (
-        (others * turning - m * coupling * swinging) / determinant,
-        (own * swinging - coupling * turning) / determinant,
-    )

@@ -72,19 +72,6 @@ def test_an_impact_multiplies_the_rate_by_what_the_inertia_and_the_angle_say(ine
             assert outcome.twist.omega == pytest.approx(-1.3 * part, rel=1e-13)
 
 
-@pytest.mark.parametrize("law", ["path", "total"])
-def test_towards_no_inertia_the_impact_becomes_that_of_a_point_mass_without_trouble(law: str) -> None:
-    for exponent in range(3, 17):
-        inertia = 10.0**-exponent
-        body = POINT_MASS.hub._replace(inertia=inertia).body(ALPHA)
-        outcome = solve_impact(body, body.turning(-1.548428592), law)
-        assert outcome.mode is Mode.PIVOT
-        assert not outcome.flags
-        # kept(J) - kept(0) = J (1 - cos 2 alpha) / (J + m l^2): linear in J.
-        off = -outcome.twist.omega - 1.548428592 * sqrt(0.5)
-        assert off == pytest.approx(1.548428592 * inertia * (1.0 - sqrt(0.5)) / (1.0 + inertia), abs=2e-15)
-
-
 def test_a_point_mass_needs_tan_alpha_because_its_impulse_goes_through_it() -> None:
     # J (after - before) is the moment of the impulse about the mass centre: without inertia there is none, so that the
     # impulse lies along the leg, alpha from the normal.
@@ -126,18 +113,6 @@ def test_with_inertia_the_stance_needs_more_than_the_impact_while_it_turns_slowl
     assert stance_friction(hub, -ALPHA, border) == pytest.approx(impact_friction(hub, ALPHA), rel=1e-12)
     assert stance_friction(hub, -ALPHA, 0.9 * border) > impact_friction(hub, ALPHA)
     assert stance_friction(hub, -ALPHA, 1.1 * border) < impact_friction(hub, ALPHA)
-
-
-def test_the_stance_rules_the_friction_of_steady_rolling_with_inertia() -> None:
-    slow, heavy = sloping(0.08, 0.1), sloping(0.08, 5.0)
-    for wheel, angle in ((slow, -ALPHA), (heavy, ALPHA)):
-        rolling = steady(wheel)
-        assert rolling is not None
-        rate = rolling.after if angle < 0.0 else rolling.before
-        assert least_friction(wheel) == pytest.approx(stance_friction(wheel.hub, angle, rate), rel=1e-9)
-        assert least_friction(wheel) > impact_friction(wheel.hub, ALPHA)
-    # A wheel that turns so fast that its weight cannot hold it down has no foot that could stand.
-    assert stance_friction(slow.hub, ALPHA, 3.2) == inf
 
 
 @pytest.mark.parametrize("inertia", [0.05, 0.3, 2.0])

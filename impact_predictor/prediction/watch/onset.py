@@ -275,29 +275,28 @@ def _unit_across(normal: Vector3) -> Vector3:
 
 def _felt_rows(r: NDArray[np.float64]) -> NDArray[np.float64]:
     """a = g - W' x r - W x (W x r) as rows (n, 3, 12) of the numbers of the motion, for r (n, 3)."""
-    x, y, z = r.T
-    rows = np.zeros((len(r), 3, _MOTIONS))
-    rows[:, (0, 1, 2), (0, 1, 2)] = 1.0
-    rows[:, 0, 4], rows[:, 0, 5] = -z, y
-    rows[:, 1, 3], rows[:, 1, 5] = z, -x
-    rows[:, 2, 3], rows[:, 2, 4] = -y, x
-    rows[:, 0, 7], rows[:, 0, 8], rows[:, 0, 9], rows[:, 0, 10] = x, x, -y, -z
-    rows[:, 1, 6], rows[:, 1, 8], rows[:, 1, 9], rows[:, 1, 11] = y, y, -x, -z
-    rows[:, 2, 6], rows[:, 2, 7], rows[:, 2, 10], rows[:, 2, 11] = z, z, -x, -y
-    return rows
+    still = np.broadcast_to(np.eye(3), (len(r), 3, 3))
+    # W x (W x r) = W (W . r) - r (W . W)
+    outwards = r[:, :, None, None] * np.eye(3) - np.einsum("ki,nj->nkij", np.eye(3), r)
+    return np.concatenate((still, _across(r), _products(outwards)), axis=2)
 
 
 def _spin_rows(along: NDArray[np.float64], inertia: NDArray[np.float64]) -> NDArray[np.float64]:
     """e . (I W' + W x I W) as rows (n, edges, 12), for directions e (n, edges, 3) and tensors I (n, 3, 3)."""
-    rows = np.zeros((*along.shape[:2], _MOTIONS))
-    rows[:, :, 3:6] = along @ inertia
     # e . (W x I W) = (e x W) . I W
-    x, y, z = np.moveaxis(along, 2, 0)
+    gyroscopic = np.swapaxes(_across(along), 2, 3) @ inertia[:, None]
+    return np.concatenate((np.zeros_like(along), along @ inertia, _products(gyroscopic)), axis=2)
+
+
+def _across(u: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The matrices (..., 3, 3) of the products u x v."""
+    x, y, z = np.moveaxis(u, -1, 0)
     none = np.zeros_like(x)
-    across = np.stack([none, -z, y, z, none, -x, -y, x, none], axis=-1).reshape(*along.shape[:2], 3, 3)
-    product = np.swapaxes(across, 2, 3) @ inertia[:, None]
-    rows[:, :, 6], rows[:, :, 7], rows[:, :, 8] = product[:, :, 0, 0], product[:, :, 1, 1], product[:, :, 2, 2]
-    rows[:, :, 9] = product[:, :, 0, 1] + product[:, :, 1, 0]
-    rows[:, :, 10] = product[:, :, 0, 2] + product[:, :, 2, 0]
-    rows[:, :, 11] = product[:, :, 1, 2] + product[:, :, 2, 1]
-    return rows
+    return np.stack([none, -z, y, z, none, -x, -y, x, none], axis=-1).reshape(*u.shape, 3)
+
+
+def _products(square: NDArray[np.float64]) -> NDArray[np.float64]:
+    """What xx, yy, zz, xy, xz and yz of W count (..., 6) in W . M W, for matrices M (..., 3, 3)."""
+    both = square + np.swapaxes(square, -1, -2)
+    pairs = [0.5 * both[..., i, i] for i in range(3)] + [both[..., i, j] for i, j in ((0, 1), (0, 2), (1, 2))]
+    return np.stack(pairs, axis=-1)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from math import isfinite
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from impact_predictor.prediction.deck import harmonic as deck_harmonic
-from impact_predictor.prediction.deck.harmonic import PAST, REACH, SECONDS, STEP, Harmonic, MotionForecast, predicted
+from impact_predictor.prediction.deck.harmonic import SECONDS, STEP, Harmonic, MotionForecast, predicted
 from impact_predictor.prediction.deck.motion import SupportState, ahead
 from impact_predictor.prediction.types import Felt
 from impact_predictor.prediction.vectors import axes_of, to_body, turned
@@ -152,19 +151,6 @@ def test_it_is_fitted_a_few_times_a_second_of_stamps(monkeypatch: pytest.MonkeyP
     assert max(fits) == 200
 
 
-def test_fits_do_not_depend_on_the_rate_of_the_messages() -> None:
-    slow, fast = fitted(rate=20.0).ahead(known_at(30.0)), fitted(rate=100.0).ahead(known_at(30.0))
-    # Between messages 50 ms apart a straight line is off by (w dt)^2/8 of a wave of 1.9 rad/s and 0.1 m/s^2.
-    assert np.allclose(slow(1.0), fast(1.0), atol=0.02)
-
-
-def test_a_support_at_rest_stays_at_rest() -> None:
-    course = predicted(np.tile((0.0, 0.0, -9.81, 0.0, 0.0, 0.0), (200, 1)))
-    assert course.shape == (PAST + 1 + REACH, 6)
-    assert np.ptp(course, axis=0).max() < 1e-12
-    assert course[0] == pytest.approx((0.0, 0.0, -9.81, 0.0, 0.0, 0.0), abs=1e-14)
-
-
 @given(st.integers(20, 200), st.floats(-1e12, 1e12), st.integers(0, 2**32))
 @settings(max_examples=60, deadline=None)
 def test_whatever_the_course_was_its_prediction_stays_within_bounds(count: int, size: float, seed: int) -> None:
@@ -213,13 +199,3 @@ def test_between_steps_the_error_shrinks_with_the_fourth_power_of_the_frequency(
     assert errors[0] == pytest.approx((4.0 * SECONDS) ** 4 / 384.0, rel=0.3)  # of cubic pieces through exact slopes
     assert 13.0 < errors[0] / errors[1] < 19.0
     assert 13.0 < errors[1] / errors[2] < 19.0
-
-
-def test_before_its_first_row_and_after_its_last_a_course_stands() -> None:
-    course = MotionForecast(0, cubic(np.arange(30) * SECONDS), 0)
-    first, last = course.at(0.0), course.at(29 * SECONDS)
-    for time in (-1e308, -1.0):
-        assert course.at(time) == first
-    for time in (3.0, 1e308):
-        assert course.at(time)[:2] == last[:2]
-        assert all(isfinite(number) for part in course.at(time) for number in part)

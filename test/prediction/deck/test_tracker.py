@@ -218,12 +218,6 @@ def test_nothing_is_told_before_three_messages_span_the_window() -> None:
     assert moment_at(deck, 200_000_000).felt == Felt(GRAVITY, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 
-def test_nothing_is_told_of_a_stamp_from_before_it_was_known() -> None:
-    deck = deck_at_rest(0.3)
-    assert deck.at(199_999_999) is Status.NO_SUPPORT
-    moment_at(deck, 200_000_000)
-
-
 @pytest.mark.parametrize(
     ("changes", "status"),
     [
@@ -442,15 +436,6 @@ def test_a_forecast_begins_with_what_is_known_and_ends_with_what_is_usual() -> N
     assert hypot(*angular, *turning) < 1e-30
     # The mean of harmonics is that of gravity turned by up to 0.1 rad, less what the last minute does not even out.
     assert gravity == pytest.approx(GRAVITY, abs=0.15)
-
-
-def test_a_harmonic_forecast_is_what_is_ahead() -> None:
-    deck = followed(swinging(0.8), np.arange(1600) / 100.0, extrapolation="harmonic")
-    assert deck.last is not None
-    times = np.linspace(0.0, 5.0, 11)
-    forecast = deck.forecast(times)
-    for i, time in enumerate(times.tolist()):
-        assert row(forecast, i) == deck.last.ahead(time)
 
 
 def test_a_forecast_of_nothing_known_is_a_level_support_at_rest() -> None:
