@@ -31,7 +31,7 @@ from impact_predictor.prediction.scene import Scene, scenes_of
 from impact_predictor.prediction.types import Prediction
 from impact_predictor.report.table import plain_table, show
 from impact_predictor.scenarios.comparison import Landings
-from impact_predictor.scenarios.matching import Announced
+from impact_predictor.scenarios.matching import Match
 
 ROOT = Path(__file__).resolve().parents[1]
 BAG = ROOT / "examples/hyq/hyq.bag"
@@ -82,29 +82,27 @@ def run(record: Sequence[Adapted], machine: Scene, seed: int | None = None, on_r
         answers.append(walker.update(sample))
         landings.add(answers[-1])
     scores = [one.score for one in answers if one.score is not None] + list(walker.finish())
-    (compared,) = landings.compared().values()
+    (matches,) = landings.matches().values()
+    true = [one for one in matches if one.stamp is not None]
+    found = [one for one in true if one.predictions]
     stands = np.array([one.stands for one in record])
     wrong = np.array([[foot.stands for foot in one.feet] for one in answers]) != stands
     stamps = np.array([one.sample.stamp for one in answers])
     return Outcome(
-        len(compared.announced),
-        compared.touchdowns - len(compared.announced),
-        compared.false,
-        min((one.stamp - one.predictions[0].seen) * 1e-9 for one in compared.announced),
-        tuple(errors_of(compared.announced, lead_time) for lead_time in LEAD_TIMES),
+        len(found),
+        len(true) - len(found),
+        len(matches) - len(true),
+        min(one.first_lead_time for one in found),
+        tuple(errors_of(found, lead_time * 1e-9) for lead_time in LEAD_TIMES),
         sum(one.landing is not None for one in scores),
         float(wrong.mean()),
         float(wrong[far_from_changes(stands, stamps)].mean()),
     )
 
 
-def errors_of(announced: Sequence[Announced], lead_time: int) -> list[float]:
-    """Errors in s of the times that were announced so many ns before the landings."""
-    errors = []
-    for stamp, predictions in announced:
-        made = [one for one in predictions if one.seen <= stamp - lead_time]
-        errors += [abs(one.stamp - stamp) * 1e-9 for one in made[-1:]]
-    return errors
+def errors_of(found: Sequence[Match], lead_time: float) -> list[float]:
+    """Errors in s of the times that were announced so many s before the landings."""
+    return [error for one in found if (error := one.time_error(lead_time)) is not None]
 
 
 def far_from_changes(stands: np.ndarray, stamps: np.ndarray) -> np.ndarray:

@@ -163,7 +163,7 @@ def _counts(by_number: list[int]) -> Statuses:
 
 def _compare(run: Run, scenes: Mapping[str, Scene]) -> tuple[Truth | None, dict[str, BodyTruth], list[Match]]:
     """How the predictions compare with the true impacts and landings, all together and of each body."""
-    landings = {} if run.landings is None else run.landings.compared()
+    landings = {} if run.landings is None else run.landings.matches()
     if run.truth is None and not landings:
         return None, {}, []
     from ..scenarios.comparison import compare

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections import defaultdict
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from math import dist, hypot
 from statistics import median
 from types import MappingProxyType
@@ -19,8 +19,7 @@ from ..prediction.planar import hardly
 from ..prediction.scene import Scene
 from ..prediction.types import Prediction, Vector3
 from ..prediction.vectors import add, axes_of, cross, to_world
-from ..stamps import NANOSECONDS
-from .matching import NEAREST, Announced, Announcement, Announcements, Match, Rows, match, matches_of
+from .matching import NEAREST, Announcement, Announcements, Match, Rows, match
 from .truth import TrueImpact
 
 LEAD_TIMES: Final = (0.02, 0.05)
@@ -64,124 +63,95 @@ class Truth(NamedTuple):
     least_lead_time: float | None = None
 
 
-class Comparison(NamedTuple):
-    """How the predictions of all bodies together compare with what happened, and those of each body."""
+class Compared(NamedTuple):
+    """How the predictions of all bodies together compare with what happened, those of each body, and each touchdown."""
 
     together: Truth
     bodies: dict[str, Truth]
     matches: list[Match]
 
 
-class FoundImpact(NamedTuple):
-    """A true impact with the last prediction before it."""
-
-    impact: TrueImpact
-    last: Announcement
-
-
-class Compared(NamedTuple):
-    """What was found of the touchdowns of one body, and, where the truth tells them, of its impacts.
-
-    `errors` are those of the velocities after the impacts; `matches` has all, the false alarms too.
-    """
-
-    announced: Sequence[Announced]
-    touchdowns: int
-    false: int
-    unresolved: int = 0
-    unresolved_wrong: int = 0
-    found: Sequence[FoundImpact] = ()
-    errors: Sequence[float] = ()
-    matches: Sequence[Match] = ()
-
-
 def compare(
     impacts: Iterable[TrueImpact],
     announcements: Announcements,
     scenes: Mapping[str, Scene],
-    others: Mapping[str, Compared] = MappingProxyType({}),
-) -> Comparison:
+    others: Mapping[str, list[Match]] = MappingProxyType({}),
+) -> Compared:
     """Compare the predictions of all bodies that have samples with the true impacts.
 
-    `scenes` are those of the bodies by their names, or that of bodies without names by "". `others` are bodies that
-    were compared with another truth.
+    `scenes` are those of the bodies by their names, or that of bodies without names by "". `others` are the
+    matches of bodies with another truth.
     """
     of_body: dict[str, list[TrueImpact]] = defaultdict(list)
     for impact in impacts:
         of_body[announcements.names.get(impact.body, impact.body)].append(impact)
-    compared = {
-        body: _compare(
+    matches = {
+        body: _matches(
             body, of_body[body], announcements.rows[body].all, sorted(samples), scenes[body if body in scenes else ""]
         )
         for body, samples in announcements.samples.items()
     } | dict(others)
-    return Comparison(
-        _truth(compared.values()),
-        {body: _truth([one]) for body, one in compared.items()},
-        [match for one in compared.values() for match in one.matches],
-    )
+    everything = [one for of_one in matches.values() for one in of_one]
+    return Compared(_truth(everything), {body: _truth(of_one) for body, of_one in matches.items()}, everything)
 
 
-def _compare(
+def _matches(
     body: str,
     impacts: Sequence[TrueImpact],
     announced: Sequence[list[Announcement]],
     recorded: Sequence[int],
     scene: Scene,
-) -> Compared:
+) -> list[Match]:
+    """The impacts of a body until its last sample, and its false alarms."""
     happened = sorted((one for one in impacts if one.stamp <= recorded[-1]), key=lambda one: one.stamp)
     matched, alarms = match([impact.stamp for impact in happened], announced, recorded[-1])
     shown = resolved(happened, recorded, hardly(scene))
-    found = {k: FoundImpact(happened[k], matched[k][-1]) for k in shown if k in matched}
-    errors = {k: velocity_error(one, scene.center_of_mass) for k, one in found.items()}
-    hidden = [FoundImpact(happened[k], matched[k][-1]) for k in set(matched) - set(shown)]
-    return Compared(
-        [Announced(happened[k].stamp, matched[k]) for k in shown if k in matched],
-        len(shown),
-        len(alarms),
-        len(happened) - len(shown),
-        sum(not is_right(one) for one in hidden),
-        list(found.values()),
-        list(errors.values()),
-        matches_of(body, "", [(one.stamp, one.mode) for one in happened], matched, alarms, set(shown), errors),
-    )
+    true = [
+        Match(
+            body=body,
+            foot="",
+            stamp=impact.stamp,
+            mode=impact.mode,
+            predictions=matched.get(k, ()),
+            shown=k in shown,
+            velocity_error=velocity_error(impact, matched[k][-1], scene.center_of_mass)
+            if k in shown and k in matched
+            else None,
+            border=impact.border,
+        )
+        for k, impact in enumerate(happened)
+    ]
+    return true + [Match(body, "", None, None, row) for row in alarms]
 
 
-def _truth(bodies: Collection[Compared]) -> Truth:
-    announced = [one for body in bodies for one in body.announced]
-    found = [one for body in bodies for one in body.found]
-    clear = [one for one in found if one.impact.border > BORDER]
-    errors = [error for body in bodies for error in body.errors]
-    touchdowns = sum(body.touchdowns for body in bodies)
-    time_errors = {str(lead_time): median_time_error(announced, lead_time) for lead_time in LEAD_TIMES}
+def _truth(matches: Sequence[Match]) -> Truth:
+    shown = [one for one in matches if one.stamp is not None and one.shown]
+    hidden = [one for one in matches if one.stamp is not None and not one.shown]
+    found = [one for one in shown if one.predictions]
+    right = [one.mode_is_right for one in found if one.mode is not None]
+    clear = [one.mode_is_right for one in found if one.mode is not None and one.border > BORDER]
+    errors = [one.velocity_error for one in matches if one.velocity_error is not None]
+    time_errors = {str(lead_time): median_time_error(found, lead_time) for lead_time in LEAD_TIMES}
     return Truth(
-        touchdowns,
-        touchdowns - len(announced),
-        sum(body.false for body in bodies),
-        sum(body.unresolved for body in bodies),
-        sum(map(is_right, found)) / len(found) if found else None,
-        median(errors) if errors else None,
-        time_errors[str(LEAD_TIMES[0])],
-        len(clear),
-        sum(map(is_right, clear)) / len(clear) if clear else None,
-        sum(body.unresolved_wrong for body in bodies),
-        time_errors,
-        min(((one.stamp - one.predictions[0].seen) / NANOSECONDS for one in announced), default=None),
+        touchdowns=len(shown),
+        missed=len(shown) - len(found),
+        false=sum(one.stamp is None for one in matches),
+        unresolved=len(hidden),
+        mode_accuracy=sum(right) / len(right) if right else None,
+        median_velocity_error=median(errors) if errors else None,
+        median_time_error=time_errors[str(LEAD_TIMES[0])],
+        clear=len(clear),
+        clear_mode_accuracy=sum(clear) / len(clear) if clear else None,
+        unresolved_wrong=sum(bool(one.predictions) and not one.mode_is_right for one in hidden),
+        time_error_by_lead_time=time_errors,
+        least_lead_time=min((one.first_lead_time for one in found), default=None),
     )
 
 
-def median_time_error(announced: Iterable[Announced], lead_time: float) -> float | None:
+def median_time_error(found: Iterable[Match], lead_time: float) -> float | None:
     """Median error in s of the times that were announced a lead time in s ahead, or last before that."""
-    errors = []
-    for stamp, predictions in announced:
-        made = [one for one in predictions if one.seen <= stamp - round(lead_time * NANOSECONDS)]
-        errors += [abs(one.stamp - stamp) / NANOSECONDS for one in made[-1:]]
+    errors = [error for one in found if (error := one.time_error(lead_time)) is not None]
     return median(errors) if errors else None
-
-
-def is_right(found: FoundImpact) -> bool:
-    """Whether the last prediction before an impact had its mode."""
-    return found.last.touchdown is not None and found.last.touchdown.mode is found.impact.mode
 
 
 def resolved(happened: Sequence[TrueImpact], samples: Sequence[int], slowest: float) -> list[int]:
@@ -194,12 +164,13 @@ def resolved(happened: Sequence[TrueImpact], samples: Sequence[int], slowest: fl
     return shown
 
 
-def velocity_error(found: FoundImpact, center: Vector3) -> float:
-    """Error of the twist after an impact relative to the twist before it; `center`: mass centre in the body frame.
+def velocity_error(impact: TrueImpact, last: Announcement, center: Vector3) -> float:
+    """Error of the twist after an impact, as announced last, relative to the twist before it; `center`: mass centre in
+    the body frame.
 
     Angular velocities count as speeds at half the contacts' distance.
     """
-    impact, touchdown = found.impact, found.last.touchdown
+    touchdown = last.touchdown
     assert touchdown is not None
     axes = axes_of(touchdown.orientation)
     linear = to_world(axes, add(touchdown.linear, cross(touchdown.angular, center)))
@@ -255,27 +226,23 @@ class Landings:
             self._rows[body][foot.name].add(sample.stamp, lead_time, soonest if foot.name == first else None)
         self._last[body] = sample.stamp
 
-    def compared(self) -> dict[str, Compared]:
-        """What was found of the landings of each body of which the truth is told, foot by foot."""
-        return {body: self._compare(body, last) for body, last in self._last.items() if body in self._stands}
+    def matches(self) -> dict[str, list[Match]]:
+        """The landings of each body of which the truth is told, foot by foot, and its false alarms."""
+        return {body: self._matches(body, last) for body, last in self._last.items() if body in self._stands}
 
     def later(self) -> int:
         """How many true landings come after the last sample of their body that was accepted: they are not compared."""
         return sum(one.stamp > self._last.get(one.body, one.stamp) for one in self.true)
 
-    def _compare(self, body: str, end: int) -> Compared:
-        announced: list[Announced] = []
-        matches: list[Match] = []
-        touchdowns = false = 0
+    def _matches(self, body: str, end: int) -> list[Match]:
+        found: list[Match] = []
         for foot, rows in self._rows[body].items():
             stamps = sorted(one.stamp for one in self.true if (one.body, one.foot) == (body, foot) and one.stamp <= end)
             # A foot comes down softly: it may seem to come down still when the plan says that it stands.
             matched, alarms = match(stamps, rows.all, end, late=NEAREST)
-            announced += [Announced(stamps[k], predictions) for k, predictions in sorted(matched.items())]
-            touchdowns += len(stamps)
-            false += len(alarms)
-            matches += matches_of(body, foot, [(one, None) for one in stamps], matched, alarms, range(len(stamps)))
-        return Compared(announced, touchdowns, false, matches=matches)
+            found += [Match(body, foot, stamp, None, matched.get(k, ())) for k, stamp in enumerate(stamps)]
+            found += [Match(body, foot, None, None, row) for row in alarms]
+        return found
 
     def _scene(self, body: str) -> Scene:
         return self._scenes[body if body in self._scenes else ""]

@@ -11,8 +11,8 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections import defaultdict
-from collections.abc import Collection, Iterable, Mapping, Sequence
-from types import MappingProxyType
+from collections.abc import Iterable, Sequence
+from math import inf
 from typing import Final, NamedTuple
 
 from ..mechanics.types import Mode
@@ -40,7 +40,7 @@ class Match(NamedTuple):
     `stamp` in ns and `mode` are those of the true one, None for a false alarm, and `mode` also where the truth does not
     know it; `predictions` are in order, none where it was missed; `shown` says whether the record can show it at its
     rate. `velocity_error` is that of the velocities after the impact, relative to those before, where the truth knows
-    them. `foot` is its name where a foot lands, else "".
+    them, and `border` is that of the impact, see `truth.border_of`. `foot` is its name where a foot lands, else "".
     """
 
     body: str
@@ -50,13 +50,25 @@ class Match(NamedTuple):
     predictions: Sequence[Announcement]
     shown: bool = True
     velocity_error: float | None = None
+    border: float = inf
 
+    @property
+    def mode_is_right(self) -> bool:
+        """Whether the last prediction had the true mode."""
+        last = self.predictions[-1].touchdown
+        return last is not None and last.mode is self.mode
 
-class Announced(NamedTuple):
-    """The stamp of a true touchdown that was found, in ns, and its predictions in order."""
+    @property
+    def first_lead_time(self) -> float:
+        """How long before the true touchdown, in s, the first prediction of it was made."""
+        assert self.stamp is not None
+        return (self.stamp - self.predictions[0].seen) / NANOSECONDS
 
-    stamp: int
-    predictions: Sequence[Announcement]
+    def time_error(self, lead_time: float) -> float | None:
+        """Error in s of the time announced a lead time in s ahead, or last before that; None where none was."""
+        assert self.stamp is not None
+        made = [one for one in self.predictions if one.seen <= self.stamp - round(lead_time * NANOSECONDS)]
+        return abs(made[-1].stamp - self.stamp) / NANOSECONDS if made else None
 
 
 class Rows:
@@ -128,20 +140,3 @@ def match(
         elif announced <= end - NEAREST:
             alarms.append(row)
     return matched, alarms
-
-
-def matches_of(
-    body: str,
-    foot: str,
-    happened: Sequence[tuple[int, Mode | None]],
-    matched: Mapping[int, Sequence[Announcement]],
-    alarms: Iterable[Sequence[Announcement]],
-    shown: Collection[int],
-    errors: Mapping[int, float] = MappingProxyType({}),
-) -> list[Match]:
-    """Every true touchdown, from its stamp (ns) and mode, and every false alarm, from what `match` has found."""
-    true = [
-        Match(body, foot, stamp, mode, matched.get(place, ()), place in shown, errors.get(place))
-        for place, (stamp, mode) in enumerate(happened)
-    ]
-    return true + [Match(body, foot, None, None, row) for row in alarms]
