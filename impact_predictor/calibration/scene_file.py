@@ -11,7 +11,7 @@ from ruamel.yaml.nodes import MappingNode
 _KEY: Final = "ros__parameters"
 
 
-class Change(NamedTuple):
+class NewValues(NamedTuple):
     """The values of a parameter, in brackets where they are a list, and a remark for the end of their line."""
 
     values: tuple[float, ...]
@@ -31,7 +31,7 @@ def number_text(value: float) -> str:
     return text if "." in mantissa else f"{mantissa}.0{exponent}{power}"
 
 
-def changed(text: str, changes: Mapping[str, Change]) -> str:
+def changed(text: str, changes: Mapping[str, NewValues]) -> str:
     """The text of a parameter file with some parameters set, by their full names.
 
     The values are replaced where they stand, in each section that sets them. One that no section sets is added, in
@@ -83,7 +83,7 @@ def _with_remark(rest: str, remark: str) -> str:
     return f"  # {remark}{old}{newline}{others}"
 
 
-def _with_new(text: str, name: str, change: Change) -> str:
+def _with_new(text: str, name: str, change: NewValues) -> str:
     group, _, last = name.rpartition(".")
     spot = next(spot for spot in _spots(text) if spot.name.rpartition(".")[0] == group)
     # A name may be written out, with its points.

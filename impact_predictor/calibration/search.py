@@ -10,9 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import bootstrap
 
-from .blocks import Blocks
 from .solver import Solver
-from .table import Array, Grid, Table
+from .table import Blocks, ErrorTable, Grid
 from .touchdowns import Coefficients, ScoredTouchdown
 
 FOLDS: Final = 10
@@ -41,7 +40,7 @@ class Estimate(NamedTuple):
     """What touchdowns tell of a coefficient.
 
     `low` and `high` are the ends of its 95 % interval; `high` is None where greater values predict as well, as a
-    friction does at which nothing slips, and so is `low` of an inertia. Where it is not `told`, `value` is the given
+    friction does at which nothing slips, and so is `low` of an inertia. Where it is not `known`, `value` is the given
     one, or that end of the interval which is next to it. Of the inertia all are factors on the given one.
     """
 
@@ -49,7 +48,7 @@ class Estimate(NamedTuple):
     value: float
     low: float | None
     high: float | None
-    told: bool
+    known: bool
 
 
 class Search:
@@ -66,7 +65,7 @@ class Search:
         self._touchdowns, self._blocks, self._given = touchdowns, blocks, given
         self._seed, self._tell = seed, tell
         self._solver = Solver(touchdowns)
-        self._solved: dict[Coefficients, Array] = {}
+        self._solved: dict[Coefficients, NDArray[np.float64]] = {}
         self.number = len(touchdowns)
         number = int(blocks.max()) + 1
         drawn = np.random.default_rng(seed).multinomial(number, np.full(number, 1.0 / number), RESAMPLES)
@@ -82,11 +81,16 @@ class Search:
 
         return Search(touchdowns, self._blocks, self._given, self._seed, tell)
 
-    def table(self, friction: Array = COARSE[0], restitution: Array = COARSE[1], inertia: float = 1.0) -> Table:
+    def table(
+        self,
+        friction: NDArray[np.float64] = COARSE[0],
+        restitution: NDArray[np.float64] = COARSE[1],
+        inertia: float = 1.0,
+    ) -> ErrorTable:
         """The table with nodes at some values of the coefficients."""
-        return Table(self._blocks, Grid(friction, restitution, inertia), self.misses)
+        return ErrorTable(self._blocks, Grid(friction, restitution, inertia), self.misses)
 
-    def misses(self, coefficients: Coefficients) -> Array:
+    def misses(self, coefficients: Coefficients) -> NDArray[np.float64]:
         """What `Solver.misses` gives, solved once."""
         found = self._solved.get(coefficients)
         if found is None:
@@ -94,12 +98,12 @@ class Search:
             self._tell(len(self._solved) * len(self._touchdowns))
         return found
 
-    def block_errors(self, coefficients: Coefficients) -> Array:
+    def block_errors(self, coefficients: Coefficients) -> NDArray[np.float64]:
         """The errors, summed in blocks."""
         missed = self.misses(coefficients)
         return np.bincount(self._blocks, np.hypot(missed[:, 0], missed[:, 1])).astype(np.float64)
 
-    def surely_more(self, more: Array, by: float = TIED) -> bool:
+    def surely_more(self, more: NDArray[np.float64], by: float = TIED) -> bool:
         """Whether errors, summed in blocks, are more in the mean than others, whichever blocks are drawn.
 
         `more` has the differences (blocks,); mean errors that differ by less than `by` are the same.
@@ -107,11 +111,11 @@ class Search:
         means = self._weights @ more / self.number
         return bool(np.quantile(means, 0.5 * (1.0 - LEVEL)) > by)
 
-    def zoomed(self, table: Table) -> Table:
+    def zoomed(self, table: ErrorTable) -> ErrorTable:
         """A table that is as narrow as the resampled fits allow."""
         for _ in range(_LEVELS):
             spread = self._bootstrap(table).bootstrap_distribution
-            axes: list[Array] = []
+            axes: list[NDArray[np.float64]] = []
             shrinks = False
             for i, nodes in enumerate((table.nodes.friction, table.nodes.restitution)):
                 low, high = spread[i].min(), spread[2 + i].max()
@@ -123,7 +127,7 @@ class Search:
             table = self.table(axes[0], axes[1], table.nodes.inertia)
         return table
 
-    def estimate(self, table: Table, axis: int) -> Estimate:
+    def estimate(self, table: ErrorTable, axis: int) -> Estimate:
         """What a table tells of the friction (axis 0) or the restitution (axis 1)."""
         given, nodes, grid, ends = self._given[axis], table.nodes[axis], table.grid[axis], COARSE[axis]
         assert isinstance(nodes, np.ndarray)
@@ -131,7 +135,7 @@ class Search:
         best = self.best(table)
         value = table.grid.at(best)[axis]
         if len(nodes) == 1:
-            return Estimate(given, value, None, None, told=False)
+            return Estimate(given, value, None, None, known=False)
         interval = self._bootstrap(table).confidence_interval
         lowest, highest = float(interval.low[axis]), float(interval.high[2 + axis])
         # No finer than the table, nor than it was zoomed in to.
@@ -144,10 +148,10 @@ class Search:
             if not self.surely_more(table.sums[:, end] - table.sums[:, best]):
                 # Where the impacts cease to depend on it is known to a gap between the nodes.
                 low = max(float(ends[0]), lowest - _gap(nodes, lowest))
-                return Estimate(given, max(given, low), low, None, told=False)
-        return Estimate(given, value, low, high, told=True)
+                return Estimate(given, max(given, low), low, None, known=False)
+        return Estimate(given, value, low, high, known=True)
 
-    def held_out(self, table: Table) -> Array:
+    def held_out(self, table: ErrorTable) -> NDArray[np.float64]:
         """What `misses` gives of each touchdown with what is best for the blocks of the other folds: (n, 2)."""
         number = len(table.counts)
         folds = np.random.default_rng(self._seed).permutation(number) % min(FOLDS, number)
@@ -159,20 +163,20 @@ class Search:
             found[left_out] = Solver(others).misses(best)
         return found
 
-    def best(self, table: Table, weights: Array | None = None) -> int:
+    def best(self, table: ErrorTable, weights: NDArray[np.float64] | None = None) -> int:
         """The place of the least mean error, of those that are tied the nearest to the given coefficients."""
         losses = table.losses(None if weights is None else weights[None])[0]
         tied = np.flatnonzero(losses <= losses.min() + TIED).tolist()
         return int(min(tied, key=lambda k: sum(abs(a - b) for a, b in zip(table.grid.at(k), self._given, strict=True))))
 
-    def _bootstrap(self, table: Table) -> Any:
+    def _bootstrap(self, table: ErrorTable) -> Any:
         """The fits to resampled blocks: the least of the best values of each coefficient, then the greatest of each."""
         # What is tied cannot be known better than the table knows the errors.
         best = self.best(table)
         exact = self.block_errors(table.grid.at(best)).sum() / self.number
         tied = TIED + abs(exact - table.losses()[0, best])
 
-        def extremes(resampled: NDArray[np.int64], axis: int = -1) -> Array:
+        def extremes(resampled: NDArray[np.int64], axis: int = -1) -> NDArray[np.float64]:
             rows = np.atleast_2d(resampled)
             weights = np.apply_along_axis(np.bincount, 1, rows, minlength=len(table.counts)).astype(float)
             found = _extremes(table, weights, tied)
@@ -190,7 +194,7 @@ class Search:
         )
 
 
-def _extremes(table: Table, weights: Array, tied: float) -> Array:
+def _extremes(table: ErrorTable, weights: NDArray[np.float64], tied: float) -> NDArray[np.float64]:
     """The least value of each coefficient that is best for each row of weights, then the greatest: (4, rows)."""
     losses = table.losses(weights)
     best = (losses <= losses.min(1, keepdims=True) + tied).reshape(-1, *table.grid.shape)
@@ -202,7 +206,7 @@ def _extremes(table: Table, weights: Array, tied: float) -> Array:
     return np.array([*least, *greatest])
 
 
-def _gap(nodes: Array, value: float) -> float:
+def _gap(nodes: NDArray[np.float64], value: float) -> float:
     """The gap between the nodes about a value."""
     if len(nodes) == 1:
         return 0.0
@@ -210,7 +214,7 @@ def _gap(nodes: Array, value: float) -> float:
     return float(nodes[place] - nodes[place - 1])
 
 
-def _spaced(low: float, high: float, number: int) -> Array:
+def _spaced(low: float, high: float, number: int) -> NDArray[np.float64]:
     """Nodes between two values: of small ones evenly spaced, of large ones in the angle of friction."""
-    nodes: Array = np.tan(np.linspace(atan(low), atan(high), number)).clip(low, high)
+    nodes: NDArray[np.float64] = np.tan(np.linspace(atan(low), atan(high), number)).clip(low, high)
     return nodes

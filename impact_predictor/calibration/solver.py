@@ -13,13 +13,11 @@ from ..mechanics.batch import numbers_of, solve_impacts
 from ..mechanics.types import Contact, Twist, TwoPointBody, Validity
 from .touchdowns import Coefficients, ScoredTouchdown, solve_across, with_coefficients
 
-Array = NDArray[np.float64]
-
 ROUGH: Final = Coefficients(1.0, 0.0)
 """With friction; how much does not matter for whether an impact slips across its plane."""
 
 
-class _Kind(NamedTuple):
+class _Batch(NamedTuple):
     """Impacts that are solved at once: the places of their touchdowns, bodies and twists before as arrays."""
 
     law: str
@@ -39,27 +37,27 @@ class Solver:
         kinds: dict[tuple[str, Validity, bool], list[int]] = defaultdict(list)
         for k, one in enumerate(touchdowns):
             kinds[one.scene.law, one.scene.validity, one.impact.body.old is None].append(k)
-        self._kinds = [
-            _Kind(law, validity, places, *_stacked([touchdowns[k] for k in places]))
+        self._batches = [
+            _Batch(law, validity, places, *_stacked([touchdowns[k] for k in places]))
             for (law, validity, _), places in kinds.items()
         ]
         self._measured = np.array([(one.measured.vx, one.measured.omega) for one in touchdowns])
         self._half_distances = np.array([one.half_distance for one in touchdowns])
         self._speeds = np.array([one.speed for one in touchdowns])
 
-    def after(self, coefficients: Coefficients) -> Array:
+    def after(self, coefficients: Coefficients) -> NDArray[np.float64]:
         """The twists after the impacts, (n, 3)."""
         after = np.empty((len(self._touchdowns), 3))
-        for law, validity, places, bodies, before in self._kinds:
+        for law, validity, places, bodies, before in self._batches:
             after[places] = solve_impacts(with_coefficients(bodies, coefficients), before, law, validity).twist
         for k in self._across:
             slipped = solve_across(self._touchdowns[k].scene, self._touchdowns[k].impact, coefficients)
             after[k] = after[k] if slipped is None else slipped
         return after
 
-    def misses(self, coefficients: Coefficients) -> Array:
+    def misses(self, coefficients: Coefficients) -> NDArray[np.float64]:
         """By what the predictions miss the measured (vx, omega s), relative to the speed before: (n, 2)."""
-        misses: Array = self.after(coefficients)[:, (0, 2)] - self._measured
+        misses: NDArray[np.float64] = self.after(coefficients)[:, (0, 2)] - self._measured
         misses[:, 1] *= self._half_distances
         misses /= self._speeds[:, None]
         return misses

@@ -37,7 +37,7 @@ class Coefficients(NamedTuple):
     inertia: float = 1.0
 
 
-class Impact(NamedTuple):
+class RecordedImpact(NamedTuple):
     """The impact behind a prediction, as `Predictor` solves it: its plane, the support normal in the body frame, the
     body with its contacts, the twist before it in the plane and the motion across, the angle turned until then, and
     whether the contacts are edges that block the roll.
@@ -72,7 +72,7 @@ class ScoredTouchdown(NamedTuple):
     body: str
     stamp: int
     scene: Scene
-    impact: Impact
+    impact: RecordedImpact
     measured: Twist
     half_distance: float
     bend: float = 0.0
@@ -104,7 +104,7 @@ class ScoredTouchdown(NamedTuple):
         return solve(self.scene, self.impact, coefficients)
 
 
-def solve(scene: Scene, impact: Impact, coefficients: Coefficients) -> Twist:
+def solve(scene: Scene, impact: RecordedImpact, coefficients: Coefficients) -> Twist:
     """The twist after an impact with other coefficients, by the law and with the transverse slip of the scene."""
     slipped = solve_across(scene, impact, coefficients)
     if slipped is not None:
@@ -113,7 +113,7 @@ def solve(scene: Scene, impact: Impact, coefficients: Coefficients) -> Twist:
     return solve_impact(body, impact.before, scene.law, scene.validity).twist
 
 
-def solve_across(scene: Scene, impact: Impact, coefficients: Coefficients) -> Twist | None:
+def solve_across(scene: Scene, impact: RecordedImpact, coefficients: Coefficients) -> Twist | None:
     """The twist after an impact that slips across its plane; None where it hardly does, or the scene leaves that out.
 
     Which of them slip does not depend on the coefficients, as long as there is friction.
@@ -137,9 +137,9 @@ def with_coefficients(body: TwoPointBody, coefficients: Coefficients) -> TwoPoin
     )
 
 
-def impact_of(sample: Sample, posture: Posture, collision: Collision) -> Impact:
+def impact_of(sample: Sample, posture: Posture, collision: Collision) -> RecordedImpact:
     """The impact of a collision."""
-    return Impact(
+    return RecordedImpact(
         plane=collision.plane,
         normal=posture.normal,
         body=collision.body,
@@ -166,7 +166,7 @@ class Observer(Predictor):
         super().__init__(scene, deck)
         self.name = name
         self.touchdowns: list[ScoredTouchdown] = []
-        self._impacts: deque[tuple[Impact, Start | None]] = deque(maxlen=_REMEMBERED)
+        self._impacts: deque[tuple[RecordedImpact, Start | None]] = deque(maxlen=_REMEMBERED)
         self._samples: deque[Sample] = deque(maxlen=_REMEMBERED)
 
     def update(self, sample: Sample) -> Prediction:

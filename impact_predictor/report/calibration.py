@@ -9,7 +9,7 @@ from typing import Any, Final
 from rich.table import Table
 
 from ..calibration.fit import Calibration
-from ..calibration.scene_file import Change, number_text
+from ..calibration.scene_file import NewValues, number_text
 from ..calibration.search import FOLDS, Estimate
 from ..prediction.types import Leftover, Score
 from ..wording import counted, percent, words
@@ -33,9 +33,9 @@ def estimates_table(calibration: Calibration) -> Table:
     for name, one in estimates_of(calibration).items():
         label = "inertia, of the given one" if name == "inertia" else name
         fitted = (
-            f"{one.value:.4g}" if one.told else "not told" if one.value == one.given else f"raised to {one.value:.4g}"
+            f"{one.value:.4g}" if one.known else "not told" if one.value == one.given else f"raised to {one.value:.4g}"
         )
-        table.add_row(label, f"{one.given:.4g}", fitted, interval(one), style="" if one.told else "dim")
+        table.add_row(label, f"{one.given:.4g}", fitted, interval(one), style="" if one.known else "dim")
     return table
 
 
@@ -72,7 +72,7 @@ def sentences(calibration: Calibration, scores: Sequence[Score]) -> list[str]:
     )
     if calibration.held_out.mean() > calibration.given_errors.mean():
         said.append("Held out, the fitted values are not better than the given ones: these touchdowns add nothing.")
-    return said + [_not_told(name, one) for name, one in estimates_of(calibration).items() if not one.told]
+    return said + [_not_told(name, one) for name, one in estimates_of(calibration).items() if not one.known]
 
 
 def unscored(scores: Sequence[Score]) -> dict[str, int]:
@@ -81,7 +81,7 @@ def unscored(scores: Sequence[Score]) -> dict[str, int]:
     return dict(Counter(flags).most_common())
 
 
-def changes_of(calibration: Calibration) -> dict[str, Change]:
+def changes_of(calibration: Calibration) -> dict[str, NewValues]:
     """What the fit changes in the parameter file of the scene."""
     changes = {}
     for name, one in estimates_of(calibration).items():
@@ -94,7 +94,7 @@ def changes_of(calibration: Calibration) -> dict[str, Change]:
             given = (xx,) if xx == yy == zz and not (xy or xz or yz) else (xx, yy, zz, xy, xz, yz)
             values, of = tuple(one.value * part for part in given), "factor "
         remark = f"fitted to {len(calibration.touchdowns)} touchdowns; {of}{interval(one)} with 95 %"
-        changes[PARAMETERS[name]] = Change(values, remark, listed=name == "inertia")
+        changes[PARAMETERS[name]] = NewValues(values, remark, listed=name == "inertia")
     return changes
 
 
@@ -107,12 +107,16 @@ def as_json(calibration: Calibration, bags: Sequence[str], scores: Sequence[Scor
         "not_scored": unscored(scores),
         "left_out": calibration.left_out,
         "blocks": int(calibration.blocks.max()) + 1,
-        "coefficients": {name: one._asdict() for name, one in estimates_of(calibration).items()},
+        "coefficients": {name: _fields(one) for name, one in estimates_of(calibration).items()},
         "given_error": {**given._asdict(), "mean": float(calibration.given_errors.mean())},
         "held_out_error": {**held_out._asdict(), "mean": float(calibration.held_out.mean())},
         "inertia_profile": [list(pair) for pair in calibration.inertias],
         "parameters": {name: list(change.values) for name, change in changes_of(calibration).items()},
     }
+
+
+def _fields(one: Estimate) -> dict[str, Any]:
+    return {"given": one.given, "value": one.value, "low": one.low, "high": one.high, "told": one.known}
 
 
 def _error(errors: Errors) -> str:

@@ -90,7 +90,7 @@ def _draw_map(figure: Figure, axes: Axes, calibration: Calibration) -> None:
 
 def _draw_inertia(axes: Axes, calibration: Calibration) -> None:
     one = calibration.inertia
-    axes.set_title("Inertia: " + ("told" if one.told else "not told by these touchdowns"))
+    axes.set_title("Inertia: " + ("told" if one.known else "not told by these touchdowns"))
     axes.set(xlabel="times the given inertia", ylabel="least mean error with it", xscale="log")
     if not calibration.inertias:
         axes.text(0.5, 0.5, "several bodies of different inertia", transform=axes.transAxes, ha="center", color=_GREY)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from impact_predictor.calibration.blocks import ENOUGH, MOST, blocks_of
+from impact_predictor.calibration.table import ENOUGH, MOST, blocks_of
 from impact_predictor.calibration.touchdowns import ScoredTouchdown
 
 

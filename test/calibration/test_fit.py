@@ -7,9 +7,8 @@ from math import inf
 import numpy as np
 import pytest
 
-from impact_predictor.calibration.fit import NEEDED, Calibration, calibrate
-from impact_predictor.calibration.inertia import KNOWN
-from impact_predictor.calibration.touchdowns import Coefficients, Impact, ScoredTouchdown
+from impact_predictor.calibration.fit import KNOWN, NEEDED, Calibration, calibrate
+from impact_predictor.calibration.touchdowns import Coefficients, RecordedImpact, ScoredTouchdown
 from impact_predictor.errors import InputError
 from impact_predictor.mechanics.bodies import plate
 from impact_predictor.mechanics.types import Twist
@@ -45,7 +44,7 @@ def touchdowns(
         body = plate(length=LENGTH, height=height, mass=MASS, friction=0.0, a=1.0 - ahead, b=ahead, inertia=inertia)
         before = body.turning(omega=-rng.uniform(1.0, 3.0))
         before = before._replace(vx=before.vx + slip * rng.uniform(-1.0, 1.0))
-        impact = Impact(PLANE, (0.0, 0.0, 1.0), body, before, LateralMotion(0.0, 0.0, 0.0), 0.0, True)
+        impact = RecordedImpact(PLANE, (0.0, 0.0, 1.0), body, before, LateralMotion(0.0, 0.0, 0.0), 0.0, True)
         one = ScoredTouchdown("", k * 10**10, scene, impact, before, 0.5 * LENGTH)
         after = one.after(truth)
         error = rng.normal(0.0, noise * one.speed, 2) if noise else (0.0, 0.0)
@@ -91,7 +90,7 @@ def test_the_held_out_error_is_that_of_the_noise() -> None:
 def test_where_nothing_slips_only_a_lower_bound_of_the_friction_is_told() -> None:
     fitted = calibrate([touchdowns(Coefficients(5.0, 0.1), slip=0.0, given=(0.9, 0.3))])
     assert fitted.friction.high is None
-    assert not fitted.friction.told
+    assert not fitted.friction.known
     assert fitted.friction.value == 0.9
     assert 0.1 < (fitted.friction.low or 0.0) < 0.9
     assert fitted.restitution.value == pytest.approx(0.1, abs=2e-3)
@@ -108,7 +107,7 @@ def test_an_inertia_that_the_touchdowns_tell_is_fitted() -> None:
     truth = Coefficients(0.3, 0.1, 1.3)
     fitted = calibrate([touchdowns(truth, height=1.6)])
     inertia = fitted.inertia
-    assert inertia.told
+    assert inertia.known
     assert inertia.low is not None
     assert inertia.high is not None
     assert inertia.low <= 1.3 <= inertia.high <= KNOWN * inertia.low
@@ -118,7 +117,7 @@ def test_an_inertia_that_the_touchdowns_tell_is_fitted() -> None:
 
 def test_low_plates_do_not_tell_their_inertia_even_without_noise() -> None:
     fitted = calibrate([touchdowns(Coefficients(0.2, 0.15, 1.3))])
-    assert not fitted.inertia.told
+    assert not fitted.inertia.known
     assert fitted.inertia.value == 1.0
     assert np.median(fitted.held_out) < 1e-3
 
@@ -133,7 +132,7 @@ def test_an_inertia_is_not_told_by_touchdowns_of_one_kind() -> None:
     alike = touchdowns(Coefficients(0.1, 0.15), number=1, slip=0.0) * 20
     alike = [one._replace(stamp=k * 10**10) for k, one in enumerate(alike)]
     fitted = calibrate([alike])
-    assert not fitted.inertia.told
+    assert not fitted.inertia.known
     assert fitted.inertia.value == 1.0
 
 

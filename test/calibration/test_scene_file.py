@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from impact_predictor.calibration.scene_file import Change, changed, number_text
+from impact_predictor.calibration.scene_file import NewValues, changed, number_text
 from impact_predictor.parameters.file import read_parameters
 from impact_predictor.resources import find
 
-FRICTION = {"contact.friction": Change((0.2287,), "fitted")}
+FRICTION = {"contact.friction": NewValues((0.2287,), "fitted")}
 
 
 def parameters(tmp_path: Path, text: str) -> dict[str, object]:
@@ -21,7 +21,7 @@ def parameters(tmp_path: Path, text: str) -> dict[str, object]:
 
 def test_everything_but_the_changed_lines_stays_to_the_last_character() -> None:
     text = find("config/cube_tosses.yaml").read_text()
-    changes = {**FRICTION, "body.inertia": Change((7e-4,), "fitted", listed=True)}
+    changes = {**FRICTION, "body.inertia": NewValues((7e-4,), "fitted", listed=True)}
     before, after = text.splitlines(), changed(text, changes).splitlines()
     assert [line for old, line in zip(before, after, strict=True) if old != line] == [
         "      inertia: [0.0007]  # fitted",
@@ -56,7 +56,7 @@ def test_a_value_is_replaced_however_it_is_written(tmp_path: Path, text: str, li
     ],
 )
 def test_a_parameter_that_was_left_to_its_default_is_added(tmp_path: Path, text: str) -> None:
-    answer = changed(text, {"contact.restitution": Change((0.1,), "fitted")})
+    answer = changed(text, {"contact.restitution": NewValues((0.1,), "fitted")})
     assert parameters(tmp_path, answer) == {"contact.friction": 0.1, "contact.restitution": 0.1}
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from impact_predictor.calibration.solver import Solver
-from impact_predictor.calibration.touchdowns import Coefficients, Impact, ScoredTouchdown, scaled
+from impact_predictor.calibration.touchdowns import Coefficients, RecordedImpact, ScoredTouchdown, scaled
 from impact_predictor.mechanics.bodies import plate
 from impact_predictor.mechanics.types import Twist
 from impact_predictor.prediction.impact import LateralMotion
@@ -30,7 +30,7 @@ def touchdowns() -> list[ScoredTouchdown]:
         before = plate(length=1.0, height=0.4, mass=1.0, friction=0.3).turning(omega=-rng.uniform(1.0, 3.0))
         across = LateralMotion(rng.uniform(0.2, 0.5) if k % 2 else 0.0, 0.0, 0.0)
         scene = SCENE._replace(law="total" if k % 5 == 0 else "path", transverse_slip=k % 7 != 0)
-        impact = Impact(PLANE, (0.0, 0.0, 1.0), body, before, across, 0.1, True)
+        impact = RecordedImpact(PLANE, (0.0, 0.0, 1.0), body, before, across, 0.1, True)
         made.append(ScoredTouchdown("", k, scene, impact, Twist(0.1 * k, 0.0, -0.2), rng.uniform(0.3, 0.6)))
     return made
 

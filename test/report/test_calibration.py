@@ -12,8 +12,8 @@ from impact_predictor.calibration.search import Estimate
 from impact_predictor.prediction.scene import Scene, inertia_matrix
 from impact_predictor.report.calibration import changes_of, interval, sentences
 
-TOLD = Estimate(0.4, 0.2, 0.15, 0.25, told=True)
-AS_GIVEN = Estimate(1.0, 1.0, None, None, told=False)
+TOLD = Estimate(0.4, 0.2, 0.15, 0.25, known=True)
+AS_GIVEN = Estimate(1.0, 1.0, None, None, known=False)
 
 
 class One:
@@ -49,11 +49,11 @@ def calibration(friction: Estimate = TOLD, inertia: Estimate = AS_GIVEN, better:
     ],
 )
 def test_an_interval_in_words(low: float | None, high: float | None, said: str) -> None:
-    assert interval(Estimate(1.0, 1.0, low, high, told=False)) == said
+    assert interval(Estimate(1.0, 1.0, low, high, known=False)) == said
 
 
 def test_a_lower_bound_is_told_with_its_reason() -> None:
-    bound = Estimate(0.4, 0.4, 0.32, None, told=False)
+    bound = Estimate(0.4, 0.4, 0.32, None, known=False)
     assert sentences(calibration(bound), [])[-2] == (
         "Of the friction only a lower bound is told, 0.32, because nothing slips beyond: it stays 0.4."
     )
@@ -65,7 +65,7 @@ def test_a_fit_that_is_worth_nothing_says_so() -> None:
 
 
 def test_a_contradicted_inertia_is_not_hidden() -> None:
-    one = Estimate(1.0, 1.0, 1.17, None, told=False)
+    one = Estimate(1.0, 1.0, 1.17, None, known=False)
     assert sentences(calibration(inertia=one), [])[-1] == (
         "The inertia cannot be told: at least 1.17 times the given one predicts as well; the given one predicts "
         "worse, but stays."
@@ -74,6 +74,6 @@ def test_a_contradicted_inertia_is_not_hidden() -> None:
 
 def test_only_what_changed_is_written_and_an_inertia_as_a_whole() -> None:
     assert changes_of(calibration()).keys() == {"contact.friction"}
-    inertia = Estimate(1.0, 1.5, 1.4, 1.6, told=True)
+    inertia = Estimate(1.0, 1.5, 1.4, 1.6, known=True)
     change = changes_of(calibration(inertia=inertia))["body.inertia"]
     assert change.text == "[0.75, 1.5, 3.0, 0.0, 0.0, 0.15]"
