@@ -13,7 +13,7 @@ AHEAD: Final = 0.05
 """Seconds before a landing at which the prediction is made that is kept."""
 
 
-class Stance(NamedTuple):
+class FootStance(NamedTuple):
     """A foot, by its place in feet.names, that stands from `begin` to `end` (stamps in ns)."""
 
     foot: int
@@ -21,7 +21,7 @@ class Stance(NamedTuple):
     end: int
 
 
-class Landed(NamedTuple):
+class GaitLanding(NamedTuple):
     """A foot that has come to stand at `stamp` (ns), with the first of its points.
 
     `announced` is the stamp that the last prediction made `AHEAD` of it told, None where there was none so early;
@@ -40,19 +40,19 @@ class Gait:
 
     def __init__(self, walking: Walking) -> None:
         self.feet = walking.feet
-        self.landings: list[Landed] = []
+        self.landings: list[GaitLanding] = []
         self.begin = self.end = 0
         """Stamps of the first and the last sample in ns."""
         self.samples = 0
         self._inferred, self._true = _Stances(), _Stances()
 
     @property
-    def stances(self) -> list[Stance]:
+    def stances(self) -> list[FootStance]:
         """As they were inferred."""
         return self._inferred.until(self.end)
 
     @property
-    def true_stances(self) -> list[Stance]:
+    def true_stances(self) -> list[FootStance]:
         """Those that the record tells; none where it tells of none."""
         return self._true.until(self.end)
 
@@ -81,14 +81,14 @@ class Gait:
             impulse = None if landing.impact is None else hypot(*landing.impact.impulses[1])
             errors = [error for ahead, error in landing.history if ahead >= AHEAD]
             told = landing.stamp + round(1e9 * errors[-1]) if errors else None
-            self.landings.append(Landed(foot, landing.stamp, told, landing.speed, impulse))
+            self.landings.append(GaitLanding(foot, landing.stamp, told, landing.speed, impulse))
 
 
 class _Stances:
     """The stances of feet, from whether they stand, sample by sample."""
 
     def __init__(self) -> None:
-        self._ended: list[Stance] = []
+        self._ended: list[FootStance] = []
         self._since: dict[int, int] = {}
 
     def take(self, foot: int, stands: bool, stamp: int) -> None:
@@ -96,11 +96,11 @@ class _Stances:
         if stands:
             self._since.setdefault(foot, stamp)
         elif foot in self._since:
-            self._ended.append(Stance(foot, self._since.pop(foot), stamp))
+            self._ended.append(FootStance(foot, self._since.pop(foot), stamp))
 
     def since(self, foot: int, stamp: int) -> int:
         """When the stance of a foot began that lasts; the stamp given where it does not stand."""
         return self._since.get(foot, stamp)
 
-    def until(self, end: int) -> list[Stance]:
-        return [*self._ended, *[Stance(foot, begin, end) for foot, begin in self._since.items()]]
+    def until(self, end: int) -> list[FootStance]:
+        return [*self._ended, *[FootStance(foot, begin, end) for foot, begin in self._since.items()]]

@@ -13,7 +13,7 @@ from ..prediction.types import Status
 from .inputs import TYPES
 from .run import Run
 
-Statuses = Mapping[Status, int]
+StatusCounts = Mapping[Status, int]
 
 MENDABLE: Final = (
     Status.MALFORMED,
@@ -40,7 +40,7 @@ MISSED: Final = {
 
 
 def why_unpredictable(
-    run: Run, inputs: Mapping[Input, Statuses], names: Mapping[Input, str], scenes: Mapping[str, Scene]
+    run: Run, inputs: Mapping[Input, StatusCounts], names: Mapping[Input, str], scenes: Mapping[str, Scene]
 ) -> str:
     """Why no state could be used, or none as the feet that the bag tells of, in one sentence, or ""."""
     states = {one: counts for one, counts in inputs.items() if one.body is not None and one.kind in STATES}
@@ -94,7 +94,7 @@ def _words(run: Run, one: Input, status: Status) -> str:
 
 
 def remarks(
-    run: Run, inputs: Mapping[Input, Statuses], names: Mapping[Input, str], scenes: Mapping[str, Scene]
+    run: Run, inputs: Mapping[Input, StatusCounts], names: Mapping[Input, str], scenes: Mapping[str, Scene]
 ) -> list[str]:
     """What was left out of the predictions, and what looks wrong in bag or scene, one sentence each."""
     said = _refused(run, inputs, names) + _unnamed_feet(run, inputs, names)
@@ -111,7 +111,7 @@ def remarks(
     return said
 
 
-def _unnamed_feet(run: Run, inputs: Mapping[Input, Statuses], names: Mapping[Input, str]) -> list[str]:
+def _unnamed_feet(run: Run, inputs: Mapping[Input, StatusCounts], names: Mapping[Input, str]) -> list[str]:
     """What tells of feet though the scene names none, one sentence for each body."""
     said: dict[str, str] = {}
     for one in (each for each in inputs if each.body is not None):
@@ -126,7 +126,7 @@ def _unnamed_feet(run: Run, inputs: Mapping[Input, Statuses], names: Mapping[Inp
     return list(said.values())
 
 
-def _refused(run: Run, inputs: Mapping[Input, Statuses], names: Mapping[Input, str]) -> list[str]:
+def _refused(run: Run, inputs: Mapping[Input, StatusCounts], names: Mapping[Input, str]) -> list[str]:
     """Why messages were refused, each topic and reason once."""
     said: dict[tuple[str, Status], str] = {}
     for one, counts in inputs.items():
@@ -139,7 +139,7 @@ def _refused(run: Run, inputs: Mapping[Input, Statuses], names: Mapping[Input, s
     return list(said.values())
 
 
-def total_of(counts: Iterable[Statuses]) -> dict[Status, int]:
+def total_of(counts: Iterable[StatusCounts]) -> dict[Status, int]:
     """The sum of what became of messages, in the order of the statuses."""
     total = sum(map(Counter, counts), Counter[Status]())
     return {status: total[status] for status in Status if total[status]}

@@ -19,6 +19,7 @@ from ..scenarios.truth import ONSET_TOPIC, TRUTH_TOPIC
 from .inputs import TYPES, adapted_topics, find_topics
 from .inputs import remapping as remapping
 from .read import Bag, BagMessage
+from .remarks import StatusCounts as StatusCounts
 from .remarks import remarks, total_of, why_unpredictable
 from .run import Run
 from .stream import NODE as NODE
@@ -31,8 +32,6 @@ if TYPE_CHECKING:
     from ..scenarios.matching import Match
     from ..scenarios.warned import Warned
     from .gait import Gait
-
-Statuses = dict[Status, int]
 
 _TRUTH: Final = (TRUTH_TOPIC, ONSET_TOPIC)
 
@@ -61,14 +60,14 @@ class Result(NamedTuple):
     samples: int
     seconds: float
     settled: tuple[Settled, ...]
-    statuses: Statuses
-    geometry_statuses: Statuses
+    statuses: StatusCounts
+    geometry_statuses: StatusCounts
     notes: tuple[str, ...]
     unpredictable: str
     damaged: str
     truth: Truth | None = None
     truths: Mapping[str, BodyTruth] = MappingProxyType({})
-    inputs: Mapping[str, Statuses] = MappingProxyType({})
+    inputs: Mapping[str, StatusCounts] = MappingProxyType({})
     gaits: Mapping[str, Gait] = MappingProxyType({})
     extent: tuple[int, int] | None = None
     costs: Sequence[float] = ()
@@ -157,7 +156,7 @@ def _readable(messages: Iterator[BagMessage], damage: list[str]) -> Iterator[Bag
         damage.append(str(error))
 
 
-def _counts(by_number: list[int]) -> Statuses:
+def _counts(by_number: list[int]) -> StatusCounts:
     return {status: by_number[status] for status in Status if by_number[status]}
 
 

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from .points import Points
     from .truth import TrueEvents
 
-Told = Callable[[Any, int], Status]
+Take = Callable[[Any, int], Status]
 """Takes a message that asks for no answer, and its log time (ns)."""
 
 DECODERS: Final = {
@@ -91,7 +91,7 @@ class Run:
         self._takers = {topic: self._taker(one) for one, topic in topics.items() if topic not in readers}
         for topic, read in readers.items():
             inputs = {one.kind: one for one, its_topic in topics.items() if its_topic == topic}
-            takes = {kind: self._told(one) for kind, one in inputs.items() if kind != ODOM}
+            takes = {kind: self._taker_of(one) for kind, one in inputs.items() if kind != ODOM}
             self._takers[topic] = partial(self._take_adapted, read, inputs, takes)
         walking = {body: scene.walking for body, scene in scenes.items() if scene.walking is not None}
         if walking:
@@ -142,9 +142,9 @@ class Run:
         if one.kind == ODOM and one.body is not None:
             return partial(self._take_sample, self._streams[one.body], self.statuses[one])
         decode = getattr(messages, DECODERS[one.kind])
-        return partial(self._take_told, decode, self._told(one), self.statuses[one])
+        return partial(self._take_other, decode, self._taker_of(one), self.statuses[one])
 
-    def _told(self, one: Input) -> Told:
+    def _taker_of(self, one: Input) -> Take:
         """What takes a message on an input that asks for no answer."""
         monitor, body = self.monitor, one.body
         if body is None:
@@ -189,8 +189,8 @@ class Run:
             self._drawing.take(stream.body, prediction)
             self._draw(sample.stamp, log_time)
 
-    def _take_told(
-        self, decode: Callable[[bytes], Any], take: Told, counts: list[int], log_time: int, data: bytes
+    def _take_other(
+        self, decode: Callable[[bytes], Any], take: Take, counts: list[int], log_time: int, data: bytes
     ) -> None:
         status = Status.MALFORMED
         with suppress(MalformedMessage):
@@ -198,7 +198,7 @@ class Run:
         counts[status] += 1
 
     def _take_adapted(
-        self, read: Read, inputs: Mapping[str, Input], takes: Mapping[str, Told], log_time: int, data: bytes
+        self, read: Read, inputs: Mapping[str, Input], takes: Mapping[str, Take], log_time: int, data: bytes
     ) -> None:
         """Take a message that has an adapter as the messages on all inputs that it is told to be."""
         state = inputs.get(ODOM)

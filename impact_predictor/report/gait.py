@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from ..bags.gait import AHEAD, Gait, Landed
+from ..bags.gait import AHEAD, Gait, GaitLanding
 from .figure import STYLE, check_figure, save_figure
 from .summary import quantile
 
@@ -63,7 +63,7 @@ class _Row(NamedTuple):
     start: int
     period: float
     colour: str
-    landings: list[Landed]
+    landings: list[GaitLanding]
     true: list[int]
 
 

@@ -17,7 +17,7 @@ from .table import Column, first_stamp, say, show, table_of
 from .tally import ReplayTally
 
 if TYPE_CHECKING:
-    from ..bags.replay import BodyTruth, Result, Settled, Statuses
+    from ..bags.replay import BodyTruth, Result, Settled, StatusCounts
     from ..scenarios.comparison import Truth
     from ..scenarios.warned import Warned
 
@@ -162,12 +162,12 @@ def _of(part: int, whole: int) -> str:
     return f"{part:,}\u00a0of\u00a0{whole:,}" if whole else NONE
 
 
-def _counts(result: Result, body: str) -> Statuses:
+def _counts(result: Result, body: str) -> StatusCounts:
     """What became of the states of a body."""
     return next((result.inputs[name] for kind in STATES if (name := f"{body}/{kind}") in result.inputs), {})
 
 
-def _refused(counts: Statuses) -> int:
+def _refused(counts: StatusCounts) -> int:
     return sum(counts.values()) - counts.get(Status.ACCEPTED, 0) - counts.get(EARLY, 0)
 
 

@@ -68,11 +68,8 @@ def _median_check(rows: list[TouchdownRow], tolerance: float) -> Check:
 
 def _truth_checks(truth: Truth, tolerances: Tolerances) -> Iterator[Check]:
     missed = f"{truth.missed:,} of {counted(truth.touchdowns, 'true touchdown')} missed"
-    flaw = f"{missed}, more than {tolerances.missed} (impact_missed)" if truth.missed > tolerances.missed else ""
-    yield Check("missed touchdowns", flaw, figures={"missed": truth.missed})
-    false = counted(truth.false, "false alarm")
-    flaw = f"{false}, more than {tolerances.false} (impact_false)" if truth.false > tolerances.false else ""
-    yield Check("false alarms", flaw, figures={"false": truth.false})
+    yield _limited("missed touchdowns", "missed", truth.missed, tolerances.missed, missed)
+    yield _limited("false alarms", "false", truth.false, tolerances.false, counted(truth.false, "false alarm"))
     if truth.clear_mode_accuracy is not None:
         accuracy, least = truth.clear_mode_accuracy, tolerances.mode_accuracy
         of = f"of {counted(truth.clear, 'clear mode')}"
@@ -83,15 +80,21 @@ def _truth_checks(truth: Truth, tolerances: Tolerances) -> Iterator[Check]:
         name = "median error against the truth"
         yield _at_most(name, error, tolerances.median_error, "median_error", f"the {name}")
     if truth.median_time_error is not None:
-        wrong, most_wrong = truth.median_time_error, tolerances.time_error
+        wrong, most = truth.median_time_error, tolerances.time_error
         said = f"the times told 20 ms ahead are {wrong * 1e3:.3g} ms wrong in the median"
-        flaw = f"{said}, more than {most_wrong * 1e3:.3g} ms (impact_time_error)" if wrong > most_wrong else ""
-        yield Check("median error of time", flaw, figures={"time_error": wrong})
+        yield _limited("median error of time", "time_error", wrong, most, said, f"{most * 1e3:.3g} ms")
 
 
-def _at_most(name: str, error: float, tolerance: float, key: str, said: str) -> Check:
-    flaw = f"{said} is {percent(error)} %, more than {percent(tolerance)} % (impact_{key})"
-    return Check(name, flaw if error > tolerance else "", figures={"relative_error": error})
+def _at_most(name: str, error: float, most: float, key: str, said: str) -> Check:
+    """A check of a relative error."""
+    said = f"{said} is {percent(error)} %"
+    return _limited(name, key, error, most, said, f"{percent(most)} %")._replace(figures={"relative_error": error})
+
+
+def _limited(name: str, key: str, value: float, most: float, said: str, limit: str = "") -> Check:
+    """A check of a value that has a greatest one, by the setting of that one."""
+    flaw = f"{said}, more than {limit or most} (impact_{key})" if value > most else ""
+    return Check(name, flaw, figures={key: value})
 
 
 def _touchdowns(result: Result, tolerances: Tolerances) -> Iterator[Check]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from glob import glob, has_magic
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,16 +11,32 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from ..bags.find import names_of
-from ..bags.inputs import remapping
+from ..bags.replay import Result, remapping, replay
 from ..errors import InputError
 from ..parameters.file import read_values
+from ..prediction.scene import scenes_of
 from .checks import Check, baseline_check, checks_of
 from .plugin import TOLERANCES, folder_of, path_of, setting
-from .replays import replays_of
 from .tolerances import read_tolerances
 
 if TYPE_CHECKING:
     from ..report.earlier import Earlier
+
+
+_REPLAYS = pytest.StashKey[dict[tuple[Path, Path, tuple[tuple[str, str], ...]], Result]]()
+
+
+def replayed(config: pytest.Config, bag: Path, params: Path, remap: Mapping[str, str]) -> Result:
+    """The replay of a bag by a parameter file, with a remapping of its topics; done once in a session.
+
+    Raises:
+        InputError: one of them cannot be read, or is wrong.
+    """
+    done = config.stash.setdefault(_REPLAYS, {})
+    key = bag.resolve(), params.resolve(), tuple(sorted(remap.items()))
+    if key not in done:
+        done[key] = replay(bag, scenes_of(read_values(params)), remap)
+    return done[key]
 
 
 class CheckItem(pytest.Item):
@@ -55,11 +71,11 @@ class _Bag(pytest.Collector):
             yield CheckItem.from_parent(self, name=check.name, check=check)
 
 
-class BagFile(_Bag, pytest.File):
+class BagFileTests(_Bag, pytest.File):
     """A bag that is one file."""
 
 
-class BagFolder(_Bag, pytest.Directory):
+class BagFolderTests(_Bag, pytest.Directory):
     """A bag that is a folder."""
 
 
@@ -90,12 +106,12 @@ class BagCollection:
             self._names = dict(zip(bags, names_of(bags), strict=True))
         self._remap = remapping(setting(config, "remap"))
         self._tolerances = read_tolerances({name: str(setting(config, name)) for name in TOLERANCES})
-        self._replays = replays_of(config)
+        self._config = config
 
     def checks(self, bag: Path) -> list[Check]:
         """All checks of a bag; what is wrong with one bag keeps no other from being tested."""
         try:
-            result = self._replays.get(bag, self._params, self._remap)
+            result = replayed(self._config, bag, self._params, self._remap)
         except InputError as error:
             return [Check("samples", str(error))]
         checks = checks_of(result, self._tolerances)
@@ -103,18 +119,18 @@ class BagCollection:
             return checks
         return [*checks, baseline_check(result, self._earlier, self._names[bag])]
 
-    def pytest_collect_file(self, file_path: Path, parent: pytest.Collector) -> BagFile | None:
+    def pytest_collect_file(self, file_path: Path, parent: pytest.Collector) -> BagFileTests | None:
         """A bag, where the file is one of them."""
-        return BagFile.from_parent(parent, path=file_path) if file_path in self._bags else None
+        return BagFileTests.from_parent(parent, path=file_path) if file_path in self._bags else None
 
     @pytest.hookimpl(tryfirst=True)
-    def pytest_collect_directory(self, path: Path, parent: pytest.Collector) -> BagFolder | None:
+    def pytest_collect_directory(self, path: Path, parent: pytest.Collector) -> BagFolderTests | None:
         """A bag, where the folder is one of them."""
         if path not in self._bags:
             return None
         # pytest itself has no id for a folder outside of the project.
         nodeid = Path(os.path.relpath(path, parent.config.rootpath)).as_posix()
-        return BagFolder.from_parent(parent, path=path, nodeid=nodeid)
+        return BagFolderTests.from_parent(parent, path=path, nodeid=nodeid)
 
 
 def collect_bags(config: pytest.Config) -> None:
@@ -126,20 +142,20 @@ def collect_bags(config: pytest.Config) -> None:
     Raises:
         UsageError: a setting is wrong, or a pattern fits no bag.
     """
-    told = config.getoption("impact_bag") is not None
+    by_option = config.getoption("impact_bag") is not None
     try:
         bags = _bags(setting(config, "bag"), folder_of(config, "bag"))
         config.pluginmanager.register(BagCollection(config, bags), BagCollection.NAME)
     except InputError as error:
         raise pytest.UsageError(str(error)) from error
     paths_named = config.args_source is config.ArgsSource.ARGS
-    if paths_named and not told:
+    if paths_named and not by_option:
         return
-    others = config.args if paths_named or not told else []
+    others = config.args if paths_named or not by_option else []
     # Whoever gives the id of a test of a bag does not want all of them.
     named = {_absolute(config.invocation_params.dir / arg.partition("::")[0]) for arg in others}
     config.args = [*others, *(str(bag) for bag in bags if bag not in named)]
-    if told:
+    if by_option:
         config.args_source = config.ArgsSource.ARGS
 
 

@@ -5,8 +5,9 @@ It is loaded at every start of pytest, so what reads bags is imported only when 
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, Protocol
 
 import pytest
 
@@ -14,8 +15,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from ..bags.replay import Result
-    from .replays import ImpactReplay, StrPath
 
+StrPath = str | os.PathLike[str]
 SEVERAL: Final = {
     "bag": ("BAG", "test a recorded bag, or all that fit a pattern; may be repeated"),
     "remap": ("FROM:=TO", "topic of an input in the bags, as in odom:=/cube/odom; may be repeated"),
@@ -34,6 +35,18 @@ TOLERANCES: Final = {
     "touchdowns": ("1..", "how many touchdowns a run has: N, N..M, or N.. for at least N"),
 }
 """Defaults of the tolerances, and what they are."""
+
+
+class ImpactReplay(Protocol):
+    """Type of the fixture `impact_replay`."""
+
+    def __call__(self, bag: StrPath, params: StrPath | None = None, remap: Mapping[str, str] | None = None) -> Result:
+        """Replay a bag; without `params`, by the parameter file of `--impact-params` or `impact_params`.
+
+        Raises:
+            InputError: the bag or the parameter file cannot be read, or is wrong.
+            UsageError: there is no parameter file.
+        """
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -61,8 +74,8 @@ def pytest_configure(config: pytest.Config) -> None:
 
 def setting(config: pytest.Config, name: str) -> str | list[str]:
     """An option, or else the setting of the ini-file or its default."""
-    told: str | list[str] | None = config.getoption(f"impact_{name}")
-    return config.getini(f"impact_{name}") if told is None else told
+    given: str | list[str] | None = config.getoption(f"impact_{name}")
+    return config.getini(f"impact_{name}") if given is None else given
 
 
 def folder_of(config: pytest.Config, name: str) -> Path:
@@ -85,7 +98,7 @@ def impact_replay(request: pytest.FixtureRequest) -> ImpactReplay:
     It returns an impact_predictor.bags.replay.Result. Paths are seen from the folder of the test. A bag is replayed
     once in a session, whoever asks for it.
     """
-    from .replays import replays_of
+    from .collection import replayed
 
     config, folder = request.config, request.path.parent
     default = path_of(config, "params")
@@ -94,6 +107,6 @@ def impact_replay(request: pytest.FixtureRequest) -> ImpactReplay:
         file = default if params is None else folder / params
         if file is None:
             raise pytest.UsageError(f"no parameter file for {bag}: give it after the bag, or with --impact-params")
-        return replays_of(config).get(folder / bag, file, remap or {})
+        return replayed(config, folder / bag, file, remap or {})
 
     return replay

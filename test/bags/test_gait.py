@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from impact_predictor.bags.gait import Gait, Landed, Stance
+from impact_predictor.bags.gait import FootStance, Gait, GaitLanding
 from impact_predictor.prediction.scene import Walking
 from impact_predictor.prediction.types import Foot, Landing, Leftover, Prediction, Sample, Score, Status, Touchdown
 
@@ -48,8 +48,8 @@ def test_a_gait_has_the_stances_and_each_landing_as_it_was_announced_50_ms_ahead
     gait.take(answer(400 * MS, (True, False), 390 * MS))
     gait.take(answer(500 * MS, (True, False), 390 * MS))
     assert (gait.begin, gait.end, gait.samples) == (begin, 500 * MS, 9)
-    assert gait.stances == [Stance(1, 182 * MS, 390 * MS), Stance(0, begin, 500 * MS)]
-    assert gait.landings == [Landed(1, 182 * MS, 181 * MS, 0.3, 10.0)]
+    assert gait.stances == [FootStance(1, 182 * MS, 390 * MS), FootStance(0, begin, 500 * MS)]
+    assert gait.landings == [GaitLanding(1, 182 * MS, 181 * MS, 0.3, 10.0)]
     assert gait.true_stances == []
 
 
@@ -58,7 +58,7 @@ def test_a_landing_that_the_end_settles_is_kept_and_one_that_came_too_late_is_no
     gait.take(answer(0, (True, False), 0))
     gait.take(answer(50 * MS, (True, True), 41 * MS))
     gait.end_with([landed("right", 41 * MS, ((0.041, -0.001),))])
-    assert gait.landings == [Landed(1, 41 * MS, None, 0.3, 10.0)]
+    assert gait.landings == [GaitLanding(1, 41 * MS, None, 0.3, 10.0)]
     assert gait.begin == 0
 
 
@@ -67,5 +67,5 @@ def test_the_truth_is_kept_beside() -> None:
     for stamp, stands in ((0, (True, False)), (10, (True, True)), (20, (False, True)), (30, (False, True))):
         gait.tell(stamp, stands)
         gait.take(answer(stamp, (True, False), 0))
-    assert gait.true_stances == [Stance(0, 0, 20), Stance(1, 10, 30)]
+    assert gait.true_stances == [FootStance(0, 0, 20), FootStance(1, 10, 30)]
     assert gait.landings == []

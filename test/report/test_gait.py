@@ -9,7 +9,7 @@ from pathlib import Path
 import matplotlib
 import pytest
 
-from impact_predictor.bags.gait import Gait, Landed
+from impact_predictor.bags.gait import Gait, GaitLanding
 from impact_predictor.errors import InputError
 from impact_predictor.prediction.scene import Walking
 from impact_predictor.prediction.types import Foot, Prediction, Sample, Status
@@ -35,7 +35,7 @@ def gait_of(
             gait.tell(stamp, stands)
         if k % 5 == 0 and k:
             told = stamp + round(error * SECOND) if ahead else None
-            gait.landings.append(Landed(k // 5 % 2, stamp, told, speed, 40.0 * speed))
+            gait.landings.append(GaitLanding(k // 5 % 2, stamp, told, speed, 40.0 * speed))
     return gait
 
 
