@@ -11,10 +11,9 @@ from click.testing import CliRunner, Result
 
 from impact_predictor import Contact, Outcomes, Twist, TwoPointBody, solve_impacts
 from impact_predictor.cli import main
-from impact_predictor.mechanics import invariants, soak
-from impact_predictor.mechanics.invariants import LIMITS, violations
+from impact_predictor.mechanics import invariants
+from impact_predictor.mechanics.invariants import LIMITS, Soak, problem_at, violations
 from impact_predictor.mechanics.random_problems import KINDS, STIFF, random_problems
-from impact_predictor.mechanics.soak import Soak, problem_at
 
 BROKEN = 1
 NAMES = {"Contact": Contact, "Twist": Twist, "TwoPointBody": TwoPointBody, "violations": violations}
@@ -28,7 +27,7 @@ def run(*arguments: str) -> Result:
 @pytest.fixture
 def loose(monkeypatch: pytest.MonkeyPatch) -> None:
     """Limits that nothing exceeds, for tests that are about the report."""
-    monkeypatch.setattr(soak, "LIMITS", dict.fromkeys(LIMITS, np.inf))
+    monkeypatch.setattr(invariants, "LIMITS", dict.fromkeys(LIMITS, np.inf))
 
 
 def wrong(change: dict[str, Any]) -> Any:
@@ -58,7 +57,7 @@ def slipping_out(impulses: Any) -> Any:
     ],
 )
 def test_a_law_that_is_wrong_is_caught(monkeypatch: pytest.MonkeyPatch, change: dict[str, Any], name: str) -> None:
-    monkeypatch.setattr(soak, "violations", lambda body, twist, law: violations(body, twist, law, wrong(change)))
+    monkeypatch.setattr(invariants, "violations", lambda body, twist, law: violations(body, twist, law, wrong(change)))
     result = run("--count", "1700", "--json")
     assert result.exit_code == BROKEN
     assert name in {one["invariant"] for one in json.loads(result.stdout)["invariants"] if one["broken_by"]}
@@ -96,7 +95,7 @@ def test_the_table_names_both_laws_and_the_worst_kind(loose: None) -> None:
 
 
 def test_what_exceeds_its_limit_is_said_in_words(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(soak, "LIMITS", {**dict.fromkeys(LIMITS, np.inf), "momentum": 0.0})
+    monkeypatch.setattr(invariants, "LIMITS", {**dict.fromkeys(LIMITS, np.inf), "momentum": 0.0})
     result = run("--count", "500", "--law", "path")
     assert result.exit_code == BROKEN
     *_, title, line = result.stdout.splitlines()  # of stiff problems the momentum has no limit
@@ -114,7 +113,7 @@ def test_ctrl_c_tells_what_was_found_so_far(loose: None, monkeypatch: pytest.Mon
         yield next(problems)
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(soak, "random_problems", interrupted)
+    monkeypatch.setattr(invariants, "random_problems", interrupted)
     result = run("--count", "1700")
     assert result.exit_code == 130
     assert "\nInterrupted: 100 problems in " in result.stdout
@@ -122,9 +121,9 @@ def test_ctrl_c_tells_what_was_found_so_far(loose: None, monkeypatch: pytest.Mon
 
 def test_a_short_soak_has_problems_of_every_kind(monkeypatch: pytest.MonkeyPatch) -> None:
     seen = []
-    monkeypatch.setattr(soak, "violations", lambda body, twist, law: (None, {}))
+    monkeypatch.setattr(invariants, "violations", lambda body, twist, law: (None, {}))
     monkeypatch.setattr(
-        soak, "random_problems", lambda *how: (seen.append(one.kind) or one for one in random_problems(*how))
+        invariants, "random_problems", lambda *how: (seen.append(one.kind) or one for one in random_problems(*how))
     )
     short = Soak(len(KINDS), 0, ["path"])
     short.run()
@@ -135,7 +134,7 @@ def test_a_violation_that_is_no_number_counts_as_endless(monkeypatch: pytest.Mon
     def all_nan(body: TwoPointBody, twist: Twist, law: str) -> tuple[None, dict[str, Any]]:
         return None, {"work": np.full(np.shape(body.mass), np.nan)}
 
-    monkeypatch.setattr(soak, "violations", all_nan)
+    monkeypatch.setattr(invariants, "violations", all_nan)
     result = run("--count", "50", "--json")
     assert result.exit_code == BROKEN
     work = next(one for one in json.loads(result.stdout)["invariants"] if one["invariant"] == "work")

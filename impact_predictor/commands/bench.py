@@ -15,7 +15,7 @@ from .options import Whole, examples
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from ..mechanics.soak import Soak, Worst
+    from ..mechanics.invariants import Soak, WorstViolation
 
 BROKEN: Final = 1
 """Exit status where an invariant is violated by more than rounding explains."""
@@ -66,7 +66,7 @@ def invariants(count: int, seed: int, law: str, as_json: bool) -> int:
     close contacts, sizes over twelve decades) multiply rounding, so that most of theirs have no limit. Ctrl-C tells
     what was found so far.
     """
-    from ..mechanics.soak import Soak
+    from ..mechanics.invariants import Soak
     from .progress import compiling_is_said, progress
 
     soak = Soak(count, seed, LAWS if law == "both" else (law,))
@@ -134,25 +134,16 @@ def say(soak: Soak, seconds: float, interrupted: bool) -> None:
         click.echo(f"  {worst.invariant}, {worst.law} law: {', '.join(worst.broken_by)}")
 
 
-def table_of(found: list[Worst]) -> Table:
+def table_of(found: list[WorstViolation]) -> Table:
     """The worst violations, one line each."""
-    from ..report.table import plain_table
+    from ..report.table import Column, table_of
 
-    table = plain_table()
-    for header in ("law", "problems", "invariant"):
-        table.add_column(header, no_wrap=True)
-    for header in ("worst violation", "limit"):
-        table.add_column(header, justify="right", no_wrap=True)
-    table.add_column("by a problem of kind", no_wrap=True)
-    for worst, following in zip(found, [*found[1:], None], strict=True):
-        table.add_row(
-            worst.law,
-            "stiff" if worst.stiff else "ordinary",
-            worst.invariant,
-            f"{worst.violation:.2g}",
-            f"{worst.limit:.2g}" if worst.limit < float("inf") else "-",
-            worst.kind,
-            style="bold red" if worst.broken_by else "",
-            end_section=following is not None and (following.law, following.stiff) != (worst.law, worst.stiff),
-        )
-    return table
+    columns = [
+        Column("law", lambda worst: worst.law, left=True),
+        Column("problems", lambda worst: "stiff" if worst.stiff else "ordinary", left=True),
+        Column("invariant", lambda worst: worst.invariant, left=True),
+        Column("worst violation", lambda worst: f"{worst.violation:.2g}"),
+        Column("limit", lambda worst: f"{worst.limit:.2g}" if worst.limit < float("inf") else "-"),
+        Column("by a problem of kind", lambda worst: worst.kind, left=True),
+    ]
+    return table_of(columns, found, style=lambda worst: "bold red" if worst.broken_by else "")

@@ -12,7 +12,7 @@ from .options import Real, examples
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from ..report.experiment import Trial
+    from ..report.experiment import RodTrial
 
 MILLIMETRES: Final = 1e3
 SYMMETRIC: Final = (*range(10, 111, 20), 115, 116, *range(130, 191, 20), 200)
@@ -92,7 +92,7 @@ def experiment(friction: float, angle: float, as_json: bool) -> None:
         console.print(line, highlight=False, soft_wrap=True)
 
 
-def fields(trial: Trial) -> dict[str, object]:
+def fields(trial: RodTrial) -> dict[str, object]:
     """A trial as JSON has it."""
     return {
         "thickness": trial.thickness,
@@ -106,26 +106,24 @@ def fields(trial: Trial) -> dict[str, object]:
     }
 
 
-def table_of(rows: list[list[Trial]]) -> Table:
+def table_of(rows: list[list[RodTrial]]) -> Table:
     """One row for each place of the supports, one column for each thickness.
 
     The last column is what was seen of all but the thinnest, which was seen to rebound everywhere.
     """
-    from ..report.table import plain_table
+    from ..report.table import Column, table_of
 
-    table = plain_table()
-    for header in ("a\nmm", "b\nmm"):
-        table.add_column(header, justify="right", no_wrap=True)
-    for trial in rows[0]:
-        table.add_column(f"predicted\n{trial.thickness * MILLIMETRES:g} mm thick", no_wrap=True)
-    table.add_column("seen", no_wrap=True)
-    for row in rows:
-        place = (f"{distance * MILLIMETRES:g}" for distance in (row[0].a, row[0].b))
-        table.add_row(*place, *map(cell, row), row[0].observed.name)
-    return table
+    thicknesses = tuple(f"predicted\n{trial.thickness * MILLIMETRES:g} mm thick" for trial in rows[0])
+    columns = [
+        Column("a\nmm", lambda row: f"{row[0].a * MILLIMETRES:g}"),
+        Column("b\nmm", lambda row: f"{row[0].b * MILLIMETRES:g}"),
+        Column(thicknesses, lambda row: tuple(map(cell, row)), left=True),
+        Column("seen", lambda row: row[0].observed.name, left=True),
+    ]
+    return table_of(columns, rows)
 
 
-def cell(trial: Trial) -> str:
+def cell(trial: RodTrial) -> str:
     """The predicted mode, how much of the rate is left, and whether that is doubted or not what was seen."""
     from ..mechanics.types import Flag
 

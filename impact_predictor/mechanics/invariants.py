@@ -6,16 +6,18 @@ violation is relative to the terms that it is the sum of; where an invariant doe
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Sequence
+from math import inf
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .batch import Outcomes, solve_impacts
+from .batch import Outcomes, numbers_of, solve_impacts
+from .random_problems import CHUNK, KINDS, STIFF, random_problems
 from .types import Contact, Flag, Twist, TwoPointBody
 
-Numbers = NDArray[np.float64]
+Violations = NDArray[np.float64]
 Solve = Callable[[TwoPointBody, Twist, str], Outcomes]
 
 LIMITS = {
@@ -33,6 +35,9 @@ LIMITS = {
 
 Most are below 1e-15; of 1e8 random impacts a few have a condition number of 1e5."""
 
+EXACT = ("finite", "units")
+"""The invariants that no condition number excuses."""
+
 UNITS = 2.0**20, 2.0**-13, 2.0**7
 """Units of mass, length and time: powers of two, which change no digit."""
 
@@ -44,7 +49,7 @@ UNANSWERED = int(Flag.NO_SOLUTION | Flag.INVALID_INPUT)
 
 def violations(
     body: TwoPointBody, twist: Twist, law: str, solve: Solve = solve_impacts
-) -> tuple[Outcomes, dict[str, Numbers]]:
+) -> tuple[Outcomes, dict[str, Violations]]:
     """The outcomes of problems and, for each of the `LIMITS`, how much they violate it.
 
     The fields of `body` and `twist` may be arrays (...), as for `solve_impacts`; so are the violations.
@@ -85,23 +90,23 @@ def velocity(contact: Contact, twist: Any) -> tuple[Any, Any, Any]:
     return nx * cx + ny * cy, ny * cx - nx * cy, terms
 
 
-def relative(value: Any, size: Any) -> Numbers:
+def relative(value: Any, size: Any) -> Violations:
     """A value as a part of a size; where both are zero it is zero."""
     value, size = np.broadcast_arrays(value, size)
     return np.asarray(np.divide(value, size, out=np.zeros(value.shape), where=size > 0.0))
 
 
-def largest(values: list[Any]) -> Numbers:
+def largest(values: list[Any]) -> Violations:
     return np.asarray(np.maximum.reduce(np.broadcast_arrays(*values)))
 
 
-def not_finite(outcomes: Outcomes) -> Numbers:
+def not_finite(outcomes: Outcomes) -> Violations:
     """1 where a number of an outcome is not finite."""
     numbers = (*parts(outcomes.twist), *np.moveaxis(outcomes.impulses.reshape(*outcomes.mode.shape, 4), -1, 0))
     return np.asarray(~np.isfinite(sum(numbers, start=outcomes.energy_lost)), np.float64)
 
 
-def outside_cones(body: TwoPointBody, outcomes: Outcomes) -> Numbers:
+def outside_cones(body: TwoPointBody, outcomes: Outcomes) -> Violations:
     """How far impulses lie outside of their friction cones (Coulomb): a part of all impulses."""
     size = np.abs(outcomes.impulses).sum((-1, -2))
     found = []
@@ -111,7 +116,7 @@ def outside_cones(body: TwoPointBody, outcomes: Outcomes) -> Numbers:
     return np.maximum(largest(found), 0.0)
 
 
-def momentum_gained(body: TwoPointBody, twist: Twist, outcomes: Outcomes) -> Numbers:
+def momentum_gained(body: TwoPointBody, twist: Twist, outcomes: Outcomes) -> Violations:
     """Change of linear and angular momentum that the impulses do not explain: a part of the terms of the balance."""
     (vx, vy, omega), (wx, wy, after) = twist, parts(outcomes.twist)
     gains = [body.mass * (wx - vx), body.mass * (wy - vy), body.inertia * (after - omega)]
@@ -126,18 +131,18 @@ def momentum_gained(body: TwoPointBody, twist: Twist, outcomes: Outcomes) -> Num
     return np.maximum(linear, relative(abs(gains[2]), sizes[2]))
 
 
-def terms_of(body: TwoPointBody, *twists: Any) -> Numbers:
+def terms_of(body: TwoPointBody, *twists: Any) -> Violations:
     """The size of the terms of the contact velocities (m/s) in several twists, at the contact where it is largest."""
     return largest([sum(velocity(contact, twist)[2] for twist in twists) for _, contact in contacts_of(body)])
 
 
-def approach_left(body: TwoPointBody, twist: Twist, outcomes: Outcomes) -> Numbers:
+def approach_left(body: TwoPointBody, twist: Twist, outcomes: Outcomes) -> Violations:
     """Approach that an impact leaves at a contact: a part of the terms of the contact velocities."""
     approach = largest([-velocity(contact, outcomes.twist)[0] for _, contact in contacts_of(body)])
     return np.maximum(relative(approach, terms_of(body, twist, outcomes.twist)), 0.0)
 
 
-def work_gained(body: TwoPointBody, twist: Twist, outcomes: Outcomes, law: str) -> Numbers:
+def work_gained(body: TwoPointBody, twist: Twist, outcomes: Outcomes, law: str) -> Violations:
     """Work of the impulses on the body relative to its supports, P . (c + c') / 2: a part of the terms of the sum.
 
     It is never positive on the impulse path; in the total law where there is no restitution (Newton's can gain energy).
@@ -156,7 +161,7 @@ def work_gained(body: TwoPointBody, twist: Twist, outcomes: Outcomes, law: str) 
     return np.where(bounces & total & ~plastic, 0.0, np.maximum(relative(work, size), 0.0))
 
 
-def energy_unexplained(body: TwoPointBody, twist: Twist, outcomes: Outcomes) -> Numbers:
+def energy_unexplained(body: TwoPointBody, twist: Twist, outcomes: Outcomes) -> Violations:
     """Difference between the energy lost and the loss of kinetic energy, where supports rest: a part of their terms."""
     before, after = (
         0.5 * (body.mass * (vx * vx + vy * vy) + body.inertia * omega * omega)
@@ -175,7 +180,7 @@ def supports_move(body: TwoPointBody) -> NDArray[np.bool_]:
     return np.asarray(largest(speeds) > 0.0)
 
 
-def apart(body: TwoPointBody, twist: Twist, one: Any, other: Any) -> Numbers:
+def apart(body: TwoPointBody, twist: Twist, one: Any, other: Any) -> Violations:
     """How far two twists after the impact are apart at the contacts: a part of the terms of the contact velocities."""
     found = []
     for _, contact in contacts_of(body):
@@ -184,7 +189,7 @@ def apart(body: TwoPointBody, twist: Twist, one: Any, other: Any) -> Numbers:
     return relative(largest(found), terms_of(body, twist, one, other))
 
 
-def changed_by_units(body: TwoPointBody, twist: Twist, outcomes: Outcomes, law: str, solve: Solve) -> Numbers:
+def changed_by_units(body: TwoPointBody, twist: Twist, outcomes: Outcomes, law: str, solve: Solve) -> Violations:
     """What other units of mass, length and time change in the outcome."""
     mass, length, time = UNITS
     speed = length / time
@@ -200,7 +205,7 @@ def changed_by_units(body: TwoPointBody, twist: Twist, outcomes: Outcomes, law: 
     return apart(body, twist, outcomes.twist, (vx / speed, vy / speed, omega * time))
 
 
-def changed_by_mirror(body: TwoPointBody, twist: Twist, outcomes: Outcomes, law: str, solve: Solve) -> Numbers:
+def changed_by_mirror(body: TwoPointBody, twist: Twist, outcomes: Outcomes, law: str, solve: Solve) -> Violations:
     """What a mirror (x to -x) changes in the outcome, where it is unique: of several the laws take + before -."""
 
     def mirrored(contact: Contact) -> Contact:
@@ -215,7 +220,7 @@ def changed_by_mirror(body: TwoPointBody, twist: Twist, outcomes: Outcomes, law:
     return np.where(unique, apart(body, twist, outcomes.twist, (-vx, vy, -omega)), 0.0)
 
 
-def jump(body: TwoPointBody, twist: Twist, outcomes: Outcomes, law: str, solve: Solve) -> Numbers:
+def jump(body: TwoPointBody, twist: Twist, outcomes: Outcomes, law: str, solve: Solve) -> Violations:
     """How far the outcome moves when friction, inertia and, where the supports rest, the place of B change by a `STEP`.
 
     It may jump where it is not unique or a law has no answer, and where the path jams, which sets in suddenly.
@@ -233,3 +238,88 @@ def jump(body: TwoPointBody, twist: Twist, outcomes: Outcomes, law: str, solve: 
     sudden = int(Flag.JAMMED | Flag.LAST_RESORT | Flag.NO_SOLUTION | Flag.INVALID_INPUT)
     steady = outcomes.unique & others.unique & (((outcomes.flags | others.flags) & sudden) == 0)
     return np.where(steady, apart(body, twist, outcomes.twist, others.twist), 0.0)
+
+
+class WorstViolation(NamedTuple):
+    """The worst violation of an invariant by a law, and the problem that made it; no problem where there was none.
+
+    Of stiff kinds of problems or of the others. `broken_by` are those that violate it by more than rounding explains.
+    """
+
+    invariant: str
+    law: str
+    stiff: bool
+    violation: float = 0.0
+    kind: str = ""
+    body: TwoPointBody | None = None
+    twist: Twist | None = None
+    broken_by: tuple[str, ...] = ()
+
+    @property
+    def limit(self) -> float:
+        """How large a violation rounding explains: any one where a stiff problem multiplies it."""
+        return inf if self.stiff and self.invariant not in EXACT else LIMITS[self.invariant]
+
+    @property
+    def replay(self) -> str:
+        """Python that computes the violation again, to the last bit."""
+        return f"violations({self.body!r}, {self.twist!r}, {self.law!r})[1][{self.invariant!r}]"
+
+
+class Soak:
+    """Random problems of all kinds through `laws`: the `worst` violations so far, and how many problems are `done`."""
+
+    def __init__(self, count: int, seed: int, laws: Sequence[str]) -> None:
+        self.count, self.seed = count, seed
+        self.done = 0
+        self.worst = {
+            (law, stiff, name): WorstViolation(name, law, stiff)
+            for law in laws
+            for stiff in (False, True)
+            for name in LIMITS
+        }
+        self.laws = tuple(laws)
+
+    def run(self, tell: Callable[[int], object] = lambda done: None) -> None:
+        """Solve the problems; `tell` is told now and then how many are done. What was found stays if it is stopped."""
+        # Every kind has its turn in a short soak too.
+        chunk = min(CHUNK, -(-self.count // len(KINDS)))
+        for kind, body, twist in random_problems(self.seed, self.count, chunk):
+            for law in self.laws:
+                # Sizes over many decades overflow in sums of squares; what is not a number then counts as a violation.
+                with np.errstate(all="ignore"):
+                    _, found = violations(body, twist, law)
+                for name, values in found.items():
+                    self._take(self.worst[law, kind in STIFF, name], kind, values, body, twist)
+            self.done += np.size(body.mass)
+            tell(self.done)
+
+    def _take(self, worst: WorstViolation, kind: str, values: Any, body: TwoPointBody, twist: Twist) -> None:
+        values = np.where(np.isnan(values), inf, values)
+        i = int(np.argmax(values))
+        violation = float(values[i])
+        if violation > worst.limit and kind not in worst.broken_by:
+            worst = worst._replace(broken_by=(*worst.broken_by, kind))
+        if violation > worst.violation:
+            one_body, one_twist = problem_at(body, twist, i)
+            worst = worst._replace(violation=violation, kind=kind, body=one_body, twist=one_twist)
+        self.worst[worst.law, worst.stiff, worst.invariant] = worst
+
+    @property
+    def broken(self) -> list[WorstViolation]:
+        """The invariants that are violated by more than rounding explains."""
+        return [worst for worst in self.worst.values() if worst.broken_by]
+
+
+def problem_at(body: TwoPointBody, twist: Twist, i: int) -> tuple[TwoPointBody, Twist]:
+    """One of many problems, in plain numbers."""
+
+    def one(value: Any) -> float:
+        return float(value if np.ndim(value) == 0 else value[i])
+
+    def contact(many: Contact) -> Contact:
+        x, y, friction, nx, ny, restitution, ux, uy = map(one, numbers_of(many))
+        return Contact(x, y, friction, (nx, ny), restitution, (ux, uy))
+
+    old = None if body.old is None else contact(body.old)
+    return TwoPointBody(one(body.mass), one(body.inertia), old, contact(body.new)), Twist(*map(one, twist))

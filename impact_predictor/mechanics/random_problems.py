@@ -9,7 +9,7 @@ import numpy as np
 
 from .types import Contact, Twist, TwoPointBody
 
-Numbers = Any
+Drawn = Any
 """An array (count,) in the place of a number."""
 
 CHUNK = 100_000
@@ -24,14 +24,14 @@ class Problems(NamedTuple):
     twist: Twist
 
 
-class Geometry(NamedTuple):
+class ContactPair(NamedTuple):
     """Square of the radius of gyration; places of A and B from the mass centre; angles of their normals from y."""
 
-    square: Numbers
-    old: tuple[Numbers, Numbers]
-    new: tuple[Numbers, Numbers]
-    old_angle: Numbers
-    new_angle: Numbers
+    square: Drawn
+    old: tuple[Drawn, Drawn]
+    new: tuple[Drawn, Drawn]
+    old_angle: Drawn
+    new_angle: Drawn
 
 
 class Draw:
@@ -40,106 +40,106 @@ class Draw:
     def __init__(self, source: np.random.Generator, count: int) -> None:
         self.source, self.count = source, count
 
-    def uniform(self, low: float, high: float) -> Numbers:
+    def uniform(self, low: float, high: float) -> Drawn:
         return self.source.uniform(low, high, self.count)
 
-    def decades(self, low: float, high: float) -> Numbers:
-        """Numbers between 10**low and 10**high, whose logarithms are uniform."""
+    def decades(self, low: float, high: float) -> Drawn:
+        """Drawn between 10**low and 10**high, whose logarithms are uniform."""
         return np.asarray(10.0 ** self.uniform(low, high))
 
-    def chance(self, part: float) -> Numbers:
+    def chance(self, part: float) -> Drawn:
         """1 in this part of the cases, else 0."""
         return np.asarray(self.source.random(self.count) < part, np.float64)
 
-    def sign(self) -> Numbers:
+    def sign(self) -> Drawn:
         return 2.0 * self.chance(0.5) - 1.0
 
-    def pick(self, *values: float) -> Numbers:
+    def pick(self, *values: float) -> Drawn:
         return self.source.choice(values, self.count)
 
-    def speed(self) -> Numbers:
+    def speed(self) -> Drawn:
         return self.uniform(-2.0, 2.0)
 
-    def wild(self) -> Numbers:
-        """Numbers of both signs over twelve decades, and zeros."""
+    def wild(self) -> Drawn:
+        """Drawn of both signs over twelve decades, and zeros."""
         return self.decades(-6.0, 6.0) * self.sign() * self.chance(0.9)
 
 
-def plate(draw: Draw) -> Geometry:
+def plate(draw: Draw) -> ContactPair:
     """A rectangle on a floor."""
     a = draw.decades(-1.0, 1.0)
     height = a * draw.decades(-2.0, 1.0)
-    return Geometry((a * a + height * height) / 3.0, (-a, -height), (a, -height), 0.0 * a, 0.0 * a)
+    return ContactPair((a * a + height * height) / 3.0, (-a, -height), (a, -height), 0.0 * a, 0.0 * a)
 
 
-def rod(draw: Draw) -> Geometry:
+def rod(draw: Draw) -> ContactPair:
     """A rod on two supports."""
     length = draw.decades(-1.0, 1.0)
     a, b, height = (0.5 * length * draw.decades(low, 0.0) for low in (-2.0, -2.0, -4.0))
-    return Geometry(length * length / 12.0, (-a, -height), (b, -height), 0.0 * a, 0.0 * a)
+    return ContactPair(length * length / 12.0, (-a, -height), (b, -height), 0.0 * a, 0.0 * a)
 
 
-def cylinder(draw: Draw) -> Geometry:
+def cylinder(draw: Draw) -> ContactPair:
     """A cylinder between two edges."""
     radius, old, new = draw.decades(-1.0, 1.0), -draw.uniform(0.01, 1.56), draw.uniform(0.01, 1.56)
     old_at, new_at = ((radius * np.sin(angle), -radius * np.cos(angle)) for angle in (old, new))
-    return Geometry(radius * radius * draw.uniform(0.1, 1.0), old_at, new_at, old, new)
+    return ContactPair(radius * radius * draw.uniform(0.1, 1.0), old_at, new_at, old, new)
 
 
-def floor(draw: Draw) -> Geometry:
+def floor(draw: Draw) -> ContactPair:
     """Any body on a floor."""
     a, b, height = (draw.uniform(0.02, 2.0) for _ in range(3))
-    return Geometry(draw.uniform(0.01, 2.0), (-a, -height), (b, -height), 0.0 * a, 0.0 * a)
+    return ContactPair(draw.uniform(0.01, 2.0), (-a, -height), (b, -height), 0.0 * a, 0.0 * a)
 
 
-def step(draw: Draw) -> Geometry:
+def step(draw: Draw) -> ContactPair:
     """B higher or lower than A, its tangent through A."""
     square, old, (b, height), angle, _ = floor(draw)
     rise = draw.uniform(-1.0, 1.0)
-    return Geometry(square, old, (b, height + rise), angle, np.arctan2(rise, b - old[0]))
+    return ContactPair(square, old, (b, height + rise), angle, np.arctan2(rise, b - old[0]))
 
 
-def wedge(draw: Draw) -> Geometry:
+def wedge(draw: Draw) -> ContactPair:
     """A on a floor, B anywhere ahead on a slope."""
     square, old, (b, _), angle, _ = floor(draw)
-    return Geometry(square, old, (b, draw.uniform(-2.0, 0.5)), angle, draw.uniform(-1.5, 1.5))
+    return ContactPair(square, old, (b, draw.uniform(-2.0, 0.5)), angle, draw.uniform(-1.5, 1.5))
 
 
-def tilted(draw: Draw) -> Geometry:
+def tilted(draw: Draw) -> ContactPair:
     """Two contacts anywhere, with any normals."""
     return wedge(draw)._replace(old_angle=draw.uniform(-np.pi, np.pi), new_angle=draw.uniform(-np.pi, np.pi))
 
 
-def slender(draw: Draw) -> Geometry:
+def slender(draw: Draw) -> ContactPair:
     """On a floor or a slope, lengths over eight decades."""
     square, a, b, height, drop = (draw.decades(-4.0, 4.0) for _ in range(5))
     sloped = draw.chance(0.5)
     drop = np.where(sloped > 0.0, drop, height)
-    return Geometry(square, (-a, -height), (b, -drop), 0.0 * a, sloped * draw.uniform(-1.5, 1.5))
+    return ContactPair(square, (-a, -height), (b, -drop), 0.0 * a, sloped * draw.uniform(-1.5, 1.5))
 
 
-def close(draw: Draw) -> Geometry:
+def close(draw: Draw) -> ContactPair:
     """Contacts nearly at one place."""
     tilt = tilted(draw)
     gap, (x, y) = draw.decades(-9.0, -1.0), tilt.old
     return tilt._replace(new=(x + gap * draw.uniform(-1.0, 1.0), y + gap * draw.uniform(-1.0, 1.0)))
 
 
-def parallel(draw: Draw) -> Geometry:
+def parallel(draw: Draw) -> ContactPair:
     """Normals nearly parallel, or nearly opposed."""
     tilt = tilted(draw)
     turn = draw.decades(-12.0, -1.0) * draw.sign() * draw.chance(0.8)
     return tilt._replace(new_angle=tilt.old_angle + turn + np.pi * draw.chance(0.5))
 
 
-def extreme(draw: Draw) -> Geometry:
+def extreme(draw: Draw) -> ContactPair:
     """Every length over twelve decades."""
     ax, ay, bx, by = (draw.wild() for _ in range(4))
     old, new = (draw.pick(0.0, 0.0, 1e-9, 0.5, -1.2, np.pi / 2, np.pi) for _ in range(2))
-    return Geometry(draw.decades(-12.0, 12.0), (ax, ay), (bx, by), old, new)
+    return ContactPair(draw.decades(-12.0, 12.0), (ax, ay), (bx, by), old, new)
 
 
-KINDS: dict[str, tuple[Callable[[Draw], Geometry], str]] = {
+KINDS: dict[str, tuple[Callable[[Draw], ContactPair], str]] = {
     "plate": (plate, "turns"),
     "rod": (rod, "turns"),
     "cylinder": (cylinder, "turns"),
@@ -205,7 +205,7 @@ def problems_of(kind: str, source: np.random.Generator, count: int) -> Problems:
     return Problems(kind, body, Twist(vx, vy, omega))
 
 
-def frictions(draw: Draw, shape: Callable[[Draw], Geometry]) -> tuple[Numbers, Numbers]:
+def frictions(draw: Draw, shape: Callable[[Draw], ContactPair]) -> tuple[Drawn, Drawn]:
     """Friction at A and B, none in some cases and often the same at both: up to 4, or over decades."""
     if shape in (slender, extreme):
         old, new = (draw.decades(-4.0, 4.0) * draw.chance(0.9) for _ in range(2))

@@ -31,7 +31,7 @@ VERY_SMALL: Final = 0.01
 """m: with the old support about this near to the middle, and the new one farther, the rod turned back."""
 
 
-class Trial(NamedTuple):
+class RodTrial(NamedTuple):
     """One rod over two supports at `a` and `b` from its middle (m).
 
     `gravity_share` is the impulse of gravity while the contact lasts, as a part of the impulse at the new support.
@@ -55,7 +55,7 @@ class Trial(NamedTuple):
         return bool(self.outcome.flags & (Flag.THIN_BODY | Flag.SLOW_IMPACT))
 
 
-def trial(thickness: float, a: float, b: float, friction: float, angle: float) -> Trial:
+def trial(thickness: float, a: float, b: float, friction: float, angle: float) -> RodTrial:
     """Release a rod at rest, its new support `angle` degrees below it, and let it strike. Lengths in m.
 
     The mass plays no part. The old support holds the rod without slip until the impact, as it did in the experiment.
@@ -65,7 +65,7 @@ def trial(thickness: float, a: float, b: float, friction: float, angle: float) -
     outcome = solve_impact(body, before)
     (_, _), (normal, _) = outcome.impulses
     weight = body.mass * VALIDITY.gravity * VALIDITY.contact_time
-    return Trial(
+    return RodTrial(
         thickness,
         a,
         b,

@@ -18,7 +18,7 @@ from impact_predictor.prediction.types import Leftover
 from impact_predictor.report.page import found as module
 from impact_predictor.report.page.compared import MANY
 from impact_predictor.report.page.document import part_words, time_words
-from impact_predictor.report.page.found import Answer, Kept
+from impact_predictor.report.page.found import BagAnswer, Kept
 from impact_predictor.report.page.replay import (
     headlines_of,
     lead_of,
@@ -35,7 +35,7 @@ ALL = [TRUE, WALK, TOSSES, UNREADABLE]
 WALK_FOUND = WALK | {"truth": {"touchdowns": 2, "missed": 0, "false": 0, "unresolved": 0}}
 
 
-def read(answers: Sequence[Answer], values: dict[str, Any] | None = None) -> PageReader:
+def read(answers: Sequence[BagAnswer], values: dict[str, Any] | None = None) -> PageReader:
     """The page of some answers, without the script of plotly."""
     return PageReader(page_of_replay(answers, values, script=""))
 

@@ -28,9 +28,6 @@ from .measure import IMPACT, AccuracyScene, Method
 FINEST: Final = 1e-7
 """Tolerance of the reference where a body slips across the plane, too."""
 
-STAYS: Final = 1e-2
-"""Of the contact speeds before the impact: slower contacts rest, for methods that tell no mode."""
-
 
 class Struck(NamedTuple):
     """A body and its twist right before the impact.
@@ -316,26 +313,3 @@ def error_of_twist(strike: Struck, after: Aftermath, reference: Aftermath) -> fl
     apart = [one - other for one, other in zip(after.twist, reference.twist, strict=True)]
     before = strike.twist
     return hypot(apart[0], apart[1], rho * apart[2]) / hypot(before.vx, before.vy, rho * before.omega)
-
-
-def is_wrong(strike: Struck, after: Aftermath, reference: Aftermath) -> bool:
-    """Whether the mode is another one."""
-    return (mode_seen(strike, after.twist) if after.mode is None else after.mode) != reference.mode
-
-
-def mode_seen(strike: Struck, twist: Twist) -> Mode:
-    """The mode that the contact velocities after an impact show."""
-    assert strike.body.old is not None
-    before, after = (
-        [(v.vx - v.omega * one.y, v.vy + v.omega * one.x, one.normal) for one in (strike.body.old, strike.body.new)]
-        for v in (strike.twist, twist)
-    )
-    rest = STAYS * sum(abs(vx) + abs(vy) for vx, vy, _ in before)
-    (lifts_old, slips_old), (lifts, slips) = (
-        (nx * vx + ny * vy > rest, abs(ny * vx - nx * vy) > rest) for vx, vy, (nx, ny) in after
-    )
-    if lifts:
-        return Mode.FLIGHT if lifts_old else Mode.BACK_PIVOT
-    if lifts_old:
-        return Mode.PIVOT_SLIDE if slips else Mode.PIVOT
-    return Mode.SLIDE if slips or slips_old else Mode.STOP

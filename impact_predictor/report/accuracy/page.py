@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from itertools import groupby
 from math import inf
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from ...wording import duration
 from ..modes import PALETTE
@@ -17,14 +17,18 @@ from ..page.document import (
     Headline,
     PageTable,
     Section,
+    marks,
     page,
     part_words,
     plot,
-    safe,
     script_inside,
+    titled,
     write_html,
 )
 from .measure import ALL_SCENES, IMPACT, TOUCHDOWN, error_of
+
+if TYPE_CHECKING:
+    from plotly.graph_objects import Figure as PlotlyFigure
 
 QUESTIONS: Final = {
     TOUCHDOWN: ("The next touchdown", "when, and with which twist, the next contact strikes"),
@@ -91,7 +95,7 @@ def question(report: Mapping[str, Any], name: str) -> Section | None:
     )
     caption = f"Errors below {LEAST:g} stand there. Click a name to hide its method, point at a mark for more."
     chart = Chart("Error against run time", _picture(rows, scenes), caption)
-    return Section(name, title, [said], [_choices(report, name, scenes), chart, _numbers(rows, scenes)])
+    return Section(name, title, [said], [_choices(report, name, scenes), chart])
 
 
 def _choices(report: Mapping[str, Any], name: str, scenes: Mapping[str, str]) -> PageTable:
@@ -112,50 +116,19 @@ def _choice(one: Mapping[str, Any]) -> Cell:
     return Cell(one["method"], ", ".join(filter(None, (one["setting"], _us(one["us"])))))
 
 
-def _picture(rows: Sequence[Mapping[str, Any]], scenes: Mapping[str, str]) -> Any:
+def _picture(rows: Sequence[Mapping[str, Any]], scenes: Mapping[str, str]) -> PlotlyFigure:
     traces = []
     for number, family in enumerate(dict.fromkeys(row["family"] for row in rows)):
-        mine = [row for row in rows if row["family"] == family and error_of(row) < inf]
-        traces.append(
-            {
-                "type": "scatter",
-                "mode": "markers",
-                "name": safe(family),
-                "x": [row["us"] for row in mine],
-                "y": [max(error_of(row), LEAST) for row in mine],
-                "text": [safe(f"{_name(row)}\n{scenes[row['scene']]}") for row in mine],
-                "hovertemplate": "%{text}<br>%{x:.3g} us, error %{y:.2g}<extra></extra>",
-                "marker": {
-                    "size": 10,
-                    "color": PALETTE[number % len(PALETTE)],
-                    "symbol": SYMBOLS[number % len(SYMBOLS)],
-                },
-            }
-        )
-    axis = {"type": "log", "exponentformat": "power", "dtick": 1}
-    return plot(
-        traces,
-        height=480,
-        margin={"l": 80, "r": 16, "t": 60, "b": 48},
-        xaxis={"title": {"text": "time of one prediction, us"}, **axis},
-        yaxis={"title": {"text": "relative error, 90 % are below"}, **axis, "dtick": 2},
-    )
-
-
-def _numbers(rows: Sequence[Mapping[str, Any]], scenes: Mapping[str, str]) -> PageTable:
-    cells: list[list[Cell | str]] = [
-        [
-            scenes[row["scene"]],
-            Cell(row["method"], row["setting"]),
-            _us(row["us"]),
-            *(_error(row[f"{kind}_error_90"]) for kind in ("time", "twist")),
-            "–" if row["wrong_modes"] is None else part_words(row["wrong_modes"]),
-            f"{row['failed']} of {row['count']}",
+        points = [
+            (row["us"], max(error, LEAST), f"{_name(row)}\n{scenes[row['scene']]}\n{_us(row['us'])}, error {error:.2g}")
+            for row in rows
+            if row["family"] == family and (error := error_of(row)) < inf
         ]
-        for row in rows
-    ]
-    head = ["scene", "method", "run time", "time, 90 % below", "twist, 90 % below", "wrong mode", "no answer"]
-    return PageTable(head, cells, words=2, folded="All numbers")
+        look = {"size": 10, "color": PALETTE[number % len(PALETTE)], "symbol": SYMBOLS[number]}
+        traces += [marks(family, points, marker=look)] if points else []
+    log = {"type": "log", "exponentformat": "power"}
+    across = titled("time of one prediction, us", dtick=1, **log)
+    return plot(traces, 480, xaxis=across, yaxis=titled("relative error, 90 % are below", dtick=2, **log))
 
 
 def measured(report: Mapping[str, Any]) -> Section | None:
@@ -195,7 +168,3 @@ def _name(row: Mapping[str, Any]) -> str:
 
 def _us(us: float) -> str:
     return duration(1e-6 * us)
-
-
-def _error(error: float | None) -> str:
-    return "–" if error is None else f"{error:.2g}"

@@ -42,14 +42,14 @@ class FallingBody(NamedTuple):
     gravity: Vector = GRAVITY
 
 
-class Arrival(NamedTuple):
+class ToldTouchdown(NamedTuple):
     """A touchdown: the time until then in s, and the twist of the mass centre right before it strikes."""
 
     time: float
     twist: Twist
 
 
-class Outline(NamedTuple):
+class FallingShape(NamedTuple):
     """A body seen at its touchdown: A lies `a` behind, B `b` ahead of and both `height` below the mass centre (m)."""
 
     a: float
@@ -65,25 +65,24 @@ class Outline(NamedTuple):
         return FallingBody(state, ((-self.a, -self.height), (self.b, -self.height)), 0, self.rho_squared, friction)
 
 
-def rectangle(length: float, height: float) -> Outline:
+def rectangle(length: float, height: float) -> FallingShape:
     """A homogeneous plate on its long or short side."""
-    return Outline(0.5 * length, 0.5 * length, 0.5 * height, (length * length + height * height) / 12.0)
+    return FallingShape(0.5 * length, 0.5 * length, 0.5 * height, (length * length + height * height) / 12.0)
 
 
-ROD: Final = Outline(0.1, 0.1, 0.005, 0.4**2 / 12.0)
 CRATE: Final = rectangle(1.0, 0.6)
-CYLINDER: Final = Outline(0.1 * sin(0.7), 0.1 * sin(0.7), 0.1 * cos(0.7), 0.5 * 0.1**2)
+CYLINDER: Final = FallingShape(0.1 * sin(0.7), 0.1 * sin(0.7), 0.1 * cos(0.7), 0.5 * 0.1**2)
 
 
-def turning(outline: Outline, source: Random) -> FallingBody:
+def turning(shape: FallingShape, source: Random) -> FallingBody:
     """A fall about A: of a body that was at rest between a twentieth and nine tenths of the way to its balance."""
-    balance = atan2(outline.a, outline.height)
-    arm = hypot(outline.a, outline.height)
-    stiffness = -GRAVITY[1] * arm / (outline.rho_squared + arm * arm)
+    balance = atan2(shape.a, shape.height)
+    arm = hypot(shape.a, shape.height)
+    stiffness = -GRAVITY[1] * arm / (shape.rho_squared + arm * arm)
     rest = balance * source.uniform(0.05, 0.9)
     angle = rest * source.choice((1.0, source.uniform(0.1, 0.95), source.uniform(0.1, 0.95)))
     speed = sqrt(2.0 * stiffness * max(0.0, cos(balance - rest) - cos(balance - angle)))
-    return outline.falling(angle, speed if source.random() < 0.1 else -speed)
+    return shape.falling(angle, speed if source.random() < 0.1 else -speed)
 
 
 def leaving_balance(source: Random) -> FallingBody:
@@ -106,11 +105,6 @@ def thrown(source: Random) -> FallingBody:
 
 
 SCENES: Final[dict[str, tuple[str, str, Callable[[Random], FallingBody]]]] = {
-    "rod": (
-        "Rod over two supports",
-        "A rod of 0.4 m turns about one of two supports, 0.1 m from its middle, and falls onto the other.",
-        partial(turning, ROD),
-    ),
     "plate": (
         "Crate on a floor",
         "A crate of 1 m by 0.6 m has been tipped about an edge and falls back.",
@@ -171,7 +165,7 @@ def gap(fall: FallingBody, state: Any) -> float:
     return float(state[1]) + min(s * x + c * y for x, y in others)
 
 
-def integrated(fall: FallingBody, tolerance: float) -> Arrival | None:
+def integrated(fall: FallingBody, tolerance: float) -> ToldTouchdown | None:
     """scipy's DOP853 up to the event that a point touches."""
 
     def rates(_: float, state: Any) -> Any:
@@ -184,10 +178,10 @@ def integrated(fall: FallingBody, tolerance: float) -> Arrival | None:
     found = solve_ivp(rates, (0.0, HORIZON), fall.state, "DOP853", rtol=tolerance, atol=tolerance, events=touches)
     if not found.t_events[0].size:
         return None
-    return Arrival(float(found.t_events[0][0]), Twist(*found.y_events[0][0][3:].tolist()))
+    return ToldTouchdown(float(found.t_events[0][0]), Twist(*found.y_events[0][0][3:].tolist()))
 
 
-def reference_of(fall: FallingBody) -> Arrival:
+def reference_of(fall: FallingBody) -> ToldTouchdown:
     """The touchdown to 13 digits: the event of the integration, then Newton's method on whole integrations."""
     found = integrated(fall, FINEST)
     assert found is not None
@@ -204,10 +198,10 @@ def reference_of(fall: FallingBody) -> Arrival:
         step = 1e-6
         ahead = np.array(end) + step * np.array([*end[3:], *accelerations(fall, end)])
         time -= gap(fall, end) * step / (gap(fall, ahead) - gap(fall, end))
-    return Arrival(time, Twist(*end[3:].tolist()))
+    return ToldTouchdown(time, Twist(*end[3:].tolist()))
 
 
-def extrapolated(fall: FallingBody, accelerated: bool) -> Arrival | None:
+def extrapolated(fall: FallingBody, accelerated: bool) -> ToldTouchdown | None:
     """The first root of the parabolas of the gaps, with their rates of now and, if so, their accelerations of now."""
     state = fall.state
     ax, ay, alpha = accelerations(fall, state) if accelerated else (0.0, 0.0, 0.0)
@@ -220,7 +214,7 @@ def extrapolated(fall: FallingBody, accelerated: bool) -> Arrival | None:
             first = min(first, _descent(state.y + y, state.vy + omega * x, bend))
     if first == inf:
         return None
-    return Arrival(first, Twist(state.vx + ax * first, state.vy + ay * first, omega + alpha * first))
+    return ToldTouchdown(first, Twist(state.vx + ax * first, state.vy + ay * first, omega + alpha * first))
 
 
 def _descent(height: float, rate: float, acceleration: float) -> float:
@@ -230,10 +224,10 @@ def _descent(height: float, rate: float, acceleration: float) -> float:
     return 2.0 * height / down if down > 0.0 else inf
 
 
-def own(fall: FallingBody) -> Arrival | None:
+def own(fall: FallingBody) -> ToldTouchdown | None:
     """The program's own predictor."""
     end = next_touchdown(*fall, tolerance=ACCURACY)
-    return Arrival(end.time, Twist(end.state.vx, end.state.vy, end.state.omega)) if end.point >= 0 else None
+    return ToldTouchdown(end.time, Twist(end.state.vx, end.state.vy, end.state.omega)) if end.point >= 0 else None
 
 
 FAMILIES: Final = {
@@ -258,7 +252,7 @@ USED: Final = ("next_touchdown", f"tolerance = {ACCURACY:g}")
 """What the node uses."""
 
 
-def errors_of(fall: FallingBody, answer: Arrival, reference: Arrival) -> tuple[float, float]:
+def errors_of(fall: FallingBody, answer: ToldTouchdown, reference: ToldTouchdown) -> tuple[float, float]:
     """Error of the time, relative to it, and of the twist at the touchdown, relative to its size."""
     (vx, vy, omega), rho = reference.twist, sqrt(fall.rho_squared)
     wx, wy, turning = answer.twist

@@ -14,7 +14,7 @@ from ..modes import MODES
 from ..summary import quantile
 from . import found
 from .document import GREY, Cell, Chart, PageTable, Section, marks, part_words, plot, titled, within_words
-from .found import Answer
+from .found import BagAnswer
 from .timeline import in_order, look_of
 
 ROWS: Final = 100
@@ -24,7 +24,7 @@ MANY: Final = 500
 """Touchdowns above which squares count them."""
 
 
-def velocities(answers: Sequence[Answer]) -> Section | None:
+def velocities(answers: Sequence[BagAnswer]) -> Section | None:
     """Predicted against measured velocities right after the touchdowns; None where none were measured."""
     rows = list(_compared(answers))
     if not rows:
@@ -56,7 +56,7 @@ def velocities(answers: Sequence[Answer]) -> Section | None:
     return Section("velocities", "Predicted against measured velocities", said, [*charts, _worst(rows)])
 
 
-def _compared(answers: Sequence[Answer]) -> Iterable[tuple[str, Answer]]:
+def _compared(answers: Sequence[BagAnswer]) -> Iterable[tuple[str, BagAnswer]]:
     """Every touchdown that is compared, with what it is called."""
     names = found.names_of(answers)
     several = len({one["body"] for one in found.scored_of(answers)}) > 1
@@ -67,7 +67,7 @@ def _compared(answers: Sequence[Answer]) -> Iterable[tuple[str, Answer]]:
             yield ", ".join([*where, f"{(one['stamp'] - found.begin_of(answer)) / NANOSECONDS:.3f} s"]), one
 
 
-def _against(title: str, pairs: Sequence[tuple[float, float]], rows: Sequence[tuple[str, Answer]]) -> Chart:
+def _against(title: str, pairs: Sequence[tuple[float, float]], rows: Sequence[tuple[str, BagAnswer]]) -> Chart:
     """Pairs of a measured and a predicted velocity in m/s: a point each, or squares that count them where many."""
     values = [value for pair in pairs for value in pair]
     # Of many points the last few may lie beyond, not to press the others together.
@@ -100,11 +100,11 @@ def _against(title: str, pairs: Sequence[tuple[float, float]], rows: Sequence[tu
     return Chart(title, plot(traces, 460, **axes), caption + (many if len(pairs) > MANY else ""), wide=False)
 
 
-def _error_of(one: Answer) -> str:
+def _error_of(one: BagAnswer) -> str:
     return f"relative error {part_words(one['relative_error'])}"
 
 
-def _worst(rows: Sequence[tuple[str, Answer]]) -> PageTable:
+def _worst(rows: Sequence[tuple[str, BagAnswer]]) -> PageTable:
     """The numbers of the touchdowns that are compared, those of the largest errors first."""
     worst = nlargest(ROWS, rows, key=lambda row: row[1]["relative_error"])
     cells: list[list[Cell | str]] = []
@@ -118,7 +118,7 @@ def _worst(rows: Sequence[tuple[str, Answer]]) -> PageTable:
     return PageTable(head, cells, more, 2, "Touchdown by touchdown")
 
 
-def modes(answers: Sequence[Answer]) -> Section | None:
+def modes(answers: Sequence[BagAnswer]) -> Section | None:
     """The modes that were predicted against the true ones, or what can be told of them without a truth."""
     predicted = Counter(one["mode"] for one in found.touchdowns_of(answers))
     if not predicted:
@@ -183,7 +183,7 @@ def _confusion(counts: Counter[tuple[str, str]]) -> PageTable:
     return PageTable(["true mode", *("missed" if mode == found.NOTHING else mode for mode in told)], rows, caption)
 
 
-def _landing_modes(landings: Sequence[Answer]) -> PageTable:
+def _landing_modes(landings: Sequence[BagAnswer]) -> PageTable:
     """How many landings of each foot were predicted in which mode."""
     counts = Counter((one["foot"], one["landing_mode"]) for one in landings if one["landing_mode"])
     told = in_order(mode for _, mode in counts)

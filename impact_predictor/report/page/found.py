@@ -21,14 +21,14 @@ from ...stamps import NANOSECONDS
 from ..spread import Spread, from_json, together
 from ..summary import Errors, quantile, summarize
 
-Answer = Mapping[str, Any]
+BagAnswer = Mapping[str, Any]
 """What `as_json` says of the replay of one bag; of one that could not be read its `bag` and `error`."""
 
 NOTHING: Final = "nothing"
 """What is predicted of a true touchdown that is missed, and true of a false alarm."""
 
 
-class Kept(Sequence[Answer]):
+class Kept(Sequence[BagAnswer]):
     """Answers in the order in which they were added, in a temporary file without a name: it ends with the process."""
 
     def __init__(self) -> None:
@@ -43,7 +43,7 @@ class Kept(Sequence[Answer]):
             raise _unwritable(error) from error
         self._ends = array("Q", [0])
 
-    def append(self, answer: Answer) -> None:
+    def append(self, answer: BagAnswer) -> None:
         """Add the answer of a bag.
 
         Raises:
@@ -63,10 +63,10 @@ class Kept(Sequence[Answer]):
         return len(self._ends) - 1
 
     @overload
-    def __getitem__(self, place: int) -> Answer: ...
+    def __getitem__(self, place: int) -> BagAnswer: ...
     @overload
-    def __getitem__(self, place: slice) -> Sequence[Answer]: ...
-    def __getitem__(self, place: int | slice) -> Answer | Sequence[Answer]:
+    def __getitem__(self, place: slice) -> Sequence[BagAnswer]: ...
+    def __getitem__(self, place: int | slice) -> BagAnswer | Sequence[BagAnswer]:
         if isinstance(place, slice):
             return [self[one] for one in range(len(self))[place]]
         place = range(len(self))[place]
@@ -98,7 +98,7 @@ def _unwritable(error: OSError) -> InputError:
     )
 
 
-class Found(NamedTuple):
+class TruthCount(NamedTuple):
     """Touchdowns against the truth: how many a record can show, how many of them were found, false alarms."""
 
     there: int
@@ -123,49 +123,49 @@ class RefusedMessages(NamedTuple):
     all: int
 
 
-def used(answers: Iterable[Answer]) -> Iterator[Answer]:
+def used(answers: Iterable[BagAnswer]) -> Iterator[BagAnswer]:
     """The answers of bags that could be read."""
     return (answer for answer in answers if "error" not in answer)
 
 
-def names_of(answers: Iterable[Answer]) -> list[str]:
+def names_of(answers: Iterable[BagAnswer]) -> list[str]:
     """A name for each bag: the last part of its path, or as much of it as no other bag has."""
     return [str(name) for name in told_apart([Path(answer["bag"]) for answer in answers])]
 
 
-def touchdowns_of(answers: Iterable[Answer]) -> Iterator[Answer]:
+def touchdowns_of(answers: Iterable[BagAnswer]) -> Iterator[BagAnswer]:
     """The touchdowns of all bags that could be read."""
     return (touchdown for answer in used(answers) for touchdown in answer["touchdowns"])
 
 
-def landings_of(answers: Iterable[Answer]) -> Iterator[Answer]:
+def landings_of(answers: Iterable[BagAnswer]) -> Iterator[BagAnswer]:
     """The touchdowns that are landings of feet."""
     return (touchdown for touchdown in touchdowns_of(answers) if "foot" in touchdown)
 
 
-def scored_of(answers: Iterable[Answer]) -> Iterator[Answer]:
+def scored_of(answers: Iterable[BagAnswer]) -> Iterator[BagAnswer]:
     """The touchdowns whose velocities are compared with what was measured."""
     return (one for one in touchdowns_of(answers) if one["scored"] and one["relative_error"] is not None)
 
 
-def true_touchdowns_of(answers: Iterable[Answer]) -> Iterator[Answer]:
+def true_touchdowns_of(answers: Iterable[BagAnswer]) -> Iterator[BagAnswer]:
     """The true touchdowns and the false alarms of the bags that carry the truth."""
     return (one for answer in used(answers) for one in answer.get("true_touchdowns", ()))
 
 
-def begin_of(answer: Answer) -> int:
+def begin_of(answer: BagAnswer) -> int:
     """The stamp (ns) from which the times of a record are counted: that of its first sample."""
     begin = answer.get("begin")
     return int(min((one["stamp"] for one in answer["touchdowns"]), default=0) if begin is None else begin)
 
 
-def uncompared(answers: Iterable[Answer]) -> Counter[str]:
+def uncompared(answers: Iterable[BagAnswer]) -> Counter[str]:
     """How many touchdowns are not compared for each reason, the name of a `Leftover`; feet, which are driven, aside."""
     others = (one for one in touchdowns_of(answers) if not one["scored"] and "foot" not in one)
     return Counter(flag for one in others for flag in one["flags"] if flag in Leftover.__members__)
 
 
-def velocity_errors(answers: Iterable[Answer]) -> Errors:
+def velocity_errors(answers: Iterable[BagAnswer]) -> Errors:
     """Relative errors of the velocities: against the truth where a bag tells it, else against what was measured."""
     errors: list[float] = []
     for answer in answers:
@@ -174,7 +174,7 @@ def velocity_errors(answers: Iterable[Answer]) -> Errors:
     return summarize(errors)
 
 
-def measured_and_true(answers: Iterable[Answer]) -> tuple[float, float] | None:
+def measured_and_true(answers: Iterable[BagAnswer]) -> tuple[float, float] | None:
     """What 90 % of the relative errors stay below, against measured and against true velocities, where both are known.
 
     None where no bag tells both.
@@ -187,7 +187,7 @@ def measured_and_true(answers: Iterable[Answer]) -> tuple[float, float] | None:
     return (quantile(measured, 0.9), quantile(true, 0.9)) if measured and true else None
 
 
-def announced(answers: Iterable[Answer]) -> list[float]:
+def announced(answers: Iterable[BagAnswer]) -> list[float]:
     """How long before in s each touchdown that counts was announced first, if it was.
 
     Where a bag tells the truth these are the true ones that it can show, else those that are compared, and of feet all.
@@ -204,16 +204,16 @@ def announced(answers: Iterable[Answer]) -> list[float]:
     return times
 
 
-def found_of(answers: Iterable[Answer]) -> Found | None:
+def found_of(answers: Iterable[BagAnswer]) -> TruthCount | None:
     """How many true touchdowns were found; None where no bag carries the truth."""
     truths = [answer["truth"] for answer in used(answers) if "truth" in answer]
     if not truths:
         return None
     there = sum(truth["touchdowns"] for truth in truths)
-    return Found(there, there - sum(truth["missed"] for truth in truths), sum(truth["false"] for truth in truths))
+    return TruthCount(there, there - sum(truth["missed"] for truth in truths), sum(truth["false"] for truth in truths))
 
 
-def confusion(answers: Iterable[Answer]) -> Counter[tuple[str, str]]:
+def confusion(answers: Iterable[BagAnswer]) -> Counter[tuple[str, str]]:
     """How often which true mode (first) was predicted as which (second), of all touchdowns that their record can show.
 
     `NOTHING` was predicted where one was missed, and true where an alarm was false; empty where no truth knows modes.
@@ -225,7 +225,7 @@ def confusion(answers: Iterable[Answer]) -> Counter[tuple[str, str]]:
     return counts if any(true != NOTHING for true, _ in counts) else Counter()
 
 
-def errors_ahead(answers: Iterable[Answer], key: str) -> list[SpanErrors]:
+def errors_ahead(answers: Iterable[BagAnswer], key: str) -> list[SpanErrors]:
     """The errors by lead time under a key of the answers, all together; empty where there are none."""
     spans: dict[tuple[float, float], list[Spread]] = {}
     for entry in (entry for answer in used(answers) for entry in answer.get(key, ())):
@@ -234,12 +234,12 @@ def errors_ahead(answers: Iterable[Answer], key: str) -> list[SpanErrors]:
     return found if any(one.errors.number for one in found) else []
 
 
-def costs(answers: Iterable[Answer]) -> Spread:
+def costs(answers: Iterable[BagAnswer]) -> Spread:
     """What the answers to samples took, in microseconds."""
     return together(from_json(answer.get("cost_us")) for answer in used(answers))
 
 
-def refused(answers: Iterable[Answer]) -> list[RefusedMessages]:
+def refused(answers: Iterable[BagAnswer]) -> list[RefusedMessages]:
     """What became of all messages that were not accepted, the commonest of each input first."""
     inputs: dict[str, Counter[str]] = {}
     for answer in used(answers):
@@ -254,7 +254,7 @@ def refused(answers: Iterable[Answer]) -> list[RefusedMessages]:
     ]
 
 
-def badness(answer: Answer) -> tuple[float, ...]:
+def badness(answer: BagAnswer) -> tuple[float, ...]:
     """How bad a bag is: one that is unusable most, then what was missed or false counts, then the errors."""
     if "error" in answer or answer.get("unpredictable"):
         return (inf,)
@@ -263,14 +263,14 @@ def badness(answer: Answer) -> tuple[float, ...]:
     return (wrong, velocity_errors([answer]).median or 0.0, time_error(answer) or 0.0)
 
 
-def worst_of(answers: Sequence[Answer], places: Sequence[int], most: int) -> Sequence[int]:
+def worst_of(answers: Sequence[BagAnswer], places: Sequence[int], most: int) -> Sequence[int]:
     """Places of answers: all in their order, or of more than `most` the worst, those first."""
     if len(places) <= most:
         return places
     return sorted(places, key=lambda place: badness(answers[place]), reverse=True)[:most]
 
 
-def time_error(answer: Answer) -> float | None:
+def time_error(answer: BagAnswer) -> float | None:
     """Median error in s of the times that were told 20 ms ahead; of feet without a truth, of those told last."""
     if "truth" in answer:
         error: float | None = answer["truth"]["median_time_error"]

@@ -14,14 +14,14 @@ from ...wording import counted
 from ..summary import WHY, quantile
 from . import compared, found, sections
 from .document import Headline, page, script_beside, script_inside, time_words, within_words, write_html
-from .found import Answer, SpanErrors
+from .found import BagAnswer, SpanErrors
 
 AHEAD: Final = 0.02
 """Seconds before a touchdown, from which on the errors of the times are told."""
 
 
 def write_replay_page(
-    path: str | os.PathLike[str], answers: Sequence[Answer], values: Mapping[str, Any] | None = None
+    path: str | os.PathLike[str], answers: Sequence[BagAnswer], values: Mapping[str, Any] | None = None
 ) -> None:
     """Write one page that needs nothing else: no network, no other file.
 
@@ -38,7 +38,7 @@ def write_replay_page(
 
 
 def write_replay_pages(
-    folder: str | os.PathLike[str], answers: Sequence[Answer], values: Mapping[str, Any] | None = None
+    folder: str | os.PathLike[str], answers: Sequence[BagAnswer], values: Mapping[str, Any] | None = None
 ) -> None:
     """Write a folder: index.html about all bags, a page for each, and one file of plotly's script that they share.
 
@@ -57,7 +57,7 @@ def write_replay_pages(
 
 
 def page_of_replay(
-    answers: Sequence[Answer],
+    answers: Sequence[BagAnswer],
     values: Mapping[str, Any] | None = None,
     script: str | None = None,
     links: Mapping[int, str] | None = None,
@@ -80,7 +80,7 @@ def page_of_replay(
     return page(title_of(answers), [lead_of(answers)], headlines_of(answers), there, script)
 
 
-def title_of(answers: Sequence[Answer]) -> str:
+def title_of(answers: Sequence[BagAnswer]) -> str:
     """How many touchdowns, how early and how right, in one line."""
     times, errors, time = found.announced(answers), found.velocity_errors(found.used(answers)), error_at(answers)
     if not times:
@@ -100,20 +100,20 @@ def title_of(answers: Sequence[Answer]) -> str:
     return said if time is None else f"{said}, half of their times within {time_words(time.errors.p50)}"
 
 
-def announced_of(landings: Sequence[Answer]) -> str:
+def announced_of(landings: Sequence[BagAnswer]) -> str:
     """How many landings of feet there were, and how many of them were announced where that is not all."""
     number = sum(one["time_error"] is not None for one in landings)
     all_landings = counted(len(landings), "landing")
     return all_landings if number == len(landings) else f"{number:,} of {all_landings}"
 
 
-def error_at(answers: Sequence[Answer]) -> SpanErrors | None:
+def error_at(answers: Sequence[BagAnswer]) -> SpanErrors | None:
     """The errors in s of the times told 20 ms ahead or somewhat more; None where nothing tells the true ones."""
     spans = found.errors_ahead(answers, "time_errors_ahead")
     return next((one for one in spans if one.begin >= AHEAD and one.errors.number), None)
 
 
-def lead_of(answers: Sequence[Answer]) -> str:
+def lead_of(answers: Sequence[BagAnswer]) -> str:
     """Which bags these are."""
     samples = counted(sum(answer["samples"] for answer in found.used(answers)), "sample")
     if len(answers) > 1:
@@ -125,7 +125,7 @@ def lead_of(answers: Sequence[Answer]) -> str:
     return f"The record {found.names_of(answers)[0]}, {samples}{over}, went through the predictor as if it came live."
 
 
-def headlines_of(answers: Sequence[Answer]) -> list[Headline]:
+def headlines_of(answers: Sequence[BagAnswer]) -> list[Headline]:
     """How many touchdowns, how right, how early, and at what cost."""
     if next(found.touchdowns_of(answers), None) is None:
         return []
@@ -133,7 +133,7 @@ def headlines_of(answers: Sequence[Answer]) -> list[Headline]:
     return [one for one in known if one is not None]
 
 
-def _many(answers: Sequence[Answer]) -> Headline:
+def _many(answers: Sequence[BagAnswer]) -> Headline:
     there, landings = found.found_of(answers), list(found.landings_of(answers))
     if there is None and landings:
         return Headline("How many", f"{announced_of(landings)} announced", "Their motion shows when feet landed.")
@@ -157,7 +157,7 @@ def _many(answers: Sequence[Answer]) -> Headline:
     return Headline("How many", f"{there.found:,} of {there.there:,} found", more)
 
 
-def _right(answers: Sequence[Answer]) -> Headline | None:
+def _right(answers: Sequence[BagAnswer]) -> Headline | None:
     errors, time, counts = found.velocity_errors(found.used(answers)), error_at(answers), found.confusion(answers)
     span = "" if time is None else f"{time.begin * 1e3:.0f} to {time.end * 1e3:.0f} ms ahead"
     if errors.number:
@@ -180,7 +180,7 @@ def _right(answers: Sequence[Answer]) -> Headline | None:
     return Headline("How right", f"times within {time_words(time.errors.p50)}", more)
 
 
-def _early(answers: Sequence[Answer]) -> Headline | None:
+def _early(answers: Sequence[BagAnswer]) -> Headline | None:
     times = found.announced(answers)
     if not times:
         return None
@@ -189,7 +189,7 @@ def _early(answers: Sequence[Answer]) -> Headline | None:
     return Headline("How early", f"{time_words(median(times))} ahead", f"{more}, the latest one {latest}.")
 
 
-def _cost(answers: Sequence[Answer]) -> Headline | None:
+def _cost(answers: Sequence[BagAnswer]) -> Headline | None:
     spread = found.costs(answers)
     if spread.p50 is None or spread.p99 is None:
         return None

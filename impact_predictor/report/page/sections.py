@@ -32,7 +32,7 @@ from .document import (
     time_words,
     titled,
 )
-from .found import Answer, SpanErrors
+from .found import BagAnswer, SpanErrors
 from .timeline import in_order, lanes_of, timeline
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ ROWS: Final = 100
 """Landings or remarks in a table."""
 
 
-def bags(answers: Sequence[Answer], links: Mapping[int, str]) -> Section | None:
+def bags(answers: Sequence[BagAnswer], links: Mapping[int, str]) -> Section | None:
     """A row for each of several bags, and how their errors are spread; None where there is only one."""
     if len(answers) < 2:
         return None
@@ -70,7 +70,7 @@ def bags(answers: Sequence[Answer], links: Mapping[int, str]) -> Section | None:
     return Section("bags", "The bags", said, [table, *_spread_over_bags(answers)])
 
 
-def _of_bag(answer: Answer) -> list[Cell | str]:
+def _of_bag(answer: BagAnswer) -> list[Cell | str]:
     there, errors, times = found.found_of([answer]), found.velocity_errors([answer]), found.announced([answer])
     cost = found.costs([answer]).p50
     compared = f"90 % below {part_words(errors.p90)}, {errors.number:,} compared" if errors.number else ""
@@ -85,7 +85,7 @@ def _of_bag(answer: Answer) -> list[Cell | str]:
     ]
 
 
-def _spread_over_bags(answers: Sequence[Answer]) -> list[Chart]:
+def _spread_over_bags(answers: Sequence[BagAnswer]) -> list[Chart]:
     """The median errors of many bags, from the best to the worst; nothing where they are few."""
     medians = (found.velocity_errors([answer]).median for answer in found.used(answers))
     errors = [100.0 * error for error in medians if error is not None]
@@ -116,7 +116,7 @@ FEET: Final = (
 )
 
 
-def when(answers: Sequence[Answer], places: Sequence[int]) -> Section | None:
+def when(answers: Sequence[BagAnswer], places: Sequence[int]) -> Section | None:
     """The timelines of some bags, with the numbers of each; None where nothing was predicted."""
     if not places:
         return None
@@ -142,7 +142,7 @@ def meanings(marks: Iterable[str]) -> str:
     return "Modes: " + "; ".join(f"{name}, {MODES[Mode[name]].meaning}" for name in known) + "."
 
 
-def _numbers(answer: Answer) -> list[PageTable]:
+def _numbers(answer: BagAnswer) -> list[PageTable]:
     """The landings of feet, or what was missed and announced in vain, as a table."""
     start = found.begin_of(answer)
     if landings := list(found.landings_of([answer])):
@@ -167,7 +167,7 @@ def _numbers(answer: Answer) -> list[PageTable]:
     return [PageTable(["time", "body", "", "mode"], rows, "", 4, "What was missed, and false alarms")] if rows else []
 
 
-def _landing_cells(one: Answer, start: int) -> list[Cell | str]:
+def _landing_cells(one: BagAnswer, start: int) -> list[Cell | str]:
     impulse, others = one["impulse"], one.get("others_impulse")
     below = f"{_size(others):.2f} N s at other feet" if others else ""
     return [
@@ -185,7 +185,7 @@ def _size(vector: Sequence[float]) -> float:
     return hypot(*vector)
 
 
-def ahead(answers: Sequence[Answer]) -> Section | None:
+def ahead(answers: Sequence[BagAnswer]) -> Section | None:
     """Errors over the time ahead at which a prediction is made; None where there are none."""
     charts = []
     said = ["Every sample before a touchdown makes a prediction of it. Does one that is made earlier do as well?"]
@@ -217,7 +217,7 @@ def _over_lead_time(spans: Sequence[SpanErrors], axis: str, factor: float) -> Pl
     return plot(traces, 320, xaxis=ahead, yaxis=titled(axis, rangemode="tozero"))
 
 
-def cost(answers: Sequence[Answer]) -> Section | None:
+def cost(answers: Sequence[BagAnswer]) -> Section | None:
     """What the answer to a sample costs; None where nothing is known of it."""
     spread = found.costs(answers)
     if spread.p50 is None:
@@ -261,7 +261,7 @@ KINDS: Final = {"error": "unreadable", "unpredictable": "nothing predicted", "da
 """The kinds of remarks, by their keys in the answers; the gravest first."""
 
 
-def unused(answers: Sequence[Answer]) -> Section:
+def unused(answers: Sequence[BagAnswer]) -> Section:
     """What could not be used: refused messages, touchdowns that are not compared, damage, failures and notes."""
     lost, reasons = found.refused(answers), found.uncompared(answers)
     samples = sum(answer["samples"] for answer in found.used(answers))
@@ -292,7 +292,7 @@ def unused(answers: Sequence[Answer]) -> Section:
     return Section("unused", "What could not be used", [said], [*tables, *_remarks(answers)])
 
 
-def _remarks(answers: Sequence[Answer]) -> list[PageTable]:
+def _remarks(answers: Sequence[BagAnswer]) -> list[PageTable]:
     """Damage, failures and notes, each with the bags that it was said of."""
     of: dict[tuple[str, str], list[str]] = {}
     for name, answer in zip(found.names_of(answers), answers, strict=True):

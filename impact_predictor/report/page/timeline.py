@@ -14,7 +14,7 @@ from ...wording import words
 from ..modes import EDGE, MODES
 from ..summary import quantile
 from .document import GREY, bars, marks, part_words, plot, safe, signed_ms, time_words, titled
-from .found import Answer, begin_of
+from .found import BagAnswer, begin_of
 
 if TYPE_CHECKING:
     from plotly.graph_objects import Figure as PlotlyFigure
@@ -93,7 +93,7 @@ class Cuts(NamedTuple):
         return self.at(self.pieces[-1][1])
 
 
-def timeline(answer: Answer) -> tuple[PlotlyFigure, list[str]]:
+def timeline(answer: BagAnswer) -> tuple[PlotlyFigure, list[str]]:
     """The timeline of a bag, and sentences on what of it is not drawn as it is."""
     lanes, begin = lanes_of(answer), begin_of(answer)
     cuts = cuts_of(answer, lanes)
@@ -218,7 +218,7 @@ def _errors(lane: Lane, y: int, cuts: Cuts) -> list[dict[str, Any]]:
     return [marks(lane.name, points, error_y=stems, showlegend=False, marker={"color": BLUE, "size": 3})]
 
 
-def cuts_of(answer: Answer, lanes: Iterable[Lane]) -> Cuts:
+def cuts_of(answer: BagAnswer, lanes: Iterable[Lane]) -> Cuts:
     """From the first sample to the last one, and what lies beyond; without long pauses where they are most of it."""
     begin = begin_of(answer)
     moments = {begin, max(answer.get("end") or 0, begin + 1)}
@@ -240,7 +240,7 @@ def cuts_of(answer: Answer, lanes: Iterable[Lane]) -> Cuts:
     return Cuts(pieces)
 
 
-def lanes_of(answer: Answer) -> list[Lane]:
+def lanes_of(answer: BagAnswer) -> list[Lane]:
     """The lanes of a bag: of the feet of machines that walk, then of the bodies that have touchdowns."""
     lanes = [lane for body in answer.get("gaits", {}) for lane in _feet(answer, body)]
     both = [*answer["touchdowns"], *answer.get("true_touchdowns", ())]
@@ -248,7 +248,7 @@ def lanes_of(answer: Answer) -> list[Lane]:
     return lanes + [lane for body in bodies for lane in _body(answer, body)]
 
 
-def _feet(answer: Answer, body: str) -> Iterable[Lane]:
+def _feet(answer: BagAnswer, body: str) -> Iterable[Lane]:
     """The feet of a machine: when each landing was predicted, and when the foot stands."""
     gait, several = answer["gaits"][body], len(answer["gaits"]) > 1
     landings = [one for one in answer["touchdowns"] if "foot" in one and (not several or one["body"] == body)]
@@ -260,7 +260,7 @@ def _feet(answer: Answer, body: str) -> Iterable[Lane]:
             yield Lane(TRUTH, stances=[(begin, end) for place, begin, end in gait["true_stances"] if place == number])
 
 
-def _landing(one: Answer, start: int) -> Happened:
+def _landing(one: BagAnswer, start: int) -> Happened:
     """A landing where it was predicted last; one that was not announced where it came, as missed."""
     at = f"{one['foot']} lands at {(one['stamp'] - start) / NANOSECONDS:.3f} s"
     if one["time_error"] is None:
@@ -272,7 +272,7 @@ def _landing(one: Answer, start: int) -> Happened:
     return Happened(told, mode, f"{said}\n{mode}", since=one["stamp"] - round(lead * NANOSECONDS))
 
 
-def _body(answer: Answer, body: str) -> Iterable[Lane]:
+def _body(answer: BagAnswer, body: str) -> Iterable[Lane]:
     """A body: its predicted touchdowns, the true ones where they are known, and how wrong the velocities after were.
 
     That is against the true velocities, or where they are not known against those that the samples show.
@@ -294,7 +294,7 @@ def _body(answer: Answer, body: str) -> Iterable[Lane]:
         yield Lane("not compared", [_touchdown(one, start) for one in mine if not one["scored"]])
 
 
-def _touchdown(one: Answer, start: int) -> Happened:
+def _touchdown(one: BagAnswer, start: int) -> Happened:
     """A touchdown that was predicted and came; faint where nothing measured can be compared with it."""
     lead = one["announced_lead_time"]
     said = f"{(one['stamp'] - start) / NANOSECONDS:.3f} s: {one['mode']}\nannounced {time_words(lead)} ahead"
@@ -306,7 +306,7 @@ def _touchdown(one: Answer, start: int) -> Happened:
     return Happened(one["stamp"], one["mode"], said, not one["scored"], since)
 
 
-def _predicted(one: Answer, start: int) -> Happened:
+def _predicted(one: BagAnswer, start: int) -> Happened:
     """What was announced: of a true touchdown, or in vain."""
     said = f"predicted for {(one['predicted_stamp'] - start) / NANOSECONDS:.3f} s: {one['predicted_mode']}"
     if one["stamp"] is None:
@@ -318,7 +318,7 @@ def _predicted(one: Answer, start: int) -> Happened:
     return Happened(one["predicted_stamp"], mode, said, not one["shown"], one["first_seen"])
 
 
-def _true(one: Answer, start: int) -> Happened:
+def _true(one: BagAnswer, start: int) -> Happened:
     """What happened; faint what such a record cannot show."""
     said = f"{(one['stamp'] - start) / NANOSECONDS:.3f} s: {one['mode']}"
     missed = one["shown"] and one["predicted_stamp"] is None

@@ -11,13 +11,13 @@ from impact_predictor.mechanics.impact import solve_impact
 from impact_predictor.mechanics.types import Mode, Twist
 from impact_predictor.report.accuracy import impacts, touchdowns
 from impact_predictor.report.accuracy.impacts import Aftermath, Struck
-from impact_predictor.report.accuracy.touchdowns import CRATE, Arrival, FallingBody
+from impact_predictor.report.accuracy.touchdowns import CRATE, FallingBody, ToldTouchdown
 
 PAPER = ("rod", "plate", "cylinder")
 COUNT = 12
 
 
-def touchdown_error(fall: FallingBody, found: Arrival | None) -> float:
+def touchdown_error(fall: FallingBody, found: ToldTouchdown | None) -> float:
     assert found is not None
     return max(touchdowns.errors_of(fall, found, touchdowns.reference_of(fall)))
 
@@ -54,7 +54,7 @@ def errors(name: str, solve: Callable[[Struck], Aftermath | None], count: int = 
 def test_both_laws_are_the_closed_forms_on_the_bodies_of_the_paper(name: str, law: str) -> None:
     assert max(errors(name, lambda strike: impacts.law(strike, law))) < 1e-12
     for strike in impacts.strikes(name, COUNT):
-        assert not impacts.is_wrong(strike, impacts.law(strike, law), impacts.reference_of(strike))
+        assert impacts.law(strike, law).mode is impacts.reference_of(strike).mode
 
 
 @pytest.mark.parametrize("law", ["path", "total"])
@@ -87,15 +87,6 @@ def test_slip_across_the_plane_settles_with_its_tolerance_and_is_the_path_law_wi
 
 def test_compliant_contacts_come_near_the_path_law() -> None:
     assert sorted(errors("plate", lambda strike: impacts.compliant(strike, 1e8), 4))[2] < 1e-2
-
-
-def test_the_mode_is_read_from_the_velocities_where_a_method_tells_none() -> None:
-    # A contact that moves slower than 1 % is taken to rest.
-    slow = {Mode.PIVOT_SLIDE: (Mode.PIVOT, Mode.SLIDE), Mode.PIVOT: (Mode.STOP,), Mode.FLIGHT: (Mode.PIVOT_SLIDE,)}
-    for name in (*PAPER, "squat"):
-        for strike in impacts.strikes(name, COUNT):
-            outcome = solve_impact(strike.body, strike.twist)
-            assert impacts.mode_seen(strike, outcome.twist) in (outcome.mode, *slow.get(outcome.mode, ()))
 
 
 @pytest.mark.extras

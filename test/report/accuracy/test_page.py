@@ -28,7 +28,7 @@ def test_the_picture_of_a_question_has_a_point_for_each_method_on_each_scene(que
     (figure,) = read(report).figures.values()
     names = {scene["name"]: scene["title"] for scene in report["scenes"] if not scene["measured"]}
     drawn = {
-        (family, text): (x, y)
+        (family, text.rpartition("<br>")[0]): (x, y)
         for family, trace in traces(figure).items()
         for text, x, y in zip(trace["text"], trace["x"], trace["y"], strict=True)
     }
@@ -41,14 +41,12 @@ def test_the_picture_of_a_question_has_a_point_for_each_method_on_each_scene(que
     assert figure["layout"]["yaxis"]["type"] == figure["layout"]["xaxis"]["type"] == "log"
 
 
-def test_the_tables_have_the_choices_and_all_numbers() -> None:
+def test_the_tables_have_the_choices_for_each_wanted_accuracy() -> None:
     page = read(REPORT)
-    choices, numbers = page.tables["touchdown"]
+    (choices,) = page.tables["touchdown"]
     assert choices[0] == ["scene", *(f"error below {accuracy}" for accuracy in ("0.01", "0.0001", "1e-06", "1e-09"))]
     assert choices[-1][0] == "on all scenes"
     assert all(cell.startswith("next_touchdown tolerance = 1e-06") for cell in choices[-1][1:])
-    rows = [row for row in REPORT["rows"] if row["question"] == "touchdown"]
-    assert len(numbers) == len(rows) + 1
     across = next(row for row in page.tables["impact"][0] if row[0] == "Slip across the plane")
     assert across[-1] == "none"
     assert page.tables["measured"][0][1][0] == "path law, slip across"
