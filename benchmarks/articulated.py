@@ -39,8 +39,7 @@ from impact_predictor.prediction.scene import Robot, Scene, inertia_matrix
 from impact_predictor.prediction.types import Joints, Sample, Touchdown, Vector3
 from impact_predictor.prediction.vectors import add, axes_of, cross, to_body, to_world
 from impact_predictor.prediction.walking.impact import touchdown_of
-from impact_predictor.prediction.walking.legs import Articulated
-from impact_predictor.prediction.walking.mechanism import Mechanism, Response, Trunk
+from impact_predictor.prediction.walking.mechanism import ArticulatedMachine, ImpulseResponse, Machine, RigidMachine
 
 ROOT = Path(__file__).resolve().parents[1]
 BAG = ROOT / "examples/hyq/hyq.bag"
@@ -106,7 +105,7 @@ def model() -> str:
     return next(str(path.locate()) for path in listed if path.name == URDF)
 
 
-def posture(legs: Articulated, points: tuple[Vector3, ...], start: Array) -> Array:
+def posture(legs: ArticulatedMachine, points: tuple[Vector3, ...], start: Array) -> Array:
     """The joint positions that put the feet at some points of the base's frame, by Newton's method."""
     body, positions = legs.body, start
     for _ in range(100):
@@ -119,7 +118,7 @@ def posture(legs: Articulated, points: tuple[Vector3, ...], start: Array) -> Arr
     raise InputError(f"{URDF} cannot put its feet at {points}")
 
 
-def landings(legs: Articulated) -> list[Case]:
+def landings(legs: ArticulatedMachine) -> list[Case]:
     """The landings in the record, each from the last message before the foot stands."""
     with Bag(BAG) as bag:
         read = readers(bag, STATE)
@@ -153,19 +152,19 @@ def locked(scene: Scene, inertia: Array) -> Scene:
     return scene._replace(mass=float(mass), center_of_mass=center, inertia=inertia_matrix(six))
 
 
-def impact(scene: Scene, mechanism: Mechanism, case: Case) -> Impact:
+def impact(scene: Scene, mechanism: Machine, case: Case) -> Impact:
     """The impact of a landing, and how it changes the base."""
     found = touchdown(scene, mechanism, case)
     axes = axes_of(case.base.orientation)
     normal, ahead = to_body(axes, scene.normal), to_body(axes, cross(found.axis, scene.normal))
     response = mechanism.response((), found.new, normal, ahead, case.points)
-    assert isinstance(response, Response)
+    assert isinstance(response, ImpulseResponse)
     linear, angular = add(found.linear, case.base.linear, -1.0), add(found.angular, case.base.angular, -1.0)
     mass, impulse = 1.0 / response.W[2][2], found.impulses[1][0]
     return Impact(mass, impulse, 1e3 * hypot(*linear), 1e3 * hypot(*angular), found.energy_lost, found.mode)
 
 
-def touchdown(scene: Scene, mechanism: Mechanism, case: Case) -> Touchdown:
+def touchdown(scene: Scene, mechanism: Machine, case: Case) -> Touchdown:
     found = touchdown_of(scene, mechanism, case.base, case.points, case.old, (case.new,), 0.0, case.velocity)
     assert isinstance(found, Touchdown)
     return found
@@ -218,9 +217,9 @@ def table_of(models: dict[str, list[Impact]], costs: list[float], stood: list[bo
 def main() -> int:
     """Print the tables."""
     scene = Scene.from_parameters(validate(read_parameters(PARAMETERS)))
-    legs = Articulated(Robot(model(), FRAMES))
+    legs = ArticulatedMachine(Robot(model(), FRAMES))
     cases = landings(legs)
-    trunk = Trunk(scene)
+    trunk = RigidMachine(scene)
     rotor = np.diag([0.0] * 6 + [1.0] * len(legs.body.joints))
     one: list[Impact] = []
     whole: list[Impact] = []
@@ -230,7 +229,7 @@ def main() -> int:
         legs.geometry_of(case.joints)
         bare = legs.body.inertia
         robot = locked(scene, bare)
-        whole.append(impact(robot, Trunk(robot), case))
+        whole.append(impact(robot, RigidMachine(robot), case))
         for inertia, impacts in driven.items():
             legs.body.inertia = bare + inertia * rotor
             impacts.append(impact(robot, legs, case))

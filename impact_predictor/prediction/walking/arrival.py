@@ -9,8 +9,7 @@ from typing import NamedTuple
 from ...stamps import NANOSECONDS
 from ..types import Vector3
 from ..vectors import total
-from .cubic import SCALE, Cubic, Factor, Frame, Noise, factored, solved, square_of
-from .sums import Gaps, Sums
+from .cubic import SCALE, Cubic, CubicSums, Factor, GapNoise, PointFrame, factored, solved, square_of
 
 FEWEST = 5
 """Frames in the air from which a cubic is told."""
@@ -24,7 +23,7 @@ MOST = 42
 """... and the most of them that are looked at, besides those that may have been on the ground already."""
 
 FULL = 150
-"""Frames after which a point that hovers near the ground is looked at anew: fewer than its course remembers."""
+"""Frames after which a point that hovers near the ground is looked at anew: fewer than its trajectory remembers."""
 
 SHARE = 4
 """Frames that are caught up with while the next one comes in."""
@@ -45,7 +44,7 @@ class Arrival(NamedTuple):
     velocity: Vector3 | None
 
 
-class Between(NamedTuple):
+class ArrivalCandidate(NamedTuple):
     """The cubic of the frames up to `last`, if the point arrived between that and the next frame.
 
     `left` is the least square of what it leaves of them; `here` and `there` are its gaps (m) at the two frames, with
@@ -62,14 +61,16 @@ class Between(NamedTuple):
     places: tuple[Cubic, ...]
 
 
-class Arriving:
+class ArrivalFit:
     """A point that is near the ground and does not stand yet, from its first frame there on.
 
     `frames` are the last ones up to that; the point came down since `begin` (ns) to about a `level` (m). The work is
     shared between the frames that come in: the first of them finds many that are new.
     """
 
-    def __init__(self, frames: Sequence[Frame], begin: int, level: float, tolerance: float, noise: Noise) -> None:
+    def __init__(
+        self, frames: Sequence[PointFrame], begin: int, level: float, tolerance: float, noise: GapNoise
+    ) -> None:
         first = max(0, len(frames) - 2)
         start = next((k for k, frame in enumerate(frames) if frame.stamp >= begin), 0)
         start = max(0, min(start, first - LEAST))
@@ -78,16 +79,16 @@ class Arriving:
         self._level, self._tolerance, self._noise = level, tolerance, noise
         self._ratio = (noise.gap / (noise.rate * SCALE)) ** 2
         measured = all(frame.velocity is not None for frame in self._frames)
-        self._sums: Gaps = (Gaps if measured else Sums)(self._frames[0])
+        self._sums = CubicSums(self._frames[:1], places=not measured)
         self._near = 0.0, 0.0
-        self._tried: list[Between] = []
+        self._tried: list[ArrivalCandidate] = []
 
     @property
     def is_full(self) -> bool:
         """Whether it has so many frames that the next one is to begin another."""
         return len(self._frames) >= FULL
 
-    def add(self, frame: Frame) -> None:
+    def add(self, frame: PointFrame) -> None:
         """Take the next frame near the ground."""
         self._frames.append(frame)
         self._catch_up(SHARE)
@@ -111,7 +112,7 @@ class Arriving:
         factor = factored(sums.normal(ratio)) if k >= FEWEST else None
         if factor is None:
             return
-        right = sums.right(ratio)
+        right = sums.gaps.right(ratio)
         a, b, c, d = cubic = solved(factor, right)
         left = sums.square + ratio * sums.square_rate - total([x * y for x, y in zip(cubic, right, strict=True)])
         ends = []
@@ -119,8 +120,13 @@ class Arriving:
             s = (one.stamp - frames[0].stamp) / (SCALE * NANOSECONDS)
             off = frames[0].gap - self._level + a + s * (b + s * (c + s * d))
             ends.append((off, square_of(factor, (1.0, s, s * s, s * s * s))))
-        places = tuple([sums.along(axis, 0.0) for axis in range(3)]) if isinstance(sums, Sums) else ()
-        self._tried.append(Between(k - 1, factor, left, ends[0], ends[1], self._near, places))
+        places = tuple([series.right(0.0) for series in sums.places])
+        here, there = ends
+        self._tried.append(
+            ArrivalCandidate(
+                last=k - 1, factor=factor, left=left, here=here, there=there, near=self._near, places=places
+            )
+        )
 
     def arrival(self) -> Arrival:
         """The arrival, once the point rests.
@@ -154,7 +160,7 @@ class Arriving:
             velocity = self._velocity(found, last)
         return Arrival(stamp, len(frames) - last, velocity)
 
-    def _velocity(self, between: Between, last: int) -> Vector3:
+    def _velocity(self, between: ArrivalCandidate, last: int) -> Vector3:
         """The velocity in a frame without velocities, by the cubic through those up to the end of the air."""
         frames = self._frames
         s = (frames[last].stamp - frames[0].stamp) / (SCALE * NANOSECONDS)

@@ -1,4 +1,4 @@
-"""The base of a machine at instants between and after its samples."""
+"""The motion of a machine's base between and after its samples."""
 
 from __future__ import annotations
 
@@ -19,44 +19,58 @@ LEAST_SPAN = 10_000_000
 FEWEST = 5
 """Samples from which it is told; of a slow source they reach further back."""
 
-Line = tuple[tuple[float, ...], tuple[float, ...]]
+REMEMBERED = 64
+"""Samples that are kept for feet that are told later, and for landings that are noticed later."""
+
+TwistLine = tuple[tuple[float, ...], tuple[float, ...]]
 """Twist of now and its rate."""
 
 
-class Twists:
-    """The twists of the base in its last samples, and how it goes on from them."""
+class BaseMotion:
+    """The last samples of the base, and how its twist goes on from them."""
 
     def __init__(self) -> None:
-        self._recent: deque[tuple[int, tuple[float, ...]]] = deque()
-        self._line: Line | None = None
+        self.samples: deque[Sample] = deque(maxlen=REMEMBERED)
+        self._twists: deque[tuple[int, tuple[float, ...]]] = deque()
+        self._line: TwistLine | None = None
 
     def add(self, sample: Sample) -> None:
         """Take the next sample, in the order of their stamps."""
-        recent, axes = self._recent, axes_of(sample.orientation)
-        recent.append((sample.stamp, to_world(axes, sample.linear) + to_world(axes, sample.angular)))
-        while len(recent) > FEWEST and recent[0][0] < sample.stamp - SPAN:
-            recent.popleft()
+        self.samples.append(sample)
+        twists, axes = self._twists, axes_of(sample.orientation)
+        twists.append((sample.stamp, to_world(axes, sample.linear) + to_world(axes, sample.angular)))
+        while len(twists) > FEWEST and twists[0][0] < sample.stamp - SPAN:
+            twists.popleft()
         self._line = None
 
     def begin(self, stamp: int) -> None:
-        """Leave out what was before a stamp in ns: an impact has changed the twist."""
-        while self._recent and self._recent[0][0] <= stamp:
-            self._recent.popleft()
+        """Follow no twist from before a stamp in ns: an impact has changed it."""
+        while self._twists and self._twists[0][0] <= stamp:
+            self._twists.popleft()
         self._line = None
 
+    def at(self, stamp: int) -> Sample:
+        """The base at a stamp in ns, from the nearest of its last samples; the older of two that are equally near."""
+        near = self.samples[-1]
+        for sample in reversed(self.samples):
+            if abs(sample.stamp - stamp) > abs(near.stamp - stamp):
+                break
+            near = sample
+        return carried(near, (stamp - near.stamp) / NANOSECONDS)
+
     @property
-    def line(self) -> Line | None:
+    def line(self) -> TwistLine | None:
         """The line nearest to the last twists (least squares); None where these are too few.
 
         A base that turns about a foot gains speed until the next one lands, and a line averages the noise of twists.
         """
-        recent = self._recent
-        if self._line is None and len(recent) >= FEWEST and recent[-1][0] - recent[0][0] >= LEAST_SPAN:
-            self._line = line_of(recent)
+        twists = self._twists
+        if self._line is None and len(twists) >= FEWEST and twists[-1][0] - twists[0][0] >= LEAST_SPAN:
+            self._line = line_of(twists)
         return self._line
 
 
-def ahead(sample: Sample, line: Line | None, time: float) -> Sample:
+def extrapolated(sample: Sample, line: TwistLine | None, time: float) -> Sample:
     """A base `time` s after a sample, whose stamp it keeps; its twists lie on a line, or are those that it has."""
     if line is None:
         return carried(sample, time)._replace(stamp=sample.stamp)
@@ -75,27 +89,17 @@ def ahead(sample: Sample, line: Line | None, time: float) -> Sample:
     )
 
 
-def line_of(recent: Sequence[tuple[int, tuple[float, ...]]]) -> Line:
+def line_of(twists: Sequence[tuple[int, tuple[float, ...]]]) -> TwistLine:
     """The line nearest to some twists (least squares), at the last of them."""
-    last, count = recent[-1][0], len(recent)
-    ages = [(stamp - last) / NANOSECONDS for stamp, _ in recent]
+    last, count = twists[-1][0], len(twists)
+    ages = [(stamp - last) / NANOSECONDS for stamp, _ in twists]
     middle = total(ages) / count
     arms = [age - middle for age in ages]
     spread = total(map(mul, arms, arms))
-    columns = list(zip(*[twist for _, twist in recent], strict=True))
+    columns = list(zip(*[twist for _, twist in twists], strict=True))
     rates = [total(map(mul, arms, column)) / spread for column in columns]
     now = [total(column) / count - middle * rate for column, rate in zip(columns, rates, strict=True)]
     return tuple(now), tuple(rates)
-
-
-def base_at(samples: Sequence[Sample], stamp: int) -> Sample:
-    """The base at a stamp in ns, from the nearest of its last samples; the older of two that are equally near."""
-    near = samples[-1]
-    for sample in reversed(samples):
-        if abs(sample.stamp - stamp) > abs(near.stamp - stamp):
-            break
-        near = sample
-    return carried(near, (stamp - near.stamp) / NANOSECONDS)
 
 
 def carried(sample: Sample, time: float) -> Sample:

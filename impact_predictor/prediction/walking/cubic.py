@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import inf, sqrt
 from typing import NamedTuple
 
@@ -36,14 +37,14 @@ Factor = tuple[float, float, float, float, float, float, float, float, float, fl
 """The Cholesky factor of a 4 x 4 matrix by rows, with the inverse of its diagonal in the place of that."""
 
 
-class Noise(NamedTuple):
+class GapNoise(NamedTuple):
     """Standard deviations of a gap (m) and of its rate (m/s)."""
 
     gap: float
     rate: float
 
 
-class Frame(NamedTuple):
+class PointFrame(NamedTuple):
     """A point at one instant: its gap, the rate of that, position and velocity; SI units, in the frame of odom.
 
     Where no velocity is measured both are None.
@@ -54,6 +55,92 @@ class Frame(NamedTuple):
     rate: float | None
     position: Vector3
     velocity: Vector3 | None
+
+
+class Series:
+    """Sums of a coordinate of the frames and of its rates over powers of time: the right side of least squares."""
+
+    def __init__(self) -> None:
+        self._values = [0.0] * 4
+        self._rates = [0.0] * 3
+
+    def add(self, value: float, s: float, s2: float, s3: float) -> None:
+        """Take the coordinate at a time."""
+        values = self._values
+        values[0] += value
+        values[1] += s * value
+        values[2] += s2 * value
+        values[3] += s3 * value
+
+    def add_rate(self, rate: float, s: float, s2: float) -> None:
+        """Take its rate at a time."""
+        rates = self._rates
+        rates[0] += rate
+        rates[1] += 2.0 * s * rate
+        rates[2] += 3.0 * s2 * rate
+
+    def right(self, ratio: float) -> Cubic:
+        """The right side, with `ratio` the weight of the rates."""
+        a, b, c, d = self._values
+        p, q, r = self._rates
+        return a, b + ratio * p, c + ratio * q, d + ratio * r
+
+
+class CubicSums:
+    """Sums over frames that follow each other, from which the cubic nearest to their gaps is found.
+
+    Times are counted from the first frame in units of `SCALE`, gaps and positions from the first frame's; positions
+    only where cubics of the `places` are wanted too.
+    """
+
+    def __init__(self, frames: Sequence[PointFrame], places: bool = True) -> None:
+        """Take one frame or more."""
+        self.first = frames[0]
+        self.count = 0
+        self.measured = True
+        """Whether every frame has a velocity."""
+        self.powers = [0.0] * 7
+        self.gaps = Series()
+        self.places = [Series() for _ in range(3)] if places else []
+        self.square = self.square_rate = 0.0
+        for frame in frames:
+            self.add(frame)
+
+    def add(self, frame: PointFrame) -> None:
+        """Take the next frame."""
+        first = self.first
+        s = (frame.stamp - first.stamp) / (SCALE * NANOSECONDS)
+        s2 = s * s
+        s3 = s * s2
+        self.count += 1
+        powers = self.powers
+        powers[0] += 1.0
+        powers[1] += s
+        powers[2] += s2
+        powers[3] += s3
+        powers[4] += s2 * s2
+        powers[5] += s2 * s3
+        powers[6] += s3 * s3
+        gap = frame.gap - first.gap
+        self.square += gap * gap
+        self.gaps.add(gap, s, s2, s3)
+        if frame.rate is None:
+            self.measured = False
+        else:
+            rate = SCALE * frame.rate
+            self.square_rate += rate * rate
+            self.gaps.add_rate(rate, s, s2)
+        for axis, series in enumerate(self.places):
+            series.add(frame.position[axis] - first.position[axis], s, s2, s3)
+            if frame.velocity is not None:
+                series.add_rate(SCALE * frame.velocity[axis], s, s2)
+
+    def normal(self, ratio: float) -> Factor:
+        """The matrix of the least squares, with `ratio` the weight of rates: its lower triangle by rows."""
+        p0, p1, p2, p3, p4, p5, p6 = self.powers
+        n11, n12, n13 = p2 + ratio * p0, p3 + 2.0 * ratio * p1, p4 + 3.0 * ratio * p2
+        n22, n23, n33 = p4 + 4.0 * ratio * p2, p5 + 6.0 * ratio * p3, p6 + 9.0 * ratio * p4
+        return p0, p1, n11, p2, n12, n22, p3, n13, n23, n33
 
 
 class Descent(NamedTuple):
@@ -101,7 +188,7 @@ class Fit(NamedTuple):
         s = self.end + time / SCALE
         return self.deviation / SCALE * sqrt(square_of(self.factor, (0.0, 1.0, 2.0 * s, 3.0 * s * s)))
 
-    def bend_deviation(self, time: float) -> float:
+    def acceleration_deviation(self, time: float) -> float:
         """Standard deviation in m/s^2 of the gap's acceleration `time` s after the stamp."""
         s = self.end + time / SCALE
         return self.deviation / SCALE**2 * sqrt(square_of(self.factor, (0.0, 0.0, 2.0, 6.0 * s)))
@@ -144,14 +231,14 @@ class Fit(NamedTuple):
                     bend = 2.0 * c + 6.0 * d * lowest
                     rests = self.gap_deviation(time) * bend > -rate * self.rate_deviation(lowest)
             if rests:
-                return self._told(a, b, c, d, lowest, 0.0)
+                return self._descent(a, b, c, d, lowest, 0.0)
         elif a + horizon * (b + horizon * (c + horizon * d)) < 0.0:
             time = first_below(a, b, c, d, horizon)
         else:
             return None
-        return self._told(a, b, c, d, time, min(0.0, b + time * (2.0 * c + 3.0 * d * time)))
+        return self._descent(a, b, c, d, time, min(0.0, b + time * (2.0 * c + 3.0 * d * time)))
 
-    def _told(self, a: float, b: float, c: float, d: float, time: float, rate: float) -> Descent:
+    def _descent(self, a: float, b: float, c: float, d: float, time: float, rate: float) -> Descent:
         """A landing, and how well it is known; speed and braking are taken to be less by their standard deviations."""
         later = time + SPREAD
         below = a + later * (b + later * (c + later * d)) < -SURE * self.gap_deviation(later)
@@ -160,7 +247,7 @@ class Fit(NamedTuple):
             precise = self.gap_deviation(time) < PRECISE * (-rate - self.rate_deviation(time))
         else:
             bend = 2.0 * c + 6.0 * d * time
-            precise = self.rate_deviation(time) < PRECISE * (bend - self.bend_deviation(time))
+            precise = self.rate_deviation(time) < PRECISE * (bend - self.acceleration_deviation(time))
         return Descent(time, rate, below or turned, precise)
 
 

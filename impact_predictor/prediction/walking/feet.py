@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import deque
 from math import sqrt
-from typing import TYPE_CHECKING
 
 from ...stamps import NANOSECONDS
 from ..checks import LARGEST, PAUSE, order_of
@@ -25,20 +24,13 @@ from ..types import (
     Wrench,
 )
 from ..vectors import add, axes_of, cross, dot, to_world
-from .ahead import Ahead, Landed, point_of
-from .base import Twists, base_at
-from .cubic import Frame
-from .forces import Forces
-from .mechanism import Mechanism, Trunk
-from .plan import Plan
-from .point import Due, Point
+from .base import REMEMBERED, BaseMotion
+from .cubic import PointFrame
+from .landings import LandingTracker, PendingLanding, part_of
+from .mechanism import ArticulatedMachine, Machine, RigidMachine
+from .point import ExpectedLanding, FootPoint
+from .schedule import FootForces, LandingSchedule
 from .stance import Ground
-
-if TYPE_CHECKING:
-    from .legs import Articulated
-
-REMEMBERED = 64
-"""Samples that are kept for feet that are told later, and for landings that are noticed later."""
 
 
 class FeetContacts(Contacts):
@@ -54,21 +46,18 @@ class FeetContacts(Contacts):
         super().__init__(scene)
         assert scene.walking is not None
         self._walking: Walking = scene.walking
-        self._articulated: Articulated | None = None
+        self._articulated: ArticulatedMachine | None = None
         if self._walking.robot is not None:
-            from .legs import Articulated
-
-            self._articulated = Articulated(self._walking.robot)
+            self._articulated = ArticulatedMachine(self._walking.robot)
             self.scene = scene = scene._replace(mass=self._articulated.body.mass)
             self.joints = self._articulated.body.joints
-        self._mechanism: Mechanism = self._articulated or Trunk(scene)
+        self._machine: Machine = self._articulated or RigidMachine(scene)
         self._timeout = round(self._walking.timeout * NANOSECONDS)
         self._count = len(self._walking.feet) * self._walking.points
-        self._plan = Plan(self._walking.feet)
-        self._forces = Forces(self._walking)
+        self._schedule = LandingSchedule(self._walking.feet)
+        self._forces = FootForces(self._walking)
         self._waiting: deque[Geometry] = deque(maxlen=REMEMBERED)
-        self._recent: deque[Sample] = deque(maxlen=REMEMBERED)
-        self._dues: list[Due | None] = []
+        self._dues: list[ExpectedLanding | None] = []
         self._begin()
 
     def tell(self, message: Geometry | Joints | Wrench | Schedule) -> Status:
@@ -78,16 +67,16 @@ class FeetContacts(Contacts):
         if isinstance(message, Wrench):
             return self._forces.set(message)
         if isinstance(message, Schedule):
-            return self._plan.set(message)
+            return self._schedule.set(message)
         assert self._articulated is not None
         geometry = self._articulated.geometry_of(message)
-        self.unknown_joints = self._articulated.left_out
+        self.unknown_joints = self._articulated.unknown
         return geometry if isinstance(geometry, Status) else self._set_geometry(geometry)
 
     def follow(self, other: Contacts) -> None:
         assert isinstance(other, FeetContacts)
         self.geometry, self.frame_id = other.geometry, other.frame_id
-        self._waiting, self._plan = other._waiting, other._plan
+        self._waiting, self._schedule = other._waiting, other._schedule
 
     def check(self, stamp: int) -> Status:
         if self.geometry is None:
@@ -97,44 +86,42 @@ class FeetContacts(Contacts):
     def take(self, sample: Sample, moment: Moment | None) -> Status:
         self._settles = bool(self._landed)
         self.stamp = sample.stamp
-        self._recent.append(sample)
-        self._twists.add(sample)
+        self._base.add(sample)
         self._see()
         status = self._found
-        if status is Status.ACCEPTED and not self._points[0].course.frames:
+        if status is Status.ACCEPTED and not self._points[0].trajectory.frames:
             status = Status.NO_GEOMETRY
         return status
 
     def touchdown(self) -> Touchdown | Status | None:
-        sample = self._recent[-1]
+        sample = self._base.samples[-1]
         self._dues = [point.revise(sample.stamp, self._ground) for point in self._points]
-        touchdown = self._ahead.soonest(sample, self._dues)
+        touchdown = self._tracker.soonest(sample, self._dues)
         # What lands now is told with the next sample, which has less to do.
         if self._settles and not self.settled and not isinstance(touchdown, Status):
             self._settle()
         return touchdown
 
     def feet(self) -> tuple[Foot, ...]:
-        stamp = self._recent[-1].stamp
+        stamp = self._base.samples[-1].stamp
         return tuple([self._foot(number, stamp, self._dues) for number in range(len(self._walking.feet))])
 
     def forget(self) -> None:
         for landed in self._landed:
             self._measure(landed.pending)
-            if (score := self._ahead.score(landed)) is not None:
+            if (score := self._tracker.score(landed)) is not None:
                 self.settled.append(score)
-        self._recent.clear()
         self.stamp = None
         self._begin()
 
     def _begin(self) -> None:
-        self._points = [Point(self.scene) for _ in range(self._count)]
+        self._points = [FootPoint(self.scene) for _ in range(self._count)]
         self._ground = Ground(self.scene)
-        self._landed: deque[Landed] = deque()
+        self._landed: deque[PendingLanding] = deque()
         self._settles = False
-        self._twists = Twists()
+        self._base = BaseMotion()
         self._found = Status.ACCEPTED  # what became of the last geometry that met a sample
-        self._ahead = Ahead(self.scene, self._mechanism, self._points, self._twists)
+        self._tracker = LandingTracker(self.scene, self._machine, self._points, self._base)
 
     def _set_geometry(self, geometry: Geometry) -> Status:
         points, velocities = geometry.points, geometry.velocities
@@ -157,9 +144,9 @@ class FeetContacts(Contacts):
     def _see(self) -> Status:
         """Take where the feet were over the ground at the stamps that samples have reached."""
         waiting, status = self._waiting, Status.ACCEPTED
-        while self._recent and waiting and waiting[0].stamp <= self._recent[-1].stamp:
+        while self._base.samples and waiting and waiting[0].stamp <= self._base.samples[-1].stamp:
             geometry = waiting.popleft()
-            found = self._frames(geometry, base_at(self._recent, geometry.stamp))
+            found = self._frames(geometry, self._base.at(geometry.stamp))
             if isinstance(found, Status):
                 status = self._found = found
                 continue
@@ -169,7 +156,7 @@ class FeetContacts(Contacts):
                 self._land(i)
         return status
 
-    def _frames(self, geometry: Geometry, base: Sample) -> list[Frame] | Status:
+    def _frames(self, geometry: Geometry, base: Sample) -> list[PointFrame] | Status:
         """The points of the feet over the ground, with the base as it was at their stamp."""
         scene, axes, position, spin = self.scene, axes_of(base.orientation), base.position, base.angular
         nx, ny, nz = scene.normal
@@ -184,7 +171,7 @@ class FeetContacts(Contacts):
             if geometry.velocities:
                 velocity = add(linear, to_world(axes, add(cross(spin, arm), geometry.velocities[i])))
                 rate = nx * velocity[0] + ny * velocity[1] + nz * velocity[2]
-            frames.append(Frame(geometry.stamp, gap, rate, place, velocity))
+            frames.append(PointFrame(geometry.stamp, gap, rate, place, velocity))
         return frames
 
     def _land(self, i: int) -> None:
@@ -193,13 +180,13 @@ class FeetContacts(Contacts):
         The first contact of a foot is told even where it was not announced.
         """
         point, each = self._points[i], self._walking.points
-        stamp, told = point.stance.since, self._ahead.settle(i)
+        stamp, told = point.stance.since, self._tracker.settle(i)
         first = i - i % each
         if told is None and any(one.stands for one in self._points[first : first + each] if one is not point):
             return
         new = told.last.new if told is not None and i in told.last.new else (i,)
         foot = self._walking.feet[i // each]
-        late, confirmed = self._plan.late(foot, stamp), self._forces.agree(foot, True, self._recent[-1].stamp)
+        late, confirmed = self._schedule.late(foot, stamp), self._forces.agree(foot, True, self._base.samples[-1].stamp)
         times = () if told is None else told.times
         history = tuple(
             [
@@ -208,10 +195,10 @@ class FeetContacts(Contacts):
                 if made <= stamp
             ]
         )
-        landing = Landing(foot, stamp, late, confirmed, history, point=point_of(new, each))
+        landing = Landing(foot, stamp, late, confirmed, history, point=part_of(new, each))
         last = None if told is None else told.last
-        self._landed.append(Landed(Pending(Track(), stamp), landing, last, self._ahead.seen(i, new, self._recent)))
-        self._twists.begin(stamp)
+        self._landed.append(PendingLanding(Pending(Track(), stamp), landing, last, self._tracker.seen(i, new)))
+        self._base.begin(stamp)
 
     def _settle(self) -> None:
         """Settle the next landing that is complete; of its two impacts a sample computes one."""
@@ -220,33 +207,33 @@ class FeetContacts(Contacts):
             return
         landed = self._landed.popleft()
         if landed.seen is not None:
-            self._landed.appendleft(self._ahead.struck(landed))
-        elif (score := self._ahead.score(landed)) is not None:
+            self._landed.appendleft(self._tracker.struck(landed))
+        elif (score := self._tracker.score(landed)) is not None:
             self.settled.append(score)
 
     def _measure(self, pending: Pending) -> None:
         """Hand the samples after a touchdown to it, once there are enough of them."""
-        after = [sample for sample in self._recent if sample.stamp > pending.stamp][: MEASURED.stop]
+        after = [sample for sample in self._base.samples if sample.stamp > pending.stamp][: MEASURED.stop]
         if len(after) == MEASURED.stop and not pending.complete:
             for sample in after:
                 pending.add(sample, posture_of(self.scene, (), sample))
 
-    def _foot(self, number: int, stamp: int, dues: list[Due | None]) -> Foot:
+    def _foot(self, number: int, stamp: int, dues: list[ExpectedLanding | None]) -> Foot:
         """A foot as the sample of a stamp in ns shows it."""
         name, each = self._walking.feet[number], self._walking.points
         own = self._points[number * each : (number + 1) * each]
         standing = [landed for point in own if (landed := point.landed) is not None]
         since = min(standing) if standing else max([point.stance.since for point in own])
-        lowest = min(own, key=lambda point: point.course.frames[-1].gap) if each > 1 else own[0]
+        lowest = min(own, key=lambda point: point.trajectory.frames[-1].gap) if each > 1 else own[0]
         lead_time = speed = late = place = None
         ahead = [due for due in dues[number * each : (number + 1) * each] if due is not None]
         if ahead:
             due = min(ahead, key=lambda one: one.stamp)
             lead_time, speed = (due.stamp - stamp) / NANOSECONDS, -dot(self.scene.normal, due.velocity)
-            late, place = self._plan.late(name, due.stamp), due.position
+            late, place = self._schedule.late(name, due.stamp), due.position
         if standing:
-            late = self._plan.late(name, since) if since else None
+            late = self._schedule.late(name, since) if since else None
         confirmed = self._forces.agree(name, bool(standing), stamp)
-        last, approach = lowest.course.frames[-1], -lowest.course.rate
+        last, approach = lowest.trajectory.frames[-1], -lowest.trajectory.rate
         where = last.position, place
         return Foot(name, bool(standing), since, last.gap, approach, lead_time, speed, late, confirmed, *where)

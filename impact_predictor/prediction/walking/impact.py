@@ -11,7 +11,7 @@ from ..planar import GRAZES, ORIGIN, ROUNDING, TINY, edge_of, hardly, off_axis_o
 from ..scene import Scene
 from ..types import Leftover, Sample, Status, Touchdown, Vector3
 from ..vectors import add, any_across, axes_of, cross, dot, mean, times, to_body, to_world
-from .mechanism import Mechanism, Response
+from .mechanism import ImpulseResponse, Machine
 
 USABLE = 0.2
 """The machine turns about the line of its standing points where the landing one is further from it than this part of
@@ -25,7 +25,7 @@ COLLINEAR = 0.05
 
 def touchdown_of(
     scene: Scene,
-    mechanism: Mechanism,
+    machine: Machine,
     base: Sample,
     points: tuple[Vector3, ...],
     old: tuple[int, ...],
@@ -41,9 +41,9 @@ def touchdown_of(
     support, along the axes of the frame that the pose is in. The old contact is the mean of the points of other feet
     that land `together` with this one, and strikes with the mean of their velocities (Flag.BOTH_STRUCK). Else it rests:
     it is that of the same foot where other points of it stand, else the mean of all standing points. Joints are free
-    during an impact, or held by a `mechanism` that has none. Leftover.OUT_OF_PLANE where a foot of a rigid machine
+    during an impact, or held by a `machine` that has none. Leftover.OUT_OF_PLANE where a foot of a rigid machine
     would be pressed into the ground that these two contacts leave out. Feet that have braked before they land make no
-    impact (Mode.NO_IMPACT). A status, where the mechanism has no response.
+    impact (Mode.NO_IMPACT). A status, where the machine has no response.
     """
     axes = axes_of(base.orientation)
     normal = to_body(axes, scene.normal)
@@ -65,7 +65,7 @@ def touchdown_of(
         if approach == (0.0, 0.0):
             outcome = unchanged(c, scene.law, 0)
             break
-        response = mechanism.response(first, new, normal, ahead, points)
+        response = machine.response(first, new, normal, ahead, points)
         if isinstance(response, Status):
             return response
         restitution = (scene.restitution if approach[1] else 0.0), scene.restitution
@@ -73,7 +73,7 @@ def touchdown_of(
         kick, spin = changes(response, outcome)
         rates = {i: rate + dot(normal, add(kick, cross(spin, points[i]))) for i, rate in watched.items()}
         pressed = [i for i, rate in rates.items() if rate < -GRAZES]
-        if not (mechanism.is_rigid and pressed):
+        if not (machine.is_rigid and pressed):
             break
         # The mean of several feet rolls freely, into the ground on one side: those that are pressed prevent it alone.
         held = tuple([i for i in pressed if i in first])
@@ -128,7 +128,7 @@ def without_grazing(rate: float) -> float:
     return rate if rate < -GRAZES else 0.0
 
 
-def changes(response: Response, outcome: ContactOutcome) -> tuple[Vector3, Vector3]:
+def changes(response: ImpulseResponse, outcome: ContactOutcome) -> tuple[Vector3, Vector3]:
     """The changes of linear and angular velocity of the base by an impact, along its axes."""
     (na, ta), (nb, tb) = outcome.impulses
     x, y, z, p, q, r = [row[0] * na + row[1] * ta + row[2] * nb + row[3] * tb for row in response.twist]

@@ -1,4 +1,4 @@
-"""One point of a foot: its course, whether it stands, and the landing that it announces."""
+"""One point of a foot: its trajectory, whether it stands, and the landing that it announces."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from ...stamps import NANOSECONDS
 from ..scene import Scene
 from ..types import Vector3
 from ..vectors import add, dot
-from .arrival import MOST, Arrival, Arriving
-from .course import Course
-from .cubic import Fit, Frame
-from .stance import Ground, Stance
+from .arrival import MOST, Arrival, ArrivalFit
+from .cubic import Fit, PointFrame
+from .stance import Ground, StanceDetector
+from .trajectory import Trajectory
 
 AHEAD = 1.5
 """A landing is first announced when it is no further ahead than so many times as long as the point has descended: from
@@ -28,7 +28,7 @@ SETTLED = 3
 """A frame shows the ground when the point is still near it so many dead times later: it has not begun to lift then."""
 
 
-class Due(NamedTuple):
+class ExpectedLanding(NamedTuple):
     """A landing that is announced: `stamp` in ns, and where and how fast the point will be then (m, m/s)."""
 
     stamp: int
@@ -36,14 +36,14 @@ class Due(NamedTuple):
     velocity: Vector3
 
 
-class Point:
+class FootPoint:
     """A point of a foot of a scene."""
 
     def __init__(self, scene: Scene) -> None:
         assert scene.walking is not None
-        self.course = Course(scene.normal)
-        self.stance = Stance(scene)
-        self.due: Due | None = None
+        self.trajectory = Trajectory()
+        self.stance = StanceDetector(scene)
+        self.due: ExpectedLanding | None = None
         """The landing last announced, until the point stands or the announcement is withdrawn."""
         self.arrival: Arrival | None = None
         """How the point came to stand last."""
@@ -54,8 +54,8 @@ class Point:
         self._doubted: int | None = None
         self._shown: int | None = None
         self._last: Fit | None = None
-        self._arriving: Arriving | None = None
-        self._standing: deque[Frame] = deque()
+        self._arriving: ArrivalFit | None = None
+        self._standing: deque[PointFrame] = deque()
 
     @property
     def stands(self) -> bool:
@@ -78,34 +78,34 @@ class Point:
         landed = self.landed
         return self.stance.since > stamp if landed is None else landed <= stamp
 
-    def add(self, frame: Frame, ground: Ground) -> bool:
+    def add(self, frame: PointFrame, ground: Ground) -> bool:
         """Take the next frame; whether the point has come to stand.
 
         A foot that brakes before it lands seems to rest before it does: while its landing is surely ahead it swings.
         """
-        course, stance = self.course, self.stance
-        course.add(frame)
+        trajectory, stance = self.trajectory, self.stance
+        trajectory.add(frame)
         awaited = self.due is not None and self._doubted is None and self.due.stamp > frame.stamp
-        changed = stance.update(course.frames, ground, awaited)
+        changed = stance.update(trajectory.frames, ground, awaited)
         near = frame.gap - ground.level <= self._tolerance
         if not near:
             self._arriving = None
         elif self._arriving is not None and not self._arriving.is_full:
             self._arriving.add(frame)
         elif changed or not stance.stands:
-            begin = course.top if self._last is None else max(course.top, self._last.begin)
-            self._arriving = Arriving(course.last(MOST), begin, ground.level, self._tolerance, ground.noise)
+            begin = trajectory.top if self._last is None else max(trajectory.top, self._last.begin)
+            self._arriving = ArrivalFit(trajectory.last(MOST), begin, ground.level, self._tolerance, ground.noise)
         if not stance.stands:
             if changed:
                 self._standing.clear()
-            course.follow()
+            trajectory.follow()
             return False
         if changed and self._arriving is not None:
             if self._last is not None:
-                ground.habit.learn(self._last)
+                ground.prior.learn(self._last)
             self.arrival = self._arriving.arrival()
             stance.since, self._last, self._arriving = self.arrival.stamp, None, None
-        course.rest()
+        trajectory.rest()
         if near:
             self._standing.append(frame)
             if frame.stamp - self._standing[0].stamp > SETTLED * self._dead_time:
@@ -115,21 +115,21 @@ class Point:
         self.closed = False
         return changed
 
-    def revise(self, stamp: int, ground: Ground) -> Due | None:
+    def revise(self, stamp: int, ground: Ground) -> ExpectedLanding | None:
         """The landing ahead of a stamp in ns."""
         if self.stance.stands:
             return None
-        last = self.course.frames[-1]
+        last = self.trajectory.frames[-1]
         near = last.gap - ground.level <= self._tolerance
         due = self.due
         self.closed = due is not None and due.stamp <= stamp and near
         if self.closed:
-            return None  # What its course shows is the ground already.
-        course = self.course
-        fit = course.fit(ground.noise, ground.habit)
+            return None  # What its trajectory shows is the ground already.
+        trajectory = self.trajectory
+        fit = trajectory.fit(ground.noise, ground.prior)
         if fit is not None and not near:
             self._last = fit
-        if due is not None and near and course.broke:
+        if due is not None and near and trajectory.broke:
             return due if due.stamp > stamp else None  # It may be landing already, so its last announcement stands.
         landing = None if fit is None else fit.landing(ground.level, self._tolerance, self._horizon)
         if fit is None or landing is None:
@@ -138,19 +138,19 @@ class Point:
                 due = self.due = self._doubted = None
             return due if due is not None and due.stamp > stamp else None
         self._shown = stamp if self._shown is None else self._shown
-        descended, wait = fit.stamp - course.top, landing.time * NANOSECONDS
+        descended, wait = fit.stamp - trajectory.top, landing.time * NANOSECONDS
         sure = landing.sure and (due is not None or wait < AHEAD * descended)
         sure |= landing.precise and wait < SOON * descended
         sure |= stamp - self._shown >= self._dead_time and wait < LASTS * descended
         # So near to the ground a little noise makes the curve of a foot that brakes pass through it at once.
         leaps = near and due is not None and due.stamp - fit.stamp - wait > self._dead_time
-        sure = sure and not (course.broke or leaps)
+        sure = sure and not (trajectory.broke or leaps)
         if sure or self._doubted_for(stamp):
             if sure:
                 self._doubted = None
-            position, velocity = course.motion(fit, landing.time)
+            position, velocity = trajectory.motion(fit, landing.time)
             velocity = add(velocity, self._normal, landing.rate - dot(velocity, self._normal))
-            due = self.due = Due(fit.stamp + round(landing.time * NANOSECONDS), position, velocity)
+            due = self.due = ExpectedLanding(fit.stamp + round(landing.time * NANOSECONDS), position, velocity)
         return due if due is not None and due.stamp > stamp else None
 
     def _doubted_for(self, stamp: int) -> bool:

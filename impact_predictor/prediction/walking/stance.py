@@ -9,8 +9,8 @@ from ...stamps import NANOSECONDS
 from ..planar import hardly
 from ..scene import Scene
 from ..vectors import total
-from .cubic import Frame, Noise
-from .habit import Habit
+from .cubic import GapNoise, PointFrame
+from .trajectory import DescentPrior
 
 LEAST = 1e-5
 """Noise of a gap in m below which none counts: by so much a planned course differs from a cubic over few frames ..."""
@@ -42,13 +42,13 @@ class Ground:
 
     def __init__(self, scene: Scene) -> None:
         self.level = 0.0
-        self.noise = Noise(GUESS * scene.tolerance, GUESS_RATE)
-        self.habit = Habit()
+        self.noise = GapNoise(GUESS * scene.tolerance, GUESS_RATE)
+        self.prior = DescentPrior()
         self._tolerance = scene.tolerance
         self._seen = 0
         self._square = self._square_rate = 0.0
 
-    def add(self, frame: Frame, before: Frame) -> None:
+    def add(self, frame: PointFrame, before: PointFrame) -> None:
         """Take two frames of a standing point that follow each other."""
         self._seen = min(self._seen + 1, MEMORY)
         share = 1.0 / self._seen
@@ -64,10 +64,10 @@ class Ground:
             self._square_rate += share * (frame.rate**2 - self._square_rate)
             rate = max(LEAST_RATE, sqrt(self._square_rate))
         if self._seen >= FEWEST:
-            self.noise = Noise(max(LEAST, sqrt(self._square)), rate)
+            self.noise = GapNoise(max(LEAST, sqrt(self._square)), rate)
 
 
-class Stance:
+class StanceDetector:
     """Whether one point stands. A change is believed when it has lasted for the dead time.
 
     A point comes to stand when it has stayed within the contact tolerance above the ground and has hardly moved; it
@@ -84,7 +84,7 @@ class Stance:
         self._begun = False
         self._other: int | None = None
 
-    def update(self, frames: Sequence[Frame], ground: Ground, awaited: bool = False) -> bool:
+    def update(self, frames: Sequence[PointFrame], ground: Ground, awaited: bool = False) -> bool:
         """Whether the last of the frames changes the stance; not to standing while that is still `awaited`."""
         frame = frames[-1]
         near = frame.gap - ground.level <= self._tolerance
@@ -102,7 +102,7 @@ class Stance:
         self.stands, self.since, self._other = near, self._other if near else self._left(frames, ground), None
         return True
 
-    def _left(self, frames: Sequence[Frame], ground: Ground) -> int:
+    def _left(self, frames: Sequence[PointFrame], ground: Ground) -> int:
         """The stamp in ns of the last frame in which the point was on the ground: the tolerance is left later."""
         since = frames[-1].stamp
         for frame in reversed(frames):
@@ -111,7 +111,7 @@ class Stance:
                 break
         return max(since, self.since)
 
-    def _rests(self, frames: Sequence[Frame], noise: Noise) -> bool:
+    def _rests(self, frames: Sequence[PointFrame], noise: GapNoise) -> bool:
         """Whether the point has hardly moved along the normal within the dead time."""
         begin = frames[-1].stamp - self._dead_time
         lasted = [frame for frame in frames if frame.stamp >= begin]

@@ -2,12 +2,12 @@
 
 import pytest
 
-from impact_predictor.prediction.walking.arrival import FULL, MOST, Arriving
-from impact_predictor.prediction.walking.cubic import Frame, Noise
+from impact_predictor.prediction.walking.arrival import FULL, MOST, ArrivalFit
+from impact_predictor.prediction.walking.cubic import GapNoise, PointFrame
 from impact_predictor.stamps import NANOSECONDS
 
 RATE = 500
-LEVEL, TOLERANCE, NOISE = 0.002, 0.005, Noise(2e-4, 2e-3)
+LEVEL, TOLERANCE, NOISE = 0.002, 0.005, GapNoise(2e-4, 2e-3)
 # The foot strikes at 0.4 m/s, with a brake of 1 m/s^2, and moves along the ground meanwhile.
 SPEED, BRAKE, ALONG = 0.4, 1.0, (0.3, -0.2)
 
@@ -20,13 +20,13 @@ def frame(step, landing, *, measured):
     x, y = (rate * -max(left, 0.0) for rate in ALONG)
     velocity = (*(ALONG if left > 0.0 else (0.0, 0.0)), speed)
     stamp = step * NANOSECONDS // RATE
-    return Frame(stamp, gap, speed if measured else None, (x, y, gap), velocity if measured else None)
+    return PointFrame(stamp, gap, speed if measured else None, (x, y, gap), velocity if measured else None)
 
 
 def arrival(frames):
     """Of frames in which the point comes near the ground at some time, and then rests."""
     near = next(k for k, one in enumerate(frames) if one.gap - LEVEL <= TOLERANCE)
-    arriving = Arriving(frames[max(0, near + 1 - MOST) : near + 1], 0, LEVEL, TOLERANCE, NOISE)
+    arriving = ArrivalFit(frames[max(0, near + 1 - MOST) : near + 1], 0, LEVEL, TOLERANCE, NOISE)
     for one in frames[near + 1 :]:
         assert not arriving.is_full
         arriving.add(one)
@@ -73,7 +73,7 @@ def test_of_too_few_frames_no_velocity_is_told():
 
 def test_a_point_that_hovers_near_the_ground_is_full_in_the_end():
     frames = [frame(step, 0.0, measured=False) for step in range(FULL)]
-    arriving = Arriving(frames[:2], 0, LEVEL, TOLERANCE, NOISE)
+    arriving = ArrivalFit(frames[:2], 0, LEVEL, TOLERANCE, NOISE)
     for one in frames[2:]:
         arriving.add(one)
     assert arriving.is_full

@@ -8,7 +8,7 @@ import pytest
 
 from impact_predictor.prediction.types import Sample
 from impact_predictor.prediction.vectors import axes_of, to_body, to_world
-from impact_predictor.prediction.walking.base import FEWEST, Twists, ahead, base_at
+from impact_predictor.prediction.walking.base import FEWEST, BaseMotion, extrapolated
 
 PERIOD = 2_500_000
 ZEROS = (0.0,) * 36
@@ -28,17 +28,17 @@ def sample(stamp: int, yaw: float = 0.7, shift: float = 0.0) -> Sample:
     return Sample(stamp, "world", "base", position, orientation, linear, (0.0, 0.0, 2.0 + 5.0 * time), ZEROS, ZEROS)
 
 
-def twists_of(samples: list[Sample]) -> Twists:
-    twists = Twists()
+def motion_of(samples: list[Sample]) -> BaseMotion:
+    motion = BaseMotion()
     for one in samples:
-        twists.add(one)
-    return twists
+        motion.add(one)
+    return motion
 
 
 @pytest.mark.parametrize("lead_time", [0.0, 0.02, 0.1])
 def test_a_base_goes_on_at_the_acceleration_that_its_twists_show(lead_time: float) -> None:
     samples = [sample(k * PERIOD) for k in range(41)]
-    then = ahead(samples[-1], twists_of(samples).line, lead_time)
+    then = extrapolated(samples[-1], motion_of(samples).line, lead_time)
     true = sample(samples[-1].stamp + round(lead_time * 1e9))
     assert then.stamp == samples[-1].stamp
     # Motion of constant acceleration is followed exactly, up to rounding of 1 m and 4 rad/s.
@@ -53,22 +53,22 @@ def test_a_body_that_falls_over_a_foot_is_told_far_better_than_at_its_twist_of_n
     rates = [1.2 * cosh(sqrt(9.81) * (0.1 + k * PERIOD * 1e-9)) for k in range(41)]
     samples = [sample(k * PERIOD)._replace(angular=(0.0, 0.0, rate)) for k, rate in enumerate(rates)]
     true = 1.2 * cosh(sqrt(9.81) * 0.3)
-    told = ahead(samples[-1], twists_of(samples).line, 0.1).angular[2]
+    told = extrapolated(samples[-1], motion_of(samples).line, 0.1).angular[2]
     assert abs(told - true) < 0.4 * abs(rates[-1] - true)
 
 
 def test_what_was_before_an_impact_does_not_count() -> None:
     samples = [sample(k * PERIOD, shift=0.0 if k <= 20 else 1.0) for k in range(20 + 2 * FEWEST)]
-    twists = twists_of(samples)
-    twists.begin(samples[20].stamp)
+    motion = motion_of(samples)
+    motion.begin(samples[20].stamp)
     true = sample(samples[-1].stamp + 50_000_000, shift=1.0)
-    assert ahead(samples[-1], twists.line, 0.05).linear == pytest.approx(true.linear, abs=1e-12)
+    assert extrapolated(samples[-1], motion.line, 0.05).linear == pytest.approx(true.linear, abs=1e-12)
 
 
 def test_from_fewer_samples_the_twist_of_now_is_kept() -> None:
     samples = [sample(k * PERIOD) for k in range(FEWEST - 1)]
     last = samples[-1]
-    then = ahead(last, twists_of(samples).line, 0.1)
+    then = extrapolated(last, motion_of(samples).line, 0.1)
     kept = to_world(axes_of(then.orientation), then.linear)
     assert kept == pytest.approx(to_world(axes_of(last.orientation), last.linear), abs=1e-15)
     assert then.angular == last.angular
@@ -76,21 +76,21 @@ def test_from_fewer_samples_the_twist_of_now_is_kept() -> None:
 
 def test_of_samples_that_come_at_once_no_acceleration_is_told() -> None:
     samples = [sample(k * 100_000) for k in range(2 * FEWEST)]
-    then = ahead(samples[-1], twists_of(samples).line, 0.1)
+    then = extrapolated(samples[-1], motion_of(samples).line, 0.1)
     assert then.angular == samples[-1].angular
 
 
 def test_a_slow_source_is_followed_over_a_longer_time() -> None:
     samples = [sample(k * 20_000_000) for k in range(2 * FEWEST)]
     true = sample(samples[-1].stamp + 100_000_000)
-    assert ahead(samples[-1], twists_of(samples).line, 0.1).linear == pytest.approx(true.linear, abs=1e-12)
+    assert extrapolated(samples[-1], motion_of(samples).line, 0.1).linear == pytest.approx(true.linear, abs=1e-12)
 
 
 @pytest.mark.parametrize(("offset", "nearest"), [(0, 4), (-1_000_000, 4), (-1_500_000, 3), (1_000_000, 4)])
 def test_between_samples_the_nearest_one_is_carried_on(offset: int, nearest: int) -> None:
     samples = [sample(k * PERIOD) for k in range(5)]
     stamp = samples[-1].stamp + offset
-    found = base_at(samples, stamp)
+    found = motion_of(samples).at(stamp)
     assert found.stamp == stamp
     age = (stamp - samples[nearest].stamp) * 1e-9
     velocity = to_world(axes_of(samples[nearest].orientation), samples[nearest].linear)

@@ -11,7 +11,7 @@ from impact_predictor.prediction.scene import Scene, Walking
 from impact_predictor.prediction.types import Leftover, Sample, Status
 from impact_predictor.prediction.vectors import axes_of, composed, cross
 from impact_predictor.prediction.walking.impact import ahead_of, touchdown_of
-from impact_predictor.prediction.walking.mechanism import Trunk
+from impact_predictor.prediction.walking.mechanism import RigidMachine
 
 FEET = ((0.31, 0.29, -0.58), (0.31, -0.29, -0.58), (-0.31, 0.29, -0.58), (-0.31, -0.29, -0.58))
 LEVEL = (0.0, 0.0, 0.0, 1.0)
@@ -55,7 +55,7 @@ def random_landing(source, **changes):
 
 
 def landing(scene, base, feet, old, new, velocity, **together):
-    return touchdown_of(scene, Trunk(scene), base, feet, old, new, 0.05, velocity, **together)
+    return touchdown_of(scene, RigidMachine(scene), base, feet, old, new, 0.05, velocity, **together)
 
 
 def motion_of_mass_centre(scene, linear, angular):

@@ -7,7 +7,7 @@ import pytest
 
 from impact_predictor.prediction.scene import Robot
 from impact_predictor.prediction.types import Joints, Status
-from impact_predictor.prediction.walking.mechanism import Response
+from impact_predictor.prediction.walking.mechanism import ImpulseResponse
 
 pytestmark = pytest.mark.extras
 
@@ -34,13 +34,13 @@ def frog(tmp_path):
 
 def articulated(tmp_path, massless=False):
     pytest.importorskip("pinocchio", reason="needs the extra articulated")
-    from impact_predictor.prediction.walking.legs import Articulated
+    from impact_predictor.prediction.walking.mechanism import ArticulatedMachine
 
     path = tmp_path / "frog.urdf"
     body = LINK.format(name="body", place="0 0 0", mass=10.0)
     left, right = (LINK.format(name=name, place="0 0 -0.5", mass=1.0) for name in ("left", "right"))
     path.write_text(URDF.format(body=body, left='<link name="left"/>' if massless else left, right=right, limit=LIMIT))
-    return Articulated(Robot(str(path), ("left_foot", "right_foot")))
+    return ArticulatedMachine(Robot(str(path), ("left_foot", "right_foot")))
 
 
 def test_the_feet_follow_the_joints_in_whatever_order_their_names_come(frog):
@@ -84,10 +84,10 @@ def test_joints_that_are_not_the_models_are_a_status_and_leave_the_last_ones(
 
 def test_joints_that_the_model_does_not_know_are_left_out_whatever_they_are(frog):
     plain = frog.geometry_of(Joints(7, NAMES, (0.3, -0.2), (1.0, 2.0)))
-    assert frog.left_out == ()
+    assert frog.unknown == ()
     names = ("arm", "left_hip", "gripper", "right_hip", "arm")
     assert frog.geometry_of(Joints(7, names, (nan, 0.3, 4.0, -0.2, 0.0), (0.0, 1.0, inf, 2.0, 0.0))) == plain
-    assert frog.left_out == ("arm", "gripper", "arm")
+    assert frog.unknown == ("arm", "gripper", "arm")
 
 
 def test_before_any_joints_there_is_no_response_but_a_status(frog):
@@ -103,6 +103,6 @@ def test_a_leg_without_mass_is_a_status_and_never_a_number(tmp_path):
 def test_in_flight_the_rows_of_the_old_contact_are_zero(frog):
     frog.geometry_of(Joints(0, NAMES, (0.3, -0.2), ()))
     response = frog.response((), (1,), UP, AHEAD, ())
-    assert isinstance(response, Response)
+    assert isinstance(response, ImpulseResponse)
     assert np.array(response.W)[:2].any() == np.array(response.W)[:, :2].any() == np.array(response.twist)[:, :2].any()
     assert not np.array(response.W)[:2].any()

@@ -6,7 +6,7 @@ import pytest
 from impact_predictor.errors import InputError
 from impact_predictor.prediction.scene import Robot, Scene, inertia_matrix
 from impact_predictor.prediction.types import Joints
-from impact_predictor.prediction.walking.mechanism import Trunk
+from impact_predictor.prediction.walking.mechanism import RigidMachine
 
 URDF = """<robot name="block">
   <link name="body"><inertial><origin xyz="{place}"/><mass value="{mass:.17g}"/>
@@ -63,7 +63,7 @@ def test_the_response_of_a_trunk_is_that_of_its_mass_matrix(old):
                     middle = np.mean([points[i] for i in those], axis=0)
                     rows[first + k] = [*way, *np.cross(middle, way)]
         moved = np.linalg.solve(mass_matrix(scene), rows.T)
-        W, twist = Trunk(scene).response(old, (3,), normal, ahead, points)
+        W, twist = RigidMachine(scene).response(old, (3,), normal, ahead, points)
         # Rounding of numbers of about 1.
         assert np.array(W) == pytest.approx(rows @ moved, abs=1e-13)
         assert np.array(twist) == pytest.approx(moved, abs=1e-13)
@@ -72,13 +72,13 @@ def test_the_response_of_a_trunk_is_that_of_its_mass_matrix(old):
 def test_a_body_whose_inertia_has_no_inverse_is_refused_in_one_sentence():
     needle = Scene(mass=1.0, inertia=inertia_matrix((0.0, 1.0, 1.0, 0.0, 0.0, 0.0)), friction=0.5)
     with pytest.raises(InputError, match="has no inverse"):
-        Trunk(needle)
+        RigidMachine(needle)
 
 
 @pytest.mark.extras
 def test_a_machine_without_joints_is_a_trunk(tmp_path):
     pytest.importorskip("pinocchio", reason="needs the extra articulated")
-    from impact_predictor.prediction.walking.legs import Articulated
+    from impact_predictor.prediction.walking.mechanism import ArticulatedMachine
 
     source = np.random.default_rng(2)
     path = tmp_path / "block.urdf"
@@ -90,11 +90,11 @@ def test_a_machine_without_joints_is_a_trunk(tmp_path):
         place = "{:.17g} {:.17g} {:.17g}".format(*scene.center_of_mass)
         numbers = {"xx": xx, "yy": yy, "zz": zz, "xy": xy, "xz": xz, "yz": yz}
         path.write_text(URDF.format(place=place, mass=scene.mass, feet="\n".join(feet), **numbers))
-        machine = Articulated(Robot(str(path), tuple(f"foot_{k}" for k in range(4))))
+        machine = ArticulatedMachine(Robot(str(path), tuple(f"foot_{k}" for k in range(4))))
         geometry = machine.geometry_of(Joints(0, (), (), ()))
         assert np.array(geometry.points) == pytest.approx(np.array(points), abs=1e-15)
         for old in ((0,), (0, 2), ()):
-            one = Trunk(scene).response(old, (1,), normal, ahead, points)
+            one = RigidMachine(scene).response(old, (1,), normal, ahead, points)
             other = machine.response(old, (1,), normal, ahead, geometry.points)
             assert np.array(other.W) == pytest.approx(np.array(one.W), abs=1e-12)
             assert np.array(other.twist) == pytest.approx(np.array(one.twist), abs=1e-12)

@@ -9,25 +9,25 @@ import numpy as np
 import pytest
 
 from impact_predictor.prediction.scene import Scene, Walking
-from impact_predictor.prediction.walking.cubic import Frame
-from impact_predictor.prediction.walking.point import Point
-from impact_predictor.prediction.walking.stance import Ground, Stance
+from impact_predictor.prediction.walking.cubic import PointFrame
+from impact_predictor.prediction.walking.point import FootPoint
+from impact_predictor.prediction.walking.stance import Ground, StanceDetector
 
 MS = 1_000_000
 SCENE = Scene(1.0, ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), 0.5, walking=Walking(("foot",)))
 """Contact tolerance 5 mm, dead time 20 ms."""
 
 
-def frame(milliseconds: float, gap: float, rate: float | None = 0.0) -> Frame:
+def frame(milliseconds: float, gap: float, rate: float | None = 0.0) -> PointFrame:
     velocity = None if rate is None else (0.0, 0.0, rate)
-    return Frame(round(milliseconds * MS), gap, rate, (0.0, 0.0, gap), velocity)
+    return PointFrame(round(milliseconds * MS), gap, rate, (0.0, 0.0, gap), velocity)
 
 
 def changes(
     gap: Callable[[float], float], rate: Callable[[float], float | None], end: float
 ) -> list[tuple[float, bool]]:
     """When a point is seen to stand or to swing (ms), at 400 Hz."""
-    stance, ground, frames = Stance(SCENE), Ground(SCENE), []
+    stance, ground, frames = StanceDetector(SCENE), Ground(SCENE), []
     found = []
     for time in np.arange(0.0, end, 2.5).tolist():
         frames.append(frame(time, gap(time), rate(time)))
@@ -53,7 +53,7 @@ def test_a_foot_close_to_the_ground_does_not_stand_while_it_sinks() -> None:
 
 def test_standing_feet_tell_the_level_and_the_noise() -> None:
     rng = np.random.default_rng(0)
-    point, ground = Point(SCENE), Ground(SCENE)
+    point, ground = FootPoint(SCENE), Ground(SCENE)
     for k in range(600):
         gap, rate = rng.normal(0.002, 1e-3), rng.normal(0.0, 0.03)
         point.add(frame(2.5 * k, gap, rate), ground)
@@ -64,7 +64,7 @@ def test_standing_feet_tell_the_level_and_the_noise() -> None:
 
 
 def test_a_foot_that_lifts_slowly_is_not_taken_for_the_ground() -> None:
-    point, ground = Point(SCENE), Ground(SCENE)
+    point, ground = FootPoint(SCENE), Ground(SCENE)
     for k in range(400):
         time = max(0.0, 2.5e-3 * k - 0.5)
         point.add(frame(2.5 * k, 2.0 * time**2, 4.0 * time), ground)
@@ -77,7 +77,7 @@ def test_a_foot_that_lifts_slowly_is_not_taken_for_the_ground() -> None:
 def test_the_level_follows_a_base_whose_height_drifts(drift: float) -> None:
     ground = Ground(SCENE)
     step = 5_000_000
-    frames = [Frame(k * step, drift * k * 5e-3, None, (0.0, 0.0, 0.0), None) for k in range(4000)]
+    frames = [PointFrame(k * step, drift * k * 5e-3, None, (0.0, 0.0, 0.0), None) for k in range(4000)]
     for before, frame in pairwise(frames):
         ground.add(before, frame)
     # 20 s, and 100 frames over which is averaged.

@@ -26,8 +26,8 @@ from impact_predictor.prediction.types import (
     Wrench,
 )
 from impact_predictor.prediction.vectors import add, axes_of, cross, to_body, turned
-from impact_predictor.prediction.walking.cubic import Frame
-from impact_predictor.prediction.walking.point import Point
+from impact_predictor.prediction.walking.cubic import PointFrame
+from impact_predictor.prediction.walking.point import FootPoint
 from impact_predictor.prediction.walking.stance import Ground
 from impact_predictor.scenarios.comparison import Landings
 
@@ -398,10 +398,10 @@ def test_of_feet_that_land_shortly_after_each_other_both_impacts_begin_with_the_
 
 def test_a_point_that_was_pulled_off_stood_until_then() -> None:
     scene = machine()
-    point, ground = Point(scene), Ground(scene)
+    point, ground = FootPoint(scene), Ground(scene)
     for k in range(40):
         gap = 0.0 if k < 20 else 0.02
-        point.add(Frame(k * 2_500_000, gap, 0.0, (0.0, 0.0, gap), (0.0, 0.0, 0.0)), ground)
+        point.add(PointFrame(k * 2_500_000, gap, 0.0, (0.0, 0.0, gap), (0.0, 0.0, 0.0)), ground)
     assert not point.stands
     assert [point.stood(at * MS) for at in (0, 45, 50, 90)] == [True, True, False, False]
 

@@ -1,4 +1,4 @@
-"""The landings ahead of a machine: the points of a foot that make one, the feet that land together, their impacts."""
+"""The landings of a machine: which points of a foot make one, which feet land together, and their impacts."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from ..scene import Scene
 from ..score import LONGEST, Pending
 from ..types import Landing, Sample, Score, Status, Touchdown, Vector3
 from ..vectors import add, axes_of, mean, to_body
-from .base import Line, Twists, ahead, base_at
+from .base import BaseMotion, TwistLine, extrapolated
 from .impact import touchdown_of
-from .mechanism import Mechanism
-from .point import Due, Point
+from .mechanism import Machine
+from .point import ExpectedLanding, FootPoint
 
 
-class Impending(NamedTuple):
+class FootCollision(NamedTuple):
     """What the impact of a landing is computed from, when somebody wants it.
 
     The base of a `sample` goes on along a `line` for `time` s; points are then at `places` (m, in the world), the `new`
@@ -27,7 +27,7 @@ class Impending(NamedTuple):
     """
 
     sample: Sample
-    line: Line | None
+    line: TwistLine | None
     time: float
     lead_time: float
     places: Sequence[Vector3]
@@ -37,10 +37,10 @@ class Impending(NamedTuple):
     together: dict[int, Vector3]
 
 
-class Told:
+class Announcement:
     """What was announced of one landing: when and how long ahead, and the last of it."""
 
-    def __init__(self, last: Impending) -> None:
+    def __init__(self, last: FootCollision) -> None:
         self.times: deque[tuple[int, float]] = deque(maxlen=LONGEST)
         """Stamps in ns and lead times in s."""
         self.last = last
@@ -48,56 +48,64 @@ class Told:
         """Whether one of its points has come to stand."""
 
 
-class Landed(NamedTuple):
-    """A landing that is not told yet: the samples after it, what was announced of it last, and what was seen."""
+class PendingLanding(NamedTuple):
+    """A landing that is not settled yet: the samples after it, what was announced of it last, and what was seen."""
 
     pending: Pending
     landing: Landing
-    announced: Impending | None
-    seen: Impending | None
+    announced: FootCollision | None
+    seen: FootCollision | None
 
 
-class Ahead:
+class LandingTracker:
     """The landings that the points of a machine's feet announce."""
 
-    def __init__(self, scene: Scene, mechanism: Mechanism, points: Sequence[Point], twists: Twists) -> None:
+    def __init__(self, scene: Scene, machine: Machine, points: Sequence[FootPoint], base: BaseMotion) -> None:
         assert scene.walking is not None
         self._scene = scene
-        self._mechanism = mechanism
+        self._machine = machine
         self._points = points
-        self._twists = twists
+        self._base = base
         self._each = scene.walking.points
         self._contact_time = round(scene.contact_time * NANOSECONDS)
-        self._told: dict[int, Told] = {}
+        self._announced: dict[int, Announcement] = {}
 
-    def settle(self, i: int) -> Told | None:
+    def settle(self, i: int) -> Announcement | None:
         """End the landing of a point, which has come to stand: what was announced of it.
 
         None where nothing was, or where it belongs to a landing that its foot has made already.
         """
-        told = self._told.pop(i, None)
-        if told is None or told.settled:
+        announcement = self._announced.pop(i, None)
+        if announcement is None or announcement.settled:
             return None
-        told.settled = True
-        return told
+        announcement.settled = True
+        return announcement
 
-    def impact(self, impending: Impending) -> Touchdown | Status:
+    def impact(self, collision: FootCollision) -> Touchdown | Status:
         """The touchdown that a landing makes, with its impact."""
-        sample, line, time, lead_time, places, old, new, velocity, together = impending
-        base = ahead(sample, line, time)
+        base = extrapolated(collision.sample, collision.line, collision.time)
         axes, position = axes_of(base.orientation), base.position
-        points = tuple([to_body(axes, add(place, position, -1.0)) for place in places])
-        return touchdown_of(self._scene, self._mechanism, base, points, old, new, lead_time, velocity, together)
+        return touchdown_of(
+            self._scene,
+            self._machine,
+            base,
+            points=tuple([to_body(axes, add(place, position, -1.0)) for place in collision.places]),
+            old=collision.old,
+            new=collision.new,
+            lead_time=collision.lead_time,
+            velocity=collision.velocity,
+            together=collision.together,
+        )
 
-    def struck(self, landed: Landed) -> Landed:
+    def struck(self, landed: PendingLanding) -> PendingLanding:
         """A landing with the impact that was seen, where one was."""
         pending, landing, announced, seen = landed
         impact = None if seen is None else self.impact(seen)
         if seen is not None and isinstance(impact, Touchdown):
             landing = landing._replace(speed=hypot(*seen.velocity), impact=impact)
-        return Landed(pending, landing, announced, None)
+        return PendingLanding(pending, landing, announced, None)
 
-    def score(self, landed: Landed) -> Score | None:
+    def score(self, landed: PendingLanding) -> Score | None:
         """The score of a landing, as announced last, or else with the velocity that was seen; None without both."""
         pending, landing, announced, _ = landed if landed.seen is None else self.struck(landed)
         touchdown = landing.impact if announced is None else self.impact(announced)
@@ -106,7 +114,7 @@ class Ahead:
         pending.track.add(landing.stamp, touchdown, 0.0)
         return (pending.score(self._scene) if pending.complete else pending.unmeasured())._replace(landing=landing)
 
-    def soonest(self, sample: Sample, dues: list[Due | None]) -> Touchdown | Status | None:
+    def soonest(self, sample: Sample, dues: list[ExpectedLanding | None]) -> Touchdown | Status | None:
         """The touchdown of the foot that lands next; None where none does.
 
         Feet that land within the contact time of each other strike together. Each is the old contact of the other.
@@ -114,14 +122,14 @@ class Ahead:
         points, now = self._points, sample.stamp
         feet = [range(first, first + self._each) for first in range(0, len(points), self._each)]
         landings = [(min([due.stamp for due in own.values()]), own) for foot in feet if (own := self._own(foot, dues))]
-        for i in [i for i in self._told if points[i].due is None]:
-            del self._told[i]
+        for i in [i for i in self._announced if points[i].due is None]:
+            del self._announced[i]
         if not landings:
             return None
         landings.sort(key=lambda landing: landing[0])
         standing = [i for i, point in enumerate(points) if point.stands or point.closed]
         places = [
-            point.course.frames[-1].position if due is None else due.position
+            point.trajectory.frames[-1].position if due is None else due.position
             for point, due in zip(points, dues, strict=True)
         ]
         next_one = None
@@ -130,24 +138,24 @@ class Ahead:
             group = [one for one in landings if one[0] <= begin + self._contact_time]
             struck = sorted([(i, due.velocity) for _, own in group for i, due in own.items()])
             for stamp, own in group:
-                impending = Impending(
-                    sample,
-                    self._twists.line,
-                    (begin - now) / NANOSECONDS,
-                    (stamp - now) / NANOSECONDS,
-                    places,
-                    tuple(standing),
-                    tuple(own),
-                    mean([due.velocity for due in own.values()]),
-                    {i: velocity for i, velocity in struck if i not in own},
+                collision = FootCollision(
+                    sample=sample,
+                    line=self._base.line,
+                    time=(begin - now) / NANOSECONDS,
+                    lead_time=(stamp - now) / NANOSECONDS,
+                    places=places,
+                    old=tuple(standing),
+                    new=tuple(own),
+                    velocity=mean([due.velocity for due in own.values()]),
+                    together={i: velocity for i, velocity in struck if i not in own},
                 )
-                self._tell(impending)
-                next_one = next_one or impending
+                self._announce(collision)
+                next_one = next_one or collision
             standing = sorted(standing + [i for i, _ in struck])
             landings = landings[len(group) :]
         return None if next_one is None else self.impact(next_one)
 
-    def seen(self, i: int, new: tuple[int, ...], recent: Sequence[Sample]) -> Impending | None:
+    def seen(self, i: int, new: tuple[int, ...]) -> FootCollision | None:
         """The landing of the `new` points of a foot, of which `i` has come to stand, as the last frame before shows it.
 
         No foot that lands together with it has landed then: the base has still the twist of before their impact. None
@@ -160,29 +168,30 @@ class Ahead:
         near = {j: stamp for j, stamp in landed.items() if abs(stamp - arrival.stamp) <= self._contact_time}
         together = [j for j in near if j // self._each != i // self._each]
         begin, k = min([arrival.stamp, *[near[j] for j in together]]), -arrival.age
-        course = points[i].course.frames
-        while course[k].stamp >= begin and k > -len(course):
+        trajectory = points[i].trajectory.frames
+        while trajectory[k].stamp >= begin and k > -len(trajectory):
             k -= 1
-        frames = [point.course.frames[k] for point in points]
+        frames = [point.trajectory.frames[k] for point in points]
         moves = {j: frame.velocity for j, frame in enumerate(frames) if frame.velocity is not None}
         if not moves:  # no velocities are measured
-            told = {j: points[j].due or points[j].arrival for j in together}
+            known = {j: points[j].due or points[j].arrival for j in together}
             moves = dict.fromkeys(new, arrival.velocity)
-            moves |= {j: one.velocity for j, one in told.items() if one is not None and one.velocity is not None}
+            moves |= {j: one.velocity for j, one in known.items() if one is not None and one.velocity is not None}
         stamp = frames[i].stamp
-        return Impending(
-            base_at(recent, stamp),
-            None,
-            0.0,
-            0.0,
-            [frame.position for frame in frames],
-            tuple([j for j, point in enumerate(points) if j not in new and j not in together and point.stood(stamp)]),
-            new,
-            mean([moves[j] for j in new]),
-            {j: moves[j] for j in together if j in moves},
+        others = [j for j in range(len(points)) if j not in new and j not in together]
+        return FootCollision(
+            sample=self._base.at(stamp),
+            line=None,
+            time=0.0,
+            lead_time=0.0,
+            places=[frame.position for frame in frames],
+            old=tuple([j for j in others if points[j].stood(stamp)]),
+            new=new,
+            velocity=mean([moves[j] for j in new]),
+            together={j: moves[j] for j in together if j in moves},
         )
 
-    def _own(self, foot: range, dues: list[Due | None]) -> dict[int, Due]:
+    def _own(self, foot: range, dues: list[ExpectedLanding | None]) -> dict[int, ExpectedLanding]:
         """The points that make the next landing of a foot: the first, and those that close soon after it.
 
         What closes soon after another point of the foot has landed belongs to the landing of that one.
@@ -196,17 +205,17 @@ class Ahead:
             own = {i: due for i, due in own.items() if due.stamp <= last}
         return own
 
-    def _tell(self, impending: Impending) -> None:
+    def _announce(self, collision: FootCollision) -> None:
         """Remember what is announced of a landing."""
-        known = [one for i in impending.new if (one := self._told.get(i)) and not one.settled]
-        told = known[0] if known else Told(impending)
-        told.times.append((impending.sample.stamp, impending.lead_time))
-        told.last = impending
-        for i in impending.new:
-            self._told[i] = told
+        known = [one for i in collision.new if (one := self._announced.get(i)) and not one.settled]
+        announcement = known[0] if known else Announcement(collision)
+        announcement.times.append((collision.sample.stamp, collision.lead_time))
+        announcement.last = collision
+        for i in collision.new:
+            self._announced[i] = announcement
 
 
-def point_of(new: tuple[int, ...], each: int) -> str | None:
+def part_of(new: tuple[int, ...], each: int) -> str | None:
     """What the part of a foot with so many points is called that lands; None for all of it."""
     if len(new) == each:
         return None

@@ -5,13 +5,13 @@ from __future__ import annotations
 import pytest
 
 from impact_predictor.prediction.types import Schedule, Status
-from impact_predictor.prediction.walking.plan import Plan
+from impact_predictor.prediction.walking.schedule import LandingSchedule
 
 MS = 1_000_000
 
 
 def test_a_landing_is_compared_with_the_nearest_planned_one() -> None:
-    plan = Plan(("left", "right"))
+    plan = LandingSchedule(("left", "right"))
     assert plan.late("left", 5) is None
     times = tuple(k * 100 * MS for k in range(5))
     stands = ((True, True), (False, True), (True, True), (False, True), (True, True))
@@ -22,7 +22,7 @@ def test_a_landing_is_compared_with_the_nearest_planned_one() -> None:
 
 
 def test_a_new_schedule_replaces_what_is_ahead_and_keeps_what_was_before() -> None:
-    plan = Plan(("left",))
+    plan = LandingSchedule(("left",))
     plan.set(Schedule(0, ("left",), (0, 200 * MS, 400 * MS, 600 * MS), ((False,), (True,), (False,), (True,))))
     plan.set(Schedule(0, ("left",), (300 * MS, 500 * MS, 700 * MS), ((True,), (False,), (True,))))
     assert plan.late("left", 200 * MS) == 0.0
@@ -30,7 +30,7 @@ def test_a_new_schedule_replaces_what_is_ahead_and_keeps_what_was_before() -> No
 
 
 def test_a_foot_that_stands_from_the_first_time_on_is_not_planned_to_land_then() -> None:
-    plan = Plan(("left",))
+    plan = LandingSchedule(("left",))
     plan.set(Schedule(0, ("left",), (100 * MS,), ((True,),)))
     assert plan.late("left", 100 * MS) is None
 
@@ -46,14 +46,14 @@ def test_a_foot_that_stands_from_the_first_time_on_is_not_planned_to_land_then()
     ],
 )
 def test_a_schedule_that_is_none_is_refused(schedule: Schedule, status: Status) -> None:
-    plan = Plan(("left",))
+    plan = LandingSchedule(("left",))
     plan.set(Schedule(0, ("left",), (0, 200 * MS), ((False,), (True,))))
     assert plan.set(schedule) is status
     assert plan.late("left", 200 * MS) == 0.0
 
 
 def test_a_plan_that_is_told_again_and_again_does_not_grow() -> None:
-    plan = Plan(("LF",))
+    plan = LandingSchedule(("LF",))
     for k in range(1000):
         times = tuple((k + j) * 10_000_000 for j in range(50))
         assert plan.set(Schedule(0, ("LF",), times, tuple((time % 500_000_000 > 250_000_000,) for time in times))) == 0
@@ -62,7 +62,7 @@ def test_a_plan_that_is_told_again_and_again_does_not_grow() -> None:
 
 
 def test_a_landing_far_from_every_planned_one_is_not_late() -> None:
-    plan = Plan(("LF",))
+    plan = LandingSchedule(("LF",))
     plan.set(Schedule(0, ("LF",), (0, 1_000_000_000), ((False,), (True,))))
     assert plan.late("LF", 1_900_000_000) == 0.9
     assert plan.late("LF", 60_000_000_000) is None

@@ -8,28 +8,28 @@ import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 
-from impact_predictor.prediction.walking.course import FEWEST, Course
-from impact_predictor.prediction.walking.cubic import Fit, Frame, Noise, factored, first_below, solved
-from impact_predictor.prediction.walking.habit import Habit
+from impact_predictor.prediction.walking.cubic import Fit, GapNoise, PointFrame, factored, first_below, solved
+from impact_predictor.prediction.walking.trajectory import FEWEST, DescentPrior, Trajectory
 
-UP = (0.0, 0.0, 1.0)
-CLEAN = Noise(1e-7, 1e-6)
+CLEAN = GapNoise(1e-7, 1e-6)
 
 
-def course_of(gap: Callable[[float], float], times: np.ndarray, measured: bool = True) -> Course:
-    course = Course(UP)
+def course_of(gap: Callable[[float], float], times: np.ndarray, measured: bool = True) -> Trajectory:
+    course = Trajectory()
     for time in times.tolist():
         rate = (gap(time + 1e-6) - gap(time - 1e-6)) / 2e-6
         velocity = (0.3, 0.0, rate) if measured else None
-        frame = Frame(round(time * 1e9), gap(time), rate if measured else None, (0.3 * time, 1.0, gap(time)), velocity)
+        frame = PointFrame(
+            round(time * 1e9), gap(time), rate if measured else None, (0.3 * time, 1.0, gap(time)), velocity
+        )
         course.add(frame)
         course.follow()
     return course
 
 
-def fitted(course: Course, noise: Noise = CLEAN) -> Fit:
+def fitted(course: Trajectory, noise: GapNoise = CLEAN) -> Fit:
     # The first fit of a falling point tells that it falls, and the second one of it where.
-    fit = course.fit(noise, Habit()) or course.fit(noise, Habit())
+    fit = course.fit(noise, DescentPrior()) or course.fit(noise, DescentPrior())
     assert fit is not None
     return fit
 
@@ -79,9 +79,9 @@ def test_frames_from_before_a_change_of_course_are_left_out() -> None:
     for time in np.arange(0.03, 0.08, 0.0025).tolist():
         gap = bends(time)
         rate = -0.5 if time < 0.05 else -0.5 - 24.0 * (time - 0.05)
-        course.add(Frame(round(time * 1e9), gap, rate, (0.0, 0.0, gap), (0.0, 0.0, rate)))
+        course.add(PointFrame(round(time * 1e9), gap, rate, (0.0, 0.0, gap), (0.0, 0.0, rate)))
         course.follow()
-        course.fit(CLEAN, Habit())
+        course.fit(CLEAN, DescentPrior())
     landing = fitted(course).landing(0.0, 0.005, 0.5)
     assert landing is not None
     root = max(Polynomial([0.175, -0.5, -12.0]).roots())
@@ -90,15 +90,15 @@ def test_frames_from_before_a_change_of_course_are_left_out() -> None:
 
 def test_the_noise_that_is_predicted_is_that_of_many_fits() -> None:
     rng = np.random.default_rng(1)
-    noise, times = Noise(1e-3, 0.02), np.arange(0.0, 0.1, 0.0025)
+    noise, times = GapNoise(1e-3, 0.02), np.arange(0.0, 0.1, 0.0025)
     found = []
     for _ in range(300):
-        course = Course(UP)
+        course = Trajectory()
         for time in times.tolist():
             gap, rate = 0.4 - 0.5 * time + rng.normal(0.0, noise.gap), -0.5 + rng.normal(0.0, noise.rate)
-            course.add(Frame(round(time * 1e9), gap, rate, (0.0, 0.0, gap), (0.0, 0.0, rate)))
+            course.add(PointFrame(round(time * 1e9), gap, rate, (0.0, 0.0, gap), (0.0, 0.0, rate)))
             course.follow()
-        fit = course._fit_of(course._sums, noise, Habit())  # type: ignore[arg-type]
+        fit = course._fit_of(course._sums, noise, DescentPrior())  # type: ignore[arg-type]
         assert fit is not None
         a, b, c, d = fit.now()
         found.append((a + 0.05 * (b + 0.05 * (c + 0.05 * d)), b + 0.05 * (2.0 * c + 0.15 * d)))
@@ -108,10 +108,10 @@ def test_the_noise_that_is_predicted_is_that_of_many_fits() -> None:
 
 
 def test_too_few_frames_and_rising_ones_are_no_descent() -> None:
-    assert course_of(lambda t: -t, np.arange(FEWEST - 1) * 0.0025).fit(CLEAN, Habit()) is None
+    assert course_of(lambda t: -t, np.arange(FEWEST - 1) * 0.0025).fit(CLEAN, DescentPrior()) is None
     rising = course_of(lambda t: 0.5 * t, np.arange(0.0, 0.05, 0.0025))
-    assert rising.fit(CLEAN, Habit()) is None
-    assert rising.fit(CLEAN, Habit()) is None
+    assert rising.fit(CLEAN, DescentPrior()) is None
+    assert rising.fit(CLEAN, DescentPrior()) is None
 
 
 def test_the_least_squares_are_those_of_numpy() -> None:

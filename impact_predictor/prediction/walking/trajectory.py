@@ -1,4 +1,4 @@
-"""The course of a point of a foot over the ground: where it was, and the cubic that it follows now.
+"""The trajectory of a point of a foot over the ground: where it was, and the cubic that it follows now.
 
 A cubic is the simplest curve that has a foot brake before it lands, and begin to brake before that.
 """
@@ -11,9 +11,7 @@ from math import sqrt
 
 from ...stamps import NANOSECONDS
 from ..types import Vector3
-from .cubic import SCALE, Fit, Frame, Noise, factored, solved
-from .habit import Habit
-from .sums import Gaps, Sums, sums_of
+from .cubic import SCALE, CubicSums, Fit, GapNoise, PointFrame, factored, solved
 
 FEWEST = 5
 """Frames that a cubic is fitted to at least: four would leave nothing to tell how well it fits."""
@@ -34,14 +32,63 @@ BROKE = 2.0
 TURNED = 3.0
 """A rate is surely not zero when it is so many standard deviations from it."""
 
+JERK = 1000.0
+"""Standard deviation in m/s^3 of how the acceleration of a foot changes, as long as none has landed."""
 
-class Course:
-    """The last frames of a point over a ground with a unit `normal`, and the longest stretch of them one cubic fits."""
+DIFFERENCE = 0.2
+"""A foot comes down otherwise than before by this part of the mean at least."""
 
-    def __init__(self, normal: Vector3) -> None:
-        self.frames: deque[Frame] = deque(maxlen=MOST)
-        self._normal = normal
-        self._sums: Sums | None = None
+FORGETS = 0.98
+"""Part of what was known before that counts beside one more landing."""
+
+TELLING = 0.01
+"""A descent tells something by itself from this part of what is known in the end."""
+
+LEAST_DEVIATION = 100.0
+"""m/s^3 by which the next descent may differ, however alike the last ones were: a machine may change its gait."""
+
+JERK_UNIT = SCALE**3 / 6.0
+"""The third power's coefficient in a fit of a jerk of 1 m/s^3."""
+
+
+class DescentPrior:
+    """Mean and deviation of the jerk of feet that come down: what noise hides of it in one descent, many show."""
+
+    def __init__(self) -> None:
+        self._mean = 0.0
+        self._square = JERK * JERK
+        self._precision = 1.0 / self._square
+
+    def learn(self, fit: Fit) -> None:
+        """Take the cubic of a descent that has ended on the ground.
+
+        What the descent itself tells is learnt, without the prior that was in its fit: else that would confirm itself.
+        """
+        weight, expected = fit.prior
+        whole = 1.0 / fit.factor[9] ** 2
+        own = whole - weight
+        if own <= TELLING * whole:
+            return
+        jerk, doubt = (whole * fit.gap[3] - weight * expected) / own / JERK_UNIT, fit.deviation / sqrt(own) / JERK_UNIT
+        # What noise adds to a jerk is none of the prior: an unsure one counts less, and spreads less than it seems to.
+        precision = 1.0 / (doubt * doubt + LEAST_DEVIATION * LEAST_DEVIATION)
+        self._precision = FORGETS * self._precision + precision
+        share, off = precision / self._precision, jerk - self._mean
+        self._mean += share * off
+        self._square = max(0.0, self._square + share * (off * off - doubt * doubt - self._square))
+
+    def coefficient(self, noise: float) -> tuple[float, float]:
+        """Weight and value of the third power's coefficient, before the frames of noise (m) are seen."""
+        deviation = max(LEAST_DEVIATION, sqrt(self._square) + DIFFERENCE * abs(self._mean))
+        return (noise / (deviation * JERK_UNIT)) ** 2, self._mean * JERK_UNIT
+
+
+class Trajectory:
+    """The last frames of a point over its ground, and the longest stretch of them that one cubic fits."""
+
+    def __init__(self) -> None:
+        self.frames: deque[PointFrame] = deque(maxlen=MOST)
+        self._sums: CubicSums | None = None
         self._falls = False
         self._deviation = 0.0
         self.top = 0
@@ -49,7 +96,7 @@ class Course:
         self.broke = False
         """Whether the last frame did not follow the cubic of those before it."""
 
-    def add(self, frame: Frame) -> None:
+    def add(self, frame: PointFrame) -> None:
         """Take the next frame, in the order of their stamps."""
         self.frames.append(frame)
 
@@ -66,17 +113,17 @@ class Course:
         """Fit the last frame together with those that were followed before it."""
         frame = self.frames[-1]
         if self._sums is None:
-            self._sums = Sums(frame)
+            self._sums = CubicSums([frame])
         else:
             self._sums.add(frame)
 
     def rest(self) -> None:
-        """Follow the point no more; what comes later is another course."""
+        """Follow the point no more; what comes later is another trajectory."""
         self._sums = None
         self._falls = False
         self._deviation = 0.0
 
-    def fit(self, noise: Noise, habit: Habit) -> Fit | None:
+    def fit(self, noise: GapNoise, prior: DescentPrior) -> Fit | None:
         """The cubic of the last frames once the point descends; None before, and while there are too few of them."""
         sums = self._sums
         if sums is None or sums.count < FEWEST:
@@ -85,15 +132,15 @@ class Course:
         if not self._falls and rate is not None and rate > TURNED * noise.rate:
             return None
         if sums.count >= MOST:
-            sums = self._again(SHORTER * MOST // 4)
-        fit = self._fit_of(sums, noise, habit)
+            sums = self._sums = CubicSums(self.last(SHORTER * MOST // 4))
+        fit = self._fit_of(sums, noise, prior)
         self.broke = fit is not None and not fit.fits and fit.deviation > BROKE * self._deviation
         count = sums.count
         while fit is not None and not (fit.fits or count == FEWEST):
             count = max(FEWEST, SHORTER * count // 4)
-            fit = self._fit_of(sums_of(Gaps, self.last(count)), noise, habit)
+            fit = self._fit_of(CubicSums(self.last(count), places=False), noise, prior)
         if count < sums.count:
-            self._again(count)
+            self._sums = CubicSums(self.last(count))
         if fit is None:
             return None
         self._deviation = fit.deviation
@@ -104,51 +151,46 @@ class Course:
         sums = self._sums
         assert sums is not None
         s = fit.end + time / SCALE
-        # What is usual of the gap says nothing of the motion along the ground.
+        # What is expected of the gap says nothing of the motion along the ground.
         factor = factored(sums.normal(fit.ratio)) or fit.factor
         places, speeds = [], []
         for axis in range(3):
-            a, b, c, d = solved(factor, sums.along(axis, fit.ratio))
+            a, b, c, d = solved(factor, sums.places[axis].right(fit.ratio))
             places.append(sums.first.position[axis] + a + s * (b + s * (c + s * d)))
             speeds.append((b + s * (2.0 * c + 3.0 * d * s)) / SCALE)
         return (places[0], places[1], places[2]), (speeds[0], speeds[1], speeds[2])
 
-    def last(self, count: int) -> list[Frame]:
+    def last(self, count: int) -> list[PointFrame]:
         """The last `count` frames."""
         return list(islice(self.frames, max(0, len(self.frames) - count), None))
 
-    def _again(self, count: int) -> Sums:
-        """The sums over the last `count` frames alone, from now on."""
-        sums = self._sums = sums_of(Sums, self.last(count))
-        return sums
-
-    def _fit_of(self, sums: Gaps, noise: Noise, habit: Habit) -> Fit | None:
+    def _fit_of(self, sums: CubicSums, noise: GapNoise, prior: DescentPrior) -> Fit | None:
         """The cubic nearest to the gaps, and to their rates where all are measured (weighted least squares)."""
         # A rate in units of the scale weighs as the square of how much surer it is than a gap.
         ratio = (noise.gap / (noise.rate * SCALE)) ** 2 if sums.measured else 0.0
-        weight, usual = habit.prior(noise.gap)
+        weight, expected = prior.coefficient(noise.gap)
         n00, n10, n11, n20, n21, n22, n30, n31, n32, n33 = sums.normal(ratio)
         factor = factored((n00, n10, n11, n20, n21, n22, n30, n31, n32, n33 + weight))
         if factor is None:
             return None
-        b0, b1, b2, b3 = sums.right(ratio)
-        b = b0, b1, b2, b3 + weight * usual
+        b0, b1, b2, b3 = sums.gaps.right(ratio)
+        b = b0, b1, b2, b3 + weight * expected
         c = solved(factor, b)
-        square = sums.square + ratio * sums.square_rate + weight * usual * usual
+        square = sums.square + ratio * sums.square_rate + weight * expected * expected
         left = max(0.0, square - c[0] * b[0] - c[1] * b[1] - c[2] * b[2] - c[3] * b[3])
         free = (2 if sums.measured else 1) * sums.count - 3
         share = left / (free * noise.gap * noise.gap)
         fits = share <= 1.0 + MISFIT * sqrt(2.0 / free)
         stamp = self.frames[-1].stamp
         return Fit(
-            stamp,
-            (stamp - sums.first.stamp) / (SCALE * NANOSECONDS),
-            (sums.first.gap + c[0], c[1], c[2], c[3]),
-            factor,
-            ratio,
-            noise.gap if fits else noise.gap * sqrt(share),
-            fits,
-            (weight, usual),
+            stamp=stamp,
+            end=(stamp - sums.first.stamp) / (SCALE * NANOSECONDS),
+            gap=(sums.first.gap + c[0], c[1], c[2], c[3]),
+            factor=factor,
+            ratio=ratio,
+            deviation=noise.gap if fits else noise.gap * sqrt(share),
+            fits=fits,
+            prior=(weight, expected),
         )
 
     def _descends(self, fit: Fit) -> bool:
@@ -166,6 +208,6 @@ class Course:
             self.top = round(top)
             since = sum([frame.stamp >= top for frame in self.frames])
             if self._sums is not None and since < self._sums.count:
-                self._again(max(1, since))
+                self._sums = CubicSums(self.last(max(1, since)))
             return False
         return self._falls
