@@ -145,7 +145,7 @@ def impact_of(sample: Sample, posture: Posture, collision: Collision) -> Recorde
         body=collision.body,
         before=collision.before,
         across=lateral_motion(sample, posture, collision.plane, collision.lead_time),
-        angle=collision.moved.angle,
+        angle=collision.angle,
         blocked=collision.blocked,
     )
 

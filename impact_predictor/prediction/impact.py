@@ -6,8 +6,7 @@ from math import cos, hypot, inf, sin
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..mechanics.impact import solve_impact
-from ..mechanics.motion import PlanarState
-from ..mechanics.types import Outcome, Twist, TwoPointBody
+from ..mechanics.types import Outcome, Twist, TwoPointBody, Vector
 from .planar import ORIGIN, ActiveContacts, ImpactPlane, Posture, hardly, inertia_about
 from .scene import Scene
 from .types import Leftover, Quaternion, Sample, Touchdown, Vector3
@@ -37,17 +36,18 @@ SLOWEST = 4.0
 class Collision(NamedTuple):
     """The collision that a sample shows to be ahead, before its impact.
 
-    `body` and its twist `before` are those of the impact, in the impact plane; `moved` how the body moves there until
-    then, from the sample's pose; `lead_time` in s; `blocked` whether its contacts are edges, off whose line it cannot
-    turn. `measured` is the speed in m/s at which the sample shows the new points to approach, `speed` that of the
-    touchdown.
+    `body` and its twist `before` are those of the impact, in the impact plane; `shift` (m) is how far the mass centre
+    moves there until then, and `angle` how far the body turns; `lead_time` in s; `blocked` whether its contacts are
+    edges, off whose line it cannot turn. `measured` is the speed in m/s at which the sample shows the new points to
+    approach, `speed` that of the touchdown.
     """
 
     contacts: ActiveContacts
     plane: ImpactPlane
     body: TwoPointBody
     before: Twist
-    moved: PlanarState
+    shift: Vector
+    angle: float
     lead_time: float
     blocked: bool
     measured: float
@@ -84,13 +84,21 @@ class ImpactModel:
     def touchdown(self, sample: Sample, posture: Posture, collision: Collision) -> Touchdown:
         """The touchdown at the end of an approach, with its impact."""
         scene, contacts, plane, body = self._scene, collision.contacts, collision.plane, collision.body
-        before, angle = collision.before, collision.moved.angle
-        lateral = lateral_motion(sample, posture, plane, collision.lead_time)
+        before = collision.before
+        along = to_world(posture.axes, plane.axis)
+        lateral = after = lateral_motion(sample, posture, plane, collision.lead_time)
         slipped = None
         if self._slips_across:
-            slipped = impact_across(scene, plane, posture.normal, body, before, lateral, angle, collision.blocked)
-        outcome, lateral = slipped or (solve_impact(body, before, scene.law, scene.validity), lateral)
-        position, orientation, linear, angular = in_space(scene, sample, posture, collision, outcome.twist, lateral)
+            slipped = impact_across(
+                scene, plane, posture.normal, body, before, lateral, collision.angle, collision.blocked
+            )
+        if slipped is None:
+            outcome = solve_impact(body, before, scene.law, scene.validity)
+        else:
+            outcome, after = slipped
+        position, orientation, linear, angular = in_space(
+            scene, sample, posture, collision, along, lateral, outcome.twist, after
+        )
         gaps = [posture.gaps[i] for i in contacts.new]
         spread = (max(gaps) - min(gaps)) / collision.speed
         half_distance = 0.0
@@ -100,7 +108,7 @@ class ImpactModel:
         if self._sampler is not None:
             uncertainty = self._sampler.uncertainty(sample, posture, plane, body, before, orientation)
         if scene.margins:
-            planar = solve_impact(body, before, scene.law, scene.validity) if slipped else outcome
+            planar = outcome if slipped is None else solve_impact(body, before, scene.law, scene.validity)
         return Touchdown(
             lead_time=collision.lead_time,
             mode=outcome.mode,
@@ -114,7 +122,7 @@ class ImpactModel:
             law=outcome.law,
             old=contacts.old if body.old is not None else (),
             new=contacts.new,
-            axis=to_world(posture.axes, plane.axis),
+            axis=along,
             position=position,
             orientation=orientation,
             linear=linear,
@@ -179,29 +187,36 @@ def impact_across(
 
 
 def in_space(
-    scene: Scene, sample: Sample, posture: Posture, collision: Collision, after: Twist, lateral: LateralMotion
+    scene: Scene,
+    sample: Sample,
+    posture: Posture,
+    collision: Collision,
+    along: Vector3,
+    lateral: LateralMotion,
+    after: Twist,
+    lateral_after: LateralMotion,
 ) -> tuple[Vector3, Quaternion, Vector3, Vector3]:
     """Position, orientation, linear and angular velocity of the body frame after an impact in the plane.
 
-    `after` and `lateral` are the motion in the plane and across it after the impact.
+    `along` is the axis of the plane in the frame of the support, `lateral` the motion along it until the impact;
+    `after` and `lateral_after` are the motion in the plane and across it after the impact.
     """
-    plane, moved, time = collision.plane, collision.moved, collision.lead_time
-    axes, n, center = posture.axes, scene.normal, scene.center_of_mass
-    axis, roll, yaw = plane.axis, dot(plane.ahead, sample.angular), dot(posture.normal, sample.angular)
-    rotation = combine(-moved.angle, axis, roll * time, plane.ahead, yaw * time, posture.normal)
+    plane, time, n, center = collision.plane, collision.lead_time, scene.normal, scene.center_of_mass
+    roll, yaw = lateral.roll * time, lateral.yaw * time
+    rotation = combine(-collision.angle, plane.axis, roll, plane.ahead, yaw, posture.normal)
     orientation = turned(sample.orientation, rotation)
     now = axes_of(orientation)
 
-    along = to_world(axes, axis)
     ahead = cross(along, n)
-    angular = to_body(now, combine(-after.omega, along, lateral.roll, ahead, lateral.yaw, n))
-    linear = to_body(now, combine(after.vx, ahead, after.vy, n, lateral.velocity, along))
+    angular = to_body(now, combine(-after.omega, along, lateral_after.roll, ahead, lateral_after.yaw, n))
+    linear = to_body(now, combine(after.vx, ahead, after.vy, n, lateral_after.velocity, along))
     pull = plane.gravity[2] if plane.old is None else 0.0
-    glide = (dot(axis, posture.velocity) + 0.5 * pull * time) * time
-    position = add(sample.position, combine(moved.x, ahead, moved.y, n, glide, along))
+    glide = (lateral.velocity - 0.5 * pull * time) * time
+    x, y = collision.shift
+    position = add(sample.position, combine(x, ahead, y, n, glide, along))
     if center != ORIGIN:
         linear = add(linear, cross(angular, center), -1.0)
-        position = add(add(position, to_world(axes, center)), to_world(now, center), -1.0)
+        position = add(add(position, to_world(posture.axes, center)), to_world(now, center), -1.0)
     return position, orientation, linear, angular
 
 

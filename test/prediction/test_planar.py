@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from impact_predictor.mechanics.motion import PlanarState
 from impact_predictor.mechanics.types import Contact, Twist, TwoPointBody
 from impact_predictor.prediction.impact import Collision, in_space, lateral_motion
 from impact_predictor.prediction.planar import (
@@ -286,12 +285,15 @@ def test_what_the_plane_leaves_over_goes_on_as_it_was() -> None:
     scene, sample, posture = on_back_edge(spin, velocity, center=(0.1, 0.0, -0.1))
     contacts = ActiveContacts(BACK, FRONT, 0.0)
     plane = plane_of(scene, BOX, sample, posture, contacts)
-    moved = PlanarState(0.01, -0.02, -1.0 * time, 0.2, -0.4, -1.0)
     body = TwoPointBody(1.0, 1.0, None, Contact(0.0, -1.0, 0.5))
-    collision = Collision(contacts, plane, body, Twist(0.2, -0.4, -1.0), moved, time, True, 0.4, 0.4)
+    collision = Collision(
+        contacts, plane, body, Twist(0.2, -0.4, -1.0), (0.01, -0.02), -1.0 * time, time, True, 0.4, 0.4
+    )
     lateral = lateral_motion(sample, posture, plane, time)
     assert lateral == pytest.approx((0.7, 0.0, 0.3), abs=ROUNDING)
-    position, orientation, linear, angular = in_space(scene, sample, posture, collision, Twist(0.3, 0.1, -0.5), lateral)
+    position, orientation, linear, angular = in_space(
+        scene, sample, posture, collision, (0.0, 1.0, 0.0), lateral, Twist(0.3, 0.1, -0.5), lateral
+    )
     turned = Rotation.from_rotvec(spin * time)
     center = np.array([0.1 + 0.01, 0.7 * time, 0.2 - 0.02])
     arm = turned.apply(scene.center_of_mass)

@@ -11,7 +11,6 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from impact_predictor.mechanics.impact import solve_impact
-from impact_predictor.mechanics.motion import PlanarState
 from impact_predictor.mechanics.types import Contact, Twist, TwoPointBody
 from impact_predictor.prediction.checks import PAUSE
 from impact_predictor.prediction.impact import Collision, leftover_of
@@ -440,8 +439,7 @@ def test_an_edge_whose_ends_close_one_after_the_other_is_not_scored() -> None:
     contacts = ActiveContacts((0, 1), (2, 3), 0.0)
     plane = ImpactPlane((0, 1, 0), (1, 0, 0), (BACK, LOW), (FRONT, LOW), BEFORE, (0, -9.81, 0), 0.0, 0.0, 0.0, 0.0)
     body = TwoPointBody(1.0, 0.006, Contact(BACK, LOW, 1.2), Contact(FRONT, LOW, 1.2))
-    moved = PlanarState(0.0, 0.0, 0.0, *BEFORE)
-    collision = Collision(contacts, plane, body, BEFORE, moved, 0.0, True, 1.0, 1.0)
+    collision = Collision(contacts, plane, body, BEFORE, (0.0, 0.0), 0.0, 0.0, True, 1.0, 1.0)
     for spread, leftover in ((0.0049, Leftover.NONE), (0.0051, Leftover.ONE_CORNER_FIRST)):
         assert leftover_of(SCENE, collision, 0.1, spread) is leftover
 
