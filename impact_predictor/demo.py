@@ -18,11 +18,11 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from .bags.read import read_messages, topics
 from .errors import InputError
-from .report.figure import write_figure
 from .report.replay import lead_time_table, touchdown_table
 from .report.summary import LEAD_TIME_EDGES, LeadTimeErrors, TouchdownRow, row_of_message, summarize
 from .report.table import show
 from .report.tally import TouchdownTally
+from .report.touchdown_figure import write_touchdowns
 from .resources import find
 from .ros.messages import DIAGNOSTIC_ARRAY, Diagnostic, decode_diagnostic_array
 from .ros.player import PLAYING, timed
@@ -71,7 +71,9 @@ def run_demo(output: Path = Path("out/demo"), tosses: int = TOSSES) -> int:
     console.print()
     for sentence in TouchdownTally(recording.rows).sentences():
         console.print(sentence, soft_wrap=True)
-    write_figure(picture, recording.rows, recording.lead_time_errors, f"{tosses} tosses of a cube, live on ROS topics")
+    write_touchdowns(
+        picture, recording.rows, recording.lead_time_errors, f"{tosses} tosses of a cube, live on ROS topics"
+    )
     console.print(f"Predictions: {predictions}\nPicture: {picture}", soft_wrap=True)
     return 0
 

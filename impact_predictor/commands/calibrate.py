@@ -62,9 +62,9 @@ def calibrate(
     if output is not None and not Path(output).resolve().parent.is_dir():
         raise InputError(f"the folder of {output} does not exist; make it, or give another name")
     if figure is not None:
-        from ..report.figure import check_figure
+        from ..report.plot import check_picture
 
-        check_figure(figure)
+        check_picture(figure)
     bags = tuple(bags_of(bags))
     records, results = read_all(bags, scenes, topics)
     scores = [settled.score for result in results for settled in result.settled]
@@ -79,9 +79,11 @@ def calibrate(
     if output is not None:
         write_scene(params, output, calibration)
     if figure is not None:
-        from ..report.calibration_figure import write_figure
+        from ..report.calibration_figure import write_calibration
 
-        write_figure(figure, calibration, ", ".join(Path(bag).name for bag in bags[:3]) + ", ..." * (len(bags) > 3))
+        write_calibration(
+            figure, calibration, ", ".join(Path(bag).name for bag in bags[:3]) + ", ..." * (len(bags) > 3)
+        )
     if as_json:
         click.echo(json.dumps(fields_of(calibration, bags, scores), allow_nan=False))
     else:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from ..report.baseline import RunTouchdown
     from ..report.page.found import Kept
     from ..report.parquet import TouchdownTable
-    from ..report.picture import Picture
+    from ..report.touchdown_figure import ReplayPicture
 
 CHANGED: Final = 1
 """Exit status where something has changed against a baseline."""
@@ -67,14 +67,14 @@ class ReplayReport:
         self._failed = self._damaged = False
         # What is said of many bags is said once.
         self._notes: Counter[str] = Counter()
-        self._picture: Picture | None = None
+        self._picture: ReplayPicture | None = None
         self._answers: Kept | None = None
         self._table: TouchdownTable | None = None
         self._baseline = None if wanted.baseline is None else Baseline(wanted.baseline, bags, wanted)
         if wanted.figure is not None:
-            from ..report.picture import Picture
+            from ..report.touchdown_figure import ReplayPicture
 
-            self._picture = Picture(wanted.figure)
+            self._picture = ReplayPicture(wanted.figure)
         if wanted.report is not None:
             from ..report.files import named
             from ..report.page.found import Kept

@@ -8,36 +8,27 @@ from pathlib import Path
 from statistics import median
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-import matplotlib
-from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
-
 from ..bags.gait import AHEAD, Gait, GaitLanding
-from .figure import STYLE, check_figure, save_figure
+from ..stamps import NANOSECONDS
+from ..wording import counted
+from .modes import PALETTE
+from .plot import GREY, Axes, Line2D, Patch, headline, picture
 from .summary import quantile
 
 if TYPE_CHECKING:
     from ..bags.replay import Result
 
-SHOWN: Final = 12.0
-"""Seconds of a record whose stances are shown: in more of them no stance could be told from the next."""
-
-LEAST: Final = 1e-3
-"""Speeds (m/s) and impulses (N s) below it are none."""
-
-MANY: Final = 60
-"""Landings of a foot above which they are drawn as dots alone."""
-
 MOST: Final = 3
 """Machines in one picture."""
 
-# The colours of Okabe and Ito, which people of any colour vision tell apart, one for each foot of a machine.
-_COLOURS: Final = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
-_GREY: Final = "#999999"
-_NS: Final = 1e-9
+_SHOWN: Final = 12.0
+"""Seconds of a record whose stances are shown: in more of them no stance could be told from the next."""
+_LEAST: Final = 1e-3
+"""Speeds (m/s) and impulses (N s) below it are none."""
+_MANY: Final = 60
+"""Landings of a foot above which they are drawn as dots alone."""
+_TRUE: Final = "#d0d0d0"
+"""Colour of the stances that a record has."""
 
 
 class Machine(NamedTuple):
@@ -56,15 +47,33 @@ def machines_of(results: Sequence[Result]) -> list[Machine]:
     ]
 
 
-class _Row(NamedTuple):
-    """A foot of a picture: from what stamp on its times count, the seconds between its samples, and its colour."""
+class FootLandings(NamedTuple):
+    """The landings of a foot in a picture: its colour, and their stamps in ns with what is known of each.
+
+    `errors` (s) are those of the times that were predicted `AHEAD`, against the `true` stamps or the inferred ones.
+    """
 
     name: str
+    colour: str
     start: int
     period: float
-    colour: str
     landings: list[GaitLanding]
     true: list[int]
+
+    def seconds(self, stamp: int) -> float:
+        """A stamp as seconds since the beginning of the record."""
+        return (stamp - self.start) / NANOSECONDS
+
+    @property
+    def errors(self) -> list[tuple[float, float]]:
+        """Time and error in s of every landing that was predicted."""
+        made = []
+        for one in self.landings:
+            if one.announced is not None:
+                predicted = one.announced
+                stamp = min(self.true, key=lambda true: abs(true - predicted), default=one.stamp)
+                made.append((self.seconds(stamp), (predicted - stamp) / NANOSECONDS))
+        return made
 
 
 def write_gait(path: str | os.PathLike[str], machines: Sequence[Machine]) -> None:
@@ -73,135 +82,118 @@ def write_gait(path: str | os.PathLike[str], machines: Sequence[Machine]) -> Non
     Raises:
         InputError: the file cannot be written, or is of another format.
     """
-    path = check_figure(path)
     shown = machines[:MOST]
-    rows = [row for one in shown for row in _rows(one, len(shown) > 1)]
-    last = max(((one.gait.end - one.gait.begin) * _NS for one in shown), default=0.0)
-    with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(13.5, 4.8 + 0.42 * len(rows)), layout="constrained")
-        FigureCanvasAgg(figure)
-        heights = (0.42 * len(rows) + 0.4, 1.2, 0.9, 0.9)
+    feet = [foot for one in shown for foot in _feet(one, len(shown) > 1)]
+    last = max(((one.gait.end - one.gait.begin) / NANOSECONDS for one in shown), default=0.0)
+    with picture(path, 13.5, 4.8 + 0.42 * len(feet)) as figure:
+        heights = (0.42 * len(feet) + 0.4, 1.2, 0.9, 0.9)
         gait, errors, speeds, impulses = figure.subplots(4, 1, height_ratios=heights)
         names = ", ".join(one.name for one in shown) + (", ..." if len(machines) > MOST else "")
-        figure.suptitle(f"{names}: {_conclusion(rows)}", x=0.01, ha="left", fontweight="bold")
-        _draw_stances(gait, shown, rows, last)
-        _draw_errors(errors, rows)
-        _draw_landings(speeds, rows, "Speed of the foot in its last sample in the air", "m/s", "speed")
-        _draw_landings(impulses, rows, "Impulse that it gets where it lands with that speed", "N s", "impulse")
+        headline(figure, f"{names}: {_conclusion(feet)}")
+        _draw_stances(gait, shown, feet, last)
+        _draw_errors(errors, feet)
+        _draw_landings(speeds, feet, "Speed of the foot in its last sample in the air", "m/s", "speed")
+        _draw_landings(impulses, feet, "Impulse that it gets where it lands with that speed", "N s", "impulse")
         for axes in (errors, speeds, impulses):
             axes.set_xlim(0.0, last or 1.0)
         impulses.set_xlabel("time (s)")
-        save_figure(figure, path)
 
 
-def _rows(machine: Machine, several: bool) -> list[_Row]:
+def _feet(machine: Machine, several: bool) -> list[FootLandings]:
     gait = machine.gait
     true = gait.true_stances
     return [
-        _Row(
-            f"{machine.name} {name}" if several else name,
-            gait.begin,
-            (gait.end - gait.begin) * _NS / max(1, gait.samples - 1),
-            _COLOURS[foot % len(_COLOURS)],
-            [one for one in gait.landings if one.foot == foot],
-            sorted(one.begin for one in true if one.foot == foot and one.begin > gait.begin),
+        FootLandings(
+            name=f"{machine.name} {name}" if several else name,
+            colour=PALETTE[foot % len(PALETTE)],
+            start=gait.begin,
+            period=(gait.end - gait.begin) / NANOSECONDS / max(1, gait.samples - 1),
+            landings=[one for one in gait.landings if one.foot == foot],
+            true=sorted(one.begin for one in true if one.foot == foot and one.begin > gait.begin),
         )
         for foot, name in enumerate(gait.feet)
     ]
 
 
-def _draw_stances(axes: Axes, machines: Sequence[Machine], rows: Sequence[_Row], last: float) -> None:
-    end = min(last, SHOWN) or 1.0
-    part = f", the first {end:.0f} s of {last:.0f} s" if last > SHOWN else ""
+def _draw_stances(axes: Axes, machines: Sequence[Machine], feet: Sequence[FootLandings], last: float) -> None:
+    end = min(last, _SHOWN) or 1.0
+    part = f", the first {end:.0f} s of {last:.0f} s" if last > _SHOWN else ""
     axes.set_title(f"When each foot stands{part}")
-    first, knows_truth = 0, False
+    first = 0
     for machine in machines:
         gait = machine.gait
         for stances, height, of_truth in ((gait.true_stances, 0.78, True), (gait.stances, 0.42, False)):
-            for foot, begin, until in stances:
-                begins = (begin - gait.begin) * _NS
+            for stance in stances:
+                row = first + stance.foot
+                begins, ends = feet[row].seconds(stance.begin), min(feet[row].seconds(stance.end), end)
                 if begins < end:
-                    width = min((until - gait.begin) * _NS, end) - begins
-                    colour = "#d0d0d0" if of_truth else rows[first + foot].colour
-                    axes.barh(first + foot, width, height, begins, color=colour, zorder=2 if of_truth else 3)
-            knows_truth |= of_truth and bool(stances)
+                    colour = _TRUE if of_truth else feet[row].colour
+                    axes.barh(row, ends - begins, height, begins, color=colour, zorder=2 if of_truth else 3)
         first += len(gait.feet)
-    for number, row in enumerate(rows):
-        times = [(one.announced - row.start) * _NS for one in row.landings if one.announced is not None]
+    for number, foot in enumerate(feet):
+        times = [foot.seconds(one.announced) for one in foot.landings if one.announced is not None]
         shown = [time for time in times if time <= end]
-        places = [number - 0.33] * len(shown)
-        marks = axes.plot(shown, places, "v", color="black", markersize=6, zorder=4, clip_on=False)
+        marks = axes.plot(shown, [number - 0.33] * len(shown), "v", color="black", markersize=6, zorder=4)
         # The layout takes the extent of unclipped marks for infinite where there are none.
-        marks[0].set_in_layout(bool(shown))
-    axes.set(xlim=(0.0, end), ylim=(len(rows) - 0.5, -0.65))
-    axes.set_yticks(range(len(rows)), [row.name for row in rows])
+        marks[0].set(clip_on=False, in_layout=bool(shown))
+    axes.set(xlim=(0.0, end), ylim=(len(feet) - 0.5, -0.65))
+    axes.set_yticks(range(len(feet)), [foot.name for foot in feet])
     axes.grid(visible=False, axis="y")
     handles = [
         Line2D([], [], linestyle="", marker="v", color="black", label=f"landing, predicted {1e3 * AHEAD:.0f} ms ahead"),
-        Patch(color=rows[0].colour if rows else _GREY, label="stands, as inferred from its motion"),
+        Patch(color=feet[0].colour if feet else GREY, label="stands, as inferred from its motion"),
     ]
-    if knows_truth:
-        handles.append(Patch(color="#d0d0d0", label="stands, as the record tells"))
+    if any(one.gait.true_stances for one in machines):
+        handles.append(Patch(color=_TRUE, label="stands, as the record tells"))
     axes.legend(handles=handles, loc="lower right", bbox_to_anchor=(1.0, 0.99), ncols=3, borderaxespad=0.0)
 
 
-def _draw_errors(axes: Axes, rows: Sequence[_Row]) -> None:
-    what = "true" if any(row.true for row in rows) else "inferred"
+def _draw_errors(axes: Axes, feet: Sequence[FootLandings]) -> None:
+    knows_truth = any(foot.true for foot in feet)
+    what = "true" if knows_truth else "inferred"
     axes.set_title(f"Predicted less {what} time of each landing, as predicted {1e3 * AHEAD:.0f} ms before")
     axes.set_ylabel("ms")
-    axes.axhline(0.0, color=_GREY, linewidth=1.0)
-    if any(row.true for row in rows):
-        period = 1e3 * max(row.period for row in rows)
+    axes.axhline(0.0, color=GREY, linewidth=1.0)
+    if knows_truth:
+        period = 1e3 * max(foot.period for foot in feet)
         axes.axhspan(-period, 0.0, color="#eeeeee", zorder=0)
         said = f"grey: no error, for the record tells a landing up to one sample ({period:.3g} ms) late"
-        axes.set_title(said, loc="right", fontsize=9, color=_GREY)
-    for row in rows:
-        made = _errors(row)
-        _draw_points(axes, row, [time for time, _ in made], [1e3 * error for _, error in made])
+        axes.set_title(said, loc="right", fontsize=9, color=GREY)
+    for foot in feet:
+        _draw_points(axes, foot, [(time, 1e3 * error) for time, error in foot.errors])
     axes.margins(y=0.15)
-    if not any(map(_errors, rows)):
+    if not any(foot.errors for foot in feet):
         axes.set_ylim(-1.0, 1.0)
 
 
-def _draw_landings(axes: Axes, rows: Sequence[_Row], title: str, unit: str, field: str) -> None:
+def _draw_landings(axes: Axes, feet: Sequence[FootLandings], title: str, unit: str, field: str) -> None:
     axes.set_title(title)
     axes.set_ylabel(unit)
-    for row in rows:
-        known = [one for one in row.landings if getattr(one, field) is not None]
-        times = [(one.stamp - row.start) * _NS for one in known]
-        _draw_points(axes, row, times, [getattr(one, field) for one in known])
-    values = [getattr(one, field) or 0.0 for row in rows for one in row.landings]
-    if max(values, default=0.0) < LEAST:
-        axes.set_ylim(0.0, 1.0)
-        said = f"none above {LEAST:g} {unit}" if values else "no foot has landed"
-        axes.text(0.5, 0.5, said, transform=axes.transAxes, ha="center", va="center", color=_GREY)
-    else:
-        axes.set_ylim(0.0, 1.1 * max(values))
+    highest = 0.0
+    for foot in feet:
+        values = [(foot.seconds(one.stamp), getattr(one, field)) for one in foot.landings]
+        known = [(time, value) for time, value in values if value is not None]
+        _draw_points(axes, foot, known)
+        highest = max([highest, *(value for _, value in known)])
+    if highest < _LEAST:
+        said = f"none above {_LEAST:g} {unit}" if any(foot.landings for foot in feet) else "no foot has landed"
+        axes.text(0.5, 0.5, said, transform=axes.transAxes, ha="center", va="center", color=GREY)
+    axes.set_ylim(0.0, 1.1 * highest if highest >= _LEAST else 1.0)
 
 
-def _draw_points(axes: Axes, row: _Row, times: Sequence[float], values: Sequence[float]) -> None:
-    if len(times) <= MANY:
-        axes.vlines(times, 0.0, values, color=row.colour, linewidth=1.2, alpha=0.7)
-    axes.plot(times, values, "o", color=row.colour, markersize=5 if len(times) <= MANY else 2)
+def _draw_points(axes: Axes, foot: FootLandings, points: Sequence[tuple[float, float]]) -> None:
+    times, values = [time for time, _ in points], [value for _, value in points]
+    if len(points) <= _MANY:
+        axes.vlines(times, 0.0, values, color=foot.colour, linewidth=1.2, alpha=0.7)
+    axes.plot(times, values, "o", color=foot.colour, markersize=5 if len(points) <= _MANY else 2)
 
 
-def _errors(row: _Row) -> list[tuple[float, float]]:
-    """Time and error in s of every announced landing, against the true one, or the inferred one where none is known."""
-    made = []
-    for one in row.landings:
-        if one.announced is not None:
-            told = one.announced
-            stamp = min(row.true, key=lambda true: abs(true - told), default=one.stamp)
-            made.append(((stamp - row.start) * _NS, (told - stamp) * _NS))
-    return made
-
-
-def _conclusion(rows: Sequence[_Row]) -> str:
-    landings = sum(len(row.landings) for row in rows)
-    errors = [1e3 * abs(error) for row in rows for _, error in _errors(row)]
+def _conclusion(feet: Sequence[FootLandings]) -> str:
+    landings = counted(sum(len(foot.landings) for foot in feet), "landing")
+    errors = [1e3 * abs(error) for foot in feet for _, error in foot.errors]
     if not errors:
-        return f"{landings} landings, none predicted {1e3 * AHEAD:.0f} ms ahead"
+        return f"{landings}, none predicted {1e3 * AHEAD:.0f} ms ahead"
     return (
-        f"{landings} landings, {len(errors)} predicted {1e3 * AHEAD:.0f} ms ahead, "
+        f"{landings}, {len(errors)} predicted {1e3 * AHEAD:.0f} ms ahead, "
         f"half of them within {median(errors):.1f} ms, 90 % within {quantile(errors, 0.9):.1f} ms"
     )

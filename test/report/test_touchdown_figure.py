@@ -9,8 +9,8 @@ import pytest
 
 from impact_predictor.errors import InputError
 from impact_predictor.mechanics.types import Mode, Twist
-from impact_predictor.report.figure import write_figure
 from impact_predictor.report.summary import LEAD_TIME_EDGES, Errors, LeadTimeErrors, TouchdownRow
+from impact_predictor.report.touchdown_figure import write_touchdowns
 
 ROWS = [
     TouchdownRow(
@@ -42,7 +42,7 @@ NO_ERRORS = [one._replace(errors=Errors(0, None, None)) for one in ERRORS]
 @pytest.mark.parametrize("suffix", [".png", ".svg", ".PNG"])
 def test_it_is_written_in_the_format_of_its_name(tmp_path: Path, suffix: str) -> None:
     path = tmp_path / f"picture{suffix}"
-    write_figure(path, [*ROWS, OUTLIER, UNMEASURED], ERRORS, "Thirty touchdowns")
+    write_touchdowns(path, [*ROWS, OUTLIER, UNMEASURED], ERRORS, "Thirty touchdowns")
     data = path.read_bytes()
     if suffix == ".svg":
         root = ElementTree.fromstring(data)
@@ -57,28 +57,28 @@ def test_it_is_written_in_the_format_of_its_name(tmp_path: Path, suffix: str) ->
 def test_few_touchdowns_or_none_make_a_picture_without_a_warning(
     tmp_path: Path, rows: list[TouchdownRow], recwarn: pytest.WarningsRecorder
 ) -> None:
-    write_figure(tmp_path / "few.png", rows, NO_ERRORS, "Few")
+    write_touchdowns(tmp_path / "few.png", rows, NO_ERRORS, "Few")
     assert (tmp_path / "few.png").stat().st_size > 5_000
     assert not recwarn.list
 
 
 def test_the_same_results_make_the_same_picture(tmp_path: Path) -> None:
     for name in ("one.svg", "other.svg"):
-        write_figure(tmp_path / name, ROWS, ERRORS, "Twice")
+        write_touchdowns(tmp_path / name, ROWS, ERRORS, "Twice")
     assert (tmp_path / "one.svg").read_bytes() == (tmp_path / "other.svg").read_bytes()
 
 
 def test_another_format_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"give a name that ends in \.png or \.svg"):
-        write_figure(tmp_path / "picture.gif", ROWS, ERRORS, "")
+        write_touchdowns(tmp_path / "picture.gif", ROWS, ERRORS, "")
 
 
 def test_a_missing_folder_is_said(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"the folder of .* does not exist"):
-        write_figure(tmp_path / "nowhere/picture.png", ROWS, ERRORS, "")
+        write_touchdowns(tmp_path / "nowhere/picture.png", ROWS, ERRORS, "")
 
 
 def test_a_place_that_cannot_be_written_is_said(tmp_path: Path) -> None:
     (tmp_path / "taken.png").mkdir()
     with pytest.raises(InputError, match="cannot be written"):
-        write_figure(tmp_path / "taken.png", ROWS, ERRORS, "")
+        write_touchdowns(tmp_path / "taken.png", ROWS, ERRORS, "")
