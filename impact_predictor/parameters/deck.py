@@ -6,189 +6,154 @@ from math import tau
 from typing import Final
 
 from .flaws import edges_flaw, extent_flaw, names_flaw
-from .types import FURTHEST, Parameter
+from .types import (
+    BEGINNING,
+    COMPUTED,
+    SUPPORT,
+    TOPICS,
+    boolean,
+    double,
+    metres,
+    ratio,
+    seconds,
+    text,
+    texts,
+)
 
 DECK_PARAMETERS: Final = (
-    Parameter(
+    texts(
         "bodies",
-        "string_array",
         (),
-        "",
-        "Names of the bodies, where there are several: the topics of each lie under its name, and every parameter that "
-        "is not of all may be given for one, as <body>.<parameter>. Left out, there is one body without a name.",
+        "Names of the bodies, where there are several: the topics of each lie under its name, and every parameter "
+        "that is not of all may be given for one, as <body>.<parameter>. Left out, there is one body without a name.",
         flaw=names_flaw,
         shared=True,
+        fixed=TOPICS,
     ),
-    Parameter(
+    text(
         "source",
-        "string",
         "odom",
-        "",
         "What is measured of the body: odom has its pose and twist, imu its tilt alone, and none nothing.",
         choices=("odom", "imu", "none"),
+        fixed=TOPICS,
     ),
-    Parameter(
+    metres(
         "place.position",
-        "double_array",
         (0.0, 0.0, 0.0),
-        "m",
         "Where the body frame's origin stands in the support's frame, as far as its source does not tell.",
         lengths=(3,),
-        low=-FURTHEST,
-        high=FURTHEST,
+        fixed=BEGINNING,
     ),
-    Parameter(
+    double(
         "place.yaw",
-        "double",
         0.0,
-        "rad",
         "How far the body frame is turned about the support's normal, as far as its source does not tell.",
+        unit="rad",
         low=-tau,
         high=tau,
+        fixed=BEGINNING,
     ),
-    Parameter(
+    double(
         "body.radius",
-        "double",
         0.0,
-        "m",
         "Radius of a cylinder that lies on two edges of the support; 0 for a body of contact points.",
+        unit="m",
         low=0.0,
-        high=1e3,
+        high=1000.0,
+        fixed=COMPUTED,
     ),
-    Parameter(
+    metres(
         "support.edges",
-        "double_array",
         (),
-        "m",
         "The two edges of the support on which a cylinder lies: x y z of one point of each, in the support's frame.",
         lengths=(6,),
         flaw=edges_flaw,
-        low=-FURTHEST,
-        high=FURTHEST,
+        fixed=SUPPORT,
     ),
-    Parameter(
+    text(
         "support.motion",
-        "string",
         "fixed",
-        "",
         "Whether the support moves, and what tells its motion: odom is its pose and twist on support/odom, imu an "
         "inertial sensor on support/imu.",
         choices=("fixed", "odom", "imu"),
         shared=True,
+        fixed=TOPICS,
     ),
-    Parameter(
+    metres(
         "support.imu_position",
-        "double_array",
         (0.0, 0.0, 0.0),
-        "m",
         "Where the support's inertial sensor lies in the support's frame, whose axes it has.",
         lengths=(3,),
         shared=True,
-        low=-FURTHEST,
-        high=FURTHEST,
+        fixed=SUPPORT,
     ),
-    Parameter(
+    seconds(
         "support.window",
-        "double",
         0.2,
-        "s",
         "Time over which the accelerations of the support are estimated from what is measured of it.",
         low=0.005,
         high=10.0,
         shared=True,
+        fixed=SUPPORT,
     ),
-    Parameter(
+    seconds(
         "support.timeout",
-        "double",
         0.5,
-        "s",
         "Age above which a message about the support tells nothing any more.",
         low=0.01,
         high=60.0,
         shared=True,
+        fixed=SUPPORT,
     ),
-    Parameter(
+    text(
         "support.extrapolation",
-        "string",
         "constant",
-        "",
         "How the support's motion goes on: constant keeps its accelerations, harmonic fits waves to the last "
         "support.harmonic_window.",
         choices=("constant", "harmonic"),
         shared=True,
+        fixed=SUPPORT,
     ),
-    Parameter(
+    seconds(
         "support.harmonic_window",
-        "double",
         20.0,
-        "s",
         "Time to which the harmonic extrapolation is fitted; several periods of the support's motion.",
         low=1.0,
         high=600.0,
         shared=True,
+        fixed=SUPPORT,
     ),
-    Parameter(
+    metres(
         "support.extent",
-        "double_array",
         (),
-        "m",
         "Edges of the support in its frame: least x, greatest x, least y, greatest y. Left out, it has no end.",
         lengths=(4,),
         flaw=extent_flaw,
         shared=True,
-        low=-FURTHEST,
-        high=FURTHEST,
+        fixed=SUPPORT,
     ),
-    Parameter(
+    boolean(
         "onset.watch",
-        "bool",
         False,
-        "",
         "Whether to watch how near the body is to sliding and to tipping, and to report it on /diagnostics.",
+        fixed=COMPUTED,
     ),
-    Parameter(
+    ratio(
         "onset.warn",
-        "double",
         0.7,
-        "1",
         "Part of the margin against sliding or tipping that is used up (1 at the onset) from which the level is WARN.",
         low=0.01,
         high=100.0,
     ),
-    Parameter(
-        "onset.error",
-        "double",
-        1.0,
-        "1",
-        "Part of the margin that is used up from which the level is ERROR.",
-        low=0.01,
-        high=100.0,
+    ratio(
+        "onset.error", 1.0, "Part of the margin that is used up from which the level is ERROR.", low=0.01, high=100.0
     ),
-    Parameter(
+    ratio(
         "onset.hysteresis",
-        "double",
         0.1,
-        "1",
         "How far the part must fall below onset.warn or onset.error before the level falls.",
-        low=0.0,
         high=100.0,
     ),
-    Parameter(
-        "onset.hold",
-        "double",
-        5.0,
-        "s",
-        "How long the part must stay that low before the level falls.",
-        low=0.0,
-        high=3600.0,
-    ),
-    Parameter(
-        "onset.horizon",
-        "double",
-        5.0,
-        "s",
-        "How far ahead an onset is looked for.",
-        low=0.0,
-        high=60.0,
-    ),
+    seconds("onset.hold", 5.0, "How long the part must stay that low before the level falls.", high=3600.0),
+    seconds("onset.horizon", 5.0, "How far ahead an onset is looked for.", high=60.0),
 )

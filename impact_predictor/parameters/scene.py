@@ -7,9 +7,7 @@ from math import copysign, cos, hypot, sin
 from typing import Any
 
 from ..errors import InputError
-from .walking import WALKING_PARAMETERS
-
-Values = Mapping[str, Any]
+from .table import WALKING_PARAMETERS
 
 INCLINED = 1e-6
 """A unit normal that differs from z by more than this is inclined: less is rounding."""
@@ -29,10 +27,10 @@ OFF = 0.01
 """A body may be placed this part of its size above or below its support: its place was measured with a tape."""
 
 
-class _Body:
+class _Given:
     """The values that hold for one body, and the names under which they were given."""
 
-    def __init__(self, body: str, values: Values, given: Collection[str]) -> None:
+    def __init__(self, body: str, values: Mapping[str, Any], given: Collection[str]) -> None:
         self.values = values
         self.of = f" of {body}" if body else ""
         self._prefix = f"{body}." if body else ""
@@ -47,7 +45,7 @@ class _Body:
         return self._prefix + name if self.is_own(name) else name
 
 
-def check_body(body: str, values: Values, given: Collection[str]) -> None:
+def check_body(body: str, values: Mapping[str, Any], given: Collection[str]) -> None:
     """Whether the values that hold for a body fit together.
 
     `given` has the names that were given, and so shows which values were chosen.
@@ -55,7 +53,7 @@ def check_body(body: str, values: Values, given: Collection[str]) -> None:
     Raises:
         InputError: they do not fit.
     """
-    one = _Body(body, values, given)
+    one = _Given(body, values, given)
     _check_feet(one)
     _check_source(one)
     _check_cylinder(one)
@@ -71,7 +69,7 @@ def check_body(body: str, values: Values, given: Collection[str]) -> None:
         raise InputError("support.harmonic_window must be longer than support.window, which tells accelerations")
 
 
-def _check_source(one: _Body) -> None:
+def _check_source(one: _Given) -> None:
     values = one.values
     if values["source"] == "odom":
         return
@@ -89,7 +87,7 @@ def _check_source(one: _Body) -> None:
             raise InputError(f"{one.named('place.position')}{one.of} is outside support.extent: put the body on it")
 
 
-def _check_cylinder(one: _Body) -> None:
+def _check_cylinder(one: _Given) -> None:
     radius, edges, points = "body.radius", "support.edges", "body.contact_points"
     if not one.values[radius]:
         if one.values[edges] and one.is_own(edges):
@@ -102,7 +100,7 @@ def _check_cylinder(one: _Body) -> None:
         raise InputError(f"{one.named(points)} and {one.named(radius)} are both given: a cylinder has no points")
 
 
-def _check_feet(one: _Body) -> None:
+def _check_feet(one: _Given) -> None:
     values, feet = one.values, "feet.names"
     if not values[feet]:
         for name, default in ((parameter.name, parameter.default) for parameter in WALKING_PARAMETERS):
@@ -125,7 +123,7 @@ def _check_feet(one: _Body) -> None:
     _check_robot(one)
 
 
-def _check_robot(one: _Body) -> None:
+def _check_robot(one: _Given) -> None:
     """Whether a machine that walks has a model with a frame for each point of its feet, or none."""
     values = one.values
     frames = values["robot.frames"]
@@ -141,7 +139,7 @@ def _check_robot(one: _Body) -> None:
         )
 
 
-def _check_gravity(one: _Body) -> None:
+def _check_gravity(one: _Given) -> None:
     values = one.values
     if values["support.motion"] == "fixed" and not values["onset.watch"]:
         return
@@ -152,7 +150,7 @@ def _check_gravity(one: _Body) -> None:
         )
 
 
-def _check_place(one: _Body) -> None:
+def _check_place(one: _Given) -> None:
     """Whether a body that is watched where it was placed, for nothing tells its pose, stands on its support there."""
     values = one.values
     x, y, z = values["support.normal"]
@@ -170,14 +168,14 @@ def _check_place(one: _Body) -> None:
         raise InputError(f"at {place} the body{one.of} {wrong}: correct {place}, or where its {support} is")
 
 
-def _gap_of_points(values: Values) -> tuple[float, float]:
+def _gap_of_points(values: Mapping[str, Any]) -> tuple[float, float]:
     """How far the lowest contact point is above a level support, and the size of the body, in m."""
     points = values["body.contact_points"]
     lowest = values["place.position"][2] + min(points[2::3]) - values["support.height"]
     return lowest, hypot(*(max(points[i::3]) - min(points[i::3]) for i in range(3)))
 
 
-def _gap_of_cylinder(values: Values) -> tuple[float, float]:
+def _gap_of_cylinder(values: Mapping[str, Any]) -> tuple[float, float]:
     """How far a cylinder is from that of its edges from which it is wrong most, and its size, in m."""
     radius, (ax, ay, az, bx, by, bz) = values["body.radius"], values["support.edges"]
     width, rise = hypot(bx - ax, by - ay), bz - az

@@ -1,203 +1,210 @@
-"""The parameters of a body, its contacts and its impacts; with those of decks and of feet they are all there are."""
+"""The parameters of a body, its contacts, its impacts and its feet; with those of decks they are all there are."""
 
 from __future__ import annotations
 
 from typing import Final
 
 from .deck import DECK_PARAMETERS
-from .flaws import inertia_flaw, normal_flaw, points_flaw
-from .types import FURTHEST, Parameter
-from .walking import WALKING_PARAMETERS
+from .flaws import feet_flaw, inertia_flaw, normal_flaw, points_flaw
+from .types import (
+    EXECUTOR,
+    FURTHEST,
+    SUPPORT,
+    TOPICS,
+    Parameter,
+    boolean,
+    double,
+    doubles,
+    integer,
+    metres,
+    ratio,
+    seconds,
+    text,
+    texts,
+)
 
 _BODY_PARAMETERS: Final = (
-    Parameter("body.mass", "double", None, "kg", "Mass of the body.", low=1e-9, high=1e12),
-    Parameter(
+    double("body.mass", None, "Mass of the body.", unit="kg", low=1e-9, high=1e12, of_model=True),
+    doubles(
         "body.inertia",
-        "double_array",
         None,
-        "kg m^2",
-        "Inertia about the mass centre, in the axes of the body frame: ixx iyy izz ixy ixz iyz, the last "
-        "three as elements of the matrix (URDF); or one number if it is the same about every axis (sphere, cube).",
+        "Inertia about the mass centre, in the axes of the body frame: ixx iyy izz ixy ixz iyz, the last three as "
+        "elements of the matrix (URDF); or one number if it is the same about every axis (sphere, cube).",
+        unit="kg m^2",
         lengths=(1, 6),
         flaw=inertia_flaw,
+        of_model=True,
     ),
-    Parameter(
-        "body.center_of_mass",
-        "double_array",
-        (0.0, 0.0, 0.0),
-        "m",
-        "Mass centre in the body frame.",
-        lengths=(3,),
-        low=-FURTHEST,
-        high=FURTHEST,
-    ),
-    Parameter(
+    metres("body.center_of_mass", (0.0, 0.0, 0.0), "Mass centre in the body frame.", lengths=(3,)),
+    metres(
         "body.contact_points",
-        "double_array",
         (),
-        "m",
         "Points that can touch the support, in the body frame: x y z of each, one after the other. Left out, they "
         "come from the topic contact_geometry; given, there is no such subscription.",
         flaw=points_flaw,
-        low=-FURTHEST,
-        high=FURTHEST,
+        fixed=TOPICS,
     ),
-    Parameter(
-        "contact.friction",
-        "double",
-        None,
-        "1",
-        "Coulomb friction coefficient between body and support.",
-        low=0.0,
-        high=100.0,
-    ),
-    Parameter(
+    ratio("contact.friction", None, "Coulomb friction coefficient between body and support.", high=100.0),
+    ratio(
         "contact.restitution",
-        "double",
         0.0,
-        "1",
         "Coefficient of restitution at the contact that strikes; 0 is a plastic impact.",
-        low=0.0,
         high=1.0,
     ),
-    Parameter(
+    double(
         "contact.tolerance",
-        "double",
         0.005,
-        "m",
         "Gap to the support below which a point counts as touching.",
+        unit="m",
         low=0.0,
         high=1.0,
     ),
-    Parameter(
-        "contact.time",
-        "double",
-        0.005,
-        "s",
-        "Duration of a contact: an edge strikes as one when its ends close within it.",
-        low=0.0,
-        high=1.0,
+    seconds(
+        "contact.time", 0.005, "Duration of a contact: an edge strikes as one when its ends close within it.", high=1.0
     ),
-    Parameter("support.frame", "string", "", "", "frame_id that odom must have; empty accepts any.", shared=True),
-    Parameter(
+    text("support.frame", "", "frame_id that odom must have; empty accepts any.", shared=True, fixed=SUPPORT),
+    doubles(
         "support.normal",
-        "double_array",
         (0.0, 0.0, 1.0),
-        "1",
-        "Direction out of the support, in the frame of odom, or in the support's own where it moves; of any length but "
-        "zero.",
+        "Direction out of the support, in the frame of odom, or in the support's own where it moves; of any length "
+        "but zero.",
+        unit="1",
         lengths=(3,),
         flaw=normal_flaw,
+        fixed=SUPPORT,
     ),
-    Parameter(
+    double(
         "support.height",
-        "double",
         0.0,
-        "m",
         "Distance of the support's plane from the origin, along its normal.",
+        unit="m",
         low=-FURTHEST,
         high=FURTHEST,
     ),
-    Parameter(
+    seconds(
         "odom.twist_window",
-        "double",
         0.0,
-        "s",
         "Time over which the source of odom averages its twist; 0 for a twist of the very instant.",
-        low=0.0,
         high=1.0,
     ),
-    Parameter(
+    doubles(
         "gravity",
-        "double_array",
         (0.0, 0.0, -9.81),
-        "m/s^2",
         "Acceleration of a free body, in the frame of odom, or in the world frame where the support moves.",
+        unit="m/s^2",
         low=-1000.0,
         high=1000.0,
         lengths=(3,),
         shared=True,
+        fixed=SUPPORT,
     ),
-    Parameter(
+    text(
         "law",
-        "string",
         "path",
-        "",
         "Impact law: path follows the growing impulse (Routh), total solves for the whole impulse at once.",
         choices=("path", "total"),
     ),
-    Parameter(
+    boolean(
         "transverse_slip",
-        "bool",
         True,
-        "",
         "Whether friction also opposes slip across the impact plane, so that a body that slips there too has less "
         "friction left in the plane. Only the law path knows it.",
     ),
-    Parameter(
+    integer(
         "uncertainty.samples",
-        "integer",
         0,
-        "1",
         "How many points carry the uncertainty of a sample through its impact, 16 or more and even; 0 for none.",
+        unit="1",
         low=0,
         high=4096,
     ),
-    Parameter(
-        "uncertainty.friction",
-        "double",
-        0.0,
-        "1",
-        "Standard deviation of contact.friction.",
-        low=0.0,
-        high=100.0,
-    ),
-    Parameter(
-        "uncertainty.restitution",
-        "double",
-        0.0,
-        "1",
-        "Standard deviation of contact.restitution.",
-        low=0.0,
-        high=1.0,
-    ),
-    Parameter(
+    ratio("uncertainty.friction", 0.0, "Standard deviation of contact.friction.", high=100.0),
+    ratio("uncertainty.restitution", 0.0, "Standard deviation of contact.restitution.", high=1.0),
+    boolean(
         "margins",
-        "bool",
         False,
-        "",
         "Whether a prediction tells how far its impact is from another mode, in friction, geometry and slip.",
     ),
-    Parameter(
+    ratio(
         "validity.slenderness",
-        "double",
         0.01,
-        "1",
         "Thickness over length below which a body is flagged THIN_BODY: it bends while it strikes.",
-        low=0.0,
         high=1.0,
     ),
-    Parameter(
+    ratio(
         "validity.gravity_share",
-        "double",
         0.25,
-        "1",
         "Part of the new contact's impulse above which gravity's during contact.time gives the flag SLOW_IMPACT.",
         low=1e-6,
         high=1e6,
     ),
-    Parameter(
-        "horizon", "double", 0.25, "s", "How far ahead of a sample a touchdown is looked for.", low=1e-3, high=60.0
-    ),
-    Parameter(
+    seconds("horizon", 0.25, "How far ahead of a sample a touchdown is looked for.", low=1e-3, high=60.0),
+    text(
         "executor",
-        "string",
         "single",
-        "",
         "How the node waits for messages: single is rclpy's single-threaded executor, events its experimental one, "
         "which costs less per message.",
         choices=("single", "events"),
         shared=True,
+        fixed=EXECUTOR,
+    ),
+)
+
+WALKING_PARAMETERS: Final = (
+    texts(
+        "feet.names",
+        (),
+        "Names of the feet of a walking machine, whose points move against the body. They come with contact_geometry, "
+        "in this order, or with joint_states where robot.urdf is given. Left out, the contact points are the body's.",
+        flaw=feet_flaw,
+        fixed=TOPICS,
+    ),
+    integer(
+        "feet.points",
+        1,
+        "Contact points of each foot, which follow each other: 1, or 2 for a sole of heel and toe.",
+        unit="1",
+        low=1,
+        high=2,
+        fixed=TOPICS,
+    ),
+    seconds(
+        "feet.dead_time", 0.02, "How long a foot must seem to stand, or to swing, until that is believed.", high=1.0
+    ),
+    seconds(
+        "feet.timeout", 0.1, "Age above which a message about the feet tells nothing any more.", low=1e-3, high=60.0
+    ),
+    double(
+        "feet.force",
+        0.0,
+        "Force on the sensor of a foot, on contact_wrench, from which it confirms that the foot stands; 0 where there "
+        "are no sensors, and no subscription.",
+        unit="N",
+        low=0.0,
+        high=1e9,
+        fixed=TOPICS,
+    ),
+    boolean(
+        "feet.has_schedule",
+        False,
+        "Whether a planner tells on schedule when the feet are to stand, so that landings are told to be early or "
+        "late.",
+        fixed=TOPICS,
+    ),
+    text(
+        "robot.urdf",
+        "",
+        "File of the machine's model (URDF); a relative path begins in the folder where the process runs. Its feet "
+        "and its inertia are then those of joint_states, which may tell of other joints too, and body.mass and "
+        "body.inertia are neither needed nor used. Left out, the legs have no mass.",
+        fixed=TOPICS,
+    ),
+    texts(
+        "robot.frames",
+        (),
+        "The frame in robot.urdf of each contact point of the feet, in the order of feet.names.",
+        flaw=feet_flaw,
+        fixed=TOPICS,
     ),
 )
 

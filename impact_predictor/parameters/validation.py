@@ -11,9 +11,7 @@ from .scene import check_body
 from .table import PARAMETERS as PARAMETERS
 from .types import Parameter as Parameter
 from .types import Value as Value
-from .types import values_of
-from .values import allowed, check
-from .walking import OF_MODEL
+from .types import allowed, check, values_of
 
 _OF_EVERY_NODE: Final = ("use_sim_time", "start_type_description_service")
 _QOS_OVERRIDES: Final = "qos_overrides."
@@ -68,6 +66,20 @@ def parameter_of(name: str) -> Parameter:
     return PARAMETERS.get(name) or PARAMETERS[name.partition(".")[2]]
 
 
+def check_change(before: Mapping[str, Any], after: Mapping[str, Any]) -> None:
+    """Whether the node may go on from some validated values to others.
+
+    Raises:
+        InputError: a parameter has changed that cannot while the node runs.
+    """
+    for name in {**before, **after}:
+        why = parameter_of(name).fixed
+        if why and before.get(name) != after.get(name):
+            raise InputError(
+                f"the parameter {name} cannot change while the node runs, for {why}: start the node again with it"
+            )
+
+
 def _bodies(given: Mapping[str, object]) -> tuple[str, ...]:
     if "bodies" not in given:
         return ()
@@ -109,7 +121,7 @@ def _all_own(bodies: Sequence[str]) -> Iterator[str]:
 
 def _is_known(parameter: Parameter, values: Mapping[str, object]) -> bool:
     """Whether there is a value, or the model of the machine tells it."""
-    return parameter.name in values or (parameter.name in OF_MODEL and bool(values["robot.urdf"]))
+    return parameter.name in values or (parameter.of_model and bool(values["robot.urdf"]))
 
 
 def _missing(parameter: Parameter, lacking: Sequence[str]) -> InputError:

@@ -13,8 +13,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter as NodeParameter
 
 from ..errors import InputError
-from ..parameters.running import FIXED, check_change
-from ..parameters.validation import Parameter, Value, is_of_every_node, parameter_of, validate
+from ..parameters.validation import Parameter, Value, check_change, is_of_every_node, parameter_of, validate
 
 _QOS_OVERRIDES: Final = "qos_overrides."
 
@@ -126,7 +125,7 @@ def _descriptor(parameter: Parameter) -> ParameterDescriptor:
         type=NodeParameter.Type[parameter.kind.upper()].value,
         description=f"{parameter.description}{unit}",
         additional_constraints=" or ".join(parameter.choices),
-        read_only=parameter.name in FIXED,
+        read_only=bool(parameter.fixed),
         floating_point_range=ranges,
         integer_range=whole_ranges,
     )
