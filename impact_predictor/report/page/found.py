@@ -12,7 +12,7 @@ from math import inf
 from os import SEEK_END
 from pathlib import Path
 from statistics import median
-from typing import Any, Final, NamedTuple, overload
+from typing import Any, Final, NamedTuple
 
 from ...bags.find import told_apart
 from ...errors import InputError
@@ -62,13 +62,7 @@ class Kept(Sequence[BagAnswer]):
     def __len__(self) -> int:
         return len(self._ends) - 1
 
-    @overload
-    def __getitem__(self, place: int) -> BagAnswer: ...
-    @overload
-    def __getitem__(self, place: slice) -> Sequence[BagAnswer]: ...
-    def __getitem__(self, place: int | slice) -> BagAnswer | Sequence[BagAnswer]:
-        if isinstance(place, slice):
-            return [self[one] for one in range(len(self))[place]]
+    def __getitem__(self, place: Any) -> Any:
         place = range(len(self))[place]
         begin, end = self._ends[place : place + 2]
         self._file.seek(begin)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections import Counter
 from collections.abc import Iterable, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
@@ -38,9 +37,7 @@ REST: Final = NANOSECONDS // 10
 """What stays of a pause (ns) after what came before it and, at least, before what comes after it."""
 
 MOST: Final = 3000
-"""Marks in a timeline above which they are counted in columns."""
-
-COLUMNS: Final = 300
+"""Marks in a timeline above which not all of them are drawn."""
 
 FEW: Final = 75
 """Cuts of which each has a line."""
@@ -101,15 +98,10 @@ def timeline(answer: BagAnswer) -> tuple[PlotlyFigure, list[str]]:
     traces: list[dict[str, Any]] = []
     for number, lane in enumerate(lanes):
         traces += [*_stances(lane, -number, cuts, begin), *_errors(lane, -number, cuts)]
-    if sum(len(lane.marks) for lane in lanes) <= MOST:
-        traces += _marks(lanes, cuts)
-    else:
-        for number, lane in enumerate(lanes):
-            traces += _columns(lane, -number, cuts)
-        said.append(
-            f"There are more than {MOST:,} marks, too many for one each: the higher a column is, the more of them fall "
-            "into its part of the time."
-        )
+    if sum(len(lane.marks) for lane in lanes) > MOST:
+        lanes = [lane._replace(marks=[mark for mark in lane.marks if not mark.faint][:MOST]) for lane in lanes]
+        said.append(f"There are too many marks: of each lane the first {MOST:,} are drawn, and no faint ones.")
+    traces += _marks(lanes, cuts)
     dashed = cuts.places if len(cuts.places) <= FEW else []
     if cuts.places:
         whole = (cuts.pieces[-1][1] - begin) / NANOSECONDS
@@ -181,15 +173,6 @@ def _marks(lanes: Sequence[Lane], cuts: Cuts) -> list[dict[str, Any]]:
             look = look_of(name) | {"opacity": 0.3 if faint else 1.0}
             traces.append(marks(f"{name}, faint" if faint else name, points, marker=look))
     return traces
-
-
-def _columns(lane: Lane, y: int, cuts: Cuts) -> list[dict[str, Any]]:
-    """How many marks of a lane fall into each part of the time, as columns on the lane."""
-    width = cuts.shown / COLUMNS
-    counts = Counter(min(int(cuts.at(mark.stamp) / width), COLUMNS - 1) for mark in lane.marks)
-    most = max(counts.values(), default=1)
-    points = [((at + 0.5) * width, 0.8 * count / most, f"{count:,} marks") for at, count in counts.items()]
-    return [bars(points, base=y - 0.4, width=width, marker={"color": BLUE})] if points else []
 
 
 def _stances(lane: Lane, y: int, cuts: Cuts, begin: int) -> list[dict[str, Any]]:
