@@ -129,13 +129,10 @@ class WatchedBody:
         self.name, self.scene = name, scene
         self.watching = scene.watching or Watching()
         self.standing = Standing(scene)
-        self.status = Status.ACCEPTED
-        if scene.source != "none":
-            self.status = Status.BODY_STALE
+        self.status = Status.BODY_STALE if scene.source != "none" else Status.ACCEPTED
         if scene.needs_geometry:
             self.status = Status.NO_GEOMETRY
-        self.heard = False
-        """Whether its source was ever heard."""
+        self._heard: int | None = None  # when its source was, in ns
         self.top = MarginsUsed(0.0, "", 0.0)
         """Where the margins were used up most since the level rose."""
         self.why = ""
@@ -187,11 +184,22 @@ class WatchedBody:
             self.status = Status.BODY_STALE if self.scene.source != "none" else Status.ACCEPTED
         return True
 
+    def hear(self, stamp: int) -> bool:
+        """Know that its source is heard at a stamp in ns; whether that is for the first time."""
+        first, self._heard, self.status = self._heard is None, stamp, Status.ACCEPTED
+        return first
+
+    def falls_silent(self, stamp: int, timeout: int) -> bool:
+        """Whether its source is not heard any more, of which nothing came for so many ns."""
+        if self._heard is None or self.status is not Status.ACCEPTED or stamp - self._heard <= timeout:
+            return False
+        self.status = Status.BODY_STALE
+        return True
+
     def begin_anew(self) -> None:
         """Wait for no stamp any more, but for its source to be heard."""
-        self._strike = None
-        self.heard = False
-        if self.status is Status.ACCEPTED and self.scene.source != "none":
+        self._strike = self._heard = None
+        if self.scene.source != "none" and self.status is Status.ACCEPTED:
             self.status = Status.BODY_STALE
 
     def reasons(self, outlook: BodyOutlook) -> list[str]:

@@ -13,15 +13,14 @@ Everything is linear in g, W' and the products of W, so that one matrix serves a
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import hypot
 from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..types import Felt, Vector3
-from ..vectors import add, any_across, cross, times
-from .stance import StandingBody
+from ..types import Felt
+from ..vectors import add
+from .stance import StandingBody, unit_across
 
 FULL: Final = 99.0
 """The ratio of a body that nothing holds: it weighs nothing on the support, or its mass centre is beyond an edge."""
@@ -55,13 +54,6 @@ class OnsetMargins(NamedTuple):
     lifted: NDArray[np.bool_]
 
 
-class Barriers(NamedTuple):
-    """Arrays (n,) over the bodies: the work in J against what they feel until they topple over the easiest `edge`."""
-
-    work: NDArray[np.float64]
-    edge: NDArray[np.intp]
-
-
 def motions(
     gravity: NDArray[np.float64], angular: NDArray[np.float64], turning: NDArray[np.float64]
 ) -> NDArray[np.float64]:
@@ -74,8 +66,7 @@ def motions(
 
 def motion_of(felt: Felt) -> NDArray[np.float64]:
     """As `motions`, (12,) of one time."""
-    (gx, gy, gz), (x, y, z), (tx, ty, tz) = felt
-    return np.array((gx, gy, gz, tx, ty, tz, x * x, y * y, z * z, x * y, x * z, y * z))
+    return motions(*np.array(felt)[:, None])[:, 0]
 
 
 class Onset:
@@ -115,8 +106,8 @@ class Onset:
             return OnsetMargins(ratios[:, 0], tips.max(axis=1), edge, lifted)
         return OnsetMargins(ratios[:, 0, 0], tips.max(axis=1)[:, 0], edge[:, 0], lifted[:, 0])
 
-    def barriers(self, motion: NDArray[np.float64]) -> Barriers:
-        """The work until the bodies topple, at a support's `motions` (12,) at one time.
+    def barriers(self, motion: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
+        """The work (n,) in J until bodies topple over the easiest edge, and its number, at `motions` (12,) of a time.
 
         The mass centre must get to where it is highest against the acceleration felt, on its way about the edge: the
         rest of that way it falls. It is nothing beyond there.
@@ -131,7 +122,7 @@ class Onset:
         work[(height * outwards >= lever * weight) | (weight <= 0.0)] = 0.0
         work[self._absent] = np.inf
         edge = work.argmin(axis=1)
-        return Barriers(np.maximum(work[np.arange(len(work)), edge], 0.0), edge)
+        return np.maximum(work[np.arange(len(work)), edge], 0.0), edge
 
     def _numbers(self, motion: NDArray[np.float64]) -> NDArray[np.float64]:
         """For each body what presses it on the support, its two parts along it, and what tips it about each edge, in
@@ -180,7 +171,7 @@ class Onset:
         arm = center[:, None] - point
         height = np.where(absent, 0.0, (normal[:, None] * arm).sum(axis=2))
         # Any two directions along the support; of a cylinder's across its axis and along it.
-        ahead = np.array([s.edges[0].outward if s.edges else _unit_across(s.normal) for s in stances])
+        ahead = np.array([s.edges[0].outward if s.edges else unit_across(s.normal) for s in stances])
         axes = np.stack((-normal, ahead, np.cross(normal, ahead)), axis=1)
         felt = _felt_rows(center)
         rows = self._rows.reshape(-1, 3 + width, _MOTIONS)
@@ -266,11 +257,6 @@ def first_times(ratios: NDArray[np.float64], times: NDArray[np.float64]) -> NDAr
     part = np.divide(1.0 - low, high - low, out=np.ones_like(low), where=high > low)
     found = times[before] + part * (times[number] - times[before])
     return np.where(over.any(axis=1), found, np.inf)
-
-
-def _unit_across(normal: Vector3) -> Vector3:
-    across = cross(normal, any_across(normal))
-    return times(across, 1.0 / hypot(*across))
 
 
 def _felt_rows(r: NDArray[np.float64]) -> NDArray[np.float64]:

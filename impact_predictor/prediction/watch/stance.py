@@ -67,7 +67,7 @@ def outline(points: list[Vector3], up: Vector3) -> list[Vector3]:
     The monotone chain: Andrew, Another efficient algorithm for convex hulls in two dimensions, Information Processing
     Letters 9 (1979) 216-219.
     """
-    first = _unit(cross(up, any_across(up)))
+    first = unit_across(up)
     second = cross(up, first)
     flat = sorted((dot(first, point), dot(second, point), point) for point in points)
     chain: list[tuple[float, float, Vector3]] = []
@@ -121,7 +121,7 @@ def side(outward: Vector3, normal: Vector3) -> str:
     if normal[2] < 0.0:
         y = -y
     if abs(normal[2]) < 0.5:  # the support's frame does not lie in the support: its own directions count
-        first = _unit(cross(normal, any_across(normal)))
+        first = unit_across(normal)
         x, y = dot(outward, first), dot(outward, cross(normal, first))
     along = "fore" if x > _DIAGONAL * abs(y) else "aft" if -x > _DIAGONAL * abs(y) else ""
     across = "port" if y > _DIAGONAL * abs(x) else "starboard" if -y > _DIAGONAL * abs(x) else ""
@@ -145,5 +145,7 @@ def _area(a: _Corner, b: _Corner, c: _Corner) -> float:
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
-def _unit(u: Vector3) -> Vector3:
-    return times(u, 1.0 / hypot(*u))
+def unit_across(u: Vector3) -> Vector3:
+    """A unit vector at right angles to another vector."""
+    across = cross(u, any_across(u))
+    return times(across, 1.0 / hypot(*across))

@@ -66,8 +66,6 @@ class Watch:
         self._warn = np.array([one.warn for one in watchings])
         self._horizons = np.array([one.horizon for one in watchings])
         self._times = np.linspace(0.0, float(self._horizons.max()), FORECAST_TIMES + 1)
-        self._measured = np.array([body.scene.source != "none" for body in bodies])
-        self._heard = np.zeros(count, dtype=np.int64)
         self._others = np.array([body.rank() for body in bodies])
         self._support = Status.NO_SUPPORT
         self._motion = np.zeros(12)
@@ -77,7 +75,7 @@ class Watch:
             edge=np.zeros(count, dtype=np.intp),
             lifted=np.zeros(count, dtype=bool),
         )
-        self._used, self._top = np.zeros(count), np.zeros(count)
+        self._used = np.zeros(count)
         self._time_to_tip, self._time_to_slide = np.full(count, inf), np.full(count, inf)
         self._due = np.zeros(count, dtype=np.int64)
         self._looked: int | None = None
@@ -108,7 +106,9 @@ class Watch:
         )
         if self._looked is None or not 0 <= moment.stamp - self._looked < FORECAST_EVERY:
             self._look_ahead(moment.stamp)
-        self._hush(moment.stamp)
+        for number, watched in enumerate(self._bodies):
+            if watched.falls_silent(moment.stamp, self._timeout):
+                self._others[number] = watched.rank()
         self._judge()
 
     def update_body(self, body: str, relative: Sample, touchdown: Touchdown | None) -> None:
@@ -170,7 +170,7 @@ class Watch:
             for number, watched in enumerate(self._bodies):
                 watched.begin_anew()
                 self._others[number] = watched.rank()
-            self._heard[:] = self._now = stamp
+            self._now = stamp
         self._now = stamp if self._now is None else max(stamp, self._now)
 
     def _look_ahead(self, stamp: int) -> None:
@@ -184,22 +184,8 @@ class Watch:
 
     def _hear(self, number: int, stamp: int) -> None:
         """A body's source is heard, at the time that the support's stamps tell."""
-        self._heard[number] = stamp if self._now is None else self._now
-        watched = self._bodies[number]
-        watched.status = Status.ACCEPTED
-        if not watched.heard:
-            watched.heard = True
+        if self._bodies[number].hear(stamp if self._now is None else self._now):
             self._levels.release(number)
-
-    def _hush(self, stamp: int) -> None:
-        """Find the bodies of which nothing is heard any more."""
-        quiet = self._measured & (stamp - self._heard > self._timeout)
-        if quiet.any():
-            for number in np.flatnonzero(quiet).tolist():
-                watched = self._bodies[number]
-                if watched.status is Status.ACCEPTED:
-                    watched.status = Status.BODY_STALE
-                    self._others[number] = watched.rank()
 
     def _changed(self, number: int, stance: bool) -> None:
         """Something of a body is known anew; its level rises at once."""
@@ -222,16 +208,13 @@ class Watch:
         before = self._levels.ranks
         self._levels.update(self._now, self._used, others)
         ranks = self._levels.ranks
-        anew = (ranks > before) | ((ranks == OK) & (ranks != before))
-        self._top[anew] = 0.0
-        for number in np.flatnonzero(anew).tolist():
+        for number in np.flatnonzero((ranks > before) | ((ranks == OK) & (ranks != before))).tolist():
             self._bodies[number].top = MarginsUsed(0.0, "", 0.0)
             self._remember(number)
-        more = (self._used > self._top) & (self._used >= self._warn)
-        if more.any():
-            self._top[more] = self._used[more]
-            for number in np.flatnonzero(more).tolist():
-                self._bodies[number].top, self._bodies[number].raised = self._used_of(number), self._now
+        for number in np.flatnonzero(self._used >= self._warn).tolist():
+            watched, used = self._bodies[number], self._used_of(number)
+            if max(used.tip, used.slide) > max(watched.top.tip, watched.top.slide):
+                watched.top, watched.raised = used, self._now
 
     def _remember(self, number: int) -> None:
         """Keep what raises the level of a body now, for when it is only held."""
