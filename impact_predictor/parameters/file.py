@@ -93,7 +93,7 @@ def read_parameters(path: str | os.PathLike[str], node: str = "impact_predictor"
     path = Path(path)
     try:
         root = _parse(path.read_text(encoding="utf-8"))
-        sections: dict[str, list[Entry]] = {}
+        sections: dict[str, list[ParameterEntry]] = {}
         for name, entries in _sections(root) if root is not None else ():
             # A section that goes on further down keeps its place in the order, as in rcl.
             sections.setdefault(name, []).extend(entries)
@@ -191,10 +191,10 @@ def _node(event: Event, events: Iterator[Event], in_brackets: bool = False) -> _
     return _Mapping(entries, line)
 
 
-Entry = tuple[str, _Scalar | _Sequence]
+ParameterEntry = tuple[str, _Scalar | _Sequence]
 
 
-def _sections(mapping: _Mapping, pattern: str = "") -> Iterator[tuple[str, list[Entry]]]:
+def _sections(mapping: _Mapping, pattern: str = "") -> Iterator[tuple[str, list[ParameterEntry]]]:
     """The node name patterns of a file with their parameters, in the order of the file."""
     for key, value in mapping.entries:
         if key.text == _PARAMETERS_KEY:
@@ -216,7 +216,7 @@ def _sections(mapping: _Mapping, pattern: str = "") -> Iterator[tuple[str, list[
             yield from _sections(value, f"{pattern}/{key.text}" if pattern else key.text)
 
 
-def _flatten(mapping: _Mapping, prefix: str = "") -> Iterator[Entry]:
+def _flatten(mapping: _Mapping, prefix: str = "") -> Iterator[ParameterEntry]:
     for key, value in mapping.entries:
         name = prefix + key.text
         if not isinstance(value, _Mapping):
@@ -234,7 +234,7 @@ def _fits(pattern: str, node: str) -> bool:
     return re.fullmatch(expression, "/" + node.strip("/"), re.ASCII) is not None
 
 
-def _merge(sections: list[list[Entry]]) -> dict[str, FileValue]:
+def _merge(sections: list[list[ParameterEntry]]) -> dict[str, FileValue]:
     merged: dict[str, FileValue] = {}
     for entries in sections:
         lines: dict[str, int] = {}

@@ -26,7 +26,7 @@ OK, WARN, ERROR, STALE = range(4)
 _SECONDS_RANGE: Final = (-(2**31), 2**31 - 1)
 
 
-Value = TypeVar("Value")
+Decoded = TypeVar("Decoded")
 
 
 class MalformedMessage(ValueError):
@@ -133,12 +133,12 @@ def read_doubles(data: bytes, offset: int, order: ByteOrder) -> tuple[tuple[floa
     return struct.unpack_from(f"{order.mark}{count}d", data, start), start + 8 * count
 
 
-def decoder(type_name: str) -> Callable[[Callable[[bytes], Value]], Callable[[bytes], Value]]:
+def decoder(type_name: str) -> Callable[[Callable[[bytes], Decoded]], Callable[[bytes], Decoded]]:
     """Makes what a decoder raises where it reads beyond the bytes a MalformedMessage that names their type."""
 
-    def named(decode: Callable[[bytes], Value]) -> Callable[[bytes], Value]:
+    def named(decode: Callable[[bytes], Decoded]) -> Callable[[bytes], Decoded]:
         @wraps(decode)
-        def decoded(data: bytes) -> Value:
+        def decoded(data: bytes) -> Decoded:
             try:
                 return decode(data)
             except (struct.error, UnicodeDecodeError) as error:

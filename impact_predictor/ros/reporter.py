@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from rclpy.node import Node
 
 from ..prediction.scene import Scene
-from ..prediction.types import Geometry, Prediction, Score, Status
+from ..prediction.types import Geometry, Prediction, Status
 from ..stamps import NANOSECONDS
 from .cdr import diagnostic_array
 from .diagnostics import Diagnostics, FeetReport, Refusal
@@ -92,24 +92,19 @@ class Reporter:
     def _on_lost(self, event: Any) -> None:
         self.diagnostics.lost = (self.diagnostics.lost or 0) + event.total_count_change
 
-    def dropped(self, count: int) -> None:
-        """Samples were dropped because newer ones waited behind them."""
-        self.diagnostics.dropped(count)
-
-    def walked(self, body: str, prediction: Prediction) -> None:
-        """A sample of a body with feet was answered."""
-        self.diagnostics.feet[body].take(prediction)
-
-    def settled(self, body: str, score: Score) -> None:
-        """A touchdown of a body has happened."""
-        self.diagnostics.settled(body, score)
-
-    def answered(self, name: str, stamp: int, latency: int, update: float, began: float) -> None:
-        """A sample on an input was answered; arguments as of `Diagnostics.accepted`, times of the steady clock."""
-        now = perf_counter()
+    def answered(self, name: str, body: str, prediction: Prediction, latency: int, update: float, began: float) -> None:
+        """A sample on an input was answered; costs as of `Diagnostics.accepted`, `began` by the steady clock."""
+        now, sample = perf_counter(), prediction.sample
+        if prediction.score is not None:
+            self.diagnostics.settled(sample.child_frame_id, prediction.score)
+        if prediction.feet:
+            self.diagnostics.feet[body].take(prediction)
+        if self.markers.drawing is not None:
+            self.markers.drawing.take(body, prediction)
+            self.markers.show(sample.stamp)
         if not self._support or self._time is None:
-            self._time = stamp, now
-        if self.diagnostics.accepted(now, name, stamp, latency, update, now - began):
+            self._time = sample.stamp, now
+        if self.diagnostics.accepted(now, name, sample.stamp, latency, update, now - began):
             self.report()
         if self._units:
             self.report_units()

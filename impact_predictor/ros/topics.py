@@ -133,7 +133,7 @@ class BodyTopics:
 
     def _on_odometry(self, data: bytes) -> None:
         if dropped := self._backlog.take(data):
-            self._reporter.dropped(dropped)
+            self._reporter.diagnostics.dropped(dropped)
 
     def _answer(self, data: bytes) -> None:
         began = perf_counter()
@@ -154,15 +154,7 @@ class BodyTopics:
         self._last_sample = sample
         for outlet, encode in self._encoders:
             _publish(outlet, encode, prediction)
-        if prediction.score is not None:
-            self._reporter.settled(sample.child_frame_id, prediction.score)
-        if prediction.feet:
-            self._reporter.walked(self._body, prediction)
-        markers = self._reporter.markers
-        if markers.drawing is not None:
-            markers.drawing.take(self._body, prediction)
-            markers.show(sample.stamp)
-        self._reporter.answered(self._name, sample.stamp, latency, update, began)
+        self._reporter.answered(self._name, self._body, prediction, latency, update, began)
 
     def publish_scores(self, scores: tuple[Score, ...]) -> None:
         """Publish the scores that the end of the record settles, and see them received."""

@@ -12,7 +12,7 @@ from ...prediction.types import Foot, Moment, Quaternion, Touchdown, Vector3
 from ...prediction.vectors import Axes, add, axes_of, combine, composed, cross, dot, mean, times, to_world
 from ...stamps import NANOSECONDS
 from .message import ARROW, CUBE, CUBE_LIST, LINE_LIST, NOWHERE, SPHERE_LIST, TEXT, UNTURNED, Colour, Marker
-from .shapes import Shape, Slab, drum_axis, grid_of, turn_to
+from .shapes import BodyShape, Slab, drum_axis, grid_of, turn_to
 
 LEVELS: Final = ("OK", "WARN", "ERROR", "STALE")
 LEVEL_COLOURS: Final[tuple[Colour, ...]] = (
@@ -47,7 +47,7 @@ _CONTACTS: Final = (
 """Kinds of contacts: their form, how large it is, and its colour."""
 
 
-class Seen(NamedTuple):
+class SeenPose(NamedTuple):
     """A body where it was last seen; `stamp` in ns."""
 
     stamp: int
@@ -55,7 +55,7 @@ class Seen(NamedTuple):
     orientation: Quaternion
 
 
-class Ahead(NamedTuple):
+class ShownTouchdown(NamedTuple):
     """A touchdown and its stamp in ns; one that has `happened` with its relative error where it has one."""
 
     stamp: int
@@ -64,7 +64,7 @@ class Ahead(NamedTuple):
     error: float | None = None
 
 
-class Unit(NamedTuple):
+class BodyView(NamedTuple):
     """A body to be drawn: its number among all, its scene, its points and its looks, and what is known of it now;
     `level` is None where nobody watches it. `points` of a machine with `feet` are theirs, one of each.
     """
@@ -73,9 +73,9 @@ class Unit(NamedTuple):
     name: str
     scene: Scene
     points: tuple[Vector3, ...]
-    shape: Shape
-    seen: Seen
-    ahead: Ahead | None
+    shape: BodyShape
+    seen: SeenPose
+    ahead: ShownTouchdown | None
     level: int | None
     message: str
     feet: tuple[Foot, ...] = ()
@@ -120,7 +120,7 @@ def _grid(slab: Slab) -> tuple[float, tuple[Vector3, ...]]:
     return grid_of(slab)
 
 
-def draw_unit(unit: Unit, stamp: int, letter: float) -> list[Marker]:
+def draw_unit(unit: BodyView, stamp: int, letter: float) -> list[Marker]:
     """A body at a stamp in ns: its looks, its contacts, the touchdown ahead of it, and all of that in words, of which a
     `letter` is so many m high.
     """
@@ -146,7 +146,7 @@ def draw_unit(unit: Unit, stamp: int, letter: float) -> list[Marker]:
     return drawn
 
 
-def _points(unit: Unit, axes: Axes) -> list[Marker]:
+def _points(unit: BodyView, axes: Axes) -> list[Marker]:
     """The contact points: cubes stand, large spheres strike next, small ones are open."""
     scene, seen = unit.scene, unit.seen
     old, new = _contacts_ahead(unit)
@@ -170,7 +170,7 @@ def _points(unit: Unit, axes: Axes) -> list[Marker]:
     return drawn
 
 
-def _edges(unit: Unit) -> list[Marker]:
+def _edges(unit: BodyView) -> list[Marker]:
     """The edges of the support on which a cylinder lies, by their kinds."""
     scene = unit.scene
     half = times(drum_axis(scene), scene.radius)
@@ -185,20 +185,20 @@ def _edges(unit: Unit) -> list[Marker]:
     return drawn
 
 
-def _contacts_ahead(unit: Unit) -> tuple[tuple[int, ...], tuple[int, ...]]:
+def _contacts_ahead(unit: BodyView) -> tuple[tuple[int, ...], tuple[int, ...]]:
     """The contacts that stand and that strike next."""
     ahead = unit.ahead
     return ((), ()) if ahead is None or ahead.happened else (ahead.touchdown.old, ahead.touchdown.new)
 
 
-def _length_of_speed(unit: Unit) -> float:
+def _length_of_speed(unit: BodyView) -> float:
     """How long the arrow of 1 m/s is, or of as much impulse on each kg: that of a fall from its own height is as long
     as the body.
     """
     return sqrt(unit.shape.size / hypot(*unit.scene.gravity))
 
 
-def _draw_touchdown(unit: Unit, touchdown: Touchdown) -> list[Marker]:
+def _draw_touchdown(unit: BodyView, touchdown: Touchdown) -> list[Marker]:
     """The body's outline at the touchdown, the impulses at its contacts, and the velocity of its mass centre after."""
     scene, shape, number = unit.scene, unit.shape, unit.number
     position, orientation = touchdown.position, touchdown.orientation
@@ -234,7 +234,7 @@ def _draw_touchdown(unit: Unit, touchdown: Touchdown) -> list[Marker]:
     return drawn
 
 
-def contacts_of(unit: Unit) -> int:
+def contacts_of(unit: BodyView) -> int:
     """How many contacts there are to which indices may point."""
     scene = unit.scene
     if scene.walking is not None:
@@ -242,7 +242,7 @@ def contacts_of(unit: Unit) -> int:
     return len(scene.edges if scene.radius > 0.0 else unit.points)
 
 
-def _touchdown_in_words(unit: Unit, ahead: Ahead, stamp: int) -> list[str]:
+def _touchdown_in_words(unit: BodyView, ahead: ShownTouchdown, stamp: int) -> list[str]:
     """Mode and time, the impulses with the scale of their arrows, the velocities after."""
     touchdown = ahead.touchdown
     away = (ahead.stamp - stamp) / NANOSECONDS
@@ -275,7 +275,7 @@ def label(namespace: str, number: int, place: Vector3, letter: float, words: str
     return Marker(namespace, number, TEXT, place, scale=(0.0, 0.0, letter), colour=_LETTERS, text=words)
 
 
-def _draw_landings(unit: Unit, letter: float) -> list[Marker]:
+def _draw_landings(unit: BodyView, letter: float) -> list[Marker]:
     """A mark where each swinging foot lands, a line to it from the foot, and the foot's name with the time until then.
 
     A `letter` is so many m high.
@@ -300,7 +300,7 @@ def _draw_landings(unit: Unit, letter: float) -> list[Marker]:
     return drawn
 
 
-def _place_of(unit: Unit, indices: tuple[int, ...]) -> Vector3:
+def _place_of(unit: BodyView, indices: tuple[int, ...]) -> Vector3:
     """The middle of the feet to which points of some indices belong: where they land, or else where they are."""
     each = 1 if unit.scene.walking is None else unit.scene.walking.points
     feet = [unit.feet[number] for number in sorted({i // each for i in indices})]

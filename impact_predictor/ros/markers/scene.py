@@ -13,7 +13,7 @@ from ...prediction.scene import Scene
 from ...prediction.types import Foot, Geometry, Moment, Prediction, Quaternion, Status
 from ...prediction.vectors import add, axes_of, dot, to_body, to_world
 from ...stamps import NANOSECONDS
-from .drawing import Ahead, Seen, Unit, draw_support, draw_unit
+from .drawing import BodyView, SeenPose, ShownTouchdown, draw_support, draw_unit
 from .message import DELETE, DELETE_ALL, Marker, encode_markers
 from .shapes import about, deck_of, patch_of, shape_of
 
@@ -40,7 +40,7 @@ class MarkerScene:
 
     def __init__(self, scenes: Mapping[str, Scene]) -> None:
         """Draw the bodies of these names as their scenes describe them; "" is the name of a body alone."""
-        self._bodies = {name: _Body(name, scene) for name, scene in scenes.items()}
+        self._bodies = {name: KnownBody(name, scene) for name, scene in scenes.items()}
         self._scene = next(iter(scenes.values()))
         self._slab = deck_of(self._scene)
         self._moment: Moment | None = None
@@ -129,18 +129,18 @@ def _part(ratio: str) -> str:
     return f"{100.0 * float(ratio):.0f} %" if float(ratio) < 10.0 else "all"
 
 
-class _Body:
+class KnownBody:
     """What is known of one body."""
 
     def __init__(self, name: str, scene: Scene) -> None:
         self.scene = scene
-        self.seen: Seen | None = None
+        self.seen: SeenPose | None = None
         self.level: int | None = None
         self.message = ""
         self._name = name
         self._points = scene.points
         self._shape = shape_of(scene, scene.points)
-        self._ahead: Ahead | None = None
+        self._ahead: ShownTouchdown | None = None
         self._feet: tuple[Foot, ...] = ()
 
     def set_points(self, geometry: Geometry) -> None:
@@ -154,14 +154,14 @@ class _Body:
         sample = prediction.sample if self.scene.deck is None else prediction.relative
         if sample is None:
             return False
-        self.seen = Seen(sample.stamp, sample.position, sample.orientation)
+        self.seen = SeenPose(sample.stamp, sample.position, sample.orientation)
         self._name = self._name or sample.child_frame_id
         self._feet = prediction.feet
         touchdown, score = prediction.touchdown, prediction.score
         if touchdown is not None:
-            self._ahead = Ahead(sample.stamp + round(touchdown.lead_time * NANOSECONDS), touchdown)
+            self._ahead = ShownTouchdown(sample.stamp + round(touchdown.lead_time * NANOSECONDS), touchdown)
         elif score is not None:
-            self._ahead = Ahead(score.stamp, score.touchdown, True, score.relative_error)
+            self._ahead = ShownTouchdown(score.stamp, score.touchdown, True, score.relative_error)
         elif self._ahead is not None and not self._ahead.happened:
             self._ahead = None
         return True
@@ -173,14 +173,14 @@ class _Body:
         if scene.radius == 0.0 and self._points:
             heights = [dot(scene.normal, add(position, to_world(axes, point))) for point in self._points]
             position = add(position, scene.normal, scene.height - min(heights))
-        self.seen = Seen(stamp, position, orientation)
+        self.seen = SeenPose(stamp, position, orientation)
 
     def forget_after(self, stamp: int) -> None:
         """Forget what is later than a stamp in ns."""
         if self.seen is not None and self.seen.stamp > stamp:
             self.seen = self._ahead = None
 
-    def unit(self, number: int, stamp: int) -> Unit | None:
+    def unit(self, number: int, stamp: int) -> BodyView | None:
         """The body as it is to be drawn at a stamp in ns, or None where it cannot be."""
         scene, seen = self.scene, self.seen
         if seen is not None and self._feet:
@@ -190,7 +190,7 @@ class _Body:
             self._shape = shape_of(scene, self._points)
         shape = self._shape
         if seen is None and scene.deck is not None and scene.source != "odom":
-            seen = Seen(stamp, scene.place, about(scene.normal, scene.yaw))
+            seen = SeenPose(stamp, scene.place, about(scene.normal, scene.yaw))
         if seen is None or shape is None:
             return None
         level = self.level
@@ -199,4 +199,4 @@ class _Body:
         ahead = self._ahead
         if ahead is not None and stamp - ahead.stamp > AFTERWARDS:
             ahead = None
-        return Unit(number, self._name, scene, self._points, shape, seen, ahead, level, self.message, self._feet)
+        return BodyView(number, self._name, scene, self._points, shape, seen, ahead, level, self.message, self._feet)

@@ -17,7 +17,7 @@ _ROUND: Final = 24
 """Sides of a drawn circle."""
 
 
-class Shape(NamedTuple):
+class BodyShape(NamedTuple):
     """A body's marker in the body frame: its type, pose, scale and lines; its `outline` as lines; `size` in m is that
     of its middle side, `reach` in m how far it goes from the mass centre.
     """
@@ -43,7 +43,7 @@ class Slab(NamedTuple):
     axes: Axes
 
 
-def shape_of(scene: Scene, points: tuple[Vector3, ...]) -> Shape | None:
+def shape_of(scene: Scene, points: tuple[Vector3, ...]) -> BodyShape | None:
     """How a body looks that is known by its contact points and its mass centre, or None where it has no points yet.
 
     A box where the points are corners of one, which reaches beyond the mass centre as far as they lie before it; a
@@ -60,11 +60,11 @@ def shape_of(scene: Scene, points: tuple[Vector3, ...]) -> Shape | None:
     near = AT_CORNER * max(sides)
     if scene.walking is None and min(sides) > near and all(_at_corner(point, low, high, near) for point in points):
         edges = _edges(low, high)
-        return Shape(CUBE, times(add(low, high), 0.5), UNTURNED, sides, (), edges, sorted(sides)[1], reach)
+        return BodyShape(CUBE, times(add(low, high), 0.5), UNTURNED, sides, (), edges, sorted(sides)[1], reach)
     lines = tuple(end for point in points for end in (center, point))
     if len(points) == 2:
         lines += points
-    return Shape(LINE_LIST, NOWHERE, UNTURNED, (0.05 * reach, 0.0, 0.0), lines, lines, reach, reach)
+    return BodyShape(LINE_LIST, NOWHERE, UNTURNED, (0.05 * reach, 0.0, 0.0), lines, lines, reach, reach)
 
 
 def box_of(points: tuple[Vector3, ...], center: Vector3) -> tuple[Vector3, Vector3]:
@@ -94,7 +94,7 @@ def _edges(low: Vector3, high: Vector3) -> tuple[Vector3, ...]:
     return tuple(ends)
 
 
-def _cylinder(scene: Scene) -> Shape:
+def _cylinder(scene: Scene) -> BodyShape:
     radius, center = scene.radius, scene.center_of_mass
     along = to_body(axes_of(about(scene.normal, scene.yaw)), drum_axis(scene))
     upright = turn_to(along)
@@ -108,7 +108,7 @@ def _cylinder(scene: Scene) -> Shape:
         outline += [(-radius, 0.0, end), (radius, 0.0, end)]
     placed_outline = tuple(add(center, to_world(axes, point)) for point in outline)
     width = 2.0 * radius
-    return Shape(CYLINDER, center, upright, (width, width, width), (), placed_outline, width, sqrt(2.0) * radius)
+    return BodyShape(CYLINDER, center, upright, (width, width, width), (), placed_outline, width, sqrt(2.0) * radius)
 
 
 def drum_axis(scene: Scene) -> Vector3:

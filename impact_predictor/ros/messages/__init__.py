@@ -3,72 +3,35 @@
 The node takes and publishes these bytes as they are and a bag holds them as they are, so both give the same.
 """
 
-from ..cdr import Diagnostic, MalformedMessage, decode_diagnostic_array
-from .inputs import (
-    IMU,
-    INPUT_TYPES,
-    JOINT_STATE,
-    JOINT_TRAJECTORY,
-    ODOMETRY,
-    POLYGON,
-    WRENCH,
-    decode_imu,
-    decode_joints,
-    decode_odometry,
-    decode_polygon,
-    decode_schedule,
-    decode_wrench,
-    encode_imu,
-    encode_joints,
-    encode_odometry,
-    encode_polygon,
-    encode_schedule,
-    encode_wrench,
-)
-from .outputs import (
-    DIAGNOSTIC_ARRAY,
-    MARKER_ARRAY,
-    OUTPUTS,
-    UINT8,
-    Output,
-    encode_mode,
-    encode_post_impact,
-    encode_prediction,
-    encode_reports,
-    encode_score,
-)
-
-__all__ = [
-    "DIAGNOSTIC_ARRAY",
-    "IMU",
-    "INPUT_TYPES",
-    "JOINT_STATE",
-    "JOINT_TRAJECTORY",
-    "MARKER_ARRAY",
-    "ODOMETRY",
-    "OUTPUTS",
-    "POLYGON",
-    "UINT8",
-    "WRENCH",
-    "Diagnostic",
-    "MalformedMessage",
-    "Output",
-    "decode_diagnostic_array",
-    "decode_imu",
-    "decode_joints",
-    "decode_odometry",
-    "decode_polygon",
-    "decode_schedule",
-    "decode_wrench",
-    "encode_imu",
-    "encode_joints",
-    "encode_mode",
-    "encode_odometry",
-    "encode_polygon",
-    "encode_post_impact",
-    "encode_prediction",
-    "encode_reports",
-    "encode_schedule",
-    "encode_score",
-    "encode_wrench",
-]
+from ..cdr import Diagnostic as Diagnostic
+from ..cdr import MalformedMessage as MalformedMessage
+from ..cdr import decode_diagnostic_array as decode_diagnostic_array
+from .inputs import IMU as IMU
+from .inputs import INPUT_TYPES as INPUT_TYPES
+from .inputs import JOINT_STATE as JOINT_STATE
+from .inputs import JOINT_TRAJECTORY as JOINT_TRAJECTORY
+from .inputs import ODOMETRY as ODOMETRY
+from .inputs import POLYGON as POLYGON
+from .inputs import WRENCH as WRENCH
+from .inputs import decode_imu as decode_imu
+from .inputs import decode_joints as decode_joints
+from .inputs import decode_odometry as decode_odometry
+from .inputs import decode_polygon as decode_polygon
+from .inputs import decode_schedule as decode_schedule
+from .inputs import decode_wrench as decode_wrench
+from .inputs import encode_imu as encode_imu
+from .inputs import encode_joints as encode_joints
+from .inputs import encode_odometry as encode_odometry
+from .inputs import encode_polygon as encode_polygon
+from .inputs import encode_schedule as encode_schedule
+from .inputs import encode_wrench as encode_wrench
+from .outputs import DIAGNOSTIC_ARRAY as DIAGNOSTIC_ARRAY
+from .outputs import MARKER_ARRAY as MARKER_ARRAY
+from .outputs import OUTPUTS as OUTPUTS
+from .outputs import UINT8 as UINT8
+from .outputs import Output as Output
+from .outputs import encode_mode as encode_mode
+from .outputs import encode_post_impact as encode_post_impact
+from .outputs import encode_prediction as encode_prediction
+from .outputs import encode_reports as encode_reports
+from .outputs import encode_score as encode_score
