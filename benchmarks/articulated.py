@@ -39,7 +39,12 @@ from impact_predictor.prediction.scene import Robot, Scene, inertia_matrix
 from impact_predictor.prediction.types import Joints, Sample, Touchdown, Vector3
 from impact_predictor.prediction.vectors import add, axes_of, cross, to_body, to_world
 from impact_predictor.prediction.walking.impact import touchdown_of
-from impact_predictor.prediction.walking.mechanism import ArticulatedMachine, ImpulseResponse, Machine, RigidMachine
+from impact_predictor.prediction.walking.mechanism import (
+    ArticulatedMachine,
+    ImpulseResponse,
+    LeggedMachine,
+    RigidMachine,
+)
 
 ROOT = Path(__file__).resolve().parents[1]
 BAG = ROOT / "examples/hyq/hyq.bag"
@@ -152,7 +157,7 @@ def locked(scene: Scene, inertia: Array) -> Scene:
     return scene._replace(mass=float(mass), center_of_mass=center, inertia=inertia_matrix(six))
 
 
-def impact(scene: Scene, mechanism: Machine, case: Case) -> Impact:
+def impact(scene: Scene, mechanism: LeggedMachine, case: Case) -> Impact:
     """The impact of a landing, and how it changes the base."""
     found = touchdown(scene, mechanism, case)
     axes = axes_of(case.base.orientation)
@@ -164,7 +169,7 @@ def impact(scene: Scene, mechanism: Machine, case: Case) -> Impact:
     return Impact(mass, impulse, 1e3 * hypot(*linear), 1e3 * hypot(*angular), found.energy_lost, found.mode)
 
 
-def touchdown(scene: Scene, mechanism: Machine, case: Case) -> Touchdown:
+def touchdown(scene: Scene, mechanism: LeggedMachine, case: Case) -> Touchdown:
     found = touchdown_of(scene, mechanism, case.base, case.points, case.old, (case.new,), 0.0, case.velocity)
     assert isinstance(found, Touchdown)
     return found

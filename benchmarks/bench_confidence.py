@@ -22,6 +22,7 @@ if "--without-numba" in sys.argv:
 import numpy as np
 from rich.console import Console
 from rich.table import Table
+from uncertain_impact import propagate
 
 from impact_predictor import Twist, cylinder, plate
 from impact_predictor.bags.read import read_messages
@@ -31,7 +32,6 @@ from impact_predictor.parameters.file import read_parameters
 from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene
-from impact_predictor.prediction.uncertainty import propagate
 from impact_predictor.ros.messages import ODOMETRY, POLYGON, decode_odometry, decode_polygon, encode_prediction
 
 ROOT = Path(__file__).resolve().parents[1]

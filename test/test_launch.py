@@ -3,7 +3,7 @@ from pathlib import Path
 
 import pytest
 
-from impact_predictor.prediction.inputs import CONTACT_GEOMETRY, JOINTS, ODOM, SCHEDULE, WRENCH
+from impact_predictor.prediction.scene import CONTACT_GEOMETRY, JOINTS, ODOM, SCHEDULE, WRENCH
 
 launch = pytest.importorskip("launch")
 pytest.importorskip("launch_ros")  # of a sourced ROS: PyPI has no launch

@@ -21,8 +21,7 @@ from impact_predictor.bags.read import Bag, read_messages, topics
 from impact_predictor.bags.replay import replay
 from impact_predictor.errors import InputError
 from impact_predictor.parameters.file import read_values
-from impact_predictor.prediction.inputs import inputs_of
-from impact_predictor.prediction.scene import scenes_of
+from impact_predictor.prediction.scene import inputs_of, scenes_of
 from impact_predictor.ros.messages import ODOMETRY
 
 ROOT = Path(__file__).parents[1]

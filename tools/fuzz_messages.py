@@ -17,8 +17,7 @@ from impact_predictor.bags.read import BagMessage
 from impact_predictor.bags.run import Run
 from impact_predictor.parameters.file import read_parameters
 from impact_predictor.parameters.validation import validate
-from impact_predictor.prediction.inputs import Input, inputs_of
-from impact_predictor.prediction.scene import Scene, scenes_of
+from impact_predictor.prediction.scene import Input, Scene, inputs_of, scenes_of
 from impact_predictor.prediction.types import Geometry, Imu, Joints, Sample, Schedule, Wrench
 from impact_predictor.ros import messages as coded
 from impact_predictor.ros.cdr import MalformedMessage, decode_diagnostic_array

@@ -15,8 +15,7 @@ from impact_predictor.errors import InputError
 from impact_predictor.parameters.file import read_parameters, read_values
 from impact_predictor.parameters.table import PARAMETERS
 from impact_predictor.parameters.validation import validate
-from impact_predictor.prediction.inputs import inputs_of
-from impact_predictor.prediction.scene import scenes_of
+from impact_predictor.prediction.scene import inputs_of, scenes_of
 
 LONGEST_SENTENCE: Final = 4000
 ODD: Final[tuple[Any, ...]] = (

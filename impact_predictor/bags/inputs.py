@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Final
 
 from ..errors import InputError
-from ..prediction.inputs import CONTACT_GEOMETRY, IMU, JOINTS, ODOM, SCHEDULE, STATES, WRENCH, Input
+from ..prediction.scene import CONTACT_GEOMETRY, IMU, JOINTS, ODOM, SCHEDULE, STATES, WRENCH, Input
 from ..ros import messages
 from .read import listing
 

@@ -8,7 +8,7 @@ from math import dist, inf
 from statistics import median
 from typing import TYPE_CHECKING, Final
 
-from ..prediction.remedies import REMEDIES
+from ..prediction.checks import REMEDIES
 from ..prediction.scene import Scene
 from ..prediction.types import Geometry, Joints, Prediction, Sample, Status, Vector3
 from ..prediction.vectors import add, axes_of, dot, to_world

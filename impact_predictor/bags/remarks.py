@@ -6,9 +6,8 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Final
 
-from ..prediction.inputs import CONTACT_GEOMETRY, JOINTS, SCHEDULE, STATES, WRENCH, Input, inputs_of
-from ..prediction.remedies import REMEDIES
-from ..prediction.scene import Scene
+from ..prediction.checks import REMEDIES
+from ..prediction.scene import CONTACT_GEOMETRY, JOINTS, SCHEDULE, STATES, WRENCH, Input, Scene, inputs_of
 from ..prediction.types import Status
 from .inputs import TYPES
 from .run import Run

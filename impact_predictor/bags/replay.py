@@ -11,8 +11,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from ..errors import InputError
-from ..prediction.inputs import CONTACT_GEOMETRY, STATES, inputs_of
-from ..prediction.scene import Scene
+from ..prediction.scene import CONTACT_GEOMETRY, STATES, Scene, inputs_of
 from ..prediction.types import Status
 from ..ros.messages import DIAGNOSTIC_ARRAY
 from ..scenarios.truth import ONSET_TOPIC, TRUTH_TOPIC

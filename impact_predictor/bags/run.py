@@ -10,9 +10,8 @@ from time import perf_counter
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
-from ..prediction.inputs import CONTACT_GEOMETRY, IMU, JOINTS, ODOM, SCHEDULE, WRENCH, Input
 from ..prediction.monitor import Monitor
-from ..prediction.scene import Scene
+from ..prediction.scene import CONTACT_GEOMETRY, IMU, JOINTS, ODOM, SCHEDULE, WRENCH, Input, Scene
 from ..prediction.types import Geometry, Imu, Joints, Sample, Status
 from ..ros import messages
 from ..ros.messages import DIAGNOSTIC_ARRAY, MARKER_ARRAY, MalformedMessage, decode_odometry, encode_reports

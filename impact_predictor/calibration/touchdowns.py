@@ -16,7 +16,7 @@ from ..prediction.monitor import Monitor
 from ..prediction.planar import ImpactPlane, Posture
 from ..prediction.points import PointContacts, collision_of
 from ..prediction.predictor import Predictor
-from ..prediction.scene import Matrix3, Scene
+from ..prediction.scene import InertiaTensor, Scene
 from ..prediction.score import MEASURED
 from ..prediction.types import Prediction, Sample, Score, Vector3
 from ..prediction.vectors import add, axes_of, cross, dot, to_world
@@ -150,7 +150,7 @@ def impact_of(sample: Sample, posture: Posture, collision: Collision) -> Recorde
     )
 
 
-def scaled(inertia: Matrix3, factor: float) -> Matrix3:
+def scaled(inertia: InertiaTensor, factor: float) -> InertiaTensor:
     (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = inertia
     return (
         (factor * xx, factor * xy, factor * xz),

@@ -27,8 +27,7 @@ def explain(params: str, as_json: bool) -> None:
     """
     from ..parameters.file import read_values
     from ..prediction.features import features_of
-    from ..prediction.inputs import inputs_of
-    from ..prediction.scene import scenes_of
+    from ..prediction.scene import inputs_of, scenes_of
 
     values = read_values(params)
     scene, features = Path(params).stem, features_of(values)

@@ -1,8 +1,9 @@
-"""Whether a message can be taken: its numbers, its stamp, the points that it tells."""
+"""Whether a message can be taken: its numbers, its stamp, its points; and what to do where it cannot."""
 
 from __future__ import annotations
 
 from math import isfinite
+from typing import Final
 
 from .types import Sample, Status, Vector3
 from .vectors import dot
@@ -55,3 +56,39 @@ def check_points(points: tuple[Vector3, ...]) -> Status:
             if abs(x - u) <= least and abs(y - v) <= least and abs(z - w) <= least:
                 return Status.COINCIDENT_POINTS
     return Status.ACCEPTED
+
+
+REMEDIES: Final[dict[Status, str]] = {
+    Status.NOT_FINITE: "a field is NaN or infinite; look at its source",
+    Status.BAD_QUATERNION: "the orientation is missing, zero or not of unit length; look at its source",
+    Status.STAMP_REPEATED: "the stamp is that of the message before; let a single source publish, with its own stamps",
+    Status.STAMP_WENT_BACK: "the stamp is older than the one before; let a single source publish, in order",
+    Status.WRONG_FRAME: "its frame is not that of the scene; compare frame_id with support.frame, and child_frame_id "
+    "with the frame of the contact points",
+    Status.NO_GEOMETRY: "no contact points are known; publish them on contact_geometry or give body.contact_points, or "
+    "where robot.urdf is given publish joint_states",
+    Status.TOO_FEW_POINTS: "a body needs at least two contact points",
+    Status.COINCIDENT_POINTS: "two of its points coincide",
+    Status.MALFORMED: "its bytes are not a message of the topic's type; look at who else publishes there",
+    Status.NO_SUPPORT: "nothing is known of the support's motion yet; look whether its source publishes",
+    Status.SUPPORT_STALE: "the support's last message is too old; look whether its source still publishes",
+    Status.CLOCKS_APART: "the stamps of body and support are too far apart; let both sources stamp by one clock",
+    Status.SUPPORT_JUMPED: "the support's pose or twist does not follow from those before; look at its source, which "
+    "is trusted again when new messages agree",
+    Status.GRAVITY_WRONG: "what lies on the support would fall off it, or feels far more or less than gravity; compare "
+    "the axes and the sign of the support's source with gravity and support.normal",
+    Status.OFF_SUPPORT: "the body is beyond the support's edges or far above it; if it is not, compare its frame and "
+    "support.extent",
+    Status.BELOW_SUPPORT: "the body lies deeper in the support than noise puts it; compare its frame, its contact "
+    "points and support.height",
+    Status.BODY_STALE: "no message of the body's source, or none any more; look whether it still publishes",
+    Status.GEOMETRY_STALE: "the last contact points are too old, or were never told; look whether their source still "
+    "publishes, and by the same clock",
+    Status.FEET_CHANGED: "the message has another number of points than feet.names x feet.points; correct these, or "
+    "the message",
+    Status.BELOW_GROUND: "a foot lies deeper in the ground than noise puts it; compare support.height, the units of "
+    "the points (m), and the frames of body and points",
+    Status.WRONG_JOINTS: "a joint of robot.urdf is missing, or is there twice; compare the names",
+    Status.SINGULAR_INERTIA: "the robot's inertia matrix has no inverse; look for links without mass in robot.urdf",
+}
+"""What to say of each status but ACCEPTED."""

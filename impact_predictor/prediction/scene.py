@@ -1,17 +1,27 @@
-"""What a scene consists of: one body, the support it strikes and how it is observed."""
+"""What a scene consists of: one body, the support it strikes, how it is observed, and so which messages it needs."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from math import hypot
-from typing import Any, NamedTuple
+from typing import Any, Final, NamedTuple
 
 from ..mechanics.answer import VALIDITY
 from ..mechanics.types import Validity
 from ..parameters.types import values_of
 from .types import Vector3
 
-Matrix3 = tuple[Vector3, Vector3, Vector3]
+InertiaTensor = tuple[Vector3, Vector3, Vector3]
+
+ODOM: Final = "odom"
+IMU: Final = "imu"
+CONTACT_GEOMETRY: Final = "contact_geometry"
+JOINTS: Final = "joint_states"
+WRENCH: Final = "contact_wrench"
+SCHEDULE: Final = "schedule"
+
+STATES: Final = (ODOM, IMU)
+"""What tells how a body moves; everything else is told about it."""
 
 
 class MovingDeck(NamedTuple):
@@ -94,7 +104,7 @@ class Scene(NamedTuple):
     """
 
     mass: float
-    inertia: Matrix3
+    inertia: InertiaTensor
     friction: float
     restitution: float = 0.0
     center_of_mass: Vector3 = (0.0, 0.0, 0.0)
@@ -182,6 +192,44 @@ def shared_by(scenes: Mapping[str, Scene]) -> Scene:
     return next(iter(scenes.values()))
 
 
+class Input(NamedTuple):
+    """A topic that is read: its relative name, what it carries, and of which body; None for the support."""
+
+    name: str
+    kind: str
+    body: str | None
+
+
+def inputs_of(scenes: Mapping[str, Scene]) -> tuple[Input, ...]:
+    """Every input of the bodies, in the order in which messages that wait at the same time are best served.
+
+    The support comes first and what is told about a body before its states, so that a state finds what it needs.
+    """
+    found = []
+    deck = shared_by(scenes).deck
+    if deck is not None:
+        found.append(Input(f"support/{deck.source}", deck.source, None))
+    names = {body: f"{body}/" if body else "" for body in scenes}
+    found += [Input(names[body] + kind, kind, body) for body, scene in scenes.items() for kind in _told_about(scene)]
+    found += [
+        Input(names[body] + scene.source, scene.source, body)
+        for body, scene in scenes.items()
+        if scene.source in STATES
+    ]
+    return tuple(found)
+
+
+def _told_about(scene: Scene) -> list[str]:
+    """What is told about a body besides its states."""
+    walking = scene.walking
+    told = [CONTACT_GEOMETRY] if scene.needs_geometry else []
+    if walking is not None:
+        told += [JOINTS] if walking.robot is not None else []
+        told += [WRENCH] if walking.force else []
+        told += [SCHEDULE] if walking.has_schedule else []
+    return told
+
+
 def _moving_deck(values: Mapping[str, Any]) -> MovingDeck:
     return MovingDeck(
         source=values["support.motion"],
@@ -216,7 +264,7 @@ def _walking(values: Mapping[str, Any]) -> Walking:
     )
 
 
-def inertia_matrix(numbers: Sequence[float]) -> Matrix3:
+def inertia_matrix(numbers: Sequence[float]) -> InertiaTensor:
     """The inertia tensor of one number (the same about every axis) or of ixx, iyy, izz, ixy, ixz, iyz."""
     xx, yy, zz, xy, xz, yz = (*(numbers[0],) * 3, 0.0, 0.0, 0.0) if len(numbers) == 1 else numbers
     return (xx, xy, xz), (xy, yy, yz), (xz, yz, zz)

@@ -13,53 +13,35 @@ Quaternion = tuple[float, float, float, float]
 
 
 class Status(IntEnum):
-    """What became of an input message. A refused message predicts nothing."""
+    """What became of an input message. A refused message predicts nothing; `checks.REMEDIES` says why, and what to do.
+
+    A stamp that is older than the last one by more than a pause shows that the clock has started anew: so does the
+    predictor with the next sample. A support that has jumped is trusted again when new messages agree.
+    """
 
     ACCEPTED = 0
     NOT_FINITE = 1
-    """A field is NaN or infinite."""
     BAD_QUATERNION = 2
-    """The orientation is zero or not of unit length."""
     STAMP_REPEATED = 3
     STAMP_WENT_BACK = 4
-    """Older than the last one; when it is older by more than a pause the clock has started anew, and so does the
-    predictor with the next sample."""
     WRONG_FRAME = 5
-    """The frame is not the one of the scene, or of the geometry."""
     NO_GEOMETRY = 6
-    """No contact geometry is known yet."""
     TOO_FEW_POINTS = 7
-    """The geometry has fewer than two points."""
     COINCIDENT_POINTS = 8
-    """Two points of the geometry lie at the same place."""
     MALFORMED = 9
-    """The bytes are not a message of the expected type."""
     NO_SUPPORT = 10
-    """The support moves, and nothing is known of its motion yet."""
     SUPPORT_STALE = 11
-    """The support moves, and its last message is too old."""
     CLOCKS_APART = 12
-    """Body and support both keep coming, but their stamps are too far apart to be of one clock."""
     SUPPORT_JUMPED = 13
-    """The support's pose or twist does not follow from those before; it is trusted again when new ones agree."""
     GRAVITY_WRONG = 14
-    """What lies on the support would fall off it, or feels far more or less than gravity."""
     OFF_SUPPORT = 15
-    """The body has left the support: it is beyond its edges, or far above it."""
     BELOW_SUPPORT = 16
-    """The body lies deeper in the support than any noise puts it."""
     BODY_STALE = 17
-    """No message of the body's source, or none any more."""
     GEOMETRY_STALE = 18
-    """The body's feet move, and the last message that told where they are is too old."""
     FEET_CHANGED = 19
-    """The message has another number of points than the feet of the scene."""
     BELOW_GROUND = 20
-    """A foot lies deeper in the ground than any noise puts it."""
     WRONG_JOINTS = 21
-    """A joint of the robot's model is missing, or is there twice."""
     SINGULAR_INERTIA = 22
-    """The robot's inertia matrix has no inverse at these joint positions."""
 
 
 class Leftover(IntFlag):

@@ -15,7 +15,7 @@ from collections.abc import Sequence
 from functools import cache, lru_cache
 from math import sqrt
 from statistics import NormalDist
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,48 +28,11 @@ from .scene import Scene
 from .types import Covariance, Quaternion, Sample, Uncertainty, Vector3
 from .vectors import axes_of, cross, times, to_body, to_world
 
-Numbers = NDArray[np.float64]
-
 ROUNDING = 1e-9
 """A covariance may miss symmetry and positive semidefiniteness by this part of its variances."""
 
 LARGEST = 1e24
 """Variances beyond which products overflow; nothing is known of such a motion."""
-
-
-class Spread(NamedTuple):
-    """What an uncertain impact does.
-
-    `probabilities` of the modes, by their numbers; `mean` and `covariance` (3, 3) of the twist after it, in m/s and
-    rad/s; what became of the covariance of the twist before it.
-    """
-
-    probabilities: tuple[float, ...]
-    mean: Twist
-    covariance: Numbers
-    given: Covariance
-
-
-def propagate(
-    body: TwoPointBody,
-    twist: Twist,
-    covariance: Numbers | Sequence[Sequence[float]],
-    friction: float = 0.0,
-    restitution: float = 0.0,
-    law: str = "path",
-    samples: int = 128,
-) -> Spread:
-    """What an impact does whose inputs are uncertain.
-
-    `covariance` (3, 3) is that of the twist before it, in m/s and rad/s; `friction` the standard deviation of the
-    friction of both contacts, which vary together, and `restitution` that of the new contact's; `samples` as in
-    `normal_points`; the rest as in `solve_impact`.
-    """
-    factor, given = factor_of(tuple(np.asarray(covariance, np.float64).ravel().tolist()))
-    points = normal_points(samples, 5)
-    outcomes = impacts(body, twist, product(factor, points[:3]), friction * points[3], restitution * points[4], law)
-    mean, spread = moments(outcomes.twist.T)
-    return Spread(probabilities(outcomes), Twist(*mean.tolist()), spread, given)
 
 
 class Sampler:
@@ -102,17 +65,18 @@ class Sampler:
         now = axes_of(after)
         turned = tuple([to_body(now, to_world(posture.axes, vector)) for vector in frame])
         _, covariance = moments(product(into_space(turned, center), np.concatenate((outcomes.twist.T, changes[3:]))))
+        used = given is Covariance.USED
         return Uncertainty(
-            given,
-            probabilities(outcomes),
-            Twist(*mean.tolist()),
-            Twist(*np.sqrt(spread.diagonal()).tolist()),
-            tuple(covariance.ravel().tolist()) if given is Covariance.USED else sample.twist_covariance,
+            given=given,
+            probabilities=probabilities(outcomes),
+            mean=Twist(*mean.tolist()),
+            deviation=Twist(*np.sqrt(spread.diagonal()).tolist()),
+            twist_covariance=tuple(covariance.ravel().tolist()) if used else sample.twist_covariance,
         )
 
 
 @cache
-def normal_points(samples: int, dimensions: int) -> Numbers:
+def normal_points(samples: int, dimensions: int) -> NDArray[np.float64]:
     """Points (dimensions, count) of mean zero and unit covariance, normally distributed and in opposite pairs.
 
     The count is even, at least `samples` and at least twice the dimensions. Half of them are the additive recurrence by
@@ -132,7 +96,7 @@ def normal_points(samples: int, dimensions: int) -> Numbers:
 
 
 @lru_cache(maxsize=16)
-def factor_of(covariance: tuple[float, ...]) -> tuple[Numbers, Covariance]:
+def factor_of(covariance: tuple[float, ...]) -> tuple[NDArray[np.float64], Covariance]:
     """The lower triangular matrix whose product with its transpose is a covariance (row by row); zero if none is."""
     size = round(sqrt(len(covariance)))
     none = np.zeros((size, size)), Covariance.REFUSED
@@ -160,7 +124,12 @@ def factor_of(covariance: tuple[float, ...]) -> tuple[Numbers, Covariance]:
 
 
 def impacts(
-    body: TwoPointBody, twist: Twist, changes: Numbers, friction: Numbers, restitution: Numbers, law: str
+    body: TwoPointBody,
+    twist: Twist,
+    changes: NDArray[np.float64],
+    friction: NDArray[np.float64],
+    restitution: NDArray[np.float64],
+    law: str,
 ) -> Outcomes:
     """The impacts with changes of the twist (3, n), of the friction of both contacts (n) and of restitution (n)."""
     changes = product(np.array(allowed_changes(body, twist)), changes)
@@ -175,16 +144,16 @@ def impacts(
     return solve_impacts(body._replace(old=old, new=new), Twist(*changed), law)
 
 
-def at_least_zero(numbers: Numbers) -> Any:
+def at_least_zero(numbers: NDArray[np.float64]) -> Any:
     return np.maximum(0.0, numbers)
 
 
-def product(matrix: Numbers, columns: Numbers) -> Numbers:
+def product(matrix: NDArray[np.float64], columns: NDArray[np.float64]) -> NDArray[np.float64]:
     """The matrix product, in an order of operations that is the same everywhere."""
     return np.asarray((matrix[:, :, None] * columns).sum(axis=1))
 
 
-def moments(values: Numbers) -> tuple[Numbers, Numbers]:
+def moments(values: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Mean (k) and covariance (k, k) of values (k, n)."""
     values = np.ascontiguousarray(values)
     count = values.shape[1]
@@ -197,7 +166,7 @@ def probabilities(outcomes: Outcomes) -> tuple[float, ...]:
     return tuple((np.bincount(outcomes.mode, minlength=len(Mode)) / len(outcomes.mode)).tolist())
 
 
-def into_plane(frame: Sequence[Vector3], center: Vector3) -> Numbers:
+def into_plane(frame: Sequence[Vector3], center: Vector3) -> NDArray[np.float64]:
     """From a twist at the body frame's origin to vx, vy and omega of the mass centre in the impact plane, and to what
     is left over: its velocity along the axis, roll and yaw. `frame` is (ahead, normal, axis).
     """
@@ -216,7 +185,7 @@ def into_plane(frame: Sequence[Vector3], center: Vector3) -> Numbers:
     )
 
 
-def into_space(frame: Sequence[Vector3], center: Vector3) -> Numbers:
+def into_space(frame: Sequence[Vector3], center: Vector3) -> NDArray[np.float64]:
     """The way back of `into_plane`."""
     ahead, normal, axis = frame
     nothing = (0.0, 0.0, 0.0)

@@ -9,7 +9,7 @@ from rich.console import Console
 from rich.table import Table
 
 from ..mechanics.types import Twist
-from ..prediction.inputs import CONTACT_GEOMETRY, STATES
+from ..prediction.scene import CONTACT_GEOMETRY, STATES
 from ..prediction.types import Status
 from ..wording import NONE, counted, duration, fixed, percent, words
 from .summary import LeadTimeErrors, TouchdownRow, error_by_lead_time, errors_of, row_of

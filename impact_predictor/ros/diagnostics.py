@@ -7,7 +7,7 @@ from collections import Counter, deque
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-from ..prediction.remedies import REMEDIES
+from ..prediction.checks import REMEDIES
 from ..prediction.score import median
 from ..prediction.types import Foot, Landing, Prediction, Score, Status
 from ..stamps import NANOSECONDS

@@ -14,9 +14,8 @@ from rclpy.parameter import Parameter as NodeParameter
 
 from ..errors import InputError
 from ..parameters.validation import is_of_every_node
-from ..prediction.inputs import inputs_of
 from ..prediction.monitor import Monitor
-from ..prediction.scene import Scene, scenes_of
+from ..prediction.scene import Scene, inputs_of, scenes_of
 from .endpoints import Misfits
 from .node_parameters import NodeParameters, check_qos_overrides
 from .process import sentence

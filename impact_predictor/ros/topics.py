@@ -11,8 +11,8 @@ from typing import Any, Final
 from rclpy.duration import Duration
 from rclpy.node import Node
 
-from ..prediction.inputs import CONTACT_GEOMETRY, IMU, ODOM, SCHEDULE
 from ..prediction.monitor import Monitor
+from ..prediction.scene import CONTACT_GEOMETRY, IMU, ODOM, SCHEDULE
 from ..prediction.types import Geometry, Imu, Prediction, Sample, Score, Status
 from .endpoints import LONGEST, Backlog, LatchedTopic, Outlet, publisher, subscription
 from .messages import INPUT_TYPES, ODOMETRY, OUTPUTS, MalformedMessage, decode_odometry

@@ -6,8 +6,7 @@ import pytest
 
 from impact_predictor.bags.inputs import find_topics
 from impact_predictor.errors import InputError
-from impact_predictor.prediction.inputs import inputs_of
-from impact_predictor.prediction.scene import MovingDeck, Robot, Scene, Walking
+from impact_predictor.prediction.scene import MovingDeck, Robot, Scene, Walking, inputs_of
 from impact_predictor.ros.messages import IMU, JOINT_STATE, JOINT_TRAJECTORY, ODOMETRY, POLYGON, WRENCH
 
 POINTS = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0))

@@ -10,10 +10,9 @@ from typing import Any
 import pytest
 
 from impact_predictor.parameters.validation import validate
-from impact_predictor.prediction.inputs import Input, inputs_of
 from impact_predictor.prediction.monitor import Monitor
 from impact_predictor.prediction.predictor import Predictor
-from impact_predictor.prediction.scene import Scene, scenes_of
+from impact_predictor.prediction.scene import Input, Scene, inputs_of, scenes_of
 from impact_predictor.prediction.types import Geometry, Imu, Quaternion, Sample, Schedule, Status, Vector3, Wrench
 from impact_predictor.prediction.vectors import axes_of, composed, cross, to_world
 from impact_predictor.prediction.watch.watch import Level, Report

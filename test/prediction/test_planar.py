@@ -20,7 +20,7 @@ from impact_predictor.prediction.planar import (
     plane_of,
     posture_of,
 )
-from impact_predictor.prediction.scene import Matrix3, Scene
+from impact_predictor.prediction.scene import InertiaTensor, Scene
 from impact_predictor.prediction.types import Sample, Vector3
 
 ROUNDING = 1e-13
@@ -252,7 +252,7 @@ def test_the_edge_of_standing_points_joins_the_two_furthest_apart() -> None:
     assert np.abs(edge_of(points)) == pytest.approx((0.0, 1.0, 0.0), abs=ROUNDING)
 
 
-def box_inertia(length: float, width: float, height: float) -> Matrix3:
+def box_inertia(length: float, width: float, height: float) -> InertiaTensor:
     """Of a homogeneous box of mass 1."""
     x, y, z = length * length / 12.0, width * width / 12.0, height * height / 12.0
     return (y + z, 0.0, 0.0), (0.0, x + z, 0.0), (0.0, 0.0, x + y)

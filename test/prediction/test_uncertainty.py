@@ -3,9 +3,12 @@
 import subprocess
 import sys
 from math import cos, inf, nan, sin
+from pathlib import Path
 
 import numpy as np
 import pytest
+import uncertain_impact
+from uncertain_impact import propagate
 
 from impact_predictor import Contact, Flag, Mode, Twist, TwoPointBody, plate, solve_impact
 from impact_predictor.mechanics import batch
@@ -14,7 +17,7 @@ from impact_predictor.prediction import uncertainty
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.prediction.types import Covariance, Sample
-from impact_predictor.prediction.uncertainty import factor_of, impacts, moments, normal_points, product, propagate
+from impact_predictor.prediction.uncertainty import factor_of, impacts, moments, normal_points, product
 
 ROUNDING = 1e-12
 """Of sums of a few hundred terms of size one."""
@@ -199,7 +202,7 @@ def test_odd_bodies_and_twists_give_numbers():
 
 DIGEST = """
 from impact_predictor import Twist, plate
-from impact_predictor.prediction.uncertainty import propagate
+from uncertain_impact import propagate
 body = plate(length=0.1, height=0.1, mass=0.37, friction=0.18, inertia=8.1e-4, restitution=0.125)
 covariance = [[0.1, 0.02, 0.3], [0.02, 0.2, -0.1], [0.3, -0.1, 3.0]]
 spread = propagate(body, Twist(-0.3, -0.5, -10.0), covariance, 0.05, 0.05, samples=64)
@@ -219,9 +222,8 @@ def test_every_run_gives_the_same_bits_with_numba_and_without(monkeypatch):
     normal_points.cache_clear()
     factor_of.cache_clear()
     assert bits() == here
-    elsewhere = subprocess.run(
-        [sys.executable, "-c", DIGEST + "print(*bits)"], check=True, capture_output=True, text=True
-    )
+    program = f"import sys; sys.path.append({str(Path(uncertain_impact.__file__).parent)!r})" + DIGEST + "print(*bits)"
+    elsewhere = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True)
     assert elsewhere.stdout.split() == here
     monkeypatch.setitem(sys.modules, "numba", None)  # an import of it fails
     batch.filler.cache_clear()

@@ -15,8 +15,7 @@ from impact_predictor.bags.read import read_messages, topics
 from impact_predictor.bags.replay import replay
 from impact_predictor.mechanics.motion.support import Wave, harmonic_support
 from impact_predictor.parameters.validation import validate
-from impact_predictor.prediction.inputs import inputs_of
-from impact_predictor.prediction.scene import scenes_of
+from impact_predictor.prediction.scene import inputs_of, scenes_of
 from impact_predictor.prediction.types import Imu, Sample, Status
 from impact_predictor.ros.cdr import OK, STALE, WARN
 from impact_predictor.ros.messages import (

@@ -1,7 +1,7 @@
 import pytest
 
 from impact_predictor.mechanics.types import Flag, Mode, Twist
-from impact_predictor.prediction.remedies import REMEDIES
+from impact_predictor.prediction.checks import REMEDIES
 from impact_predictor.prediction.types import Leftover, Score, Status, Touchdown
 from impact_predictor.ros.cdr import ERROR, OK, WARN, decode_diagnostic_array, diagnostic_array
 from impact_predictor.ros.diagnostics import STALE_AFTER, Diagnostics, Refusal

@@ -27,10 +27,9 @@ from ..vectors import add, axes_of, cross, dot, to_world
 from .base import REMEMBERED, BaseMotion
 from .cubic import PointFrame
 from .landings import LandingTracker, PendingLanding, part_of
-from .mechanism import ArticulatedMachine, Machine, RigidMachine
+from .mechanism import ArticulatedMachine, LeggedMachine, RigidMachine
 from .point import ExpectedLanding, FootPoint
-from .schedule import FootForces, LandingSchedule
-from .stance import Ground
+from .stance import FootForces, Ground, LandingSchedule
 
 
 class FeetContacts(Contacts):
@@ -51,7 +50,7 @@ class FeetContacts(Contacts):
             self._articulated = ArticulatedMachine(self._walking.robot)
             self.scene = scene = scene._replace(mass=self._articulated.body.mass)
             self.joints = self._articulated.body.joints
-        self._machine: Machine = self._articulated or RigidMachine(scene)
+        self._machine: LeggedMachine = self._articulated or RigidMachine(scene)
         self._timeout = round(self._walking.timeout * NANOSECONDS)
         self._count = len(self._walking.feet) * self._walking.points
         self._schedule = LandingSchedule(self._walking.feet)

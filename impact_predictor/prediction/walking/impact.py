@@ -11,7 +11,7 @@ from ..planar import GRAZES, ORIGIN, ROUNDING, TINY, edge_of, hardly, off_axis_o
 from ..scene import Scene
 from ..types import Leftover, Sample, Status, Touchdown, Vector3
 from ..vectors import add, any_across, axes_of, cross, dot, mean, times, to_body, to_world
-from .mechanism import ImpulseResponse, Machine
+from .mechanism import ImpulseResponse, LeggedMachine
 
 USABLE = 0.2
 """The machine turns about the line of its standing points where the landing one is further from it than this part of
@@ -25,7 +25,7 @@ COLLINEAR = 0.05
 
 def touchdown_of(
     scene: Scene,
-    machine: Machine,
+    machine: LeggedMachine,
     base: Sample,
     points: tuple[Vector3, ...],
     old: tuple[int, ...],

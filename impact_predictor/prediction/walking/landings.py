@@ -14,7 +14,7 @@ from ..types import Landing, Sample, Score, Status, Touchdown, Vector3
 from ..vectors import add, axes_of, mean, to_body
 from .base import BaseMotion, TwistLine, extrapolated
 from .impact import touchdown_of
-from .mechanism import Machine
+from .mechanism import LeggedMachine
 from .point import ExpectedLanding, FootPoint
 
 
@@ -37,7 +37,7 @@ class FootCollision(NamedTuple):
     together: dict[int, Vector3]
 
 
-class Announcement:
+class AnnouncedLanding:
     """What was announced of one landing: when and how long ahead, and the last of it."""
 
     def __init__(self, last: FootCollision) -> None:
@@ -60,7 +60,7 @@ class PendingLanding(NamedTuple):
 class LandingTracker:
     """The landings that the points of a machine's feet announce."""
 
-    def __init__(self, scene: Scene, machine: Machine, points: Sequence[FootPoint], base: BaseMotion) -> None:
+    def __init__(self, scene: Scene, machine: LeggedMachine, points: Sequence[FootPoint], base: BaseMotion) -> None:
         assert scene.walking is not None
         self._scene = scene
         self._machine = machine
@@ -68,9 +68,9 @@ class LandingTracker:
         self._base = base
         self._each = scene.walking.points
         self._contact_time = round(scene.contact_time * NANOSECONDS)
-        self._announced: dict[int, Announcement] = {}
+        self._announced: dict[int, AnnouncedLanding] = {}
 
-    def settle(self, i: int) -> Announcement | None:
+    def settle(self, i: int) -> AnnouncedLanding | None:
         """End the landing of a point, which has come to stand: what was announced of it.
 
         None where nothing was, or where it belongs to a landing that its foot has made already.
@@ -208,7 +208,7 @@ class LandingTracker:
     def _announce(self, collision: FootCollision) -> None:
         """Remember what is announced of a landing."""
         known = [one for i in collision.new if (one := self._announced.get(i)) and not one.settled]
-        announcement = known[0] if known else Announcement(collision)
+        announcement = known[0] if known else AnnouncedLanding(collision)
         announcement.times.append((collision.sample.stamp, collision.lead_time))
         announcement.last = collision
         for i in collision.new:

@@ -31,7 +31,7 @@ class ImpulseResponse(NamedTuple):
     twist: tuple[tuple[float, ...], ...]
 
 
-class Machine(Protocol):
+class LeggedMachine(Protocol):
     """A machine with contact points, as its impulses see it; `is_rigid` where its feet move with its base alone."""
 
     is_rigid: bool
@@ -143,7 +143,7 @@ class ArticulatedMachine:
         ahead: Vector3,
         points: tuple[Vector3, ...],
     ) -> ImpulseResponse | Status:
-        """See `Machine`; the `points` are the model's own, at the last joint positions."""
+        """See `LeggedMachine`; the `points` are the model's own, at the last joint positions."""
         if self._status is not Status.ACCEPTED:
             return self._status
         W, moved = self.body.mobility((old, new), (normal, ahead))

@@ -12,7 +12,7 @@ from ..vectors import add, dot
 from .arrival import MOST, Arrival, ArrivalFit
 from .cubic import Fit, PointFrame
 from .stance import Ground, StanceDetector
-from .trajectory import Trajectory
+from .trajectory import FootTrajectory
 
 AHEAD = 1.5
 """A landing is first announced when it is no further ahead than so many times as long as the point has descended: from
@@ -41,7 +41,7 @@ class FootPoint:
 
     def __init__(self, scene: Scene) -> None:
         assert scene.walking is not None
-        self.trajectory = Trajectory()
+        self.trajectory = FootTrajectory()
         self.stance = StanceDetector(scene)
         self.due: ExpectedLanding | None = None
         """The landing last announced, until the point stands or the announcement is withdrawn."""

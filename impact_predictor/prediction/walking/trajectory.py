@@ -83,7 +83,7 @@ class DescentPrior:
         return (noise / (deviation * JERK_UNIT)) ** 2, self._mean * JERK_UNIT
 
 
-class Trajectory:
+class FootTrajectory:
     """The last frames of a point over its ground, and the longest stretch of them that one cubic fits."""
 
     def __init__(self) -> None:

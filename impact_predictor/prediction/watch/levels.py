@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ...mechanics.types import Mode
 from ...stamps import NANOSECONDS
-from ..remedies import REMEDIES
+from ..checks import REMEDIES
 from ..scene import Scene, Watching
 from ..types import Status, Touchdown, Vector3
 from .standing import BodyMotion, Standing

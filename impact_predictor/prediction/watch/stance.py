@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import hypot
 from typing import NamedTuple
 
-from ..scene import Matrix3, Scene
+from ..scene import InertiaTensor, Scene
 from ..types import Vector3
 from ..vectors import Axes, add, any_across, axes_of, cross, dot, times, to_body, to_world, turned
 
@@ -36,7 +36,7 @@ class StandingBody(NamedTuple):
     friction: float
     normal: Vector3
     center: Vector3
-    inertia: Matrix3
+    inertia: InertiaTensor
     edges: tuple[Edge, ...]
     radius: float = 0.0
 
@@ -128,7 +128,7 @@ def side(outward: Vector3, normal: Vector3) -> str:
     return "-".join(name for name in (along, across) if name)
 
 
-def inertia_in_support(inertia: Matrix3, axes: Axes) -> Matrix3:
+def inertia_in_support(inertia: InertiaTensor, axes: Axes) -> InertiaTensor:
     """A tensor of the body frame along the support's axes: R I R^T."""
     columns = [to_world(axes, row) for row in inertia]
     rows = [to_world(axes, (columns[0][i], columns[1][i], columns[2][i])) for i in range(3)]

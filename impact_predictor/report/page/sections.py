@@ -9,8 +9,8 @@ from statistics import median
 from typing import TYPE_CHECKING, Any, Final
 
 from ...mechanics.types import Mode
+from ...prediction.checks import REMEDIES
 from ...prediction.features import features_of
-from ...prediction.remedies import REMEDIES
 from ...prediction.types import Status
 from ...stamps import NANOSECONDS
 from ...wording import counted, words

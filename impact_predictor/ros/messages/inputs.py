@@ -261,4 +261,4 @@ INPUT_TYPES: Final = {
     "contact_wrench": InputType(WRENCH, decode_wrench),
     "schedule": InputType(JOINT_TRAJECTORY, decode_schedule),
 }
-"""The types of the messages on each kind of input (see `impact_predictor.prediction.inputs`)."""
+"""The types of the messages on each kind of input (see `impact_predictor.prediction.scene`)."""

@@ -24,8 +24,7 @@ from impact_predictor.bags.read import Bag, UnusableMessage, read_messages
 from impact_predictor.bags.replay import replay
 from impact_predictor.errors import InputError
 from impact_predictor.parameters.validation import validate
-from impact_predictor.prediction.inputs import CONTACT_GEOMETRY, ODOM, Input
-from impact_predictor.prediction.scene import Scene, Walking
+from impact_predictor.prediction.scene import CONTACT_GEOMETRY, ODOM, Input, Scene, Walking
 from impact_predictor.ros.messages import ODOMETRY, POLYGON, MalformedMessage
 
 DOCUMENT = (Path(__file__).parents[3] / "docs/adapters.md").read_text()
@@ -155,7 +154,7 @@ def test_a_bag_that_needs_no_adapter_imports_none() -> None:
 import sys
 from impact_predictor.bags.inputs import adapted_topics, find_topics
 from impact_predictor.bags.replay import replay
-from impact_predictor.prediction.inputs import Input
+from impact_predictor.prediction.scene import Input
 inputs = [Input("odom", "odom", "")]
 recorded = {{"/odom": {ODOMETRY!r}, "/state": {XPP!r}}}
 adapted_topics(recorded, find_topics("robot.bag", recorded, inputs, {{}})[0])

@@ -9,13 +9,13 @@ import pytest
 from numpy.polynomial import Polynomial
 
 from impact_predictor.prediction.walking.cubic import Fit, GapNoise, PointFrame, factored, first_below, solved
-from impact_predictor.prediction.walking.trajectory import FEWEST, DescentPrior, Trajectory
+from impact_predictor.prediction.walking.trajectory import FEWEST, DescentPrior, FootTrajectory
 
 CLEAN = GapNoise(1e-7, 1e-6)
 
 
-def course_of(gap: Callable[[float], float], times: np.ndarray, measured: bool = True) -> Trajectory:
-    course = Trajectory()
+def course_of(gap: Callable[[float], float], times: np.ndarray, measured: bool = True) -> FootTrajectory:
+    course = FootTrajectory()
     for time in times.tolist():
         rate = (gap(time + 1e-6) - gap(time - 1e-6)) / 2e-6
         velocity = (0.3, 0.0, rate) if measured else None
@@ -27,7 +27,7 @@ def course_of(gap: Callable[[float], float], times: np.ndarray, measured: bool =
     return course
 
 
-def fitted(course: Trajectory, noise: GapNoise = CLEAN) -> Fit:
+def fitted(course: FootTrajectory, noise: GapNoise = CLEAN) -> Fit:
     # The first fit of a falling point tells that it falls, and the second one of it where.
     fit = course.fit(noise, DescentPrior()) or course.fit(noise, DescentPrior())
     assert fit is not None
@@ -93,7 +93,7 @@ def test_the_noise_that_is_predicted_is_that_of_many_fits() -> None:
     noise, times = GapNoise(1e-3, 0.02), np.arange(0.0, 0.1, 0.0025)
     found = []
     for _ in range(300):
-        course = Trajectory()
+        course = FootTrajectory()
         for time in times.tolist():
             gap, rate = 0.4 - 0.5 * time + rng.normal(0.0, noise.gap), -0.5 + rng.normal(0.0, noise.rate)
             course.add(PointFrame(round(time * 1e9), gap, rate, (0.0, 0.0, gap), (0.0, 0.0, rate)))

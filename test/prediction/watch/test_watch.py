@@ -12,7 +12,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from impact_predictor.mechanics.types import Mode
-from impact_predictor.prediction.remedies import REMEDIES
+from impact_predictor.prediction.checks import REMEDIES
 from impact_predictor.prediction.scene import MovingDeck, Scene, Watching
 from impact_predictor.prediction.types import Felt, Moment, Quaternion, Sample, Status, Touchdown, Vector3
 from impact_predictor.prediction.watch.standing import CONFIRMED
