@@ -326,22 +326,6 @@ def test_rocking_in_a_swell_is_foreseen_at_each_sample(body: TwoPointBody, angle
 POSES = st.tuples(st.floats(-0.3, 0.3), st.floats(-1.5, 1.5), st.floats(-1.0, 1.0), st.integers(0, 1000))
 
 
-@settings(max_examples=40, deadline=None)
-@given(POSES, st.sampled_from([CRATE, SLIPPERY, DRUM]))
-def test_the_world_may_be_turned_and_shifted(pose: tuple[float, float, float, int], body: TwoPointBody) -> None:
-    angle, omega, slip, seed = pose
-    start = standing(body, angle, omega, slip)
-    here = anywhere(body, DECK, seed)
-    rng = np.random.default_rng(seed + 1)
-    there = here._replace(plane=Rotation.random(random_state=rng), shift=5.0 * rng.normal(size=3))
-    one, other = (
-        Predictor(placed.scene(), placed).update(placed.sample(0.1, in_world(placed.support.motion(0.1), start)))
-        for placed in (here, there)
-    )
-    assert one.status is other.status is Status.ACCEPTED
-    same_touchdown(one, other, AGREES)
-
-
 def same_touchdown(one: Prediction, other: Prediction, close: float) -> None:
     mine, theirs = one.touchdown, other.touchdown
     assert (mine is None) is (theirs is None)

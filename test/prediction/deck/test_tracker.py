@@ -12,10 +12,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from impact_predictor.prediction.checks import PAUSE
-from impact_predictor.prediction.deck.motion import ahead, rotation_between, turned_back
+from impact_predictor.prediction.deck.motion import rotation_between, turned_back
 from impact_predictor.prediction.deck.tracker import Deck
 from impact_predictor.prediction.scene import MovingDeck
-from impact_predictor.prediction.types import Felt, Moment, Sample, Status, Vector3
+from impact_predictor.prediction.types import Felt, Imu, Moment, Sample, Status, Vector3
 from impact_predictor.prediction.vectors import axes_of, composed, to_body, turned
 
 GRAVITY = (0.0, 0.0, -9.81)
@@ -133,18 +133,6 @@ def test_constant_accelerations_are_found_exactly(name: str, times: Any) -> None
     assert deck.last[:5] == (sample.stamp, "world", "deck", sample.position, sample.orientation)
     assert deck.last.linear == pytest.approx(sample.linear, abs=1e-14)
     assert deck.last.gravity == GRAVITY
-
-
-@pytest.mark.parametrize("name", MOTIONS)
-@pytest.mark.parametrize("time", [-0.1, 0.001, 0.25, 1.0, 3.0])
-def test_what_is_ahead_is_exact_with_constant_accelerations(name: str, time: float) -> None:
-    motion = MOTIONS[name]
-    now, later = motion(1.0)[1], motion(1.0 + time)[1]
-    assert apart(ahead(*now, time), later) < 1e-13  # roundings of 10 m/s^2
-    deck = followed(motion, EVEN)
-    assert deck.last is not None
-    # The estimate's own rounding: of the angular acceleration, 1e-13, times 3^2/2 s^2 times gravity.
-    assert apart(deck.last.ahead(time), later) < 1e-12 * (1.0 + 10.0 * time * time)
 
 
 @pytest.mark.parametrize("name", MOTIONS)
@@ -420,6 +408,8 @@ def test_a_heavy_list_is_no_wrong_gravity() -> None:
 def test_messages_of_the_source_that_the_scene_does_not_name_are_refused() -> None:
     deck = Deck(MovingDeck(source="imu"), GRAVITY, UP)
     assert deck.update(still()) is Status.MALFORMED
+    imu = Imu(0, "imu", None, (0.0, 0.0, 0.0), (0.0, 0.0, 9.81))
+    assert Deck(MovingDeck(), GRAVITY, UP).update_imu(imu) is Status.MALFORMED
 
 
 def row(forecast: tuple[Any, ...], index: int) -> Felt:

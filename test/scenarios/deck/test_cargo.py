@@ -8,12 +8,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cargo_scenes import a_deck, a_drum
+from cargo_scenes import box as a_box
 
 from impact_predictor.errors import InputError
 from impact_predictor.mechanics.bodies import cylinder, plate
 from impact_predictor.mechanics.motion import End, rock
-from impact_predictor.mechanics.motion.support import FixedSupport, MovingSupport, Wave, harmonic_support
-from impact_predictor.prediction.scene import MovingDeck, Scene
+from impact_predictor.mechanics.motion.support import FixedSupport
+from impact_predictor.prediction.scene import Scene
 from impact_predictor.scenarios.deck import cargo as deck_module
 from impact_predictor.scenarios.deck.cargo import CargoUnit, Span, follow, unit_of, units_of
 
@@ -21,33 +23,9 @@ B, H, MASS, FRICTION = 0.4, 1.0, 500.0, 0.6
 
 
 def box(**changes: Any) -> Scene:
-    # Its z axis is the lightest, so that a wrong axis of the inertia shows.
-    scene = Scene(
-        MASS,
-        ((200.0, 0.0, 0.0), (0.0, 300.0, 0.0), (0.0, 0.0, 50.0)),
-        FRICTION,
-        points=tuple((x, y, z) for z in (-H, H) for x in (-0.7, 0.7) for y in (-B, B)),
-        deck=MovingDeck(),
-        place=(3.0, 5.0, H),
-    )
-    return scene._replace(**changes)
-
-
-def a_drum(**changes: Any) -> Scene:
-    scene = Scene(
-        MASS,
-        ((90.0, 0.0, 0.0), (0.0, 300.0, 0.0), (0.0, 0.0, 300.0)),
-        FRICTION,
-        radius=0.6,
-        edges=((0.0, 4.3, 0.1), (0.0, 3.7, 0.1)),
-        deck=MovingDeck(),
-    )
-    return scene._replace(**changes)
-
-
-def a_deck(angle: float = 0.12) -> MovingSupport:
-    """Rolls hard enough to rock the box."""
-    return harmonic_support([Wave(angle, 2.4), Wave(0.4 * angle, 3.5, 1.0)], [Wave(0.35, 2.4, 0.3)], [Wave(0.2, 1.7)])
+    """The box with its upper points too."""
+    points = tuple((x, y, z) for z in (-H, H) for x in (-0.7, 0.7) for y in (-B, B))
+    return a_box(**{"points": points, **changes})
 
 
 def motion_of(unit: CargoUnit, duration: float) -> list[Span]:

@@ -6,32 +6,20 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cargo_scenes import a_deck as rolling_deck
+from cargo_scenes import box
 
 from impact_predictor.errors import InputError
 from impact_predictor.mechanics.motion import End, standing
 from impact_predictor.mechanics.motion.support import MovingSupport, Wave, harmonic_support
-from impact_predictor.prediction.scene import MovingDeck, Scene
 from impact_predictor.scenarios.deck import compliant as compliant_deck
 from impact_predictor.scenarios.deck.cargo import follow, unit_of
 from impact_predictor.scenarios.deck.compliant import follow_compliant
 from impact_predictor.scenarios.truth import TrueImpact
 
 
-def box(**changes: Any) -> Scene:
-    scene = Scene(
-        500.0,
-        ((200.0, 0.0, 0.0), (0.0, 300.0, 0.0), (0.0, 0.0, 50.0)),
-        0.6,
-        points=tuple((x, y, -1.0) for x in (-0.7, 0.7) for y in (-0.4, 0.4)),
-        deck=MovingDeck(),
-        place=(3.0, 5.0, 1.0),
-    )
-    return scene._replace(**changes)
-
-
 def a_deck() -> MovingSupport:
-    deck = harmonic_support([Wave(0.12, 2.4), Wave(0.048, 3.5, 1.0)], [Wave(0.35, 2.4, 0.3)], [Wave(0.2, 1.7)])
-    return deck.at(0.0, 0.9)
+    return rolling_deck().at(0.0, 0.9)
 
 
 def impacts_of(spans: Any) -> list[TrueImpact]:

@@ -7,11 +7,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cargo_scenes import a_deck as rolling_deck
+from cargo_scenes import a_drum, box
 
 from impact_predictor.bags.read import read_messages, topics
 from impact_predictor.errors import InputError
 from impact_predictor.mechanics.motion import End
-from impact_predictor.mechanics.motion.support import MovingSupport, Wave, harmonic_support
+from impact_predictor.mechanics.motion.support import MovingSupport
 from impact_predictor.prediction.scene import MovingDeck, Scene
 from impact_predictor.prediction.types import Imu, Sample
 from impact_predictor.prediction.vectors import axes_of
@@ -33,37 +35,8 @@ DURATION = 12.0
 RATE = 100.0
 
 
-def box(**changes: Any) -> Scene:
-    scene = Scene(
-        500.0,
-        ((200.0, 0.0, 0.0), (0.0, 300.0, 0.0), (0.0, 0.0, 50.0)),
-        0.6,
-        points=tuple((x, y, -H) for x in (-0.7, 0.7) for y in (-0.4, 0.4)),
-        deck=MovingDeck(),
-        place=(3.0, 5.0, H),
-    )
-    return scene._replace(**changes)
-
-
-def a_drum(**changes: Any) -> Scene:
-    scene = Scene(
-        500.0,
-        ((90.0, 0.0, 0.0), (0.0, 300.0, 0.0), (0.0, 0.0, 300.0)),
-        0.6,
-        radius=0.6,
-        edges=((0.0, 4.3, 0.1), (0.0, 3.7, 0.1)),
-        deck=MovingDeck(),
-    )
-    return scene._replace(**changes)
-
-
 def a_deck(angle: float = 0.12) -> MovingSupport:
-    """Rolls hard enough to rock the box, or with 0 so little that nothing moves on it."""
-    strength = angle / 0.12
-    deck = harmonic_support(
-        [Wave(angle or 0.01, 2.4), Wave(0.4 * angle, 3.5, 1.0)], [Wave(0.35 * strength, 2.4, 0.3)], [Wave(0.2, 1.7)]
-    )
-    return deck.at(0.0, 0.3 * strength)
+    return rolling_deck(angle).at(0.0, 0.3 * angle / 0.12)
 
 
 def recorded(path: Path, scenes: dict[str, Scene], deck: MovingSupport | None = None, **changes: Any) -> Path:
