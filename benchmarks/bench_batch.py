@@ -19,7 +19,7 @@ from rich.console import Console
 from rich.table import Table
 
 from impact_predictor import Twist, TwoPointBody, plate, solve_impacts
-from impact_predictor.mechanics.batch import numbers_of
+from impact_predictor.mechanics.impact.batch import numbers_of
 from impact_predictor.mechanics.random_problems import problems_of
 
 COUNT = 1_000_000

@@ -24,7 +24,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from impact_predictor.mechanics.answer import mode_of
 from impact_predictor.mechanics.compliant import (
     APPROACHES,
     EXPLICIT,
@@ -36,7 +35,8 @@ from impact_predictor.mechanics.compliant import (
     force,
     slopes,
 )
-from impact_predictor.mechanics.problem import see
+from impact_predictor.mechanics.impact.answer import mode_of
+from impact_predictor.mechanics.impact.body import see
 from impact_predictor.mechanics.types import Contact, Mode, Twist, TwoPointBody, Vector
 
 METHODS = ("Radau", "BDF", "LSODA", *EXPLICIT)

@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING
 from .errors import InputError
 
 if TYPE_CHECKING:
-    from .mechanics.batch import Outcomes, solve_impacts
     from .mechanics.bodies import cylinder, plate, rod
     from .mechanics.impact import solve_impact
+    from .mechanics.impact.batch import Outcomes, solve_impacts
     from .mechanics.margins import Margin, Margins
     from .mechanics.sensitivity import Sensitivity, sensitivity
     from .mechanics.transverse import Transverse, TransverseOutcome, solve_transverse_impact
@@ -46,7 +46,7 @@ LATER = {
     ),
     "Margin": "margins",
     "Margins": "margins",
-    "Outcomes": "batch",
+    "Outcomes": "impact.batch",
     "Sensitivity": "sensitivity",
     "Transverse": "transverse",
     "TransverseOutcome": "transverse",
@@ -55,7 +55,7 @@ LATER = {
     "rod": "bodies",
     "sensitivity": "sensitivity",
     "solve_impact": "impact",
-    "solve_impacts": "batch",
+    "solve_impacts": "impact.batch",
     "solve_transverse_impact": "transverse",
 }
 """Names that are loaded when they are asked for, and their modules: every start of pytest loads this package for its

@@ -9,7 +9,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..mechanics.batch import numbers_of, solve_impacts
+from ..mechanics.impact.batch import numbers_of, solve_impacts
 from ..mechanics.types import Contact, Twist, TwoPointBody, Validity
 from .touchdowns import Coefficients, ScoredTouchdown, solve_across, with_coefficients
 

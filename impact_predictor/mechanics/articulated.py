@@ -19,8 +19,6 @@ from numpy.typing import NDArray
 
 from ..errors import InputError
 
-Array = NDArray[np.float64]
-
 SINGULAR = 1e-12
 """A pivot of the inertia matrix below this part of its diagonal is rounding: something moves that has no mass."""
 
@@ -54,12 +52,12 @@ class WholeBody:
         self._plain = [(i, joint.idx_q) for i, joint in enumerate(moving) if joint.nq == 1]
         self._endless = [(i, joint.idx_q) for i, joint in enumerate(moving) if joint.nq == 2]
         # The base is at the origin and not turned, so that the model's world is its frame.
-        self._q: Array = self._pinocchio.neutral(self._model)
-        self.inertia: Array = np.zeros((self._model.nv, self._model.nv))
-        self.points: Array = np.zeros((len(frames), 3))
-        self.jacobians: Array = np.zeros((len(frames), 3, self._model.nv))
+        self._q: NDArray[np.float64] = self._pinocchio.neutral(self._model)
+        self.inertia: NDArray[np.float64] = np.zeros((self._model.nv, self._model.nv))
+        self.points: NDArray[np.float64] = np.zeros((len(frames), 3))
+        self.jacobians: NDArray[np.float64] = np.zeros((len(frames), 3, self._model.nv))
 
-    def place(self, positions: Array) -> bool:
+    def place(self, positions: NDArray[np.float64]) -> bool:
         """Take the `positions` (rad or m) of `joints`; whether the inertia there has an inverse."""
         for i, place in self._plain:
             self._q[place] = positions[i]
@@ -75,12 +73,14 @@ class WholeBody:
             self.jacobians[k] = pinocchio.getFrameJacobian(model, data, frame, aligned)[:3]
         return _has_inverse(self.inertia)
 
-    def velocities(self, rates: Array) -> Array:
+    def velocities(self, rates: NDArray[np.float64]) -> NDArray[np.float64]:
         """Velocities (k, 3) of the points relative to the base, by the `rates` of `joints` (rad/s or m/s)."""
-        moved: Array = self.jacobians[:, :, 6:] @ rates
+        moved: NDArray[np.float64] = self.jacobians[:, :, 6:] @ rates
         return moved
 
-    def mobility(self, contacts: Sequence[Sequence[int]], ways: Sequence[Sequence[float]]) -> tuple[Array, Array]:
+    def mobility(
+        self, contacts: Sequence[Sequence[int]], ways: Sequence[Sequence[float]]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """W = G M^-1 G^T in 1/kg, and M^-1 G^T, the change of the generalized velocities by each unit impulse.
 
         A row of G is the velocity along one of the `ways`, unit vectors, of one of the `contacts`: of the mean of its
@@ -145,7 +145,7 @@ def _frame(model: Any, name: str, urdf: str) -> int:
     return number
 
 
-def _has_inverse(inertia: Array) -> bool:
+def _has_inverse(inertia: NDArray[np.float64]) -> bool:
     diagonal = np.diagonal(inertia)
     try:
         pivots = np.diagonal(np.linalg.cholesky(inertia)) ** 2

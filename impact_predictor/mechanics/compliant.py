@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from .answer import mode_of
+from .impact.answer import mode_of
 from .motion import PlanarState
 from .motion.support import FixedSupport, MovingSupport, Support, SupportMotion, from_world, in_world
 from .types import Contact, Mode, Twist, TwoPointBody, Vector

@@ -6,33 +6,22 @@ A planar body is better served by `solve_impact`, which knows more about it than
 from __future__ import annotations
 
 from collections.abc import Iterable
-from math import frexp, inf, isfinite
+from math import copysign, frexp, inf, isfinite, sqrt
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .answer import (
-    BOTH_STRUCK,
-    ENERGY_GAINED,
-    ENERGY_ROUNDING,
-    INVALID_INPUT,
-    LAST_RESORT,
-    OLD_RESTITUTION_IGNORED,
-    PATH,
-    STAYS,
-    TOTAL,
-    mode_of,
-)
-from .impact import LAWS, MODES, flags_of, number_of, states_of
-from .mobility import NO_MOBILITY, choose, least_push, mobility_of, strike_old
-from .mobility_total import Problem, Velocities, differ, solutions
-from .pair import NO_SOLUTION, SHARED_FRICTION, Impact
-from .path_law import follow
+from .impact.answer import INVALID_INPUT, NOTHING, STAYS, mode_of, respond, speed_of
+from .impact.contacts import CANCELLED, NO_SOLUTION, ContactRows, Impact, NewRows, OldRows, Problem, Velocities
+from .impact.solve import LAWS, MODES, flags_of, number_of, others, states_of
 from .types import Flag, Mode, Vector
 
 SPEED_ROUNDING = 1e-12
 """A contact velocity below this part of the largest one is rounding and counts as zero."""
+
+ASYMMETRY = 1e-9
+"""How far W may be from symmetric, and its pivots below 0, as a part of its diagonal."""
 
 
 class ContactAlternative(NamedTuple):
@@ -79,8 +68,8 @@ def solve(
     A contact velocity below 1e-12 of the largest counts as zero: make one zero yourself that is the sum of far larger
     terms. The velocities after keep the digits that W has: their error is about 1e-15 of the largest velocity, times
     the condition number of W on its range, its diagonal scaled to 1; and 1e-15 of the terms of W P, which are large
-    where friction all but jams. Where W leaves open how two sticking contacts share their impulses, they have the
-    least of them (Flag.SHARED_FRICTION).
+    where friction all but jams. Where W, of rank 3, leaves open how two sticking contacts share their impulses, they
+    have the least of them (Flag.SHARED_FRICTION); of a lower rank, some of them.
 
     Numbers that no mechanism can have give Flag.INVALID_INPUT, never an exception; an unknown law and a W of another
     shape raise ValueError. Source: the paper, sections 2 to 4, generalised.
@@ -91,58 +80,46 @@ def solve(
         raise ValueError(f"W has the shape {w.shape}; give (4, 4)")
     cna, cta, cnb, ctb = map(float, c)
     before = cna, cta, cnb, ctb
-    valid, problem, mass, speed = read(w.tolist(), before, friction, restitution)
-    if not valid:
+    read = reading_of(w.tolist(), before, friction, restitution)
+    if read is None:
         return unchanged(before, law, INVALID_INPUT)
-    mobility, restitution_old, _, cna, cta, cnb, ctb, zero, _ = problem
-    if cnb >= 0.0 and cna >= 0.0:
-        return unchanged(before, law, 0)
-
-    notes = OLD_RESTITUTION_IGNORED if restitution_old > 0.0 and cna >= 0.0 else 0
-    if number == PATH and cna < 0.0:
-        number, notes = TOTAL, notes | BOTH_STRUCK
-    size = abs(cnb) + abs(ctb) + (abs(cna) + abs(cta) if cna < inf else 0.0)
-    found = answers(problem, number, STAYS * size)
-    if not found:
-        number, notes = TOTAL, notes | LAST_RESORT
-        found = answers((mobility, 0.0, 0.0, cna, cta, cnb, ctb, zero, zero), TOTAL, STAYS * size)
-        if not found:
-            return unchanged(before, LAWS[TOTAL], notes - LAST_RESORT | NO_SOLUTION)
-
-    na, ta, nb, tb, vna, vta, vnb, vtb, _, _, _, _, flags, _ = found[0]
-    work = nb * (cnb + vnb) + tb * (ctb + vtb)
-    if cna < inf:
-        work += na * (cna + vna) + ta * (cta + vta)
-    if work > ENERGY_ROUNDING * size * size:
-        notes |= ENERGY_GAINED
-    if not mobility.lines:
-        flags &= ~SHARED_FRICTION
-    impulse = mass * speed
-    energy_lost = -0.5 * work * impulse * speed
-    first, *others = (alternative(impact, STAYS * size, speed) for impact in found)
-    outcome = ContactOutcome(
-        first.mode,
-        first.velocities,
-        ((na * impulse, ta * impulse), (nb * impulse, tb * impulse)),
-        first.segments,
-        flags_of(flags | notes),
-        energy_lost,
-        not others,
-        tuple(others),
-        LAWS[number],
+    _, impact, notes, work, _, used = respond(read.problem, number)
+    if impact == NOTHING:
+        return unchanged(before, LAWS[used], notes)
+    first = alternative(impact, read)
+    na, ta, nb, tb, _, _, _, _, _, _, _, _, _, _ = impact
+    push = read.mass * read.speed
+    impulses = (na * push, ta * push), (nb * push, tb * push)
+    energy_lost = -0.5 * work * push * read.speed
+    if not all(map(isfinite, (energy_lost, *first.velocities[1:], *impulses[0], *impulses[1]))):
+        return unchanged(before, LAWS[used], notes | NO_SOLUTION)
+    found = [alternative(other, read) for other in others(read.problem, used, notes)]
+    found = [other for other in found if all(map(isfinite, other.velocities[1:]))]
+    return ContactOutcome(
+        mode=first.mode,
+        velocities=first.velocities,
+        impulses=impulses,
+        segments=first.segments,
+        flags=flags_of(notes),
+        energy_lost=energy_lost,
+        unique=not found,
+        alternatives=tuple(found),
+        law=LAWS[used],
     )
-    numbers = energy_lost, *first.velocities[1:], *outcome.impulses[0], *outcome.impulses[1]
-    return outcome if all(map(isfinite, numbers)) else unchanged(before, LAWS[number], notes | NO_SOLUTION)
 
 
-Reading = tuple[bool, Problem, float, float]
-"""Whether all numbers are in their range; what the laws are asked, in units that make W and c about 1; the mass and
-the speed that are these units, powers of two, which cost no digit."""
+class Reading(NamedTuple):
+    """What the laws are asked, in units that make W and c about 1; the mass and the speed that are these units, powers
+    of two, which cost no digit.
+    """
 
-NOT_VALID: Reading = (False, (NO_MOBILITY, 0.0, 0.0, inf, 0.0, 0.0, 0.0, 0.0, 0.0), 1.0, 1.0)
+    problem: Problem
+    mass: float
+    speed: float
 
 
-def read(w: list[list[float]], c: Velocities, friction: Vector, restitution: Vector) -> Reading:
+def reading_of(w: list[list[float]], c: Velocities, friction: Vector, restitution: Vector) -> Reading | None:
+    """What the laws are asked; None where a number is not in its range."""
     fa, fb = map(float, friction)
     ea, eb = map(float, restitution)
     cna, cta, cnb, ctb = c
@@ -152,14 +129,18 @@ def read(w: list[list[float]], c: Velocities, friction: Vector, restitution: Vec
         w = [[0.0] * 4, [0.0] * 4, [0.0, 0.0, *w[2][2:]], [0.0, 0.0, *w[3][2:]]]
     in_range = 0.0 <= fa < inf and 0.0 <= fb < inf and 0.0 <= ea <= 1.0 and 0.0 <= eb <= 1.0
     if not (in_range and isfinite(cna + cta + cnb + ctb + sum(map(sum, w)))):
-        return NOT_VALID
+        return None
     largest = max(abs(cna), abs(cta), abs(cnb), abs(ctb))
     speed, mass = power_of_two(largest), 1.0 / power_of_two(max(w[0][0], w[1][1], w[2][2], w[3][3]))
-    valid, mobility = mobility_of([[number * mass for number in row] for row in w], (fa, fb))
+    rows = rows_of([[number * mass for number in row] for row in w])
+    if rows is None:
+        return None
     zero = SPEED_ROUNDING * largest
     cna, cta, cnb, ctb = (0.0 if abs(part) <= zero else part / speed for part in (cna, cta, cnb, ctb))
     zero /= speed
-    return valid, (mobility, ea, eb, cna if stands else inf, cta, cnb, ctb, zero, zero), mass, speed
+    before = cna if stands else inf, cta, cnb, ctb
+    problem = contacts_of(*rows, fa=fa, fb=fb), (ea, eb), before, (zero, zero, zero, zero)
+    return Reading(problem=problem, mass=mass, speed=speed)
 
 
 def power_of_two(number: float) -> float:
@@ -167,50 +148,136 @@ def power_of_two(number: float) -> float:
     return 2.0 ** max(-1000, min(1000, frexp(number)[1]))
 
 
-def answers(problem: Problem, law: int, zero: float) -> list[Impact]:
-    """The answer of a law and those that it allows as well and that differ from it in a velocity by more than `zero`.
+def rows_of(w: list[list[float]]) -> tuple[list[float], list[float], list[float], list[float]] | None:
+    """Four rows whose products are W, by elimination of its largest pivots (Cholesky).
 
-    Of several total solutions the one nearest to the end of the impulse path answers, which an impact reaches from its
-    beginning.
+    None where W is not symmetric and positive semidefinite up to rounding.
     """
-    if law == TOTAL:
-        found = [impact for impact in solutions(problem) if is_answer(impact)]
-        if len(found) > 1 and problem[3] >= 0.0:
-            path = follow(choose, strike_old, least_push, problem, 0)
-            if is_answer(path):
-                found.sort(key=lambda impact: distance(impact, path))
-        return found
-    first = follow(choose, strike_old, least_push, problem, 0)
-    found = [first] if is_answer(first) else []
-    for choice in range(1, first[13] if found else 0):
-        other = follow(choose, strike_old, least_push, problem, choice)
-        if is_answer(other) and all(differ(other, impact, zero) for impact in found):
-            found.append(other)
-    return found
+    for i in range(4):
+        for j in range(i):
+            if w[i][j] != w[j][i] and abs(w[i][j] - w[j][i]) > ASYMMETRY * sqrt(abs(w[i][i] * w[j][j])):
+                return None
+    rest, left, rows = [row[:] for row in w], [0, 1, 2, 3], [[0.0] * 4 for _ in range(4)]
+    for column in range(4):
+        i, most = left[0], 0.0
+        for j in left:
+            if rest[j][j] > most * w[j][j]:
+                i, most = j, rest[j][j] / w[j][j]
+        if most <= CANCELLED:
+            break
+        left.remove(i)
+        pivot = sqrt(rest[i][i])
+        rows[i][column] = pivot
+        for j in left:
+            rows[j][column] = rest[i][j] / pivot
+        for j in left:
+            for k in left:
+                rest[j][k] -= rows[j][column] * rows[k][column]
+    if any(abs(rest[i][j]) > ASYMMETRY * sqrt(abs(w[i][i] * w[j][j])) for i in left for j in left):
+        return None
+    first, second, third, fourth = rows
+    return first, second, third, fourth
 
 
-def is_answer(impact: Impact) -> bool:
-    """Whether a law has come to an end, and with numbers that are finite."""
-    return not impact[12] & NO_SOLUTION and isfinite(sum(impact[:4]) + sum(impact[5:8]))
+def contacts_of(
+    na: list[float], ta: list[float], nb: list[float], tb: list[float], fa: float, fb: float
+) -> ContactRows:
+    """The contacts of a mechanism by the rows of its W, turned so that they are of the form that the laws know.
+
+    The rows of A are given as much of the third component as their product needs. The first two axes are in their
+    plane; the next one is where a row of B leaves it, and `extra` what B's normal has besides.
+    """
+    ann, att, bnn, btt = (dot(row, row) for row in (na, ta, nb, tb))
+    axes = [axis for axis in (beyond(na, []),) if axis is not None]
+    second = beyond(ta, axes)
+    regular = bool(axes) and second is not None
+    if second is not None:
+        axes.append(second)
+    for row in (tb, nb):
+        axis = beyond(row, axes)
+        if axis is not None:
+            axes.append(axis)
+    axes += [[0.0] * 4] * (4 - len(axes))
+    a1, a2, _, _ = (dot(ta, axis) for axis in axes)
+    n1, n2, n3, n4 = (dot(nb, axis) for axis in axes)
+    t1, t2, t3, _ = (dot(tb, axis) for axis in axes)
+    if regular:
+        size, share = sqrt(ann) * a2, min(abs(a1) / sqrt(att), 1.0)
+        free = a2 * a2 / (att * (1.0 + share))  # 1 - share
+        an, at, qa, sa = sqrt(ann * free), sqrt(att * free), sqrt(ann * share), copysign(sqrt(att * share), a1)
+        normal = an * sa / size, at * qa / size, -an * at / size
+        first = 0.0, an / sqrt(ann), qa / sqrt(ann)
+        turned = list(zip(first, crossed(normal, first), normal, strict=True))
+        nx, ny, nq = [n1 * u + n2 * v + n3 * w for u, v, w in turned]
+        tx, ty, tq = [t1 * u + t2 * v + t3 * w for u, v, w in turned]
+        extra = n4 * n4
+    else:
+        # A moves in one direction at most: the third one.
+        an = at = size = extra = 0.0
+        qa, sa = sqrt(ann), copysign(sqrt(att), a1)
+        if not ann + att > 0.0:
+            n1, n2, n3, t1, t2, t3 = 0.0, n1, n2, 0.0, t1, t2
+        nx, ny, nq, tx, ty, tq = n2, n3, n1, t2, t3, t1
+    turn_x, turn_y, turn_q = crossed((nx, ny, nq), (tx, ty, tq))
+    new_size = turn_x * turn_x + turn_y * turn_y + turn_q * turn_q
+    if new_size <= CANCELLED * bnn * btt:
+        new_size = 0.0
+    minors = n3 * size, t3 * size, an * turn_y + qa * turn_q, at * turn_x + sa * turn_q
+    if regular and n3 == 0.0 and t3 == 0.0:
+        minors = 0.0, 0.0, 0.0, 0.0
+    old: OldRows = an, at, qa, sa, fa
+    new: NewRows = nx, ny, nq, tx, ty, tq, extra, fb
+    plane = nx * nx + ny * ny, nx * tx + ny * ty, tx * tx + ty * ty, new_size
+    return old, new, plane, minors, CANCELLED
 
 
-def distance(one: Impact, other: Impact) -> float:
-    """Twice the kinetic energy of the difference of two answers."""
-    return sum((one[i] - other[i]) * (one[i + 4] - other[i + 4]) for i in range(4))
+def beyond(row: list[float], axes: list[list[float]]) -> list[float] | None:
+    """The unit vector along what a row has besides the axes, or None where that is rounding."""
+    rest = row
+    for _ in range(2):  # the second time for the roundings of the first
+        for axis in axes:
+            part = dot(rest, axis)
+            rest = [number - part * other for number, other in zip(rest, axis, strict=True)]
+    square = dot(rest, rest)
+    if square <= CANCELLED * dot(row, row):
+        return None
+    size = sqrt(square)
+    return [number / size for number in rest]
+
+
+def dot(one: list[float], other: list[float]) -> float:
+    return one[0] * other[0] + one[1] * other[1] + one[2] * other[2] + one[3] * other[3]
+
+
+def crossed(one: tuple[float, float, float], other: tuple[float, float, float]) -> tuple[float, float, float]:
+    (ux, uy, uq), (vx, vy, vq) = one, other
+    return uy * vq - uq * vy, uq * vx - ux * vq, ux * vy - uy * vx
 
 
 def unchanged(c: Velocities, law: str, notes: int) -> ContactOutcome:
     """The outcome where no impact changes the contact velocities; those that are no numbers become 0."""
     cna, cta, cnb, ctb = c
     kept = cna if cna == inf else finite(cna), finite(cta), finite(cnb), finite(ctb)
-    return ContactOutcome(Mode.NO_IMPACT, kept, ((0.0, 0.0), (0.0, 0.0)), (), flags_of(notes), 0.0, True, (), law)
+    return ContactOutcome(
+        mode=Mode.NO_IMPACT,
+        velocities=kept,
+        impulses=((0.0, 0.0), (0.0, 0.0)),
+        segments=(),
+        flags=flags_of(notes),
+        energy_lost=0.0,
+        unique=True,
+        alternatives=(),
+        law=law,
+    )
 
 
 def finite(number: float) -> float:
     return number if isfinite(number) else 0.0
 
 
-def alternative(impact: Impact, zero: float, speed: float) -> ContactAlternative:
-    vna, vta, vnb, vtb = impact[4:8]
+def alternative(impact: Impact, read: Reading) -> ContactAlternative:
+    _, _, _, _, vna, vta, vnb, vtb, _, _, _, segments, _, _ = impact
+    speed = read.speed
+    mode = MODES[mode_of(STAYS * speed_of(read.problem), vna, vta, vnb, vtb)]
     velocities = vna * speed, vta * speed, vnb * speed, vtb * speed
-    return ContactAlternative(MODES[mode_of(zero, vna, vta, vnb, vtb)], velocities, states_of(impact[11]))
+    return ContactAlternative(mode=mode, velocities=velocities, segments=states_of(segments))

@@ -1,7 +1,8 @@
 """Numbers that carry their derivatives through the law code.
 
-A Dual is a value with its derivatives by some inputs. The law code (see `pair`) takes it for any other number and
-compares its value; so one impact of Duals gives the exact derivatives of its outcome, on the branch that it takes.
+A Dual is a value with its derivatives by some inputs. The law code (see `impact.contacts`) takes it for any
+other number and compares its value; so one impact of Duals gives the exact derivatives of its outcome, on the branch
+that it takes.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from importlib.util import find_spec, module_from_spec
 from types import ModuleType
 from typing import Any, Union
 
-Number = Union[float, "Dual"]
+Scalar = Union[float, "Dual"]
 
 
 class Dual:
@@ -26,7 +27,7 @@ class Dual:
         self.value = value
         self.parts = parts
 
-    def __add__(self, other: Number) -> Dual:
+    def __add__(self, other: Scalar) -> Dual:
         if isinstance(other, Dual):
             return Dual(self.value + other.value, tuple([p + q for p, q in zip(self.parts, other.parts, strict=True)]))
         return Dual(self.value + other, self.parts)
@@ -36,7 +37,7 @@ class Dual:
     def __neg__(self) -> Dual:
         return Dual(-self.value, tuple([-p for p in self.parts]))
 
-    def __sub__(self, other: Number) -> Dual:
+    def __sub__(self, other: Scalar) -> Dual:
         if isinstance(other, Dual):
             return Dual(self.value - other.value, tuple([p - q for p, q in zip(self.parts, other.parts, strict=True)]))
         return Dual(self.value - other, self.parts)
@@ -44,7 +45,7 @@ class Dual:
     def __rsub__(self, other: float) -> Dual:
         return Dual(other - self.value, tuple([-p for p in self.parts]))
 
-    def __mul__(self, other: Number) -> Dual:
+    def __mul__(self, other: Scalar) -> Dual:
         u = self.value
         if isinstance(other, Dual):
             v = other.value
@@ -53,7 +54,7 @@ class Dual:
 
     __rmul__ = __mul__
 
-    def __truediv__(self, other: Number) -> Dual:
+    def __truediv__(self, other: Scalar) -> Dual:
         if isinstance(other, Dual):
             v = other.value
             ratio = self.value / v
@@ -71,24 +72,24 @@ class Dual:
     def __eq__(self, other: object) -> bool:
         return self.value == (other.value if isinstance(other, Dual) else other)
 
-    def __lt__(self, other: Number) -> bool:
+    def __lt__(self, other: Scalar) -> bool:
         return self.value < value_of(other)
 
-    def __le__(self, other: Number) -> bool:
+    def __le__(self, other: Scalar) -> bool:
         return self.value <= value_of(other)
 
-    def __gt__(self, other: Number) -> bool:
+    def __gt__(self, other: Scalar) -> bool:
         return self.value > value_of(other)
 
-    def __ge__(self, other: Number) -> bool:
+    def __ge__(self, other: Scalar) -> bool:
         return self.value >= value_of(other)
 
 
-def value_of(number: Number) -> float:
+def value_of(number: Scalar) -> float:
     return number.value if isinstance(number, Dual) else number
 
 
-def sqrt(number: Number) -> Number:
+def sqrt(number: Scalar) -> Scalar:
     """The square root; that of zero, which has no derivative, counts as constant."""
     if not isinstance(number, Dual):
         return math.sqrt(number)
@@ -100,15 +101,16 @@ def sqrt(number: Number) -> Number:
 @cache
 def dual_answer() -> Callable[..., Any]:
     """`answer.answer` for Duals: the law code loaded a second time, with a square root that knows them."""
-    path_law, answer = load("path_law"), load("answer")
-    path_law.sqrt = sqrt  # type: ignore[attr-defined]
+    restitution, path_law, answer = load("restitution"), load("path_law"), load("answer")
+    restitution.sqrt = sqrt  # type: ignore[attr-defined]
+    path_law.span_of_work = restitution.span_of_work  # type: ignore[attr-defined]
     answer.path_law = path_law  # type: ignore[attr-defined]
     return answer.answer  # type: ignore[no-any-return]
 
 
 def load(name: str) -> ModuleType:
-    """Another instance of a module of this package."""
-    spec = find_spec(f"{__package__}.{name}")
+    """Another instance of a module of the impact engine."""
+    spec = find_spec(f"{__package__}.impact.{name}")
     assert spec is not None
     assert spec.loader is not None
     module = module_from_spec(spec)

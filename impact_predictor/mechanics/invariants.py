@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .batch import Outcomes, numbers_of, solve_impacts
+from .impact.batch import Outcomes, numbers_of, solve_impacts
 from .random_problems import CHUNK, KINDS, STIFF, random_problems
 from .types import Contact, Flag, Twist, TwoPointBody
 

@@ -12,9 +12,9 @@ from collections.abc import Callable
 from math import copysign, hypot, inf
 from typing import NamedTuple
 
-from .answer import answer
 from .impact import MODES, NOWHERE, new_tuple, number_of
-from .problem import see
+from .impact.answer import answer
+from .impact.body import see
 from .types import Contact, Flag, Mode, Outcome, Twist, TwoPointBody, Vector
 
 STEPS = tuple([k / 32.0 for k in (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64)])
@@ -81,7 +81,7 @@ Case = tuple[Contact, Contact, Twist]
 """Old contact, new contact and twist before the impact."""
 
 
-class Trial(NamedTuple):
+class ChangedImpact(NamedTuple):
     """An impact after a change: its mode, contact states and flags, what it started from and the twist after."""
 
     change: float
@@ -92,10 +92,10 @@ class Trial(NamedTuple):
     after: Twist
 
 
-class Way(NamedTuple):
+class Change(NamedTuple):
     """A way to change an impact: the impact after a change, the unit of changes, and the least one."""
 
-    at: Callable[[float], Trial]
+    at: Callable[[float], ChangedImpact]
     unit: float
     least: float = -inf
 
@@ -109,9 +109,9 @@ def margins(body: TwoPointBody, twist: Twist, law: str = "path") -> Margins:
     mass, inertia, stands = body.mass, body.inertia, body.old is not None
     old, new = body.old or NOWHERE, body.new
 
-    def at(change: float, case: Case) -> Trial:
+    def at(change: float, case: Case) -> ChangedImpact:
         mode, after, _, _, _, _, states, flags, _, _, _ = answer(mass, inertia, stands, *case, number)
-        return new_tuple(Trial, (change, mode, states, flags, case, new_tuple(Twist, after)))
+        return new_tuple(ChangedImpact, (change, mode, states, flags, case, new_tuple(Twist, after)))
 
     here = at(0.0, (old, new, twist))
     if here.mode == NO_IMPACT or here.flags & UNSOLVED:
@@ -122,11 +122,11 @@ def margins(body: TwoPointBody, twist: Twist, law: str = "path") -> Margins:
     tangent = stood.normal[1], -stood.normal[0]
     speed = speed_of(old, twist) + speed_of(new, twist) if stands else speed_of(new, twist)
     ways = (
-        Way(lambda s: at(s, rubbed(old, new, twist, s)), 1.0, -max(old.friction, new.friction)),
-        Way(lambda s: at(s, centered(old, new, twist, along, s)), distance),
-        Way(lambda s: at(s, centered(old, new, twist, across, s)), distance, -height if height >= 0.0 else -inf),
-        Way(lambda s: at(s, (old, reaching(old, new, s), twist)), distance),
-        Way(lambda s: at(s, (old, new, slipping(twist, tangent, s))), speed),
+        Change(lambda s: at(s, rubbed(old, new, twist, s)), 1.0, -max(old.friction, new.friction)),
+        Change(lambda s: at(s, centered(old, new, twist, along, s)), distance),
+        Change(lambda s: at(s, centered(old, new, twist, across, s)), distance, -height if height >= 0.0 else -inf),
+        Change(lambda s: at(s, (old, reaching(old, new, s), twist)), distance),
+        Change(lambda s: at(s, (old, new, slipping(twist, tangent, s))), speed),
     )
     return Margins(*[nearest_border(way, here) for way in ways])
 
@@ -197,7 +197,7 @@ def slipping(twist: Twist, direction: Vector, change: float) -> Twist:
     return Twist(twist.vx + change * direction[0], twist.vy + change * direction[1], twist.omega)
 
 
-def nearest_border(way: Way, here: Trial) -> Margin:
+def nearest_border(way: Change, here: ChangedImpact) -> Margin:
     """The nearest change of the mode along a way."""
     if not 0.0 < way.unit < inf:
         return NO_MARGIN
@@ -222,7 +222,7 @@ def nearest_border(way: Way, here: Trial) -> Margin:
     return NO_MARGIN
 
 
-def border_between(way: Way, near: Trial, far: Trial) -> Margin | None:
+def border_between(way: Change, near: ChangedImpact, far: ChangedImpact) -> Margin | None:
     """The border between two changes, if there is one; `near` has the mode of the unchanged impact."""
     if near.mode != far.mode:
         return border_in(way, near, far)
@@ -236,14 +236,14 @@ def border_between(way: Way, near: Trial, far: Trial) -> Margin | None:
     return None
 
 
-def border_in(way: Way, near: Trial, far: Trial) -> Margin | None:
+def border_in(way: Change, near: ChangedImpact, far: ChangedImpact) -> Margin | None:
     """The border between two changes with different modes; None where the other mode is that of a single point.
 
     On one side of it a contact moves that does not move on the other. Where the secant through two changes on that side
     says that its velocity vanishes, there is the border; halving finds it where the velocities jump.
     """
     outwards = copysign(BEYOND * way.unit, far.change - near.change)
-    second: Trial | None = None  # on the side that moves, further from the border
+    second: ChangedImpact | None = None  # on the side that moves, further from the border
     estimate = inf
     for _ in range(ATTEMPTS):
         near_moves = moves(near.mode, far.mode)
@@ -282,7 +282,7 @@ def moves(mode: int, other: int) -> bool:
     return mode in SLIPS
 
 
-def velocity(trial: Trial, still: int) -> float:
+def velocity(trial: ChangedImpact, still: int) -> float:
     """The velocity (m/s) that vanishes at the border to the mode `still`, in which it is zero."""
     old, new, twist = trial.case
     if still == NO_IMPACT:
@@ -294,7 +294,7 @@ def velocity(trial: Trial, still: int) -> float:
     return lifts_new if trial.mode in NEW_LIFTS else abs(slips_old) + abs(slips_new)
 
 
-def zero_by_secant(second: Trial, first: Trial, still: int) -> float:
+def zero_by_secant(second: ChangedImpact, first: ChangedImpact, still: int) -> float:
     """The change at which the velocity of two trials with the same mode vanishes; inf where it does not fall."""
     speed, fall = velocity(first, still), velocity(second, still) - velocity(first, still)
     return first.change + (first.change - second.change) * speed / fall if fall > 0.0 else inf

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from .answer import answer
 from .dual import Dual, dual_answer
 from .impact import NOWHERE, number_of
-from .problem import see
+from .impact.answer import answer
+from .impact.body import see
 from .types import Contact, Flag, Twist, TwoPointBody
 
 Triple = tuple[float, float, float]
-Matrix3 = tuple[Triple, Triple, Triple]
+TwistMatrix = tuple[Triple, Triple, Triple]
 
 STEP = 1e-9
 """Part of an input, or of the contact speeds, within which a change of the contact states counts as a border."""
@@ -23,7 +23,7 @@ Inputs = tuple[Any, ...]
 
 NO_CHANGE: Triple = (0.0, 0.0, 0.0)
 
-FREE: Matrix3 = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+FREE: TwistMatrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 INVALID_INPUT, NO_SOLUTION = int(Flag.INVALID_INPUT), int(Flag.NO_SOLUTION)
 
@@ -40,7 +40,7 @@ class Sensitivity(NamedTuple):
     friction_old: Triple
     friction_new: Triple
     restitution: Triple
-    twist: Matrix3
+    twist: TwistMatrix
     one_sided: tuple[str, ...]
 
 
@@ -81,7 +81,7 @@ def sensitivity(body: TwoPointBody, twist: Twist, law: str = "path") -> Sensitiv
     return Sensitivity(friction_old, friction_new, restitution, by_twist, tuple(one_sided))
 
 
-def allowed_changes(body: TwoPointBody, twist: Twist) -> Matrix3:
+def allowed_changes(body: TwoPointBody, twist: Twist) -> TwistMatrix:
     """The part of any change of a twist that leaves a resting old contact at rest, as the matrix that gives it.
 
     A closed contact has no normal velocity, and one that does not slip no velocity at all; what a change would give it
@@ -99,7 +99,7 @@ def allowed_changes(body: TwoPointBody, twist: Twist) -> Matrix3:
     return (1.0 - nx * nx, -nx * ny, nx * lever), (-nx * ny, 1.0 - ny * ny, ny * lever), (0.0, 0.0, 1.0)
 
 
-def directions_of(allowed: Matrix3) -> tuple[tuple[float, ...], ...]:
+def directions_of(allowed: TwistMatrix) -> tuple[tuple[float, ...], ...]:
     """How all inputs change with each of them."""
     coefficients = (1.0, 0.0, 0.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
     return (*coefficients, *((0.0, 0.0, 0.0, *column) for column in zip(*allowed, strict=True)))

@@ -26,10 +26,10 @@ from __future__ import annotations
 from math import inf, isfinite, sqrt
 from typing import NamedTuple
 
-from .answer import OLD_RESTITUTION_IGNORED, PATH, VALIDITY, doubts, mode_of, unchanged
 from .impact import MODES, NOWHERE, flags_of, new_tuple, solve_impact, states_of
-from .pair import NO_SOLUTION
-from .problem import SPEED_ROUNDING, problem_of, twist_after
+from .impact.answer import OLD_RESTITUTION_IGNORED, PATH, VALIDITY, doubts, mode_of, unchanged
+from .impact.body import SPEED_ROUNDING, problem_of, twist_after
+from .impact.contacts import NO_SOLUTION
 from .transverse_law import FAR, follow
 from .types import Contact, Flag, Mode, Outcome, Twist, TwoPointBody, Validity
 
@@ -87,7 +87,10 @@ def solve_transverse_impact(
     """
     mass, inertia, old, new = body
     valid, problem, frame = problem_of(mass, inertia, old is not None, old or NOWHERE, new, twist)
-    pair, restitution_old, restitution, cna, cta, cnb, ctb, _, _ = problem
+    contacts, (restitution_old, restitution), (cna, cta, cnb, ctb), _ = problem
+    (_, _, qa, sa, fa), (nx, ny, qb, _, _, sb, _, fb), _, _, _ = contacts
+    cos, sin = ny, -nx
+    pair = cos, sin, qa, sa, qb, sb, fa, fb
     cza = slip_across(old, transverse) if old is not None else 0.0
     czb = slip_across(new, transverse)
     velocity, roll, yaw, roll_inertia, yaw_inertia = transverse
@@ -106,7 +109,6 @@ def solve_transverse_impact(
     (na, ta, za, nb, tb, zb, vna, vta, vza, vnb, vtb, vzb), segments, notes = follow(
         (pair, waa, wab, wbb), (cna, cta, cza, cnb, ctb, czb), tolerance * speed, restitution
     )
-    cos, sin, qa, sa, qb, sb, _, _ = pair
     dx, dy = ta + tb * cos - nb * sin, na + tb * sin + nb * cos
     after = twist_after(twist, frame, dx, dy, qa * na + sa * ta + qb * nb + sb * tb)
     foot = old or NOWHERE
@@ -126,7 +128,7 @@ def solve_transverse_impact(
         return TransverseOutcome(outcome._replace(flags=outcome.flags | Flag.LAST_RESORT), transverse, (0.0, 0.0))
 
     slips = sqrt(vta * vta + vza * vza), sqrt(vtb * vtb + vzb * vzb)
-    notes |= doubts(pair, old is not None, nb, validity)
+    notes |= doubts(contacts, old is not None, nb, validity)
     planar = (
         MODES[mode_of(tolerance * speed, vna, slips[0], vnb, slips[1])],
         new_tuple(Twist, after),

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from math import sqrt
 
-from .transverse_states import SLIP, Across, Rates, Way, rates, way_of
+from .transverse_states import SLIP, Across, RatesAcross, Slips, rates, way_of
 
 GAMMA = 0.43586652150845900
 C21, C31, C32 = -1.0156171083877702, 4.0759956452537700, 9.2076794298330791
@@ -26,12 +26,12 @@ Stage = tuple[float, float, float, float]
 """A stage of a step: its parts of the rates at the beginning, those in the middle, and the derivatives of the former by
 the angles of the slips at A and at B."""
 
-NO_CHANGE: Rates = (0.0,) * 12
+NO_CHANGE: RatesAcross = (0.0,) * 12
 
 
 def implicit_step(
-    across: Across, a: int, b: int, way: Way, y: Rates, rate: Rates, span: float
-) -> tuple[Rates, float] | None:
+    across: Across, a: int, b: int, way: Slips, y: RatesAcross, rate: RatesAcross, span: float
+) -> tuple[RatesAcross, float] | None:
     """The state after a growth of N_B by `span`, and the largest error of a contact velocity in it.
 
     None where the step is too long: a slip turns away further than it can be followed, or jams.
@@ -89,7 +89,7 @@ def implicit_step(
     return after, error  # type: ignore[return-value]
 
 
-def derivative(across: Across, a: int, b: int, turned: Way, rate: Rates) -> Rates:
+def derivative(across: Across, a: int, b: int, turned: Slips, rate: RatesAcross) -> RatesAcross:
     """Derivative of the rates by the angle of a slip, from those where it is turned a little."""
     there = rates(across, a, b, turned)
     return NO_CHANGE if there is None else tuple([(p - q) / TURNED for p, q in zip(there, rate, strict=True)])  # type: ignore[return-value]

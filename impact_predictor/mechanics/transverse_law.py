@@ -9,8 +9,9 @@ from __future__ import annotations
 
 from math import inf, sqrt
 
-from .pair import JAMMED, MINUS, NO_SOLUTION, OPEN, PLUS, REVERSED, SHARED_FRICTION, STICK, WORK_LIMITED
-from .transverse_states import Across, States, descent, margin, rates, spatial_states, way_of
+from .impact.contacts import JAMMED, MINUS, NO_SOLUTION, OPEN, PLUS, REVERSED, SHARED_FRICTION, STICK, WORK_LIMITED
+from .impact.restitution import poisson
+from .transverse_states import Across, StatesAcross, descent, margin, rates, spatial_states, way_of
 from .transverse_step import EXPLICIT, Arc, State, advance, straight_arc
 
 MAX_STEPS = 400
@@ -31,14 +32,14 @@ ARRIVED = 1.0 - 1e-12
 STRAIGHT = 0.9
 """Square of the cosine of the angle from a slip to its rate below which it grows in its direction."""
 
-Impact = tuple[State, int, int]
-"""The state at the end of an impact; the contact states along it (see `pair.Impact`); notes."""
+SpatialPath = tuple[State, int, int]
+"""The state at the end of an impact; the contact states along it (see `impact.contacts`); notes."""
 
-Velocities = tuple[float, float, float, float, float, float]
+SpatialVelocities = tuple[float, float, float, float, float, float]
 """c_nA, c_tA, c_zA, c_nB, c_tB, c_zB."""
 
 
-def follow(across: Across, before: Velocities, small: float, restitution: float) -> Impact:
+def follow(across: Across, before: SpatialVelocities, small: float, restitution: float) -> SpatialPath:
     """Follow the impulse path of a body of unit mass from contact velocities with c_nB <= 0 and c_nA >= 0.
 
     The restitution at B is Poisson's, limited by the work that the compression stored. A step adds less than `small` to
@@ -48,7 +49,7 @@ def follow(across: Across, before: Velocities, small: float, restitution: float)
     turn_a, turn_b = (fa * max(1.0 + sa * sa, waa)) ** 2, (fb * max(1.0 + sb * sb, wbb)) ** 2
     state: State = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, *before)
     first_a, first_b = before[1], before[4]
-    states: States | None = None
+    states: StatesAcross | None = None
     target, reach = inf, inf
     compressing = True
     told, segments, notes, tries = -1, 0, 0, 0
@@ -162,7 +163,7 @@ def follow(across: Across, before: Velocities, small: float, restitution: float)
             if cnb >= 0.0:
                 if restitution == 0.0 or cnb > 0.0:
                     return state, segments, notes
-                compressing, target, told = False, (1.0 + restitution) * nb, -1
+                compressing, target, told = False, poisson(restitution, nb), -1
         elif nb >= ARRIVED * target or work <= 0.0:
             if cnb >= -small:
                 return state, segments, notes

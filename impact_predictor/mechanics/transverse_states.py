@@ -3,7 +3,7 @@
 Friction at a contact opposes the whole slip (t, z), z being the transverse direction x cross y. Within its cone it
 holds a contact at rest; else it is f N against the unit vector of the slip, so that its part in the plane is less
 than the planar law's. Impulses Z_A, Z_B along z change the transverse velocities by the mobilities waa, wab, wbb and
-nothing else; the plane answers as in `pair`, whose units hold here too.
+nothing else; the plane answers as in `impact.contacts`, whose units hold here too.
 """
 
 from __future__ import annotations
@@ -11,9 +11,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from math import sqrt
 
-from .pair import OPEN, PLUS, STICK, Pair, below_rounding, open_rates, state_alone
-from .pair import Rates as PlanarRates
-from .path_states import choose
+from .impact.contacts import OPEN, PLUS, ROUNDING, STICK, below_rounding, planar_contacts
+from .impact.rates import Rates as PlanarRates
+from .impact.rates import choose, open_rates, state_alone
 
 SLIP = PLUS
 """State of a contact that slips in any direction."""
@@ -21,17 +21,21 @@ SLIP = PLUS
 SLACK = 1e-12
 """A cone of friction left by less than this impulse, per unit of N_B, still holds: less is rounding."""
 
+Pair = tuple[float, float, float, float, float, float, float, float]
+"""Of a planar body: cosine and sine of the angle between the normals, moments of normal and tangent of A and of B (see
+`impact.contacts`), and the frictions."""
+
 Across = tuple[Pair, float, float, float]
 """The pair of contacts, and the transverse mobilities waa, wab, wbb in units of 1 / mass."""
 
-Way = tuple[float, float, float, float]
+Slips = tuple[float, float, float, float]
 """Unit vectors (t, z) of the slip at A and at B; of no meaning where a contact does not slip."""
 
-Rates = tuple[float, float, float, float, float, float, float, float, float, float, float, float]
+RatesAcross = tuple[float, float, float, float, float, float, float, float, float, float, float, float]
 """Per unit N_B: N_A, T_A, Z_A, N_B (1), T_B, Z_B and the rates of c_nA, c_tA, c_zA, c_nB, c_tB, c_zB."""
 
-States = tuple[int, int, Way, Rates, bool]
-"""States of A and B, the directions in which they slip, the rates, and whether these stay as they are."""
+StatesAcross = tuple[int, int, Slips, RatesAcross, bool]
+"""StatesAcross of A and B, the directions in which they slip, the rates, and whether these stay as they are."""
 
 COMPASS = tuple(
     (x / sqrt(x * x + z * z), z / sqrt(x * x + z * z))
@@ -45,8 +49,8 @@ COMPASS = tuple(
 """Directions all around, in the order of their angle."""
 
 
-def rates(across: Across, a: int, b: int, way: Way) -> Rates | None:
-    """Rates while A is in state `a` and B in state `b`, at least one of them slipping along its `way`.
+def rates(across: Across, a: int, b: int, way: Slips) -> RatesAcross | None:
+    """RatesAcross while A is in state `a` and B in state `b`, at least one of them slipping along its `way`.
 
     None where no finite impulse at A keeps it closed (Painleve).
     """
@@ -87,7 +91,7 @@ def rates(across: Across, a: int, b: int, way: Way) -> Rates | None:
     return na, ta, za, 1.0, tb, zb, rna, rta, rza, cos * y - sin * x + qb * q, rtb, rzb
 
 
-def margin(across: Across, a: int, b: int, rate: Rates) -> float:
+def margin(across: Across, a: int, b: int, rate: RatesAcross) -> float:
     """How far the impulses of closed contacts are within their cones of friction, per unit N_B."""
     na, ta, za, _, tb, zb = rate[:6]
     pair = across[0]
@@ -99,7 +103,7 @@ def margin(across: Across, a: int, b: int, rate: Rates) -> float:
     return least + SLACK
 
 
-def way_of(cta: float, cza: float, ctb: float, czb: float, way: Way, small: float) -> Way:
+def way_of(cta: float, cza: float, ctb: float, czb: float, way: Slips, small: float) -> Slips:
     """Directions of the slips; one of at most `small` keeps its direction."""
     ut, uz, wt, wz = way
     slip = sqrt(cta * cta + cza * cza)
@@ -111,18 +115,19 @@ def way_of(cta: float, cza: float, ctb: float, czb: float, way: Way, small: floa
     return ut, uz, wt, wz
 
 
-def spatial_states(across: Across, velocities: tuple[float, ...], compressing: bool) -> States | None:
+def spatial_states(across: Across, velocities: tuple[float, ...], compressing: bool) -> StatesAcross | None:
     """The first consistent states in the order O, S, slip (A before B); None where the path jams."""
     pair, _, _, _ = across
     cos, sin, qa, _, qb, sb, _, fb = pair
+    contacts = planar_contacts(*pair)
     cna, cta, cza, _, ctb, czb = velocities
     way = way_of(cta, cza, ctb, czb, (1.0, 0.0, 1.0, 0.0), 0.0)
     if czb == 0.0 and (cna > 0.0 or cza == 0.0):
-        found, a, b, rate = choose(pair, cna, cta, ctb, compressing, 0)
+        found, a, b, rate = choose(contacts, cna, cta, ctb, compressing, 0)
         return (a, b, way, from_plane(rate), True) if found else None
     if ctb == 0.0 and czb == 0.0:
-        b = state_alone(qb, sb, fb, 0.0)
-        alone = open_rates(pair, b, cna)
+        b = state_alone(contacts, 0.0)
+        alone = open_rates(contacts, b, cna)
         if alone[0]:
             return OPEN, b, way, from_plane(alone), True
         return slipping(across, SLIP, STICK, way) or set_off(across, 1, way)
@@ -130,14 +135,14 @@ def spatial_states(across: Across, velocities: tuple[float, ...], compressing: b
         return slipping(across, OPEN, SLIP, way)
     tb = -fb * way[2]
     lift, turn = tb * sin + cos, qa * (qb + tb * sb)
-    if not below_rounding(lift + turn, lift, turn):
+    if not below_rounding(lift + turn, ROUNDING, lift, turn):
         return slipping(across, OPEN, SLIP, way)
     if cta == 0.0 and cza == 0.0:
         return slipping(across, STICK, SLIP, way) or set_off(across, 0, way)
     return slipping(across, SLIP, SLIP, way)
 
 
-def slipping(across: Across, a: int, b: int, way: Way) -> States | None:
+def slipping(across: Across, a: int, b: int, way: Slips) -> StatesAcross | None:
     """These states, if their impulses lie within the cones."""
     rate = rates(across, a, b, way)
     if rate is None or margin(across, a, b, rate) < 0.0:
@@ -145,7 +150,7 @@ def slipping(across: Across, a: int, b: int, way: Way) -> States | None:
     return a, b, way, rate, False
 
 
-def set_off(across: Across, contact: int, way: Way) -> States | None:
+def set_off(across: Across, contact: int, way: Slips) -> StatesAcross | None:
     """Both contacts slip, the one at rest, A (0) or B (1), in the direction in which its own slip grows.
 
     The direction is one that the slip keeps, and to which it returns when it is turned. Of several the slip that
@@ -153,7 +158,7 @@ def set_off(across: Across, contact: int, way: Way) -> States | None:
     """
     t, z = (7, 8) if contact == 0 else (10, 11)
 
-    def towards(x: float, y: float) -> tuple[Way, Rates | None]:
+    def towards(x: float, y: float) -> tuple[Slips, RatesAcross | None]:
         size = sqrt(x * x + y * y)
         x, y = x / size, y / size
         there = (x, y, way[2], way[3]) if contact == 0 else (way[0], way[1], x, y)
@@ -163,7 +168,7 @@ def set_off(across: Across, contact: int, way: Way) -> States | None:
         _, rate = towards(x, y)
         return (x * rate[z] - y * rate[t]) if rate is not None and rate[0] >= 0.0 else -1.0
 
-    best: States | None = None
+    best: StatesAcross | None = None
     growth = -SLACK
     turns = [turning(x, y) for x, y in COMPASS]
     for k, (x, y) in enumerate(COMPASS):
@@ -204,7 +209,7 @@ def descent(value: Callable[[float], float], first: float, last: float) -> float
     return high
 
 
-def from_plane(rate: PlanarRates) -> Rates:
-    """Rates of a body that no friction pushes across the plane."""
+def from_plane(rate: PlanarRates) -> RatesAcross:
+    """RatesAcross of a body that no friction pushes across the plane."""
     _, na, ta, tb, rna, rta, rnb, rtb, _, _, _ = rate
     return na, ta, 0.0, 1.0, tb, 0.0, rna, rta, 0.0, rnb, rtb, 0.0

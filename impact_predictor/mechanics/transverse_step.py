@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from .impact import new_tuple
 from .transverse_implicit import implicit_step
-from .transverse_states import Across, Rates, Way, rates, way_of
+from .transverse_states import Across, RatesAcross, Slips, rates, way_of
 
 EXPLICIT = 24
 """Attempts at explicit steps before a path counts as stiff: one to a tolerance of 1e-3 needs two to eight."""
@@ -27,7 +27,7 @@ SURE = 0.1
 """What the second difference of the rates counts as the error of an explicit step. 1 / 24 would make it that of a step
 of order 2, which is too little where a slip turns by much."""
 
-State = Rates
+State = RatesAcross
 """N_A, T_A, Z_A, N_B, T_B, Z_B so far, and c_nA, c_tA, c_zA, c_nB, c_tB, c_zB."""
 
 
@@ -40,12 +40,12 @@ class Arc(NamedTuple):
 
     begin: State
     end: State
-    first: Rates
-    last: Rates
+    first: RatesAcross
+    last: RatesAcross
     first_span: float
     last_span: float
     work: float
-    way: Way
+    way: Slips
 
     def at(self, part: float) -> State:
         """The state at a part (0..1) of the stretch, by the cubic through both ends."""
@@ -67,14 +67,23 @@ def cubic(begin: float, end: float, first: float, last: float, part: float) -> f
     return begin + part * part * (3.0 - 2.0 * part) * (end - begin) + part * (1.0 - part) * slopes
 
 
-def straight_arc(y: State, rate: Rates, span: float, way: Way) -> Arc:
+def straight_arc(y: State, rate: RatesAcross, span: float, way: Slips) -> Arc:
     """A stretch in which N_B grows by `span` and the rates do not change."""
     end: State = tuple([p + span * q for p, q in zip(y, rate, strict=True)])  # type: ignore[assignment]
     return Arc(y, end, rate, rate, span, span, 0.5 * span * (y[9] + end[9]), way)
 
 
 def advance(
-    across: Across, a: int, b: int, way: Way, y: State, rate: Rates, span: float, ends: bool, small: float, tries: int
+    across: Across,
+    a: int,
+    b: int,
+    way: Slips,
+    y: State,
+    rate: RatesAcross,
+    span: float,
+    ends: bool,
+    small: float,
+    tries: int,
 ) -> tuple[Arc, float, int] | None:
     """A step in which N_B grows by `span` or less, with an error below `small` in every slip; None where none is found.
 
@@ -98,7 +107,15 @@ def advance(
 
 
 def explicit_step(
-    across: Across, a: int, b: int, way: Way, y: State, rate: Rates, span: float, ends: bool, small: float
+    across: Across,
+    a: int,
+    b: int,
+    way: Slips,
+    y: State,
+    rate: RatesAcross,
+    span: float,
+    ends: bool,
+    small: float,
 ) -> tuple[Arc, float] | None:
     """The stretch that a step makes, and the largest error of a slip in it.
 
@@ -167,7 +184,15 @@ def explicit_step(
 
 
 def stiff_step(
-    across: Across, a: int, b: int, way: Way, y: State, rate: Rates, span: float, _: bool, small: float
+    across: Across,
+    a: int,
+    b: int,
+    way: Slips,
+    y: State,
+    rate: RatesAcross,
+    span: float,
+    _: bool,
+    small: float,
 ) -> tuple[Arc, float] | None:
     """As `explicit_step`, by an implicit one along N_B."""
     step = implicit_step(across, a, b, way, y, rate, span)

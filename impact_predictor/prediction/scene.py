@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from math import hypot
 from typing import Any, Final, NamedTuple
 
-from ..mechanics.answer import VALIDITY
+from ..mechanics.impact.answer import VALIDITY
 from ..mechanics.types import Validity
 from ..parameters.types import values_of
 from .types import Vector3

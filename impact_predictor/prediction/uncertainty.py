@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..mechanics.batch import Outcomes, solve_impacts
+from ..mechanics.impact.batch import Outcomes, solve_impacts
 from ..mechanics.sensitivity import allowed_changes
 from ..mechanics.types import Contact, Mode, Twist, TwoPointBody
 from .planar import ImpactPlane, Posture

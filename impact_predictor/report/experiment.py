@@ -6,9 +6,9 @@ from math import degrees, inf, radians
 from typing import Final, NamedTuple
 
 from ..errors import InputError
-from ..mechanics.answer import VALIDITY
 from ..mechanics.bodies import rod
 from ..mechanics.impact import solve_impact
+from ..mechanics.impact.answer import VALIDITY
 from ..mechanics.motion import next_touchdown, standing
 from ..mechanics.types import Flag, Mode, Outcome, Twist, TwoPointBody
 

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from rich.table import Table
 
 from ..errors import InputError
-from ..mechanics.batch import Outcomes, solve_impacts
 from ..mechanics.bodies import cylinder, plate, refuse, rod
 from ..mechanics.impact import states_of
+from ..mechanics.impact.batch import Outcomes, solve_impacts
 from ..mechanics.types import Flag, Mode, Twist, TwoPointBody
 from .files import whole
 from .modes import MODES

@@ -97,7 +97,7 @@ def flat_equations(subject: str, values: Mapping[str, Any]) -> Iterator[BorderEq
     assert body.old is not None
     f, a, b, h = body.new.friction, -body.old.x, body.new.x, -body.new.y
     rho2 = body.inertia / body.mass
-    shape = flat.Shape(a, b, h, rho2)
+    shape = flat.FlatBody(a, b, h, rho2)
     rectangle = "delta" in values and not {"a", "b", "inertia"} & values.keys()
     bar = "thickness" in values and "inertia" not in values
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -8,7 +8,7 @@ from typing import Final
 from rich.console import Console
 from rich.table import Table
 
-from ..mechanics.problem import approach
+from ..mechanics.impact.body import approach
 from ..mechanics.types import Contact, Flag, Mode, Outcome, Twist, TwoPointBody
 from .table import plain_table, show
 

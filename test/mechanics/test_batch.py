@@ -28,8 +28,7 @@ from impact_predictor import (
     solve_impact,
     solve_impacts,
 )
-from impact_predictor.mechanics import batch
-from impact_predictor.mechanics.impact import states_of
+from impact_predictor.mechanics.impact import batch, states_of
 from impact_predictor.mechanics.random_problems import KINDS, problems_of
 
 EACH = 100_000 // len(KINDS) + 1
@@ -230,7 +229,7 @@ def test_many_impacts_need_hardly_more_memory_than_their_outcomes():
 
 
 READ_ONLY = """
-from impact_predictor.mechanics.batch import filler
+from impact_predictor.mechanics.impact.batch import filler
 fill = filler()
 print(type(fill).__module__.split(".")[0], fill.stats.cache_path)
 """

@@ -165,7 +165,7 @@ def test_a_body_is_in_one_domain_at_every_point(case):
         k = body.inertia / (body.mass * numbers["radius"] ** 2)
         module, where = cylindrical, (tangent(numbers), numbers["friction"], k)
     else:
-        shape = flat.Shape(-body.old.x, body.new.x, -body.new.y, body.inertia / body.mass)
+        shape = flat.FlatBody(-body.old.x, body.new.x, -body.new.y, body.inertia / body.mass)
         module, where = flat, (shape, numbers["friction"])
     domains = [
         getattr(module, domain)(*where)

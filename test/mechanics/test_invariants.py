@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from impact_predictor import Contact, Flag, Twist, TwoPointBody, plate, solve_impact
 from impact_predictor.mechanics import invariants
-from impact_predictor.mechanics.batch import Outcomes
+from impact_predictor.mechanics.impact.batch import Outcomes
 from impact_predictor.mechanics.invariants import LIMITS, violations
 from impact_predictor.mechanics.random_problems import KINDS, STIFF, problems_of
 

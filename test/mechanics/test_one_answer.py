@@ -7,8 +7,9 @@ import pytest
 from alone import random_impacts
 
 from impact_predictor import solve_impact
-from impact_predictor.mechanics import total_law
-from impact_predictor.mechanics.one_answer import one_answer
+from impact_predictor.mechanics.impact import total_law
+from impact_predictor.mechanics.impact.contacts import planar_contacts
+from impact_predictor.mechanics.impact.total_law import one_answer
 from impact_predictor.mechanics.random_problems import KINDS
 
 
@@ -40,8 +41,8 @@ def test_one_answer_is_known_exactly_where_all_determinants_are_positive():
     for _ in range(2000):
         angle, *moments = source.uniform(-3.0, 3.0), *source.uniform(-2.0, 2.0, 4)
         pair = (np.cos(angle), np.sin(angle), *moments, *source.uniform(0.0, 1.0, 2))
-        assert one_answer(pair, 0.0, 0.0) == (least_determinant(pair) > 0.0)
-        known += one_answer(pair, 0.0, 0.0)
+        assert one_answer(planar_contacts(*pair), 0.0, 0.0) == (least_determinant(pair) > 0.0)
+        known += one_answer(planar_contacts(*pair), 0.0, 0.0)
     assert 500 < known < 1500
 
 
@@ -55,15 +56,15 @@ def test_one_answer_is_known_exactly_where_all_determinants_are_positive():
 def test_slips_of_both_relative_directions_count(angle, numbers):
     pair = (np.cos(angle), np.sin(angle), *numbers)
     assert least_determinant(pair) < 0.0
-    assert not one_answer(pair, 0.1, 0.3)
+    assert not one_answer(planar_contacts(*pair), 0.1, 0.3)
 
 
 @pytest.mark.parametrize(("fa", "fb", "known"), [(2.0, 2.0, True), (0.2, 0.9, True), (0.0, 3.0, False)])
 def test_on_a_flat_floor_the_two_frictions_may_be_any_that_differ_little(fa, fb, known):
     # both contacts 1 from the middle of the body and 0.7 below: their slips are one
     pair = (1.0, 0.0, -1.0, 0.7, 1.0, 0.7, fa, fb)
-    assert one_answer(pair, 0.3, 0.3) == known
-    assert one_answer(pair, 0.3, -0.3) == (least_determinant(pair) > 0.0)
+    assert one_answer(planar_contacts(*pair), 0.3, 0.3) == known
+    assert one_answer(planar_contacts(*pair), 0.3, -0.3) == (least_determinant(pair) > 0.0)
 
 
 @pytest.mark.parametrize("kind", [kind for kind in KINDS if not kind.startswith("extreme")])

@@ -6,22 +6,19 @@ import random
 import numpy as np
 import pytest
 
-from impact_predictor.mechanics import total_law
-from impact_predictor.mechanics.pair import (
-    MINUS,
-    OPEN,
-    PLUS,
-    STICK,
+from impact_predictor.mechanics.impact import total_law
+from impact_predictor.mechanics.impact.contacts import MINUS, OPEN, PLUS, STICK, planar_contacts, push_interval
+from impact_predictor.mechanics.impact.rates import (
+    choose,
     open_rates,
-    push_interval,
     rolling_rates,
     slide_rates,
     slide_stick_rates,
     state_alone,
     stick_rates,
+    try_all,
     wedged_rates,
 )
-from impact_predictor.mechanics.path_states import choose, try_all
 
 
 def random_pair(source, flat=False):
@@ -32,14 +29,14 @@ def random_pair(source, flat=False):
     return cos, sin, qa, sa, qb, sa if flat else sb, source.uniform(0.0, top), source.uniform(0.0, top)
 
 
-def all_states(pair, cta, ctb, tied=False):
+def all_states(contacts, cta, ctb, tied=False):
     """Every consistent pair of states of a closed A and an approached B, without regard to what was proved.
 
     `tied`: B's tangent passes through A, so that at rest both stick or none does.
     """
     found = []
-    b = state_alone(pair[4], pair[5], pair[7], ctb)
-    if open_rates(pair, b, 0.0)[0]:
+    b = state_alone(contacts, ctb)
+    if open_rates(contacts, b, 0.0)[0]:
         found.append((OPEN, b))
     for a in (STICK, PLUS, MINUS):
         if (a == STICK and cta != 0.0) or (a == PLUS and cta < 0.0) or (a == MINUS and cta > 0.0):
@@ -50,11 +47,11 @@ def all_states(pair, cta, ctb, tied=False):
             if tied and (a == STICK) != (b == STICK):
                 continue
             if tied and a == STICK:
-                rates = rolling_rates(pair)
+                rates = rolling_rates(contacts)
             elif b == STICK:
-                rates = wedged_rates(pair) if a == STICK else slide_stick_rates(pair, a, cta)
+                rates = wedged_rates(contacts) if a == STICK else slide_stick_rates(contacts, a, cta)
             else:
-                rates = stick_rates(pair, b, ctb) if a == STICK else slide_rates(pair, a, b, cta, ctb)
+                rates = stick_rates(contacts, b, ctb) if a == STICK else slide_rates(contacts, a, b, cta, ctb)
             ends = (a >= PLUS and cta * rates[5] < 0.0) or (b >= PLUS and ctb * rates[7] < 0.0)
             if rates[0] and (rates[6] > 0.0 or ends):
                 found.append((a, b))
@@ -67,27 +64,28 @@ def test_a_body_at_rest_on_one_flat_floor_has_one_consistent_pair_of_states():
         pair = random_pair(source, flat=True)
         if pair[4] <= pair[2]:
             continue
-        b = state_alone(pair[4], pair[5], pair[7], 0.0)
-        alone = open_rates(pair, b, 0.0)
-        found, a, b, rates = try_all(pair, True, b, alone, 0.0, 0.0, True, 0)
+        contacts = planar_contacts(*pair)
+        b = state_alone(contacts, 0.0)
+        alone = open_rates(contacts, b, 0.0)
+        found, a, b, rates = try_all(contacts, b, alone, 0.0, 0.0, True, 0)
         assert found == 1
-        assert choose(pair, 0.0, 0.0, 0.0, True, 0) == (found, a, b, rates)
+        assert choose(contacts, 0.0, 0.0, 0.0, True, 0) == (found, a, b, rates)
         if a == STICK:
-            assert rates == rolling_rates(pair)
+            assert rates == rolling_rates(contacts)
 
 
 def test_the_states_that_the_path_law_does_not_try_are_not_consistent():
     source = random.Random(5)
     several = 0
     for _ in range(20000):
-        pair = random_pair(source)
+        contacts = planar_contacts(*random_pair(source))
         cta, ctb = (source.choice((0.0, source.uniform(-1.0, 1.0))) for _ in range(2))
-        states = all_states(pair, cta, ctb)
-        found, a, b, _ = choose(pair, 0.0, cta, ctb, True, 0)
+        states = all_states(contacts, cta, ctb)
+        found, a, b, _ = choose(contacts, 0.0, cta, ctb, True, 0)
         assert found == len(states)
         assert not states or states[0] == (a, b)
         for choice, state in enumerate(states):
-            assert choose(pair, 0.0, cta, ctb, True, choice)[1:3] == state
+            assert choose(contacts, 0.0, cta, ctb, True, choice)[1:3] == state
         several += found > 1
     assert several > 100
 
@@ -97,9 +95,9 @@ def test_a_body_at_rest_on_a_step_or_between_walls_has_the_states_that_a_search_
     several, opposite = 0, 0
     for _ in range(20000):
         cos, sin, qa, sa, qb, _, fa, fb = random_pair(source)
-        pair = (cos, sin, qa, sa, qb, sa * cos + qa * sin, fa, fb)
-        states = all_states(pair, 0.0, 0.0, tied=True)
-        found, a, b, _ = choose(pair, 0.0, 0.0, 0.0, True, 0)
+        contacts = planar_contacts(cos, sin, qa, sa, qb, sa * cos + qa * sin, fa, fb)
+        states = all_states(contacts, 0.0, 0.0, tied=True)
+        found, a, b, _ = choose(contacts, 0.0, 0.0, 0.0, True, 0)
         assert found == len(states)
         assert not states or states[0] == (a, b)
         several += found > 1
@@ -117,11 +115,11 @@ def test_a_frictionless_contact_can_be_pushed_but_not_pulled():
 
 def solutions_by_elimination(problem):
     """Twist changes of all solutions of the total law but stick-stick, each pair of states a 4 x 4 linear system."""
-    pair, restitution_old, restitution, cna, cta, cnb, ctb, _, _ = problem
-    cos, sin, qa, sa, qb, sb, *frictions = pair
-    rows = np.array([(0, 1, qa), (1, 0, sa), (-sin, cos, qb), (cos, sin, sb)])
+    contacts, (restitution_old, restitution), before, _ = problem
+    (an, at, qa, sa, fa), (nx, ny, nq, tx, ty, tq, _, fb), *_ = contacts
+    rows, frictions = np.array([(0, an, qa), (at, 0, sa), (nx, ny, nq), (tx, ty, tq)]), (fa, fb)
     w = rows @ rows.T
-    c = np.array([cna, cta, cnb, ctb])
+    c = np.array(before)
     newton = c * (1 + np.array([restitution_old, 0, restitution, 0]))
     solutions = []
     for states in [(a, b) for a in "OS+-" for b in "OS+-"]:
@@ -163,7 +161,7 @@ def test_the_total_law_finds_the_solutions_that_elimination_finds():
         velocities = (0.0, source.uniform(-1, 1), -source.uniform(0.1, 1.0), source.uniform(-1, 1))
         if source.random() < 0.3:
             velocities = (-source.uniform(0.1, 1.0), *velocities[1:])
-        problem = (pair, 0.3, source.choice((0.0, 0.5)), *velocities, 1e-14, 1e-14)
+        problem = planar_contacts(*pair), (0.3, source.choice((0.0, 0.5))), velocities, (1e-14,) * 4
         expected = solutions_by_elimination(problem)
         count = total_law.solve(problem, 0)[13]
         # Generic velocities of two contacts are not those of one support, so that both cannot stick.

@@ -11,7 +11,7 @@ import uncertain_impact
 from uncertain_impact import propagate
 
 from impact_predictor import Contact, Flag, Mode, Twist, TwoPointBody, plate, solve_impact
-from impact_predictor.mechanics import batch
+from impact_predictor.mechanics.impact import batch
 from impact_predictor.mechanics.sensitivity import sensitivity
 from impact_predictor.prediction import uncertainty
 from impact_predictor.prediction.predictor import Predictor

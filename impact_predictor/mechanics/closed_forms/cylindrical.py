@@ -11,10 +11,11 @@ While A holds, the cylinder spins in place, and stops if friction stops that.
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .. import bodies
 from ..bodies import Number
-from .values import Array, ClosedForm, Truths, UnitImpact, closed_form, select, speed
+from .values import ClosedForm, Truths, UnitImpact, closed_form, select, speed
 
 HOMOGENEOUS = 0.5
 
@@ -88,7 +89,7 @@ def locks(t: Number, f: Number) -> Truths:
     return np.asarray(f * t >= 1.0)
 
 
-def stop_tangent(k: Number = HOMOGENEOUS) -> Array:
+def stop_tangent(k: Number = HOMOGENEOUS) -> NDArray[np.float64]:
     """Tangent of the gamma from which on a cylinder cannot roll over B, inf if there is none (Fig. 7: sqrt 3).
 
     It is the border of PIVOT and STOP, from `pivot_friction` there upwards.
@@ -97,21 +98,21 @@ def stop_tangent(k: Number = HOMOGENEOUS) -> Array:
     return np.where(less > 0.0, np.sqrt((1.0 + k) / np.where(less > 0.0, less, 1.0)), np.inf)
 
 
-def stop_friction(t: Number, k: Number = HOMOGENEOUS) -> Array:
+def stop_friction(t: Number, k: Number = HOMOGENEOUS) -> NDArray[np.float64]:
     """Friction between SLIDE below and STOP above; nan where they have no border (Fig. 7: (t - sqrt(t^2 - 3)) / 3)."""
     room = t * t - 4.0 * k * (1.0 + k)
     borders = (room >= 0.0) & ((k > 0.5) | (t >= stop_tangent(k)))
     return np.where(borders, 2.0 * k / (t + np.sqrt(np.where(borders, room, 0.0))), np.nan)
 
 
-def spin_friction(t: Number, k: Number = HOMOGENEOUS) -> Array:
+def spin_friction(t: Number, k: Number = HOMOGENEOUS) -> NDArray[np.float64]:
     """Friction between STOP below and SLIDE above, which meet so if k > 1/2; nan where they have no border."""
     room = t * t - 4.0 * k * (1.0 + k)
     borders = (room >= 0.0) & (k > 0.5) & (t <= stop_tangent(k))
     return np.where(borders, (t + np.sqrt(np.where(borders, room, 0.0))) / (2.0 * (1.0 + k)), np.nan)
 
 
-def lift_friction(t: Number, k: Number = HOMOGENEOUS) -> Array:
+def lift_friction(t: Number, k: Number = HOMOGENEOUS) -> NDArray[np.float64]:
     """Friction between SLIDE below and PIVOT_SLIDE above; nan where they have no border.
 
     Fig. 7: tan(gamma) = f + sqrt(1 + f^2), which is f = (t - 1 / t) / 2.
@@ -119,7 +120,7 @@ def lift_friction(t: Number, k: Number = HOMOGENEOUS) -> Array:
     return np.where((t >= 1.0) & (t <= stop_tangent(k)), 0.5 * (t - 1.0 / t), np.nan)
 
 
-def pivot_friction(t: Number, k: Number = HOMOGENEOUS) -> Array:
+def pivot_friction(t: Number, k: Number = HOMOGENEOUS) -> NDArray[np.float64]:
     """Friction between PIVOT_SLIDE below and PIVOT above; nan where they have no border (Fig. 7: t / 3)."""
     return np.where(t <= stop_tangent(k), k * t / (1.0 + k), np.nan)
 

@@ -9,14 +9,15 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .. import bodies
 from ..bodies import Number
 from ..types import TwoPointBody
-from .values import Array, ClosedForm, Truths, UnitImpact, closed_form, select, speed
+from .values import ClosedForm, Truths, UnitImpact, closed_form, select, speed
 
 
-class Shape(NamedTuple):
+class FlatBody(NamedTuple):
     """A body on a flat floor: A lies `a` > 0 behind and B `b` > 0 ahead of the mass centre, `height` >= 0 below it (m).
 
     `rho2` is the square of the radius of gyration in m^2.
@@ -28,17 +29,17 @@ class Shape(NamedTuple):
     rho2: Number
 
 
-def rectangle(delta: Number, a: Number = 0.5, b: Number = 0.5) -> Shape:
+def rectangle(delta: Number, a: Number = 0.5, b: Number = 0.5) -> FlatBody:
     """A homogeneous plate of length 1 and height `delta`, as in Fig. 5; `a` and `b` are parts of its length."""
-    return Shape(a, b, 0.5 * delta, (1.0 + delta * delta) / 12.0)
+    return FlatBody(a, b, 0.5 * delta, (1.0 + delta * delta) / 12.0)
 
 
-def bar(length: Number, thickness: Number, a: Number, b: Number) -> Shape:
+def bar(length: Number, thickness: Number, a: Number, b: Number) -> FlatBody:
     """A homogeneous rod with the inertia of a line, mass length^2 / 12 (section 2.1); slender with a thickness of 0."""
-    return Shape(a, b, 0.5 * thickness, length * length / 12.0)
+    return FlatBody(a, b, 0.5 * thickness, length * length / 12.0)
 
 
-def stop(shape: Shape, f: Number) -> UnitImpact:
+def stop(shape: FlatBody, f: Number) -> UnitImpact:
     """STOP, eq. (3.1), of a rod eq. (2.2), whose first forms lack the height.
 
     How the contacts share S_FA + S_FB = -m omega h is a choice: equally, as far as the friction of both allows.
@@ -50,7 +51,7 @@ def stop(shape: Shape, f: Number) -> UnitImpact:
     return UnitImpact(0.0, 0.0, normal_old, -share, normal_new, share - h)
 
 
-def slide(shape: Shape, f: Number) -> UnitImpact:
+def slide(shape: FlatBody, f: Number) -> UnitImpact:
     """SLIDE, eq. (3.2)."""
     a, b, h, rho2 = shape
     normal_old = (a * b - rho2 - f * h * a) / (a + b)
@@ -58,7 +59,7 @@ def slide(shape: Shape, f: Number) -> UnitImpact:
     return UnitImpact(0.0, h - f * a, normal_old, -f * normal_old, normal_new, -f * normal_new)
 
 
-def pivot(shape: Shape) -> UnitImpact:
+def pivot(shape: FlatBody) -> UnitImpact:
     """PIVOT, eq. (3.3), of a rod eq. (2.6) with the sign of omega_1 in its second line corrected."""
     a, b, h, rho2 = shape
     size = rho2 + h * h + b * b
@@ -66,7 +67,7 @@ def pivot(shape: Shape) -> UnitImpact:
     return UnitImpact((a * b - rho2 - h * h) / size, 0.0, 0.0, 0.0, normal, -h * b * (a + b) / size)
 
 
-def pivot_slide(shape: Shape, f: Number) -> UnitImpact:
+def pivot_slide(shape: FlatBody, f: Number) -> UnitImpact:
     """PIVOT_SLIDE, eq. (3.4) with its v_s corrected."""
     a, b, h, rho2 = shape
     size = rho2 + b * b - f * h * b
@@ -75,42 +76,42 @@ def pivot_slide(shape: Shape, f: Number) -> UnitImpact:
     return UnitImpact((a * b - rho2 - f * h * a) / size, slip, 0.0, 0.0, normal, -f * normal)
 
 
-def old_is_pressed(shape: Shape) -> Truths:
+def old_is_pressed(shape: FlatBody) -> Truths:
     """Whether an impact that stops the body presses A down, ab >= rho^2 + h^2: eq. (2.3), and section 3 after (3.1)."""
     a, b, h, rho2 = shape
     return np.asarray(a * b >= rho2 + h * h)
 
 
-def stop_domain(shape: Shape, f: Number) -> Truths:
+def stop_domain(shape: FlatBody, f: Number) -> Truths:
     """Where the body stops; the sticking condition after (3.1) is corrected to f >= h / a, as in eq. (2.4)."""
     return old_is_pressed(shape) & (f * shape.a >= shape.height)
 
 
-def slide_domain(shape: Shape, f: Number) -> Truths:
+def slide_domain(shape: FlatBody, f: Number) -> Truths:
     """Where the body slides on both contacts: section 3, after (3.2)."""
     a, b, h, rho2 = shape
     return np.where(old_is_pressed(shape), f * a < h, f * h * a <= a * b - rho2)
 
 
-def pivot_domain(shape: Shape, f: Number) -> Truths:
+def pivot_domain(shape: FlatBody, f: Number) -> Truths:
     """Where the body turns about B, which sticks: section 3, after (3.3)."""
     _, b, h, rho2 = shape
     return ~old_is_pressed(shape) & (f * (rho2 + h * h) >= h * b)
 
 
-def pivot_slide_domain(shape: Shape, f: Number) -> Truths:
+def pivot_slide_domain(shape: FlatBody, f: Number) -> Truths:
     """Where the body turns about B, which slides: section 3, after (3.4)."""
     a, b, h, rho2 = shape
     return ~old_is_pressed(shape) & (f * h * a > a * b - rho2) & (f * (rho2 + h * h) < h * b)
 
 
-def stop_friction(shape: Shape) -> Array:
+def stop_friction(shape: FlatBody) -> NDArray[np.float64]:
     """Friction f = h / a between SLIDE below and STOP above (Fig. 5: f = delta); nan where they have no border."""
     a, _, h, _ = shape
     return np.where(old_is_pressed(shape), h / a, np.nan)
 
 
-def lift_friction(shape: Shape) -> Array:
+def lift_friction(shape: FlatBody) -> NDArray[np.float64]:
     """Friction f = (ab - rho^2) / (ha) between SLIDE below and PIVOT_SLIDE above; nan where they have no border.
 
     Fig. 5: f = (2 - delta^2) / (3 delta).
@@ -121,7 +122,7 @@ def lift_friction(shape: Shape) -> Array:
     return np.where(borders, room / (np.where(borders, h, 1.0) * a), np.nan)
 
 
-def pivot_friction(shape: Shape) -> Array:
+def pivot_friction(shape: FlatBody) -> NDArray[np.float64]:
     """Friction f = hb / (rho^2 + h^2) between PIVOT_SLIDE below and PIVOT above; nan where they have no border.
 
     Fig. 5: f = 3 delta / (4 delta^2 + 1).
@@ -130,7 +131,7 @@ def pivot_friction(shape: Shape) -> Array:
     return np.where(a * b <= rho2 + h * h, h * b / (rho2 + h * h), np.nan)
 
 
-def stop_height(length: Number, a: Number, b: Number) -> Array:
+def stop_height(length: Number, a: Number, b: Number) -> NDArray[np.float64]:
     """Height of the highest homogeneous plate that can stop (m), 0 if none does.
 
     It is the border of STOP and PIVOT, from f = h / a upwards (Fig. 5: delta = 1 / sqrt 2).
@@ -138,7 +139,7 @@ def stop_height(length: Number, a: Number, b: Number) -> Array:
     return np.sqrt(np.maximum(3.0 * a * b - 0.25 * length * length, 0.0))
 
 
-def stop_distance(length: Number, thickness: Number = 0.0) -> Array:
+def stop_distance(length: Number, thickness: Number = 0.0) -> NDArray[np.float64]:
     """Distance of both supports from the middle of a rod from which on it stops, eq. (2.3): 0.289 l if slender (m)."""
     return np.sqrt((length * length + 3.0 * thickness * thickness) / 12.0)
 
@@ -186,7 +187,7 @@ def strike(body: TwoPointBody, omega: Number) -> ClosedForm:
     a, b, h, f = -old.x, new.x, -new.y, new.friction
     bodies.positive(a=a, b=b)
     w = speed(omega)
-    shape = Shape(a, b, h, inertia / mass)
+    shape = FlatBody(a, b, h, inertia / mass)
     domains = [domain(shape, f) for domain in (stop_domain, slide_domain, pivot_slide_domain, pivot_domain)]
     # More friction than B needs to stick could make the denominator of (3.4) zero.
     sliding = pivot_slide(shape, np.minimum(f, h * b / (shape.rho2 + h * h)))

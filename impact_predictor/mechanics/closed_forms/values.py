@@ -13,7 +13,6 @@ from .. import bodies
 from ..bodies import Number
 from ..types import Mode
 
-Array = NDArray[np.float64]
 Modes = NDArray[np.uint8]
 Truths = NDArray[np.bool_]
 
@@ -46,9 +45,9 @@ class ClosedForm(NamedTuple):
     """
 
     mode: Modes
-    twist: Array
-    slip: Array
-    impulses: Array
+    twist: NDArray[np.float64]
+    slip: NDArray[np.float64]
+    impulses: NDArray[np.float64]
 
 
 def speed(omega: Number) -> Number:

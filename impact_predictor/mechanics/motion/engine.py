@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 
-from ..pair import MINUS, OPEN, PLUS, STICK
+from ..impact.contacts import MINUS, OPEN, PLUS, STICK
 from ..types import TwoPointBody, Vector
 from .equations import RockingBody, TwoPoints, rocking_body, turned
 from .events import Event

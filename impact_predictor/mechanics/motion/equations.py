@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 from ...errors import InputError
 from ..bodies import sine_and_cosine
-from ..pair import PLUS, STICK
+from ..impact.contacts import PLUS, STICK
 from ..types import Contact, TwoPointBody, Vector
 from .support import FrameAcceleration, PlanarState
 

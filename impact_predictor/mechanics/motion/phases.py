@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from ..pair import OPEN, PLUS, STICK
+from ..impact.contacts import OPEN, PLUS, STICK
 from ..types import Vector
 from .equations import RockingBody, turned
 from .events import Condition, Event, bracketed_root, dip, fall, newton_root

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
-from ..answer import STAYS
 from ..impact import number_of, solve_impact
-from ..pair import OPEN
+from ..impact.answer import STAYS
+from ..impact.contacts import OPEN
 from ..types import Flag, Twist, TwoPointBody, Validity
 from .accumulation import FollowedImpact, ImpactSequence, Limit
 from .engine import MotionEngine

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from ..pair import MINUS, OPEN, PLUS, STICK
+from ..impact.contacts import MINUS, OPEN, PLUS, STICK
 from .equations import RockingBody
 from .events import Event
 from .phases import ContactPhase, PhaseEnd

@@ -17,9 +17,9 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from ...mechanics import bodies, closed_forms
-from ...mechanics.batch import Outcomes, solve_impacts
 from ...mechanics.compliant import compliant_impact
 from ...mechanics.impact import solve_impact
+from ...mechanics.impact.batch import Outcomes, solve_impacts
 from ...mechanics.transverse import Transverse, solve_transverse_impact
 from ...mechanics.types import Contact, Mode, Twist, TwoPointBody
 from ...prediction.impact import TOLERANCE

@@ -15,16 +15,17 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from . import answer, one_answer, pair, path_law, path_states, problem, total_law, types
-from .impact import NOWHERE, number_of
-from .types import Contact, Twist, TwoPointBody, Validity
+from .. import types
+from ..types import Contact, Twist, TwoPointBody, Validity
+from . import answer, body, contacts, path_law, rates, restitution, total_law
+from .solve import NOWHERE, number_of
 
 CHUNK = 2048
 """Impacts that are handed over at a time, so that the copies of broadcast fields stay small."""
 
-LAW_CODE = (pair, path_states, path_law, one_answer, total_law, problem, answer)
+LAW_CODE = (contacts, rates, restitution, path_law, total_law, body, answer)
 
-CALLED = (path_law.solve, total_law.solve, total_law.any_that_holds)
+CALLED = (path_law.solve, total_law.solve, total_law.any_that_holds, total_law.all_that_hold)
 """Law functions that are compiled on their own. All others become a part of those that call them, which halves the
 time: calls with so many numbers are slow."""
 

@@ -2,20 +2,18 @@
 
 The contact states are followed along the growing normal impulse of the struck contact B. The *rates* of the contact
 velocities obey Coulomb's law at B and, while it is closed, at the old contact A; a segment ends when a slip or an open
-gap's velocity reaches zero, or with the compression of B.
+gap's velocity reaches zero, or with the compression of B. Law code (see `contacts`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from math import inf, sqrt
-from typing import TypeVar
+from math import inf
+from typing import NamedTuple
 
-from .pair import (
+from .contacts import (
     JAMMED,
     MINUS,
     NO_SOLUTION,
-    NOT_CONSISTENT,
     OPEN,
     PLUS,
     REVERSED,
@@ -23,25 +21,35 @@ from .pair import (
     SHARED_FRICTION,
     STICK,
     WORK_LIMITED,
+    ContactRows,
     Impact,
-    Pair,
     Problem,
-    Push,
     least_push,
 )
-from .path_states import States, choose
-
-Mechanism = TypeVar("Mechanism")
-"""What the rates of the contact velocities follow from."""
+from .rates import NOT_CONSISTENT, choose
+from .restitution import poisson, span_of_work
 
 OldImpact = tuple[bool, float, float, float, float, float, float, float, float, int]
 """Whether a tangential impact at A is possible; N_A, T_A; c_tA afterwards; the changes of c_nB and c_tB and of the
 twist; the segments."""
 
-Jam = tuple[float, float, float, float, float, float, float, float, float, float]
-"""c_nB, c_tB, the impulses N_A, T_A, N_B, T_B, the change of the twist and the stored work after a jam."""
 
-NO_JAM: Jam = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+class Jam(NamedTuple):
+    """Velocities, impulses, change of the twist and stored work after a jam."""
+
+    cnb: float
+    ctb: float
+    na: float
+    ta: float
+    nb: float
+    tb: float
+    dx: float
+    dy: float
+    dq: float
+    work: float
+
+
+NO_JAM = Jam(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 REST = 1e-10
 """Below this part of the speeds before the impact an approach of B is none, where both contacts rest otherwise."""
@@ -62,33 +70,36 @@ ENDLESS, COMPRESSED, EXPANDED, WORK_RETURNED, OLD_CLOSES, OLD_SLIP_ENDS, NEW_SLI
 """What ends a segment."""
 
 
-def strike_old(pair: Pair, cta: float) -> OldImpact:
+def strike_old(contacts: ContactRows, cta: float) -> OldImpact:
     """Tangential impact at A that ends a jam: B is held and A follows its own one-contact path.
 
     N_A grows while A slips to rest, which presses it into the support, and on until it leaves it.
     """
-    cos, sin, qa, sa, qb, sb, fa, fb = pair
+    (an, at, qa, sa, fa), (nx, _, _, tx, _, _, _, _), _, (lever, arm, _, _), rounding = contacts
     a = PLUS if cta > 0.0 else MINUS
     ax = -fa if cta > 0.0 else fa
     aq = qa + ax * sa
-    normal, tangential = 1.0 + qa * aq, ax + sa * aq
-    if normal >= 0.0 or tangential * cta >= 0.0:
+    normal, tangential = an * an + qa * aq, ax * at * at + sa * aq
+    square, k = an * an + qa * qa, an * at
+    size = k * k + (an * sa) * (an * sa) + (at * qa) * (at * qa)
+    if normal >= 0.0 or tangential * cta >= 0.0 or size == 0.0:
         return False, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0
-    hold = 1.0 + sa * sa
+    hold = at * at + sa * sa
     if abs(qa * sa) <= fa * hold:
         state, after = STICK, 0.0
     else:
         state = MINUS if a == PLUS else PLUS
         back = qa - ax * sa
-        after = cta * (normal / (1.0 + qa * back)) * ((sa * back - ax) / tangential)
+        rise = an * an + qa * back
+        if abs(rise) <= (rounding - ROUNDING) * square:
+            return False, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0
+        after = cta * (normal / rise) * ((sa * back - ax * at * at) / tangential)
     # All in all c_nA is unchanged, and c_tA goes from `cta` to `after`: the twist changes along nA x (nA x tA).
-    square = 1.0 + qa * qa
-    size = square + sa * sa
     change = (cta - after) / size
-    lever, arm = qa * cos - sa * sin - qb, sa * cos + qa * sin - sb
-    dnb, dtb = sin * (cta - after) + sa * lever * change, sa * arm * change - cos * (cta - after)
-    dx, dy, dq = -square * change, qa * sa * change, -sa * change
-    return True, dy, dx, after, dnb, dtb, dx, dy, dq, 64 * a + 4 * state
+    dnb = nx * (after - cta) / at + an * sa * lever * change / at
+    dtb = tx * (after - cta) / at + an * sa * arm * change / at
+    dx, dy, dq = -at * square * change, an * qa * sa * change, -an * an * sa * change
+    return True, dy / an, dx / at, after, dnb, dtb, dx, dy, dq, 64 * a + 4 * state
 
 
 def rest_of_jams(before: Jam, after: Jam) -> tuple[float, float, float]:
@@ -98,61 +109,50 @@ def rest_of_jams(before: Jam, after: Jam) -> tuple[float, float, float]:
     the changes from one jam to the other are still to come (0 if the series diverges; inf if they become so little
     smaller that rounding hides it), c_nB after all of them, and their work.
     """
-    cnb, ctb = after[0], after[1]
-    fall = before[1] - ctb
+    cnb, ctb = after.cnb, after.ctb
+    fall = before.ctb - ctb
     if ctb != 0.0 and abs(fall) <= SLOWEST * abs(ctb):
         return inf, 0.0, 0.0
     if ctb * fall <= 0.0:
         return 0.0, 0.0, 0.0
     part = ctb / fall
-    change = cnb - before[0]
+    change = cnb - before.cnb
     left = cnb + part * change
-    if abs(left) <= LEFT * (abs(cnb) + abs(before[0])):
+    if abs(left) <= LEFT * (abs(cnb) + abs(before.cnb)):
         left = 0.0
-    push = after[4] - before[4]
+    push = after.nb - before.nb
     steady = -left * push
-    returned = part * steady + (after[9] - before[9] - steady) * (part * ctb / (before[1] + ctb))
+    returned = part * steady + (after.work - before.work - steady) * (part * ctb / (before.ctb + ctb))
     return part, left, returned
 
 
 def solve(problem: Problem, choice: int) -> Impact:
-    """Follow the impulse path of a planar body."""
-    return follow(choose, strike_old, least_push, problem, choice)
-
-
-def follow(
-    choose: Callable[[Mechanism, float, float, float, bool, int], States],
-    strike_old: Callable[[Mechanism, float], OldImpact],
-    least_push: Callable[[Mechanism, float, float, float, float], Push],
-    problem: tuple[Mechanism, float, float, float, float, float, float, float, float],
-    choice: int,
-) -> Impact:
     """Follow the impulse path from contact velocities with c_nB < 0 and c_nA >= 0.
-
-    The mechanism on the two contacts, a planar body's `Pair` or any other, speaks through the three functions.
 
     The restitution at B is Poisson's; A does not approach, so that its own has no effect. `choice` picks among the
     consistent states at the first instant that has several.
     """
-    pair, _, restitution, cna, cta, cnb, ctb, zero_a, zero_b = problem
+    contacts, (_, restitution), (cna, cta, cnb, ctb), (zero_na, zero_ta, zero_nb, zero_tb) = problem
+    _, (_, _, _, _, _, _, extra, _), _, _, _ = contacts
     na = ta = nb = tb = dx = dy = dq = work = 0.0
     target = inf
     compressing, decided = True, False
     segments, notes, choices = 0, 0, 1
     a = b = OPEN
     slip_a, slip_b = cta, ctb
-    rate = NOT_CONSISTENT
+    _, pna, pta, ptb, rna, rta, rnb, rtb, ex, ey, eq = NOT_CONSISTENT
     jam = NO_JAM
     for _ in range(MAX_SEGMENTS):
         if not decided:
-            found, a, b, rate = choose(pair, cna, cta, ctb, compressing, choice)
+            found, a, b, rate = choose(contacts, cna, cta, ctb, compressing, choice)
             if found > 1 and choices == 1:
                 choices, choice = found, 0
             if found == 0:
-                freed, n, t, after, dnb, dtb, ex, ey, eq, code = strike_old(pair, cta)
+                freed, n, t, after, dnb, dtb, ex, ey, eq, code = strike_old(contacts, cta)
                 if not freed:
                     # Where both contacts rest up to rounding nothing moves any more.
-                    speed = abs(problem[4]) + abs(problem[5]) + abs(problem[6])
+                    _, _, (_, cta_before, cnb_before, ctb_before), _ = problem
+                    speed = abs(cta_before) + abs(cnb_before) + abs(ctb_before)
                     if cta != 0.0 or ctb != 0.0 or cnb < -REST * speed:
                         notes |= NO_SOLUTION
                     elif cnb < 0.0:
@@ -163,44 +163,45 @@ def follow(
                     segments = 256 * segments + code
                 na, ta, cta, cnb, ctb = na + n, ta + t, after, cnb + dnb, ctb + dtb
                 dx, dy, dq = dx + ex, dy + ey, dq + eq
-                if abs(ctb) <= zero_b:
+                if abs(ctb) <= zero_tb:
                     ctb = 0.0
-                if compressing and cnb > zero_b:
+                if compressing and cnb > zero_nb:
                     break
-                if cta == 0.0 and not (compressing and cnb >= -zero_b):
-                    before, jam = jam, (cnb, ctb, na, ta, nb, tb, dx, dy, dq, work)
+                if cta == 0.0 and not (compressing and cnb >= -zero_nb):
+                    before = jam
+                    jam = Jam(cnb=cnb, ctb=ctb, na=na, ta=ta, nb=nb, tb=tb, dx=dx, dy=dy, dq=dq, work=work)
                     part, left, returned = rest_of_jams(before, jam)
                     if part == inf:
                         notes |= NO_SOLUTION
                         break
-                    push = part * (nb - before[4])
+                    push = part * (nb - before.nb)
                     # The impact may end before the series does.
                     within = left <= 0.0 if compressing else nb + push <= target and work + returned >= 0.0
                     if part > 0.0 and within:
-                        na, ta = na + part * (na - before[2]), ta + part * (ta - before[3])
-                        nb, tb = nb + push, tb + part * (tb - before[5])
-                        dx, dy = dx + part * (dx - before[6]), dy + part * (dy - before[7])
-                        dq += part * (dq - before[8])
+                        na, ta = na + part * (na - before.na), ta + part * (ta - before.ta)
+                        nb, tb = nb + push, tb + part * (tb - before.tb)
+                        dx, dy = dx + part * (dx - before.dx), dy + part * (dy - before.dy)
+                        dq += part * (dq - before.dq)
                         cnb, ctb, work = left, 0.0, work + returned
-                if compressing and cnb >= -zero_b:
+                if compressing and cnb >= -zero_nb:
                     cnb = 0.0
                     if restitution == 0.0:
                         break
-                    compressing, target, jam = False, (1.0 + restitution) * nb, NO_JAM
+                    compressing, target, jam = False, poisson(restitution, nb), NO_JAM
                 continue
+            _, pna, pta, ptb, rna, rta, rnb, rtb, ex, ey, eq = rate
             if a >= PLUS:
                 if slip_a == 0.0:
-                    slip_a = rate[5]
+                    slip_a = rta
                 elif (slip_a > 0.0) != (a == PLUS):
                     notes |= REVERSED
-            elif a == STICK and b == STICK:
+            elif a == STICK and b == STICK and extra == 0.0:
                 notes |= SHARED_FRICTION
             if b >= PLUS:
                 if slip_b == 0.0:
-                    slip_b = rate[7]
+                    slip_b = rtb
                 elif (slip_b > 0.0) != (b == PLUS):
                     notes |= REVERSED
-        _, pna, pta, ptb, rna, rta, rnb, rtb, ex, ey, eq = rate
         if segments < ROOM:
             segments = 16 * segments + 4 * a + b
 
@@ -210,11 +211,9 @@ def follow(
                 span, event = -cnb / rnb, COMPRESSED
         else:
             span, event = target - nb, EXPANDED
-            square = cnb * cnb + 2.0 * rnb * work
-            if square >= 0.0:
-                speed = cnb + sqrt(square)
-                if speed > 0.0 and 2.0 * work < span * speed * (1.0 - ROUNDING):
-                    span, event = 2.0 * work / speed, WORK_RETURNED
+            returned = span_of_work(work, cnb, rnb)
+            if returned < span * (1.0 - ROUNDING):
+                span, event = returned, WORK_RETURNED
         if a == OPEN:
             if cna > 0.0 and rna < 0.0:
                 wait = -cna / rna
@@ -249,32 +248,32 @@ def follow(
         if event == COMPRESSED and restitution == 0.0:
             cnb = 0.0
             break
-        if cna <= zero_a or event == OLD_CLOSES:
+        if cna <= zero_na or event == OLD_CLOSES:
             cna = 0.0
         # A slip that all but ends, or goes past its end by a rounding, is one that ends.
         rest = ROUNDING * abs(was_a)
-        if event == OLD_SLIP_ENDS or abs(cta) <= zero_a or abs(cta) <= rest or (a >= PLUS and cta * was_a < 0.0):
+        if event == OLD_SLIP_ENDS or abs(cta) <= zero_ta or abs(cta) <= rest or (a >= PLUS and cta * was_a < 0.0):
             cta = 0.0
         rest = ROUNDING * abs(was_b)
-        if event == NEW_SLIP_ENDS or abs(ctb) <= zero_b or abs(ctb) <= rest or ctb * was_b < 0.0:
+        if event == NEW_SLIP_ENDS or abs(ctb) <= zero_tb or abs(ctb) <= rest or ctb * was_b < 0.0:
             ctb = 0.0
 
         decided = False
-        if event == COMPRESSED or (compressing and cnb >= -zero_b):
+        if event == COMPRESSED or (compressing and cnb >= -zero_nb):
             cnb = 0.0
             if restitution == 0.0:
                 break
-            compressing, target, jam = False, (1.0 + restitution) * nb, NO_JAM
+            compressing, target, jam = False, poisson(restitution, nb), NO_JAM
             decided = (cna > 0.0 if a == OPEN else a == STICK or cta != 0.0) and (b == STICK or ctb != 0.0)
         elif event == EXPANDED or event == WORK_RETURNED:
             if event == WORK_RETURNED:
                 notes |= WORK_LIMITED
-            if cnb >= -zero_b:
+            if cnb >= -zero_nb:
                 break
             # B was pressed again while it expanded: a plastic compression ends that.
             compressing, restitution, jam = True, 0.0, NO_JAM
     else:
         notes |= NO_SOLUTION
     if notes & SHARED_FRICTION:
-        _, na, ta, nb, tb = least_push(pair, na, ta, nb, tb)
+        _, na, ta, nb, tb = least_push(contacts, na, ta, nb, tb)
     return na, ta, nb, tb, cna, cta, cnb, ctb, dx, dy, dq, segments, notes, choices

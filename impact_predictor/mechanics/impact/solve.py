@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import cache
 from math import isfinite
 
+from ..types import Alternative, Contact, Flag, Mode, Outcome, Twist, TwoPointBody, Validity
 from . import path_law, total_law
 from .answer import (
     LAST_RESORT,
@@ -15,12 +16,12 @@ from .answer import (
     differ,
     mode_of,
     nearest,
+    solved,
     speed_of,
     without_restitution,
 )
-from .pair import NO_SOLUTION
-from .problem import problem_of, twist_after
-from .types import Alternative, Contact, Flag, Mode, Outcome, Twist, TwoPointBody, Validity
+from .body import problem_of, twist_after
+from .contacts import Impact, Problem
 
 LAWS = ("path", "total")
 """The names of the laws, at their numbers."""
@@ -78,25 +79,29 @@ def alternatives(body: TwoPointBody, twist: Twist, law: int, flags: int) -> tupl
     """The answers that the law which answered allows as well."""
     mass, inertia, old, new = body
     _, problem, frame = problem_of(mass, inertia, old is not None, old or NOWHERE, new, twist)
+    zero = STAYS * speed_of(problem)
+    found = []
+    for _, _, _, _, vna, vta, vnb, vtb, dx, dy, dq, segments, _, _ in others(problem, law, flags):
+        after = Twist(*twist_after(twist, frame, dx, dy, dq))
+        if all(map(isfinite, after)):
+            mode = MODES[mode_of(zero, vna, vta, vnb, vtb)]
+            found.append(Alternative(mode=mode, twist=after, segments=states_of(segments)))
+    return tuple(found)
+
+
+def others(problem: Problem, law: int, flags: int) -> list[Impact]:
+    """All answers of the law which answered, with these flags, that differ from the answer and from each other."""
     if flags & LAST_RESORT:
         problem = without_restitution(problem)
     solve = path_law.solve if law == PATH else total_law.solve
     first = solve(problem, 0)
     answers = [nearest(problem, law, first)[0]]
-    for choice in range(first[13]):
+    _, _, _, _, _, _, _, _, _, _, _, _, _, choices = first
+    for choice in range(choices):
         other = solve(problem, choice)
-        if not other[12] & NO_SOLUTION and all(differ(other, one) for one in answers):
-            if all(map(isfinite, twist_after(twist, frame, *other[8:11]))):
-                answers.append(other)
-    zero = STAYS * speed_of(problem)
-    return tuple(
-        Alternative(
-            MODES[mode_of(zero, *other[4:8])],
-            Twist(*twist_after(twist, frame, *other[8:11])),
-            states_of(other[11]),
-        )
-        for other in answers[1:]
-    )
+        if solved(other) and all(differ(problem, other, one) for one in answers):
+            answers.append(other)
+    return answers[1:]
 
 
 @cache

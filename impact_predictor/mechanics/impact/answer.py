@@ -1,0 +1,204 @@
+"""The answer of the laws to one impact, in contact space, and that of a planar body: what one and many have in common.
+
+Law code (see `contacts`), so that `solve_impact` and the compiled `solve_impacts` answer the same to the last bit.
+"""
+
+from __future__ import annotations
+
+from math import inf, sqrt
+
+from ..types import Contact, Flag, Mode, Twist, Validity
+from . import path_law, total_law
+from .body import problem_of, twist_after
+from .contacts import NO_SOLUTION, ROUNDING, ContactRows, Impact, Problem
+
+PATH, TOTAL = 0, 1
+"""The laws."""
+
+STAYS = 1e-10
+"""A contact velocity below this part of the contact speeds before the impact is zero for the mode."""
+
+ENERGY_ROUNDING = 1e-12
+"""Work of the contacts below this part of mass times the contact speeds squared is rounding."""
+
+NO_IMPACT, STOP, SLIDE, PIVOT_SLIDE, PIVOT, BACK_PIVOT, FLIGHT = (int(mode) for mode in Mode)
+
+OLD_RESTITUTION_IGNORED, BOTH_STRUCK, LAST_RESORT, ENERGY_GAINED, INVALID_INPUT, THIN_BODY, SLOW_IMPACT = (
+    int(flag)
+    for flag in (
+        Flag.OLD_RESTITUTION_IGNORED,
+        Flag.BOTH_STRUCK,
+        Flag.LAST_RESORT,
+        Flag.ENERGY_GAINED,
+        Flag.INVALID_INPUT,
+        Flag.THIN_BODY,
+        Flag.SLOW_IMPACT,
+    )
+)
+
+VALIDITY = Validity()
+SQRT_3 = sqrt(3.0)
+
+Reaction = tuple[int, Impact, int, float, bool, int]
+"""Mode; what the law says; the bits of `Flag`; work of the contacts on a body of unit mass, times 2; whether the law
+allows no other answer; the law that answered."""
+
+BodyAnswer = tuple[int, tuple[float, float, float], float, float, float, float, int, int, float, bool, int]
+"""Mode; twist after; N_A, T_A, N_B, T_B in N s; the contact states as a law codes them; the bits of `Flag`; energy
+lost; whether the law allows no other answer; the law that answered."""
+
+NOTHING: Impact = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0, 0, 0)
+
+
+def respond(problem: Problem, law: int) -> Reaction:
+    """What an impact does in contact space. Where there is none, or no law has an answer, nothing (NO_IMPACT)."""
+    _, (restitution_old, _), (cna, cta, cnb, ctb), _ = problem
+    if cnb >= 0.0 and cna >= 0.0:
+        return NO_IMPACT, NOTHING, 0, 0.0, True, law
+    notes = OLD_RESTITUTION_IGNORED if restitution_old > 0.0 and cna >= 0.0 else 0
+    if law == PATH and cna < 0.0:
+        law, notes = TOTAL, notes | BOTH_STRUCK
+    impact = path_law.solve(problem, 0) if law == PATH else total_law.solve(problem, 0)
+    na, ta, nb, tb, vna, vta, vnb, vtb, _, _, _, _, flags, choices = impact
+    if flags & NO_SOLUTION:
+        law, notes, problem = TOTAL, notes | LAST_RESORT, without_restitution(problem)
+        impact = total_law.solve(problem, 0)
+        na, ta, nb, tb, vna, vta, vnb, vtb, _, _, _, _, flags, choices = impact
+        if flags & NO_SOLUTION:
+            return NO_IMPACT, NOTHING, notes - LAST_RESORT | NO_SOLUTION, 0.0, True, law
+    unique = True
+    if choices > 1:
+        impact, unique = nearest(problem, law, impact)
+        na, ta, nb, tb, vna, vta, vnb, vtb, _, _, _, _, flags, _ = impact
+
+    speed = speed_of(problem)
+    work = nb * (cnb + vnb) + tb * (ctb + vtb)
+    if cna < inf:
+        work += na * (cna + vna) + ta * (cta + vta)
+    if work > ENERGY_ROUNDING * speed * speed:
+        notes |= ENERGY_GAINED
+    return mode_of(STAYS * speed, vna, vta, vnb, vtb), impact, flags | notes, work, unique, law
+
+
+def answer(
+    mass: float,
+    inertia: float,
+    stands: bool,
+    old: Contact,
+    new: Contact,
+    twist: Twist,
+    law: int,
+    validity: Validity = VALIDITY,
+) -> BodyAnswer:
+    """What the impact at `new` does to a planar body that stands on `old`, or on nothing."""
+    valid, problem, frame = problem_of(mass, inertia, stands, old, new, twist)
+    if not valid:
+        return unchanged(twist, INVALID_INPUT, law)
+    mode, impact, notes, work, unique, law = respond(problem, law)
+    if mode == NO_IMPACT:
+        return unchanged(twist, notes, law)
+    na, ta, nb, tb, _, _, _, _, dx, dy, dq, segments, _, _ = impact
+    after = twist_after(twist, frame, dx, dy, dq)
+    energy_lost = -0.5 * mass * work
+    contacts, _, _, _ = problem
+    notes |= doubts(contacts, stands, nb, validity)
+    na, ta, nb, tb = mass * na, mass * ta, mass * nb, mass * tb
+    # Numbers too large make one of these not finite, and with it their sum.
+    if (after[0] + after[1] + after[2] + na + ta + nb + tb + energy_lost) * 0.0 != 0.0:
+        return unchanged(twist, notes | NO_SOLUTION, law)
+    return mode, after, na, ta, nb, tb, segments, notes, energy_lost, unique, law
+
+
+def doubts(contacts: ContactRows, stands: bool, nb: float, validity: Validity) -> int:
+    """The notes on an impact of `nb` N s per kg at the new contact for which rigid theory is too simple."""
+    slenderness, gravity, contact_time, gravity_share = validity
+    # the depths of the contacts below the mass centre, over rho
+    (_, _, _, depth_old, _), (_, _, _, _, _, depth_new, _, _), _, _, _ = contacts
+    thin = SQRT_3 * slenderness
+    notes = 0
+    if stands and -thin < depth_old < thin and -thin < depth_new < thin:
+        notes |= THIN_BODY
+    if gravity_share * nb < gravity * contact_time:
+        notes |= SLOW_IMPACT
+    return notes
+
+
+def unchanged(twist: Twist, notes: int, law: int) -> BodyAnswer:
+    """The answer where no impact changes the twist; a twist that is no number becomes rest."""
+    vx, vy, omega = twist
+    kept = (vx, vy, omega) if abs(vx) + abs(vy) + abs(omega) < inf else (0.0, 0.0, 0.0)
+    return NO_IMPACT, kept, 0.0, 0.0, 0.0, 0.0, 0, notes, 0.0, True, law
+
+
+def without_restitution(problem: Problem) -> Problem:
+    contacts, _, before, zero = problem
+    return contacts, (0.0, 0.0), before, zero
+
+
+def speed_of(problem: Problem) -> float:
+    """The sum of the contact speeds before the impact."""
+    _, _, (cna, cta, cnb, ctb), _ = problem
+    speed = abs(cnb) + abs(ctb)
+    return speed + abs(cna) + abs(cta) if cna < inf else speed
+
+
+def nearest(problem: Problem, law: int, first: Impact) -> tuple[Impact, bool]:
+    """The one to take of several answers of a law, and whether they are one within rounding.
+
+    Of several total solutions it is the one nearest to the end of the impulse path, which an impact reaches from its
+    beginning; of several paths the first.
+    """
+    _, _, (cna, _, _, _), _ = problem
+    best, end, unique = first, first, True
+    if law == TOTAL and cna >= 0.0:
+        path = path_law.solve(problem, 0)
+        if solved(path):
+            end = path
+    least = distance(first, end)
+    _, _, _, _, _, _, _, _, _, _, _, _, _, choices = first
+    for choice in range(1, choices):
+        other = path_law.solve(problem, choice) if law == PATH else total_law.solve(problem, choice)
+        if solved(other) and differ(problem, other, first):
+            unique = False
+            if distance(other, end) < least and differ(problem, other, best):
+                least, best = distance(other, end), other
+    return best, unique
+
+
+def solved(impact: Impact) -> bool:
+    """Whether a law has come to an end."""
+    _, _, _, _, _, _, _, _, _, _, _, _, notes, _ = impact
+    return not notes & NO_SOLUTION
+
+
+def distance(one: Impact, other: Impact) -> float:
+    """How differently two answers change the twist."""
+    _, _, _, _, _, _, _, _, ux, uy, uq, _, _, _ = one
+    _, _, _, _, _, _, _, _, vx, vy, vq, _, _, _ = other
+    return abs(ux - vx) + abs(uy - vy) + abs(uq - vq)
+
+
+def differ(problem: Problem, one: Impact, other: Impact) -> bool:
+    """Whether two answers change the twist differently, beyond rounding; of a W, whose digits may not tell, whether the
+    contact velocities differ.
+    """
+    _, _, _, _, una, uta, unb, utb, ux, uy, uq, _, _, _ = one
+    _, _, _, _, vna, vta, vnb, vtb, vx, vy, vq, _, _, _ = other
+    (_, _, _, _, rounding), _, _, _ = problem
+    if rounding == ROUNDING:
+        return distance(one, other) > STAYS * (abs(ux) + abs(uy) + abs(uq) + abs(vx) + abs(vy) + abs(vq))
+    apart = max(abs(uta - vta), abs(unb - vnb), abs(utb - vtb))
+    if una < inf:
+        apart = max(apart, abs(una - vna))
+    return apart > STAYS * speed_of(problem)
+
+
+def mode_of(zero: float, vna: float, vta: float, vnb: float, vtb: float) -> int:
+    """The mode from the contact velocities after the impact, which are zero up to `zero`."""
+    if vna <= zero:
+        if vnb > zero:
+            return BACK_PIVOT
+        return STOP if abs(vta) <= zero and abs(vtb) <= zero else SLIDE
+    if vnb > zero:
+        return FLIGHT
+    return PIVOT if abs(vtb) <= zero else PIVOT_SLIDE

@@ -1,0 +1,146 @@
+"""Contact space of two contacts: what impulses at the old contact A and the new one B do to their velocities.
+
+The contact velocities c = (c_nA, c_tA, c_nB, c_tB) change by W P with the impulses P in the same order, and
+W = G M^-1 G^T is of rank 4 at most. The laws know W by the rows of a G for which M is 1:
+
+    nA = (0, an, qa), tA = (at, 0, sa), nB = (nx, ny, nq), tB = (tx, ty, tq),  and W_nBnB is greater by `extra`.
+
+So every W can be written. Of a planar body of unit mass the rows are its own, in the frame of A with (x, y, rho omega)
+as twist: an = at = 1, nB = (-sin, cos, qb), tB = (cos, sin, sb) with the angle between the normals and the moments of
+normals and tangents about the mass centre, and `extra` is 0. An impulse along a row changes the twist by that row.
+Minors of W are products of cross products of the rows (Binet and Cauchy); written so, they keep the digits that W loses
+of slender and squat bodies. Of a W that is given the rows follow by elimination, and what is rounding counts as zero.
+
+Law code, here and in the modules of the laws, uses + - * / sqrt abs and comparisons only, on numbers and tuples of
+fixed size, unpacked by name: it means the same number on every machine, and a compiler can take it as it is.
+"""
+
+from __future__ import annotations
+
+from math import inf, sqrt
+
+from ..types import Flag
+
+OPEN, STICK, PLUS, MINUS = 0, 1, 2, 3
+"""States of a contact, in the order in which a law prefers them; PLUS and MINUS slip along +t and -t."""
+
+ROUNDING = 1e-14
+"""A condition violated by less than this part of its terms holds: it is a border met up to rounding."""
+
+CANCELLED = 1e-12
+"""The same where the rows come from a W; a sum below this part of its terms is then the rounding of W."""
+
+OldRows = tuple[float, float, float, float, float]
+"""an, at, qa, sa and the friction of A."""
+
+NewRows = tuple[float, float, float, float, float, float, float, float]
+"""nx, ny, nq, tx, ty, tq, `extra` and the friction of B."""
+
+Plane = tuple[float, float, float, float]
+"""nx^2 + ny^2, nx tx + ny ty and tx^2 + ty^2, which are 1, 0 and 1 of a planar body; |nB x tB|^2."""
+
+Minors = tuple[float, float, float, float]
+"""Volumes of three rows: (nA x tA) nB and (nA x tA) tB, the lever and the arm of B about A; (nB x tB) nA and
+(nB x tB) tA, those of A about B. The impulses that move nothing are in proportion to them."""
+
+ContactRows = tuple[OldRows, NewRows, Plane, Minors, float]
+"""What the laws know of two contacts; the last is ROUNDING, or CANCELLED where the rows come from a W."""
+
+Velocities = tuple[float, float, float, float]
+"""Of the contacts: c_nA, c_tA, c_nB and c_tB."""
+
+Problem = tuple[ContactRows, tuple[float, float], Velocities, Velocities]
+"""What a law is asked: contacts; restitutions at A and B; the velocities before the impact, c_nA being inf where there
+is no A; and the speeds below which each of them is rounding and counts as zero."""
+
+Impact = tuple[float, float, float, float, float, float, float, float, float, float, float, int, int, int]
+"""What a law answers, for a body of unit mass: N_A, T_A, N_B, T_B; c_nA, c_tA, c_nB, c_tB after the impact; change of
+the twist (x, y, rho omega); the contact states along it (a hexadecimal digit 4 a + b each, the last one lowest);
+notes; and how many answers the law allows."""
+
+Push = tuple[bool, float, float, float, float]
+"""Whether the cones of friction allow a push; N_A, T_A, N_B, T_B with it."""
+
+REVERSED, JAMMED, WORK_LIMITED, SHARED_FRICTION, NO_SOLUTION = (
+    int(flag) for flag in (Flag.REVERSED_SLIP, Flag.JAMMED, Flag.WORK_LIMITED, Flag.SHARED_FRICTION, Flag.NO_SOLUTION)
+)
+"""Notes on an answer, the bits of `Flag`."""
+
+
+def planar_contacts(
+    cos: float, sin: float, qa: float, sa: float, qb: float, sb: float, fa: float, fb: float
+) -> ContactRows:
+    """The contacts of a planar body of unit mass."""
+    return (
+        (1.0, 1.0, qa, sa, fa),
+        (-sin, cos, qb, cos, sin, sb, 0.0, fb),
+        (1.0, 0.0, 1.0, 1.0 + qb * qb + sb * sb),
+        (qa * cos - sa * sin - qb, sa * cos + qa * sin - sb, cos * qb + sin * sb - qa, cos * sb - sin * qb - sa),
+        ROUNDING,
+    )
+
+
+def at_one_place(contacts: ContactRows) -> ContactRows:
+    """The contacts where neither has a lever about the other, not even one of rounding."""
+    old, new, plane, _, rounding = contacts
+    return old, new, plane, (0.0, 0.0, 0.0, 0.0), rounding
+
+
+def below_rounding(value: float, rounding: float, u: float, v: float = 0.0, w: float = 0.0, x: float = 0.0) -> bool:
+    """Whether a negative sum of the terms u, v, w, x is more than rounding."""
+    return value < -rounding * (abs(u) + abs(v) + abs(w) + abs(x))
+
+
+def push_interval(n: float, t: float, zn: float, zt: float, f: float) -> tuple[float, float]:
+    """The lowest and the highest push p for which |t + p zt| <= f (n + p zn) and n + p zn >= 0 (inf, -inf if none)."""
+    low, high = -inf, inf
+    fn, fz = f * n, f * zn
+    slope, room = zt - fz, fn - t
+    if slope > 0.0:
+        high = room / slope
+    elif slope < 0.0:
+        low = room / slope
+    elif below_rounding(room, ROUNDING, fn, t):
+        return inf, -inf
+    slope, room = -zt - fz, fn + t
+    if slope > 0.0:
+        if slope * high > room:
+            high = room / slope
+    elif slope < 0.0:
+        if slope * low > room:
+            low = room / slope
+    elif below_rounding(room, ROUNDING, fn, t):
+        return inf, -inf
+    if f == 0.0:  # else n + p zn >= 0 follows from the two above
+        if zn > 0.0:
+            low = max(low, -n / zn)
+        elif zn < 0.0:
+            high = min(high, -n / zn)
+        elif below_rounding(n, ROUNDING, t):
+            return inf, -inf
+    return low, high
+
+
+def least_push(contacts: ContactRows, na: float, ta: float, nb: float, tb: float) -> Push:
+    """Share the impulses of two sticking contacts with the least push along their line that both cones allow.
+
+    The push is the only freedom; it is measured from the impulses without any component along it.
+    """
+    (_, _, _, _, fa), (_, _, _, _, _, _, _, fb), _, (lever, arm, old_lever, old_arm), rounding = contacts
+    zna, zta, znb, ztb = -old_arm, old_lever, -arm, lever
+    low, high = push_interval(na, ta, zna, zta, fa)
+    if low < inf:
+        low_b, high_b = push_interval(nb, tb, znb, ztb, fb)
+        if low_b > low:
+            low = low_b
+        if high_b < high:
+            high = high_b
+    square = zna * zna + zta * zta + znb * znb + ztb * ztb
+    if square == 0.0 or (low > high and below_rounding((high - low) * sqrt(square), rounding, na, ta, nb, tb)):
+        return False, na, ta, nb, tb
+    push = -(na * zna + ta * zta + nb * znb + tb * ztb) / square
+    if push < low:
+        push = low
+    elif push > high:
+        push = high
+    return True, na + push * zna, ta + push * zta, nb + push * znb, tb + push * ztb
