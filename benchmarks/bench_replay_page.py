@@ -17,7 +17,7 @@ from impact_predictor.parameters.file import read_values
 from impact_predictor.prediction.scene import scenes_of
 from impact_predictor.report.page.found import Kept
 from impact_predictor.report.page.replay import write_replay_page
-from impact_predictor.report.summary import as_json
+from impact_predictor.report.replay_json import as_json
 
 ROOT = Path(__file__).parent.parent
 SCORED, OTHERS = 10, 40

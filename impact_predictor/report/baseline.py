@@ -110,7 +110,7 @@ class RunComparison(NamedTuple):
 
 def run_of(result: Result) -> tuple[RunTouchdown, ...]:
     """The touchdowns of a replay."""
-    from .summary import as_json
+    from .replay_json import as_json
 
     return tuple(map(touchdown_of, as_json(result)["touchdowns"]))
 

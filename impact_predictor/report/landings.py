@@ -86,23 +86,6 @@ def error_ahead(landing: Landing, lead_time: float) -> float | None:
     return made[-1] if made else None
 
 
-def landing_as_json(landing: Landing) -> dict[str, Any]:
-    """What the JSON of a touchdown says of the landing of a foot; SI units."""
-    impact = landing.impact
-    return {
-        "foot": landing.foot,
-        "point": landing.point,
-        "late": landing.late,
-        "confirmed": landing.confirmed,
-        "time_error": landing.history[-1][1] if landing.history else None,
-        "landing_speed": landing.speed,
-        "landing_mode": None if impact is None else impact.mode.name,
-        "impulse": None if impact is None else impact.impulses[1],
-        "others_impulse": None if impact is None or not impact.old else impact.impulses[0],
-        "velocity_change": None if impact is None else change_by(impact),
-    }
-
-
 def landings_table(landings: Sequence[LandingRow], width: int) -> Table:
     """One row for each landing, for a terminal that is `width` characters wide."""
     start, names = first_stamp(one.stamp for one in landings), _names(landings)

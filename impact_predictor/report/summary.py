@@ -1,23 +1,25 @@
-"""Settled touchdowns in the form in which they are shown, and what they say all together."""
+"""Settled touchdowns in the form in which they are shown, and the distributions of their errors."""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
+from math import floor, log10
 from statistics import median
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 from ..mechanics.types import Mode, Twist
-from ..prediction.types import Leftover, Score, Status
-
-if TYPE_CHECKING:
-    from ..bags.replay import BodyTruth, Result
-    from ..scenarios.comparison import Truth
-    from ..scenarios.warned import Warned
+from ..prediction.types import Leftover, Score
 
 LEAD_TIME_EDGES: Final = (0.0, 0.01, 0.02, 0.03, 0.04, 0.05, 0.06)
 """Borders in s between which the error is shown against the lead time."""
+
+PER_DECADE: Final = 100
+"""Bins for each factor of ten: in each of them numbers differ by 2.3 % at most."""
+
+LEAST: Final = 1e-12
+"""Smaller numbers, and 0, count as this one."""
 
 WHY: Final = {
     "ONE_POINT": "nothing stood on the support before",
@@ -162,97 +164,63 @@ def without_bag(said: str, bag: str) -> str:
     return said.replace(f"in {bag}, ", "").replace(bag, "it")
 
 
-def as_json(result: Result) -> dict[str, Any]:
-    """A replay as JSON: SI units, twists as [vx, vy, omega], stamps in ns, relative errors as fractions of 1."""
-    rows = [row_of(*settled) for settled in result.settled]
-    errors = errors_of(rows)
-    answer = {
-        "bag": result.bag,
-        "samples": result.samples,
-        "us_per_sample": result.seconds / result.samples * 1e6 if result.samples else None,
-        "touchdowns": [
-            _row_as_json(row)
-            | {"old": settled.score.touchdown.old, "new": settled.score.touchdown.new}
-            | _landing_as_json(settled.score)
-            for row, settled in zip(rows, result.settled, strict=True)
-        ],
-        "scored": errors.number,
-        "median_relative_error": errors.median,
-        "p90_relative_error": errors.p90,
-        "error_by_lead_time": [
-            {
-                "from": one.begin,
-                "to": one.end,
-                "count": one.errors.number,
-                "median": one.errors.median,
-                "p90": one.errors.p90,
-            }
-            for one in error_by_lead_time(settled.score for settled in result.settled)
-        ],
-        "statuses": _counts_as_json(result.statuses),
-        "geometry_statuses": _counts_as_json(result.geometry_statuses),
-    }
-    if set(result.inputs) - {"odom", "contact_geometry"}:
-        answer["inputs"] = {name: _counts_as_json(counts) for name, counts in result.inputs.items()}
-    if result.truth is not None:
-        answer["truth"] = _truth_as_json(result.truth, result.truths)
-    if result.damaged:
-        answer["damaged"] = result.damaged
-    from .details import details_of
+class Distribution(NamedTuple):
+    """How many numbers there are, what parts of them stay below, the greatest one, and how many lie in each bin.
 
-    answer |= details_of(result)
-    return answer
+    A bin k holds the numbers from 10**(k / PER_DECADE) to 10**((k + 1) / PER_DECADE). None where there are no numbers.
+    """
+
+    number: int
+    p50: float | None
+    p90: float | None
+    p99: float | None
+    most: float | None
+    bins: Mapping[int, int]
 
 
-def _landing_as_json(score: Score) -> dict[str, Any]:
-    if score.landing is None:
-        return {}
-    from .landings import landing_as_json  # only where feet have landed
-
-    return landing_as_json(score.landing)
+EMPTY: Final = Distribution(0, None, None, None, None, {})
 
 
-def _truth_as_json(truth: Truth, bodies: Mapping[str, BodyTruth]) -> dict[str, Any]:
-    """The comparison with the truth, of all bodies and of each; stamps in ns."""
-    answer: dict[str, Any] = truth._asdict()
-    warned = [one.warned for one in bodies.values() if one.warned is not None]
-    if warned:
-        happened = [one.before_first_impact for one in warned if one.before_first_impact is not None]
-        answer |= {
-            "bodies_with_slide_or_impact": len(happened),
-            "warned_before_first_impact": sum(happened),
-            "events": sum(one.events for one in warned),
-            "events_warned": sum(one.events_warned for one in warned),
-        }
-    if bodies:
-        answer["bodies"] = {body: _body_as_json(*one) for body, one in bodies.items()}
-    return answer
+def spread_of(numbers: Sequence[float]) -> Distribution:
+    """The spread of some numbers, its percentiles exact."""
+    if not numbers:
+        return EMPTY
+    bins = Counter(floor(PER_DECADE * log10(max(number, LEAST))) for number in numbers)
+    p50, p90, p99 = (quantile(numbers, part) for part in (0.5, 0.9, 0.99))
+    return Distribution(len(numbers), p50, p90, p99, max(numbers), bins)
 
 
-def _body_as_json(truth: Truth | None, warned: Warned | None) -> dict[str, Any]:
-    answer = {} if truth is None else truth._asdict()
-    if warned is not None:
-        answer |= {**warned._asdict(), "warned_before_first_impact": warned.before_first_impact}
-    return answer
+def together(spreads: Iterable[Distribution]) -> Distribution:
+    """The spread of all the numbers of several spreads; with more than one its percentiles are right to 1 %."""
+    known = [spread for spread in spreads if spread.number]
+    if len(known) < 2:
+        return known[0] if known else EMPTY
+    bins: Counter[int] = Counter()
+    for spread in known:
+        bins.update(spread.bins)
+    p50, p90, p99 = (_below(bins, part) for part in (0.5, 0.9, 0.99))
+    return Distribution(sum(bins.values()), p50, p90, p99, max(spread.most or 0.0 for spread in known), bins)
 
 
-def _row_as_json(row: TouchdownRow) -> dict[str, Any]:
-    return {
-        "body": row.body,
-        "stamp": row.stamp,
-        "announced_lead_time": row.announced,
-        "lead_time": row.lead_time,
-        "mode": row.mode.name,
-        "predicted_twist": row.predicted,
-        "measured_twist": row.measured,
-        "before_twist": row.before,
-        "half_distance": row.half_distance,
-        "relative_error": row.relative_error,
-        "out_of_plane": row.out_of_plane,
-        "scored": row.scored,
-        "flags": row.flags,
-    }
+def _below(bins: Mapping[int, int], part: float) -> float:
+    """What a part of the numbers in bins stays below, as if they lay evenly in each bin."""
+    wanted, before, last = part * sum(bins.values()), 0, 0
+    for last in sorted(bins):  # the last bin counts where rounding misses every one
+        if before + bins[last] >= wanted:
+            break
+        before += bins[last]
+    return float(10.0 ** ((last + (wanted - before) / bins[last]) / PER_DECADE))
 
 
-def _counts_as_json(counts: Mapping[Status, int]) -> dict[str, int]:
-    return {status.name: count for status, count in counts.items()}
+def to_json(spread: Distribution) -> dict[str, Any]:
+    """As JSON: `count`, `p50`, `p90`, `p99`, `max`, and `bins` as pairs of a bin and its count, those with any."""
+    parts = {"p50": spread.p50, "p90": spread.p90, "p99": spread.p99, "max": spread.most}
+    return {"count": spread.number, **parts, "bins": [list(one) for one in sorted(spread.bins.items())]}
+
+
+def from_json(entry: Mapping[str, Any] | None) -> Distribution:
+    """What `to_json` wrote; empty where there is nothing."""
+    if not entry:
+        return EMPTY
+    p50, p90, p99, most = (entry[name] for name in ("p50", "p90", "p99", "max"))
+    return Distribution(entry["count"], p50, p90, p99, most, dict(entry["bins"]))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from impact_predictor.report.spread import spread_of, to_json
+from impact_predictor.report.summary import spread_of, to_json
 
 MS = 1_000_000
 

@@ -18,7 +18,7 @@ from impact_predictor.mechanics.types import Twist
 from impact_predictor.prediction.types import Landing, Leftover, Prediction, Score, Status
 from impact_predictor.report.baseline import RunTouchdown, touchdown_of
 from impact_predictor.report.earlier import Earlier, read_earlier
-from impact_predictor.report.summary import as_json
+from impact_predictor.report.replay_json import as_json
 from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY
 
 TOUCHDOWN = touchdowns.TOUCHDOWN._replace(after=Twist(0.1 + 0.2, 0.25, -3.0), old=())

@@ -16,11 +16,11 @@ from impact_predictor.report.landings import (
     LandingRow,
     error_ahead,
     feet_table,
-    landing_as_json,
     landings_of,
     landings_table,
 )
 from impact_predictor.report.replay import print_replay
+from impact_predictor.report.replay_json import landing_as_json
 from impact_predictor.report.table import show
 from impact_predictor.report.tally import LandingTally
 

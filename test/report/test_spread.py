@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from impact_predictor.report.spread import EMPTY, PER_DECADE, from_json, spread_of, to_json, together
+from impact_predictor.report.summary import EMPTY, PER_DECADE, from_json, spread_of, to_json, together
 
 
 def test_the_spread_of_some_numbers_has_their_own_percentiles_and_counts_each_in_its_bin() -> None:

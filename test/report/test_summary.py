@@ -11,9 +11,9 @@ from touchdowns import SAMPLE, TOUCHDOWN
 from impact_predictor.bags.replay import BodyTruth, Result, Settled
 from impact_predictor.mechanics.types import Mode, Twist
 from impact_predictor.prediction.types import Landing, Leftover, Prediction, Score, Status
+from impact_predictor.report.replay_json import as_json
 from impact_predictor.report.summary import (
     Errors,
-    as_json,
     error_by_lead_time,
     errors_of,
     quantile,

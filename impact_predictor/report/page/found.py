@@ -18,8 +18,7 @@ from ...bags.find import told_apart
 from ...errors import InputError
 from ...prediction.types import Leftover
 from ...stamps import NANOSECONDS
-from ..spread import Spread, from_json, together
-from ..summary import Errors, quantile, summarize
+from ..summary import Distribution, Errors, from_json, quantile, summarize, together
 
 BagAnswer = Mapping[str, Any]
 """What `as_json` says of the replay of one bag; of one that could not be read its `bag` and `error`."""
@@ -105,7 +104,7 @@ class SpanErrors(NamedTuple):
 
     begin: float
     end: float
-    errors: Spread
+    errors: Distribution
 
 
 class RefusedMessages(NamedTuple):
@@ -221,14 +220,14 @@ def confusion(answers: Iterable[BagAnswer]) -> Counter[tuple[str, str]]:
 
 def errors_ahead(answers: Iterable[BagAnswer], key: str) -> list[SpanErrors]:
     """The errors by lead time under a key of the answers, all together; empty where there are none."""
-    spans: dict[tuple[float, float], list[Spread]] = {}
+    spans: dict[tuple[float, float], list[Distribution]] = {}
     for entry in (entry for answer in used(answers) for entry in answer.get(key, ())):
         spans.setdefault((entry["from"], entry["to"]), []).append(from_json(entry))
     found = [SpanErrors(*span, together(spreads)) for span, spreads in sorted(spans.items())]
     return found if any(one.errors.number for one in found) else []
 
 
-def costs(answers: Iterable[BagAnswer]) -> Spread:
+def costs(answers: Iterable[BagAnswer]) -> Distribution:
     """What the answers to samples took, in microseconds."""
     return together(from_json(answer.get("cost_us")) for answer in used(answers))
 

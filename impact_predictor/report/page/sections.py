@@ -15,8 +15,7 @@ from ...prediction.types import Status
 from ...stamps import NANOSECONDS
 from ...wording import counted, words
 from ..modes import MODES, PALETTE
-from ..spread import LEAST, PER_DECADE
-from ..summary import WHY, quantile, without_bag
+from ..summary import LEAST, PER_DECADE, WHY, quantile, without_bag
 from . import found
 from .document import (
     GREY,
