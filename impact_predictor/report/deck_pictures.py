@@ -32,7 +32,6 @@ MARGINS: Final = ("#dfe6e1", "#f2a91a", "#d62728")
 LEVELS: Final = ("#8fc9a3", *MARGINS[1:])
 """The same of a unit of the film."""
 ROLL, HEAVE, TILT, SLID = PALETTE[0], "#8a6d3b", "#1a1a1a", PALETTE[2]
-SEA, HULL = "#9cc4dd", "#5d6b78"
 
 _MOST: Final = 200_000
 """Moments of a picture of a long motion; a rocking unit takes a second or so to and fro."""
@@ -46,8 +45,6 @@ _TILTED, _SLID = pi / 1800.0, 0.005
 """A tilt of so many rad, and a slide of so many m, are told."""
 _STRIP: Final = 0.09
 """Part of a lane's height on which its margin is drawn."""
-_HALF_BEAM: Final = 6.0
-"""Half the breadth in m of a deck whose extent nobody tells."""
 
 
 def moments(duration: float) -> NDArray[np.float64]:
@@ -292,7 +289,7 @@ def deck_frames(units: Sequence[UnitMotion]) -> list[float]:
 
 
 def deck_film(deck: MovingSupport, units: Sequence[UnitMotion]) -> Film:
-    """The film of a deck in real time: the vessel above, the busiest units near by, its roll and the impacts below."""
+    """The film of a deck in real time: the busiest units, its roll and the impacts below."""
     times = deck_frames(units)
     near = [UnitScene(deck, one, times) for one in busiest(units, _NEAR)]
     impacts = sorted(impact.stamp / NANOSECONDS for one in near for impact in one.motion.impacts)
@@ -301,8 +298,8 @@ def deck_film(deck: MovingSupport, units: Sequence[UnitMotion]) -> Film:
     seen = np.array(times)
     return Film(
         title="",
-        rows=[[_vessel_view(deck, near, times)], [one.view() for one in near]],
-        heights=[1.6, 1.7],
+        rows=[[one.view() for one in near]],
+        heights=[2.0],
         curves=[Curve(seen, np.degrees(deck.motion(seen).angle), ROLL)],
         curves_title="roll (°) against time (s), and the impacts",
         speed=1.0,
@@ -317,7 +314,7 @@ class UnitScene:
 
     def __init__(self, deck: MovingSupport, motion: UnitMotion, times: Sequence[float]) -> None:
         """Look at the motion at some times (s), to know how much room it needs."""
-        self._deck, self.motion, self.outline = deck, motion, outline_of(motion.unit)
+        self._deck, self.motion, self._outline = deck, motion, outline_of(motion.unit)
         self._used = margin_used(deck, motion.unit, motion.times)
         unit, body = motion.unit, motion.unit.body
         assert body.old is not None
@@ -325,9 +322,9 @@ class UnitScene:
         self._is_disc = unit.scene.radius > 0.0
         start = unit.start._replace(x=unit.start.x + unit.foot[0], y=unit.start.y + unit.foot[1])
         self._edges = placed(self._contacts, start)
-        standing = placed(self.outline, start)[:, 0]
+        standing = placed(self._outline, start)[:, 0]
         self._pivot = np.array([0.5 * (standing.min() + standing.max()), self._edges[:, 1].min()])
-        seen = np.concatenate([self._camera(placed(self.outline, motion.at(time)), time) for time in times[::5]])
+        seen = np.concatenate([self._camera(placed(self._outline, motion.at(time)), time) for time in times[::5]])
         low, high = seen.min(axis=0), seen.max(axis=0)
         self._middle, self._size = 0.5 * (low + high), max(float((high - low).max()), 1e-3)
 
@@ -351,7 +348,7 @@ class UnitScene:
     def _outlines(self, time: float) -> list[Outline]:
         state, far = self.motion.at(time), 3.0 * self._size
         shown = [Outline(box(-far, far, -0.05 * self._size, 0.0) + self._pivot, SUPPORT, size=0.0)]
-        shown.append(Outline(placed(self.outline, state), self.colour(time), LINE))
+        shown.append(Outline(placed(self._outline, state), self.colour(time), LINE))
         for place in self._places(state):
             closed = self._is_disc or place[1] - self._pivot[1] < 1e-3
             shown.append(Outline(place[None], CLOSED if closed else OPEN, CLOSED, 6.0, "o"))
@@ -378,38 +375,3 @@ class UnitScene:
 
     def _camera(self, points: NDArray[np.float64], time: float) -> NDArray[np.float64]:
         return np.asarray(turned(points - self._pivot, float(self._deck.motion(time).angle)) + self._pivot)
-
-
-def _vessel_view(deck: MovingSupport, units: Sequence[UnitScene], times: Sequence[float]) -> View:
-    """The vessel in still water with its units, seen from astern: it rolls, heaves and sways; port is on the left."""
-    scene, motion = units[0].motion.unit.scene, deck.motion(np.array(times))
-    extent = scene.deck.extent if scene.deck is not None else ()
-    half = max(abs(extent[2]), abs(extent[3])) if extent else _HALF_BEAM
-    middle = np.array([np.mean(motion.x), np.mean(motion.y)])
-    depth, water = 0.42 * half, -0.16 * half
-    # From the deck's edge down to the bilge and over the keel, to the other edge.
-    side = [(half, 0.0), (0.98 * half, -0.5 * depth), (0.86 * half, -0.9 * depth), (0.6 * half, -depth)]
-    hull = np.array(side + [(-y, z) for y, z in reversed(side)])
-    high = 2.0 * max(float(one.outline[:, 1].max()) for one in units)
-    heave = float(np.abs(motion.y - middle[1]).max())
-    low, top = -0.45 * half - heave, max(0.5 * half, high + 0.1 * half) + heave
-    aside = 2.1 * (top - low)
-
-    def outlines(time: float) -> list[Outline]:
-        now = deck.motion(time)
-        state = PlanarState(now.x - middle[0], now.y - middle[1], now.angle, 0.0, 0.0, 0.0)
-        shown = [
-            Outline(placed(placed(one.outline, one.motion.at(time)), state), one.colour(time), LINE, 0.8)
-            for one in units
-        ]
-        shown.append(Outline(placed(hull, state), HULL, LINE, 1.0))
-        sea = box(-aside, aside, -2.0 * half, water)
-        signs = np.array([(0.93 * aside, 0.6 * water), (-0.9 * aside, 0.6 * water)])
-        names = ("$\\mathrm{port}$", "$\\mathrm{starboard}$")
-        sizes = (20.0, 42.0)
-        marks = [
-            Outline(at[None], LINE, "none", size, name) for at, size, name in zip(signs, sizes, names, strict=True)
-        ]
-        return [*shown, Outline(sea, f"{SEA}b0", size=0.0), *marks]
-
-    return View("", lambda time: (aside, -aside, low, top), outlines)

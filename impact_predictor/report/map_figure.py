@@ -13,12 +13,12 @@ import matplotlib
 import numpy as np
 from matplotlib import patheffects
 from matplotlib.colors import ListedColormap
-from matplotlib.patches import Arc, Circle, FancyArrowPatch, Polygon
 from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt
 
 from ..mechanics.closed_forms import cylindrical, flat
 from ..mechanics.types import Mode
+from .film import box, circle, turned
 from .map import SUBJECTS, Axis, ModeMap, ambiguous, axis_label, conditions, given_in, meaning_of, problem_at, shares
 from .modes import MODES
 from .plot import Axes, Line2D, Patch, headline, picture
@@ -305,90 +305,84 @@ def draw_sketch(axes: Axes, subject: str) -> None:
     """Draw the body right before it strikes, with the names that its parameters have."""
     axes.set_axis_off()
     axes.set_aspect("equal")
-    {"plate": draw_plate, "rod": draw_rod, "cylinder": draw_cylinder}[subject](axes)
-    axes.autoscale_view()
+    sketch = _SKETCHES[subject]
+    for support in sketch.supports:
+        axes.fill(*np.asarray(support).T, color=_SUPPORT)
+    axes.fill(*sketch.outline.T, facecolor=_BODY, edgecolor=_INK)
+    for line, style in sketch.lines:
+        axes.plot(*np.asarray(line).T, color=_INK, linewidth=0.9, linestyle=style)
+    for name, place, (right, up) in sketch.points:
+        axes.plot(*place, "o", color=_INK, markersize=4, zorder=5)
+        axes.text(place[0] + right, place[1] + up, name, ha="center", va="center", fontweight="bold")
+    for name, place in sketch.labels:
+        axes.text(place[0], place[1], name, ha="center", va="center")
+    x, y = sketch.points[-1][1]
+    tips = [(x + 0.4 * cos(angle), y + 0.4 * sin(angle)) for angle in np.radians((150.0, 30.0))]
+    axes.annotate(
+        "", tips[1], tips[0], arrowprops={"arrowstyle": "-|>", "color": _INK, "connectionstyle": "arc3,rad=-0.55"}
+    )
     axes.margins(0.06)
 
 
-def draw_plate(axes: Axes) -> None:
-    length, height = 2.0, 1.0
-    corners = turned([(0.0, 0.0), (length, 0.0), (length, height), (0.0, height)])
-    axes.plot([-0.35, length + 0.5], [0.0, 0.0], color=_SUPPORT, linewidth=2.5, solid_capstyle="butt")
-    axes.add_patch(Polygon(corners, closed=True, facecolor=_BODY, edgecolor=_INK))
-    (centre,) = turned([(0.5 * length, 0.5 * height)])
-    mark(axes, corners[0], "A", (-9, 5))
-    mark(axes, corners[1], "B", (9, 1))
-    mark(axes, centre, "C", (0, 8))
-    turning_arrow(axes, centre, 0.36)
-    along(axes, turned([(0.0, height), (length, height)]), "L", (0, 8))
-    along(axes, turned([(0.0, 0.0), (0.0, height)]), "H", (-9, 0))
+class Sketch(NamedTuple):
+    """What is drawn of a body: polygons and lines, points with names beside them (the mass centre last), and labels."""
+
+    supports: list[Any]
+    outline: NDArray[np.float64]
+    lines: list[tuple[Any, str]]
+    points: list[tuple[str, Any, tuple[float, float]]]
+    labels: list[tuple[str, Any]]
 
 
-def draw_rod(axes: Axes) -> None:
-    length, thickness, a, b = 2.6, 0.16, 0.75, 0.75
-    outline = [(-0.5 * length, 0.0), (0.5 * length, 0.0), (0.5 * length, thickness), (-0.5 * length, thickness)]
-    corners = turned([(x + a, y) for x, y in outline])
-    axes.add_patch(Polygon(corners, closed=True, facecolor=_BODY, edgecolor=_INK))
-    for x in (0.0, a + b):
-        axes.add_patch(Polygon([(x, 0.0), (x - 0.12, -0.45), (x + 0.12, -0.45)], facecolor=_SUPPORT))
-    axes.plot([-0.7, a + b + 0.6], [-0.45, -0.45], color=_SUPPORT, linewidth=2.5, solid_capstyle="butt")
-    old, centre, new = turned([(0.0, 0.0), (a, 0.5 * thickness), (a + b, 0.0)])
-    mark(axes, old, "A", (10, -9))
-    mark(axes, (a + b, 0.0), "B", (10, -9))
-    mark(axes, centre, "C", (2, 8))
-    turning_arrow(axes, centre, 0.42)
-    axes.plot(a, -1.05, "")  # makes room for the letters
-    for begin, end, name in ((0.0, a, "a"), (a, a + b, "b")):
-        axes.annotate("", (begin, -0.72), (end, -0.72), arrowprops={"arrowstyle": "<->", "color": _INK})
-        axes.annotate(
-            name, (0.5 * (begin + end), -0.72), (0, -10), textcoords="offset points", ha="center", va="center"
-        )
+def _tilted(*points: tuple[float, float]) -> NDArray[np.float64]:
+    """Points of a body that has still to turn by _TILT about A, the origin."""
+    return turned(np.array(points), _TILT)
 
 
-def draw_cylinder(axes: Axes) -> None:
+def _cylinder_sketch() -> Sketch:
     gamma = radians(38.0)
-    a, b = (-sin(gamma), -cos(gamma)), (sin(gamma), -cos(gamma))
-    # Turned about A until its touchdown, the axis comes down to the origin.
-    x, y = -a[0], -a[1]
-    axis = a[0] + x * cos(_TILT) - y * sin(_TILT), a[1] + x * sin(_TILT) + y * cos(_TILT)
-    axes.add_patch(Circle(axis, 1.0, facecolor=_BODY, edgecolor=_INK))
-    for edge, outer in ((a, -1.0), (b, 1.0)):
-        ground = [edge, (edge[0], edge[1] - 0.35), (outer * 1.25, edge[1] - 0.35), (outer * 1.25, edge[1])]
-        axes.add_patch(Polygon(ground, facecolor=_SUPPORT))
-    # The angles are those at the touchdown, when the axis is at the origin.
-    for edge, name, side in ((a, "$γ_1$", -1.0), (b, "$γ_2$", 1.0)):
-        axes.plot([0.0, edge[0]], [0.0, edge[1]], color=_INK, linewidth=0.9, linestyle="--")
-        middle = 0.62 * sin(0.5 * gamma) * side, -0.62 * cos(0.5 * gamma)
-        axes.text(*middle, name, ha="center", va="center")
-    axes.plot([0.0, 0.0], [0.0, -1.0], color=_INK, linewidth=0.9, linestyle=":")
-    axes.add_patch(Arc((0.0, 0.0), 0.9, 0.9, theta1=270.0 - 38.0, theta2=270.0 + 38.0, color=_INK, linewidth=0.9))
-    mark(axes, a, "A", (-9, -9))
-    mark(axes, b, "B", (9, -9))
-    mark(axes, axis, "C", (0, 8))
-    turning_arrow(axes, axis, 0.5)
-
-
-def turned(points: list[tuple[float, float]]) -> list[tuple[float, float]]:
-    """tuple[float, float]s of a body that has still to turn by _TILT about the origin."""
-    return [(x * cos(_TILT) - y * sin(_TILT), x * sin(_TILT) + y * cos(_TILT)) for x, y in points]
-
-
-def mark(axes: Axes, place: tuple[float, float], name: str, offset: tuple[float, float]) -> None:
-    axes.plot(*place, "o", color=_INK, markersize=4, zorder=5)
-    axes.annotate(name, place, offset, textcoords="offset points", ha="center", va="center", fontweight="bold")
-
-
-def along(axes: Axes, side: list[tuple[float, float]], name: str, offset: tuple[float, float]) -> None:
-    (x1, y1), (x2, y2) = side
-    middle = 0.5 * (x1 + x2), 0.5 * (y1 + y2)
-    axes.annotate(name, middle, offset, textcoords="offset points", ha="center", va="center")
-
-
-def turning_arrow(axes: Axes, centre: tuple[float, float], radius: float) -> None:
-    """An arrow clockwise about a point."""
-    ends: Any = [
-        (centre[0] + radius * np.cos(angle), centre[1] + radius * np.sin(angle)) for angle in np.radians((150.0, 30.0))
-    ]
-    axes.add_patch(
-        FancyArrowPatch(*ends, connectionstyle="arc3,rad=-0.55", arrowstyle="-|>", mutation_scale=11, color=_INK)
+    a, b = np.array([-sin(gamma), -cos(gamma)]), np.array([sin(gamma), -cos(gamma)])
+    # Turned about A until its touchdown, the axis comes down to the origin; the angles are those there.
+    axis = a + _tilted((-a[0], -a[1]))[0]
+    blocks = [box(-1.25, a[0], a[1] - 0.35, a[1]), box(b[0], 1.25, b[1] - 0.35, b[1])]
+    turns = np.linspace(-gamma, gamma, 30)
+    arc = 0.45 * np.column_stack([np.sin(turns), -np.cos(turns)])
+    middle = 0.62 * np.array([sin(0.5 * gamma), -cos(0.5 * gamma)])
+    return Sketch(
+        supports=blocks,
+        outline=circle(1.0) + axis,
+        lines=[([(0.0, 0.0), a], "--"), ([(0.0, 0.0), b], "--"), ([(0.0, 0.0), (0.0, -1.0)], ":"), (arc, "-")],
+        points=[("A", a, (-0.2, -0.2)), ("B", b, (0.2, -0.2)), ("C", axis, (0.0, 0.18))],
+        labels=[("$γ_1$", middle * (-1.0, 1.0)), ("$γ_2$", middle)],
     )
+
+
+_SKETCHES: Final = {
+    "plate": Sketch(
+        supports=[box(-0.35, 2.5, -0.04, 0.0)],
+        outline=_tilted((0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (0.0, 1.0)),
+        lines=[],
+        points=[
+            ("A", (0.0, 0.0), (-0.16, 0.09)),
+            ("B", _tilted((2.0, 0.0))[0], (0.17, 0.02)),
+            ("C", _tilted((1.0, 0.5))[0], (0.0, 0.15)),
+        ],
+        labels=[("L", _tilted((1.0, 1.15))[0]), ("H", _tilted((-0.16, 0.5))[0])],
+    ),
+    "rod": Sketch(
+        supports=[
+            [(0.0, 0.0), (-0.12, -0.45), (0.12, -0.45)],
+            [(1.5, 0.0), (1.38, -0.45), (1.62, -0.45)],
+            box(-0.7, 2.1, -0.49, -0.45),
+        ],
+        outline=_tilted((-0.55, 0.0), (2.05, 0.0), (2.05, 0.16), (-0.55, 0.16)),
+        lines=[([(x, -0.64), (x, -0.8), (x, -0.72), (x + 0.75, -0.72), (x + 0.75, -0.8)], "-") for x in (0.0, 0.75)],
+        points=[
+            ("A", (0.0, 0.0), (0.2, -0.18)),
+            ("B", (1.5, 0.0), (0.2, -0.18)),
+            ("C", _tilted((0.75, 0.08))[0], (0.0, 0.18)),
+        ],
+        labels=[("a", (0.375, -0.93)), ("b", (1.125, -0.93))],
+    ),
+    "cylinder": _cylinder_sketch(),
+}

@@ -15,11 +15,8 @@ from .files import named, whole
 _GROUP: Final = 10_000
 """Rows that are written at a time: few enough for any memory, many enough to be read fast."""
 
-_BATCHES: Final = 64
-"""Bags whose rows are joined: alone each takes some 30 kB, however few its rows are."""
 
-
-class Column(NamedTuple):
+class ParquetColumn(NamedTuple):
     """A column: its name, the name of its type in Arrow, and its unit, "" where it has none."""
 
     name: str
@@ -27,41 +24,41 @@ class Column(NamedTuple):
     unit: str = ""
 
 
-def _twist(name: str) -> list[Column]:
-    return [Column(f"{name}_{part}", "float64", "rad/s" if part == "omega" else "m/s") for part in Twist._fields]
+def _twist(name: str) -> list[ParquetColumn]:
+    return [ParquetColumn(f"{name}_{part}", "float64", "rad/s" if part == "omega" else "m/s") for part in Twist._fields]
 
 
 COLUMNS: Final = (
-    Column("bag", "string"),
-    Column("bag_status", "string"),
-    Column("bag_problem", "string"),
-    Column("bag_samples", "int64"),
-    Column("body", "string"),
-    Column("foot", "string"),
-    Column("point", "string"),
-    Column("stamp", "int64", "ns"),
-    Column("announced_lead_time", "float64", "s"),
-    Column("lead_time", "float64", "s"),
-    Column("mode", "string"),
+    ParquetColumn("bag", "string"),
+    ParquetColumn("bag_status", "string"),
+    ParquetColumn("bag_problem", "string"),
+    ParquetColumn("bag_samples", "int64"),
+    ParquetColumn("body", "string"),
+    ParquetColumn("foot", "string"),
+    ParquetColumn("point", "string"),
+    ParquetColumn("stamp", "int64", "ns"),
+    ParquetColumn("announced_lead_time", "float64", "s"),
+    ParquetColumn("lead_time", "float64", "s"),
+    ParquetColumn("mode", "string"),
     *_twist("before"),
     *_twist("predicted"),
     *_twist("measured"),
-    Column("relative_error", "float64", "1"),
-    Column("half_distance", "float64", "m"),
-    Column("out_of_plane", "float64", "1"),
-    Column("scored", "bool"),
-    Column("flags", "list<string>"),
-    Column("old", "list<int32>"),
-    Column("new", "list<int32>"),
-    Column("time_error", "float64", "s"),
-    Column("late", "float64", "s"),
-    Column("confirmed", "bool"),
-    Column("landing_speed", "float64", "m/s"),
-    Column("landing_mode", "string"),
-    Column("impulse_normal", "float64", "N s"),
-    Column("impulse_tangential", "float64", "N s"),
-    Column("others_impulse_normal", "float64", "N s"),
-    Column("others_impulse_tangential", "float64", "N s"),
+    ParquetColumn("relative_error", "float64", "1"),
+    ParquetColumn("half_distance", "float64", "m"),
+    ParquetColumn("out_of_plane", "float64", "1"),
+    ParquetColumn("scored", "bool"),
+    ParquetColumn("flags", "list<string>"),
+    ParquetColumn("old", "list<int32>"),
+    ParquetColumn("new", "list<int32>"),
+    ParquetColumn("time_error", "float64", "s"),
+    ParquetColumn("late", "float64", "s"),
+    ParquetColumn("confirmed", "bool"),
+    ParquetColumn("landing_speed", "float64", "m/s"),
+    ParquetColumn("landing_mode", "string"),
+    ParquetColumn("impulse_normal", "float64", "N s"),
+    ParquetColumn("impulse_tangential", "float64", "N s"),
+    ParquetColumn("others_impulse_normal", "float64", "N s"),
+    ParquetColumn("others_impulse_tangential", "float64", "N s"),
     *_twist("velocity_change"),
 )
 """What is known of a touchdown, in SI units; docs/fleets.md tells what each column is."""
@@ -116,8 +113,7 @@ class TouchdownTable:
                 for one in COLUMNS
             ]
         )
-        self._batches: list[Any] = []
-        self._rows = 0
+        self._rows: list[dict[str, Any]] = []
         self._stack = ExitStack()
 
     def __enter__(self) -> TouchdownTable:
@@ -136,21 +132,15 @@ class TouchdownTable:
 
     def add(self, answer: Mapping[str, Any]) -> None:
         """Add the touchdowns of a bag, from the JSON of its replay (`summary.as_json`, or its `bag` and `error`)."""
-        batch = self._arrow.RecordBatch.from_pylist(list(rows_of(answer)), schema=self._schema)
-        self._batches.append(batch)
-        self._rows += batch.num_rows
-        if self._rows >= _GROUP:
+        self._rows += rows_of(answer)
+        if len(self._rows) >= _GROUP:
             self._flush()
-        elif len(self._batches) >= _BATCHES:
-            self._batches = self._joined().to_batches()
-
-    def _joined(self) -> Any:
-        return self._arrow.Table.from_batches(self._batches, schema=self._schema).combine_chunks()
 
     def _flush(self) -> None:
         # One group of rows, wherever the borders of the bags are.
-        self._writer.write_table(self._joined(), row_group_size=max(self._rows, 1))
-        self._batches, self._rows = [], 0
+        table = self._arrow.Table.from_pylist(self._rows, schema=self._schema)
+        self._writer.write_table(table, row_group_size=max(len(self._rows), 1))
+        self._rows = []
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
@@ -164,7 +154,7 @@ class TouchdownTable:
             self._stack.__exit__(kind, error, traceback)
             return
         with self._stack:
-            if self._batches:
+            if self._rows:
                 self._flush()
 
 
