@@ -28,7 +28,7 @@ IMPORTS: Final = {
     "impact-predictor --help": "impact_predictor.cli",
     "impact-predictor solve": "impact_predictor.cli, impact_predictor.report.outcome",
     "impact-predictor replay": "impact_predictor.cli, impact_predictor.bags.replay, impact_predictor.report.replay",
-    "... --figure": "impact_predictor.cli, impact_predictor.report.touchdown_figure",
+    "... --figure": "impact_predictor.cli, impact_predictor.report.figures",
     "impact-predictor explain": "impact_predictor.cli, impact_predictor.prediction.features",
 }
 LOADED: Final = {"the plugin, after pytest itself": "pytest"}

@@ -18,11 +18,10 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from .bags.read import read_messages, topics
 from .errors import InputError
+from .report.figures import write_touchdowns
 from .report.replay import lead_time_table, touchdown_table
-from .report.summary import LEAD_TIME_EDGES, LeadTimeErrors, TouchdownRow, row_of_message, summarize
+from .report.summary import LEAD_TIME_EDGES, LeadTimeErrors, TouchdownRow, TouchdownTally, row_of_message, summarize
 from .report.table import show
-from .report.tally import TouchdownTally
-from .report.touchdown_figure import write_touchdowns
 from .resources import find
 from .ros.messages import DIAGNOSTIC_ARRAY, Diagnostic, decode_diagnostic_array
 from .ros.player import PLAYING, timed

@@ -79,7 +79,7 @@ def calibrate(
     if output is not None:
         write_scene(params, output, calibration)
     if figure is not None:
-        from ..report.calibration_figure import write_calibration
+        from ..report.figures import write_calibration
 
         write_calibration(
             figure, calibration, ", ".join(Path(bag).name for bag in bags[:3]) + ", ..." * (len(bags) > 3)

@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from ..bags.replay import Result
     from ..fleet.job import BagOutcome
     from ..report.baseline import RunTouchdown
+    from ..report.figures import ReplayPicture
     from ..report.page.found import Kept
     from ..report.parquet import TouchdownTable
-    from ..report.touchdown_figure import ReplayPicture
 
 CHANGED: Final = 1
 """Exit status where something has changed against a baseline."""
@@ -72,7 +72,7 @@ class ReplayReport:
         self._table: TouchdownTable | None = None
         self._baseline = None if wanted.baseline is None else Baseline(wanted.baseline, bags, wanted)
         if wanted.figure is not None:
-            from ..report.touchdown_figure import ReplayPicture
+            from ..report.figures import ReplayPicture
 
             self._picture = ReplayPicture(wanted.figure)
         if wanted.report is not None:
@@ -87,7 +87,7 @@ class ReplayReport:
 
             self._table = stack.enter_context(TouchdownTable(wanted.table))
         if not wanted.as_json:
-            from ..report.tally import ReplayTally
+            from ..report.summary import ReplayTally
 
             self._together = ReplayTally()
 

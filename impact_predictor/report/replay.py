@@ -12,9 +12,8 @@ from ..mechanics.types import Twist
 from ..prediction.scene import CONTACT_GEOMETRY, STATES
 from ..prediction.types import Status
 from ..wording import NONE, counted, duration, fixed, percent, words
-from .summary import LeadTimeErrors, TouchdownRow, error_by_lead_time, errors_of, row_of
+from .summary import LeadTimeErrors, ReplayTally, TouchdownRow, error_by_lead_time, errors_of, row_of
 from .table import Column, first_stamp, say, show, table_of
-from .tally import ReplayTally
 
 if TYPE_CHECKING:
     from ..bags.replay import BodyTruth, Result, Settled, StatusCounts

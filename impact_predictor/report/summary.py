@@ -1,16 +1,22 @@
-"""Settled touchdowns in the form in which they are shown, and the distributions of their errors."""
+"""Settled touchdowns in the form in which they are shown, the distributions of their errors, and what they say."""
 
 from __future__ import annotations
 
+from array import array
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
 from math import floor, log10
 from statistics import median
-from typing import Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from ..mechanics.types import Mode, Twist
 from ..prediction.types import Leftover, Score
+from ..wording import counted, percent, words
+
+if TYPE_CHECKING:
+    from ..bags.stream import Settled
+    from .landings import LandingTally
 
 LEAD_TIME_EDGES: Final = (0.0, 0.01, 0.02, 0.03, 0.04, 0.05, 0.06)
 """Borders in s between which the error is shown against the lead time."""
@@ -224,3 +230,69 @@ def from_json(entry: Mapping[str, Any] | None) -> Distribution:
         return EMPTY
     p50, p90, p99, most = (entry[name] for name in ("p50", "p90", "p99", "max"))
     return Distribution(entry["count"], p50, p90, p99, most, dict(entry["bins"]))
+
+
+class TouchdownTally:
+    """Rows of touchdowns: how wrong the scored ones are, and why others are not scored."""
+
+    def __init__(self, rows: Iterable[TouchdownRow] = ()) -> None:
+        """Count some rows."""
+        self._rows = 0
+        self._errors = array("d")
+        self._reasons: Counter[str] = Counter()
+        for row in rows:
+            self.add(row)
+
+    def __bool__(self) -> bool:
+        """Whether there is any row."""
+        return bool(self._rows)
+
+    def add(self, row: TouchdownRow) -> None:
+        """Count a row."""
+        self._rows += 1
+        self._reasons.update(reasons([row]))
+        if row.scored and row.relative_error is not None:
+            self._errors.append(row.relative_error)
+
+    def sentences(self) -> list[str]:
+        """How wrong the scored touchdowns were, and why the others are not scored, one sentence each."""
+        if not self._rows:
+            return ["No touchdown was predicted."]
+        errors = summarize(self._errors)
+        said = [f"{errors.number:,} of {counted(self._rows, 'touchdown')} scored"]
+        if errors.number:
+            said[0] += f": relative error {percent(errors.median)} % in the median, 90 % below {percent(errors.p90)} %"
+        said[0] += "."
+        if self._reasons:
+            several = ", for one or several reasons each" if len(self._reasons) > 1 else ""
+            said.append(
+                "A touchdown is scored where the samples after it show the velocities that the impact left; they "
+                f"do not for {self._rows - errors.number:,}{several}:"
+            )
+            said += [f"  {count:,} {words(reason)}: {WHY[reason]}" for reason, count in self._reasons.most_common()]
+        return said
+
+
+class ReplayTally:
+    """Touchdowns that have happened, those of feet told apart from all others."""
+
+    def __init__(self) -> None:
+        """Begin with none."""
+        self._others = TouchdownTally()
+        self._landings: LandingTally | None = None
+
+    def add(self, settled: Iterable[Settled]) -> None:
+        """Count the touchdowns of a bag."""
+        for one in settled:
+            if one.score.landing is None:
+                self._others.add(row_of(*one))
+            else:
+                from .landings import LandingTally, landing_row  # only where feet have landed
+
+                self._landings = self._landings or LandingTally()
+                self._landings.add(landing_row(one.body, one.score))
+
+    def sentences(self) -> list[str]:
+        """What they say, one sentence each."""
+        said = [] if self._landings is None else self._landings.sentences()
+        return said + (self._others.sentences() if self._others or not said else [])

@@ -14,6 +14,7 @@ from impact_predictor.mechanics.types import Flag, Mode, Twist
 from impact_predictor.prediction.types import Landing, Leftover, Score
 from impact_predictor.report.landings import (
     LandingRow,
+    LandingTally,
     error_ahead,
     feet_table,
     landings_of,
@@ -22,7 +23,6 @@ from impact_predictor.report.landings import (
 from impact_predictor.report.replay import print_replay
 from impact_predictor.report.replay_json import landing_as_json
 from impact_predictor.report.table import show
-from impact_predictor.report.tally import LandingTally
 
 TOUCHDOWN = touchdowns.TOUCHDOWN._replace(
     before=Twist(0.5, 0.0, 0.0),

@@ -11,9 +11,8 @@ from rich.table import Table
 
 from impact_predictor.mechanics.types import Mode, Twist
 from impact_predictor.report.replay import lead_time_table, touchdown_table
-from impact_predictor.report.summary import Errors, LeadTimeErrors, TouchdownRow
+from impact_predictor.report.summary import Errors, LeadTimeErrors, TouchdownRow, TouchdownTally
 from impact_predictor.report.table import show
-from impact_predictor.report.tally import TouchdownTally
 
 ROW = TouchdownRow(
     body="cube",

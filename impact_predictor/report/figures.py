@@ -1,4 +1,4 @@
-"""One picture of replays: predicted against measured velocities, the errors, and the errors against lead time."""
+"""The pictures of replays and of calibrations: predicted against measured velocities, errors, and what was fitted."""
 
 from __future__ import annotations
 
@@ -9,22 +9,24 @@ from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from matplotlib.ticker import MaxNLocator
+import numpy as np
+from matplotlib.ticker import FixedLocator, FuncFormatter, MaxNLocator, NullLocator, PercentFormatter
 
 from ..wording import percent, words
 from .gait import MOST, Machine, machines_of, write_gait
 from .modes import MODES, PALETTE
-from .plot import GREY, Axes, Line2D, check_picture, headline, picture
-from .summary import LEAD_TIME_EDGES, LeadTimeErrors, TouchdownRow, errors_ahead, errors_of, row_of
-from .tally import TouchdownTally
+from .plot import GREY, Axes, Figure, Line2D, check_picture, headline, picture
+from .summary import LEAD_TIME_EDGES, LeadTimeErrors, TouchdownRow, TouchdownTally, errors_ahead, errors_of, row_of
 
 if TYPE_CHECKING:
     from ..bags.replay import Result
+    from ..calibration.fit import Calibration
+    from ..calibration.search import Estimate
 
-_ALONG, _TURNING = PALETTE[:2]
+_BLUE, _VERMILION = PALETTE[:2]
 _VELOCITIES: Final = (
-    ("vx, along the support", _ALONG),
-    ("ω s, from turning\n(s: half the contacts' distance)", _TURNING),
+    ("vx, along the support", _BLUE),
+    ("ω s, from turning\n(s: half the contacts' distance)", _VERMILION),
 )
 _NAMED: Final = 3
 """Bags whose names stand in the title."""
@@ -111,8 +113,8 @@ def _draw_velocities(axes: Axes, rows: Sequence[TouchdownRow]) -> None:
         marker = MODES[mode].marker
         known = [(measured, predicted, arm) for measured, predicted, arm in mine if measured is not None]
         for colour, pairs in (
-            (_ALONG, [(measured.vx, predicted.vx) for measured, predicted, _ in known]),
-            (_TURNING, [(measured.omega * arm, predicted.omega * arm) for measured, predicted, arm in known]),
+            (_BLUE, [(measured.vx, predicted.vx) for measured, predicted, _ in known]),
+            (_VERMILION, [(measured.omega * arm, predicted.omega * arm) for measured, predicted, arm in known]),
         ):
             extent = max([extent, *(abs(velocity) for pair in pairs for velocity in pair)])
             axes.plot(*zip(*pairs, strict=True), marker, color=colour, markersize=6, alpha=0.6, markeredgewidth=0)
@@ -137,12 +139,12 @@ def _draw_errors(axes: Axes, rows: Sequence[TouchdownRow]) -> None:
     end = max(min(1.4 * max(errors), 300.0 * summary.p90), 1.0)
     shown = [min(error, end) for error in errors]
     bins = min(40, max(10, len(errors) // 5))
-    counts: Any = axes.hist(shown, bins=bins, range=(0.0, end), color=_ALONG, alpha=0.7, edgecolor="white")[0]
+    counts: Any = axes.hist(shown, bins=bins, range=(0.0, end), color=_BLUE, alpha=0.7, edgecolor="white")[0]
     if outside := sum(error > end for error in errors):
         axes.annotate(f"{outside} beyond →", (end, counts[-1]), ha="right", va="bottom", fontsize=9, color=GREY)
     for value, style, label in ((summary.median, "-", "median"), (summary.p90, "--", "90 % below")):
         said = f"{label} {percent(value)} %"
-        axes.axvline(100.0 * value, color=_TURNING, linestyle=style, linewidth=1.5, label=said)
+        axes.axvline(100.0 * value, color=_VERMILION, linestyle=style, linewidth=1.5, label=said)
     axes.set(xlim=(0.0, end), ylim=(0.0, 1.25 * max(counts)))
     axes.yaxis.set_major_locator(MaxNLocator(integer=True))
     axes.legend(loc="upper right", frameon=True, framealpha=0.9, edgecolor="none")
@@ -158,7 +160,7 @@ def _draw_lead_times(axes: Axes, errors: Sequence[LeadTimeErrors]) -> None:
     middles = [500.0 * (one.begin + one.end) for one in known]
     for part, style, marker, label in (("p90", "--", "s", "90 % below"), ("median", "-", "o", "median")):
         values = [100.0 * getattr(one.errors, part) for one in known]
-        axes.plot(middles, values, style, marker=marker, color=_TURNING, label=label)
+        axes.plot(middles, values, style, marker=marker, color=_VERMILION, label=label)
     top = 1.25 * max(100.0 * (one.errors.p90 or 0.0) for one in known) or 1.0
     axes.set(xlim=(1e3 * errors[-1].end, 1e3 * errors[0].begin), ylim=(0.0, top))
     for middle, one in zip(middles, known, strict=True):
@@ -170,3 +172,98 @@ def _draw_lead_times(axes: Axes, errors: Sequence[LeadTimeErrors]) -> None:
 def _draw_nothing(axes: Axes, text: str) -> None:
     axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", color=GREY)
     axes.set(xticks=[], yticks=[])
+
+
+def write_calibration(path: str | os.PathLike[str], calibration: Calibration, name: str) -> None:
+    """Draw a calibration to the bags of a name into a PNG or SVG file.
+
+    Raises:
+        InputError: the file cannot be written, or is of another format.
+    """
+    with picture(path, 14.0, 5.0) as figure:
+        left, middle, right = figure.subplots(1, 3, width_ratios=(1.25, 0.85, 1.0))
+        given, held_out = (float(np.median(one)) for one in (calibration.given_errors, calibration.held_out))
+        headline(
+            figure,
+            f"{name}: {len(calibration.touchdowns)} touchdowns. Error in the median: {percent(given)} % with the given "
+            f"values, {percent(held_out)} % with values fitted to other touchdowns",
+        )
+        _draw_map(figure, left, calibration)
+        _draw_inertia(middle, calibration)
+        _draw_fitted(right, calibration)
+
+
+def _draw_map(figure: Figure, axes: Axes, calibration: Calibration) -> None:
+    from .calibration import interval  # which needs scipy, as no other picture here does
+
+    grid, losses = calibration.map
+    friction, restitution = calibration.friction, calibration.restitution
+    wide, high = _end(friction), _end(restitution)
+    axes.set_title("Mean error over friction and restitution")
+    axes.set(xlabel="friction", ylabel="restitution", xlim=(0.0, wide), ylim=(0.0, high))
+    shown = losses[np.ix_(grid.friction <= 1.5 * wide, grid.restitution <= 1.5 * high)]
+    shown = shown if min(shown.shape) > 1 else losses
+    levels = np.linspace(float(shown.min()), float(np.quantile(shown, 0.9)) + 1e-9, 14)
+    drawn = axes.contourf(
+        grid.friction, grid.restitution, losses.T, levels=levels, cmap="cividis_r", extend="max", zorder=0
+    )
+    bar = figure.colorbar(drawn, ax=axes, format=PercentFormatter(1.0, decimals=1), pad=0.02)
+    bar.set_label("mean relative error (darker is worse)")
+    across, upwards = (
+        np.clip([one.value - (one.low or 0.0), _high(one) - one.value], 0.0, None)[:, None]
+        for one in (friction, restitution)
+    )
+    label = f"fitted, with 95 % interval:\nfriction {interval(friction)}\nrestitution {interval(restitution)}"
+    point = friction.value, restitution.value
+    axes.errorbar(*point, upwards, across, color=_VERMILION, marker="o", capsize=4, linewidth=2, label=label, zorder=3)
+    label = f"given: {friction.given:.3g} and {restitution.given:.3g}"
+    given = axes.plot(friction.given, restitution.given, "s", color="white", markersize=9, label=label)
+    given[0].set(markeredgecolor="black", clip_on=False, zorder=4)
+    axes.legend(loc="upper right", frameon=True, framealpha=0.9)
+    axes.grid(visible=False)
+
+
+def _draw_inertia(axes: Axes, calibration: Calibration) -> None:
+    one = calibration.inertia
+    axes.set_title("Inertia: " + ("told" if one.known else "not told by these touchdowns"))
+    axes.set(xlabel="times the given inertia", ylabel="least mean error with it", xscale="log")
+    if not calibration.inertias:
+        axes.text(0.5, 0.5, "several bodies of different inertia", transform=axes.transAxes, ha="center", color=GREY)
+        return
+    factors, losses = np.array(calibration.inertias).T
+    axes.axvspan(one.low or factors[0], one.high or factors[-1], color=_BLUE, alpha=0.12, label="predict as well")
+    axes.plot(factors, losses, "o-", color=_BLUE, markersize=4)
+    axes.axvline(1.0, color="black", linewidth=1.0, linestyle="--", label="given")
+    if one.value != 1.0:
+        axes.axvline(one.value, color=_VERMILION, linewidth=2.0, label="fitted")
+    axes.xaxis.set_major_locator(FixedLocator([1 / 3, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0]))
+    axes.xaxis.set_minor_locator(NullLocator())
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.2g}"))
+    axes.yaxis.set_major_formatter(PercentFormatter(1.0, decimals=1))
+    axes.set_ylim(0.0, max(0.01, 1.15 * float(losses.max())))
+    axes.legend(loc="lower right", frameon=True)
+
+
+def _draw_fitted(axes: Axes, calibration: Calibration) -> None:
+    axes.set_title("Velocities after the touchdown: vx, and ω s")
+    axes.set(xlabel="measured (m/s); s: half the contacts' distance", ylabel="predicted (m/s)")
+    speed = np.array([one.speed for one in calibration.touchdowns])[:, None]
+    measured = np.array([(one.measured.vx, one.measured.omega * one.half_distance) for one in calibration.touchdowns])
+    for missed, colour, marker, label in (
+        (calibration.given_misses, GREY, "x", "with the given values"),
+        (calibration.held_out_misses, _VERMILION, "o", "fitted to other touchdowns"),
+    ):
+        predicted = (measured + missed * speed).ravel()
+        axes.scatter(measured.ravel(), predicted, s=16.0, color=colour, marker=marker, alpha=0.6, label=label)
+    axes.axline((0.0, 0.0), slope=1.0, color="black", linewidth=1.0, zorder=1, label="exact")
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.legend(loc="upper left")
+
+
+def _end(one: Estimate) -> float:
+    """The end of an axis that shows a coefficient."""
+    return min(max(1.5 * one.given, 2.0 * one.value, 1.2 * (one.high or 0.0), 0.1), max(1.0, 1.2 * one.given))
+
+
+def _high(one: Estimate) -> float:
+    return one.high if one.high is not None else max(2.0 * one.value, 1.0)

@@ -9,8 +9,8 @@ import pytest
 
 from impact_predictor.errors import InputError
 from impact_predictor.mechanics.types import Mode, Twist
+from impact_predictor.report.figures import write_touchdowns
 from impact_predictor.report.summary import LEAD_TIME_EDGES, Errors, LeadTimeErrors, TouchdownRow
-from impact_predictor.report.touchdown_figure import write_touchdowns
 
 ROWS = [
     TouchdownRow(
