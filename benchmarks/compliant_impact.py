@@ -26,20 +26,18 @@ from scipy.integrate import solve_ivp
 
 from impact_predictor.mechanics.compliant import (
     APPROACHES,
-    EXPLICIT,
     LONGEST,
     QUIET,
     STAYS,
     Compliance,
     damping_ratio,
     force,
-    slopes,
 )
 from impact_predictor.mechanics.impact.answer import mode_of
 from impact_predictor.mechanics.impact.body import see
 from impact_predictor.mechanics.types import Contact, Mode, Twist, TwoPointBody, Vector
 
-METHODS = ("Radau", "BDF", "LSODA", *EXPLICIT)
+METHODS = ("Radau", "BDF", "LSODA", "DOP853", "RK45")
 """The integrators of scipy: three for stiff equations, two explicit ones for comparison."""
 
 
@@ -99,30 +97,6 @@ class Equations(NamedTuple):
             fy += normal * ny - tangential * nx
             fq += normal * mn + tangential * mt
         return [values[3], values[4], values[5], fx, fy, fq, *impulses]
-
-    def jacobian(self, time: float, state: NDArray[np.float64]) -> NDArray[np.float64]:
-        """The derivatives of `rates` by the state."""
-        values = state.tolist()
-        found = np.zeros((len(values), len(values)))
-        found[0, 3] = found[1, 4] = found[2, 5] = 1.0
-        turning = self.depth * values[5]
-        contacts = self.contacts(time, values)
-        for i, ((_, (nx, ny), _, compliance, _), (gap, rate, slip, mn, mt)) in enumerate(
-            zip(self.points, contacts, strict=True)
-        ):
-            along_n, along_t = np.array((nx, ny, mn)), np.array((ny, -nx, mt))
-            by = slopes(compliance, gap, rate, slip)
-            normal, tangential = np.zeros(6), np.zeros(6)
-            normal[:3], normal[3:] = by.gap * along_n, by.rate * along_n
-            normal[2] += by.rate * turning * mt
-            tangential[3:] = by.slip * along_t
-            tangential[2] -= by.slip * turning * mn
-            tangential += by.tangential * normal
-            found[3:6, :6] += np.outer(along_n, normal) + np.outer(along_t, tangential)
-            n, t = force(compliance, gap, rate, slip)
-            found[5, 2] += self.depth * (n * mt - t * mn)
-            found[6 + 2 * i, :6], found[7 + 2 * i, :6] = normal, tangential
-        return found
 
 
 def loaded(equations: Equations, state: Any) -> Equations:
@@ -226,7 +200,6 @@ def compliant_impact(
         return left
 
     remaining.terminal, remaining.direction = True, -1.0  # type: ignore[attr-defined]
-    options: dict[str, Any] = {} if method in EXPLICIT else {"jac": equations.jacobian}
     with np.errstate(all="ignore"), warnings.catch_warnings(action="ignore"):
         found: Any = solve_ivp(
             equations.rates,
@@ -236,7 +209,6 @@ def compliant_impact(
             events=remaining,
             rtol=tolerance,
             atol=tolerance,
-            **options,
         )
     state = found.y_events[0][0] if found.status == 1 else found.y[:, -1]
     x, y, q = (speed * float(value) for value in state[3:6])

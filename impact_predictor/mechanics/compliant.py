@@ -52,9 +52,6 @@ QUIET = 1e-6
 LONGEST = 1e4
 """The longest impact, in units of sqrt(m / k)."""
 
-EXPLICIT = ("DOP853", "RK45")
-"""Integrators that take no Jacobian."""
-
 
 class Compliance(NamedTuple):
     """A contact's stiffness (N/m), damping (N s/m) and friction, and the slip (m/s) at which friction is 0.71 of its
@@ -65,17 +62,6 @@ class Compliance(NamedTuple):
     damping: float
     friction: float
     regularisation: float
-
-
-class ForceSlopes(NamedTuple):
-    """Derivatives of a contact's normal and tangential force by the gap, its rate and the slip; the tangential force's
-    by the normal velocity and gap are `tangential` times those of the normal force.
-    """
-
-    gap: float
-    rate: float
-    tangential: float
-    slip: float
 
 
 class ContactState(NamedTuple):
@@ -95,21 +81,6 @@ def force(contact: Compliance, gap: float, rate: float, slip: float) -> tuple[fl
         return 0.0, 0.0
     s = slip / contact.regularisation
     return normal, -contact.friction * normal * s / sqrt(1.0 + s * s)
-
-
-def slopes(contact: Compliance, gap: float, rate: float, slip: float) -> ForceSlopes:
-    """The derivatives of `force`."""
-    normal = -contact.stiffness * gap - contact.damping * rate
-    if gap > 0.0 or normal <= 0.0:
-        return ForceSlopes(0.0, 0.0, 0.0, 0.0)
-    s = slip / contact.regularisation
-    root = sqrt(1.0 + s * s)
-    return ForceSlopes(
-        gap=-contact.stiffness,
-        rate=-contact.damping,
-        tangential=-contact.friction * s / root,
-        slip=-contact.friction * normal / (contact.regularisation * root**3),
-    )
 
 
 def restitution_of(ratio: float) -> float:
@@ -173,21 +144,6 @@ class CompliantBody(NamedTuple):
             px, py = normal * nx + tangential * ny, normal * ny - tangential * nx
             fx, fy, moment = fx + px, fy + py, moment + ax * py - ay * px
         return [*values[3:], fx / self.mass, fy / self.mass, moment / self.inertia]
-
-    def jacobian(self, time: float, state: NDArray[np.float64]) -> NDArray[np.float64]:
-        """The derivatives of `rates` by the state, without those of the levers: the contacts are far stiffer."""
-        found = np.zeros((6, 6))
-        found[0, 3] = found[1, 4] = found[2, 5] = 1.0
-        share = np.array((1.0 / self.mass, 1.0 / self.mass, 1.0 / self.inertia))
-        for compliance, one in zip(self.compliances, self.contacts(time, state.tolist()), strict=True):
-            by = slopes(compliance, one.gap, one.rate, one.slip)
-            (nx, ny), (ax, ay) = one.normal, one.arm
-            along_n = np.array((nx, ny, ax * ny - ay * nx))
-            along_t = np.array((ny, -nx, -(ax * nx + ay * ny)))
-            normal = np.concatenate((by.gap * along_n, by.rate * along_n))
-            tangential = np.concatenate((np.zeros(3), by.slip * along_t)) + by.tangential * normal
-            found[3:] += np.outer(share * along_n, normal) + np.outer(share * along_t, tangential)
-        return found
 
 
 class CompliantMotion(NamedTuple):
@@ -338,10 +294,8 @@ def _integrated(
     longest_step: float = inf,
 ) -> Any:
     """The solution of scipy's integrator over a span of time (s), or until `remaining` falls to zero."""
-    options: dict[str, Any] = {} if method in EXPLICIT else {"jac": model.jacobian}
     if remaining is not None:
         remaining.terminal, remaining.direction = True, -1.0  # type: ignore[attr-defined]
-        options["events"] = remaining
     # What the integrator has to say of its troubles, its status says.
     with np.errstate(all="ignore"), warnings.catch_warnings(action="ignore"):
         return solve_ivp(
@@ -350,8 +304,8 @@ def _integrated(
             start,
             method,
             dense_output=True,
+            events=remaining,
             rtol=tolerances[0],
             atol=tolerances[1],
             max_step=longest_step,
-            **options,
         )

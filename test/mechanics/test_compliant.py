@@ -12,13 +12,11 @@ from impact_predictor import Contact, Mode, Twist, TwoPointBody, plate, solve_im
 from impact_predictor.mechanics.compliant import (
     PLASTIC,
     Compliance,
-    CompliantBody,
     compliant_impact,
     compliant_motion,
     damping_ratio,
     force,
     restitution_of,
-    slopes,
 )
 from impact_predictor.mechanics.motion import PlanarState, rock, standing
 from impact_predictor.mechanics.motion.support import FixedSupport, Wave, harmonic_support
@@ -63,34 +61,6 @@ def test_a_contact_never_pulls_and_its_friction_stays_in_the_cone():
         assert tangential * slip <= 0.0
         if gap > 0.0:
             assert normal == 0.0
-
-
-def test_slopes_are_the_derivatives_of_the_force():
-    contact, step = Compliance(100.0, 3.0, 0.4, 0.1), 1e-6
-    for gap, rate, slip in ((-0.5, 0.3, 0.05), (-0.2, -1.0, -0.3), (0.1, -1.0, 0.2), (-0.01, 5.0, 0.2)):
-        by = slopes(contact, gap, rate, slip)
-        expected = ((by.gap, by.tangential * by.gap), (by.rate, by.tangential * by.rate), (0.0, by.slip))
-        for i, pair in enumerate(expected):
-            ahead, behind = [gap, rate, slip], [gap, rate, slip]
-            ahead[i] += step
-            behind[i] -= step
-            change = np.subtract(force(contact, *ahead), force(contact, *behind)) / (2.0 * step)
-            assert change == pytest.approx(pair, abs=1e-6)  # central differences: step**2 and roundings / step
-
-
-def test_the_jacobian_is_the_derivative_of_the_right_hand_side_but_for_the_levers():
-    contacts = Compliance(200.0, 5.0, 0.4, 0.3), Compliance(100.0, 8.0, 0.7, 0.3)
-    body = CompliantBody(2.0, 0.7, 9.81, ((-0.8, -0.5), (0.9, -0.4)), contacts, (DECK,))
-    state, step = np.array([0.1, 0.2, 0.05, 0.3, -0.4, -0.5]), 1e-6
-    assert all(contact.gap < 0.0 for contact in body.contacts(0.2, state))
-    exact = body.jacobian(0.2, state)
-    for i in (0, 1, 3, 4, 5):
-        ahead, behind = state.copy(), state.copy()
-        ahead[i] += step
-        behind[i] -= step
-        change = np.subtract(body.rates(0.2, ahead), body.rates(0.2, behind)) / (2.0 * step)
-        # The support turns: a place along it changes the velocity over it.
-        assert change == pytest.approx(exact[:, i], abs=1e-5 if i > 2 else 2.0)
 
 
 def test_damping_gives_the_wanted_restitution():
