@@ -27,7 +27,7 @@ def check_numbers(sample: Sample) -> Status:
     size = dot(position, position) + dot(linear, linear) + dot(angular, angular)
     # False for NaN as well. A sum of finite covariances may overflow: drivers fill in the largest double.
     if not size < LARGEST or not (
-        isfinite(sum(sample.pose_covariance) + sum(sample.twist_covariance))
+        isfinite(sum(sample.pose_covariance, 0.0) + sum(sample.twist_covariance, 0.0))
         or all(map(isfinite, sample.pose_covariance + sample.twist_covariance))
     ):
         return Status.NOT_FINITE
@@ -46,7 +46,7 @@ def order_of(stamp: int, last: int | None) -> Status:
 
 def check_points(points: tuple[Vector3, ...]) -> Status:
     """Whether points can be contact points: at least two, finite, and no two of them one."""
-    if not sum([dot(point, point) for point in points]) < LARGEST:
+    if not sum([dot(point, point) for point in points], 0.0) < LARGEST:
         return Status.NOT_FINITE
     if len(points) < 2:
         return Status.TOO_FEW_POINTS

@@ -77,27 +77,32 @@ class Pending:
         last = self.track.last
         measured = self._twist(scene, last)
         scale = hypot(last.before.vx, last.before.omega * last.half_distance)
+        score = self._unscored(measured, last.leftover)
         if not last.old or scale == 0.0:
-            return Score(self.stamp, last, measured, None, False, last.leftover, ())
-
-        def error(touchdown: Touchdown) -> float:
-            seen = measured if touchdown.axis == last.axis else self._twist(scene, touchdown)
-            after = touchdown.after
-            return hypot(after.vx - seen.vx, (after.omega - seen.omega) * last.half_distance) / scale
-
-        history = tuple(
-            [
-                ((self.stamp - stamp) / NANOSECONDS, error(touchdown))
-                for stamp, touchdown in self.track.answers
-                if stamp <= self.stamp and touchdown.old == last.old and touchdown.new == last.new
-            ]
-        )
-        return Score(self.stamp, last, measured, error(last), not last.leftover, last.leftover, history)
+            return score
+        errors = []
+        for stamp, touchdown in self.track.answers:
+            if stamp <= self.stamp and touchdown.old == last.old and touchdown.new == last.new:
+                seen = measured if touchdown.axis == last.axis else self._twist(scene, touchdown)
+                error = _distance(touchdown.after, seen, last.half_distance) / scale
+                errors.append(((self.stamp - stamp) / NANOSECONDS, error))
+        error = _distance(last.after, measured, last.half_distance) / scale
+        return score._replace(relative_error=error, scored=not last.leftover, history=tuple(errors))
 
     def unmeasured(self) -> Score:
         """The score where the record ends before it is complete."""
-        last = self.track.last
-        return Score(self.stamp, last, None, None, False, last.leftover | Leftover.TOO_SHORT, ())
+        return self._unscored(None, self.track.last.leftover | Leftover.TOO_SHORT)
+
+    def _unscored(self, measured: Twist | None, leftover: Leftover) -> Score:
+        return Score(
+            stamp=self.stamp,
+            touchdown=self.track.last,
+            measured=measured,
+            relative_error=None,
+            scored=False,
+            leftover=leftover,
+            history=(),
+        )
 
     def _twist(self, scene: Scene, touchdown: Touchdown) -> Twist:
         """The measured twist in the plane of a prediction."""
@@ -110,6 +115,11 @@ class Pending:
         # What rocks on a deck comes slowly and has turned on by then: its twists are followed back to the touchdown.
         times = [(stamp - self.stamp) / NANOSECONDS for stamp, _, _ in self._measured]
         return Twist(_at_zero(times, along), _at_zero(times, up), _at_zero(times, spin))
+
+
+def _distance(one: Twist, other: Twist, half_distance: float) -> float:
+    """How far two twists are apart in the plane, as a speed in m/s."""
+    return hypot(one.vx - other.vx, (one.omega - other.omega) * half_distance)
 
 
 def _at_zero(times: list[float], values: list[float]) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from math import sqrt
+from operator import attrgetter
 
 from ...stamps import NANOSECONDS
 from ..checks import LARGEST, PAUSE, order_of
@@ -126,7 +127,7 @@ class FeetContacts(Contacts):
         points, velocities = geometry.points, geometry.velocities
         if len(points) != self._count or len(velocities) not in (0, self._count):
             return Status.FEET_CHANGED
-        if not sum([dot(vector, vector) for vector in points + velocities]) < LARGEST:
+        if not sum([dot(vector, vector) for vector in points + velocities], 0.0) < LARGEST:
             return Status.NOT_FINITE
         last = None if self.geometry is None else self.geometry.stamp
         status = order_of(geometry.stamp, last)
@@ -179,23 +180,27 @@ class FeetContacts(Contacts):
         The first contact of a foot is told even where it was not announced.
         """
         point, each = self._points[i], self._walking.points
-        stamp, told = point.stance.since, self._tracker.settle(i)
+        stamp, announced = point.stance.since, self._tracker.settle(i)
         first = i - i % each
-        if told is None and any(one.stands for one in self._points[first : first + each] if one is not point):
+        if announced is None and any(one.stands for one in self._points[first : first + each] if one is not point):
             return
-        new = told.last.new if told is not None and i in told.last.new else (i,)
+        new = announced.last.new if announced is not None and i in announced.last.new else (i,)
         foot = self._walking.feet[i // each]
-        late, confirmed = self._schedule.late(foot, stamp), self._forces.agree(foot, True, self._base.samples[-1].stamp)
-        times = () if told is None else told.times
-        history = tuple(
-            [
-                ((stamp - made) / NANOSECONDS, (made - stamp) / NANOSECONDS + lead_time)
-                for made, lead_time in times
-                if made <= stamp
-            ]
+        times = () if announced is None else announced.times
+        errors = [
+            ((stamp - made) / NANOSECONDS, (made - stamp) / NANOSECONDS + lead_time)
+            for made, lead_time in times
+            if made <= stamp
+        ]
+        landing = Landing(
+            foot=foot,
+            stamp=stamp,
+            late=self._schedule.late(foot, stamp),
+            confirmed=self._forces.agree(foot, True, self._base.samples[-1].stamp),
+            history=tuple(errors),
+            point=part_of(new, each),
         )
-        landing = Landing(foot, stamp, late, confirmed, history, point=part_of(new, each))
-        last = None if told is None else told.last
+        last = None if announced is None else announced.last
         self._landed.append(PendingLanding(Pending(Track(), stamp), landing, last, self._tracker.seen(i, new)))
         self._base.begin(stamp)
 
@@ -223,16 +228,28 @@ class FeetContacts(Contacts):
         own = self._points[number * each : (number + 1) * each]
         standing = [landed for point in own if (landed := point.landed) is not None]
         since = min(standing) if standing else max([point.stance.since for point in own])
-        lowest = min(own, key=lambda point: point.trajectory.frames[-1].gap) if each > 1 else own[0]
+        gaps = [point.trajectory.frames[-1].gap for point in own]
+        lowest = own[gaps.index(min(gaps))].trajectory
         lead_time = speed = late = place = None
         ahead = [due for due in dues[number * each : (number + 1) * each] if due is not None]
         if ahead:
-            due = min(ahead, key=lambda one: one.stamp)
+            due = min(ahead, key=attrgetter("stamp"))
             lead_time, speed = (due.stamp - stamp) / NANOSECONDS, -dot(self.scene.normal, due.velocity)
             late, place = self._schedule.late(name, due.stamp), due.position
         if standing:
             late = self._schedule.late(name, since) if since else None
         confirmed = self._forces.agree(name, bool(standing), stamp)
-        last, approach = lowest.trajectory.frames[-1], -lowest.trajectory.rate
-        where = last.position, place
-        return Foot(name, bool(standing), since, last.gap, approach, lead_time, speed, late, confirmed, *where)
+        last = lowest.frames[-1]
+        return Foot(
+            name=name,
+            stands=bool(standing),
+            since=since,
+            gap=last.gap,
+            approach=-lowest.rate,
+            lead_time=lead_time,
+            landing_speed=speed,
+            late=late,
+            confirmed=confirmed,
+            position=last.position,
+            place=place,
+        )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Sequence
 from math import hypot
+from operator import itemgetter
 from typing import NamedTuple
 
 from ...stamps import NANOSECONDS
@@ -126,7 +127,7 @@ class LandingTracker:
             del self._announced[i]
         if not landings:
             return None
-        landings.sort(key=lambda landing: landing[0])
+        landings.sort(key=itemgetter(0))
         standing = [i for i, point in enumerate(points) if point.stands or point.closed]
         places = [
             point.trajectory.frames[-1].position if due is None else due.position

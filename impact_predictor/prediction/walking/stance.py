@@ -170,10 +170,8 @@ class LandingSchedule:
 
     def late(self, foot: str, stamp: int) -> float | None:
         """How much later than planned, in s, a foot lands at a stamp in ns; None where none is planned near it."""
-        planned = min(self._landings[foot], key=lambda planned: abs(planned - stamp), default=None)
-        if planned is None or abs(stamp - planned) > FURTHEST:
-            return None
-        return (stamp - planned) / NANOSECONDS
+        late = min([stamp - planned for planned in self._landings[foot]], key=abs, default=None)
+        return None if late is None or abs(late) > FURTHEST else late / NANOSECONDS
 
 
 class FootForces:

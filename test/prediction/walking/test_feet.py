@@ -26,9 +26,6 @@ from impact_predictor.prediction.types import (
     Wrench,
 )
 from impact_predictor.prediction.vectors import add, axes_of, cross, to_body, turned
-from impact_predictor.prediction.walking.cubic import PointFrame
-from impact_predictor.prediction.walking.point import FootPoint
-from impact_predictor.prediction.walking.stance import Ground
 from impact_predictor.scenarios.comparison import Landings
 
 MS = 1_000_000
@@ -149,6 +146,8 @@ def test_a_landing_is_announced_in_time_whether_the_foot_brakes_or_strikes(speed
     assert score.landing is not None
     assert score.landing.foot == "LF"
     assert score.landing.stamp == pytest.approx(START + 600 * MS, abs=0.5 * MS)
+    errors = [(0.6 - made, stamp - 0.6) for made, stamp in told]
+    assert np.array(score.landing.history) == pytest.approx(np.array(errors), abs=0.5e-3)
     told_speeds = [one.feet[0].landing_speed for one in seen.predictions if one.feet[0].landing_speed is not None]
     assert told_speeds[-1] == pytest.approx(speed, abs=0.02)
     # Up to 2.5 ms before, or in the mean of the 2.5 ms before that, it still brakes at 20 m/s^2.
@@ -269,9 +268,10 @@ def test_a_landing_is_stamped_by_what_was_measured_after_it_and_not_by_what_was_
     def stopped(time: float) -> tuple[float, float]:
         return (0.0, 0.0) if time > 0.57 else swing(0.3, 0.6)(time)
 
-    (score,) = walk(machine(), record([stopped, stands, stands, stands], 0.8)).scores
+    seen = walk(machine(), record([stopped, stands, stands, stands], 0.8))
+    (score,) = seen.scores
     assert score.landing is not None
-    assert score.landing.stamp == pytest.approx(START + 570 * MS, abs=3 * MS)
+    assert score.landing.stamp == seen.predictions[-1].feet[0].since == pytest.approx(START + 570 * MS, abs=3 * MS)
     assert score.landing.history[-1][1] == pytest.approx(0.03, abs=4e-3)
 
 
@@ -295,15 +295,6 @@ def test_a_swing_is_dated_back_to_when_the_foot_left_the_ground(deviation: float
     assert not foot.stands
     # It lifts by 10 m/s^2 t^2, out of the tolerance of 5 mm after 22 ms, and out of the noise after less.
     assert -3.0 <= (foot.since - START) / MS - 300.0 <= late
-
-
-def test_the_landing_error_of_every_prediction_is_told_with_it() -> None:
-    (score,) = walk(machine(), record([swing(0.3, 0.6), stands, stands, stands], 0.8)).scores
-    assert score.landing is not None
-    leads = [lead for lead, _ in score.landing.history]
-    assert leads == sorted(leads, reverse=True)
-    assert leads[0] > 0.08
-    assert max(abs(error) for _, error in score.landing.history) < 5e-4
 
 
 def test_a_foot_that_only_comes_down_a_little_lands_nowhere() -> None:
@@ -394,16 +385,6 @@ def test_of_feet_that_land_shortly_after_each_other_both_impacts_begin_with_the_
     # Both are told from the same frame.
     assert one.linear == pytest.approx(other.linear, abs=1e-9)
     assert one.angular == pytest.approx(other.angular, abs=1e-9)
-
-
-def test_a_point_that_was_pulled_off_stood_until_then() -> None:
-    scene = machine()
-    point, ground = FootPoint(scene), Ground(scene)
-    for k in range(40):
-        gap = 0.0 if k < 20 else 0.02
-        point.add(PointFrame(k * 2_500_000, gap, 0.0, (0.0, 0.0, gap), (0.0, 0.0, 0.0)), ground)
-    assert not point.stands
-    assert [point.stood(at * MS) for at in (0, 45, 50, 90)] == [True, True, False, False]
 
 
 def test_a_foot_that_lands_sooner_stands_when_the_next_one_lands() -> None:
@@ -498,17 +479,6 @@ def test_a_foot_that_sinks_into_soft_ground_lands_where_it_comes_to_rest() -> No
     assert score.stamp == pytest.approx(START + 700 * MS, abs=MS)
 
 
-def test_a_foot_that_meets_the_ground_early_stands_from_then() -> None:
-    def stopped(time: float) -> tuple[float, float]:
-        gap, rate = swing(0.3, 0.6)(time)
-        return (0.0, 0.0) if time > 0.57 else (gap, rate)
-
-    seen = walk(machine(), record([stopped, stands, stands, stands], 0.8))
-    foot = seen.predictions[-1].feet[0]
-    assert foot.stands
-    assert foot.since == pytest.approx(START + 571 * MS, abs=5 * MS)
-
-
 def test_landings_are_told_late_or_early_against_the_plan() -> None:
     walker = Predictor(machine(has_schedule=True))
     swings, stance = (False, True, True, True), (True,) * 4
@@ -585,19 +555,14 @@ def test_odd_messages_get_a_named_status_and_the_walker_goes_on() -> None:
     broken = ((math.nan, 0.0, 0.0), *geometry.points[1:])
     assert walker.set_geometry(geometry._replace(points=broken)) is Status.NOT_FINITE
     told = []
-    for k, (sample, geometry) in enumerate(messages):
+    for sample, geometry in messages:
         assert walker.set_geometry(geometry) is Status.ACCEPTED
         assert walker.set_geometry(geometry) is Status.STAMP_REPEATED
         assert walker.set_geometry(geometry._replace(stamp=geometry.stamp - MS)) is Status.STAMP_WENT_BACK
         assert walker.set_geometry(geometry._replace(stamp=geometry.stamp + 1, points=broken)) is Status.NOT_FINITE
-        assert walker.update(sample._replace(frame_id="map")).status is Status.WRONG_FRAME
         assert walker.update(sample._replace(child_frame_id="cube")).status is Status.WRONG_FRAME
-        assert walker.update(sample._replace(linear=(math.inf, 0.0, 0.0))).status is Status.NOT_FINITE
-        assert walker.update(sample._replace(orientation=(0.0,) * 4)).status is Status.BAD_QUATERNION
         prediction = walker.update(sample)
         assert prediction.status is Status.ACCEPTED
-        assert walker.update(sample).status is Status.STAMP_REPEATED
-        assert k == 0 or walker.update(messages[k - 1].sample).status is Status.STAMP_WENT_BACK
         told += [sample.stamp + round(one.lead_time * 1e9) - START for one in prediction.feet if one.lead_time]
     assert told == pytest.approx([600 * MS] * len(told), abs=0.5 * MS)
 
