@@ -12,7 +12,7 @@ import math
 import sys
 import time
 from collections.abc import Iterable, Iterator
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
 from ..bags.read import BagMessage, read_messages, topics
 from ..errors import InputError
@@ -51,21 +51,13 @@ PLAYING: Final = "playing"
 """What it prints when it has found its subscribers."""
 
 
-class Options(NamedTuple):
-    """What to play: the first `runs` of a bag (0: all), at `rate` times its speed."""
-
-    bag: str
-    runs: int
-    rate: float
-
-
 def main(args: list[str] | None = None) -> int:
     """Play a bag as the arguments say; the exit status."""
     args = sys.argv if args is None else args
     return run(lambda stop: _play(_options(args), stop), args)
 
 
-def _options(args: list[str]) -> Options:
+def _options(args: list[str]) -> argparse.Namespace:
     from rclpy.utilities import remove_ros_args
 
     parser = argparse.ArgumentParser(prog="player", description=(__doc__ or "").partition("\n")[0])
@@ -75,7 +67,7 @@ def _options(args: list[str]) -> Options:
     given = parser.parse_args(remove_ros_args(args)[1:])
     if given.runs < 0 or not 0.0 < given.rate < 1e6:
         raise InputError("--runs must not be negative, and --rate must be positive")
-    return Options(given.bag, given.runs, given.rate)
+    return given
 
 
 def timed(messages: Iterable[BagMessage], runs: int) -> Iterator[tuple[float, BagMessage]]:
@@ -93,11 +85,12 @@ def timed(messages: Iterable[BagMessage], runs: int) -> Iterator[tuple[float, Ba
         yield pause, message
 
 
-def _play(options: Options, stop: Stop) -> int:
+def _play(options: argparse.Namespace, stop: Stop) -> int:
     types = {topic: kind for topic, kind in topics(options.bag).items() if kind in INPUTS}
     if not types:
         raise InputError(f"{options.bag} has no topic of type {' or '.join(INPUTS)}, so there is nothing to play")
     messages = timed(read_messages(options.bag, types), options.runs)
+    from rclpy.duration import Duration
     from rclpy.node import Node
 
     node = Node("player")
@@ -106,7 +99,8 @@ def _play(options: Options, stop: Stop) -> int:
         if _await_subscribers([publishers[topic] for topic, kind in types.items() if kind in AWAITED], stop):
             print(PLAYING, flush=True)
             _publish_all(messages, types, publishers, options.rate, stop)
-            _await_receipt(list(publishers.values()))
+            for publisher in publishers.values():
+                publisher.wait_for_all_acked(Duration(seconds=2))
     finally:
         node.destroy_node()
     return 0
@@ -159,13 +153,6 @@ def _publish_all(
         if types[message.topic] in LATCHED and message.log_time - last[message.topic] > LONGEST_GAP * NANOSECONDS:
             due = time.monotonic() + GEOMETRY_AHEAD
         last[message.topic] = message.log_time
-
-
-def _await_receipt(publishers: list[Any]) -> None:
-    from rclpy.duration import Duration
-
-    for publisher in publishers:
-        publisher.wait_for_all_acked(Duration(seconds=2))
 
 
 if __name__ == "__main__":

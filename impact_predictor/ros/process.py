@@ -150,16 +150,16 @@ def spin(node: Node, stop: Stop, served: Callable[[], int], executor: str = "sin
     `served` counts the messages served so far. `executor` is single, or events where this rclpy has it (else single,
     with a warning).
     """
-    runner, period = executor_of(node, executor)
+    from rclpy.task import Future
+
+    runner = executor_of(node, executor)
     runner.add_node(node)
     try:
-        if period is None:
-            # A task ends a round that waits.
-            stop.call(lambda: runner.create_task(bool))
-            while not stop.requested:
-                runner.spin_once()
-        else:
-            _serve(runner, stop, period)
+        while not stop.requested:
+            over = Future()
+            stop.call(partial(over.set_result, None))
+            # Without a timeout some versions of the events executor neither serve nor return.
+            runner.spin_until_future_complete(over, timeout_sec=1.0)
         idle, before = 0, served()
         while idle < _IDLE_ROUNDS:
             runner.spin_once(timeout_sec=0.0)
@@ -170,33 +170,22 @@ def spin(node: Node, stop: Stop, served: Callable[[], int], executor: str = "sin
         runner.remove_node(node)
 
 
-def _serve(runner: Any, stop: Stop, period: float) -> None:
-    """Serve until the stop with the events executor, which a call for each message would cost a fifth more."""
-    from rclpy.task import Future
-
-    while not stop.requested:
-        over = Future()
-        stop.call(partial(over.set_result, None))
-        runner.spin_until_future_complete(over, timeout_sec=period)
-
-
 _IDLE_ROUNDS: Final = 20
 """A round may go to a timer, a service or the wish to stop; after this many without a message there is none."""
 
 
-def executor_of(node: Node, kind: str) -> tuple[Any, float | None]:
-    """An executor, and the timeout in s of its rounds."""
-    from rclpy.executors import SingleThreadedExecutor
-
+def executor_of(node: Node, kind: str) -> Any:
+    """An executor of a kind, single or events."""
     if kind == "events":
         try:
             from rclpy.experimental import EventsExecutor
         except ImportError:
             node.get_logger().warning("this rclpy has no events executor, so the single-threaded one is used")
         else:
-            # Without a timeout some versions neither serve nor return.
-            return EventsExecutor(), 1.0
-    return SingleThreadedExecutor(), None
+            return EventsExecutor()
+    from rclpy.executors import SingleThreadedExecutor
+
+    return SingleThreadedExecutor()
 
 
 def message_class(type_name: str) -> Any:

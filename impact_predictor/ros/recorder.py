@@ -10,7 +10,8 @@ from __future__ import annotations
 import argparse
 import sys
 import time
-from typing import Any, Final
+from functools import partial
+from typing import Final
 
 from ..bags.write import BagWriter
 from .messages import DIAGNOSTIC_ARRAY, OUTPUTS
@@ -46,49 +47,30 @@ def _output(args: list[str]) -> str:
 
 def _record(output: str, stop: Stop) -> int:
     from rclpy.node import Node
-
-    node = Node("recorder")
-    try:
-        with BagWriter(output) as writer:
-            log = _Log(writer)
-            subscriptions = [_subscription(node, topic, kind, log) for topic, kind in TOPICS.items()]
-            _announce(node, subscriptions)
-            spin(node, stop, lambda: log.written)
-    finally:
-        node.destroy_node()
-    return 0
-
-
-class _Log:
-    """Writes what is received, and counts it."""
-
-    def __init__(self, writer: BagWriter) -> None:
-        self.written = 0
-        self._writer = writer
-
-    def write(self, topic: str, kind: str, data: bytes) -> None:
-        self._writer.write(topic, kind, time.time_ns(), data)
-        self.written += 1
-
-
-def _subscription(node: Any, topic: str, kind: str, log: _Log) -> Any:
     from rclpy.qos import QoSProfile
 
-    def write(data: bytes) -> None:
-        log.write(topic, kind, data)
+    node = Node("recorder")
+    received = [0]
 
-    return node.create_subscription(message_class(kind), topic, write, QoSProfile(depth=QUEUE), raw=True)
+    def write(topic: str, kind: str, data: bytes) -> None:
+        writer.write(topic, kind, time.time_ns(), data)
+        received[0] += 1
 
-
-def _announce(node: Any, subscriptions: list[Any]) -> None:
-    """Print a line as soon as every topic has a publisher."""
-
-    def look() -> None:
-        if all(node.count_publishers(one.topic_name) for one in subscriptions):
+    def announce() -> None:
+        if all(map(node.count_publishers, TOPICS)):
             print(LISTENING, flush=True)
             node.destroy_timer(timer)
 
-    timer = node.create_timer(0.05, look)
+    try:
+        with BagWriter(output) as writer:
+            for topic, kind in TOPICS.items():
+                take = partial(write, topic, kind)
+                node.create_subscription(message_class(kind), topic, take, QoSProfile(depth=QUEUE), raw=True)
+            timer = node.create_timer(0.05, announce)
+            spin(node, stop, lambda: received[0])
+    finally:
+        node.destroy_node()
+    return 0
 
 
 if __name__ == "__main__":

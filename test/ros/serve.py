@@ -31,7 +31,7 @@ def main() -> None:
     from impact_predictor.ros.process import executor_of, message_class
 
     node, other = PredictorNode(), Node("other", use_global_arguments=False)
-    runner, _ = executor_of(node, node.executor_kind)
+    runner = executor_of(node, node.executor_kind)
     runner.add_node(node)
     hearing = SingleThreadedExecutor()
     hearing.add_node(other)

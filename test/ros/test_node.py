@@ -258,9 +258,8 @@ def test_without_an_events_executor_the_single_threaded_one_is_used_and_one_sent
 ):
     node, _ = node_without_peers
     monkeypatch.setitem(sys.modules, "rclpy.experimental", None)
-    executor, period = executor_of(node, "events")
+    executor = executor_of(node, "events")
     assert type(executor) is SingleThreadedExecutor
-    assert period is None
     executor.shutdown()
     said = capfd.readouterr().err
     assert said.count("\n") == 1

@@ -93,8 +93,10 @@ def draw_support(slab: Slab, scene: Scene, moment: Moment | None, letter: float)
     sides = 2.0 * slab.half_x, 2.0 * slab.half_y, thickness
     width = 0.002 * longest, 0.0, 0.0
     drawn = [
-        Marker("support", 0, CUBE, below, turned, sides, _SURFACE),
-        Marker("support/grid", 0, LINE_LIST, above, turned, width, _LINES, grid),
+        Marker("support", 0, CUBE, position=below, orientation=turned, scale=sides, colour=_SURFACE),
+        Marker(
+            "support/grid", 0, LINE_LIST, position=above, orientation=turned, scale=width, colour=_LINES, points=grid
+        ),
     ]
     corner = combine(-slab.half_x, slab.axes[0], slab.half_y, slab.axes[1], 1.0, slab.middle)
     words = f"grid {spacing:g} m"
@@ -129,7 +131,18 @@ def draw_unit(unit: BodyView, stamp: int, letter: float) -> list[Marker]:
     axes = axes_of(seen.orientation)
     place = add(seen.position, to_world(axes, shape.position))
     turned = seen.orientation if shape.orientation == UNTURNED else composed(seen.orientation, shape.orientation)
-    drawn = [Marker("units", unit.number, shape.shape, place, turned, shape.scale, colour, shape.lines)]
+    drawn = [
+        Marker(
+            "units",
+            unit.number,
+            shape.shape,
+            position=place,
+            orientation=turned,
+            scale=shape.scale,
+            colour=colour,
+            points=shape.lines,
+        )
+    ]
     drawn += _points(unit, axes) if unit.scene.radius == 0.0 else _edges(unit)
     if unit.feet:
         drawn += _draw_landings(unit, letter)
@@ -165,8 +178,18 @@ def _points(unit: BodyView, axes: Axes) -> list[Marker]:
     for (kind, form, factor, colour), points in zip(_CONTACTS, kinds, strict=True):
         if points:
             scale = (factor * width,) * 3
-            pose = seen.position, seen.orientation
-            drawn.append(Marker(f"contacts/{kind}", unit.number, form, *pose, scale, colour, tuple(points)))
+            drawn.append(
+                Marker(
+                    f"contacts/{kind}",
+                    unit.number,
+                    form,
+                    position=seen.position,
+                    orientation=seen.orientation,
+                    scale=scale,
+                    colour=colour,
+                    points=tuple(points),
+                )
+            )
     return drawn
 
 
@@ -181,7 +204,7 @@ def _edges(unit: BodyView) -> list[Marker]:
         if edges:
             ends = tuple(end for edge in edges for end in (add(edge, half, -1.0), add(edge, half)))
             scale = (0.1 * factor * scene.radius, 0.0, 0.0)
-            drawn.append(Marker(f"contacts/{kind}", unit.number, LINE_LIST, NOWHERE, UNTURNED, scale, colour, ends))
+            drawn.append(Marker(f"contacts/{kind}", unit.number, LINE_LIST, scale=scale, colour=colour, points=ends))
     return drawn
 
 
@@ -204,7 +227,18 @@ def _draw_touchdown(unit: BodyView, touchdown: Touchdown) -> list[Marker]:
     position, orientation = touchdown.position, touchdown.orientation
     axes, length, width = axes_of(orientation), _length_of_speed(unit), 0.04 * unit.shape.size
     thin = 0.6 * width, 0.0, 0.0
-    drawn = [Marker("touchdown/body", number, LINE_LIST, position, orientation, thin, _GHOST, shape.outline)]
+    drawn = [
+        Marker(
+            "touchdown/body",
+            number,
+            LINE_LIST,
+            position=position,
+            orientation=orientation,
+            scale=thin,
+            colour=_GHOST,
+            points=shape.outline,
+        )
+    ]
     if unit.feet:  # legs do not keep their form
         drawn = []
     center = add(position, to_world(axes, scene.center_of_mass))
@@ -272,7 +306,7 @@ def _arrow(namespace: str, number: int, start: Vector3, tip: Vector3, width: flo
 
 def label(namespace: str, number: int, place: Vector3, letter: float, words: str) -> Marker:
     """Words at a place, so high that a `letter` is so many m high."""
-    return Marker(namespace, number, TEXT, place, scale=(0.0, 0.0, letter), colour=_LETTERS, text=words)
+    return Marker(namespace, number, TEXT, position=place, scale=(0.0, 0.0, letter), colour=_LETTERS, text=words)
 
 
 def _draw_landings(unit: BodyView, letter: float) -> list[Marker]:
@@ -293,10 +327,13 @@ def _draw_landings(unit: BodyView, letter: float) -> list[Marker]:
         drawn.append(label("feet/text", len(unit.feet) * unit.number + k, above, 0.6 * letter, words))
     if places:
         size = _FLAT * unit.shape.size
-        where = unit.number, LINE_LIST, NOWHERE, UNTURNED, (0.3 * size, 0.0, 0.0), LANDING
-        drawn.append(Marker("feet/path", *where, tuple(lines)))
-        marks = unit.number, SPHERE_LIST, NOWHERE, UNTURNED, (size, size, size), LANDING
-        drawn.append(Marker("feet/landing", *marks, tuple(places)))
+        thin = (0.3 * size, 0.0, 0.0)
+        drawn.append(Marker("feet/path", unit.number, LINE_LIST, scale=thin, colour=LANDING, points=tuple(lines)))
+        drawn.append(
+            Marker(
+                "feet/landing", unit.number, SPHERE_LIST, scale=(size, size, size), colour=LANDING, points=tuple(places)
+            )
+        )
     return drawn
 
 

@@ -161,7 +161,7 @@ class KnownBody:
         if touchdown is not None:
             self._ahead = ShownTouchdown(sample.stamp + round(touchdown.lead_time * NANOSECONDS), touchdown)
         elif score is not None:
-            self._ahead = ShownTouchdown(score.stamp, score.touchdown, True, score.relative_error)
+            self._ahead = ShownTouchdown(score.stamp, score.touchdown, happened=True, error=score.relative_error)
         elif self._ahead is not None and not self._ahead.happened:
             self._ahead = None
         return True
@@ -199,4 +199,15 @@ class KnownBody:
         ahead = self._ahead
         if ahead is not None and stamp - ahead.stamp > AFTERWARDS:
             ahead = None
-        return BodyView(number, self._name, scene, self._points, shape, seen, ahead, level, self.message, self._feet)
+        return BodyView(
+            number=number,
+            name=self._name,
+            scene=scene,
+            points=self._points,
+            shape=shape,
+            seen=seen,
+            ahead=ahead,
+            level=level,
+            message=self.message,
+            feet=self._feet,
+        )

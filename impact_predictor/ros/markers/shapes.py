@@ -23,13 +23,13 @@ class BodyShape(NamedTuple):
     """
 
     shape: int
-    position: Vector3
-    orientation: Quaternion
     scale: Vector3
-    lines: tuple[Vector3, ...]
     outline: tuple[Vector3, ...]
     size: float
     reach: float
+    position: Vector3 = NOWHERE
+    orientation: Quaternion = UNTURNED
+    lines: tuple[Vector3, ...] = ()
 
 
 class Slab(NamedTuple):
@@ -60,11 +60,20 @@ def shape_of(scene: Scene, points: tuple[Vector3, ...]) -> BodyShape | None:
     near = AT_CORNER * max(sides)
     if scene.walking is None and min(sides) > near and all(_at_corner(point, low, high, near) for point in points):
         edges = _edges(low, high)
-        return BodyShape(CUBE, times(add(low, high), 0.5), UNTURNED, sides, (), edges, sorted(sides)[1], reach)
+        return BodyShape(
+            shape=CUBE,
+            position=times(add(low, high), 0.5),
+            scale=sides,
+            outline=edges,
+            size=sorted(sides)[1],
+            reach=reach,
+        )
     lines = tuple(end for point in points for end in (center, point))
     if len(points) == 2:
         lines += points
-    return BodyShape(LINE_LIST, NOWHERE, UNTURNED, (0.05 * reach, 0.0, 0.0), lines, lines, reach, reach)
+    return BodyShape(
+        shape=LINE_LIST, scale=(0.05 * reach, 0.0, 0.0), lines=lines, outline=lines, size=reach, reach=reach
+    )
 
 
 def box_of(points: tuple[Vector3, ...], center: Vector3) -> tuple[Vector3, Vector3]:
@@ -108,7 +117,15 @@ def _cylinder(scene: Scene) -> BodyShape:
         outline += [(-radius, 0.0, end), (radius, 0.0, end)]
     placed_outline = tuple(add(center, to_world(axes, point)) for point in outline)
     width = 2.0 * radius
-    return BodyShape(CYLINDER, center, upright, (width, width, width), (), placed_outline, width, sqrt(2.0) * radius)
+    return BodyShape(
+        shape=CYLINDER,
+        position=center,
+        orientation=upright,
+        scale=(width, width, width),
+        outline=placed_outline,
+        size=width,
+        reach=sqrt(2.0) * radius,
+    )
 
 
 def drum_axis(scene: Scene) -> Vector3:

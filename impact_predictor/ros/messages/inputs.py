@@ -61,15 +61,15 @@ def decode_odometry(data: bytes) -> Sample:
     n = order.odometry_numbers.unpack_from(data, start)
     check_end(data, start + _ODOMETRY_NUMBERS_SIZE)
     return Sample(
-        nanoseconds,
-        frame_id,
-        child_frame_id,
-        n[0:3],
-        n[3:7],
-        n[43:46],
-        n[46:49],
-        n[7:43],
-        n[49:85],
+        stamp=nanoseconds,
+        frame_id=frame_id,
+        child_frame_id=child_frame_id,
+        position=n[0:3],
+        orientation=n[3:7],
+        linear=n[43:46],
+        angular=n[46:49],
+        pose_covariance=n[7:43],
+        twist_covariance=n[49:85],
     )
 
 
@@ -145,7 +145,7 @@ def decode_imu(data: bytes) -> Imu:
     n = order.imu_numbers.unpack_from(data, start)
     check_end(data, start + _IMU_NUMBERS_SIZE)
     orientation = None if n[4] == -1.0 else n[0:4]
-    return Imu(nanoseconds, frame_id, orientation, n[13:16], n[25:28])
+    return Imu(stamp=nanoseconds, frame_id=frame_id, orientation=orientation, angular=n[13:16], specific_force=n[25:28])
 
 
 def encode_imu(imu: Imu) -> bytes:
@@ -171,7 +171,7 @@ def decode_joints(data: bytes) -> Joints:
     velocities, end = read_doubles(data, end, order)
     _, end = read_doubles(data, end, order)
     check_end(data, end, 3)
-    return Joints(nanoseconds, names, positions, velocities)
+    return Joints(stamp=nanoseconds, names=names, positions=positions, velocities=velocities)
 
 
 @decoder(WRENCH)
@@ -211,7 +211,7 @@ def decode_schedule(data: bytes) -> Schedule:
         times.append(nanoseconds + seconds * NANOSECONDS + rest)
         stands.append(tuple(position > STANDS for position in positions))
     check_end(data, end, 4 * count)
-    return Schedule(nanoseconds, feet, tuple(times), tuple(stands))
+    return Schedule(stamp=nanoseconds, feet=feet, times=tuple(times), stands=tuple(stands))
 
 
 def encode_joints(joints: Joints) -> bytes:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from ...mechanics.types import Flag, Mode
-from ...prediction.types import Foot, Landing, Leftover, Prediction, Sample, Score, Status, Touchdown
+from ...prediction.types import Foot, Landing, Leftover, Prediction, Score, Status, Touchdown
 from ...stamps import NANOSECONDS
 from ..cdr import LITTLE_ENDIAN_HEADER, OK, WARN, StatusBytes, diagnostic_array, diagnostic_status, pairs_of
 from .fields import FOOT, LANDING, MARGINS, PREDICTION, SCORE, TOUCHDOWN, UNCERTAINTY, text
@@ -40,19 +40,16 @@ def encode_post_impact(prediction: Prediction) -> bytes | None:
 
         state = post_impact(prediction)
     position, orientation, linear, angular = state
-    return encode_odometry(
-        Sample(
-            sample.stamp + round(touchdown.lead_time * NANOSECONDS),
-            sample.frame_id,
-            sample.child_frame_id,
-            position,
-            orientation,
-            linear,
-            angular,
-            sample.pose_covariance,
-            sample.twist_covariance if uncertainty is None else uncertainty.twist_covariance,
-        )
+    after = sample._replace(
+        stamp=sample.stamp + round(touchdown.lead_time * NANOSECONDS),
+        position=position,
+        orientation=orientation,
+        linear=linear,
+        angular=angular,
     )
+    if uncertainty is not None:
+        after = after._replace(twist_covariance=uncertainty.twist_covariance)
+    return encode_odometry(after)
 
 
 # Padded to four bytes, as DDS does, so that a bag holds what a topic carried.
