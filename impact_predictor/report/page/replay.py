@@ -20,6 +20,9 @@ AHEAD: Final = 0.02
 """Seconds before a touchdown, from which on the errors of the times are told."""
 
 
+COST: Final = "At what cost"
+
+
 def write_replay_page(
     path: str | os.PathLike[str], answers: Sequence[BagAnswer], values: Mapping[str, Any] | None = None
 ) -> None:
@@ -81,23 +84,9 @@ def page_of_replay(
 
 
 def title_of(answers: Sequence[BagAnswer]) -> str:
-    """How many touchdowns, how early and how right, in one line."""
-    times, errors, time = found.announced(answers), found.velocity_errors(found.used(answers)), error_at(answers)
-    if not times:
-        number = sum(1 for _ in found.touchdowns_of(answers))
-        return f"{counted(number, 'touchdown')} predicted, none compared" if number else "No touchdown was predicted"
-    there, landings = found.found_of(answers), list(found.landings_of(answers))
-    if there is not None and all("truth" in answer for answer in found.used(answers)):
-        noun = "landing" if landings and not errors.number else "touchdown"
-        many = f"{there.found:,} of {counted(there.there, noun)}"
-    elif landings and not errors.number:
-        many = announced_of(landings)
-    else:
-        many = counted(len(times), "touchdown")
-    said = f"{many} first predicted {time_words(median(times))} ahead"
-    if errors.number:
-        return f"{said}, half of the last predictions within {within_words(errors.median)}"
-    return said if time is None else f"{said}, half of their times within {time_words(time.errors.p50)}"
+    """How many touchdowns, how right and how early, in one line."""
+    said = [one.answer for one in headlines_of(answers) if one.question != COST]
+    return ", ".join(said) if said else "No touchdown was predicted"
 
 
 def announced_of(landings: Sequence[BagAnswer]) -> str:
@@ -194,4 +183,4 @@ def _cost(answers: Sequence[BagAnswer]) -> Headline | None:
     if spread.p50 is None or spread.p99 is None:
         return None
     more = f"In the median, without reading and writing; 99 % take less than {time_words(1e-6 * spread.p99)}."
-    return Headline("At what cost", f"{time_words(1e-6 * spread.p50)} a sample", more)
+    return Headline(COST, f"{time_words(1e-6 * spread.p50)} a sample", more)
