@@ -1,21 +1,18 @@
-"""The JSON answers of replays: any number of them in a file, and what a page takes from them, each and all together."""
+"""The JSON answers of replays, any number of them, and what a page takes from them, each and all together."""
 
 from __future__ import annotations
 
 import json
 import marshal
-import tempfile
-from array import array
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from math import inf
-from os import SEEK_END
 from pathlib import Path
 from statistics import median
 from typing import Any, Final, NamedTuple
+from zlib import compress, decompress
 
 from ...bags.find import told_apart
-from ...errors import InputError
 from ...prediction.types import Leftover
 from ...stamps import NANOSECONDS
 from ..summary import Distribution, Errors, from_json, quantile, summarize, together
@@ -28,67 +25,38 @@ NOTHING: Final = "nothing"
 
 
 class Kept(Sequence[BagAnswer]):
-    """Answers in the order in which they were added, in a temporary file without a name: it ends with the process."""
+    """Answers in the order in which they were added, packed: those of thousands of bags take a few megabytes."""
 
     def __init__(self) -> None:
-        """Begin with none.
-
-        Raises:
-            InputError: there is no place for a file.
-        """
-        try:
-            self._file = tempfile.TemporaryFile()  # noqa: SIM115 (it lives as long as this object)
-        except OSError as error:
-            raise _unwritable(error) from error
-        self._ends = array("Q", [0])
+        self._answers: list[BagAnswer] = []
 
     def append(self, answer: BagAnswer) -> None:
-        """Add the answer of a bag.
-
-        Raises:
-            InputError: the file cannot be written.
-        """
-        try:
-            self._file.seek(0, SEEK_END)
-            # The page passes over all answers several times, and nothing is read as fast; it takes plain values alone.
-            values = json.loads(json.dumps(answer))
-            self._file.write(marshal.dumps({key: marshal.dumps(value) for key, value in values.items()}))
-            self._file.flush()
-        except OSError as error:
-            raise _unwritable(error) from error
-        self._ends.append(self._file.tell())
+        """Add the answer of a bag."""
+        # The page passes over all answers several times, and nothing is read as fast; it takes plain values alone.
+        values = json.loads(json.dumps(answer))
+        self._answers.append(_Packed({key: compress(marshal.dumps(value), 1) for key, value in values.items()}))
 
     def __len__(self) -> int:
-        return len(self._ends) - 1
+        return len(self._answers)
 
     def __getitem__(self, place: Any) -> Any:
-        place = range(len(self))[place]
-        begin, end = self._ends[place : place + 2]
-        self._file.seek(begin)
-        # Nobody but this object can write into the file.
-        return _LoadedAnswer(marshal.loads(self._file.read(end - begin)))
+        return self._answers[place]
 
 
-class _LoadedAnswer(Mapping[str, Any]):
-    """An answer of which each pass reads what it looks at: the touchdowns are most of it."""
+class _Packed(Mapping[str, Any]):
+    """An answer of which each pass unpacks what it looks at: the touchdowns are most of it."""
 
     def __init__(self, values: dict[str, bytes]) -> None:
         self._values = values
 
     def __getitem__(self, key: str) -> Any:
-        return marshal.loads(self._values[key])
+        return marshal.loads(decompress(self._values[key]))
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._values)
 
     def __len__(self) -> int:
         return len(self._values)
-
-
-def _unwritable(error: OSError) -> InputError:
-    return InputError(
-        f"the folder of temporary files cannot take what the page needs: {error.strerror}; give another one in TMPDIR"
-    )
 
 
 class TruthCount(NamedTuple):
