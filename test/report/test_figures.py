@@ -62,22 +62,6 @@ def test_few_touchdowns_or_none_make_a_picture_without_a_warning(
     assert not recwarn.list
 
 
-def test_the_same_results_make_the_same_picture(tmp_path: Path) -> None:
-    for name in ("one.svg", "other.svg"):
-        write_touchdowns(tmp_path / name, ROWS, ERRORS, "Twice")
-    assert (tmp_path / "one.svg").read_bytes() == (tmp_path / "other.svg").read_bytes()
-
-
-def test_another_format_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"give a name that ends in \.png or \.svg"):
-        write_touchdowns(tmp_path / "picture.gif", ROWS, ERRORS, "")
-
-
-def test_a_missing_folder_is_said(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"the folder of .* does not exist"):
-        write_touchdowns(tmp_path / "nowhere/picture.png", ROWS, ERRORS, "")
-
-
 def test_a_place_that_cannot_be_written_is_said(tmp_path: Path) -> None:
     (tmp_path / "taken.png").mkdir()
     with pytest.raises(InputError, match="cannot be written"):

@@ -10,7 +10,6 @@ import matplotlib
 import pytest
 
 from impact_predictor.bags.gait import Gait, GaitLanding
-from impact_predictor.errors import InputError
 from impact_predictor.prediction.scene import Walking
 from impact_predictor.prediction.types import Foot, Prediction, Sample, Status
 from impact_predictor.report.gait import Machine, write_gait
@@ -91,14 +90,3 @@ def test_a_record_without_a_landing_makes_a_picture_without_a_warning(
     write_gait(tmp_path / "gait.png", [Machine("stands.bag", gait)])
     assert (tmp_path / "gait.png").stat().st_size > 5_000
     assert not recwarn.list
-
-
-def test_the_same_gait_makes_the_same_picture(tmp_path: Path) -> None:
-    for name in ("one.svg", "other.svg"):
-        write_gait(tmp_path / name, [Machine("walk.bag", gait_of(3))])
-    assert (tmp_path / "one.svg").read_bytes() == (tmp_path / "other.svg").read_bytes()
-
-
-def test_another_format_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"give a name that ends in \.png or \.svg"):
-        write_gait(tmp_path / "gait.gif", [Machine("walk.bag", gait_of(1))])

@@ -143,12 +143,6 @@ def test_feet_are_named_with_their_bodies_where_there_are_several() -> None:
         assert {"robot/LF", "other/LF"} <= set(printed(table, 120).split())
 
 
-def test_times_of_day_are_counted_from_the_first_landing() -> None:
-    start = 1_605_971_434.0
-    text = printed(landings_table(landings_of([landed(start), landed(start + 1.5)]), 80), 80)
-    assert {"0.000", "1.500", "since"} <= set(text.split())
-
-
 def test_what_landings_say_together() -> None:
     one = landings_of([landed(1.0)])
     assert landing_sentences(one)[0].startswith("1 landing of 1 foot, each predicted 100 ms ahead or earlier; ")

@@ -172,10 +172,7 @@ def test_a_rod_of_400_mm_stops_from_115_5_mm_on_as_in_the_experiment() -> None:
 @pytest.mark.parametrize("given", [{"restitution": 0.1}, {"slip": 0.1}, {"friction_old": 0.1}, {"friction_new": 0.1}])
 def test_no_border_is_drawn_where_its_formula_does_not_hold(given: dict[str, float]) -> None:
     assert borders_of(a_map("plate", cells=10, **given)) == []
-
-
-@pytest.mark.parametrize("name", ["restitution", "slip", "friction_old"])
-def test_no_border_is_drawn_over_a_parameter_that_the_formulas_lack(name: str) -> None:
+    (name,) = given
     assert borders_of(a_map("plate", Axis(name, 0.0, 1.0), cells=10)) == []
 
 

@@ -13,14 +13,20 @@ from impact_predictor.mechanics.types import Mode, Twist
 from impact_predictor.prediction.types import Landing, Leftover, Prediction, Score, Status
 from impact_predictor.report.replay_json import as_json
 from impact_predictor.report.summary import (
+    EMPTY,
+    PER_DECADE,
     Errors,
     error_by_lead_time,
     errors_of,
+    from_json,
     quantile,
     reasons,
     row_of,
     row_of_message,
+    spread_of,
     summarize,
+    to_json,
+    together,
 )
 from impact_predictor.ros.messages import decode_diagnostic_array, encode_score
 from impact_predictor.scenarios.comparison import Truth
@@ -264,3 +270,33 @@ def test_the_json_of_a_replay_has_its_costs_its_errors_ahead_and_every_true_touc
 def test_the_json_of_an_empty_replay_has_nothing_to_divide() -> None:
     answer = as_json(Result("a.mcap", 0, 0.001, (), {}, {}, (), "there is no message", ""))
     assert (answer["us_per_sample"], answer["median_relative_error"], answer["touchdowns"]) == (None, None, [])
+
+
+def test_the_spread_of_some_numbers_has_their_own_percentiles_and_counts_each_in_its_bin() -> None:
+    spread = spread_of([1.0, 1.01, 100.0, 0.0])
+    assert (spread.number, spread.p50, spread.most) == (4, 1.005, 100.0)
+    # 1.01 is less than 10**(1 / 100); 0 lies with the least number.
+    assert spread.bins == {0: 2, 2 * PER_DECADE: 1, -12 * PER_DECADE: 1}
+
+
+def test_a_spread_comes_back_from_its_json() -> None:
+    spread = spread_of([3.0, 0.02, 5e-5])
+    assert from_json(json.loads(json.dumps(to_json(spread)))) == spread
+    assert from_json(None) == EMPTY == spread_of([])
+    assert to_json(EMPTY) == {"count": 0, "p50": None, "p90": None, "p99": None, "max": None, "bins": []}
+
+
+def test_one_spread_among_empty_ones_stays_exact() -> None:
+    spread = spread_of([1.0, 2.0, 4.0])
+    assert together([EMPTY, spread, EMPTY]) is spread
+    assert together([]) == EMPTY
+
+
+def test_spreads_together_are_those_of_all_numbers() -> None:
+    numbers = np.random.default_rng(5).lognormal(size=3000)
+    parts = [spread_of([float(number) for number in part]) for part in np.split(numbers, [10, 700])]
+    spread = together(parts)
+    assert (spread.number, spread.most) == (3000, max(numbers))
+    for part, value in ((0.5, spread.p50), (0.9, spread.p90), (0.99, spread.p99)):
+        # Half the width of a bin, 1.2 %.
+        assert value == pytest.approx(float(np.quantile(numbers, part)), rel=0.012)

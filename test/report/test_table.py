@@ -42,16 +42,11 @@ def printed(table: Table, width: int) -> str:
 
 
 @pytest.mark.parametrize("width", [40, 80, 100, 120])
-def test_no_number_is_cut_off_at_any_width(width: int) -> None:
+def test_no_number_is_cut_off_at_any_width_and_from_80_columns_on_the_lines_fit(width: int) -> None:
     text = printed(touchdown_table([ROW, UNSCORED, UNMEASURED], width), width)
     assert set(text.split()) >= {*NUMBERS, "5690.729", "12.3", "PIVOT_SLIDE"}
     assert "…" not in text
-
-
-@pytest.mark.parametrize("width", [80, 120])
-def test_the_lines_fit_the_terminal(width: int) -> None:
-    text = printed(touchdown_table([ROW, UNSCORED, UNMEASURED], width), width)
-    assert max(map(len, text.splitlines())) <= width
+    assert max(map(len, text.splitlines())) <= max(width, 80)
 
 
 def test_the_lines_of_several_bodies_fit_too() -> None:
@@ -94,10 +89,6 @@ def test_without_costs_and_notes_there_are_no_columns_for_them() -> None:
     text = printed(touchdown_table([ROW._replace(cost=None, flags=())], 120), 120)
     assert "cost" not in text
     assert "notes" not in text
-
-
-def test_a_table_of_nothing_has_its_header() -> None:
-    assert "predicted" in printed(touchdown_table([], 80), 80)
 
 
 def test_lead_times_without_predictions_have_no_error() -> None:

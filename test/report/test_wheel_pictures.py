@@ -10,8 +10,6 @@ import matplotlib
 import numpy as np
 import pytest
 
-from impact_predictor.errors import InputError
-from impact_predictor.report.film import write_film
 from impact_predictor.report.simulation import rolling_as_json, rolling_sentences
 from impact_predictor.report.wheel_pictures import (
     WheelScene,
@@ -128,10 +126,3 @@ def test_a_picture_of_any_end_is_written(tmp_path: Path, stops: Rolling) -> None
     for number, rolling in enumerate((stops, roll(Wheel(hub), 3.3), roll(Wheel(hub), 0.0), roll(Wheel(hub), -1.0))):
         write_wheel_figure(tmp_path / f"{number}.png", rolling)
         assert (tmp_path / f"{number}.png").stat().st_size > 10_000
-
-
-def test_a_picture_of_another_format_is_refused(tmp_path: Path, slips: Rolling) -> None:
-    with pytest.raises(InputError, match=r"wheel\.pdf is no picture"):
-        write_wheel_figure(tmp_path / "wheel.pdf", slips)
-    with pytest.raises(InputError, match=r"wheel\.png is no moving picture"):
-        write_film(tmp_path / "wheel.png", wheel_film(slips))
