@@ -184,12 +184,12 @@ def _ahead(vector: Vector3, yaw: float) -> Vector3:
 def follow(unit: CargoUnit, support: MovingSupport, duration: float, law: str = "path") -> Iterator[Span]:
     """The motion of a unit, one span after the other; `support` has its origin at the unit's foot."""
     time, state, end, rested = 0.0, unit.start, End.TIME_UP, True
-    borders = Borders()
+    borders: dict[tuple[float, ...], float] = {}
     while time < duration and end is End.TIME_UP:
         # Times of a motion are told to the last digit only where they count from near it.
         run = rock(unit.body, state, _later(support, time), law, min(SPAN, duration - time), max_events=_MOST_EVENTS)
         impacts = [
-            true_impact(strike, unit.name, ACROSS, 0.0, unit.contacts, borders.of(strike), time)
+            true_impact(strike, unit.name, ACROSS, 0.0, unit.contacts, remembered_border(strike, borders), time)
             for strike in run.impacts
         ]
         until = min(time + run.time, duration)
@@ -225,26 +225,19 @@ def _onsets(name: str, run: Trajectory, rested: bool, since: float) -> Iterator[
         rested = still
 
 
-class Borders:
-    """How far the impacts of a unit are from another mode.
+def remembered_border(strike: RockingImpact, known: dict[tuple[float, ...], float]) -> float:
+    """How far an impact is from another mode, see `truth.border_of`, from those `known` where it is one of them.
 
     A unit that turns about one contact until the other strikes does it with the same twist each time, but for its size,
-    on which no mode depends: such answers are remembered.
+    on which no mode depends.
     """
-
-    def __init__(self) -> None:
-        self._known: dict[tuple[float, ...], float] = {}
-
-    def of(self, strike: RockingImpact) -> float:
-        """See `truth.border_of`."""
-        before = strike.outcome.before
-        assert before is not None
-        if strike.old is None or before.omega == 0.0:
-            return border_of(strike.outcome)
-        key = (strike.old, round(before.vx / before.omega, _DIGITS), round(before.vy / before.omega, _DIGITS))
-        found = self._known.get(key)
-        if found is None:
-            if len(self._known) >= _MOST_KNOWN:
-                self._known.clear()
-            found = self._known[key] = border_of(strike.outcome)
-        return found
+    before = strike.outcome.before
+    assert before is not None
+    if strike.old is None or before.omega == 0.0:
+        return border_of(strike.outcome)
+    key = (strike.old, round(before.vx / before.omega, _DIGITS), round(before.vy / before.omega, _DIGITS))
+    if key not in known:
+        if len(known) >= _MOST_KNOWN:
+            known.clear()
+        known[key] = border_of(strike.outcome)
+    return known[key]

@@ -139,7 +139,7 @@ class _Stretch:
                 if is_open[k + 1]:
                     last_open[i] = float(times[k + 1])
                     continue
-                at = float(brentq(lambda time, i=i: self.contacts(time).gaps[i], times[k], times[k + 1], xtol=1e-16))
+                at = self._closing(i, float(times[k]), float(times[k + 1]))
                 if last_open[i] >= 0.0 and at - last_open[i] > OPEN:
                     closings.append((at, i))
                 last_open[i] = -1.0
@@ -147,6 +147,15 @@ class _Stretch:
             impact = self._impact(at, new, float(times[-1]), law)
             if impact is not None:
                 yield impact
+
+    def _closing(self, i: int, low: float, high: float) -> float:
+        """When a contact closes between two times."""
+
+        def gap(time: float) -> float:
+            return float(self.contacts(time).gaps[i])
+
+        # One time by itself is rounded otherwise than in an array of them.
+        return float(brentq(gap, low, high, xtol=1e-16)) if gap(low) > 0.0 > gap(high) else high
 
     def _over(self, start: float, end: float) -> float:
         """When the contacts press no more than at rest."""

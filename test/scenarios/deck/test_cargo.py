@@ -17,7 +17,8 @@ from impact_predictor.mechanics.motion import End, rock
 from impact_predictor.mechanics.motion.support import FixedSupport
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.scenarios.deck import cargo as deck_module
-from impact_predictor.scenarios.deck.cargo import CargoUnit, Span, follow, unit_of, units_of
+from impact_predictor.scenarios.deck.cargo import CargoUnit, Span, follow, remembered_border, unit_of, units_of
+from impact_predictor.scenarios.truth import border_of
 
 B, H, MASS, FRICTION = 0.4, 1.0, 500.0, 0.6
 
@@ -185,13 +186,13 @@ def test_a_border_is_the_smallest_relative_change_to_another_mode() -> None:
         unit = unit_of("box", scene)
         start = unit.start._replace(angle=0.05, y=unit.start.y + 0.02)
         strike = rock(unit.body, start, FixedSupport(), duration=5.0).impacts
-        found = next(deck_module.Borders().of(one) for one in strike if one.old is not None)
+        found = next(remembered_border(one, {}) for one in strike if one.old is not None)
         # The change against friction is the smallest: no shift of a hundredth of the half distance does as much.
         assert found == pytest.approx(0.01, rel=0.3)
 
 
 def test_borders_that_are_remembered_are_those_that_are_computed() -> None:
     strikes = rock(unit_of("box", box()).body, unit_of("box", box()).start, a_deck(), duration=20.0).impacts
-    kept = deck_module.Borders()
+    known: dict[tuple[float, ...], float] = {}
     for strike in strikes[:40]:
-        assert kept.of(strike) == pytest.approx(deck_module.Borders().of(strike), rel=1e-6)
+        assert remembered_border(strike, known) == pytest.approx(border_of(strike.outcome), rel=1e-6)
