@@ -29,7 +29,7 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
-from impact_predictor.bags.adapters.known import readers
+from impact_predictor.bags.adapters import readers
 from impact_predictor.bags.read import Bag
 from impact_predictor.errors import InputError
 from impact_predictor.mechanics.types import Mode

@@ -25,7 +25,6 @@ from fuzz_messages import encode, made_course  # noqa: E402
 from rich.console import Console  # noqa: E402
 from rich.table import Table  # noqa: E402
 
-from impact_predictor.bags.inputs import TYPES  # noqa: E402
 from impact_predictor.bags.replay import replay  # noqa: E402
 from impact_predictor.bags.write import BagWriter  # noqa: E402
 from impact_predictor.errors import InputError  # noqa: E402
@@ -33,6 +32,7 @@ from impact_predictor.parameters.file import read_parameters  # noqa: E402
 from impact_predictor.parameters.validation import validate  # noqa: E402
 from impact_predictor.prediction.features import features_of  # noqa: E402
 from impact_predictor.prediction.scene import scenes_of  # noqa: E402
+from impact_predictor.ros.messages import INPUT_TYPES  # noqa: E402
 
 SWITCHES: Final[dict[str, tuple[dict[str, Any], dict[str, Any]]]] = {
     "friction": ({"contact.friction": 0.0}, {"contact.friction": 0.3}),
@@ -66,7 +66,7 @@ def costs(given: dict[str, Any], folder: Path) -> tuple[float, float, float]:
     values, course = validate(given), made_course("", given)
     with BagWriter(folder / "made.mcap") as writer:
         for one, value in course.messages:
-            writer.write(f"/{one.name}", TYPES[one.kind], value.stamp, encode(value))
+            writer.write(f"/{one.name}", INPUT_TYPES[one.kind].name, value.stamp, encode(value))
     us = median(replay(folder / "made.mcap", scenes_of(values)).costs) * 1e6
     command = [sys.executable, "-c", START]
     done = subprocess.run(command, input=json.dumps(values), cwd=ROOT, check=True, stdout=subprocess.PIPE, text=True)

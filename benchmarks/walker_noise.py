@@ -22,8 +22,7 @@ from rich.console import Console
 from rich.progress import track
 from walker_sensors import noisy
 
-from impact_predictor.bags.adapters import Adapted
-from impact_predictor.bags.adapters.known import readers
+from impact_predictor.bags.adapters import Adapted, readers
 from impact_predictor.bags.read import Bag
 from impact_predictor.parameters.file import read_values
 from impact_predictor.prediction.predictor import Predictor

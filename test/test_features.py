@@ -14,11 +14,11 @@ from typing import Any, NamedTuple
 import pytest
 from fuzz_messages import encode, made_course
 
-from impact_predictor.bags.inputs import TYPES
 from impact_predictor.bags.write import BagWriter
 from impact_predictor.parameters.file import read_parameters
 from impact_predictor.parameters.validation import PARAMETERS, validate
 from impact_predictor.prediction.features import features_of
+from impact_predictor.ros.messages import INPUT_TYPES
 from impact_predictor.stamps import NANOSECONDS
 
 ROOT = Path(__file__).parents[1]
@@ -123,7 +123,7 @@ def loaded(where: str, scenes: list[dict[str, Any]], folder: Path) -> list[Loade
             bag = folder / f"{number}.mcap"
             with BagWriter(bag) as writer:
                 for topic, kind, stamp, data in messages:
-                    writer.write(topic, TYPES[kind], stamp, data)
+                    writer.write(topic, INPUT_TYPES[kind].name, stamp, data)
             cases.append((validate(values), str(bag)))
     done = subprocess.run(
         [sys.executable, "-c", PROBE, where],

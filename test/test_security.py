@@ -14,8 +14,8 @@ from xml.etree import ElementTree
 
 import pytest
 
-from impact_predictor.bags import compression
-from impact_predictor.bags.compression import LARGEST, zstd
+from impact_predictor.bags import chunks
+from impact_predictor.bags.chunks import LARGEST, zstd
 from impact_predictor.bags.find import bags_of
 from impact_predictor.bags.read import Bag, read_messages, topics
 from impact_predictor.bags.replay import replay
@@ -140,7 +140,7 @@ BOMBS = {
 def test_a_length_that_lies_is_damage_and_takes_no_memory(
     tmp_path: Path, bomb: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(compression, "LARGEST", 1 << 20)
+    monkeypatch.setattr(chunks, "LARGEST", 1 << 20)
     bag = tmp_path / "bomb.mcap"
     bag.write_bytes(MCAP + channel("/odom") + BOMBS[bomb])
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
@@ -205,7 +205,7 @@ def test_a_definition_of_a_type_runs_nothing(tmp_path: Path, definition: str, ty
 
 
 @pytest.mark.parametrize(
-    "type_name", ["os:system", "impact_predictor.bags.adapters.xpp:adapt", "../xpp", "builtins/msg/exec"]
+    "type_name", ["os:system", "impact_predictor.bags.adapters:of_xpp", "../xpp", "builtins/msg/exec"]
 )
 def test_a_type_named_like_code_has_no_adapter(tmp_path: Path, type_name: str) -> None:
     bag = tmp_path / "run.mcap"

@@ -7,19 +7,9 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Final
 
 from ..errors import InputError
-from ..prediction.scene import CONTACT_GEOMETRY, IMU, JOINTS, ODOM, SCHEDULE, STATES, WRENCH, Input
-from ..ros import messages
+from ..prediction.scene import CONTACT_GEOMETRY, IMU, JOINTS, ODOM, STATES, Input
+from ..ros.messages import INPUT_TYPES
 from .read import listing
-
-TYPES: Final = {
-    ODOM: messages.ODOMETRY,
-    IMU: messages.IMU,
-    CONTACT_GEOMETRY: messages.POLYGON,
-    JOINTS: messages.JOINT_STATE,
-    WRENCH: messages.WRENCH,
-    SCHEDULE: messages.JOINT_TRAJECTORY,
-}
-"""The types of the messages on each kind of input."""
 
 GUESSED: Final = (ODOM, IMU, CONTACT_GEOMETRY, JOINTS)
 """Kinds of inputs that the only topic of their type is taken for; trajectories and wrenches may be of anything."""
@@ -58,7 +48,7 @@ def find_topics(
     inputs = sorted(inputs, key=lambda one: one.kind == CONTACT_GEOMETRY)
     found = _remapped(inputs, remap)
     for one in inputs:
-        if one not in found and recorded.get(f"/{one.name}") == TYPES[one.kind]:
+        if one not in found and recorded.get(f"/{one.name}") == _type(one):
             found[one] = f"/{one.name}"
     support = [one for one in inputs if one.body is None]
     # No topic is ever guessed to be the support: over a wrong one every answer would be wrong, and look right.
@@ -67,7 +57,7 @@ def find_topics(
     chosen = {}
     for one in inputs:
         taken = [topic for other, topic in found.items() if other.kind == one.kind]
-        free = [topic for topic, kind in recorded.items() if kind == TYPES[one.kind] and topic not in taken]
+        free = [topic for topic, kind in recorded.items() if kind == _type(one) and topic not in taken]
         if one in found or one.body or not free or one.kind not in GUESSED:
             continue
         if len(free) > 1:
@@ -110,9 +100,9 @@ def _adapted(
     adapted: dict[Input, str] = {}
     for state in [one for one in inputs if one.kind == ODOM and one.body is not None]:
         missing = [one for one in inputs if one.body == state.body and one.kind != IMU and one not in found]
-        if not missing or recorded.get(found.get(state, "")) == TYPES[ODOM]:
+        if not missing or recorded.get(found.get(state, "")) == INPUT_TYPES[ODOM].name:
             continue
-        from .adapters.known import known  # only for bags without the usual messages
+        from .adapters import known  # only for bags without the usual messages
 
         adapters = known()
         told = [found[state]] if state in found else [found[one] for one in found if one.body == state.body]
@@ -127,13 +117,17 @@ def _adapted(
 
 def adapted_topics(recorded: Mapping[str, str], found: Mapping[Input, str]) -> dict[str, str]:
     """The topics of inputs whose messages have an adapter, with their types."""
-    others = {topic for one, topic in found.items() if topic in recorded and recorded[topic] != TYPES[one.kind]}
+    others = {topic for one, topic in found.items() if topic in recorded and recorded[topic] != _type(one)}
     if not others:
         return {}
-    from .adapters.known import known
+    from .adapters import known
 
     adapters = known()
     return {topic: recorded[topic] for topic in sorted(others) if recorded[topic] in adapters}
+
+
+def _type(one: Input) -> str:
+    return INPUT_TYPES[one.kind].name
 
 
 def _remapped(inputs: Sequence[Input], remap: Mapping[str, str]) -> dict[Input, str]:
@@ -161,7 +155,7 @@ def _untold(path: str | os.PathLike[str], recorded: Mapping[str, str], inputs: S
     """That no topic is told to be the support, or none to be any of the bodies on it, and what there is."""
     names = _listing([one.name for one in inputs], "or")
     what = "the deck" if inputs[0].body is None else "a unit"
-    there = listing(recorded, TYPES[inputs[0].kind])
+    there = listing(recorded, _type(inputs[0]))
     return (
         f"nothing in {os.fspath(path)} is told to be {what} ({names}); it has {there}; "
         f"if {what} is among them, tell which: --remap {inputs[0].name}:=TOPIC"

@@ -19,8 +19,7 @@ from mcap.opcode import Opcode
 from mcap.records import Channel, Footer, Schema, Statistics
 from mcap.stream_reader import StreamReader
 
-from .chunks import BagChannel, Chunk, ChunkedFile, Flaw, RawMessage, ros2_name
-from .compression import LARGEST
+from .chunks import LARGEST, BagChannel, Chunk, ChunkedFile, Flaw, RawMessage, ros2_name
 
 MAGIC: Final = b"\x89MCAP0\r\n"
 

@@ -13,8 +13,7 @@ from typing import Any, Final, NamedTuple
 from ..errors import InputError
 from ..ros.messages import MalformedMessage
 from ..wording import counted
-from .chunks import UNKNOWN, BagChannel, Flaw
-from .compression import ZSTD_MAGIC, decompress_file, decompressed_message
+from .chunks import UNKNOWN, ZSTD_MAGIC, BagChannel, Flaw, decompress_file, decompressed_message
 from .find import COMPRESSED, files_of, storage_of
 from .mcap_file import McapFile
 from .ros1_file import Ros1File

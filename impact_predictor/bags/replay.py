@@ -13,16 +13,16 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 from ..errors import InputError
 from ..prediction.scene import CONTACT_GEOMETRY, STATES, Scene, inputs_of
 from ..prediction.types import Status
-from ..ros.messages import DIAGNOSTIC_ARRAY
+from ..ros.messages import DIAGNOSTIC_ARRAY, INPUT_TYPES
 from ..scenarios.truth import ONSET_TOPIC, TRUTH_TOPIC
-from .inputs import TYPES, adapted_topics, find_topics
+from .inputs import adapted_topics, find_topics
 from .inputs import remapping as remapping
 from .read import Bag, BagMessage
 from .remarks import StatusCounts as StatusCounts
 from .remarks import remarks, total_of, why_unpredictable
+from .run import NODE as NODE
 from .run import Run
-from .stream import NODE as NODE
-from .stream import Settled as Settled
+from .run import Settled as Settled
 from .write import BagWriter
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from ..scenarios.comparison import Truth
     from ..scenarios.matching import Match
     from ..scenarios.warned import Warned
-    from .gait import Gait
+    from .events import Gait
 
 _TRUTH: Final = (TRUTH_TOPIC, ONSET_TOPIC)
 
@@ -107,13 +107,13 @@ def replay(
         recorded = bag.topics()
         names, notes = find_topics(path, recorded, inputs_of(by_name), remap or {})
         adapted = adapted_topics(recorded, names)
-        wanted = {topic: TYPES[one.kind] for one, topic in names.items()} | adapted
+        wanted = {topic: INPUT_TYPES[one.kind].name for one, topic in names.items()} | adapted
         knows_truth = recorded.get(TRUTH_TOPIC) == DIAGNOSTIC_ARRAY
         if knows_truth:
             wanted |= {one: DIAGNOSTIC_ARRAY for one in _TRUTH if recorded.get(one) == DIAGNOSTIC_ARRAY}
         messages, readers = bag.messages(wanted), {}
         if adapted:
-            from .adapters.known import readers as readers_of
+            from .adapters import readers as readers_of
 
             readers = readers_of(bag, adapted)
         write = None if output is None else stack.enter_context(BagWriter(output)).write

@@ -3,43 +3,107 @@
 from __future__ import annotations
 
 from array import array
+from collections import deque
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from functools import partial
 from time import perf_counter
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from ..prediction.monitor import Monitor
 from ..prediction.scene import CONTACT_GEOMETRY, IMU, JOINTS, ODOM, SCHEDULE, WRENCH, Input, Scene
-from ..prediction.types import Geometry, Imu, Joints, Sample, Status
-from ..ros import messages
-from ..ros.messages import DIAGNOSTIC_ARRAY, MARKER_ARRAY, MalformedMessage, decode_odometry, encode_reports
+from ..prediction.types import Geometry, Imu, Joints, Prediction, Sample, Score, Status
+from ..ros.messages import (
+    DIAGNOSTIC_ARRAY,
+    INPUT_TYPES,
+    MARKER_ARRAY,
+    OUTPUTS,
+    MalformedMessage,
+    decode_odometry,
+    encode_reports,
+)
 from .read import BagMessage, UnusableMessage
-from .stream import NODE, Settled, Stream, Write
 
 if TYPE_CHECKING:
     from ..ros.markers.scene import MarkerScene
     from ..scenarios.comparison import Landings
-    from .adapters.known import Read
-    from .gait import Gait
-    from .points import Points
-    from .truth import TrueEvents
+    from .adapters import AdapterReader
+    from .events import Gait, TrueEvents
+    from .remarks import ContactPoints
+
+Write = Callable[[str, str, int, bytes], None]
+"""Takes topic, type, log time (ns) and bytes of a message."""
+
+NODE: Final = "/impact_predictor"
+"""The name of the node whose topics are written."""
+
+_REMEMBERED: Final = 256
 
 Take = Callable[[Any, int], Status]
 """Takes a message that asks for no answer, and its log time (ns)."""
 
-DECODERS: Final = {
-    ODOM: "decode_odometry",
-    IMU: "decode_imu",
-    CONTACT_GEOMETRY: "decode_polygon",
-    JOINTS: "decode_joints",
-    WRENCH: "decode_wrench",
-    SCHEDULE: "decode_schedule",
-}
-"""What decodes each kind of input, by names: not every scene has them all."""
-
 _TELL_EVERY: Final = 256
+
+
+class Settled(NamedTuple):
+    """A touchdown that has happened: the body, its score, and what the last prediction of it cost in s.
+
+    The body goes by its name, or where it has none by its frame.
+    """
+
+    body: str
+    score: Score
+    cost: float | None
+
+
+class BodyStream:
+    """The answers to the samples of one body."""
+
+    def __init__(self, body: str, update: Callable[[Sample], Prediction], write: Write | None) -> None:
+        self.body = body
+        self.update = update
+        prefix = f"{NODE}/{body}/" if body else f"{NODE}/"
+        self._write = write
+        self._outputs = [(prefix + name, *output) for name, output in OUTPUTS.items()]
+        self._first: int | None = None
+        self._last: tuple[Sample, int] | None = None
+        # What the predictions cost whose touchdowns may still be scored.
+        self._costs: deque[tuple[int, float]] = deque(maxlen=_REMEMBERED)
+
+    def answered(self, prediction: Prediction, log_time: int, cost: float) -> None:
+        """Write the answer to a sample of a log time in ns, which took a time in s."""
+        self._last = prediction.sample, log_time
+        if self._first is None:
+            self._first = prediction.sample.stamp
+        if prediction.touchdown is not None:
+            self._costs.append((prediction.sample.stamp, cost))
+        if self._write is not None:
+            for topic, type_name, encode in self._outputs:
+                data = encode(prediction)
+                if data is not None:
+                    self._write(topic, type_name, log_time, data)
+
+    @property
+    def extent(self) -> tuple[int, int] | None:
+        """Stamps in ns of the first and the last sample that was answered; None without any."""
+        return None if self._first is None or self._last is None else (self._first, self._last[0].stamp)
+
+    def settle(self, score: Score) -> Settled:
+        """The touchdown of a score."""
+        cost = next((cost for stamp, cost in reversed(self._costs) if stamp <= score.stamp), None)
+        frame = "" if self._last is None else self._last[0].child_frame_id
+        return Settled(self.body or frame, score, cost)
+
+    def end(self, score: Score) -> Settled:
+        """The touchdown of a score that came with the end, written with the time of the last sample."""
+        if self._write is not None and self._last is not None:
+            sample, log_time = self._last
+            topic, type_name, encode = next(one for one in self._outputs if one[0].endswith("/score"))
+            data = encode(Prediction(Status.ACCEPTED, sample, None, score))
+            if data is not None:
+                self._write(topic, type_name, log_time, data)
+        return self.settle(score)
 
 
 class Run:
@@ -58,7 +122,7 @@ class Run:
         scenes: Mapping[str, Scene],
         topics: Mapping[Input, str],
         write: Write | None,
-        readers: Mapping[str, Read] = MappingProxyType({}),
+        readers: Mapping[str, AdapterReader] = MappingProxyType({}),
         *,
         knows_truth: bool,
         markers: bool,
@@ -69,7 +133,7 @@ class Run:
         self.settled: list[Settled] = []
         self.statuses = {one: [0] * len(Status) for one in topics}
         self.unusable: dict[Input, str] = {}
-        self.points: dict[str, Points] = {}
+        self.points: dict[str, ContactPoints] = {}
         self.truth: TrueEvents | None = None
         self.landings: Landings | None = None
         self.gaits: dict[str, Gait] = {}
@@ -79,14 +143,16 @@ class Run:
         self._drawing: MarkerScene | None = None
         self._watches = self.monitor.watch is not None
         self._streams = {
-            body: Stream(body, partial(self.monitor.update, body) if self._watches else predictor.update, write)
+            body: BodyStream(body, partial(self.monitor.update, body) if self._watches else predictor.update, write)
             for body, predictor in self.monitor.predictors.items()
         }
         telling = [one.body or "" for one in topics if one.kind in (CONTACT_GEOMETRY, JOINTS)]
         if telling:
-            from .points import Points
+            from .remarks import ContactPoints
 
-            self.points = {body: Points(scenes[body], self.monitor.predictors[body].contacts) for body in telling}
+            self.points = {
+                body: ContactPoints(scenes[body], self.monitor.predictors[body].contacts) for body in telling
+            }
         self._takers = {topic: self._taker(one) for one, topic in topics.items() if topic not in readers}
         for topic, read in readers.items():
             inputs = {one.kind: one for one, its_topic in topics.items() if its_topic == topic}
@@ -94,7 +160,7 @@ class Run:
             self._takers[topic] = partial(self._take_adapted, read, inputs, takes)
         walking = {body: scene.walking for body, scene in scenes.items() if scene.walking is not None}
         if walking:
-            from .gait import Gait
+            from .events import Gait
 
             self.gaits = {body: Gait(one) for body, one in walking.items()}
         if readers and walking:
@@ -102,7 +168,7 @@ class Run:
 
             self.landings = Landings(scenes)
         if knows_truth:
-            from .truth import TrueEvents
+            from .events import TrueEvents
 
             self.truth = TrueEvents(watches=self._watches)
             self._takers |= self.truth.takers
@@ -140,8 +206,7 @@ class Run:
         """What takes the messages on an input, as log time in ns and bytes."""
         if one.kind == ODOM and one.body is not None:
             return partial(self._take_sample, self._streams[one.body], self.statuses[one])
-        decode = getattr(messages, DECODERS[one.kind])
-        return partial(self._take_other, decode, self._taker_of(one), self.statuses[one])
+        return partial(self._take_other, INPUT_TYPES[one.kind].decode, self._taker_of(one), self.statuses[one])
 
     def _taker_of(self, one: Input) -> Take:
         """What takes a message on an input that asks for no answer."""
@@ -156,7 +221,7 @@ class Run:
             return partial(self._set_joints, body)
         return lambda message, _: monitor.tell(body, message)
 
-    def _take_sample(self, stream: Stream, counts: list[int], log_time: int, data: bytes) -> None:
+    def _take_sample(self, stream: BodyStream, counts: list[int], log_time: int, data: bytes) -> None:
         self.samples += 1
         try:
             sample = decode_odometry(data)
@@ -165,7 +230,7 @@ class Run:
             return
         self._answer(stream, counts, log_time, sample)
 
-    def _answer(self, stream: Stream, counts: list[int], log_time: int, sample: Sample) -> None:
+    def _answer(self, stream: BodyStream, counts: list[int], log_time: int, sample: Sample) -> None:
         began = perf_counter()
         prediction = stream.update(sample)
         cost = perf_counter() - began
@@ -197,7 +262,7 @@ class Run:
         counts[status] += 1
 
     def _take_adapted(
-        self, read: Read, inputs: Mapping[str, Input], takes: Mapping[str, Take], log_time: int, data: bytes
+        self, read: AdapterReader, inputs: Mapping[str, Input], takes: Mapping[str, Take], log_time: int, data: bytes
     ) -> None:
         """Take a message that has an adapter as the messages on all inputs that it is told to be."""
         state = inputs.get(ODOM)

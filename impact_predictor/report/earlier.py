@@ -11,7 +11,7 @@ from typing import Any, Final
 
 from ..bags.find import name_of
 from ..bags.read import read_messages, topics
-from ..bags.stream import NODE
+from ..bags.run import NODE
 from ..errors import InputError
 from ..mechanics.types import Twist
 from ..ros.messages import DIAGNOSTIC_ARRAY, MalformedMessage, decode_diagnostic_array

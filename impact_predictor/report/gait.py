@@ -8,7 +8,7 @@ from pathlib import Path
 from statistics import median
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-from ..bags.gait import AHEAD, Gait, GaitLanding
+from ..bags.events import AHEAD, Gait, GaitLanding
 from ..stamps import NANOSECONDS
 from ..wording import counted
 from .modes import PALETTE

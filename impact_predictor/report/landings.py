@@ -18,7 +18,7 @@ from ..wording import NONE, counted, fixed
 from .table import Column, first_stamp, table_of
 
 if TYPE_CHECKING:
-    from ..bags.stream import Settled
+    from ..bags.run import Settled
 
 
 NOISY: Final = "a foot came down too suddenly, or the noise of base and feet hides how it comes down"

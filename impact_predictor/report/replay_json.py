@@ -12,7 +12,7 @@ from .summary import LEAD_TIME_EDGES, error_by_lead_time, errors_of, row_of, spr
 
 if TYPE_CHECKING:
     from ..bags.replay import Result
-    from ..bags.stream import Settled
+    from ..bags.run import Settled
     from ..scenarios.matching import Match
 
 

@@ -15,7 +15,7 @@ from ..prediction.types import Leftover, Score
 from ..wording import counted, percent, words
 
 if TYPE_CHECKING:
-    from ..bags.stream import Settled
+    from ..bags.run import Settled
     from .landings import LandingTally
 
 LEAD_TIME_EDGES: Final = (0.0, 0.01, 0.02, 0.03, 0.04, 0.05, 0.06)

@@ -11,7 +11,7 @@ import touchdowns
 from touchdowns import SAMPLE
 
 from impact_predictor.bags.replay import Result, Settled
-from impact_predictor.bags.stream import Stream
+from impact_predictor.bags.run import BodyStream
 from impact_predictor.bags.write import BagWriter
 from impact_predictor.errors import InputError
 from impact_predictor.mechanics.types import Twist
@@ -45,7 +45,7 @@ def write_run(path: Path, body: str = "", scores: tuple[Score, ...] = SCORES, na
         def write(topic: str, type_name: str, log_time: int, data: bytes) -> None:
             writer.write(namespace + topic, type_name, log_time, data)
 
-        stream = Stream(body, lambda _: next(answers), write)
+        stream = BodyStream(body, lambda _: next(answers), write)
         stream.answered(Prediction(Status.ACCEPTED, SAMPLE), 1, 0.0)
         for _ in scores:
             stream.answered(stream.update(SAMPLE), 1, 0.0)

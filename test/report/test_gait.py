@@ -9,7 +9,7 @@ from pathlib import Path
 import matplotlib
 import pytest
 
-from impact_predictor.bags.gait import Gait, GaitLanding
+from impact_predictor.bags.events import Gait, GaitLanding
 from impact_predictor.prediction.scene import Walking
 from impact_predictor.prediction.types import Foot, Prediction, Sample, Status
 from impact_predictor.report.gait import Machine, write_gait

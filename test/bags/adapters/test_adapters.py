@@ -18,7 +18,8 @@ from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from rosbags.typesys.store import Typestore
 
-from impact_predictor.bags.adapters import Adapted, known, of_world
+from impact_predictor.bags import adapters as known
+from impact_predictor.bags.adapters import Adapted, of_world
 from impact_predictor.bags.inputs import adapted_topics, find_topics
 from impact_predictor.bags.read import Bag, UnusableMessage, read_messages
 from impact_predictor.bags.replay import replay
@@ -99,7 +100,7 @@ def write(path: Path, store: Typestore, messages: list[bytes], topic: str = "/st
     return path
 
 
-def reader_of(path: Path, topic: str = "/state", type_name: str = TYPE) -> known.Read:
+def reader_of(path: Path, topic: str = "/state", type_name: str = TYPE) -> known.AdapterReader:
     with Bag(path) as bag:
         return known.readers(bag, {topic: type_name})[topic]
 
@@ -158,7 +159,7 @@ from impact_predictor.prediction.scene import Input
 inputs = [Input("odom", "odom", "")]
 recorded = {{"/odom": {ODOMETRY!r}, "/state": {XPP!r}}}
 adapted_topics(recorded, find_topics("robot.bag", recorded, inputs, {{}})[0])
-print([name for name in sys.modules if "bags.adapters" in name or name == "impact_predictor.bags.gait"])
+print([name for name in sys.modules if "bags.adapters" in name or name == "impact_predictor.bags.events"])
 """
     result = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     assert result.stdout == "[]\n"

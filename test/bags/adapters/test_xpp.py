@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from impact_predictor.bags.adapters import Adapted
-from impact_predictor.bags.adapters.known import readers
+from impact_predictor.bags.adapters import Adapted, readers
 from impact_predictor.bags.read import Bag, read_messages
 
 BAG = Path(__file__).parents[3] / "examples/hyq/hyq.bag"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from impact_predictor.bags.gait import FootStance, Gait, GaitLanding
+from impact_predictor.bags.events import FootStance, Gait, GaitLanding
 from impact_predictor.prediction.scene import Walking
 from impact_predictor.prediction.types import Foot, Landing, Leftover, Prediction, Sample, Score, Status, Touchdown
 

@@ -1,13 +1,29 @@
-"""When the feet of a walking machine stand, and how their landings were announced."""
+"""What happened in a replay: stances and landings of feet, and the true impacts and onsets where the bag tells them."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections import defaultdict
+from collections.abc import Callable, Iterable
+from contextlib import suppress
+from functools import partial
 from math import hypot
-from typing import Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from ..prediction.scene import Walking
 from ..prediction.types import Prediction, Score
+from ..ros.messages import MalformedMessage
+from ..scenarios.matching import Announcements
+from ..scenarios.truth import (
+    ONSET_TOPIC,
+    TRUTH_TOPIC,
+    TrueImpact,
+    TrueOnset,
+    decode_true_impacts,
+    decode_true_onsets,
+)
+
+if TYPE_CHECKING:
+    from ..scenarios.warned import Warned, Warnings
 
 AHEAD: Final = 0.05
 """Seconds before a landing at which the prediction is made that is kept."""
@@ -104,3 +120,46 @@ class _Stances:
 
     def until(self, end: int) -> list[FootStance]:
         return [*self._ended, *[FootStance(foot, begin, end) for foot, begin in self._since.items()]]
+
+
+class TrueEvents:
+    """The true impacts and onsets of a bag, and what was announced and, where margins are watched, warned of.
+
+    `takers` take the messages that tell of them, as log time in ns and bytes, by their topics.
+    """
+
+    def __init__(self, *, watches: bool) -> None:
+        """Nothing has happened yet."""
+        self.impacts: list[TrueImpact] = []
+        self.announcements = Announcements()
+        self.warnings: Warnings | None = None
+        self._onsets: list[TrueOnset] = []
+        self.takers: dict[str, Callable[[int, bytes], None]] = {
+            TRUTH_TOPIC: partial(_take, self.impacts, decode_true_impacts),
+            ONSET_TOPIC: partial(_take, self._onsets, decode_true_onsets),
+        }
+        if watches:
+            from ..scenarios.warned import Warnings
+
+            self.warnings = Warnings()
+
+    def warned(self, bodies: Iterable[str]) -> dict[str, Warned]:
+        """How bodies were warned of, where margins are watched."""
+        if self.warnings is None:
+            return {}
+        names = self.announcements.names
+        impacts: dict[str, list[TrueImpact]] = defaultdict(list)
+        onsets: dict[str, list[TrueOnset]] = defaultdict(list)
+        for impact in self.impacts:
+            impacts[names.get(impact.body, impact.body)].append(impact)
+        for onset in self._onsets:
+            onsets[names.get(onset.body, onset.body)].append(onset)
+        # A body alone may have no name; it goes by its frame.
+        frame = next(iter([*names.values(), *impacts]), "")
+        return {body or frame: self.warnings.of(body, impacts[body or frame], onsets[body or frame]) for body in bodies}
+
+
+def _take(known: list[Any], decode: Callable[[bytes], Iterable[Any]], log_time: int, data: bytes) -> None:
+    # What tells no truth there is another program's.
+    with suppress(MalformedMessage):
+        known.extend(decode(data))
