@@ -89,9 +89,9 @@ def test_names_are_as_short_as_they_can_be_and_no_two_are_the_same() -> None:
 
 def test_the_headlines_say_how_many_how_right_and_how_early() -> None:
     # Against the truth where a bag tells it (0.02 twice), else against what was measured (0.1 and 0.2).
-    assert title_of([TRUE]) == "2 of 3 found, velocities within 2.0 %, 59.5 ms ahead"
-    assert title_of([TRUE, TOSSES]) == "2 of 3 found, velocities within 6.0 %, 54.5 ms ahead"
-    assert title_of([WALK]) == "2 of 3 landings announced, 50 ms ahead"
+    assert title_of([TRUE]) == "Touchdowns: 2 of 3 found, velocities within 2.0 %, 59.5 ms ahead"
+    assert title_of([TRUE, TOSSES]) == "Touchdowns: 2 of 3 found, velocities within 6.0 %, 54.5 ms ahead"
+    assert title_of([WALK]) == "Touchdowns: 2 of 3 landings announced, 50 ms ahead"
     assert title_of([answer(), UNREADABLE]) == "No touchdown was predicted"
     many, right, soon, cost = (f"{one.answer}: {one.more}" for one in headlines_of([TRUE, UNREADABLE]))
     told = "A touchdown is found where a prediction before it told its time to 20 ms."
@@ -133,6 +133,8 @@ def test_a_timeline_has_what_was_predicted_above_what_came(page: PageReader) -> 
         "PIVOT, faint": [(900, 1)],
     }
     known = traces(figure)
+    # Of the trace, not of each mark: faint ones on each other are no darker than one.
+    assert [known[name]["opacity"] for name in ("STOP", "STOP, faint")] == [1.0, 0.3]
     assert known["false alarm"]["text"] == ["false alarm, predicted for 0.800 s: STOP"]
     assert known["STOP"]["text"][0].endswith(
         "first announced 60 ms ahead<br>the last predicted time is less than 1 us off"

@@ -1,4 +1,4 @@
-// Each figure stands on the page as JSON before its place; `meta.pieces` are the parts of a record between long pauses
+// Each figure stands on the page as JSON, after its place; `meta.pieces` are the parts of a record between long pauses
 // that are cut out, as [begin, end, place] in seconds: their times are written anew when the reader magnifies.
 function ticks(axis, pieces) {
   const wanted = (axis.range[1] - axis.range[0]) / 7, power = 10 ** Math.floor(Math.log10(wanted));
@@ -18,6 +18,8 @@ function ticks(axis, pieces) {
 for (const source of document.querySelectorAll("script[data-for]")) {
   const figure = JSON.parse(source.textContent), place = document.getElementById(source.dataset.for);
   const config = {responsive: true, displayModeBar: false};
+  // On a narrow page the names stand below each other.
+  if (place.clientWidth < 500) figure.layout.height += 100;
   Plotly.newPlot(place, figure.data, figure.layout, config).then(() => {
     const pieces = (figure.layout.meta || {}).pieces;
     if (!pieces) return;

@@ -86,7 +86,7 @@ def page_of_replay(
 def title_of(answers: Sequence[BagAnswer]) -> str:
     """How many touchdowns, how right and how early, in one line."""
     said = [one.answer for one in headlines_of(answers) if one.question != COST]
-    return ", ".join(said) if said else "No touchdown was predicted"
+    return f"Touchdowns: {', '.join(said)}" if said else "No touchdown was predicted"
 
 
 def announced_of(landings: Sequence[BagAnswer]) -> str:

@@ -170,8 +170,9 @@ def _marks(lanes: Sequence[Lane], cuts: Cuts) -> list[dict[str, Any]]:
     for name, faint in [(name, faint) for faint in (True, False) for name in in_order(mark.mark for mark, _ in drawn)]:
         points = [(cuts.at(mark.stamp), y, mark.said) for mark, y in drawn if mark.mark == name and mark.faint == faint]
         if points:
-            look = look_of(name) | {"opacity": 0.3 if faint else 1.0}
-            traces.append(marks(f"{name}, faint" if faint else name, points, marker=look))
+            # The opacity of a trace, not of its marks: faint ones on each other are no darker than one.
+            label, opacity = (f"{name}, faint", 0.3) if faint else (name, 1.0)
+            traces.append(marks(label, points, marker=look_of(name), opacity=opacity))
     return traces
 
 
