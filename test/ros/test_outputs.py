@@ -1,4 +1,4 @@
-"""The bytes of messages against two other implementations: rosbags, and rclpy where ROS is installed.
+"""The bytes of outputs against two other implementations: rosbags, and rclpy where ROS is installed.
 
 Samples are random with a fixed seed; numbers must come through exactly, since nothing is computed on the way.
 """
@@ -6,27 +6,20 @@ Samples are random with a fixed seed; numbers must come through exactly, since n
 import json
 import random
 import re
-import struct
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
-from rosbags.typesys import Stores, get_typestore
+from messages_of_rosbags import TYPES, TYPESTORE, header, odometry, random_sample, serialize
 
 from impact_predictor.mechanics.bodies import plate
 from impact_predictor.mechanics.impact import solve_impact
 from impact_predictor.mechanics.types import Flag, Mode, Twist
 from impact_predictor.prediction.types import (
     Covariance,
-    Geometry,
-    Imu,
     Leftover,
     Prediction,
-    Sample,
     Score,
     Status,
     Touchdown,
@@ -35,20 +28,12 @@ from impact_predictor.prediction.types import (
 from impact_predictor.prediction.watch.watch import Level, Report
 from impact_predictor.ros.messages import (
     DIAGNOSTIC_ARRAY,
-    IMU,
     ODOMETRY,
     OUTPUTS,
-    POLYGON,
     UINT8,
-    MalformedMessage,
     decode_diagnostic_array,
-    decode_imu,
     decode_odometry,
-    decode_polygon,
-    encode_imu,
     encode_mode,
-    encode_odometry,
-    encode_polygon,
     encode_post_impact,
     encode_prediction,
     encode_reports,
@@ -64,24 +49,7 @@ from impact_predictor.ros.messages.fields import (
     UNCERTAINTY,
 )
 
-TYPESTORE = get_typestore(Stores.ROS2_JAZZY)
-TYPES = TYPESTORE.types
 ENDIAN = pytest.mark.parametrize("little_endian", [True, False], ids=["little", "big"])
-# Lengths of 0 to 8 bytes meet every alignment of what follows a string.
-FRAMES = ["", "a", "ab", "abc", "odom", "world", "decké", "cube/a1", "base_lnk"]
-ODD_NUMBERS = [0.0, -0.0, 5e-324, 1.7976931348623157e308, float("inf"), -float("inf"), 0.1]
-
-
-def random_sample(rng: random.Random) -> Sample:
-    def numbers(count: int) -> tuple[float, ...]:
-        return tuple(rng.choice(ODD_NUMBERS) if rng.random() < 0.1 else rng.gauss(0.0, 10.0) for _ in range(count))
-
-    return Sample(
-        rng.randrange(-(2**31) * 10**9, 2**31 * 10**9),
-        rng.choice(FRAMES),
-        rng.choice(FRAMES),
-        *(numbers(3), numbers(4), numbers(3), numbers(3), numbers(36), numbers(36)),  # type: ignore[arg-type]
-    )
 
 
 def random_touchdown(rng: random.Random, mode: Mode = Mode.PIVOT_SLIDE) -> Touchdown:
@@ -121,180 +89,9 @@ def a_prediction(seed: int = 1, **changes: Any) -> Prediction:
     return Prediction(Status.ACCEPTED, sample, random_touchdown(rng)._replace(**changes))
 
 
-def header(stamp: int, frame_id: str) -> Any:
-    seconds, nanoseconds = divmod(stamp, 10**9)
-    time = TYPES["builtin_interfaces/msg/Time"](seconds, nanoseconds)
-    return TYPES["std_msgs/msg/Header"](time, frame_id)
-
-
-def odometry(sample: Sample) -> Any:
-    point, vector = TYPES["geometry_msgs/msg/Point"], TYPES["geometry_msgs/msg/Vector3"]
-    pose = TYPES["geometry_msgs/msg/Pose"](
-        point(*sample.position), TYPES["geometry_msgs/msg/Quaternion"](*sample.orientation)
-    )
-    twist = TYPES["geometry_msgs/msg/Twist"](vector(*sample.linear), vector(*sample.angular))
-    return TYPES[ODOMETRY](
-        header(sample.stamp, sample.frame_id),
-        sample.child_frame_id,
-        TYPES["geometry_msgs/msg/PoseWithCovariance"](pose, np.array(sample.pose_covariance)),
-        TYPES["geometry_msgs/msg/TwistWithCovariance"](twist, np.array(sample.twist_covariance)),
-    )
-
-
-def serialize(message: Any, type_name: str, little_endian: bool = True) -> bytes:
-    return bytes(TYPESTORE.serialize_cdr(message, type_name, little_endian=little_endian))
-
-
 def padded(data: bytes) -> bytes:
     """As DDS carries it, in multiples of four bytes."""
     return data + bytes(-len(data) % 4)
-
-
-@ENDIAN
-def test_a_sample_is_what_is_in_an_odometry_both_ways(little_endian: bool) -> None:
-    rng = random.Random(2)
-    for _ in range(300):
-        sample = random_sample(rng)
-        assert decode_odometry(serialize(odometry(sample), ODOMETRY, little_endian)) == sample
-        assert encode_odometry(sample) == serialize(odometry(sample), ODOMETRY)
-
-
-@ENDIAN
-def test_geometry_is_what_is_in_a_polygon_both_ways(little_endian: bool) -> None:
-    rng = random.Random(3)
-    for count in [0, 1, 2, 8, 100]:
-        # Point32 holds float32, so the numbers must be some.
-        points = tuple(tuple(float(np.float32(rng.gauss(0.0, 1.0))) for _ in range(3)) for _ in range(count))
-        geometry = Geometry(rng.randrange(2**31 * 10**9), rng.choice(FRAMES), points)  # type: ignore[arg-type]
-        polygon = TYPES["geometry_msgs/msg/Polygon"]([TYPES["geometry_msgs/msg/Point32"](*point) for point in points])
-        message = TYPES[POLYGON](header(geometry.stamp, geometry.frame_id), polygon)
-        assert decode_polygon(serialize(message, POLYGON, little_endian)) == geometry
-        assert encode_polygon(geometry) == serialize(message, POLYGON)
-
-
-def imu_message(imu: Imu, rng: random.Random) -> Any:
-    vector = TYPES["geometry_msgs/msg/Vector3"]
-    known = np.array([rng.random() for _ in range(9)])
-    return TYPES[IMU](
-        header(imu.stamp, imu.frame_id),
-        TYPES["geometry_msgs/msg/Quaternion"](*(imu.orientation or (0.0, 0.0, 0.0, 0.0))),
-        known if imu.orientation else np.array([-1.0, *known[1:]]),
-        vector(*imu.angular),
-        known,
-        vector(*imu.specific_force),
-        known,
-    )
-
-
-@ENDIAN
-def test_a_measurement_is_what_is_in_an_imu_both_ways(little_endian: bool) -> None:
-    rng = random.Random(3)
-    for _ in range(200):
-        sample = random_sample(rng)
-        orientation = sample.orientation if rng.random() < 0.5 else None
-        imu = Imu(sample.stamp, sample.frame_id, orientation, sample.linear, sample.angular)
-        assert decode_imu(serialize(imu_message(imu, rng), IMU, little_endian)) == imu
-        assert decode_imu(encode_imu(imu)) == imu
-        read = TYPESTORE.deserialize_cdr(encode_imu(imu), IMU)
-        assert (read.orientation_covariance[0] == -1.0) == (orientation is None)
-        assert serialize(read, IMU) == encode_imu(imu)
-
-
-@pytest.mark.parametrize("data", [b"", b"\0\1\0\0", b"\0\1\0\0" + bytes(100), b"\0\1\0\0" + bytes(400)])
-def test_bytes_that_are_no_imu_are_malformed(data: bytes) -> None:
-    with pytest.raises(MalformedMessage):
-        decode_imu(data)
-
-
-def test_bytes_that_a_middleware_pads_to_four_are_read() -> None:
-    sample = random_sample(random.Random(4))
-    data = serialize(odometry(sample), ODOMETRY)
-    assert decode_odometry(data + bytes(3)) == sample
-
-
-def test_an_empty_string_without_its_nul_is_read() -> None:
-    data = struct.pack("<4siIIIxxxx85d", b"\0\1\0\0", 1, 2, 0, 0, *range(85))
-    sample = decode_odometry(data[:20] + data[24:])
-    assert (sample.frame_id, sample.child_frame_id, sample.position) == ("", "", (0.0, 1.0, 2.0))
-
-
-VALID = serialize(odometry(random_sample(random.Random(5))._replace(frame_id="odom", child_frame_id="cube")), ODOMETRY)
-VALID_POLYGON = serialize(
-    TYPES[POLYGON](
-        header(1, "cube"), TYPES["geometry_msgs/msg/Polygon"]([TYPES["geometry_msgs/msg/Point32"](1.0, 2.0, 3.0)])
-    ),
-    POLYGON,
-)
-VALID_DIAGNOSTICS = encode_prediction(a_prediction())
-
-
-@pytest.mark.parametrize(
-    ("data", "why"),
-    [
-        (b"", "nothing"),
-        (b"\0\1", "half a header"),
-        (VALID[:4], "a header alone"),
-        (VALID[:11], "half a stamp"),
-        (VALID[:-1], "a byte too short"),
-        (VALID + bytes(4), "too long"),
-        (b"\0\3" + VALID[2:], "parameter list encapsulation"),
-        (b"\0\7" + VALID[2:], "XCDR2"),
-        (b"\1\0" + VALID[2:], "no encapsulation"),
-        (VALID[:12] + b"\xff\xff\xff\xff" + VALID[16:], "a string of 4 GB"),
-        (VALID[:12] + b"\xe0\2\0\0" + VALID[16:], "a string beyond the end"),
-        (VALID[:20] + b"!" + VALID[21:], "a string without NUL"),
-        (VALID[:16] + b"\xff" + VALID[17:], "a string that is not UTF-8"),
-        (VALID_POLYGON, "another message"),
-    ],
-    ids=lambda value: value if isinstance(value, str) else "",
-)
-def test_bytes_that_are_no_odometry_are_malformed(data: bytes, why: str) -> None:
-    with pytest.raises(MalformedMessage):
-        decode_odometry(data)
-
-
-@pytest.mark.parametrize("count", [0, 2, 2**28, 2**32 - 1])
-def test_a_polygon_with_a_wrong_number_of_points_is_malformed(count: int) -> None:
-    with pytest.raises(MalformedMessage):
-        decode_polygon(VALID_POLYGON[:24] + struct.pack("<I", count) + VALID_POLYGON[28:])
-
-
-@pytest.mark.parametrize("data", [b"", VALID[:4], VALID_POLYGON[:-1], VALID_POLYGON + bytes(4), VALID])
-def test_bytes_that_are_no_polygon_are_malformed(data: bytes) -> None:
-    with pytest.raises(MalformedMessage):
-        decode_polygon(data)
-
-
-@given(st.binary(max_size=900))
-def test_any_bytes_are_a_message_or_malformed(data: bytes) -> None:
-    check_all_decoders(data)
-    check_all_decoders(b"\0\1\0\0" + data)
-
-
-@given(
-    st.sampled_from([VALID, VALID_POLYGON, VALID_DIAGNOSTICS]),
-    st.lists(st.tuples(st.integers(0, 1000), st.integers(0, 255)), max_size=4),
-    st.integers(0, 1000),
-)
-def test_any_damage_to_a_message_leaves_a_message_or_malformed(
-    data: bytes, changes: list[tuple[int, int]], cut: int
-) -> None:
-    damaged = bytearray(data)
-    for place, value in changes:
-        damaged[place % len(damaged)] = value
-    check_all_decoders(bytes(damaged))
-    check_all_decoders(bytes(damaged[: -cut % len(damaged)]))
-
-
-def check_all_decoders(data: bytes) -> None:
-    with suppress(MalformedMessage):
-        assert isinstance(decode_odometry(data), Sample)
-    with suppress(MalformedMessage):
-        assert isinstance(decode_polygon(data), Geometry)
-    with suppress(MalformedMessage):
-        assert isinstance(decode_imu(data), Imu)
-    with suppress(MalformedMessage):
-        assert isinstance(decode_diagnostic_array(data), list)
 
 
 def test_a_post_impact_state_is_the_odometry_that_rosbags_writes() -> None:
@@ -562,7 +359,6 @@ def test_an_array_of_several_statuses_is_read(little_endian: bool) -> None:
 def test_rclpy_reads_what_is_written_and_writes_what_is_read() -> None:
     serialization = pytest.importorskip("rclpy.serialization", reason="ROS is not installed: rclpy is not compared")
     from diagnostic_msgs.msg import DiagnosticArray
-    from geometry_msgs.msg import Point32, PolygonStamped
     from nav_msgs.msg import Odometry
     from std_msgs.msg import UInt8
 
@@ -578,15 +374,6 @@ def test_rclpy_reads_what_is_written_and_writes_what_is_read() -> None:
             assert padded(serialize(TYPESTORE.deserialize_cdr(again, type_name), type_name)) == data
             if type_name == DIAGNOSTIC_ARRAY:
                 assert decode_diagnostic_array(again) == decode_diagnostic_array(data)
-        sample = prediction.sample
-        message = serialization.deserialize_message(serialize(odometry(sample), ODOMETRY), Odometry)
-        assert decode_odometry(serialization.serialize_message(message)) == sample
-    polygon = PolygonStamped()
-    polygon.header.frame_id = "cube"
-    polygon.header.stamp.sec = 7
-    polygon.polygon.points = [Point32(x=0.5, y=-1.0, z=2.0), Point32()]
-    geometry = Geometry(7 * 10**9, "cube", ((0.5, -1.0, 2.0), (0.0, 0.0, 0.0)))
-    assert decode_polygon(serialization.serialize_message(polygon)) == geometry
 
 
 def test_reports_on_several_units_are_one_array_as_rosbags_writes_it() -> None:
