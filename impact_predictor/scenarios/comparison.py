@@ -1,7 +1,7 @@
 """Predicted against true touchdowns: what was found, how early, and how right; `matching` tells which belong together.
 
 Touchdowns are those of impacts, or landings of feet. The truth of these is what a plan or a simulation says of every
-foot: whether it stands. It is told beside the samples, is never an input of a prediction, and knows neither modes nor
+foot: whether it stands. It comes beside the samples, is never an input of a prediction, and knows neither modes nor
 velocities, so that these are not compared.
 """
 
@@ -23,7 +23,7 @@ from .matching import NEAREST, Announcement, Announcements, Match, Rows, match
 from .truth import TrueImpact
 
 LEAD_TIMES: Final = (0.02, 0.05)
-"""Seconds before a touchdown at which the predictions are made whose errors of time count; the first are the usual."""
+"""Seconds before a touchdown at which the predictions are made whose errors of time count."""
 
 BORDER: Final = 0.02
 """Relative change of friction or geometry within which another mode may be as right as the true one."""
@@ -209,8 +209,8 @@ class Landings:
         before = self._stands.get(body, stands)
         self._stands[body] = stands
         if walking is not None:
-            told = zip(walking.feet, before, stands, strict=False)
-            self.true += [TrueLanding(stamp, body, foot) for foot, stood, now in told if now and not stood]
+            changes = zip(walking.feet, before, stands, strict=False)
+            self.true += [TrueLanding(stamp, body, foot) for foot, stood, now in changes if now and not stood]
 
     def add(self, prediction: Prediction, name: str = "") -> None:
         """Take the answer to an accepted sample: a foot that stands lands no more, though more of it may touch down."""
@@ -227,7 +227,7 @@ class Landings:
         self._last[body] = sample.stamp
 
     def matches(self) -> dict[str, list[Match]]:
-        """The landings of each body of which the truth is told, foot by foot, and its false alarms."""
+        """The landings of each body whose truth is known, foot by foot, and its false alarms."""
         return {body: self._matches(body, last) for body, last in self._last.items() if body in self._stands}
 
     def later(self) -> int:

@@ -26,7 +26,7 @@ NEAREST: Final = 20_000_000
 class Announcement(NamedTuple):
     """A prediction: the stamps of its sample and of the touchdown that it announces, in ns.
 
-    `touchdown` is None where another one is sooner, so that its impact is not told.
+    `touchdown` is None where another one is sooner, so that nothing is known of its impact.
     """
 
     seen: int

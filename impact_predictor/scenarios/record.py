@@ -208,11 +208,13 @@ def _odometry(
 
 def _truth(impacts: Iterable[TrueImpact], onsets: Iterable[TrueOnset], frame: str) -> list[RecordedMessage]:
     """The messages of what truly happened, in the order of their stamps."""
-    told = [
+    messages = [
         RecordedMessage(one.stamp, TRUTH_TOPIC, DIAGNOSTIC_ARRAY, encode_true_impact(one, frame)) for one in impacts
     ]
-    told += [RecordedMessage(one.stamp, ONSET_TOPIC, DIAGNOSTIC_ARRAY, encode_true_onset(one, frame)) for one in onsets]
-    return sorted(told, key=lambda message: message.log_time)
+    messages += [
+        RecordedMessage(one.stamp, ONSET_TOPIC, DIAGNOSTIC_ARRAY, encode_true_onset(one, frame)) for one in onsets
+    ]
+    return sorted(messages, key=lambda message: message.log_time)
 
 
 def _deck(deck: MovingSupport, watched: MovingDeck, duration: float, sensors: Sensors) -> Iterator[RecordedMessage]:
@@ -227,7 +229,7 @@ def _deck(deck: MovingSupport, watched: MovingDeck, duration: float, sensors: Se
     for block in _blocks(stamps):
         motion = place.motion(np.array(block) / NANOSECONDS)
         state = _state_of(place, np.array(block) / NANOSECONDS)
-        for imu in sensor.told(block, state, motion.ax, motion.ay + deck.gravity):
+        for imu in sensor.of_force(block, state, motion.ax, motion.ay + deck.gravity):
             yield RecordedMessage(imu.stamp, "/support/imu", IMU, encode_imu(imu))
 
 

@@ -184,9 +184,9 @@ class InertialSensor:
         """The measurements at stamps (ns) from the states then, and before and after then, `span` s apart (arrays)."""
         early, late = (self._origin_velocity(one) for one in (before, after))
         ahead, up = ((two - one) / span for one, two in zip(early, late, strict=True))
-        return self.told(stamps, state, ahead, up + self.gravity)
+        return self.of_force(stamps, state, ahead, up + self.gravity)
 
-    def told(
+    def of_force(
         self, stamps: list[int], state: PlanarState, ahead: NDArray[np.float64], up: NDArray[np.float64]
     ) -> Iterator[Imu]:
         """The measurements from the specific force of the origin, along the world's axes in the plane."""

@@ -176,7 +176,7 @@ def level_of(monitor: Monitor, body: str) -> Level:
     """The level of a body as it would be reported, whenever it was told last."""
     watch = monitor.watch
     assert watch is not None
-    watch._told = None
+    watch._reported = None
     return by_body(monitor.reports())[body].level
 
 

@@ -77,7 +77,7 @@ class MeanMotion:
 
 
 class RestingSupport:
-    """A support at rest, told as a moving one is: gravity (m/s^2) and nothing else is felt, now and later."""
+    """A support at rest, with the methods of a moving one: gravity (m/s^2) and nothing else is felt, now and later."""
 
     def __init__(self, gravity: Vector3) -> None:
         self._felt = Felt(gravity, NOWHERE, NOWHERE)
@@ -172,7 +172,7 @@ def moment_of(
     gravity: Vector3,
     extrapolate: Callable[[SupportState], Callable[[float], Felt]] | None = None,
 ) -> Moment:
-    """What the users of a support are told of it, whose `frames` are the world's and its own; `extrapolate` gives
+    """The support as its users see it, whose `frames` are the world's and its own; `extrapolate` gives
     another `ahead` than constant accelerations.
     """
     felt = Felt(to_body(state.axes, state.felt), state.angular, state.turning)

@@ -120,13 +120,13 @@ class Deck:
 
     @property
     def last(self) -> Moment | None:
-        """The support at its last message; None while nothing can be told of it."""
+        """The support at its last message; None while its motion is not known."""
         if self._latest is None and not self._state:
             self._latest = self._moment(self._history[-1])
         return self._latest
 
     def at(self, stamp: int) -> Moment | Status:
-        """The support at the stamp of a body (ns), or why nothing can be told of it then.
+        """The support at the stamp of a body (ns), or why its motion is not known then.
 
         After the last message it goes on with constant accelerations; before, the messages on both sides tell.
         """

@@ -197,7 +197,7 @@ class WatchedBody:
         return True
 
     def begin_anew(self) -> None:
-        """Wait for no stamp any more, but for its source to be heard."""
+        """Forget all stamps: its source was not heard yet."""
         self._strike = self._heard = None
         if self.scene.source != "none" and self.status is Status.ACCEPTED:
             self.status = Status.BODY_STALE

@@ -36,7 +36,7 @@ _MOTIONS: Final = 12
 
 
 LEAST_WATCHED: Final = 60.0
-"""s: a shorter watch is told as one of a minute, so that a single onset is not a thousand per hour."""
+"""s: a shorter watch counts as one of a minute, so that a single onset is not a thousand per hour."""
 
 HOUR: Final = 3600.0
 

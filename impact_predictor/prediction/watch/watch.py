@@ -81,7 +81,7 @@ class Watch:
         self._looked: int | None = None
         self._judged: int | None = None
         self._now: int | None = None
-        self._told: int | None = None
+        self._reported: int | None = None
         self._judged_at = 0
         self._begun = False
 
@@ -151,11 +151,11 @@ class Watch:
 
     def reports(self) -> tuple[Report, ...]:
         """A report of each body where a second of stamps is over or a level has changed since this was last asked."""
-        now, told = self._now, self._told
-        if now is None or not (self._levels.changed or told is None or now // SECOND != told // SECOND):
+        now, last = self._now, self._reported
+        if now is None or not (self._levels.changed or last is None or now // SECOND != last // SECOND):
             return ()
         self._levels.changed = False
-        self._told = now
+        self._reported = now
         work, edges = self._onset.barriers(self._motion)
         return tuple(
             self._report(number, now, float(work[number]), int(edges[number])) for number in range(len(self._bodies))
@@ -165,7 +165,7 @@ class Watch:
         """Let time go on; where it has begun anew so does all that waits for a stamp."""
         if self._now is not None and stamp < self._now - SECOND:
             self._levels.begin_anew()
-            self._judged = self._looked = self._told = None
+            self._judged = self._looked = self._reported = None
             self._begun = False
             for number, watched in enumerate(self._bodies):
                 watched.begin_anew()

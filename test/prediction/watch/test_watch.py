@@ -99,7 +99,7 @@ class Run:
     def report(self) -> Report:
         """What is said of the first body once the next second is over, whatever was said of it already."""
         self.reports()
-        self.watch._told = None
+        self.watch._reported = None
         return self.reports()[0]
 
 
