@@ -337,18 +337,21 @@ def test_a_coarser_tolerance_keeps_itself() -> None:
             assert max(differences(coarse, fine.time, fine.state[3:])) < 1e-5  # aimed at 1e-6
 
 
-def test_a_stance_without_friction_keeps_the_energy() -> None:
-    rng = random.Random(31)
+@pytest.mark.parametrize(("kind", "friction"), [(MotionKind.TURNING, HELD), (MotionKind.SLIDING, 0.0)])
+def test_a_stance_that_sticks_and_one_without_friction_keep_the_energy(kind: MotionKind, friction: float) -> None:
+    rng, allowed = random.Random(31), ROUNDING if friction else SLIDING
     touched = 0
     for _ in range(200):
-        case = drawn(rng, MotionKind.SLIDING)._replace(friction=0.0)
+        case = drawn(rng, kind)._replace(friction=friction)
         found = case.fall()
         if found.point < 0 or found.motion is MotionKind.FLIGHT:
             continue
         touched += 1
         before, after = (energy(state, case.rho_squared, case.gravity) for state in (case.state, found.state))
-        assert after == pytest.approx(before, rel=SLIDING, abs=SLIDING)
-        assert found.state.vx == pytest.approx(case.state.vx + case.gravity[0] * found.time, rel=ROUNDING, abs=ROUNDING)
+        assert after == pytest.approx(before, rel=allowed, abs=allowed)
+        if not friction:
+            vx = case.state.vx + case.gravity[0] * found.time
+            assert found.state.vx == pytest.approx(vx, rel=ROUNDING, abs=ROUNDING)
     assert touched > 100
 
 
@@ -442,34 +445,6 @@ def test_the_point_that_strikes_is_on_the_support_and_moves_down_while_the_stanc
             assert normal == pytest.approx(0.0, abs=4e-15)
             if found.motion is MotionKind.TURNING:
                 assert tangential == pytest.approx(0.0, abs=4e-15)
-
-
-def test_turning_keeps_the_energy() -> None:
-    rng = random.Random(13)
-    turned = 0
-    for _ in range(100):
-        case = drawn(rng, MotionKind.TURNING)._replace(friction=HELD)
-        found = case.fall()
-        if found.point < 0:
-            continue
-        turned += 1
-        before, after = (energy(state, case.rho_squared, case.gravity) for state in (case.state, found.state))
-        assert after == pytest.approx(before, rel=ROUNDING, abs=ROUNDING)
-    assert turned > 80
-
-
-def test_a_body_that_rises_first_turns_back_and_falls() -> None:
-    angle, omega = 0.2, 0.7
-    points, height = PLATE[:2], math.hypot(0.5, 0.3)
-    rising = Case(standing(points[0], angle, omega), points, 0, RHO_SQUARED, HELD).fall()
-    thrown_down = Case(standing(points[0], angle, -omega), points, 0, RHO_SQUARED, HELD).fall()
-    climb = omega**2 * (RHO_SQUARED + height**2) / (2 * 9.81 * height)
-    bearing = math.atan2(0.3, 0.5)
-    top = math.asin(math.sin(angle + bearing) + climb) - bearing
-    from_top = Case(standing(points[0], top, 0.0), points, 0, RHO_SQUARED, HELD).fall()
-    assert rising.state == pytest.approx(tuple(thrown_down.state), rel=ROUNDING, abs=ROUNDING)
-    # Up and down again, and then as if thrown down: the way up takes as long as the way down.
-    assert rising.time - from_top.time == pytest.approx(from_top.time - thrown_down.time, rel=1e-12)
 
 
 def passing(excess: float) -> tuple[Case, float, float, float]:
@@ -666,15 +641,6 @@ def test_a_slip_of_one_rounding_is_none() -> None:
     assert sticking.motion is MotionKind.TURNING
     nudged = Case(state._replace(vx=math.nextafter(state.vx, 1.0)), PLATE, 0, RHO_SQUARED, 1.5).fall()
     assert nudged == sticking
-
-
-def test_a_slip_that_stops_on_the_way_sticks() -> None:
-    slipping = Case(standing(PLATE[0], 0.4, 0.0, 0.02), PLATE, 0, RHO_SQUARED, 1.5).fall()
-    sticking = Case(standing(PLATE[0], 0.4, 0.0), PLATE, 0, RHO_SQUARED, 1.5).fall()
-    assert slipping.motion is MotionKind.TURNING
-    assert slipping.time == pytest.approx(sticking.time, rel=0.02)
-    # It moved by half the slip over the time it took to stop.
-    assert 0.0 < slipping.state.x - sticking.state.x < 1e-4
 
 
 def test_a_foot_that_slips_while_nothing_turns_the_body_stops_after_the_time_of_a_block() -> None:

@@ -129,22 +129,23 @@ def test_a_contact_that_lifts_off_within_a_step_is_not_missed() -> None:
     assert set(motions) == {MotionKind.TURNING, MotionKind.FLIGHT}
 
 
-@pytest.mark.parametrize(("edge", "states"), [(0, ["SO", "+O"]), (1, ["OS", "O-"])])
-def test_a_disc_that_rolls_into_its_gap_slips_where_the_cone_of_friction_ends(edge: int, states: list[str]) -> None:
-    _slips_where_the_cone_ends(edge, 0.5, 0.0, states)
-
-
-@pytest.mark.parametrize(("edge", "states"), [(0, ["SO", "-O"]), (1, ["OS", "O+"])])
-def test_a_disc_that_rolls_over_its_edge_slips_where_the_cone_of_friction_ends(edge: int, states: list[str]) -> None:
-    _slips_where_the_cone_ends(edge, 0.6, 1.0, states)
-
-
-def _slips_where_the_cone_ends(edge: int, angle: float, omega: float, states: list[str]) -> None:
+@pytest.mark.parametrize(
+    ("edge", "gamma", "angle", "omega", "states"),
+    [
+        (0, 0.9, 0.5, 0.0, ["SO", "+O"]),  # it rolls into its gap
+        (1, 0.9, 0.5, 0.0, ["OS", "O-"]),
+        (0, 0.5, 0.6, 1.0, ["SO", "-O"]),  # it rolls over its edge
+        (1, 0.5, 0.6, 1.0, ["OS", "O+"]),
+    ],
+)
+def test_a_disc_on_an_edge_slips_where_the_cone_of_friction_ends(
+    edge: int, gamma: float, angle: float, omega: float, states: list[str]
+) -> None:
     """theta is the angle of the line from the edge to the axis from the vertical, out of the gap.
 
     N = m (g cos theta - theta'^2 R) and |T| = m g |sin theta| rho^2/(rho^2 + R^2).
     """
-    radius, gamma, friction = 0.3, 0.9 if omega == 0.0 else 0.5, 0.2
+    radius, friction = 0.3, 0.2
     body = cylinder(radius=radius, gamma=gamma, mass=40.0, friction=friction)
     side = 1.0 if edge == 0 else -1.0
     part = body.inertia / body.mass / (body.inertia / body.mass + radius**2)
@@ -184,16 +185,16 @@ def limits_of(slips: float, now: float, count: int) -> list[object]:
     return found
 
 
-def test_impacts_are_summed_while_the_slip_goes_on() -> None:
-    assert limits_of(slips=0.9, now=1.0, count=8)[-1] is not None
-
-
-def test_impacts_are_not_summed_across_the_end_of_the_slip() -> None:
-    """The friction that acts until the impacts end would reverse the slip: so it stops before, and all is different."""
-    assert limits_of(slips=-0.1, now=30.0, count=8) == [None] * 8
-
-
-def test_impacts_are_not_summed_while_they_take_most_of_the_slip() -> None:
-    found = limits_of(slips=0.1, now=30.0, count=12)
-    # After the k-th impact what is left, 0.1, is less than half of 0.1 + 29.9/2^(k-1) until k is 10.
-    assert [limit is None for limit in found] == [True] * 9 + [False] * 3
+@pytest.mark.parametrize(
+    ("slips", "now", "count", "followed"),
+    [
+        (0.9, 1.0, 8, 7),  # the slip goes on: as soon as a sequence may be summed
+        (0.1, 30.0, 12, 9),  # after the k-th impact 0.1 is less than half of 0.1 + 29.9/2^(k-1) until k is 10
+        (-0.1, 30.0, 8, 8),  # friction would reverse the slip: it stops before, and all is different
+    ],
+)
+def test_impacts_are_summed_while_they_leave_most_of_the_slip(
+    slips: float, now: float, count: int, followed: int
+) -> None:
+    found = limits_of(slips, now, count)
+    assert [limit is None for limit in found] == [True] * followed + [False] * (count - followed)

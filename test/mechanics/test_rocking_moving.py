@@ -12,7 +12,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from impact_predictor import Contact, InputError, TwoPointBody, cylinder, plate
-from impact_predictor.mechanics.motion import End, PlanarState, Trajectory, rock, standing
+from impact_predictor.mechanics.motion import End, Trajectory, rock, standing
 from impact_predictor.mechanics.motion.support import (
     FixedSupport,
     MovingSupport,
@@ -57,39 +57,27 @@ def worst_phase(run: Trajectory, shortest: float = 1e-3) -> float:
     return worst
 
 
-@pytest.mark.parametrize(
-    ("body", "start"),
-    [
+SLIPPERY = CRATE._replace(old=CRATE.old._replace(friction=0.1), new=CRATE.new._replace(friction=0.15))
+BOUNCES = TwoPointBody(1.0, 0.15, Contact(-0.4, -0.5, 0.1, restitution=0.4), Contact(0.4, -0.5, 0.15))
+
+
+def test_every_phase_is_newtons_law_in_the_world() -> None:
+    seen = set()
+    for body, start in (
         (CRATE, standing(CRATE, 0.05)),
         (CRATE, standing(CRATE, -0.2, -0.3)),
-        (
-            CRATE._replace(old=CRATE.old._replace(friction=0.1), new=CRATE.new._replace(friction=0.15)),
-            standing(CRATE, 0.3),
-        ),
+        (CRATE, standing(CRATE, 0.0)),
+        (SLIPPERY, standing(SLIPPERY, 0.3)),
         (DRUM, standing(DRUM, 0.2)),
         (DRUM, standing(DRUM, -0.3, slip=0.5)),
         (DRUM, standing(DRUM, 0.0, slip=2.0)),
         (DRUM, standing(DRUM, 0.1)._replace(vx=0.3, vy=1.5)),
-    ],
-)
-def test_every_phase_is_newtons_law_in_the_world(body: TwoPointBody, start: PlanarState) -> None:
-    run = rock(body, start, DECK, duration=4.0)
-    assert len(run.phases) > 2
-    assert worst_phase(run) < AGREES
-
-
-def test_all_kinds_of_phases_were_compared_with_the_world() -> None:
-    slippery = TwoPointBody(1.0, 0.15, Contact(-0.4, -0.5, 0.1, restitution=0.4), Contact(0.4, -0.5, 0.15))
-    seen = set()
-    rest = standing(CRATE, 0.0)
-    thrown = standing(slippery, 0.1)._replace(vx=-0.4, vy=1.0)
-    for body, start in (
-        (slippery, standing(slippery, 0.3)),
-        (slippery, thrown),
+        (BOUNCES, standing(BOUNCES, 0.3)),
+        (BOUNCES, standing(BOUNCES, 0.1)._replace(vx=-0.4, vy=1.0)),
         (TALL, standing(TALL, 0.05)),
-        (CRATE, rest),
     ):
-        run = rock(body, start, DECK, duration=6.0)
+        run = rock(body, start, DECK, duration=4.0)
+        assert len(run.phases) >= 2
         assert worst_phase(run) < AGREES
         seen |= {phase.states for phase in run.phases}
     assert {"OO", "SS"} <= seen
@@ -229,23 +217,9 @@ def test_a_support_at_another_point_moves_with_the_first() -> None:
     moves, there = deck.motion(times), deck.at(2.0, -1.0).motion(times)
     assert there.x == pytest.approx(moves.x + 2.0 * np.cos(moves.angle) + np.sin(moves.angle))
     step = 1e-4
-    for value, rate in (
-        (there.x, there.vx),
-        (there.vy, there.ay),
-        (there.y, there.vy),
-        (there.rate, there.acceleration),
-    ):
-        assert np.isfinite(value).all()
-        assert np.isfinite(rate).all()
     ahead, behind = deck.at(2.0, -1.0).motion(times + step), deck.at(2.0, -1.0).motion(times - step)
-    for name, rate in (
-        ("x", "vx"),
-        ("y", "vy"),
-        ("vx", "ax"),
-        ("vy", "ay"),
-        ("angle", "rate"),
-        ("rate", "acceleration"),
-    ):
+    rates = {"x": "vx", "y": "vy", "vx": "ax", "vy": "ay", "angle": "rate", "rate": "acceleration"}
+    for name, rate in rates.items():
         central = (getattr(ahead, name) - getattr(behind, name)) / (2.0 * step)
         assert central == pytest.approx(getattr(there, rate), abs=1e-7)  # step^2 times the third derivative
 

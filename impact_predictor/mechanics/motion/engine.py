@@ -49,6 +49,8 @@ class MotionEngine:
         self.swing, self.speed = math.sqrt(body.length / weight), math.sqrt(body.length * weight)
         self.rests_from = 0.0
         """How long from now on a rest lasts anyway, in s."""
+        self.since = 0.0
+        """Time since the last impact, which between accumulating impacts is too short for the digits of `time`."""
         self.jams: list[float] = []
         self.end: End | None = None
         self.next: MotionPhase | None = None
@@ -61,7 +63,8 @@ class MotionEngine:
         if end is None:
             self.end = End.RESTS
             return
-        self._pass(end.at.time)
+        self.time += end.at.time
+        self.since += end.at.time
         if end.event in _ENDS:
             self.end = _ENDS[end.event]
         elif isinstance(phase, FlightPhase):
@@ -73,17 +76,11 @@ class MotionEngine:
     def _follow(self, phase: MotionPhase) -> PhaseEnd | None:
         """The end of a phase; None where it has none."""
         last = self.until - self.time
-        if isinstance(phase, ContactPhase):
-            if not phase.moves:
-                return self._rest(phase, last)
-            if phase.fixed and STICK in (phase.a, phase.b):
-                return phase.turn(last)
+        if isinstance(phase, ContactPhase) and not phase.moves:
+            return self._rest(phase, last)
         end = phase.follow(last, self.most)
-        self.most -= len(phase.instants)
+        self.most -= len(phase.instants) - 2
         return end
-
-    def _pass(self, span: float) -> None:
-        self.time += span
 
     def _change(self, phase: ContactPhase, end: PhaseEnd) -> None:
         """An event of closed contacts."""

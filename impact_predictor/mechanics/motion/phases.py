@@ -154,7 +154,7 @@ class MotionPhase:
             if value <= 0.0 or end_value <= 0.0:
                 continue
             if not math.isnan(rate):
-                if dip(value, h * rate, end_value, h * end_rate) <= 1.0:
+                if rate < 0.0 < end_rate and dip(value, h * rate, end_value, h * end_rate) <= 1.0:
                     return True
                 continue
             if middle is None:
@@ -254,6 +254,8 @@ class ContactPhase(MotionPhase):
         self.slip = 1.0 if self.state == PLUS else -1.0
         self.moves = not (self.both and self.state == STICK)
         """Whether it moves at all."""
+        self.pivots = self.fixed and not self.both and self.state == STICK
+        """Whether it turns about one point at rest: that is known in closed form."""
         touches = (Event.TOUCHES, 1 - i), (Event.OVERTURNS, i)
         if self.both:
             self.events = (Event.STOPS, i), (Event.LIFTS, 0), (Event.LIFTS, 1)
@@ -268,8 +270,8 @@ class ContactPhase(MotionPhase):
         felt = self.felt if self.fixed else self.support.felt(self.start + time)
         if self.both:
             return 0.0, self.body.forces_of_both(self.state, felt, z, s)[0]
-        alpha, beta, _, _, _ = self.body.forces(self.contact, self.state, felt, u, w, z, s)
-        return alpha, beta
+        forces = self.body.forces(self.contact, self.state, felt, u, w, z, s)
+        return forces.alpha, forces.beta
 
     def conditions(self, now: Instant) -> list[Condition]:
         time, u, w, z, s, _, beta = now
@@ -329,10 +331,11 @@ class ContactPhase(MotionPhase):
         u, z = (0.5 * (end.u - now.u), 0.5 * (end.u + now.u)), (0.5 * (end.z - now.z), 0.5 * (end.z + now.z))
         self._pieces = [DensePiece(start=now.time, end=end.time, u=u, z=z)]
 
-    def turn(self, last: float) -> PhaseEnd:
-        """As `follow`, in closed form: about a contact that sticks on a fixed support."""
-        now, i, side = self.instants[0], self.contact, self.side
-        time, u, w = now.time, now.u, now.w
+    def follow(self, last: float, most: int) -> PhaseEnd:
+        if not self.pivots:
+            return super().follow(last, most)
+        i, side = self.contact, self.side
+        time, u, w, _, _, _, _ = self.instants[0]
         pivot = self._pivot(u, w)
         if pivot.event is Event.TURNS_BACK and u == 0.0:
             # What rises from both contacts comes back as it went, with the same reactions at every angle.
@@ -343,18 +346,18 @@ class ContactPhase(MotionPhase):
         time += pivot.time
         if pivot.event is Event.NEVER or pivot.event is Event.TURNS_BACK:
             return self._turned(last, Event.BALANCES, i, math.inf if w else time, u, w)
-        u += pivot.turned
+        u, w = u + pivot.turned, pivot.omega
         if pivot.event is not Event.TOUCHES:
-            return self._turned(last, pivot.event, i, time, u, pivot.omega)
+            return self._turned(last, pivot.event, i, time, u, w)
         if pivot.direction * side < 0.0:
-            return self._turned(last, Event.TOUCHES, 1 - i, time, 0.0, pivot.omega)
-        return self._turned(last, Event.OVERTURNS, i, time, side * self.limit, pivot.omega)
+            return self._turned(last, Event.TOUCHES, 1 - i, time, 0.0, w)
+        return self._turned(last, Event.OVERTURNS, i, time, side * self.limit, w)
 
     def _turned(self, last: float, event: Event, contact: int, time: float, u: float, w: float) -> PhaseEnd:
         if time <= last:
             z = self.instants[0].z
             alpha, _ = self.rate(time, u, w, z, 0.0)
-            self.instants.append(Instant(time, u, w, z, 0.0, alpha, 0.0))
+            self.instants.append(Instant(time=time, u=u, w=w, z=z, s=0.0, alpha=alpha, beta=0.0))
             return PhaseEnd(event, contact, self.instants[-1])
         self.instants += self.steps(self.instants[0], last)
         return PhaseEnd(Event.TIME_IS_UP, self.contact, self.instants[-1])

@@ -89,11 +89,7 @@ def roll(arm: Vector, omega: float, travel: Vector, rho_squared: float, friction
     if not pivot.turned:
         return pivot
     direction = 1.0 if pivot.turned > 0.0 else -1.0
-    nearest, event = math.inf, Event.NEVER
-    for slip, slips in ((1.0, Event.SLIPS), (-1.0, Event.SLIPS_BACK)):
-        at = _first_slip_of_disc(arm, omega, direction, slip, rho_squared, friction, gravity, abs(pivot.turned))
-        if at < nearest:
-            nearest, event = at, slips
+    nearest, event = _first_slip_of_disc(arm, omega, direction, rho_squared, friction, gravity, abs(pivot.turned))
     if nearest == 0.0:
         return Pivot(event=event, time=0.0, turned=0.0, omega=omega)
     if nearest < math.inf:
@@ -204,18 +200,11 @@ def _first_slip(reaction: tuple[float, float, float], tilt: float, direction: in
 
 
 def _first_slip_of_disc(
-    arm: Vector,
-    omega: float,
-    direction: float,
-    slip: float,
-    rho_squared: float,
-    friction: float,
-    gravity: Vector,
-    last: float,
-) -> float:
-    """How far in rad a disc turns about an edge until friction cannot hold it against the slip +1 or -1.
+    arm: Vector, omega: float, direction: float, rho_squared: float, friction: float, gravity: Vector, last: float
+) -> tuple[float, Event]:
+    """How far in rad a disc turns about an edge until friction cannot hold it, inf if it can, and which way it slips.
 
-    With the angle x turned, energy gives omega^2, and f N + slip T is a constant, a cosine and a sine of x.
+    With the angle x turned, energy gives omega^2, and f N + T and f N - T are a constant, a cosine and a sine of x.
     """
     (dx, dy), (gx, gy) = arm, gravity
     radius = math.hypot(dx, dy)
@@ -224,9 +213,12 @@ def _first_slip_of_disc(
     # twice what g . d does, over I.
     along, across = gx * dx + gy * dy, dx * gy - dy * gx
     load = friction * (1.0 / radius + 2.0 * radius / inertia)
-    drag = slip * rho_squared / (radius * inertia)
     level = friction * radius * (2.0 * along / inertia - omega * omega)
-    cosine, sine = -load * along + drag * across, direction * (-load * across - drag * along)
-    if level + cosine < 0.0:
-        return 0.0
-    return first_descent(level, 0.0, 0.0, ((cosine, sine, 1.0),), last)
+    nearest, event = math.inf, Event.NEVER
+    for slip, slips in ((1.0, Event.SLIPS), (-1.0, Event.SLIPS_BACK)):
+        drag = slip * rho_squared / (radius * inertia)
+        cosine, sine = -load * along + drag * across, direction * (-load * across - drag * along)
+        at = 0.0 if level + cosine < 0.0 else first_descent(level, 0.0, 0.0, ((cosine, sine, 1.0),), last)
+        if at < nearest:
+            nearest, event = at, slips
+    return nearest, event

@@ -32,8 +32,8 @@ _LEAST_ROOT = 1e-9
 _LEAST_GROWTH = 1e-24
 """In place of none, relative: it changes nothing."""
 
-SevenWeights = tuple[float, float, float, float, float, float, float]
-"""What the values of a function at the nodes count in something linear in it."""
+NodeWeights = tuple[float, ...]
+"""What the seven values of a function at the nodes count in something linear in it."""
 
 _GAUSS = (
     (0.01304673574141414, 0.03333567215434407),
@@ -57,28 +57,23 @@ class QuadratureRule(NamedTuple):
     count in a force, beside those in a lag, found by trial.
     """
 
-    nodes: SevenWeights
-    forces: tuple[SevenWeights, ...]
-    lags: tuple[SevenWeights, ...]
-    last_forces: tuple[SevenWeights, SevenWeights]
-    last_lags: tuple[SevenWeights, SevenWeights]
+    nodes: NodeWeights
+    forces: tuple[NodeWeights, ...]
+    lags: tuple[NodeWeights, ...]
+    last_forces: tuple[NodeWeights, NodeWeights]
+    last_lags: tuple[NodeWeights, NodeWeights]
     share: float
 
 
-def weighted(row: SevenWeights, values: list[float]) -> float:
+def weighted(row: NodeWeights, values: list[float]) -> float:
     """What the row says of a function with these values at the nodes."""
     m1, m2, m3, m4, m5, m6, m7 = row
     f1, f2, f3, f4, f5, f6, f7 = values
     return m1 * f1 + m2 * f2 + m3 * f3 + m4 * f4 + m5 * f5 + m6 * f6 + m7 * f7
 
 
-def _row(values: list[float]) -> SevenWeights:
-    a, b, c, d, e, f, g = values
-    return a, b, c, d, e, f, g
-
-
-def _integrals(nodes: SevenWeights, power: int, step: int) -> tuple[SevenWeights, ...]:
-    """SevenWeightss for the integrals up to each node of s^power times a polynomial in s^step."""
+def _integrals(nodes: NodeWeights, power: int, step: int) -> tuple[NodeWeights, ...]:
+    """Rows for the integrals up to each node of s^power times a polynomial in s^step."""
     places = [s**step for s in nodes]
     scales = [
         s**power * math.prod(z - other for other in places if other != z) for s, z in zip(nodes, places, strict=True)
@@ -92,22 +87,22 @@ def _integrals(nodes: SevenWeights, power: int, step: int) -> tuple[SevenWeights
             row = [
                 so_far + whole / (scale * (s**step - z)) for so_far, scale, z in zip(row, scales, places, strict=True)
             ]
-        rows.append(_row(row))
+        rows.append(tuple(row))
     return tuple(rows)
 
 
-def _last(nodes: SevenWeights, weights: SevenWeights, power: int, step: int) -> tuple[SevenWeights, SevenWeights]:
-    """SevenWeightss for the last two coefficients over s^power, in polynomials in s^step.
+def _last(nodes: NodeWeights, weights: NodeWeights, power: int, step: int) -> tuple[NodeWeights, NodeWeights]:
+    """Rows for the last two coefficients over s^power, in polynomials in s^step.
 
     These are orthogonal on the nodes, and 1 at the end (Stieltjes' procedure).
     """
     masses = [weight * s**power for weight, s in zip(weights, nodes, strict=True)]
-    rows: list[SevenWeights] = []
+    rows: list[NodeWeights] = []
     last, values, last_norm = [0.0] * 7, [1.0] * 7, 1.0
     for _ in nodes:
         # Not `sum`, which compensates its rounding from Python 3.12 on: every Python shall give the same bits.
         norm = reduce(operator.add, [mass * value * value for mass, value in zip(masses, values, strict=True)])
-        rows.append(_row([w * value * values[-1] / norm for w, value in zip(weights, values, strict=True)]))
+        rows.append(tuple([w * value * values[-1] / norm for w, value in zip(weights, values, strict=True)]))
         products = [m * s**step * v * v for m, s, v in zip(masses, nodes, values, strict=True)]
         middle = reduce(operator.add, products) / norm
         ratio = norm / last_norm
@@ -117,7 +112,7 @@ def _last(nodes: SevenWeights, weights: SevenWeights, power: int, step: int) -> 
 
 
 def _rule(inner: tuple[float, ...], force: int, lag: int, step: int, share: float) -> QuadratureRule:
-    nodes = _row([*inner, 1.0])
+    nodes = *inner, 1.0
     forces = _integrals(nodes, force, step)
     lags = forces if lag == force else _integrals(nodes, lag, step)
     return QuadratureRule(
@@ -131,7 +126,7 @@ def _rule(inner: tuple[float, ...], force: int, lag: int, step: int, share: floa
 
 
 STARTING = _rule(
-    (
+    inner=(
         0.10030907272538186,
         0.2540471043305593,
         0.4441330323002051,
@@ -139,13 +134,13 @@ STARTING = _rule(
         0.8168966635278575,
         0.942844240891898,
     ),
-    2,
-    2,
-    1,
-    0.05,
+    force=2,
+    lag=2,
+    step=1,
+    share=0.05,
 )
 RESTING = _rule(
-    (
+    inner=(
         0.2866931768366051,
         0.4793963839520358,
         0.6486752725863241,
@@ -153,10 +148,10 @@ RESTING = _rule(
         0.8983054071351697,
         0.969308255786329,
     ),
-    5,
-    4,
-    2,
-    0.015,
+    force=5,
+    lag=4,
+    step=2,
+    share=0.015,
 )
 
 
@@ -273,37 +268,30 @@ def sweep(stance: SlipStance, pose: PivotPose, span: float) -> Sweep:
     f1, f2, f3, f4, f5, f6, f7 = forces
     rates = [rate]
     lags: list[float] = []
-    least = math.inf
+    least, time, error = math.inf, 0.0, math.inf
     for (m1, m2, m3, m4, m5, m6, m7), linear_rate, weight in zip(rule.forces, linear_rates, weights, strict=True):
         gain = m1 * f1 + m2 * f2 + m3 * f3 + m4 * f4 + m5 * f5 + m6 * f6 + m7 * f7
         square = linear_rate * linear_rate + gain / weight
         if square <= 0.0:
-            return Sweep(
-                rule=rule,
-                nodes=nodes,
-                rates=rates,
-                lags=lags,
-                linear_time=linear_time,
-                time=0.0,
-                error=math.inf,
-                factor=factor,
-            )
+            break
         if weight * square < least:
             least = weight * square
         omega = sqrt(square)
         rates.append(omega)
         lags.append(1.0 - linear_rate / omega)
-    share = 1.0 - weighted(rule.lags[6], lags)
-    (force, other_force), (lag, other_lag) = rule.last_forces, rule.last_lags
-    error = (abs(weighted(lag, lags)) + abs(weighted(other_lag, lags))) / share
-    error += rule.share * (abs(weighted(force, forces)) + abs(weighted(other_force, forces))) / least
+    else:
+        share = 1.0 - weighted(rule.lags[6], lags)
+        (force, other_force), (lag, other_lag) = rule.last_forces, rule.last_lags
+        error = (abs(weighted(lag, lags)) + abs(weighted(other_lag, lags))) / share
+        error += rule.share * (abs(weighted(force, forces)) + abs(weighted(other_force, forces))) / least
+        time = linear_time * share
     return Sweep(
         rule=rule,
         nodes=nodes,
         rates=rates,
         lags=lags,
         linear_time=linear_time,
-        time=linear_time * share,
+        time=time,
         error=error,
         factor=factor,
     )

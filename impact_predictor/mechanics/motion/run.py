@@ -119,7 +119,6 @@ class RockingEngine(MotionEngine):
         self.two_point, self.law, self.max_events = body, law, max_events
         allowed = _ACCUMULATION[0 if self.fixed else 1]
         self.sequence = ImpactSequence(self.swing, self.speed, self.body.length, allowed)
-        self.since = 0.0
         self.validity = Validity(gravity=abs(support.gravity))
         self.phases: list[MotionPhase] = []
         self.impacts: list[RockingImpact] = []
@@ -195,27 +194,19 @@ class RockingEngine(MotionEngine):
                 self._stand(held[0], u, w, z, s)
 
     def _follow_all(self) -> None:
-        """One stretch after the other, to the end."""
+        """One phase after the other, to the end."""
         still, last, events = 0, self.time, 0
         while self.end is None:
             if events >= self.max_events:
                 self.end = End.TOO_MANY_EVENTS
                 return
+            assert self.next is not None
+            self.phases.append(self.next)
             self._go_on()
             still = still + 1 if self.time <= last else 0
             if still > _STUCK:
                 self.end = End.NO_SOLUTION
             events, last = events + 1, self.time
-
-    def _go_on(self) -> None:
-        assert self.next is not None
-        self.phases.append(self.next)
-        super()._go_on()
-
-    def _pass(self, span: float) -> None:
-        """Time passes; the short spans between accumulating impacts are kept apart from it, with all their digits."""
-        self.since += span
-        super()._pass(span)
 
     def _rest(self, phase: ContactPhase, last: float) -> PhaseEnd | None:
         return None if self.fixed else rest(phase, self.rests_from, last, self.most)

@@ -248,7 +248,8 @@ class SlipPhase:
         direction: int,
     ) -> None:
         drag, self.direction = direction * drag, direction
-        self.stance = SlipStance(drag, (drag > 0.0) - (drag < 0.0), rho_squared, gravity[1])
+        side = (drag > 0.0) - (drag < 0.0)
+        self.stance = SlipStance(drag=drag, side=side, rho_squared=rho_squared, gravity=gravity[1])
         self.x, self.y, self.radius = direction * arm[0], arm[1], math.hypot(*arm)
         self.slip, self.drive = direction * slip, direction * gravity[0] + drag * gravity[1]
         self.spin = abs(omega) * (drag * self.x - self.y)
@@ -265,8 +266,7 @@ class SlipPhase:
 
     def mirrored(self) -> SlipStance:
         """The stance seen so that the body turns back."""
-        drag, side, rho_squared, gravity = self.stance
-        return SlipStance(-drag, side, rho_squared, gravity)
+        return self.stance._replace(drag=-self.stance.drag)
 
     def standstill(self, turned: float) -> PivotPose:
         """A standstill that much further, seen so that the body turns back from it."""

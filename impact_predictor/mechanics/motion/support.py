@@ -30,8 +30,6 @@ _NODES = 10
 """Values that the polynomials of a moving support go through: with `_PART` they are exact to rounding."""
 _PART = 1.0 / 24.0
 """Length of one polynomial, in shortest periods."""
-_FEW = 6
-"""Up to as many waves are added one by one."""
 _MAX_PARTS = 4096
 """Polynomials that are kept."""
 _FIT = 1e-12
@@ -99,7 +97,7 @@ class FixedSupport(NamedTuple):
     def motion(self, time: Any) -> SupportMotion:
         """Motion of the frame: none, for a time or an array of times."""
         rest = 0.0 * time
-        return SupportMotion(self.slope + rest, rest, rest, rest, rest, rest, rest, rest, rest)
+        return SupportMotion(self.slope + rest, *[rest] * 8)
 
 
 class MovingSupport:
@@ -142,7 +140,7 @@ class MovingSupport:
             x, y, vx, vy = x + arm_x, y + arm_y, vx - rate * arm_y, vy + rate * arm_x
             ax = ax - acceleration * arm_y - square * arm_x
             ay = ay + acceleration * arm_x - square * arm_y
-        return SupportMotion(angle, rate, acceleration, x, y, vx, vy, ax, ay)
+        return SupportMotion(angle=angle, rate=rate, acceleration=acceleration, x=x, y=y, vx=vx, vy=vy, ax=ax, ay=ay)
 
     def felt_exactly(self, time: Any) -> tuple[Any, Any, Any, Any]:
         """As `felt`, from the motion itself, for a time or an array of times."""
@@ -262,12 +260,10 @@ def harmonic_support(
     if not frequencies or not 0.0 < max(frequencies) < math.inf:
         raise InputError("the waves of the support have no frequency above 0; give one, or use FixedSupport")
     sums = tuple(angle), tuple(x), tuple(y)
-    many = len(frequencies) > _FEW
 
     def motion(time: Any) -> SupportMotion:
-        add = _sum_of_many if many or not isinstance(time, (float, int)) else _sum_of
-        (a, da, dda), (px, vx, ax), (py, vy, ay) = (add(waves, time) for waves in sums)
-        return SupportMotion(mean_angle + a, da, dda, px, py, vx, vy, ax, ay)
+        (a, da, dda), (px, vx, ax), (py, vy, ay) = (_sum_of(waves, time) for waves in sums)
+        return SupportMotion(angle=mean_angle + a, rate=da, acceleration=dda, x=px, y=py, vx=vx, vy=vy, ax=ax, ay=ay)
 
     return MovingSupport(motion, 2.0 * math.pi / max(frequencies), gravity)
 
@@ -298,25 +294,13 @@ def sampled_support(times: Any, angle: Any, x: Any, y: Any, gravity: float = 9.8
             np.moveaxis(np.where(moves | (degree == 0), spline(inside), 0.0), -1, 0)
             for degree, spline in enumerate(splines)
         )
-        return SupportMotion(a, da, dda, px, py, vx, vy, ax, ay)
+        return SupportMotion(angle=a, rate=da, acceleration=dda, x=px, y=py, vx=vx, vy=vy, ax=ax, ay=ay)
 
     return MovingSupport(motion, 4.0 * float(np.diff(times).min()), gravity)
 
 
-def _sum_of(waves: tuple[Wave, ...], time: float) -> tuple[float, float, float]:
-    """A sum of waves and its two derivatives."""
-    value = rate = acceleration = 0.0
-    for amplitude, frequency, phase in waves:
-        angle = frequency * time + phase
-        swing = amplitude * math.sin(angle)
-        value += swing
-        rate += amplitude * frequency * math.cos(angle)
-        acceleration -= frequency * frequency * swing
-    return value, rate, acceleration
-
-
-def _sum_of_many(waves: tuple[Wave, ...], time: Any) -> tuple[Any, Any, Any]:
-    """As `_sum_of`, for many waves or an array of times."""
+def _sum_of(waves: tuple[Wave, ...], time: Any) -> tuple[Any, Any, Any]:
+    """A sum of waves and its two derivatives, at a time or an array of times."""
     import numpy as np
 
     if not waves:
