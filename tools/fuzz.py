@@ -103,7 +103,7 @@ def _too_long(_: int, frame: FrameType | None) -> None:
 def _at_random(seconds: float, seed: int, only: str | None, folder: Path) -> int:
     print(f"seed {seed}", flush=True)
     prepare()
-    began = told = time.monotonic()
+    began = shown = time.monotonic()
     done: Counter[str] = Counter()
     failures: dict[str, Path] = {}
     first_memory = 0.0
@@ -127,8 +127,8 @@ def _at_random(seconds: float, seed: int, only: str | None, folder: Path) -> int
             done["failed"] += 1
         if not first_memory and now - began > 0.2 * seconds:
             first_memory = _memory()
-        if now - told > TELL_EVERY:
-            told = now
+        if now - shown > TELL_EVERY:
+            shown = now
             print(f"{now - began:.0f} s: {number} inputs, {_memory():.0f} MB", flush=True)
     growth = _memory() - first_memory
     for about, count in sorted(done.items()):

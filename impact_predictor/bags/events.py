@@ -40,7 +40,7 @@ class FootStance(NamedTuple):
 class GaitLanding(NamedTuple):
     """A foot that has come to stand at `stamp` (ns), with the first of its points.
 
-    `announced` is the stamp that the last prediction made `AHEAD` of it told, None where there was none so early;
+    `announced` is the stamp that the last prediction made `AHEAD` of it announced, None where there was none so early;
     `speed` (m/s) that of the foot in its last sample in the air, and `impulse` (N s) what it gets with that speed.
     """
 
@@ -96,8 +96,8 @@ class Gait:
                 continue  # More of a foot that stands already.
             impulse = None if landing.impact is None else hypot(*landing.impact.impulses[1])
             errors = [error for ahead, error in landing.history if ahead >= AHEAD]
-            told = landing.stamp + round(1e9 * errors[-1]) if errors else None
-            self.landings.append(GaitLanding(foot, landing.stamp, told, landing.speed, impulse))
+            announced = landing.stamp + round(1e9 * errors[-1]) if errors else None
+            self.landings.append(GaitLanding(foot, landing.stamp, announced, landing.speed, impulse))
 
 
 class _Stances:

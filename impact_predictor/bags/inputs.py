@@ -105,8 +105,8 @@ def _adapted(
         from .adapters import known  # only for bags without the usual messages
 
         adapters = known()
-        told = [found[state]] if state in found else [found[one] for one in found if one.body == state.body]
-        topics = [topic for topic in dict.fromkeys(told) if recorded.get(topic, "") in adapters]
+        known_as = [found[state]] if state in found else [found[one] for one in found if one.body == state.body]
+        topics = [topic for topic in dict.fromkeys(known_as) if recorded.get(topic, "") in adapters]
         if not topics and not state.body and state not in found:
             topics = [topic for topic, kind in recorded.items() if kind in adapters]
         if len(topics) > 1:

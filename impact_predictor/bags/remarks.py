@@ -73,13 +73,13 @@ def why_unpredictable(
     status, refused = max(counts, key=lambda one: counts[one]), list(states)
     if status is Status.NO_GEOMETRY:
         # What became of the contact points says more.
-        told = {one: those for one, those in inputs.items() if one.kind in (CONTACT_GEOMETRY, JOINTS)}
-        counts = total_of(told.values())
+        of_points = {one: those for one, those in inputs.items() if one.kind in (CONTACT_GEOMETRY, JOINTS)}
+        counts = total_of(of_points.values())
         faults = {one: count for one, count in counts.items() if one is not Status.ACCEPTED}
         if not faults:
-            return _without_points(list(told), names, scenes)
-        status, refused = max(faults, key=lambda one: faults[one]), list(told)
-        where = ", ".join(names[one] for one in told)
+            return _without_points(list(of_points), names, scenes)
+        status, refused = max(faults, key=lambda one: faults[one]), list(of_points)
+        where = ", ".join(names[one] for one in of_points)
     words = next((said for one in refused if (said := _words(run, one, status))), REMEDIES[status])
     return (
         f"no sample was accepted, so nothing was predicted: {counts[status]} of {sum(counts.values())} messages on "
@@ -87,9 +87,9 @@ def why_unpredictable(
     )
 
 
-def _without_points(told: Sequence[Input], names: Mapping[Input, str], scenes: Mapping[str, Scene]) -> str:
+def _without_points(of_points: Sequence[Input], names: Mapping[Input, str], scenes: Mapping[str, Scene]) -> str:
     needed = next((one.kind for one in inputs_of(scenes) if one.kind in (CONTACT_GEOMETRY, JOINTS)), CONTACT_GEOMETRY)
-    topics = [names[one] for one in told if one.kind == needed]
+    topics = [names[one] for one in of_points if one.kind == needed]
     where = f"{', '.join(topics)} told none" if topics else f"there is no {INPUT_TYPES[needed].name} in the bag"
     # The points of feet move: they cannot be parameters.
     or_give = (

@@ -43,7 +43,7 @@ _REMEMBERED: Final = 256
 Take = Callable[[Any, int], Status]
 """Takes a message that asks for no answer, and its log time (ns)."""
 
-_TELL_EVERY: Final = 256
+_PROGRESS_EVERY: Final = 256
 
 
 class Settled(NamedTuple):
@@ -179,13 +179,13 @@ class Run:
 
     def take(self, messages: Iterable[BagMessage], progress: Callable[[int], None] | None) -> None:
         """Answer every message; `progress` is told now and then how many samples are done."""
-        takers, watches, told = self._takers, self._watches, _TELL_EVERY
+        takers, watches, due = self._takers, self._watches, _PROGRESS_EVERY
         for topic, log_time, data in messages:
             takers[topic](log_time, data)
             if watches:
                 self._report(log_time)
-            if progress is not None and self.samples >= told:
-                told = self.samples + _TELL_EVERY
+            if progress is not None and self.samples >= due:
+                due = self.samples + _PROGRESS_EVERY
                 progress(self.samples)
 
     def finish(self) -> None:
@@ -268,26 +268,26 @@ class Run:
         state = inputs.get(ODOM)
         self.samples += state is not None
         try:
-            told = read(data)
+            adapted = read(data)
         except MalformedMessage as error:
             for one in inputs.values():
                 self.statuses[one][Status.MALFORMED] += 1
                 if isinstance(error, UnusableMessage):
                     self.unusable.setdefault(one, str(error))
             return
-        about = (CONTACT_GEOMETRY, told.geometry), (JOINTS, told.joints), (SCHEDULE, told.schedule)
-        for kind, message in (*about, *[(WRENCH, wrench) for wrench in told.wrenches]):
+        about = (CONTACT_GEOMETRY, adapted.geometry), (JOINTS, adapted.joints), (SCHEDULE, adapted.schedule)
+        for kind, message in (*about, *[(WRENCH, wrench) for wrench in adapted.wrenches]):
             if message is not None and kind in takes:
                 self.statuses[inputs[kind]][takes[kind](message, log_time)] += 1
-        sample = told.sample
+        sample = adapted.sample
         if sample is not None and state is not None:
             stream = self._streams[state.body or ""]
-            if told.stands and stream.body not in self.gaits:
+            if adapted.stands and stream.body not in self.gaits:
                 self.unnamed_feet.add(stream.body)
-            elif told.stands and self.landings is not None:
-                read.check_stands(told, self.gaits[stream.body].feet)
-                self.landings.tell(stream.body or sample.child_frame_id, sample.stamp, told.stands)
-                self.gaits[stream.body].tell(sample.stamp, told.stands)
+            elif adapted.stands and self.landings is not None:
+                read.check_stands(adapted, self.gaits[stream.body].feet)
+                self.landings.tell(stream.body or sample.child_frame_id, sample.stamp, adapted.stands)
+                self.gaits[stream.body].tell(sample.stamp, adapted.stands)
             self._answer(stream, self.statuses[state], log_time, sample)
 
     def _set_geometry(self, body: str, geometry: Geometry, log_time: int) -> Status:

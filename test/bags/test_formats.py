@@ -81,11 +81,13 @@ def test_messages_of_ros1_in_an_mcap_file_are_converted(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("plugin", list(StoragePlugin))
-@pytest.mark.parametrize("mode", [CompressionMode.MESSAGE, CompressionMode.FILE])
-def test_the_compressed_file_of_a_folder_is_read_alone_and_without_its_metadata(
+@pytest.mark.parametrize("mode", [CompressionMode.NONE, CompressionMode.MESSAGE, CompressionMode.FILE])
+def test_a_folder_is_read_with_and_without_its_metadata_and_so_is_its_file_alone(
     tmp_path: Path, plugin: StoragePlugin, mode: CompressionMode
 ) -> None:
     bag = write_ros2(tmp_path / "bag", MESSAGES, plugin, mode)
+    assert topics(bag) == WANTED
+    assert read(bag) == MESSAGES
     (bag / "metadata.yaml").unlink()
     (file,) = bag.iterdir()
     assert (file.suffix == ".zstd") == (mode is CompressionMode.FILE)

@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 from recordings import RECORDED, TYPESTORE, WANTED, first_messages, write_ros1, write_ros2
 from rosbags.rosbag2 import StoragePlugin, Writer
-from rosbags.rosbag2.enums import CompressionMode
 
 from impact_predictor.bags.read import BagMessage, read_messages, topics
 from impact_predictor.errors import InputError
@@ -46,32 +45,6 @@ def test_only_wanted_topics_are_read() -> None:
         "/cube/contact_geometry"
     }
     assert list(read_messages(RECORDED, {})) == []
-
-
-@pytest.mark.parametrize("plugin", list(StoragePlugin))
-@pytest.mark.parametrize("mode", [CompressionMode.NONE, CompressionMode.MESSAGE, CompressionMode.FILE])
-def test_a_folder_gives_the_messages_that_were_written(
-    tmp_path: Path, messages: list[BagMessage], plugin: StoragePlugin, mode: CompressionMode
-) -> None:
-    bag = write_ros2(tmp_path / "bag", messages, plugin, mode)
-    assert list(read_messages(bag, WANTED)) == messages
-    assert topics(bag) == WANTED
-
-
-@pytest.mark.parametrize(("plugin", "file"), [(StoragePlugin.MCAP, "bag.mcap"), (StoragePlugin.SQLITE3, "bag.db3")])
-def test_the_file_of_a_folder_is_read_alone_and_without_its_metadata(
-    tmp_path: Path, messages: list[BagMessage], plugin: StoragePlugin, file: str
-) -> None:
-    bag = write_ros2(tmp_path / "bag", messages, plugin)
-    assert list(read_messages(bag / file, WANTED)) == messages
-    (bag / "metadata.yaml").unlink()
-    assert list(read_messages(bag, WANTED)) == messages
-
-
-def test_a_ros1_bag_gives_the_same_messages_in_cdr(tmp_path: Path, messages: list[BagMessage]) -> None:
-    bag = write_ros1(tmp_path / "tosses.bag", messages)
-    assert list(read_messages(bag, WANTED)) == messages
-    assert topics(bag) == WANTED
 
 
 def test_a_ros1_bag_keeps_the_order_of_its_topics_at_equal_times(tmp_path: Path, messages: list[BagMessage]) -> None:
@@ -145,20 +118,6 @@ def test_a_lacking_topic_is_named_with_those_there_are() -> None:
 def test_a_topic_of_another_type_is_refused() -> None:
     sentence = refusal(RECORDED, {"/cube/odom": POLYGON})
     assert "has the type nav_msgs/msg/Odometry, but geometry_msgs/msg/PolygonStamped is needed" in sentence
-
-
-def test_messages_before_the_damage_are_given(tmp_path: Path) -> None:
-    data = bytearray(RECORDED.read_bytes())
-    middle = len(data) // 2
-    data[middle : middle + 64] = bytes(64)
-    damaged = tmp_path / "damaged.mcap"
-    damaged.write_bytes(data)
-    stream = read_messages(damaged, WANTED)
-    before = [next(stream) for _ in range(1000)]
-    whole = read_messages(RECORDED, WANTED)
-    assert before == [next(whole) for _ in range(1000)]
-    with pytest.raises(InputError, match=r"damaged or cut off after 1?[0-9],[0-9]{3} messages"):
-        list(stream)
 
 
 def test_messages_that_the_index_announces_but_are_not_there_are_missed(

@@ -117,12 +117,6 @@ def test_recorded_tosses_give_scored_touchdowns(bag: Path, scene: Scene, message
     assert (result.unpredictable, result.damaged) == ("", "")
 
 
-def test_two_runs_write_the_same_bytes(tmp_path: Path, bag: Path, scene: Scene) -> None:
-    for name in ("one.mcap", "other.mcap"):
-        replay(bag, scene, output=tmp_path / name)
-    assert (tmp_path / "one.mcap").read_bytes() == (tmp_path / "other.mcap").read_bytes()
-
-
 def test_the_output_has_the_topics_and_types_of_the_node_and_the_log_times_of_its_inputs(
     tmp_path: Path, bag: Path, scene: Scene, messages: list[BagMessage]
 ) -> None:
@@ -277,41 +271,12 @@ def test_a_bag_without_a_state_is_refused(tmp_path: Path, scene: Scene, messages
         replay(points, scene)
 
 
-def damage(folder: Path, place: int) -> Path:
-    """The recorded tosses with some kilobytes overwritten."""
-    data = bytearray(RECORDED.read_bytes())
-    data[place : place + 5000] = b"\xff" * 5000
-    path = folder / "damaged.mcap"
-    path.write_bytes(data)
-    return path
-
-
-def test_of_a_damaged_bag_the_readable_part_is_used(tmp_path: Path, scene: Scene) -> None:
-    damaged = damage(tmp_path, 400_000)
-    result = replay(damaged, scene, output=tmp_path / "out.mcap")
-    assert "is damaged" in result.damaged
-    assert 0 < result.samples < 6000
-    assert result.settled
-    assert sum(topic.endswith("mode") for topic, _, _ in read_outputs(tmp_path / "out.mcap")) == result.samples
-
-
-def test_of_a_bag_whose_very_beginning_is_damaged_nothing_is_used(tmp_path: Path, scene: Scene) -> None:
-    damaged = damage(tmp_path, 100)
-    with pytest.raises(InputError, match="is damaged"):
-        replay(damaged, scene, output=tmp_path / "out.mcap")
-    assert not (tmp_path / "out.mcap").exists()
-
-
 def test_progress_is_told(bag: Path, scene: Scene) -> None:
     told: list[int] = []
     result = replay(bag, scene, progress=told.append)
     assert told
     assert told == sorted(told)
     assert told[-1] <= result.samples
-
-
-def test_rules_of_a_remapping_are_read_like_those_of_ros() -> None:
-    assert remapping(("odom:=/a/odom", "contact_geometry:=feet")) == {"odom": "/a/odom", "contact_geometry": "feet"}
 
 
 @pytest.mark.parametrize("rule", ["odom", "odom:=", ":=/odom", "odom=/a"])
