@@ -12,7 +12,7 @@ from touchdown_digits import errors_of, reference_of
 from impact_predictor.mechanics.motion import next_touchdown
 from impact_predictor.mechanics.types import Twist
 from impact_predictor.report.accuracy import touchdowns
-from impact_predictor.report.accuracy.touchdowns import SCENES, FallingShape, ToldTouchdown, falls
+from impact_predictor.report.accuracy.touchdowns import SCENES, FallingShape, PredictedTouchdown, falls
 
 GOLDEN = Path(__file__).parent / "golden" / "motion.json"
 
@@ -30,6 +30,6 @@ def test_forty_digits_meet_the_golden_falls(fall: dict[str, str]) -> None:
 def test_the_next_touchdown_and_the_reference_of_the_report_meet_forty_digits(name: str) -> None:
     for fall in falls(name, 3):
         end = next_touchdown(*fall, tolerance=1e-10)
-        found = ToldTouchdown(end.time, Twist(end.state.vx, end.state.vy, end.state.omega))
+        found = PredictedTouchdown(end.time, Twist(end.state.vx, end.state.vy, end.state.omega))
         assert max(errors_of(fall, found)) < 1e-12 if name == "balance" else 1e-13
         assert max(errors_of(fall, touchdowns.reference_of(fall))) < 1e-10

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 from mpmath import mp
 
-from impact_predictor.report.accuracy.touchdowns import FallingBody, ToldTouchdown
+from impact_predictor.report.accuracy.touchdowns import FallingBody, PredictedTouchdown
 
 Real = Any
 """A number of mpmath."""
@@ -151,7 +151,7 @@ def flight(fall: FallingBody) -> Touchdown40:
     return Touchdown40(time, (vx + pull_x * time, vy + pull_y * time, omega))
 
 
-def errors_of(fall: FallingBody, arrival: ToldTouchdown) -> tuple[float, float]:
+def errors_of(fall: FallingBody, arrival: PredictedTouchdown) -> tuple[float, float]:
     """Error of the time, relative to it, and of the twist, relative to its size by the kinetic energy."""
     with mp.workdps(DIGITS):
         right, rho = reference_of(fall), mp.sqrt(fall.rho_squared)

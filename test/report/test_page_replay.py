@@ -94,11 +94,11 @@ def test_the_headlines_say_how_many_how_right_and_how_early() -> None:
     assert title_of([WALK]) == "Touchdowns: 2 of 3 landings announced, 50 ms ahead"
     assert title_of([answer(), UNREADABLE]) == "No touchdown was predicted"
     many, right, soon, cost = (f"{one.answer}: {one.more}" for one in headlines_of([TRUE, UNREADABLE]))
-    told = "A touchdown is found where a prediction before it told its time to 20 ms."
+    told = "A touchdown is found where a prediction before it gave its time to 20 ms."
     assert many.startswith(f"2 of 3 found: 1 missed, 1 false alarm. {told} 1 more impact cannot be seen")
     assert headlines_of([WALK_FOUND])[0].more == "None missed, no false alarm."
     assert "The mode is right in 1 of 2." in right
-    assert right.endswith("The time told 20 to 30 ms ahead is 2 ms wrong in the median.")
+    assert right.endswith("The time predicted 20 to 30 ms ahead is 2 ms wrong in the median.")
     both = [one.more for one in headlines_of([TRUE, TOSSES])]
     assert both[0].endswith("The truth is known of 1 of 2 bags.")
     assert "to the true ones, or the measured ones where a bag does not tell them" in both[1]
@@ -108,7 +108,7 @@ def test_the_headlines_say_how_many_how_right_and_how_early() -> None:
     assert lead_of([TRUE, UNREADABLE]).endswith("1 of them could not be read.")
     # The error of the time is that of the first span from 20 ms ahead on that has any.
     later = {**TRUE, "time_errors_ahead": spans({0.0: [0.5], 0.03: [0.004]})}
-    assert headlines_of([later])[1].more.endswith("The time told 30 to 40 ms ahead is 4 ms wrong in the median.")
+    assert headlines_of([later])[1].more.endswith("The time predicted 30 to 40 ms ahead is 4 ms wrong in the median.")
 
 
 def marks(figure: dict[str, Any]) -> dict[str, list[tuple[float, int]]]:

@@ -42,7 +42,7 @@ class FallingBody(NamedTuple):
     gravity: Vector = GRAVITY
 
 
-class ToldTouchdown(NamedTuple):
+class PredictedTouchdown(NamedTuple):
     """A touchdown: the time until then in s, and the twist of the mass centre right before it strikes."""
 
     time: float
@@ -165,7 +165,7 @@ def gap(fall: FallingBody, state: Any) -> float:
     return float(state[1]) + min(s * x + c * y for x, y in others)
 
 
-def integrated(fall: FallingBody, tolerance: float) -> ToldTouchdown | None:
+def integrated(fall: FallingBody, tolerance: float) -> PredictedTouchdown | None:
     """scipy's DOP853 up to the event that a point touches."""
 
     def rates(_: float, state: Any) -> Any:
@@ -178,10 +178,10 @@ def integrated(fall: FallingBody, tolerance: float) -> ToldTouchdown | None:
     found = solve_ivp(rates, (0.0, HORIZON), fall.state, "DOP853", rtol=tolerance, atol=tolerance, events=touches)
     if not found.t_events[0].size:
         return None
-    return ToldTouchdown(float(found.t_events[0][0]), Twist(*found.y_events[0][0][3:].tolist()))
+    return PredictedTouchdown(float(found.t_events[0][0]), Twist(*found.y_events[0][0][3:].tolist()))
 
 
-def reference_of(fall: FallingBody) -> ToldTouchdown:
+def reference_of(fall: FallingBody) -> PredictedTouchdown:
     """The touchdown to 13 digits: the event of the integration, then Newton's method on whole integrations."""
     found = integrated(fall, FINEST)
     assert found is not None
@@ -198,10 +198,10 @@ def reference_of(fall: FallingBody) -> ToldTouchdown:
         step = 1e-6
         ahead = np.array(end) + step * np.array([*end[3:], *accelerations(fall, end)])
         time -= gap(fall, end) * step / (gap(fall, ahead) - gap(fall, end))
-    return ToldTouchdown(time, Twist(*end[3:].tolist()))
+    return PredictedTouchdown(time, Twist(*end[3:].tolist()))
 
 
-def extrapolated(fall: FallingBody, accelerated: bool) -> ToldTouchdown | None:
+def extrapolated(fall: FallingBody, accelerated: bool) -> PredictedTouchdown | None:
     """The first root of the parabolas of the gaps, with their rates of now and, if so, their accelerations of now."""
     state = fall.state
     ax, ay, alpha = accelerations(fall, state) if accelerated else (0.0, 0.0, 0.0)
@@ -214,7 +214,7 @@ def extrapolated(fall: FallingBody, accelerated: bool) -> ToldTouchdown | None:
             first = min(first, _descent(state.y + y, state.vy + omega * x, bend))
     if first == inf:
         return None
-    return ToldTouchdown(first, Twist(state.vx + ax * first, state.vy + ay * first, omega + alpha * first))
+    return PredictedTouchdown(first, Twist(state.vx + ax * first, state.vy + ay * first, omega + alpha * first))
 
 
 def _descent(height: float, rate: float, acceleration: float) -> float:
@@ -224,10 +224,10 @@ def _descent(height: float, rate: float, acceleration: float) -> float:
     return 2.0 * height / down if down > 0.0 else inf
 
 
-def own(fall: FallingBody) -> ToldTouchdown | None:
+def own(fall: FallingBody) -> PredictedTouchdown | None:
     """The program's own predictor."""
     end = next_touchdown(*fall, tolerance=ACCURACY)
-    return ToldTouchdown(end.time, Twist(end.state.vx, end.state.vy, end.state.omega)) if end.point >= 0 else None
+    return PredictedTouchdown(end.time, Twist(end.state.vx, end.state.vy, end.state.omega)) if end.point >= 0 else None
 
 
 FAMILIES: Final = {
@@ -252,7 +252,7 @@ USED: Final = ("next_touchdown", f"tolerance = {ACCURACY:g}")
 """What the node uses."""
 
 
-def errors_of(fall: FallingBody, answer: ToldTouchdown, reference: ToldTouchdown) -> tuple[float, float]:
+def errors_of(fall: FallingBody, answer: PredictedTouchdown, reference: PredictedTouchdown) -> tuple[float, float]:
     """Error of the time, relative to it, and of the twist at the touchdown, relative to its size."""
     (vx, vy, omega), rho = reference.twist, sqrt(fall.rho_squared)
     wx, wy, turning = answer.twist

@@ -110,8 +110,8 @@ def _worst(rows: Sequence[tuple[str, BagAnswer]]) -> PageTable:
     cells: list[list[Cell | str]] = []
     for name, one in worst:
         mine: list[Cell | str] = [Cell(name, ", ".join(words(flag) for flag in one["flags"])), one["mode"]]
-        for told, measured in zip(one["predicted_twist"], one["measured_twist"], strict=True):
-            mine.append(Cell(f"{told:.3f}", f"{measured:.3f} measured"))
+        for predicted, measured in zip(one["predicted_twist"], one["measured_twist"], strict=True):
+            mine.append(Cell(f"{predicted:.3f}", f"{measured:.3f} measured"))
         cells.append([*mine, part_words(one["relative_error"])])
     head = ["touchdown", "mode", "vx, m/s", "vy, m/s", "ω, rad/s", "error"]
     more = f"The {len(worst)} of the largest errors, of {len(rows):,}." if len(worst) < len(rows) else ""
@@ -133,8 +133,8 @@ def modes(answers: Sequence[BagAnswer]) -> Section | None:
             "The record tells when feet stand, not what their impacts do: the modes of landings are predictions alone. "
             "In the table they are of an impact with the speed of the foot in its last sample in the air."
         )
-        told = f"As they were predicted, with the speed that was expected at the ground: {said}."
-        return Section("modes", "Modes of the landings", [feet, told], [_landing_modes(landings)])
+        all_modes = f"As they were predicted, with the speed that was expected at the ground: {said}."
+        return Section("modes", "Modes of the landings", [feet, all_modes], [_landing_modes(landings)])
     untold = (
         "The record does not tell in which modes the bodies truly went on, and its velocities do not either: whether a "
         "contact lifts shows in the vertical velocity, in which an impact is lost among what gravity and other contacts"
@@ -159,8 +159,8 @@ def modes(answers: Sequence[BagAnswer]) -> Section | None:
 
 def _right_modes(counts: Counter[tuple[str, str]]) -> str:
     both = {pair: count for pair, count in counts.items() if found.NOTHING not in pair}
-    right = sum(count for (true, told), count in both.items() if true == told)
-    missed = sum(count for (_, told), count in counts.items() if told == found.NOTHING)
+    right = sum(count for (true, predicted), count in both.items() if true == predicted)
+    missed = sum(count for (_, predicted), count in counts.items() if predicted == found.NOTHING)
     false = sum(count for (true, _), count in counts.items() if true == found.NOTHING)
     said = f"The mode is right in {right:,} of the {counted(sum(both.values()), 'true touchdown')} that were found."
     rest = [f"{missed:,} missed" if missed else "", counted(false, "false alarm") if false else ""]
@@ -171,21 +171,24 @@ def _confusion(counts: Counter[tuple[str, str]]) -> PageTable:
     """A row for each true mode, a column for each predicted one; what is right is marked."""
     order = [*(mode.name for mode in MODES), found.NOTHING]
     true = [mode for mode in order if any(pair[0] == mode for pair in counts)]
-    told = [mode for mode in order if any(pair[1] == mode for pair in counts)]
+    predicted = [mode for mode in order if any(pair[1] == mode for pair in counts)]
 
     def cell(row: str, column: str) -> Cell:
         number = counts[row, column]
         return Cell(f"{number:,}" if number else "–", css="best" if row == column else "" if number else "none")
 
     rows: list[list[Cell | str]]
-    rows = [["false alarm" if row == found.NOTHING else row, *(cell(row, column) for column in told)] for row in true]
+    rows = [
+        ["false alarm" if row == found.NOTHING else row, *(cell(row, column) for column in predicted)] for row in true
+    ]
     caption = "How many touchdowns of each true mode (a row) were predicted in which mode (a column)."
-    return PageTable(["true mode", *("missed" if mode == found.NOTHING else mode for mode in told)], rows, caption)
+    return PageTable(["true mode", *("missed" if mode == found.NOTHING else mode for mode in predicted)], rows, caption)
 
 
 def _landing_modes(landings: Sequence[BagAnswer]) -> PageTable:
     """How many landings of each foot were predicted in which mode."""
     counts = Counter((one["foot"], one["landing_mode"]) for one in landings if one["landing_mode"])
-    told = in_order(mode for _, mode in counts)
-    rows = [[foot, *(f"{counts[foot, mode]:,}" for mode in told)] for foot in dict.fromkeys(foot for foot, _ in counts)]
-    return PageTable(["foot", *told], rows, "Landings of each foot by the mode that its impact is predicted to have.")
+    modes = in_order(mode for _, mode in counts)
+    feet = dict.fromkeys(foot for foot, _ in counts)
+    rows = [[foot, *(f"{counts[foot, mode]:,}" for mode in modes)] for foot in feet]
+    return PageTable(["foot", *modes], rows, "Landings of each foot by the mode that its impact is predicted to have.")

@@ -99,15 +99,15 @@ def plot(traces: Iterable[Mapping[str, Any]], height: int = 380, **layout: Any) 
 
 def marks(name: str, points: Iterable[tuple[float, float, str]], **look: Any) -> dict[str, Any]:
     """A trace of marks: the place of each, and the text that a reader sees who points at it; lines with `mode`."""
-    return {"type": "scatter", "mode": "markers", "name": safe(name), **_told(points), **look}
+    return {"type": "scatter", "mode": "markers", "name": safe(name), **_points(points), **look}
 
 
 def bars(points: Iterable[tuple[float, float, str]], **look: Any) -> dict[str, Any]:
     """A trace of bars, as `marks`."""
-    return {"type": "bar", "textposition": "none", "showlegend": False, **_told(points), **look}
+    return {"type": "bar", "textposition": "none", "showlegend": False, **_points(points), **look}
 
 
-def _told(points: Iterable[tuple[float, float, str]]) -> dict[str, Any]:
+def _points(points: Iterable[tuple[float, float, str]]) -> dict[str, Any]:
     x, y, texts = zip(*points, strict=True)
     return {"x": list(x), "y": list(y), "text": [safe(text) for text in texts], "hoverinfo": "text"}
 

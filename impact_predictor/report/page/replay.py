@@ -16,8 +16,8 @@ from . import compared, found, sections
 from .document import Headline, page, script_beside, script_inside, time_words, within_words, write_html
 from .found import BagAnswer, SpanErrors
 
-AHEAD: Final = 0.02
-"""Seconds before a touchdown, from which on the errors of the times are told."""
+LEAST_LEAD_TIME: Final = 0.02
+"""Seconds before a touchdown, from which on the errors of the times are given."""
 
 
 COST: Final = "At what cost"
@@ -73,7 +73,7 @@ def page_of_replay(
         sections.when(answers, drawn),
         compared.velocities(answers),
         compared.modes(answers),
-        sections.ahead(answers),
+        sections.lead_times(answers),
         sections.cost(answers),
         sections.unused(answers),
         sections.scene(values),
@@ -99,7 +99,7 @@ def announced_of(landings: Sequence[BagAnswer]) -> str:
 def error_at(answers: Sequence[BagAnswer]) -> SpanErrors | None:
     """The errors in s of the times told 20 ms ahead or somewhat more; None where nothing tells the true ones."""
     spans = found.errors_ahead(answers, "time_errors_ahead")
-    return next((one for one in spans if one.begin >= AHEAD and one.errors.number), None)
+    return next((one for one in spans if one.begin >= LEAST_LEAD_TIME and one.errors.number), None)
 
 
 def lead_of(answers: Sequence[BagAnswer]) -> str:
@@ -137,7 +137,7 @@ def _many(answers: Sequence[BagAnswer]) -> Headline:
     alarms = counted(there.false, "false alarm") if there.false else "no false alarm"
     more = f"{f'{missed:,}' if missed else 'None'} missed, {alarms}."
     if missed:
-        more += f" A touchdown is found where a prediction before it told its time to {NEAREST / 1e6:.0f} ms."
+        more += f" A touchdown is found where a prediction before it gave its time to {NEAREST / 1e6:.0f} ms."
     truths = [answer["truth"] for answer in found.used(answers) if "truth" in answer]
     if unseen := sum(truth["unresolved"] for truth in truths):
         more += f" {counted(unseen, 'more impact')} cannot be seen in the samples: too slow, or too soon after another."
@@ -157,15 +157,15 @@ def _right(answers: Sequence[BagAnswer]) -> Headline | None:
             f"So close are half of the velocities after the impact to {of}; 90 % are within {within_words(errors.p90)}."
         )
         if counts:
-            right = sum(count for (true, told), count in counts.items() if true == told)
+            right = sum(count for (true, predicted), count in counts.items() if true == predicted)
             both = sum(count for pair, count in counts.items() if found.NOTHING not in pair)
             more += f" The mode is right in {right:,} of {both:,}."
         if time is not None:
-            more += f" The time told {span} is {time_words(time.errors.p50)} wrong in the median."
+            more += f" The time predicted {span} is {time_words(time.errors.p50)} wrong in the median."
         return Headline("How right", f"velocities within {within_words(errors.median)}", more)
     if time is None:
         return None
-    more = f"So close are half of the times that were told {span}; 90 % are within {time_words(time.errors.p90)}."
+    more = f"So close are half of the times that were predicted {span}; 90 % are within {time_words(time.errors.p90)}."
     return Headline("How right", f"times within {time_words(time.errors.p50)}", more)
 
 

@@ -184,7 +184,7 @@ def _size(vector: Sequence[float]) -> float:
     return hypot(*vector)
 
 
-def ahead(answers: Sequence[BagAnswer]) -> Section | None:
+def lead_times(answers: Sequence[BagAnswer]) -> Section | None:
     """Errors over the time ahead at which a prediction is made; None where there are none."""
     charts = []
     said = ["Every sample before a touchdown makes a prediction of it. Does one that is made earlier do as well?"]
@@ -212,8 +212,8 @@ def _over_lead_time(spans: Sequence[SpanErrors], axis: str, factor: float) -> Pl
             points.append((500.0 * (one.begin + one.end), error, f"{made}\n{name} {error:.3g} ({axis})"))
         look = {"color": PALETTE[number], "symbol": ("circle", "square")[number], "size": 8}
         traces.append(marks(name, points, mode="lines+markers", marker=look, line={"color": PALETTE[number]}))
-    ahead = titled("made before the touchdown, ms", range=[0.0, 1e3 * spans[-1].end])
-    return plot(traces, 320, xaxis=ahead, yaxis=titled(axis, rangemode="tozero"))
+    across = titled("made before the touchdown, ms", range=[0.0, 1e3 * spans[-1].end])
+    return plot(traces, 320, xaxis=across, yaxis=titled(axis, rangemode="tozero"))
 
 
 def cost(answers: Sequence[BagAnswer]) -> Section | None:

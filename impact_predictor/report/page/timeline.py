@@ -46,7 +46,7 @@ LANE: Final = 28
 """Height of a lane in pixels."""
 
 
-class Happened(NamedTuple):
+class TimelineMark(NamedTuple):
     """A mark at a stamp (ns): a mode, `MISSED` or `FALSE`; faint where it does not count.
 
     `since` is the stamp at which it was first announced, None where that is not shown; `said` is what a reader sees who
@@ -64,7 +64,7 @@ class Lane(NamedTuple):
     """A line of a timeline: marks, stances as (begin, end) in ns, or errors as (stamp, part of 1)."""
 
     name: str
-    marks: Sequence[Happened] = ()
+    marks: Sequence[TimelineMark] = ()
     stances: Sequence[tuple[int, int]] = ()
     errors: Sequence[tuple[int, float]] = ()
 
@@ -244,16 +244,16 @@ def _feet(answer: BagAnswer, body: str) -> Iterable[Lane]:
             yield Lane(TRUTH, stances=[(begin, end) for place, begin, end in gait["true_stances"] if place == number])
 
 
-def _landing(one: BagAnswer, start: int) -> Happened:
+def _landing(one: BagAnswer, start: int) -> TimelineMark:
     """A landing where it was predicted last; one that was not announced where it came, as missed."""
     at = f"{one['foot']} lands at {(one['stamp'] - start) / NANOSECONDS:.3f} s"
     if one["time_error"] is None:
-        return Happened(one["stamp"], MISSED, f"{at}, not announced")
+        return TimelineMark(one["stamp"], MISSED, f"{at}, not announced")
     lead = one["announced_lead_time"]
     said = f"{at}\nannounced {time_words(lead)} ahead\nthe last predicted time is {signed_ms(one['time_error'])} off"
-    told = one["stamp"] + round(one["time_error"] * NANOSECONDS)
+    predicted = one["stamp"] + round(one["time_error"] * NANOSECONDS)
     mode = one["landing_mode"] or one["mode"]
-    return Happened(told, mode, f"{said}\n{mode}", since=one["stamp"] - round(lead * NANOSECONDS))
+    return TimelineMark(predicted, mode, f"{said}\n{mode}", since=one["stamp"] - round(lead * NANOSECONDS))
 
 
 def _body(answer: BagAnswer, body: str) -> Iterable[Lane]:
@@ -278,7 +278,7 @@ def _body(answer: BagAnswer, body: str) -> Iterable[Lane]:
         yield Lane("not compared", [_touchdown(one, start) for one in mine if not one["scored"]])
 
 
-def _touchdown(one: BagAnswer, start: int) -> Happened:
+def _touchdown(one: BagAnswer, start: int) -> TimelineMark:
     """A touchdown that was predicted and came; faint where nothing measured can be compared with it."""
     lead = one["announced_lead_time"]
     said = f"{(one['stamp'] - start) / NANOSECONDS:.3f} s: {one['mode']}\nannounced {time_words(lead)} ahead"
@@ -287,22 +287,22 @@ def _touchdown(one: BagAnswer, start: int) -> Happened:
     else:
         said += f"\nnot compared: {', '.join(words(flag) for flag in one['flags'])}"
     since = one["stamp"] - round(lead * NANOSECONDS)
-    return Happened(one["stamp"], one["mode"], said, not one["scored"], since)
+    return TimelineMark(one["stamp"], one["mode"], said, not one["scored"], since)
 
 
-def _predicted(one: BagAnswer, start: int) -> Happened:
+def _predicted(one: BagAnswer, start: int) -> TimelineMark:
     """What was announced: of a true touchdown, or in vain."""
     said = f"predicted for {(one['predicted_stamp'] - start) / NANOSECONDS:.3f} s: {one['predicted_mode']}"
     if one["stamp"] is None:
-        return Happened(one["predicted_stamp"], FALSE, f"{FALSE}, {said}", since=one["first_seen"])
+        return TimelineMark(one["predicted_stamp"], FALSE, f"{FALSE}, {said}", since=one["first_seen"])
     said += f"\nfirst announced {time_words((one['stamp'] - one['first_seen']) / NANOSECONDS)} ahead"
     error = (one["predicted_stamp"] - one["stamp"]) / NANOSECONDS
     said += f"\nthe last predicted time is {time_words(abs(error))} off"
     mode = one["predicted_mode"] or Mode.NO_IMPACT.name
-    return Happened(one["predicted_stamp"], mode, said, not one["shown"], one["first_seen"])
+    return TimelineMark(one["predicted_stamp"], mode, said, not one["shown"], one["first_seen"])
 
 
-def _true(one: BagAnswer, start: int) -> Happened:
+def _true(one: BagAnswer, start: int) -> TimelineMark:
     """What happened; faint what such a record cannot show."""
     said = f"{(one['stamp'] - start) / NANOSECONDS:.3f} s: {one['mode']}"
     missed = one["shown"] and one["predicted_stamp"] is None
@@ -310,4 +310,4 @@ def _true(one: BagAnswer, start: int) -> Happened:
         said += "\nwhich cannot be seen at this rate of samples"
     elif missed:
         said += "\nmissed: no prediction announced it"
-    return Happened(one["stamp"], MISSED if missed else one["mode"] or Mode.NO_IMPACT.name, said, not one["shown"])
+    return TimelineMark(one["stamp"], MISSED if missed else one["mode"] or Mode.NO_IMPACT.name, said, not one["shown"])

@@ -11,13 +11,13 @@ from impact_predictor.mechanics.impact import solve_impact
 from impact_predictor.mechanics.types import Mode, Twist
 from impact_predictor.report.accuracy import impacts, touchdowns
 from impact_predictor.report.accuracy.impacts import Aftermath, Struck
-from impact_predictor.report.accuracy.touchdowns import CRATE, FallingBody, ToldTouchdown
+from impact_predictor.report.accuracy.touchdowns import CRATE, FallingBody, PredictedTouchdown
 
 PAPER = ("rod", "plate", "cylinder")
 COUNT = 12
 
 
-def touchdown_error(fall: FallingBody, found: ToldTouchdown | None) -> float:
+def touchdown_error(fall: FallingBody, found: PredictedTouchdown | None) -> float:
     assert found is not None
     return max(touchdowns.errors_of(fall, found, touchdowns.reference_of(fall)))
 
