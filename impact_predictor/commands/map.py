@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
-from ..errors import InputError
+from ..errors import InputError, need
 from .options import LAW, Whole, examples, json_flag, number, together
 
 if TYPE_CHECKING:
@@ -173,12 +173,14 @@ def check_output(file: Path) -> None:
     """Refuse a file that no map can be written into.
 
     Raises:
-        InputError: its suffix names no known format, or there is no such folder.
+        InputError: its suffix names no known format, there is no such folder, or what draws is not installed.
     """
     if file.suffix.lower() not in SUFFIXES:
         raise InputError(f"{file} is neither picture nor data; give a name that ends in .png, .svg or .csv")
     if not file.parent.is_dir():
         raise InputError(f"the folder of {file} does not exist; make it, or give another name")
+    if file.suffix.lower() in PICTURES:
+        need("contourpy", "matplotlib", "scipy")
 
 
 def write(file: Path, modes: ModeMap) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from math import cos, pi, sin
 from typing import Any, Final, NamedTuple, cast
 
@@ -253,6 +253,17 @@ class _Screen:
         axes.set_title(film.curves_title, fontsize=9, pad=3)
         axes.tick_params(labelsize=8)
         return drawn
+
+
+def gapped(spans: Iterable[tuple[float, float]], points: int, end: float) -> NDArray[np.float64]:
+    """Times in s within spans (begin, end), in `points` for the time until `end`, with a NaN after each."""
+    times = [np.zeros(0)]
+    for begin, last in spans:
+        if last > begin:
+            count = max(2, round(points * (last - begin) / end))
+            # Right before the impact that ends it.
+            times += [np.linspace(begin, np.nextafter(last, begin), count), np.array([np.nan])]
+    return np.concatenate(times)
 
 
 def pace_of(speed: float) -> str:

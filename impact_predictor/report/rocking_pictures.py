@@ -27,6 +27,7 @@ from .film import (
     box,
     circle,
     frames_of,
+    gapped,
     placed,
     speed_for,
     turned,
@@ -66,16 +67,8 @@ class MotionCurves(NamedTuple):
 
 def curves_of(run: Trajectory, end: float, points: int = _POINTS) -> MotionCurves:
     """The motion up to `end` in s, in `points` for that time; it stays where it has ended."""
-    times: list[NDArray[np.float64]] = []
-    for phase in run.phases:
-        if phase.end > phase.start:
-            count = max(2, round(points * (phase.end - phase.start) / end))
-            # Right before the impact that ends it.
-            last = np.nextafter(phase.end, phase.start)
-            times += [np.linspace(phase.start, last, count), np.array([np.nan])]
-    if end > run.time:
-        times.append(np.linspace(run.time, end, 100))
-    time = np.concatenate(times) if times else np.array([0.0, end])
+    time = gapped(((phase.start, phase.end) for phase in run.phases), points, end)
+    time = np.concatenate([time, np.linspace(min(run.time, end), end, 100)])
     states = run.state(np.nan_to_num(time))
     gap = np.where(np.isnan(time), np.nan, 0.0)
     return MotionCurves(time, states.omega + gap, np.degrees(states.angle) + gap)

@@ -12,7 +12,22 @@ from numpy.typing import NDArray
 from ..mechanics.types import Mode
 from ..scenarios.wheel import RollEnd, Rolling, Stand, Wheel
 from ..scenarios.wheel_closed_forms import downhill, least_friction, steady
-from .film import LINE, STRUCK, SUPPORT, Curve, Film, Flash, Outline, View, box, frames_of, placed, speed_for, turned
+from .film import (
+    LINE,
+    STRUCK,
+    SUPPORT,
+    Curve,
+    Film,
+    Flash,
+    Outline,
+    View,
+    box,
+    frames_of,
+    gapped,
+    placed,
+    speed_for,
+    turned,
+)
 from .modes import MODES, PALETTE
 from .plot import GREY, Axes, Line2D, Patch, draw_phases, picture
 
@@ -65,12 +80,8 @@ def stances(rolling: Rolling, end: float) -> list[Stand]:
 def rate_of(rolling: Rolling, points: int = _POINTS) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Times (s) and rates of turning ahead (rad/s), with a gap at each impact."""
     strikes = [one.strike.time for one in rolling.impacts]
-    times: list[NDArray[np.float64]] = []
-    for start, end in zip([0.0, *strikes], [*strikes, rolling.time], strict=True):
-        if end > start:
-            count = max(2, round(points * (end - start) / rolling.time))
-            times += [np.linspace(start, np.nextafter(end, start), count), np.array([np.nan])]
-    time = np.concatenate(times) if times else np.array([0.0])
+    time = gapped(zip([0.0, *strikes], [*strikes, rolling.time], strict=True), points, rolling.time)
+    time = time if len(time) else np.array([0.0])
     omega = -rolling.world(np.nan_to_num(time)).omega
     return time, np.where(np.isnan(time), np.nan, omega)
 
