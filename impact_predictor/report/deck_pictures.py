@@ -29,7 +29,7 @@ LONGEST: Final = 12.0
 """Seconds of a motion that a film shows, in real time: those in which most units move."""
 MARGINS: Final = ("#dfe6e1", "#f2a91a", "#d62728")
 """Colours of a margin that is used little, enough to warn, and up."""
-LEVELS: Final = ("#8fc9a3", *MARGINS[1:])
+LEVELS: Final = ("#8fc9a3", "#f2a91a", "#e0584f")
 """The same of a unit of the film."""
 ROLL, HEAVE, TILT, SLID = PALETTE[0], "#8a6d3b", "#1a1a1a", PALETTE[2]
 
@@ -301,7 +301,7 @@ def deck_film(deck: MovingSupport, units: Sequence[UnitMotion]) -> Film:
         rows=[[one.view() for one in near]],
         heights=[2.0],
         curves=[Curve(seen, np.degrees(deck.motion(seen).angle), ROLL)],
-        curves_title="roll (°) against time (s), and the impacts",
+        curves_title="roll (°) against time (s), and the impacts; seen from astern, port on the left",
         speed=1.0,
         times=times,
         ticks=[time for time in impacts if times[0] <= time <= times[-1]],
