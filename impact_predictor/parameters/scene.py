@@ -7,7 +7,7 @@ from math import copysign, cos, hypot, sin
 from typing import Any
 
 from ..errors import InputError
-from .table import WALKING_PARAMETERS
+from .table import PARAMETERS
 
 INCLINED = 1e-6
 """A unit normal that differs from z by more than this is inclined: less is rounding."""
@@ -103,8 +103,9 @@ def _check_cylinder(one: _Given) -> None:
 def _check_feet(one: _Given) -> None:
     values, feet = one.values, "feet.names"
     if not values[feet]:
-        for name, default in ((parameter.name, parameter.default) for parameter in WALKING_PARAMETERS):
-            if values[name] != default and one.is_own(name):
+        for name, parameter in PARAMETERS.items():
+            of_feet = name.startswith(("feet.", "robot."))
+            if of_feet and values[name] != parameter.default and one.is_own(name):
                 raise InputError(f"{one.named(name)} is for a machine that walks: give the names of its feet as {feet}")
         return
     for name, (needed, why) in OF_FEET.items():
