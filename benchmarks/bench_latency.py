@@ -31,11 +31,11 @@ from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Final
+from typing import Any, Final
 
 from trot import trot
 
-from impact_predictor.prediction.types import Geometry, Sample
+from impact_predictor.prediction.types import Geometry, Prediction, Sample
 from impact_predictor.ros.messages import ODOMETRY, OUTPUTS, POLYGON, encode_odometry, encode_polygon
 from impact_predictor.ros.process import Stop, message_class, run, spin
 from impact_predictor.ros.processes import Child, ros_environment
@@ -161,10 +161,10 @@ def predict(file: str) -> int:
     answered = Reporter.answered
     returned: dict[int, tuple[int, float, float]] = {}
 
-    def note(self: Reporter, name: str, stamp: int, latency: int, update: float, began: float) -> None:
-        # It is called right after the last answer is published.
-        returned[stamp] = time.monotonic_ns(), update, time.process_time()
-        answered(self, name, stamp, latency, update, began)
+    def note(self: Reporter, name: str, body: str, prediction: Prediction, *costs: Any) -> None:
+        # It is called right after the last answer is published; `costs` are the latency, the update's and the begin.
+        returned[prediction.sample.stamp] = time.monotonic_ns(), costs[1], time.process_time()
+        answered(self, name, body, prediction, *costs)
 
     Reporter.answered = note  # type: ignore[method-assign]
     return run_node([sys.argv[0], *sys.argv[sys.argv.index("--ros-args") :]]) or _write(file, returned)
