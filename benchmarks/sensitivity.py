@@ -2,12 +2,14 @@
 
     python benchmarks/sensitivity.py
 
-Prints a row for each: scored touchdowns, median and 90 % of the relative error of the twist after them.
+Prints a row for each: scored touchdowns, median and 90 % of the relative error of the twist after them; and what a
+simple answer scores on the same touchdowns.
 """
 
 from __future__ import annotations
 
 import sys
+from math import hypot
 from pathlib import Path
 from types import ModuleType
 from typing import NamedTuple
@@ -24,7 +26,7 @@ from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction import impact, planar, points
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene, inertia_matrix
-from impact_predictor.prediction.types import Geometry, Sample
+from impact_predictor.prediction.types import Geometry, Sample, Score
 from impact_predictor.ros.messages import ODOMETRY, POLYGON, decode_odometry, decode_polygon
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -33,6 +35,9 @@ PARAMETERS = ROOT / "config/cube_tosses.yaml"
 
 HALF_SIDE = 0.0524
 """Of the cube, in m."""
+
+SIMPLE = 0.85
+"""The part of vx that is left after most landings of the cube."""
 
 SCENE_FIELDS = ("tolerance", "contact_time", "twist_window", "horizon", "friction", "restitution")
 CONSTANTS: tuple[tuple[ModuleType, str], ...] = (
@@ -55,8 +60,8 @@ def load() -> list[Sample | Geometry]:
     ]
 
 
-def scored(scene: Scene, record: list[Sample | Geometry]) -> tuple[str, str, str]:
-    """Count, median and 90 % of the scored relative errors."""
+def scores_of(scene: Scene, record: list[Sample | Geometry]) -> list[Score]:
+    """The touchdowns that count."""
     body = Predictor(scene)
     scores = []
     for message in record:
@@ -65,8 +70,28 @@ def scored(scene: Scene, record: list[Sample | Geometry]) -> tuple[str, str, str
         else:
             scores.append(body.update(message).score)
     scores.extend(body.finish())
-    errors = [score.relative_error for score in scores if score is not None and score.scored]
+    return [score for score in scores if score is not None and score.scored]
+
+
+def row_of(errors: list[float | None]) -> tuple[str, str, str]:
+    """Count, median and 90 % of relative errors."""
     return str(len(errors)), f"{np.median(errors):.4f}", f"{np.percentile(errors, 90):.4f}"
+
+
+def scored(scene: Scene, record: list[Sample | Geometry]) -> tuple[str, str, str]:
+    """Count, median and 90 % of the scored relative errors."""
+    return row_of([score.relative_error for score in scores_of(scene, record)])
+
+
+def simple(scene: Scene, record: list[Sample | Geometry], part: float) -> tuple[str, str, str]:
+    """The same of the simple answer "this part of vx as before, and no turning"."""
+    errors: list[float | None] = []
+    for score in scores_of(scene, record):
+        before, s, measured = score.touchdown.before, score.touchdown.half_distance, score.measured
+        assert measured is not None
+        miss = hypot(part * before.vx - measured.vx, measured.omega * s)
+        errors.append(miss / hypot(before.vx, before.omega * s))
+    return row_of(errors)
 
 
 class Variation(NamedTuple):
@@ -110,6 +135,7 @@ def main() -> int:
         "choice", "value", "scored", "median", "90 %", title="Recorded cube tosses: each choice changed alone"
     )
     table.add_row("as shipped", "", *scored(scene, record))
+    table.add_row("simple answer: this part of vx, no turning", f"{SIMPLE}", *simple(scene, record, SIMPLE))
     for variation in track(variations(scene), "replaying", console=Console(stderr=True)):
         value = getattr(variation.module, variation.constant)
         if variation.scene is scene:
