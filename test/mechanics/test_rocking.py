@@ -151,6 +151,16 @@ def test_a_flat_drop_strikes_both_contacts_at_once() -> None:
     assert run.end is End.RESTS
 
 
+@pytest.mark.parametrize("inertia", [1e-9, 1e-6])
+def test_a_point_mass_that_slips_before_its_impact_is_caught_by_both_contacts_and_slides(inertia: float) -> None:
+    """An error of 1e-8 of the rate before the impact, which a stiff slip easily makes, would let it pivot."""
+    x, y = math.sin(math.pi / 8.0), -math.cos(math.pi / 8.0)
+    body = TwoPointBody(1.0, inertia, Contact(-x, y, 0.4), Contact(x, y, 0.4))
+    run = rock(body, standing(body, math.pi / 8.0), FixedSupport(-0.08, 9.8))
+    assert [impact.outcome.mode for impact in run.impacts] == [Mode.SLIDE]
+    assert run.end is End.RESTS
+
+
 def test_the_cylinder_rolls_from_edge_to_edge_with_the_papers_ratio() -> None:
     """PIVOT of section 4: w1 / w = (3 - t^2) / (3 (1 + t^2)), t = tan gamma; the centre's speed is R w."""
     gamma = 0.6
