@@ -230,7 +230,9 @@ class ObservingMonitor(Monitor):
     def __init__(self, scenes: Mapping[str, Scene]) -> None:
         super().__init__(scenes)
         self._observers = {
-            body: Observer(body, scenes[body], self.deck) for body in self.predictors if scenes[body].walking is None
+            body: Observer(body, scenes[body], self.deck)
+            for body, predictor in self.predictors.items()
+            if isinstance(predictor.contacts, PointContacts)
         }
         self.predictors = {**self.predictors, **self._observers}
 

@@ -115,13 +115,14 @@ class FeetContacts(Contacts):
         self._begin()
 
     def _begin(self) -> None:
-        self._points = [FootPoint(self.scene) for _ in range(self._count)]
+        dead_time = round(self._walking.dead_time * NANOSECONDS)
+        self._points = [FootPoint(self.scene, dead_time) for _ in range(self._count)]
         self._ground = Ground(self.scene)
         self._landed: deque[PendingLanding] = deque()
         self._settles = False
         self._base = BaseMotion()
         self._found = Status.ACCEPTED  # what became of the last geometry that met a sample
-        self._tracker = LandingTracker(self.scene, self._machine, self._points, self._base)
+        self._tracker = LandingTracker(self.scene, self._machine, self._points, self._walking.points, self._base)
 
     def _set_geometry(self, geometry: Geometry) -> Status:
         points, velocities = geometry.points, geometry.velocities

@@ -61,13 +61,15 @@ class PendingLanding(NamedTuple):
 class LandingTracker:
     """The landings that the points of a machine's feet announce."""
 
-    def __init__(self, scene: Scene, machine: LeggedMachine, points: Sequence[FootPoint], base: BaseMotion) -> None:
-        assert scene.walking is not None
+    def __init__(
+        self, scene: Scene, machine: LeggedMachine, points: Sequence[FootPoint], each: int, base: BaseMotion
+    ) -> None:
+        """Follow the points of the feet of a machine, `each` of which has so many."""
         self._scene = scene
         self._machine = machine
         self._points = points
         self._base = base
-        self._each = scene.walking.points
+        self._each = each
         self._contact_time = round(scene.contact_time * NANOSECONDS)
         self._announced: dict[int, AnnouncedLanding] = {}
 

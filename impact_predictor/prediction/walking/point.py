@@ -39,10 +39,10 @@ class ExpectedLanding(NamedTuple):
 class FootPoint:
     """A point of a foot of a scene."""
 
-    def __init__(self, scene: Scene) -> None:
-        assert scene.walking is not None
+    def __init__(self, scene: Scene, dead_time: int) -> None:
+        """Follow a point of a scene; a change of its stance is believed after a `dead_time` in ns."""
         self.trajectory = FootTrajectory()
-        self.stance = StanceDetector(scene)
+        self.stance = StanceDetector(scene, dead_time)
         self.due: ExpectedLanding | None = None
         """The landing last announced, until the point stands or the announcement is withdrawn."""
         self.arrival: Arrival | None = None
@@ -50,7 +50,7 @@ class FootPoint:
         self.closed = False
         """Whether it was to land by now and is near the ground: it stands, though not yet for the dead time."""
         self._tolerance, self._horizon, self._normal = scene.tolerance, scene.horizon, scene.normal
-        self._dead_time = round(scene.walking.dead_time * NANOSECONDS)
+        self._dead_time = dead_time
         self._doubted: int | None = None
         self._shown: int | None = None
         self._last: Fit | None = None

@@ -86,11 +86,11 @@ class StanceDetector:
     stands until it has stayed further away.
     """
 
-    def __init__(self, scene: Scene) -> None:
-        assert scene.walking is not None
+    def __init__(self, scene: Scene, dead_time: int) -> None:
+        """Believe changes of a point of a scene after a `dead_time` in ns."""
         self.stands = False
         self.since = 0
-        self._dead_time = round(scene.walking.dead_time * NANOSECONDS)
+        self._dead_time = dead_time
         self._tolerance = scene.tolerance
         self._slow = hardly(scene)
         self._begun = False

@@ -8,14 +8,15 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from impact_predictor.prediction.scene import Scene, Walking
+from impact_predictor.prediction.scene import Scene
 from impact_predictor.prediction.walking.cubic import PointFrame
 from impact_predictor.prediction.walking.point import FootPoint
 from impact_predictor.prediction.walking.stance import Ground, StanceDetector
 
 MS = 1_000_000
-SCENE = Scene(1.0, ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), 0.5, walking=Walking(("foot",)))
-"""Contact tolerance 5 mm, dead time 20 ms."""
+DEAD_TIME = 20 * MS
+SCENE = Scene(1.0, ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), 0.5)
+"""Contact tolerance 5 mm."""
 
 
 def frame(milliseconds: float, gap: float, rate: float | None = 0.0) -> PointFrame:
@@ -27,7 +28,7 @@ def changes(
     gap: Callable[[float], float], rate: Callable[[float], float | None], end: float
 ) -> list[tuple[float, bool]]:
     """When a point is seen to stand or to swing (ms), at 400 Hz."""
-    stance, ground, frames = StanceDetector(SCENE), Ground(SCENE), []
+    stance, ground, frames = StanceDetector(SCENE, DEAD_TIME), Ground(SCENE), []
     found = []
     for time in np.arange(0.0, end, 2.5).tolist():
         frames.append(frame(time, gap(time), rate(time)))
@@ -53,7 +54,7 @@ def test_a_foot_close_to_the_ground_does_not_stand_while_it_sinks() -> None:
 
 def test_standing_feet_tell_the_level_and_the_noise() -> None:
     rng = np.random.default_rng(0)
-    point, ground = FootPoint(SCENE), Ground(SCENE)
+    point, ground = FootPoint(SCENE, DEAD_TIME), Ground(SCENE)
     for k in range(600):
         gap, rate = rng.normal(0.002, 1e-3), rng.normal(0.0, 0.03)
         point.add(frame(2.5 * k, gap, rate), ground)
@@ -64,7 +65,7 @@ def test_standing_feet_tell_the_level_and_the_noise() -> None:
 
 
 def test_a_foot_that_lifts_slowly_is_not_taken_for_the_ground() -> None:
-    point, ground = FootPoint(SCENE), Ground(SCENE)
+    point, ground = FootPoint(SCENE, DEAD_TIME), Ground(SCENE)
     for k in range(400):
         time = max(0.0, 2.5e-3 * k - 0.5)
         point.add(frame(2.5 * k, 2.0 * time**2, 4.0 * time), ground)
