@@ -161,7 +161,6 @@ class CylinderContacts(PointContacts):
             new=(line[0] - center[0], line[1] - center[1]),
             twist=Twist(dot(own_ahead, velocity), dot(posture.normal, velocity), -rate),
             gravity=(dot(ahead, gravity), dot(scene.normal, gravity), dot(axis, gravity)),
-            gap=max(0.0, posture.gaps[contacts.new[0]] - contacts.base),
             off_axis=off_axis_of(sample.angular, own_axis, rate),
             lateral=dot(own_axis, velocity),
             offset=0.0,

@@ -56,7 +56,7 @@ class ImpactPlane(NamedTuple):
     """The impact plane, in the body frame, and the body in it.
 
     `axis` and `ahead` (d) are unit vectors; `old` (None in flight) and `new` the contacts from the mass centre along
-    (d, n) in m; `twist` of the mass centre; `gravity` along (d, n, axis); `gap` of the new contact. Left over:
+    (d, n) in m; `twist` of the mass centre; `gravity` along (d, n, axis). Left over:
     `off_axis` (0..1), `lateral` velocity (m/s) and `offset` of the contacts along the axis (m).
     """
 
@@ -66,7 +66,6 @@ class ImpactPlane(NamedTuple):
     new: Vector
     twist: Twist
     gravity: Vector3
-    gap: float
     off_axis: float
     lateral: float
     offset: float
@@ -133,7 +132,7 @@ def plane_of(
 ) -> ImpactPlane:
     """The impact plane of a posture's contacts; `gravity` in the frame of the sample is the scene's unless given."""
     n, spin, velocity = posture.normal, sample.angular, posture.velocity
-    old, new, base = contacts
+    old, new, _ = contacts
     center = scene.center_of_mass
     struck = add(mean([points[i] for i in new]), center, -1.0)
     if old:
@@ -160,7 +159,6 @@ def plane_of(
         new=(dot(ahead, struck), dot(n, struck)),
         twist=Twist(dot(ahead, velocity), dot(n, velocity), -rate),
         gravity=(dot(ahead, gravity), dot(n, gravity), dot(axis, gravity)),
-        gap=max(0.0, total([posture.gaps[i] for i in new]) / len(new) - base),
         off_axis=off_axis_of(spin, axis, rate),
         lateral=lateral,
         offset=offset,
@@ -189,12 +187,20 @@ def axis_of(n: Vector3, spin: Vector3, velocity: Vector3, edge: Vector3 | None, 
     square = dot(along, along)
     if square * dot(arm, arm) > slow * slow + TINY:
         return times(along, 1.0 / sqrt(square))
-    for way, least in ((arm, ROUNDING * dot(arm, arm)), (velocity, slow * slow), (any_across(n), 0.0)):
-        along = cross(n, way)
-        square = dot(along, along)
+    return cross(n, direction_of(n, [(arm, ROUNDING * dot(arm, arm)), (velocity, slow * slow)]))
+
+
+def direction_of(normal: Vector3, ways: list[tuple[Vector3, float]]) -> Vector3:
+    """The unit vector in the support along the first of some ways whose part in it is large enough; else any.
+
+    Each way comes with the square that its part must exceed.
+    """
+    for way, least in (*ways, (any_across(normal), 0.0)):
+        flat = add(way, normal, -dot(normal, way))
+        square = dot(flat, flat)
         if square > least + TINY:
             break
-    return times(along, 1.0 / sqrt(square))
+    return times(flat, 1.0 / sqrt(square))
 
 
 def edge_of(points: list[Vector3]) -> Vector3:

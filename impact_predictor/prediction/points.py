@@ -211,7 +211,7 @@ def collision_of(
     old, new = plane.old, plane.new
     if old is None:
         striking: tuple[Vector, ...] = (new,)
-        height = plane.gap - new[1]
+        height = max(0.0, total([posture.gaps[i] for i in contacts.new]) / len(contacts.new)) - new[1]
     else:
         striking = (old, new)
         height = -old[1]

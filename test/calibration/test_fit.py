@@ -18,7 +18,7 @@ from impact_predictor.prediction.scene import Scene, inertia_matrix
 
 LENGTH, HEIGHT, MASS = 1.0, 0.4, 1.0
 PLANE = ImpactPlane(
-    (0.0, -1.0, 0.0), (1.0, 0.0, 0.0), None, (0.0, 0.0), Twist(0.0, 0.0, 0.0), (0.0,) * 3, 0.0, 0.0, 0.0, 0.0
+    (0.0, -1.0, 0.0), (1.0, 0.0, 0.0), None, (0.0, 0.0), Twist(0.0, 0.0, 0.0), (0.0,) * 3, 0.0, 0.0, 0.0
 )
 
 

@@ -14,7 +14,7 @@ from impact_predictor.prediction.planar import ImpactPlane
 from impact_predictor.prediction.scene import Scene, inertia_matrix
 
 PLANE = ImpactPlane(
-    (0.0, -1.0, 0.0), (1.0, 0.0, 0.0), None, (0.0, 0.0), Twist(0.0, 0.0, 0.0), (0.0,) * 3, 0.0, 0.0, 0.0, 0.0
+    (0.0, -1.0, 0.0), (1.0, 0.0, 0.0), None, (0.0, 0.0), Twist(0.0, 0.0, 0.0), (0.0,) * 3, 0.0, 0.0, 0.0
 )
 SCENE = Scene(1.0, inertia_matrix([0.1]), friction=0.3, restitution=0.1)
 

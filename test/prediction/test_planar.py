@@ -200,13 +200,6 @@ def test_contacts_beside_the_mass_centre_are_reported() -> None:
         assert one_side.offset == pytest.approx(offset, abs=ROUNDING)
 
 
-def test_the_gap_is_seen_from_the_standing_points() -> None:
-    scene, sample, posture = on_back_edge(np.array([0.0, 1.0, 0.0]), np.zeros(3))
-    raised = posture._replace(gaps=[0.07 if i in FRONT else 0.0 for i in range(8)])
-    plane = plane_of(scene, BOX, sample, raised, ActiveContacts(BACK, FRONT, 0.004))
-    assert plane.gap == pytest.approx(0.066, abs=ROUNDING)
-
-
 def test_a_body_on_a_corner_turns_about_the_part_of_its_spin_in_the_support() -> None:
     scene, sample, posture = on_back_edge(np.array([0.6, 0.8, 5.0]), np.zeros(3))
     plane = plane_of(scene, BOX, sample, posture, ActiveContacts((2,), (4,), 0.0))

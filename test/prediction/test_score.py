@@ -437,7 +437,7 @@ def test_what_waits_is_handed_out_one_score_for_each_sample_and_the_rest_at_the_
 def test_an_edge_whose_ends_close_one_after_the_other_is_not_scored() -> None:
     """They would close together at their present speeds, but at the speed of the impact they are further apart."""
     contacts = ActiveContacts((0, 1), (2, 3), 0.0)
-    plane = ImpactPlane((0, 1, 0), (1, 0, 0), (BACK, LOW), (FRONT, LOW), BEFORE, (0, -9.81, 0), 0.0, 0.0, 0.0, 0.0)
+    plane = ImpactPlane((0, 1, 0), (1, 0, 0), (BACK, LOW), (FRONT, LOW), BEFORE, (0, -9.81, 0), 0.0, 0.0, 0.0)
     body = TwoPointBody(1.0, 0.006, Contact(BACK, LOW, 1.2), Contact(FRONT, LOW, 1.2))
     collision = Collision(contacts, plane, body, BEFORE, (0.0, 0.0), 0.0, 0.0, True, 1.0, 1.0)
     for spread, leftover in ((0.0049, Leftover.NONE), (0.0051, Leftover.ONE_CORNER_FIRST)):

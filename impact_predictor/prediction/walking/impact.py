@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import hypot, inf, sqrt
+from math import hypot, inf
 
 from ...mechanics.contact_space import ContactOutcome, solve, unchanged
 from ...mechanics.types import Flag, Mode, Twist
-from ..planar import GRAZES, ORIGIN, ROUNDING, TINY, edge_of, hardly, off_axis_of
+from ..planar import GRAZES, ORIGIN, ROUNDING, direction_of, edge_of, hardly, off_axis_of
 from ..scene import Scene
 from ..types import Leftover, Sample, Status, Touchdown, Vector3
-from ..vectors import add, any_across, axes_of, cross, dot, mean, times, to_body, to_world
+from ..vectors import add, axes_of, cross, dot, mean, to_body, to_world
 from .mechanism import ImpulseResponse, LeggedMachine
 
 USABLE = 0.2
@@ -151,12 +151,7 @@ def ahead_of(scene: Scene, normal: Vector3, stood: list[Vector3], struck: Vector
         ways = [(arm, ROUNDING * square), (velocity, slow)]
         if is_line(stood, line) and dot(across, across) > USABLE**2 * dot(line, line) ** 2 * square:
             ways.insert(0, (across, 0.0))
-    for way, least in (*ways, (any_across(normal), 0.0)):
-        flat = add(way, normal, -dot(normal, way))
-        square = dot(flat, flat)
-        if square > least + TINY:
-            break
-    return times(flat, 1.0 / sqrt(square))
+    return direction_of(normal, ways)
 
 
 def is_line(stood: list[Vector3], line: Vector3) -> bool:
