@@ -94,7 +94,7 @@ def question(report: Mapping[str, Any], name: str) -> Section | None:
         "quicker, further down more accurate. What does not answer 90 % of the problems of a scene has no point there."
     )
     caption = f"Errors below {LEAST:g} stand there. Click a name to hide its method, point at a mark for more."
-    chart = Chart("Error against run time", _picture(rows, scenes), caption)
+    chart = Chart(f"Error against run time: {title.lower()}", _picture(rows, scenes), caption)
     return Section(name, title, [said], [_choices(report, name, scenes), chart])
 
 

@@ -132,10 +132,7 @@ def impact_rows(size: Size) -> Iterator[AccuracyRow]:
             found = run(method, problems, size.seconds)
             both = list(zip(problems, found.answers, references, strict=False))
             errors = [inf if after is None else impacts.error_of_twist(one, after, right) for one, after, right in both]
-            modes = [
-                (after.mode, right.mode) for _, after, right in both if after is not None and after.mode is not None
-            ]
-            wrong = sum(mode != right for mode, right in modes) / len(modes) if modes else None
+            wrong = [after.mode != right.mode for _, after, right in both if after and after.mode is not None]
             yield row_of(scene, method[:3], found.us, None, errors, sum(wrong) / len(wrong) if wrong else None)
 
 
