@@ -148,30 +148,26 @@ def solve_body(
     old: tuple[float, float, float] | None,
     no_old: bool,
     new: tuple[float, float, float],
-    old_normal: tuple[float, float],
-    new_normal: tuple[float, float],
-    old_velocity: tuple[float, float],
-    new_velocity: tuple[float, float],
     restitution: float,
     omega: float | None,
     twist: Twist | None,
     law: str,
     as_json: bool,
+    **sides: tuple[float, float],
 ) -> int:
     """Any body with two contacts, or with one that strikes, on supports of any direction that may move."""
     if (old is None) is not no_old:
         raise click.UsageError("Give either --old X Y FRICTION or --no-old")
     positive(mass=mass, inertia=inertia)
     fraction(restitution=restitution)
-    struck = contact("new", new, new_normal, new_velocity)._replace(restitution=restitution)
-    standing = None if old is None else contact("old", old, old_normal, old_velocity)
+    struck = contact("new", new, **sides)._replace(restitution=restitution)
+    standing = None if old is None else contact("old", old, **sides)
     return answer(TwoPointBody(mass, inertia, standing, struck), omega, twist, law, as_json)
 
 
-def contact(
-    which: str, place: tuple[float, float, float], normal: tuple[float, float], velocity: tuple[float, float]
-) -> Contact:
-    """A contact of checked numbers; its normal may have any length but zero."""
+def contact(which: str, place: tuple[float, float, float], **sides: tuple[float, float]) -> Contact:
+    """A contact of checked numbers, with its normal and velocity of both sides; a normal has any length but zero."""
+    normal, velocity = sides[f"{which}_normal"], sides[f"{which}_velocity"]
     x, y, friction = place
     length = hypot(*normal)
     if not (length > 0.0 and isfinite(length)):
