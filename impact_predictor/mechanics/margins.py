@@ -12,7 +12,7 @@ from collections.abc import Callable
 from math import copysign, hypot, inf
 from typing import NamedTuple
 
-from .impact import MODES, NOWHERE, new_tuple, number_of
+from .impact import MODES, NOWHERE, number_of
 from .impact.answer import answer
 from .impact.body import see
 from .types import Contact, Flag, Mode, Outcome, Twist, TwoPointBody, Vector
@@ -111,7 +111,7 @@ def margins(body: TwoPointBody, twist: Twist, law: str = "path") -> Margins:
 
     def at(change: float, case: Case) -> ChangedImpact:
         mode, after, _, _, _, _, states, flags, _, _, _ = answer(mass, inertia, stands, *case, number)
-        return new_tuple(ChangedImpact, (change, mode, states, flags, case, new_tuple(Twist, after)))
+        return ChangedImpact(change=change, mode=mode, states=states, flags=flags, case=case, after=Twist(*after))
 
     here = at(0.0, (old, new, twist))
     if here.mode == NO_IMPACT or here.flags & UNSOLVED:
@@ -171,8 +171,8 @@ def rubbed(old: Contact, new: Contact, twist: Twist, change: float) -> Case:
 
 def placed(contact: Contact, direction: Vector, shift: float) -> Contact:
     """The contact shifted in the body."""
-    x, y = contact.x + shift * direction[0], contact.y + shift * direction[1]
-    return new_tuple(Contact, (x, y, *contact[2:]))
+    x, y = direction
+    return contact._replace(x=contact.x + shift * x, y=contact.y + shift * y)
 
 
 def centered(old: Contact, new: Contact, twist: Twist, direction: Vector, shift: float) -> Case:
@@ -286,7 +286,8 @@ def velocity(trial: ChangedImpact, still: int) -> float:
     """The velocity (m/s) that vanishes at the border to the mode `still`, in which it is zero."""
     old, new, twist = trial.case
     if still == NO_IMPACT:
-        return -see(new, twist)[1]
+        _, normal, *_ = see(new, twist)
+        return -normal
     _, lifts_old, slips_old, *_ = see(old, trial.after)
     _, lifts_new, slips_new, *_ = see(new, trial.after)
     if trial.mode in OLD_LIFTS:

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+import math
+from collections.abc import Callable
+from functools import cache
+from importlib.util import find_spec, module_from_spec
+from types import ModuleType
+from typing import Any, NamedTuple, Union
 
-from .dual import Dual, dual_answer
 from .impact import NOWHERE, number_of
 from .impact.answer import answer
 from .impact.body import see
@@ -51,7 +55,7 @@ def sensitivity(body: TwoPointBody, twist: Twist, law: str = "path") -> Sensitiv
     counts that leaves it so (`allowed_changes`). A body that turns about A at rest has one such freedom, omega. Where
     no impact happens, or none can be solved, the twist after is the one before. An unknown law raises ValueError.
 
-    The law code is differentiated as it runs (see `dual`). The outcome is a piecewise rational function, with
+    The law code is differentiated as it runs (see `Dual`). The outcome is a piecewise rational function, with
     one-sided derivatives at its borders, which are taken a STEP away from them.
     """
     number = number_of(law)
@@ -77,8 +81,8 @@ def sensitivity(body: TwoPointBody, twist: Twist, law: str = "path") -> Sensitiv
         if there != states or rests(body, side) != rests(body, inputs):
             columns[i] = derivatives(body, side, directions, number)[i]
     friction_old, friction_new, restitution, vx, vy, omega = columns
-    by_twist = (vx[0], vy[0], omega[0]), (vx[1], vy[1], omega[1]), (vx[2], vy[2], omega[2])
-    return Sensitivity(friction_old, friction_new, restitution, by_twist, tuple(one_sided))
+    first, second, third = zip(vx, vy, omega, strict=True)
+    return Sensitivity(friction_old, friction_new, restitution, (first, second, third), tuple(one_sided))
 
 
 def allowed_changes(body: TwoPointBody, twist: Twist) -> TwistMatrix:
@@ -139,8 +143,8 @@ def problem_at(body: TwoPointBody, inputs: Inputs, law: int) -> tuple[float, flo
 
 def states_at(body: TwoPointBody, inputs: Inputs, law: int) -> tuple[int, int]:
     """The contact states along the impact, none without one, and the bits of `Flag`."""
-    outcome = answer(*problem_at(body, inputs, law))
-    return outcome[6], outcome[7]
+    _, _, _, _, _, _, states, flags, _, _, _ = answer(*problem_at(body, inputs, law))
+    return states, flags
 
 
 def derivatives(
@@ -148,6 +152,114 @@ def derivatives(
 ) -> list[Triple]:
     """Derivatives of the twist after the impact along each of the directions."""
     duals = [Dual(value, parts) for value, parts in zip(inputs, zip(*directions, strict=True), strict=True)]
-    after = dual_answer()(*problem_at(body, tuple(duals), law))[1]
+    _, after, *_ = dual_answer()(*problem_at(body, tuple(duals), law))
     vx, vy, omega = (part.parts for part in after)
     return list(zip(vx, vy, omega, strict=True))
+
+
+RealOrDual = Union[float, "Dual"]
+
+
+class Dual:
+    """A value and its derivatives (`parts`) by the inputs.
+
+    The law code (see `impact.contacts`) takes it for any other number and compares its value; so one impact of Duals
+    gives the exact derivatives of its outcome, on the branch that it takes.
+    """
+
+    __slots__ = ("parts", "value")
+    __hash__ = None  # type: ignore[assignment]
+
+    def __init__(self, value: float, parts: tuple[float, ...]) -> None:
+        self.value = value
+        self.parts = parts
+
+    def __add__(self, other: RealOrDual) -> Dual:
+        if isinstance(other, Dual):
+            return Dual(self.value + other.value, tuple([p + q for p, q in zip(self.parts, other.parts, strict=True)]))
+        return Dual(self.value + other, self.parts)
+
+    __radd__ = __add__
+
+    def __neg__(self) -> Dual:
+        return Dual(-self.value, tuple([-p for p in self.parts]))
+
+    def __sub__(self, other: RealOrDual) -> Dual:
+        if isinstance(other, Dual):
+            return Dual(self.value - other.value, tuple([p - q for p, q in zip(self.parts, other.parts, strict=True)]))
+        return Dual(self.value - other, self.parts)
+
+    def __rsub__(self, other: float) -> Dual:
+        return Dual(other - self.value, tuple([-p for p in self.parts]))
+
+    def __mul__(self, other: RealOrDual) -> Dual:
+        u = self.value
+        if isinstance(other, Dual):
+            v = other.value
+            return Dual(u * v, tuple([p * v + u * q for p, q in zip(self.parts, other.parts, strict=True)]))
+        return Dual(u * other, tuple([p * other for p in self.parts]))
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: RealOrDual) -> Dual:
+        if isinstance(other, Dual):
+            v = other.value
+            ratio = self.value / v
+            return Dual(ratio, tuple([(p - ratio * q) / v for p, q in zip(self.parts, other.parts, strict=True)]))
+        return Dual(self.value / other, tuple([p / other for p in self.parts]))
+
+    def __rtruediv__(self, other: float) -> Dual:
+        v = self.value
+        ratio = other / v
+        return Dual(ratio, tuple([-ratio * q / v for q in self.parts]))
+
+    def __abs__(self) -> Dual:
+        return -self if self.value < 0.0 else self
+
+    def __eq__(self, other: object) -> bool:
+        return self.value == (other.value if isinstance(other, Dual) else other)
+
+    def __lt__(self, other: RealOrDual) -> bool:
+        return self.value < value_of(other)
+
+    def __le__(self, other: RealOrDual) -> bool:
+        return self.value <= value_of(other)
+
+    def __gt__(self, other: RealOrDual) -> bool:
+        return self.value > value_of(other)
+
+    def __ge__(self, other: RealOrDual) -> bool:
+        return self.value >= value_of(other)
+
+
+def value_of(number: RealOrDual) -> float:
+    return number.value if isinstance(number, Dual) else number
+
+
+def sqrt(number: RealOrDual) -> RealOrDual:
+    """The square root; that of zero, which has no derivative, counts as constant."""
+    if not isinstance(number, Dual):
+        return math.sqrt(number)
+    root = math.sqrt(number.value)
+    slope = 0.5 / root if root > 0.0 else 0.0
+    return Dual(root, tuple([slope * part for part in number.parts]))
+
+
+@cache
+def dual_answer() -> Callable[..., Any]:
+    """`answer.answer` for Duals: the law code loaded a second time, with a square root that knows them."""
+    restitution, path_law, answer = load("restitution"), load("path_law"), load("answer")
+    restitution.sqrt = sqrt  # type: ignore[attr-defined]
+    path_law.span_of_work = restitution.span_of_work  # type: ignore[attr-defined]
+    answer.path_law = path_law  # type: ignore[attr-defined]
+    return answer.answer  # type: ignore[no-any-return]
+
+
+def load(name: str) -> ModuleType:
+    """Another instance of a module of the impact engine."""
+    spec = find_spec(f"{__package__}.impact.{name}")
+    assert spec is not None
+    assert spec.loader is not None
+    module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module

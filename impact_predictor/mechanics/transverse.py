@@ -26,7 +26,7 @@ from __future__ import annotations
 from math import inf, isfinite, sqrt
 from typing import NamedTuple
 
-from .impact import MODES, NOWHERE, flags_of, new_tuple, solve_impact, states_of
+from .impact import MODES, NOWHERE, flags_of, solve_impact, states_of
 from .impact.answer import OLD_RESTITUTION_IGNORED, PATH, VALIDITY, doubts, mode_of, unchanged
 from .impact.body import SPEED_ROUNDING, problem_of, twist_after
 from .impact.contacts import NO_SOLUTION
@@ -129,20 +129,18 @@ def solve_transverse_impact(
 
     slips = sqrt(vta * vta + vza * vza), sqrt(vtb * vtb + vzb * vzb)
     notes |= doubts(contacts, old is not None, nb, validity)
-    planar = (
-        MODES[mode_of(tolerance * speed, vna, slips[0], vnb, slips[1])],
-        new_tuple(Twist, after),
-        ((mass * na, mass * ta), (mass * nb, mass * tb)),
-        states_of(segments),
-        flags_of(notes | (OLD_RESTITUTION_IGNORED if restitution_old > 0.0 else 0)),
-        -0.5 * mass * work,
-        True,
-        (),
-        "path",
-        None,
-        None,
+    outcome = Outcome(
+        mode=MODES[mode_of(tolerance * speed, vna, slips[0], vnb, slips[1])],
+        twist=Twist(*after),
+        impulses=((mass * na, mass * ta), (mass * nb, mass * tb)),
+        segments=states_of(segments),
+        flags=flags_of(notes | (OLD_RESTITUTION_IGNORED if restitution_old > 0.0 else 0)),
+        energy_lost=-0.5 * mass * work,
+        unique=True,
+        alternatives=(),
+        law="path",
     )
-    return TransverseOutcome(new_tuple(Outcome, planar), across_after, (mass * za, mass * zb))
+    return TransverseOutcome(outcome, across_after, (mass * za, mass * zb))
 
 
 def slip_across(contact: Contact, transverse: Transverse) -> float:

@@ -13,7 +13,6 @@ from __future__ import annotations
 from math import sqrt
 from typing import NamedTuple
 
-from .impact import new_tuple
 from .transverse_implicit import implicit_step
 from .transverse_states import Across, RatesAcross, Slips, rates, way_of
 
@@ -180,7 +179,7 @@ def explicit_step(
         slips[3],
     )
     work = p * cnb + q * (cnb + 0.5 * span * rnb1) + r * (cnb + 0.75 * span2 * rnb2)
-    return new_tuple(Arc, (y, end, rate, last, span, span4, work, there)), error
+    return Arc(y, end, rate, last, span, span4, work, there), error
 
 
 def stiff_step(

@@ -244,7 +244,7 @@ def test_an_installation_in_which_nothing_can_be_written_works_too(tmp_path):
     nowhere = tmp_path / "nowhere"
     nowhere.write_text("a file, in which no folder can be made")
     # A file where numba would make its folder beside the code: that holds for root too.
-    (copy / "mechanics" / "__pycache__").write_text("")
+    (copy / "mechanics" / "impact" / "__pycache__").write_text("")
     environment = {**os.environ, "PYTHONPATH": str(tmp_path), "HOME": str(nowhere), "XDG_CACHE_HOME": str(nowhere)}
     environment.pop("NUMBA_CACHE_DIR", None)
     command = [sys.executable, "-c", READ_ONLY]

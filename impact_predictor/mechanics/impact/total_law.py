@@ -36,6 +36,9 @@ SAME_TWIST = 1e-9
 LINE_ROUNDING = 2e-15
 """The line from A to B, as the moments of the contacts give it, is known up to this part of their sizes."""
 
+Triple = tuple[float, float, float]
+"""A row, or the products nn, nt and tt of those of a contact."""
+
 Solution = tuple[bool, int, int, float, float, float, float, float, float, float]
 """Whether Coulomb's law holds; states of A and B; N_A, T_A, N_B, T_B; change of the twist (x, y, rho omega)."""
 
@@ -48,9 +51,8 @@ NOT_POSSIBLE: Solution = (False, OPEN, OPEN, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 def new_alone(contacts: ContactRows, gna: float, gnb: float, ctb: float) -> Solution:
     """B takes all of the impulse and A opens."""
     (an, _, qa, _, _), (nx, ny, nq, tx, ty, tq, extra, fb), (bnn, bnt, btt, size), _, rounding = contacts
-    held, b, nb, tb, dx, dy, dq = one_alone(
-        nx, ny, nq, tx, ty, tq, bnn + extra, bnt, btt, size + extra * (btt + tq * tq), fb, gnb, ctb, rounding
-    )
+    block, size = (bnn + extra, bnt, btt), size + extra * (btt + tq * tq)
+    held, b, nb, tb, dx, dy, dq = one_alone((nx, ny, nq), (tx, ty, tq), block, size, fb, gnb, ctb, rounding)
     u, v = an * dy, qa * dq
     gap = gna + u + v
     if not held or not (gap >= 0.0 or gap >= -rounding * (abs(gna) + abs(u) + abs(v))):
@@ -62,9 +64,8 @@ def old_alone(contacts: ContactRows, gna: float, cta: float, gnb: float) -> Solu
     """A takes all of the impulse and B opens."""
     (an, at, qa, sa, fa), (nx, ny, nq, _, _, _, _, _), _, _, rounding = contacts
     size = (an * at) * (an * at) + (an * sa) * (an * sa) + (at * qa) * (at * qa)
-    held, a, na, ta, dx, dy, dq = one_alone(
-        0.0, an, qa, at, 0.0, sa, an * an, 0.0, at * at, size, fa, gna, cta, rounding
-    )
+    block = an * an, 0.0, at * at
+    held, a, na, ta, dx, dy, dq = one_alone((0.0, an, qa), (at, 0.0, sa), block, size, fa, gna, cta, rounding)
     u, v, w = nx * dx, ny * dy, nq * dq
     gap = gnb + u + v + w
     if not held or not (gap >= 0.0 or gap >= -rounding * (abs(gnb) + abs(u) + abs(v) + abs(w))):
@@ -73,27 +74,15 @@ def old_alone(contacts: ContactRows, gna: float, cta: float, gnb: float) -> Solu
 
 
 def one_alone(
-    nx: float,
-    ny: float,
-    nq: float,
-    tx: float,
-    ty: float,
-    tq: float,
-    nn: float,
-    nt: float,
-    tt: float,
-    size: float,
-    friction: float,
-    gn: float,
-    ct: float,
-    rounding: float,
+    normal: Triple, tangent: Triple, block: Triple, size: float, friction: float, gn: float, ct: float, rounding: float
 ) -> tuple[bool, int, float, float, float, float, float]:
     """Whether a contact can take an impulse alone, its state, N, T and the change of the twist.
 
     It has one answer: along the impulses that stop its approach the slip grows with T, so that it sticks, or slips
-    against the T that would make it stick. The rows are those of the contact, nn, nt and tt their products without q,
-    and `size` is the determinant of its block of W.
+    against the T that would make it stick. `block` are the products of its rows without q, and `size` is the
+    determinant of its block of W.
     """
+    (nx, ny, nq), (tx, ty, tq), (nn, nt, tt) = normal, tangent, block
     off = nq * ct - tq * gn
     n, t = tq * off - tt * gn + nt * ct, nt * gn - nn * ct - nq * off
     q = -(nq * tt - tq * nt) * gn - (tq * nn - nq * nt) * ct
