@@ -9,7 +9,7 @@ export ROS_LOG_DIR ?= $(CURDIR)/log
 
 # A sourced ROS is used as it is; everywhere else ROS comes from PyPI into .venv. The two are never mixed.
 # An rclpy of wheels in another environment, active now, is not a sourced one.
-USED := fast,plot,page,calibrate,report,test
+USED := fast,plot,page,calibrate,test
 ROS := wheels
 SOURCED := import sys, rclpy; print(sys.prefix == sys.base_prefix or not rclpy.__file__.startswith(sys.prefix))
 ifdef ROS_DISTRO

@@ -40,7 +40,7 @@ EXTRAS = {
     "robots": ["example-robot-data>=4.0"],
     "test": ["hypothesis", "mpmath>=1.3", "pytest", "pytest-xdist"],
 }
-ALL = ("plot", "page", "calibrate", "report", "fast", "fleet", "articulated", "peers")
+ALL = ("plot", "page", "calibrate", "fast", "fleet", "articulated", "peers")
 """What brings a command or an option; ROS from PyPI is never mixed with a sourced one, so it is asked for by name."""
 
 setup(

@@ -36,7 +36,7 @@ BAGS = (
 )
 """Recorded bags, each with its scene."""
 
-TESTED = "fast,plot,page,calibrate,report,test"
+TESTED = "fast,plot,page,calibrate,test"
 """The extras that the tests use."""
 
 COLCON = "setuptools<80", "colcon-common-extensions"
