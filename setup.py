@@ -24,7 +24,6 @@ EXTRAS = {
     "plot": ["contourpy>=1.0", "matplotlib>=3.6", "pillow>=9.2", "scipy>=1.11"],
     "page": ["plotly>=6.0"],
     "calibrate": ["scipy>=1.11"],
-    # References of `impact-predictor report`.
     # `impact-predictor report`.
     "report": ["plotly>=6.0", "scipy>=1.11"],
     "fast": ["numba"],
