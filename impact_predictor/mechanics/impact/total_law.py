@@ -36,7 +36,7 @@ SAME_TWIST = 1e-9
 LINE_ROUNDING = 2e-15
 """The line from A to B, as the moments of the contacts give it, is known up to this part of their sizes."""
 
-Triple = tuple[float, float, float]
+RowTriple = tuple[float, float, float]
 """A row, or the products nn, nt and tt of those of a contact."""
 
 Solution = tuple[bool, int, int, float, float, float, float, float, float, float]
@@ -74,7 +74,14 @@ def old_alone(contacts: ContactRows, gna: float, cta: float, gnb: float) -> Solu
 
 
 def one_alone(
-    normal: Triple, tangent: Triple, block: Triple, size: float, friction: float, gn: float, ct: float, rounding: float
+    normal: RowTriple,
+    tangent: RowTriple,
+    block: RowTriple,
+    size: float,
+    friction: float,
+    gn: float,
+    ct: float,
+    rounding: float,
 ) -> tuple[bool, int, float, float, float, float, float]:
     """Whether a contact can take an impulse alone, its state, N, T and the change of the twist.
 
