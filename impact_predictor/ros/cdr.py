@@ -159,11 +159,12 @@ def check_end(data: bytes, end: int, sequences: int = 0) -> None:
         raise MalformedMessage(f"the message has {len(data)} bytes in the place of {end}")
 
 
-_PADDING: Final = (b"\0\0\0\0", b"\0\0\0", b"\0\0", b"\0")
+PADDING: Final = (b"\0\0\0\0", b"\0\0\0", b"\0\0", b"\0")
 _pack_length = LITTLE_ENDIAN.length.pack
 _pack_stamp = LITTLE_ENDIAN.stamp.pack
 _SHORT: Final = 64
-_LENGTHS: Final = tuple([_pack_length(size + 1) for size in range(_SHORT)])
+_PARTS_OF_PAIR: Final = 4
+LENGTHS: Final = tuple([_pack_length(size + 1) for size in range(_SHORT)])
 """The lengths of short strings with their NUL, by those without."""
 
 
@@ -171,7 +172,7 @@ def string(text: str) -> bytes:
     """A string, padded so that whatever follows is aligned to four bytes."""
     raw = text.encode()
     size = len(raw)
-    return (_LENGTHS[size] if size < _SHORT else _pack_length(size + 1)) + raw + _PADDING[size & 3]
+    return (LENGTHS[size] if size < _SHORT else _pack_length(size + 1)) + raw + PADDING[size & 3]
 
 
 def stamp(nanoseconds: int) -> bytes:
@@ -200,6 +201,9 @@ _name = lru_cache(maxsize=1024)(string)
 """A string that comes again and again: a key, the name of a status, a frame."""
 
 
+_LEVELS: Final = tuple(bytes((level, 0, 0, 0)) for level in (OK, WARN, ERROR, STALE))
+
+
 class StatusBytes(NamedTuple):
     """A diagnostic_msgs/DiagnosticStatus for `diagnostic_array`: its level, and the rest, the last `padding` bytes of
     which only align what follows.
@@ -210,16 +214,25 @@ class StatusBytes(NamedTuple):
     padding: int
 
 
+def add_pair(pairs: list[bytes], key: bytes, value: str) -> None:
+    """Append a diagnostic_msgs/KeyValue to those of a status, in four parts; `key` is a `string`."""
+    raw = value.encode()
+    size = len(raw)
+    pairs += (key, LENGTHS[size] if size < _SHORT else _pack_length(size + 1), raw, PADDING[size & 3])
+
+
 def pairs_of(values: Mapping[str, str]) -> list[bytes]:
-    """The values of a status by their keys: each key and each value is a `string`."""
-    return [part for key, value in values.items() for part in (_name(key), string(value))]
+    """The values of a status by their keys."""
+    pairs: list[bytes] = []
+    for key, value in values.items():
+        add_pair(pairs, _name(key), value)
+    return pairs
 
 
 def diagnostic_status(level: int, name: str, message: str, hardware_id: str, pairs: list[bytes]) -> StatusBytes:
-    """A diagnostic_msgs/DiagnosticStatus; `level` is one of OK, WARN, ERROR and STALE, `pairs` as of `pairs_of`."""
-    head = [_name(name), string(message), _name(hardware_id), _pack_length(len(pairs) // 2)]
-    # The first byte is the lowest of the length.
-    return StatusBytes(level, head + pairs, -pairs[-1][0] & 3 if pairs else 0)
+    """A diagnostic_msgs/DiagnosticStatus; `level` is one of OK, WARN, ERROR and STALE, `pairs` as of `add_pair`."""
+    head = [_name(name), string(message), _name(hardware_id), _pack_length(len(pairs) // _PARTS_OF_PAIR)]
+    return StatusBytes(level, head + pairs, len(pairs[-1]) - 1 if pairs else 0)
 
 
 def diagnostic_array(nanoseconds: int, frame_id: str, statuses: Sequence[StatusBytes]) -> bytes:
@@ -229,8 +242,9 @@ def diagnostic_array(nanoseconds: int, frame_id: str, statuses: Sequence[StatusB
     for level, own, its_padding in statuses:
         # A level is a byte, which needs no alignment: it follows at once on the last text before it.
         if padding:
-            parts[-1] = parts[-1][:-padding]
-        parts.append(bytes((level, *bytes(padding - 1 & 3))))
+            parts[-1] = bytes((0, level, *bytes(padding - 1)))
+        else:
+            parts.append(_LEVELS[level])
         parts += own
         padding = its_padding
     # The padding of the last value pads the whole, as DDS does, so that a bag holds what a topic carried.

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Final, Generic, TypeVar
 
 from ...mechanics.types import Flag, Mode
 from ...prediction.types import Covariance, Foot, Landing, Leftover, Prediction, Score, Status, Touchdown, Uncertainty
-from ..cdr import string
+from ..cdr import LENGTHS, PADDING, add_pair, string
 
 if TYPE_CHECKING:
     from ...mechanics.margins import Margin, Margins
@@ -65,11 +65,16 @@ class Table(Generic[Source]):
         self._prepared = [(string(field.key), field.get) for field in fields]
 
     def add_to(self, pairs: list[bytes], record: Source) -> None:
-        """Append the keys and values of a record to those of a status (see `pairs_of`)."""
+        """Append the keys and values of a record to those of a status (see `add_pair`)."""
         for key, get in self._prepared:
             value = get(record)
-            if value is not None:
-                pairs += (key, string(repr(value) if type(value) is float else text(value)))
+            if type(value) is float:
+                # `add_pair` written out, for most values are numbers: it makes a message a tenth cheaper.
+                raw = repr(value).encode()
+                size = len(raw)
+                pairs += (key, LENGTHS[size], raw, PADDING[size & 3])
+            elif value is not None:
+                add_pair(pairs, key, text(value))
 
 
 PREDICTION: Final = Table[Prediction](
