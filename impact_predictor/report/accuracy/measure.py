@@ -23,6 +23,14 @@ ALL_SCENES: Final = "all"
 
 TOUCHDOWN: Final = "touchdown"
 IMPACT: Final = "impact"
+STABILITY: Final = "stability"
+
+ERRORS: Final = {
+    TOUCHDOWN: ("time_error_90", "twist_error_90"),
+    IMPACT: ("twist_error_90",),
+    STABILITY: ("violation_worst",),
+}
+"""What of a row counts as its error, by the question."""
 
 SPAN: Final = 2e-4
 """s of calls that are timed together, far above the resolution of the clock."""
@@ -79,11 +87,11 @@ def run(method: Method, problems: Sequence[Any], seconds: float) -> MethodRun:
             call = _call(method, problems)
             call()  # compiles
             found = call()
-            return MethodRun(method, method.unpack(found), [1e6 * _seconds_of(call) / len(problems)])
+            return MethodRun(method, method.unpack(found), [1e6 * seconds_of(call) / len(problems)])
         for problem in problems:
             call = _call(method, problem)
             answers.append(call())
-            us.append(1e6 * _seconds_of(call))
+            us.append(1e6 * seconds_of(call))
             if process_time() - began > seconds:
                 break
     return MethodRun(method, answers, us)
@@ -105,7 +113,7 @@ def _call(method: Method, problem: Any) -> Callable[[], Any]:
     return call
 
 
-def _seconds_of(call: Callable[[], Any]) -> float:
+def seconds_of(call: Callable[[], Any]) -> float:
     """CPU time of a call."""
     times, repeats = list[float](), 1
     while len(times) < ROUNDS:
@@ -126,12 +134,13 @@ def row_of(
     scene: AccuracyScene,
     names: Sequence[str],
     us: Sequence[float],
-    times: Sequence[float] | None,
-    twists: Sequence[float] | None,
+    times: Sequence[float] | None = None,
+    twists: Sequence[float] | None = None,
+    violations: Sequence[float] | None = None,
     wrong_modes: float | None = None,
 ) -> AccuracyRow:
     """A row from the family, name and setting of a method, its costs and its errors; those that failed are inf."""
-    errors = {"time_error": times, "twist_error": twists}
+    errors = {"time_error": times, "twist_error": twists, "violation": violations}
     row: AccuracyRow = dict(zip(("family", "method", "setting"), names, strict=True))
     row |= {"question": scene.question, "scene": scene.name, "us": median(us), "us_90": sorted(us)[len(us) * 9 // 10]}
     for name, values in errors.items():
@@ -139,15 +148,16 @@ def row_of(
         last = len(ordered) - 1
         parts = {"": ordered[last // 2], "_90": ordered[-(-9 * last // 10)], "_worst": ordered[-1]}
         row |= {f"{name}{end}": error if isfinite(error) else None for end, error in parts.items()}
-    known = times if twists is None else twists
-    assert known is not None
+    known = next(values for values in (twists, times, violations) if values is not None)
     return row | {"wrong_modes": wrong_modes, "count": len(known), "failed": sum(one == inf for one in known)}
 
 
 def error_of(row: Mapping[str, Any]) -> float:
-    """What 90 % of a row's errors stay below, the larger of the time's and the twist's; inf where there is none."""
-    asked = ["twist_error_90"] if row["question"] == IMPACT else ["time_error_90", "twist_error_90"]
-    return max(inf if row[name] is None else row[name] for name in asked)
+    """What 90 % of a row's errors stay below, the larger of the time's and the twist's; inf where there is none.
+
+    Of the stability it is the worst violation.
+    """
+    return max(inf if row[name] is None else row[name] for name in ERRORS[row["question"]])
 
 
 def on_all(rows: Iterable[AccuracyRow], scenes: Sequence[str]) -> Iterator[AccuracyRow]:

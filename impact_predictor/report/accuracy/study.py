@@ -6,6 +6,7 @@ import os
 import platform
 from collections.abc import Callable, Iterator
 from datetime import datetime, timezone
+from functools import partial
 from importlib.metadata import PackageNotFoundError, version
 from itertools import count
 from math import inf, isfinite
@@ -13,14 +14,21 @@ from pathlib import Path
 from statistics import median
 from typing import Any, Final, NamedTuple
 
+import numpy as np
+
 from ... import __version__
 from ...bags.replay import replay
+from ...mechanics.impact import LAWS
+from ...mechanics.impact.batch import solve_impacts
+from ...mechanics.invariants import UNANSWERED, violations
+from ...mechanics.random_problems import problems_of
 from ...parameters.file import read_values
 from ...prediction.scene import Scene, scenes_of
 from ...resources import find
 from . import impacts, touchdowns
 from .measure import (
     IMPACT,
+    STABILITY,
     TOUCHDOWN,
     AccuracyRow,
     AccuracyScene,
@@ -29,6 +37,7 @@ from .measure import (
     default_of,
     row_of,
     run,
+    seconds_of,
 )
 
 TIMING: Final = (
@@ -45,20 +54,37 @@ TOSSES: Final = AccuracyScene(
     True,
 )
 
+MECHANICS: Final = ("cone", "momentum", "approach", "work", "energy")
+"""The invariants that one outcome violates or not."""
+
+RANDOM: Final = [
+    AccuracyScene(kind, STABILITY, title, description, "mechanics itself: no other solution is needed")
+    for kind, title, description in (
+        ("tilted", "Ordinary bodies", "Two contacts anywhere with any normals, sizes of 0.1 to 2 m, friction to 4."),
+        ("slender", "Slender bodies", "Lengths and frictions over eight decades, on a floor or a slope."),
+        ("close", "Close contacts", "Both contacts nearly at one place, 1e-9 to 0.1 m from each other."),
+        ("parallel", "Parallel normals", "Normals that are parallel or opposed but for 1e-12 to 0.1 rad."),
+        ("extreme", "Extreme bodies", "Every length, mass, friction and speed over eight to twelve decades."),
+        ("extreme-apart", "Extreme supports", "The same on supports that move apart."),
+    )
+]
+"""The scenes of the stability, by the kinds of `random_problems`."""
+
 
 class Size(NamedTuple):
-    """How much is measured: problems of each touchdown and impact scene, seconds for a method on a scene, and how many
-    of the `variants` replay the recorded tosses.
+    """How much is measured: problems of each touchdown, impact and random scene, seconds for a method on a scene, and
+    how many of the `variants` replay the recorded tosses.
     """
 
     falls: int
     strikes: int
+    random: int
     seconds: float
     variants: int
 
 
-FULL: Final = Size(32, 200, 0.6, 6)
-QUICK: Final = Size(6, 24, 0.05, 3)
+FULL: Final = Size(falls=32, strikes=200, random=20_000, seconds=0.6, variants=6)
+QUICK: Final = Size(falls=6, strikes=24, random=2_000, seconds=0.05, variants=3)
 
 
 def variants(scene: Scene) -> Iterator[tuple[str, Scene]]:
@@ -76,11 +102,11 @@ def report(size: Size, command: str, tell: Callable[[int], None] = lambda done: 
     """Measure everything; the report as its JSON has it. `tell` is told how many steps are done of `steps(size)`."""
     done = count(1)
     rows: list[AccuracyRow] = []
-    for work in (touchdown_rows, impact_rows, toss_rows):
+    for work in (touchdown_rows, impact_rows, stability_rows, toss_rows):
         for row in work(size):
             tell(next(done))
             rows += [row] if row else []
-    scenes = [*touchdowns.scenes(), *impacts.scenes(), TOSSES]
+    scenes = [*touchdowns.scenes(), *impacts.scenes(), *RANDOM, TOSSES]
     there = {row["family"] for row in rows}
     families = {**touchdowns.FAMILIES, **impacts.FAMILIES}.items()
     used = {TOUCHDOWN: touchdowns.USED, IMPACT: impacts.USED}
@@ -102,7 +128,7 @@ def report(size: Size, command: str, tell: Callable[[int], None] = lambda done: 
 def steps(size: Size) -> int:
     """How many steps a report has."""
     planned = len(touchdowns.SCENES) * len(touchdowns.METHODS)
-    return planned + len(impacts.SCENES) * len(impacts.methods()) + size.variants
+    return planned + len(impacts.SCENES) * len(impacts.methods()) + len(RANDOM) * len(LAWS) + size.variants
 
 
 def touchdown_rows(size: Size) -> Iterator[AccuracyRow]:
@@ -133,7 +159,23 @@ def impact_rows(size: Size) -> Iterator[AccuracyRow]:
             both = list(zip(problems, found.answers, references, strict=False))
             errors = [inf if after is None else impacts.error_of_twist(one, after, right) for one, after, right in both]
             wrong = [after.mode != right.mode for _, after, right in both if after and after.mode is not None]
-            yield row_of(scene, method[:3], found.us, None, errors, sum(wrong) / len(wrong) if wrong else None)
+            part = sum(wrong) / len(wrong) if wrong else None
+            yield row_of(scene, method[:3], found.us, twists=errors, wrong_modes=part)
+
+
+def stability_rows(size: Size) -> Iterator[AccuracyRow]:
+    """Each law on random impacts of ordinary, stiff and extreme kinds: by how much the outcomes violate mechanics."""
+    for scene in RANDOM:
+        _, body, twist = problems_of(scene.name, np.random.default_rng(4), size.random)
+        for law in LAWS:
+            # Sizes over many decades overflow in sums of squares; what is not a number counts as endlessly wrong.
+            with np.errstate(all="ignore"):
+                outcomes, found = violations(body, twist, law)
+                us = 1e6 * seconds_of(partial(solve_impacts, body, twist, law)) / size.random
+            worst = np.nan_to_num(np.maximum.reduce([found[name] for name in MECHANICS]), nan=inf)
+            answered = (outcomes.flags & UNANSWERED) == 0
+            row = row_of(scene, (f"{law} law", f"{law} law", impacts.ALL), [us], violations=worst[answered].tolist())
+            yield row | {"count": size.random, "failed": int(size.random - answered.sum())}
 
 
 def toss_rows(size: Size) -> Iterator[AccuracyRow]:
@@ -145,7 +187,7 @@ def toss_rows(size: Size) -> Iterator[AccuracyRow]:
         scores = [settled.score for settled in found.settled if settled.score.scored]
         errors = [inf if score.relative_error is None else score.relative_error for score in scores]
         costs = [1e6 * settled.cost for settled in found.settled if settled.cost is not None]
-        yield row_of(TOSSES, ("predictor", name, ""), costs or [1e6 * median(found.costs)], None, errors)
+        yield row_of(TOSSES, ("predictor", name, ""), costs or [1e6 * median(found.costs)], twists=errors)
 
 
 def made(command: str) -> dict[str, str]:

@@ -25,7 +25,7 @@ SLIPS: Final = 0.2
 """Friction of a stance that slips all the way; one that sticks is held."""
 
 HORIZON: Final = 20.0
-"""s within which scipy looks for the touchdown."""
+"""s within which the touchdown is looked for."""
 
 FINEST: Final = 1e-13
 """Relative tolerance of the reference."""
@@ -85,6 +85,12 @@ def turning(shape: FallingShape, source: Random) -> FallingBody:
     return shape.falling(angle, speed if source.random() < 0.1 else -speed)
 
 
+def of_any_size(source: Random) -> FallingBody:
+    """A fall of a plate of 1 mm to 100 m, up to a thousand times as long as high or ten times as high as long."""
+    length = 10.0 ** source.uniform(-3.0, 2.0)
+    return turning(rectangle(length, length * 10.0 ** source.uniform(-3.0, 1.0)), source)
+
+
 def leaving_balance(source: Random) -> FallingBody:
     """A crate at rest, leaning from its balance by 1e-4 to 0.1 rad: most of its fall it hardly moves."""
     return CRATE.falling(atan2(CRATE.a, CRATE.height) - 10.0 ** source.uniform(-4.0, -1.0), 0.0)
@@ -114,6 +120,11 @@ SCENES: Final[dict[str, tuple[str, str, Callable[[Random], FallingBody]]]] = {
         "Cylinder between edges",
         "A cylinder of 0.1 m radius rolls over an edge onto the next one, 80 degrees apart.",
         partial(turning, CYLINDER),
+    ),
+    "extreme": (
+        "Extreme plates",
+        "Plates of 1 mm to 100 m, from a thousand times as long as high to ten times as high as long.",
+        of_any_size,
     ),
     "balance": ("Out of balance", "A crate is released 1e-4 to 0.1 rad from its balance.", leaving_balance),
     "sliding": (
@@ -226,7 +237,7 @@ def _descent(height: float, rate: float, acceleration: float) -> float:
 
 def own(fall: FallingBody) -> PredictedTouchdown | None:
     """The program's own predictor."""
-    end = next_touchdown(*fall, tolerance=ACCURACY)
+    end = next_touchdown(*fall, HORIZON, ACCURACY)
     return PredictedTouchdown(end.time, Twist(end.state.vx, end.state.vy, end.state.omega)) if end.point >= 0 else None
 
 

@@ -78,7 +78,7 @@ ROWS = [
 
 def test_a_row_has_quantiles_of_the_errors_and_null_for_what_is_endless() -> None:
     numbers = [float(k) for k in range(11)]
-    mine = row_of(SCENES[0], ("f", "m", "s"), numbers, [*numbers[:-1], inf], None, 0.25)
+    mine = row_of(SCENES[0], ("f", "m", "s"), numbers, [*numbers[:-1], inf], None, wrong_modes=0.25)
     assert (mine["us"], mine["us_90"]) == (5.0, 9.0)
     assert (mine["time_error"], mine["time_error_90"], mine["time_error_worst"]) == (5.0, 9.0, None)
     assert (mine["count"], mine["failed"], mine["wrong_modes"]) == (11, 1, 0.25)

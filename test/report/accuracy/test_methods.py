@@ -13,7 +13,7 @@ from impact_predictor.report.accuracy import impacts, touchdowns
 from impact_predictor.report.accuracy.impacts import Aftermath, Struck
 from impact_predictor.report.accuracy.touchdowns import CRATE, FallingBody, PredictedTouchdown
 
-PAPER = ("rod", "plate", "cylinder")
+PAPER = ("rod", "plate", "cylinder", "stiff")
 COUNT = 12
 
 
