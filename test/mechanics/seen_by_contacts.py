@@ -19,6 +19,13 @@ def rows_of(body):
     return np.array(rows)
 
 
+def contact_velocity(contact, twist):
+    """Normal and tangential velocity of a body at a contact, relative to its support."""
+    (nx, ny), (ux, uy) = contact.normal, contact.velocity
+    cx, cy = twist[0] - twist[2] * contact.y - ux, twist[1] + twist[2] * contact.x - uy
+    return nx * cx + ny * cy, ny * cx - nx * cy
+
+
 def velocities(body, twist):
     """Contact velocities relative to the supports, and the sizes of the terms that they are the sums of."""
     speeds, sizes = [], []
@@ -26,12 +33,17 @@ def velocities(body, twist):
         if contact is None:
             speeds, sizes = [math.inf, math.nan], [0.0, 0.0]
             continue
-        (nx, ny), (ux, uy) = contact.normal, contact.velocity
-        terms = ((twist[0], -twist[2] * contact.y, -ux), (twist[1], twist[2] * contact.x, -uy))
-        cx, cy = map(sum, terms)
-        speeds += [nx * cx + ny * cy, ny * cx - nx * cy]
-        sizes += [sum(abs(term) for part in terms for term in part)] * 2
+        speeds += contact_velocity(contact, twist)
+        terms = (*twist[:2], twist[2] * contact.x, twist[2] * contact.y, *contact.velocity)
+        sizes += [sum(map(abs, terms))] * 2
     return speeds, sizes
+
+
+def condition(w):
+    """Condition number of W on its range, its diagonal scaled to 1: how many roundings an error may be."""
+    scale = np.sqrt(np.diag(w))
+    sizes = np.linalg.eigvalsh(w / scale / scale[:, None])
+    return sizes[-1] / min(size for size in sizes if size > 1e-12)
 
 
 def seen_by_contacts(body, twist):

@@ -31,9 +31,9 @@ def model_of(name):
 
 
 def hyq():
-    """The quadruped HyQ, with its feet as contacts."""
-    needs_pinocchio()
-    return WholeBody(model_of("hyq_no_sensors.urdf"), FEET)
+    """Pinocchio, its model of the quadruped HyQ, and the robot with its feet as contacts."""
+    pinocchio, path = needs_pinocchio(), model_of("hyq_no_sensors.urdf")
+    return pinocchio, pinocchio.buildModelFromUrdf(path, pinocchio.JointModelFreeFlyer()), WholeBody(path, FEET)
 
 
 def random_posture(source):
@@ -53,8 +53,7 @@ def one_link(tmp_path, inertial, child="", kind="revolute"):
 
 @pytest.mark.extras
 def test_sticking_feet_change_the_velocities_as_in_pinocchio():
-    pinocchio, body = needs_pinocchio(), hyq()
-    model = pinocchio.buildModelFromUrdf(model_of("hyq_no_sensors.urdf"), pinocchio.JointModelFreeFlyer())
+    pinocchio, model, body = hyq()
     source = np.random.default_rng(1)
     for _ in range(50):
         positions, motion = random_posture(source), source.normal(size=model.nv)
@@ -70,30 +69,6 @@ def test_sticking_feet_change_the_velocities_as_in_pinocchio():
         after = motion - moved @ np.linalg.solve(W, rows @ motion)
         # Rates of about 10 rad/s, and a condition number of about 1e4.
         assert after == pytest.approx(expected, abs=1e-10)
-
-
-@pytest.mark.extras
-def test_a_sticking_impact_of_contact_space_is_that_of_pinocchio_in_the_plane():
-    pinocchio, body = needs_pinocchio(), hyq()
-    model = pinocchio.buildModelFromUrdf(model_of("hyq_no_sensors.urdf"), pinocchio.JointModelFreeFlyer())
-    source = np.random.default_rng(2)
-    stops = 0
-    for _ in range(60):
-        positions = random_posture(source)
-        body.place(positions)
-        W, moved = body.mobility([[1], [2]], WAYS)
-        rows = np.concatenate([np.array(WAYS) @ body.jacobians[k] for k in (1, 2)])
-        motion = source.normal(size=model.nv)
-        motion -= moved @ np.linalg.solve(W, rows @ motion - [0.0, 0.0, -0.3, 0.05])
-        c = rows @ motion
-        outcome = solve(W, [0.0, 0.0, *c[2:]], (9.0, 9.0))
-        if outcome.mode.name != "STOP":
-            continue
-        q = np.concatenate([[0, 0, 0, 0, 0, 0, 1], positions])
-        expected = pinocchio.impulseDynamics(model, model.createData(), q, motion, rows, 0.0, 0.0)
-        assert motion + moved @ np.array(outcome.impulses).ravel() == pytest.approx(expected, abs=1e-10)
-        stops += 1
-    assert stops > 10
 
 
 def of_links(pinocchio, model, positions, motion):
@@ -115,8 +90,7 @@ def of_links(pinocchio, model, positions, motion):
 
 @pytest.mark.extras
 def test_the_whole_inertia_holds_the_kinetic_energy_and_both_momenta_of_the_links():
-    pinocchio, body = needs_pinocchio(), hyq()
-    model = pinocchio.buildModelFromUrdf(model_of("hyq_no_sensors.urdf"), pinocchio.JointModelFreeFlyer())
+    pinocchio, model, body = hyq()
     source = np.random.default_rng(3)
     for _ in range(20):
         positions, motion = random_posture(source), source.normal(size=model.nv)
@@ -129,8 +103,7 @@ def test_the_whole_inertia_holds_the_kinetic_energy_and_both_momenta_of_the_link
 @pytest.mark.extras
 @pytest.mark.parametrize("law", ["path", "total"])
 def test_an_impact_changes_the_momentum_of_the_links_by_its_impulses_and_their_energy_by_what_it_says(law):
-    pinocchio, body = needs_pinocchio(), hyq()
-    model = pinocchio.buildModelFromUrdf(model_of("hyq_no_sensors.urdf"), pinocchio.JointModelFreeFlyer())
+    pinocchio, model, body = hyq()
     source = np.random.default_rng(5)
     modes = set()
     for _ in range(100):
@@ -165,7 +138,7 @@ def test_an_impact_changes_the_momentum_of_the_links_by_its_impulses_and_their_e
 
 @pytest.mark.extras
 def test_points_and_their_velocities_are_those_of_the_frames():
-    body = hyq()
+    _, _, body = hyq()
     source = np.random.default_rng(4)
     positions, rates, step = random_posture(source), source.normal(size=12), 1e-6
     places = []

@@ -1,29 +1,27 @@
 """The exact solver that decides new cases agrees with golden/impacts.json, which it shares no code with."""
 
-import json
 from fractions import Fraction
 from itertools import pairwise
-from pathlib import Path
 
 import exact
 import pytest
 from exact import NB
 from exact_algebra import dot
+from golden_impacts import CASES, KINDS, body_of
 
 from impact_predictor import Contact, TwoPointBody
 
-CASES = json.loads((Path(__file__).parent / "golden" / "impacts.json").read_text())["cases"]
-KINDS = sorted({case["kind"] for case in CASES})
 CLOSE = 2.0**-52
 """Of the terms that a contact velocity is the sum of: one rounding of the twist before and one of that after."""
 
 
-def body_of(case, restitution=0.0):
-    old, new = (
-        Contact(each["x"], each["y"], each["friction"], tuple(each["normal"]), restitution, tuple(each["velocity"]))
-        for each in case["contacts"]
-    )
-    return TwoPointBody(case["mass"], case["inertia"], old, new)
+SLIM = TwoPointBody(
+    mass=0.104,
+    inertia=0.0818,
+    old=Contact(-1.6581, -1.4522, 1.8782),
+    new=Contact(1.2691, -0.7467, 1.8782, (0.1611439001926167, 0.9869309213064064)),
+)
+"""Found by chance among wedges: A slips and jams again and again, and the body is 0.146 times as fast each time."""
 
 
 def distance(problem, case, change, twist):
@@ -62,11 +60,7 @@ def test_the_total_law_has_the_golden_solutions(kind):
 
 
 def test_jams_without_end_have_the_limit_that_more_and_more_of_them_come_near(monkeypatch):
-    # Found by chance among wedges: A slips and jams again and again, and the body is 0.146 times as fast each time.
-    old = Contact(-1.6581, -1.4522, 1.8782)
-    new = Contact(1.2691, -0.7467, 1.8782, (0.1611439001926167, 0.9869309213064064))
-    body = TwoPointBody(0.104, 0.0818, old, new)
-    problem = exact.problem_of(body, body.turning(-0.4767))
+    problem = exact.problem_of(SLIM, SLIM.turning(-0.4767))
     limit = exact.path(problem)
     assert limit.segments == ("O+", "OS", "-O", "SO") * 2
     assert limit.history[-1] == [0, 0, 0, 0]
@@ -81,11 +75,8 @@ def test_jams_without_end_have_the_limit_that_more_and_more_of_them_come_near(mo
 
 
 def test_restitution_goes_on_after_jams_without_end():
-    old = Contact(-1.6581, -1.4522, 1.8782)
-    new = Contact(1.2691, -0.7467, 1.8782, (0.1611439001926167, 0.9869309213064064))
-    body = TwoPointBody(0.104, 0.0818, old, new)
     plastic, elastic = (
-        exact.path(exact.problem_of(body._replace(new=new._replace(restitution=each)), body.turning(-0.4767)))
+        exact.path(exact.problem_of(SLIM._replace(new=SLIM.new._replace(restitution=each)), SLIM.turning(-0.4767)))
         for each in (0.0, 0.5)
     )
     assert elastic.segments[: len(plastic.segments)] == plastic.segments

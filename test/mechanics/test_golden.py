@@ -1,60 +1,37 @@
 """Impacts decided in exact rational arithmetic: golden/impacts.json (see golden/README.md)."""
 
-import json
 import sys
-from pathlib import Path
 
 import pytest
+from golden_impacts import CASES, KINDS, body_of
+from seen_by_contacts import velocities
 
-from impact_predictor import Contact, Flag, Twist, TwoPointBody, solve_impact
+from impact_predictor import Flag, Twist, solve_impact
 
-CASES = json.loads((Path(__file__).parent / "golden" / "impacts.json").read_text())["cases"]
 CLOSE = 1e-11
 """Largest error of a contact velocity, as a part of the largest contact speed before the impact."""
 ANSWERS = {"routh": ("path", 0.0), "routh_e0.5": ("path", 0.5), "total": ("total", 0.0)}
 
 
-def contact(values, restitution=0.0):
-    return Contact(
-        values["x"],
-        values["y"],
-        values["friction"],
-        tuple(values["normal"]),
-        restitution,
-        tuple(values["velocity"]),
-    )
-
-
-def body_of(case, restitution):
-    old, new = case["contacts"]
-    return TwoPointBody(case["mass"], case["inertia"], contact(old), contact(new, restitution))
-
-
-def velocities(case, twist):
-    """Normal and tangential velocity of both contacts, and the sizes of the terms they are the sums of."""
-    speeds, sizes = [], []
-    vx, vy, omega = twist
-    for values in case["contacts"]:
-        (nx, ny), (ux, uy) = values["normal"], values["velocity"]
-        cx, cy = vx - omega * values["y"] - ux, vy + omega * values["x"] - uy
-        speeds += [nx * cx + ny * cy, ny * cx - nx * cy]
-        sizes += [abs(vx) + abs(vy) + abs(omega) * (abs(values["x"]) + abs(values["y"]))] * 2
-    return speeds, sizes
+def sizes_of(case, twist):
+    """The sizes of the terms of the contact velocities that a rounding of the twist is a part of."""
+    vx, vy, omega = map(abs, twist)
+    return [vx + vy + omega * (abs(each["x"]) + abs(each["y"])) for each in case["contacts"] for _ in range(2)]
 
 
 def is_close(case, twist, reference):
     """Up to CLOSE or, where the body is far faster than its contacts, up to the rounding of the two twists."""
-    largest = max(map(abs, velocities(case, case["twist"])[0]))
-    ours, sizes = velocities(case, twist)
-    theirs, _ = velocities(case, reference)
+    body = body_of(case)
+    largest = max(map(abs, velocities(body, case["twist"])[0]))
+    ours, theirs = velocities(body, twist)[0], velocities(body, reference)[0]
     return all(
         abs(one - other) <= max(CLOSE * largest, 2.0 * sys.float_info.epsilon * size)
-        for one, other, size in zip(ours, theirs, sizes, strict=True)
+        for one, other, size in zip(ours, theirs, sizes_of(case, twist), strict=True)
     )
 
 
 @pytest.mark.parametrize("answer", ["routh", "routh_e0.5"])
-@pytest.mark.parametrize("kind", sorted({case["kind"] for case in CASES} - {"both"}))
+@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind != "both"])
 def test_the_path_law_ends_where_exact_arithmetic_ends(kind, answer):
     law, restitution = ANSWERS[answer]
     decided = [case for case in CASES if case["kind"] == kind and case[answer] is not None]
@@ -65,10 +42,10 @@ def test_the_path_law_ends_where_exact_arithmetic_ends(kind, answer):
         assert is_close(case, outcome.twist, case[answer]["twist"]), case
 
 
-@pytest.mark.parametrize("kind", sorted({case["kind"] for case in CASES}))
+@pytest.mark.parametrize("kind", KINDS)
 def test_the_total_law_finds_every_solution_and_answers_with_one_of_them(kind):
     for case in (case for case in CASES if case["kind"] == kind):
-        outcome = solve_impact(body_of(case, 0.0), Twist(*case["twist"]), "total")
+        outcome = solve_impact(body_of(case), Twist(*case["twist"]), "total")
         found = [outcome.twist, *(other.twist for other in outcome.alternatives)]
         references = [solution["twist"] for solution in case["total"]]
         assert any(is_close(case, outcome.twist, reference) for reference in references), case
@@ -79,9 +56,8 @@ def test_the_total_law_finds_every_solution_and_answers_with_one_of_them(kind):
 def test_in_six_cases_one_rounding_of_the_twist_is_more_than_the_tolerance():
     wide = 0
     for case in CASES:
-        largest = max(map(abs, velocities(case, case["twist"])[0]))
-        sizes = velocities(case, case["twist"])[1]
-        wide += any(2.0 * sys.float_info.epsilon * size > CLOSE * largest for size in sizes)
+        largest = max(map(abs, velocities(body_of(case), case["twist"])[0]))
+        wide += any(2.0 * sys.float_info.epsilon * size > CLOSE * largest for size in sizes_of(case, case["twist"]))
     assert wide == 6
 
 
@@ -111,5 +87,5 @@ def test_a_path_that_jams_goes_on_without_approach_or_gain_of_energy():
             outcome = solve_impact(body_of(case, restitution), Twist(*case["twist"]))
             assert outcome.flags & Flag.JAMMED
             assert outcome.energy_lost >= 0.0
-            speeds, sizes = velocities(case, outcome.twist)
-            assert min(speeds[0], speeds[2]) >= -1e-12 * max(sizes)
+            speeds = velocities(outcome.body, outcome.twist)[0]
+            assert min(speeds[0], speeds[2]) >= -1e-12 * max(sizes_of(case, outcome.twist))

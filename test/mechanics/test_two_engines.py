@@ -66,6 +66,8 @@ def test_there_are_16000_bodies_of_all_modes():
     for law in LAWS:
         assert set(KEPT[f"{law}_mode"].tolist()) == set(map(int, Mode))
         assert KEPT[f"{law}_by_w"].mean() > 0.95
+    rare = Flag.REVERSED_SLIP | Flag.JAMMED | Flag.WORK_LIMITED | Flag.SHARED_FRICTION | Flag.BOTH_STRUCK
+    assert rare | Flag.LAST_RESORT | Flag.NO_SOLUTION in Flag(int(np.bitwise_or.reduce(KEPT["path_flags_by_w"])))
 
 
 @pytest.mark.parametrize("law", LAWS)
@@ -107,5 +109,8 @@ def test_w_and_c_have_the_impact_that_they_had(kind, law):
         lost += outcome.velocities[first:] != close or not as_before
         borders += outcome.flags != KEPT[f"{law}_flags_by_w"][i]
         compared += 1
+        if kind not in STIFF:
+            expected = KEPT[f"{law}_impulses"][i].astype(float)
+            assert np.ravel(outcome.impulses) == pytest.approx(expected, abs=SINGLE * np.abs(expected).max()), i
     assert lost <= (LOST * compared if kind in STIFF else 0)
     assert borders <= (LOST * compared if kind in STIFF else 2)

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from seen_by_contacts import condition, velocities
 
 from impact_predictor import Contact, TwoPointBody, solve_impact
 from impact_predictor.mechanics.contact_space import solve
@@ -78,22 +79,6 @@ def velocities_of_free_links(angles, motion):
             for part in (ux - 0.5 * length * w * math.sin(q), uy + 0.5 * length * w * math.cos(q), w)
         ]
     )
-
-
-def condition(w):
-    """Condition number of W on its range, its diagonal scaled to 1: how many roundings an error may be."""
-    scale = np.sqrt(np.diag(w))
-    sizes = np.linalg.eigvalsh(w / scale / scale[:, None])
-    return sizes[-1] / min(size for size in sizes if size > 1e-12)
-
-
-def contact_velocities(body, twist):
-    """Of a body on a floor at rest: c_nA, c_tA, c_nB, c_tB."""
-    return [
-        part
-        for contact in (body.old, body.new)
-        for part in (twist[1] + twist[2] * contact.x, twist[0] - twist[2] * contact.y)
-    ]
 
 
 def random_two_links(source):
@@ -171,9 +156,9 @@ def test_two_links_whose_hinge_is_locked_are_one_planar_body(law):
         old, new = (Contact(2.0 * p - x, 2.0 * q - y, friction) for p, q in centres)
         body = TwoPointBody(mass, turned, old, new)
         twist = body.turning(-1.0)
-        c, expected = contact_velocities(body, twist), solve_impact(body, twist, law)
+        c, expected = velocities(body, twist)[0], solve_impact(body, twist, law)
         outcome = solve(w, (0.0, 0.0, *c[2:]), (friction, friction), law=law)
         close = 1e-14 * condition(w) * max(map(abs, c))
-        assert outcome.velocities == pytest.approx(contact_velocities(body, expected.twist), abs=close)
+        assert outcome.velocities == pytest.approx(velocities(body, expected.twist)[0], abs=close)
         assert outcome.mode is expected.mode
         assert outcome.energy_lost == pytest.approx(expected.energy_lost, abs=mass * close)
