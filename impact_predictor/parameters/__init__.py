@@ -1,1 +1,1 @@
-"""What the node and the offline commands may be told: the parameters, their rules, and the files they come in."""
+"""The parameters of the node and of the offline commands, their rules, and the files that set them."""

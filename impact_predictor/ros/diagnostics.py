@@ -102,7 +102,7 @@ class Diagnostics:
         return self._heard(now, name)
 
     def taken(self, now: float, name: str) -> bool:
-        """Count another accepted message: of the support, a tilt, what is told about feet."""
+        """Count another accepted message: of the support, a tilt, or about feet."""
         self._others += 1
         # A plan need not keep coming, so its silence tells nothing.
         return name in self.publishers and self._heard(now, name)
@@ -239,7 +239,7 @@ class Diagnostics:
         return f"{dropped} samples dropped in the last second: they come faster than answers, of {cost} each"
 
     def _missing(self) -> str:
-        """Which inputs have never told anything."""
+        """Which inputs never had a message."""
         names = [name for name in self.publishers if name not in self._last]
         silent = [name for name in names if not self.publishers[name]] or names
         where = "" if len(self.publishers) == 1 else f" on {silent[0]}"

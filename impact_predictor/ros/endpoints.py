@@ -73,7 +73,7 @@ class Backlog:
 
     A node that was held up for a moment answers what it missed. One that cannot keep up drops samples, and then answers
     the newest alone until none waits behind it any more, so that it is never behind by more than `longest` and one
-    answer. What else is told about the body meanwhile is heard, between the samples as it came between them. A user
+    answer. Other messages about the body are taken between the samples between which they came. A user
     who makes the subscription reliable wants every sample: then none is dropped.
     """
 
@@ -96,9 +96,9 @@ class Backlog:
             self._answer(sample)
             return 0
         began, newest, dropped = perf_counter(), waiting[-1], 0
-        told = [_waiting_on(other, other.callback) for other in self._others]
+        others = [_waiting_on(other, other.callback) for other in self._others]
         # What came on one topic stays in its order, also where the clock was set back meanwhile.
-        for message in [(0, self._answer, sample), *merge(*told, waiting, key=itemgetter(0))]:
+        for message in [(0, self._answer, sample), *merge(*others, waiting, key=itemgetter(0))]:
             _, take, data = message
             if take is self._answer and message is not newest:
                 self._is_behind = self._is_behind or perf_counter() - began > self._longest

@@ -159,7 +159,7 @@ class Reporter:
             self._outlet.send(diagnostic_array(stamp, "", statuses))
 
     def _due(self) -> tuple[Report, ...]:
-        """The reports on the units that are due, if there is anybody to be told."""
+        """The reports on the units that are due, if anybody listens."""
         drawing = self.markers.drawing
         if drawing is None and not self._outlet.listeners():
             return ()

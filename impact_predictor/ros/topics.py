@@ -67,7 +67,7 @@ def listen_to_support(node: Node, reporter: Reporter, monitor: Monitor, topic: s
 
 
 class BodyTopics:
-    """Takes what is told about one body, and publishes what the monitor makes of it.
+    """Takes the messages about one body, and publishes what the monitor makes of it.
 
     A body without a name has the topics `odom` and `~/mode`, another one `crate/odom` and `~/crate/mode`.
     """

@@ -82,13 +82,6 @@ def test_every_accepted_sample_is_answered_with_one_mode_and_one_prediction(peer
 
 
 @pytest.mark.slow
-def test_fixed_points_leave_no_subscription_to_contact_geometry(peer):
-    with running(*FIXED_POINTS):
-        peer.until(lambda: peer.node.count_subscribers("/odom"))
-        assert not peer.node.count_subscribers("/contact_geometry")
-
-
-@pytest.mark.slow
 @pytest.mark.parametrize("executor", ["single", "events"])
 def test_samples_before_the_geometry_are_refused_by_name_and_those_after_it_answered(peer, executor):
     with running(*EVERY_SAMPLE, "-p", f"executor:={executor}"):

@@ -97,9 +97,9 @@ def encode_markers(markers: Iterable[Marker], nanoseconds: int, frame_id: str) -
             packed = _packed(points)
             append(packed)
             size += len(packed)
-        tail = _BEFORE_TEXT + (string(text) if text else _EMPTY) + _AFTER_TEXT
-        append(tail)
-        size += len(tail)
+        rest = _BEFORE_TEXT + (string(text) if text else _EMPTY) + _AFTER_TEXT
+        append(rest)
+        size += len(rest)
         count += 1
     return b"".join((LITTLE_ENDIAN_HEADER, LITTLE_ENDIAN.length.pack(count), *chunks))
 

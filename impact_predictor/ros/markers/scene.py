@@ -34,7 +34,7 @@ _OK, _STALE = 0, 3
 class MarkerScene:
     """Collects what is known of the bodies of a scene, and draws it ten times for each second of stamps.
 
-    The methods `take...` and `set_geometry` note what the predictor answered or was told; `due` gives the bytes of a
+    `take...` and `set_geometry` take answers of the predictor and its other inputs; `due` gives the bytes of a
     visualization_msgs/MarkerArray when the time for one has come. All follows from stamps and values alone.
     """
 

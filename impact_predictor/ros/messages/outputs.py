@@ -27,8 +27,7 @@ def encode_post_impact(prediction: Prediction) -> bytes | None:
     """A nav_msgs/Odometry of the body right after the predicted touchdown, or None where there is none.
 
     Stamped with the touchdown; frames and covariances are those of the sample, but that of the twist is carried through
-    the impact where the scene asks for it. So what is predicted in the frame of a moving support is told in that of the
-    sample.
+    the impact where the scene asks for it. Over a moving support, too, it is in the frame of the sample.
     """
     touchdown = prediction.touchdown
     if touchdown is None:
