@@ -7,14 +7,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from records import impacts_of, samples_of
 
 from impact_predictor.bags.read import read_messages, topics
-from impact_predictor.prediction.types import Sample
 from impact_predictor.prediction.vectors import axes_of, to_world
-from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY, ODOMETRY, POLYGON, decode_odometry, decode_polygon
+from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY, ODOMETRY, POLYGON, decode_polygon
 from impact_predictor.scenarios.record import REST, Actor, rocking_actor, write_record
 from impact_predictor.scenarios.rocking import Rocking, release, rocking_rod
-from impact_predictor.scenarios.truth import TRUTH_TOPIC, decode_true_impacts
+from impact_predictor.scenarios.truth import TRUTH_TOPIC
 
 RATE = 1000.0
 
@@ -28,18 +28,20 @@ def recorded(path: Path, *actors: Actor, rate: float = RATE) -> Path:
     return path
 
 
-def samples_of(path: Path, topic: str = "/odom") -> list[Sample]:
-    return [decode_odometry(message.data) for message in read_messages(path, {topic: ODOMETRY})]
-
-
 def test_one_body_stands_on_the_topics_of_the_node_and_several_on_their_own(tmp_path: Path) -> None:
-    alone = recorded(tmp_path / "alone.mcap", rocking_actor("rod", a_rod().run))
+    alone, told = tmp_path / "alone.mcap", list[int]()
+    write_record(alone, [rocking_actor("rod", a_rod().run)], RATE, told.append)
+    assert told == sorted(told)
+    assert 0 < told[-1] <= len(samples_of(alone))
     assert topics(alone) == {"/contact_geometry": POLYGON, "/odom": ODOMETRY, TRUTH_TOPIC: DIAGNOSTIC_ARRAY}
+    (message,) = read_messages(alone, {"/contact_geometry": POLYGON})
+    geometry = decode_polygon(message.data)
+    # float32, as the message has it
+    assert np.ravel(geometry.points) == pytest.approx((-0.1, 0.0, -0.01, 0.1, 0.0, -0.01), rel=1e-7)
+    assert geometry.frame_id == samples_of(alone)[0].child_frame_id == "rod"
     both = recorded(tmp_path / "both", rocking_actor("one", a_rod().run), rocking_actor("two", a_rod(0.05).run))
-    assert set(topics(both)) == {
-        *("/one/odom", "/one/contact_geometry", "/two/odom", "/two/contact_geometry"),
-        TRUTH_TOPIC,
-    }
+    of_each = {f"/{name}/{topic}" for name in ("one", "two") for topic in ("odom", "contact_geometry")}
+    assert set(topics(both)) == {*of_each, TRUTH_TOPIC}
     times = [message.log_time for message in read_messages(both, topics(both))]
     assert times == sorted(times)
 
@@ -71,8 +73,7 @@ def test_the_true_impacts_are_those_of_the_motion(tmp_path: Path) -> None:
     slope = radians(5.0)
     run = a_rod(slope=slope).run
     path = recorded(tmp_path / "rod.mcap", rocking_actor("rod", run))
-    messages = list(read_messages(path, {TRUTH_TOPIC: DIAGNOSTIC_ARRAY}))
-    impacts = [impact for message in messages for impact in decode_true_impacts(message.data)]
+    messages, impacts = list(read_messages(path, {TRUTH_TOPIC: DIAGNOSTIC_ARRAY})), impacts_of(path)
     assert len(impacts) == len(run.impacts) > 5
     for message, impact, strike in zip(messages, impacts, run.impacts, strict=True):
         assert message.log_time == impact.stamp == round(strike.time * 1e9)
@@ -83,26 +84,3 @@ def test_the_true_impacts_are_those_of_the_motion(tmp_path: Path) -> None:
         vx, vy = strike.before.vx, strike.before.vy
         in_world = vx * cos(slope) - vy * sin(slope), 0.0, vx * sin(slope) + vy * cos(slope)
         assert impact.linear_before == pytest.approx(in_world, abs=1e-12)
-
-
-def test_the_contact_points_are_those_of_the_body(tmp_path: Path) -> None:
-    path = recorded(tmp_path / "rod.mcap", rocking_actor("rod", a_rod().run))
-    (message,) = read_messages(path, {"/contact_geometry": POLYGON})
-    geometry = decode_polygon(message.data)
-    old, new = geometry.points
-    # float32, as the message has it
-    assert (*old, *new) == pytest.approx((-0.1, 0.0, -0.01, 0.1, 0.0, -0.01), rel=1e-7)
-    assert geometry.frame_id == samples_of(path)[0].child_frame_id == "rod"
-
-
-def test_the_same_motion_makes_the_same_bytes(tmp_path: Path) -> None:
-    one, other = (recorded(tmp_path / name, rocking_actor("rod", a_rod().run)) for name in ("one.mcap", "other.mcap"))
-    assert one.read_bytes() == other.read_bytes()
-
-
-def test_progress_is_told(tmp_path: Path) -> None:
-    run = a_rod().run
-    told: list[int] = []
-    write_record(tmp_path / "rod.mcap", [rocking_actor("rod", run)], RATE, told.append)
-    assert told == sorted(told)
-    assert 0 < told[-1] <= rocking_actor("rod", run).samples(RATE)

@@ -8,11 +8,12 @@ from math import inf
 import numpy as np
 import pytest
 from rosbags.typesys import Stores, get_typestore
+from touchdowns import SAMPLE
 
 from impact_predictor.mechanics.bodies import plate
 from impact_predictor.mechanics.impact import solve_impact
 from impact_predictor.mechanics.types import Mode
-from impact_predictor.prediction.types import Prediction, Sample, Status
+from impact_predictor.prediction.types import Prediction, Status
 from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY, MalformedMessage, encode_mode
 from impact_predictor.scenarios.truth import (
     TrueImpact,
@@ -32,15 +33,18 @@ def an_impact(seed: int) -> TrueImpact:
         return rng.gauss(0.0, 1.0), rng.gauss(0.0, 1e-9), rng.gauss(0.0, 1e9)
 
     return TrueImpact(
-        rng.randrange(2**31 * 10**9),
-        rng.choice(["rod", "crate_2", "Ölfaß"]),
-        rng.choice(list(Mode)),
-        rng.choice([(), (0,), (2, 3)]),
-        rng.choice([(1,), (0, 4)]),
-        rng.random(),
-        rng.random(),
-        rng.random(),
-        *(vector(), vector(), vector(), vector()),
+        stamp=rng.randrange(2**31 * 10**9),
+        body=rng.choice(["rod", "crate_2", "Ölfaß"]),
+        mode=rng.choice(list(Mode)),
+        old=rng.choice([(), (0,), (2, 3)]),
+        new=rng.choice([(1,), (0, 4)]),
+        approach=rng.random(),
+        half_distance=np.float64(rng.random()),  # written as a number, too
+        energy_lost=rng.random(),
+        linear_before=vector(),
+        angular_before=vector(),
+        linear_after=vector(),
+        angular_after=vector(),
         border=rng.choice([inf, rng.random()]),
     )
 
@@ -61,9 +65,8 @@ def test_it_is_a_diagnostic_array_stamped_with_the_impact() -> None:
 
 
 def test_what_tells_no_impact_is_malformed() -> None:
-    sample = Sample(0, "", "", (0.0,) * 3, (0.0, 0.0, 0.0, 1.0), (0.0,) * 3, (0.0,) * 3, (0.0,) * 36, (0.0,) * 36)
     good = encode_true_impact(an_impact(1), "world")
-    for data in (b"", good[:-4], encode_mode(Prediction(Status.ACCEPTED, sample)), good.replace(b"stamp", b"stomp")):
+    for data in (b"", good[:-4], encode_mode(Prediction(Status.ACCEPTED, SAMPLE)), good.replace(b"stamp", b"stomp")):
         with pytest.raises(MalformedMessage):
             decode_true_impacts(data)
 
@@ -73,11 +76,6 @@ def test_a_bag_without_borders_says_that_none_was_looked_for() -> None:
     # The key of another length would be another message.
     data = encode_true_impact(impact, "world").replace(b"border", b"nobody")
     assert decode_true_impacts(data) == [impact._replace(border=inf)]
-
-
-def test_numbers_of_numpy_are_written_as_numbers() -> None:
-    impact = an_impact(3)._replace(approach=np.float64(0.1), energy_lost=np.float64(0.3))
-    assert decode_true_impacts(encode_true_impact(impact, "deck")) == [impact]
 
 
 @pytest.mark.parametrize(("slides", "lifts"), [(True, False), (False, True), (True, True)])
@@ -102,8 +100,4 @@ def test_a_border_is_the_nearest_of_friction_and_geometry() -> None:
         shifts = [abs(one.change) / 0.5 for one in (margins.center, margins.height, margins.reach)]
         assert found == pytest.approx(min(abs(border / (part * border) - 1.0), *shifts), rel=1e-6)
     assert found < inf
-
-
-def test_nothing_struck_has_no_border() -> None:
-    body = plate(1.0, 0.8, 2.0, 0.3)
-    assert border_of(solve_impact(body, body.turning(1.0))) == inf
+    assert border_of(solve_impact(body, body.turning(1.0))) == inf  # nothing is struck

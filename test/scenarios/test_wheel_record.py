@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from records import impacts_of, samples_of
 
 from impact_predictor.bags.read import read_messages, topics
 from impact_predictor.mechanics.types import Mode
@@ -15,9 +16,9 @@ from impact_predictor.parameters.file import read_values
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene, inertia_matrix
 from impact_predictor.prediction.types import Prediction
-from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY, ODOMETRY, POLYGON, decode_odometry, decode_polygon
+from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY, ODOMETRY, POLYGON, decode_polygon
 from impact_predictor.scenarios.record import REST, wheel_actor, write_record
-from impact_predictor.scenarios.truth import TRUTH_TOPIC, TrueImpact, decode_true_impacts
+from impact_predictor.scenarios.truth import TRUTH_TOPIC, TrueImpact
 from impact_predictor.scenarios.wheel import Hub, RollEnd, Rolling, Wheel, roll
 
 CONFIG = Path(__file__).parents[2] / "config/wheel.yaml"
@@ -38,14 +39,8 @@ def scene_of(wheel: Wheel) -> Scene:
 def predicted(path: Path, rolling: Rolling, rate: float = 200.0) -> tuple[list[TrueImpact], list[Prediction]]:
     """The true impacts of a bag, and the prediction of each sample."""
     write_record(path, [wheel_actor(rolling)], rate)
-    truths = [
-        one
-        for message in read_messages(path, {TRUTH_TOPIC: DIAGNOSTIC_ARRAY})
-        for one in decode_true_impacts(message.data)
-    ]
     predictor = Predictor(scene_of(rolling.wheel))
-    answers = [predictor.update(decode_odometry(message.data)) for message in read_messages(path, {"/odom": ODOMETRY})]
-    return truths, answers
+    return impacts_of(path), [predictor.update(sample) for sample in samples_of(path)]
 
 
 def last_before(truth: TrueImpact, answers: list[Prediction]) -> Any:
@@ -63,6 +58,13 @@ def test_a_wheel_that_rocks_to_rest_is_announced_nothing_but_its_impacts(tmp_pat
     until = [stamp for stamp in announced if stamp < 1e9 * (rolling.time + REST)]
     assert len(until) > 1000
     assert max(np.abs(stamps - stamp).min() for stamp in until) < 10.0  # ns
+    clear = [truth for truth in truths if truth.approach > 0.05]
+    assert len(clear) > 10
+    for truth in clear:
+        touchdown = last_before(truth, answers)
+        assert (touchdown.new, touchdown.mode) == (truth.new, truth.mode)
+        assert touchdown.angular[1] == pytest.approx(truth.angular_after[1], rel=1e-6)
+    assert answers[-1].touchdown is None
 
 
 def test_the_shipped_scene_is_that_of_the_simulated_wheel() -> None:
@@ -82,7 +84,7 @@ def test_the_topics_are_those_of_one_body_whose_tips_are_its_contact_points(tmp_
     geometry = [decode_polygon(message.data) for message in read_messages(path, {"/contact_geometry": POLYGON})]
     # Points are float32 in that message.
     assert np.array(geometry[0].points) == pytest.approx(np.array(scene_of(SHIPPED).points), abs=1e-7)
-    samples = [decode_odometry(message.data) for message in read_messages(path, {"/odom": ODOMETRY})]
+    samples = samples_of(path)
     assert len(samples) == wheel_actor(rolling).samples(200.0)
     for sample in samples[::20]:
         state = rolling.world(sample.stamp * 1e-9)
@@ -124,15 +126,3 @@ def test_below_the_limit_the_predictor_says_slip_and_the_simulation_slips(
         # The predictor's plane looks from the old tip to the new one, uphill too.
         assert abs(touchdown.after.vx - touchdown.after.omega * body.y) == pytest.approx(abs(slip), rel=1e-6)
         assert abs(slip) > 1e-3
-
-
-def test_a_wheel_that_stops_is_predicted_down_to_its_last_impacts_that_samples_show(tmp_path: Path) -> None:
-    wheel = SHIPPED._replace(hub=SHIPPED.hub._replace(slope=radians(3.0)))
-    truths, answers = predicted(tmp_path / "stops.mcap", roll(wheel, 1.5, steps=None))
-    clear = [one for one in truths if one.approach > 0.05]
-    assert len(clear) > 10
-    for truth in clear:
-        touchdown = last_before(truth, answers)
-        assert (touchdown.new, touchdown.mode) == (truth.new, truth.mode)
-        assert touchdown.angular[1] == pytest.approx(truth.angular_after[1], rel=1e-6)
-    assert answers[-1].touchdown is None

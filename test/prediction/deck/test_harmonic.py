@@ -34,22 +34,17 @@ def signals(times: Array) -> Array:
     return np.stack(columns, axis=1)
 
 
+STILL = SupportState(
+    stamp=0, position=NOTHING, orientation=LEVEL, axes=axes_of(LEVEL), velocity=NOTHING, angular=NOTHING
+)
+
+
 def known_at(time: float, off: Any = 0.0) -> SupportState:
     """What a tracker without error knows then; its frame does not turn, as the angular velocities stay small here."""
-    felt = signals(np.array([time - 1e-4, time, time + 1e-4])) + off
-    turning = (felt[2, 3:] - felt[0, 3:]) / 2e-4
-    row = felt[1].tolist()
-    return SupportState(
-        round(time * 1e9),
-        NOTHING,
-        LEVEL,
-        axes_of(LEVEL),
-        NOTHING,
-        tuple(row[3:]),
-        NOTHING,
-        tuple(row[:3]),
-        tuple(turning.tolist()),
-    )
+    before, now, after = signals(np.array([time - 1e-4, time, time + 1e-4])) + off
+    turning = tuple(((after[3:] - before[3:]) / 2e-4).tolist())
+    felt, angular = tuple(now[:3].tolist()), tuple(now[3:].tolist())
+    return STILL._replace(stamp=round(time * 1e9), angular=angular, felt=felt, turning=turning)
 
 
 def fitted(until: float = 30.0, rate: float = 20.0, window: float = 20.0, begin: float = 0.0) -> Harmonic:
@@ -110,9 +105,7 @@ def test_an_offset_of_the_estimate_from_the_fit_fades() -> None:
 def test_gravity_ahead_is_seen_along_the_axes_of_then() -> None:
     harmonic = Harmonic(4.0)
     rate = 0.2
-    still = SupportState(
-        0, NOTHING, LEVEL, axes_of(LEVEL), NOTHING, (rate, 0.0, 0.0), NOTHING, (0.0, 0.0, -9.81), NOTHING
-    )
+    still = STILL._replace(angular=(rate, 0.0, 0.0), felt=(0.0, 0.0, -9.81))
     for k in range(100):
         orientation = turned(LEVEL, (rate * k * 0.1, 0.0, 0.0))
         known = still._replace(stamp=k * STEP, orientation=orientation, axes=axes_of(orientation))
@@ -151,23 +144,25 @@ def test_it_is_fitted_a_few_times_a_second_of_stamps(monkeypatch: pytest.MonkeyP
     assert max(fits) == 200
 
 
-@given(st.integers(20, 200), st.floats(-1e12, 1e12), st.integers(0, 2**32))
-@settings(max_examples=60, deadline=None)
-def test_whatever_the_course_was_its_prediction_stays_within_bounds(count: int, size: float, seed: int) -> None:
-    rows = size * np.random.default_rng(seed).standard_normal((count, 6))
+SHAPES: dict[str, Any] = {
+    "noise": lambda times, rng: rng.standard_normal((len(times), 6)),
+    "ramp": lambda times, rng: np.outer(times, np.ones(6)),
+    "growing": lambda times, rng: np.outer(np.exp(0.4 * times) * np.sin(times), np.ones(6)),
+    "square": lambda times, rng: np.outer(np.sign(np.sin(times)), np.ones(6)),
+}
+
+
+@given(st.sampled_from(list(SHAPES)), st.integers(20, 200), st.floats(-1e12, 1e12), st.integers(0, 2**32))
+@settings(max_examples=100, deadline=None)
+def test_whatever_the_course_was_its_prediction_stays_within_bounds(
+    shape: str, count: int, size: float, seed: int
+) -> None:
+    rows = size * SHAPES[shape](np.arange(count) / 10.0, np.random.default_rng(seed))
     course = predicted(rows)
     assert np.isfinite(course).all()
     mean = rows.mean(0)
-    assert (np.abs(course - mean) <= deck_harmonic.LIMIT * np.abs(rows - mean).max(0) * (1.0 + 1e-9)).all()
-
-
-@pytest.mark.parametrize("kind", ["ramp", "growing", "square"])
-def test_a_course_that_is_no_sum_of_waves_does_no_harm(kind: str) -> None:
-    times = np.arange(200) / 10.0
-    shape = {"ramp": times, "growing": np.exp(0.4 * times) * np.sin(times), "square": np.sign(np.sin(times))}[kind]
-    course = predicted(np.outer(shape, np.ones(6)))
-    limit = deck_harmonic.LIMIT * np.abs(shape - shape.mean()).max()
-    assert (np.abs(course - shape.mean()) <= limit * (1.0 + 1e-9)).all()
+    limit = deck_harmonic.LIMIT * np.abs(rows - mean).max(0)
+    assert (np.abs(course - mean) <= limit * (1.0 + 1e-9) + 1e-12 * np.abs(mean)).all()
 
 
 def cubic(times: Array) -> Array:
@@ -187,15 +182,3 @@ def test_a_course_goes_through_cubics_exactly_with_their_slopes_and_areas() -> N
         middle = cubic(np.array([0.5 * (0.3 + time)]))[0]
         area = (time - 0.3) / 6.0 * (cubic(np.array([0.3]))[0] + 4.0 * middle + values[1])  # Simpson: exact for cubics
         assert np.array(rotation) - course.at(0.3)[3] == pytest.approx(area[3:], abs=1e-13)
-
-
-def test_between_steps_the_error_shrinks_with_the_fourth_power_of_the_frequency() -> None:
-    errors = []
-    for omega in (4.0, 2.0, 1.0):
-        times = np.arange(60) * SECONDS
-        course = MotionForecast(0, np.sin(omega * times)[:, None] * np.ones(6), 0)
-        inner = np.linspace(1.0, 4.0, 500)
-        errors.append(max(abs(course.at(time)[0][0] - np.sin(omega * time)) for time in inner.tolist()))
-    assert errors[0] == pytest.approx((4.0 * SECONDS) ** 4 / 384.0, rel=0.3)  # of cubic pieces through exact slopes
-    assert 13.0 < errors[0] / errors[1] < 19.0
-    assert 13.0 < errors[1] / errors[2] < 19.0

@@ -68,6 +68,8 @@ def test_what_is_felt_at_the_origin_follows_from_a_sensor_elsewhere(oriented: bo
     moment = deck.last
     assert moment.frame_id == ""
     assert moment.child_frame_id == "imu"
+    assert moment.position == moment.linear == (0.0, 0.0, 0.0)
+    assert not oriented or moment.orientation == imu.orientation
     assert moment.felt.angular == felt.angular
     assert moment.felt.turning == pytest.approx(felt.turning, abs=1e-12)
     # Exact where the force of a steady turning grows in a straight line over the window; the curvature of
@@ -76,16 +78,6 @@ def test_what_is_felt_at_the_origin_follows_from_a_sensor_elsewhere(oriented: bo
     later = rolling(2.2, turning=turning)[1]
     assert np.allclose(moment.ahead(0.2), later, atol=1e-11 if not turning and oriented else 3e-3)
     assert np.allclose(ahead(*felt, 0.2), later, atol=1e-13)
-
-
-def test_the_orientation_is_the_sensors_where_it_has_one() -> None:
-    deck = imu_deck()
-    for k in range(201):
-        deck.update_imu(rolling(k / 100.0)[0]._replace(specific_force=sensed(rolling(k / 100.0)[1], (0.0, 0.0, 0.0))))
-    moment = deck.at(2 * SECOND)
-    assert isinstance(moment, Moment)
-    assert moment.orientation == rolling(2.0)[0].orientation
-    assert moment.position == moment.linear == (0.0, 0.0, 0.0)
 
 
 def test_without_an_orientation_the_tilt_is_that_in_which_the_mean_force_points_up() -> None:

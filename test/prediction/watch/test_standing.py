@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
+from touchdowns import SAMPLE
 
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.prediction.types import Sample, Vector3
@@ -14,22 +16,22 @@ from impact_predictor.prediction.watch.standing import CONFIRMED, BodyMotion, St
 
 CORNERS = tuple((x, y, z) for x in (-0.4, 0.4) for y in (-0.3, 0.3) for z in (-0.5, 0.5))
 INERTIA = ((5.0, 0.0, 0.0), (0.0, 6.0, 0.0), (0.0, 0.0, 3.0))
-CRATE = Scene(mass=50.0, inertia=INERTIA, friction=0.5, points=CORNERS, place=(2.0, 1.0, 0.5), yaw=0.3)
+CRATE = Scene(mass=50.0, inertia=INERTIA, friction=0.5, points=CORNERS, place=(2.0, 1.0, 0.5))
 EDGES = ((2.0, 0.9, 0.0), (2.0, 1.1, 0.0))
 HIGH = math.sqrt(0.3**2 - 0.1**2)
 DRUM = Scene(mass=50.0, inertia=INERTIA, friction=0.5, radius=0.3, edges=EDGES, place=(2.0, 1.0, HIGH))
-ORIGIN = (0.0, 0.0, 0.0)
 
 
-def sample(
-    position: Vector3,
-    rotation: Rotation = Rotation.identity(),  # noqa: B008 - it is immutable
-    linear: Vector3 = ORIGIN,
-    angular: Vector3 = ORIGIN,
-    time: float = 0.0,
-) -> Sample:
-    x, y, z, w = rotation.as_quat()
-    return Sample(round(time * 1e9), "deck", "crate", position, (x, y, z, w), linear, angular, (), ())
+def sample(position: Vector3, rotation: Rotation | None = None, time: float = 0.0, **changes: Any) -> Sample:
+    orientation = tuple((rotation or Rotation.identity()).as_quat())
+    return SAMPLE._replace(stamp=round(time * 1e9), position=position, orientation=orientation, **changes)
+
+
+def rested() -> Standing:
+    """The crate, which has been seen where it is placed."""
+    standing = Standing(CRATE)
+    standing.update(sample((2.0, 1.0, 0.5)))
+    return standing
 
 
 def shown(standing: Standing, seen: Sample) -> bool:
@@ -38,16 +40,15 @@ def shown(standing: Standing, seen: Sample) -> bool:
     return any(changed)
 
 
-def tipped(angle: float, pivot: Vector3 = (0.0, 0.3, -0.5), axis: str = "x", sign: float = -1.0) -> Sample:
-    """The crate at (2, 1) without yaw, turned about the edge through a pivot."""
-    rotation = Rotation.from_euler(axis, sign * angle)
-    foot = rotation.apply(pivot)
-    x, y, z = (p + q - r for p, q, r in zip((2.0, 1.0, 0.5), pivot, foot, strict=True))
+def tipped(angle: float) -> Sample:
+    """The crate at (2, 1), turned about its port edge."""
+    rotation, pivot = Rotation.from_euler("x", -angle), (0.0, 0.3, -0.5)
+    x, y, z = np.add((2.0, 1.0, 0.5), pivot) - rotation.apply(pivot)
     return sample((x, y, z), rotation)
 
 
 def test_a_body_stands_where_it_is_placed_before_anything_is_measured() -> None:
-    standing = Standing(CRATE)
+    standing = Standing(CRATE._replace(yaw=0.3))
     assert standing.motion is BodyMotion.UNKNOWN
     assert standing.tilt is None
     assert standing.solid
@@ -58,7 +59,7 @@ def test_a_body_stands_where_it_is_placed_before_anything_is_measured() -> None:
 
 
 def test_a_measured_body_at_rest_stands_with_all_its_edges() -> None:
-    standing = Standing(CRATE._replace(yaw=0.0))
+    standing = Standing(CRATE)
     assert not standing.update(sample((2.001, 1.0, 0.501)))  # as near as the contact tolerance: nothing is new
     assert standing.motion is BodyMotion.STANDS
     assert standing.tilt == pytest.approx(0.0)
@@ -69,8 +70,7 @@ def test_a_measured_body_at_rest_stands_with_all_its_edges() -> None:
 
 @pytest.mark.parametrize("angle", [0.05, 0.3])
 def test_a_body_that_rocks_has_the_one_edge_it_turns_about(angle: float) -> None:
-    standing = Standing(CRATE._replace(yaw=0.0))
-    standing.update(sample((2.0, 1.0, 0.5)))
+    standing = rested()
     assert shown(standing, tipped(angle))
     assert standing.motion is BodyMotion.ROCKS
     assert standing.tilt == pytest.approx(angle)
@@ -95,7 +95,7 @@ def test_a_body_in_the_air_is_off_the_deck() -> None:
 
 
 def test_a_body_that_moves_along_the_deck_slides_and_noise_does_not() -> None:
-    standing = Standing(CRATE._replace(yaw=0.0))
+    standing = Standing(CRATE)
     told = []
     for k in range(100):
         standing.update(sample((2.0 + 0.002 * (-1) ** k, 1.0 + 0.002 * (k % 3), 0.5), time=0.05 * k))
@@ -110,15 +110,14 @@ def test_a_body_that_moves_along_the_deck_slides_and_noise_does_not() -> None:
 
 
 def test_a_slow_drift_of_the_pose_is_no_slide() -> None:
-    standing = Standing(CRATE._replace(yaw=0.0))
+    standing = Standing(CRATE)
     for k in range(1000):
         standing.update(sample((2.0 + 1e-5 * k, 1.0, 0.5), time=0.1 * k))
         assert not standing.slid
 
 
 def test_a_body_on_another_side_has_toppled_and_stands_there() -> None:
-    standing = Standing(CRATE._replace(yaw=0.0))
-    standing.update(sample((2.0, 1.0, 0.5)))
+    standing = rested()
     standing.update(tipped(0.4))
     assert not standing.toppled
     standing.update(tipped(0.5 * math.pi))
@@ -128,35 +127,29 @@ def test_a_body_on_another_side_has_toppled_and_stands_there() -> None:
     assert len(standing.stance.edges) == 4
     # Its mass centre is as far from its new edges as it was high.
     assert max(abs(edge.point[1] - standing.stance.center[1]) for edge in standing.stance.edges) == pytest.approx(0.5)
-
-
-def test_a_body_that_is_put_upright_again_has_not_toppled_any_more() -> None:
-    standing = Standing(CRATE._replace(yaw=0.0))
-    for seen in (sample((2.0, 1.0, 0.5)), tipped(0.5 * math.pi), sample((2.0, 1.0, 0.5))):
-        standing.update(seen)
-    assert not standing.toppled
-    assert standing.tilt == pytest.approx(0.0)
+    standing.update(sample((2.0, 1.0, 0.5)))
+    assert (standing.toppled, standing.tilt) == (False, pytest.approx(0.0))
     standing.update(tipped(0.5 * math.pi))
     assert standing.toppled
 
 
-@pytest.mark.parametrize(("down", "words"), [(0.05, "sinks into the deck, by 0.050 m"), (-0.05, "")])
-def test_a_body_that_moves_across_the_deck_does_not_slide(down: float, words: str) -> None:
-    standing = Standing(CRATE._replace(yaw=0.0))
-    standing.update(sample((2.0, 1.0, 0.5)))
-    shown(standing, sample((2.0, 1.0, 0.5 - down), time=0.1))
+@pytest.mark.parametrize(
+    ("first", "then", "words"),
+    [
+        (0.5, 0.45, "sinks into the deck, by 0.050 m"),
+        (0.5, 0.55, ""),
+        (0.45, 0.5, "rises from where it stood, by 0.050 m"),
+    ],
+)
+def test_a_body_that_moves_across_the_deck_does_not_slide(first: float, then: float, words: str) -> None:
+    standing = Standing(CRATE)
+    standing.update(sample((2.0, 1.0, first)))
+    shown(standing, sample((2.0, 1.0, then), time=0.1))
     assert standing.slid == words
 
 
-def test_a_body_that_sank_rises_again() -> None:
-    standing = Standing(CRATE._replace(yaw=0.0))
-    standing.update(sample((2.0, 1.0, 0.45)))
-    shown(standing, sample((2.0, 1.0, 0.5), time=0.1))
-    assert standing.slid == "rises from where it stood, by 0.050 m"
-
-
 def test_the_side_on_which_it_is_first_seen_is_its_own() -> None:
-    standing = Standing(CRATE._replace(yaw=0.0))
+    standing = Standing(CRATE)
     standing.update(tipped(0.5 * math.pi))
     assert not standing.toppled
     assert standing.tilt == pytest.approx(0.0, abs=1e-7)
@@ -165,7 +158,7 @@ def test_the_side_on_which_it_is_first_seen_is_its_own() -> None:
 
 def test_a_planar_body_stands_on_two_points_and_rocks_on_one() -> None:
     points = tuple((0.0, y, z) for y in (-0.3, 0.3) for z in (-0.5, 0.5))
-    standing = Standing(CRATE._replace(points=points, yaw=0.0))
+    standing = Standing(CRATE._replace(points=points))
     standing.update(sample((2.0, 1.0, 0.5)))
     assert [edge.name for edge in standing.stance.edges] == ["starboard", "port"]
     shown(standing, tipped(0.1))
@@ -176,7 +169,7 @@ def test_a_planar_body_stands_on_two_points_and_rocks_on_one() -> None:
 
 
 def test_a_tilt_alone_tells_rocking_but_no_misalignment_of_sensors() -> None:
-    standing = Standing(CRATE._replace(yaw=0.0))
+    standing = Standing(CRATE)
     for angle, motion in ((0.01, BodyMotion.STANDS), (0.1, BodyMotion.ROCKS), (0.0, BodyMotion.STANDS)):
         standing.lean(sample((0.0, 0.0, 0.0), Rotation.from_euler("x", -angle)).orientation)
         assert standing.motion is motion
@@ -232,7 +225,7 @@ def test_a_body_of_a_very_fine_contact_tolerance_is_not_taken_to_rock_by_noise()
 
 
 def test_a_single_outlier_is_neither_rocking_nor_a_slide() -> None:
-    standing = Standing(CRATE._replace(yaw=0.0))
+    standing = Standing(CRATE)
     for k in range(30):
         seen = (tipped(0.1), sample((2.0, 1.1, 0.5)), sample((2.0, 1.0, 0.7)))[k // 10] if k % 10 == 5 else None
         standing.update((seen or sample((2.0, 1.0, 0.5)))._replace(stamp=k * 50_000_000))
@@ -244,7 +237,7 @@ def test_a_single_outlier_is_neither_rocking_nor_a_slide() -> None:
 @pytest.mark.parametrize("seed", range(5))
 def test_noise_of_a_pose_within_the_contact_tolerance_raises_nothing(seed: int) -> None:
     rng = np.random.default_rng(seed)
-    standing = Standing(CRATE._replace(yaw=0.0))
+    standing = Standing(CRATE)
     for k in range(2000):
         x, y, z = rng.normal((2.0, 1.0, 0.5), 0.0015).tolist()
         standing.update(sample((x, y, z), Rotation.from_rotvec(rng.normal(0.0, 0.0015, 3)), time=0.05 * k))

@@ -124,6 +124,10 @@ def test_the_truth_is_that_of_the_motion_in_one_piece(monkeypatch: pytest.Monkey
     spans = motion_of(unit, 30.0)
     whole = rock(unit.body, unit.start, a_deck().at(*unit.foot), duration=30.0)
     assert len(spans) > 5
+    for one, other in itertools.pairwise(spans):
+        assert one.time == other.start
+        ends, begins = one.state(np.array([one.time])), other.state(np.array([one.time]))
+        assert np.ravel(ends) == pytest.approx(np.ravel(begins), abs=1e-9)
     large = [impact for span in spans for impact in span.impacts if impact.approach > 1e-3]
     assert len(large) > 10
     # What is carried on from span to span differs by rounding, which rocking magnifies.
@@ -138,34 +142,17 @@ def test_the_truth_is_that_of_the_motion_in_one_piece(monkeypatch: pytest.Monkey
         assert impact.energy_lost == pytest.approx(strike.outcome.energy_lost, rel=1e-3, abs=1e-6)
 
 
-def test_a_span_tells_its_states_and_the_next_one_begins_where_it_ends(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(deck_module, "SPAN", 5.0)
-    spans = motion_of(unit_of("box", box()), 20.0)
-    for one, other in itertools.pairwise(spans):
-        assert one.time == other.start
-        ends, begins = one.state(np.array([one.time])), other.state(np.array([one.time]))
-        assert np.ravel(ends) == pytest.approx(np.ravel(begins), abs=1e-9)
-
-
-def test_onsets_are_where_a_unit_at_rest_begins_to_move() -> None:
-    unit = unit_of("box", box())
+@pytest.mark.parametrize("friction", [0.1, 0.6])
+def test_onsets_are_where_a_unit_at_rest_begins_to_move(friction: float) -> None:
+    unit = unit_of("box", box(friction=friction))
     whole = rock(unit.body, unit.start, a_deck().at(*unit.foot), duration=20.0)
     onsets = [onset for span in motion_of(unit, 20.0) for onset in span.onsets]
-    phases = whole.phases
-    left = [(then.start, then.states) for now, then in itertools.pairwise(phases) if now.states == "SS" != then.states]
+    left = [then for now, then in itertools.pairwise(whole.phases) if now.states == "SS" != then.states]
     assert len(onsets) == len(left) > 0
-    for onset, (time, states) in zip(onsets, left, strict=True):
-        assert onset.stamp / 1e9 == pytest.approx(time, abs=1e-6)
-        assert onset.lifts == ("O" in states)
-        assert onset.slides == ("+" in states or "-" in states)
-
-
-def test_a_box_with_little_friction_slides_and_never_strikes() -> None:
-    spans = motion_of(unit_of("box", box(friction=0.1)), 20.0)
-    onsets = [onset for span in spans for onset in span.onsets]
-    assert onsets
-    assert all(onset.slides and not onset.lifts for onset in onsets)
-    assert not any(span.impacts for span in spans)
+    for onset, phase in zip(onsets, left, strict=True):
+        assert onset.stamp / 1e9 == pytest.approx(phase.start, abs=1e-6)
+        assert onset.lifts == ("O" in phase.states)
+        assert onset.slides == ("+" in phase.states or "-" in phase.states)
 
 
 def test_a_toppled_unit_ends_there() -> None:

@@ -9,15 +9,16 @@ import numpy as np
 import pytest
 from cargo_scenes import a_deck as rolling_deck
 from cargo_scenes import a_drum, box
+from records import impacts_of, samples_of
 
 from impact_predictor.bags.read import read_messages, topics
 from impact_predictor.errors import InputError
 from impact_predictor.mechanics.motion import End
 from impact_predictor.mechanics.motion.support import MovingSupport
 from impact_predictor.prediction.scene import MovingDeck, Scene
-from impact_predictor.prediction.types import Imu, Sample
+from impact_predictor.prediction.types import Imu
 from impact_predictor.prediction.vectors import axes_of
-from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY, IMU, ODOMETRY, decode_imu, decode_odometry
+from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY, IMU, ODOMETRY, decode_imu
 from impact_predictor.scenarios.deck.cargo import follow, unit_of
 from impact_predictor.scenarios.deck.voyage import Followed, gravity_of, sail
 from impact_predictor.scenarios.record import Sensors, deck_messages
@@ -26,7 +27,6 @@ from impact_predictor.scenarios.truth import (
     ONSET_TOPIC,
     TRUTH_TOPIC,
     TrueImpact,
-    decode_true_impacts,
     decode_true_onsets,
 )
 
@@ -45,17 +45,8 @@ def recorded(path: Path, scenes: dict[str, Scene], deck: MovingSupport | None = 
     return path
 
 
-def samples(path: Path, topic: str) -> list[Sample]:
-    return [decode_odometry(message.data) for message in read_messages(path, {topic: ODOMETRY})]
-
-
 def measurements(path: Path, topic: str) -> list[Imu]:
     return [decode_imu(message.data) for message in read_messages(path, {topic: IMU})]
-
-
-def truths(path: Path) -> list[TrueImpact]:
-    messages = read_messages(path, {TRUTH_TOPIC: DIAGNOSTIC_ARRAY})
-    return [impact for message in messages for impact in decode_true_impacts(message.data)]
 
 
 def rotations(values: list[Any]) -> Any:
@@ -80,7 +71,7 @@ def quiet(stamps: Any, impacts: list[TrueImpact]) -> Any:
 )
 def test_twists_are_the_derivatives_of_poses(tmp_path: Path, scene: Scene, topic: str) -> None:
     path = recorded(tmp_path / "deck.mcap", {"": scene})
-    found = samples(path, topic)
+    found = samples_of(path, topic)
     assert [sample.stamp for sample in found] == [round(k * 1e9 / RATE) for k in range(1 + int(DURATION * RATE))]
     stamps = np.array([sample.stamp for sample in found])
     places = np.array([sample.position for sample in found])
@@ -92,7 +83,7 @@ def test_twists_are_the_derivatives_of_poses(tmp_path: Path, scene: Scene, topic
     # d R / dt R^T is the cross product with the angular velocity.
     spun = np.einsum("nij,nkj->nik", (turns[2:] - turns[:-2]) / step, turns[1:-1])
     spin = np.stack([spun[:, 2, 1], spun[:, 0, 2], spun[:, 1, 0]], axis=1)
-    still = quiet(stamps, truths(path))[1:-1]
+    still = quiet(stamps, impacts_of(path))[1:-1]
     assert still.sum() > 400
     # A sixth of the third derivative, some 30 m/s^3, times the square of 0.01 s; slips begin and end within a step.
     good = np.abs(linear[1:-1] - moved)[still].max(axis=1) < 2e-3
@@ -104,22 +95,17 @@ def test_twists_are_the_derivatives_of_poses(tmp_path: Path, scene: Scene, topic
 def test_a_unit_that_stands_is_where_the_deck_carries_it(tmp_path: Path) -> None:
     # So gently that nothing moves on the deck.
     path = recorded(tmp_path / "deck", {"a": box(), "b": a_drum()}, a_deck(0.0))
-    deck = samples(path, "/support/odom")
+    deck = samples_of(path, "/support/odom")
+    for under in deck[:20]:
+        # It turns about x and raises port.
+        angle = a_deck(0.0).motion(under.stamp / 1e9).angle
+        assert under.orientation == pytest.approx((np.sin(angle / 2), 0.0, 0.0, np.cos(angle / 2)), abs=1e-12)
     for name, place in (("a", (3.0, 5.0, H)), ("b", (0.0, 4.0, 0.1 + 0.6 * np.sqrt(0.75)))):
-        for sample, under in zip(samples(path, f"/{name}/odom"), deck, strict=True):
+        for sample, under in zip(samples_of(path, f"/{name}/odom"), deck, strict=True):
             expected = np.array(under.position) + np.array(axes_of(under.orientation)).T @ np.array(place)
             assert sample.position == pytest.approx(expected, abs=1e-9)
             assert (sample.frame_id, sample.child_frame_id) == ("world", name)
             assert (under.frame_id, under.child_frame_id) == ("world", "deck")
-
-
-def test_a_rolling_deck_turns_about_x_and_raises_port(tmp_path: Path) -> None:
-    deck = samples(recorded(tmp_path / "deck.mcap", {"": box()}), "/support/odom")
-    for sample in deck[:20]:
-        angle = a_deck().motion(sample.stamp / 1e9).angle
-        assert sample.orientation == pytest.approx((np.sin(angle / 2), 0.0, 0.0, np.cos(angle / 2)), abs=1e-12)
-        y_axis = axes_of(sample.orientation)[1]
-        assert y_axis[2] == pytest.approx(np.sin(angle), abs=1e-12)
 
 
 @pytest.mark.parametrize("topic", ["/imu", "/support/imu"])
@@ -127,10 +113,10 @@ def test_an_imu_feels_the_second_derivative_of_its_place_less_gravity(tmp_path: 
     position = (0.0, 1.5, 0.5)
     seen = box(source="imu", center_of_mass=(0.0, 0.1, 0.3), deck=MovingDeck("imu", imu_position=position))
     path = recorded(tmp_path / "imu.mcap", {"": seen})
-    impacts = truths(path)
+    impacts = impacts_of(path)
     # The same voyage, measured otherwise.
     as_odom = recorded(tmp_path / "odom.mcap", {"": seen._replace(source="odom", deck=MovingDeck())})
-    poses = samples(as_odom, topic.replace("imu", "odom"))
+    poses = samples_of(as_odom, topic.replace("imu", "odom"))
     turns = rotations(poses)
     places = np.array([sample.position for sample in poses])
     if topic == "/support/imu":
@@ -153,11 +139,11 @@ def test_the_forces_of_an_imu_sum_up_to_the_velocity_also_over_impacts(tmp_path:
     higher = a_deck().at(0.0, 0.6)
     path = recorded(tmp_path / "imu.mcap", {"": box(source="imu")}, higher)
     other = recorded(tmp_path / "odom.mcap", {"": box()}, higher)
-    found, poses = measurements(path, "/imu"), samples(other, "/odom")
+    found, poses = measurements(path, "/imu"), samples_of(other, "/odom")
     turns = rotations(poses)
     felt = np.einsum("nij,nj->ni", turns, np.array([imu.specific_force for imu in found])) - np.array((0.0, 0.0, 9.81))
     velocity = np.einsum("nij,nj->ni", turns, np.array([sample.linear for sample in poses]))
-    fast = max(impact.approach for impact in truths(path))
+    fast = max(impact.approach for impact in impacts_of(path))
     assert fast > 0.1
     # From the middle of a sample to the middle of another.
     summed = felt[100:1101].sum(axis=0) / RATE
@@ -175,7 +161,7 @@ def test_each_unit_has_the_topics_of_its_sensors(tmp_path: Path) -> None:
         ONSET_TOPIC: DIAGNOSTIC_ARRAY,
     }
     # Nobody measures the third one, but it strikes like the others.
-    struck = {impact.body for impact in truths(tmp_path / "deck")}
+    struck = {impact.body for impact in impacts_of(tmp_path / "deck")}
     assert struck == {"a", "b", "c"}
 
 
@@ -185,7 +171,7 @@ def test_messages_are_ordered_and_the_truth_is_what_happened(tmp_path: Path) -> 
     messages = list(read_messages(path, topics(path)))
     assert [message.log_time for message in messages] == sorted(message.log_time for message in messages)
     happened = sorted((impact for one in voyage.units for impact in one.impacts), key=lambda impact: impact.stamp)
-    assert sorted(truths(path), key=lambda impact: impact.stamp) == happened
+    assert sorted(impacts_of(path), key=lambda impact: impact.stamp) == happened
     onsets = [
         onset
         for message in read_messages(path, {ONSET_TOPIC: DIAGNOSTIC_ARRAY})
@@ -200,7 +186,7 @@ def test_over_a_deck_with_an_imu_alone_units_are_seen_from_the_deck(tmp_path: Pa
     path = recorded(tmp_path / "deck.mcap", aboard, a_deck(0.0))
     assert "/support/odom" not in topics(path)
     for name, place in (("a", (3.0, 5.0, H)), ("b", (0.0, 4.0, 0.1 + 0.6 * np.sqrt(0.75)))):
-        for sample in samples(path, f"/{name}/odom")[::50]:
+        for sample in samples_of(path, f"/{name}/odom")[::50]:
             assert sample.frame_id == "deck"
             assert sample.position == pytest.approx(place, abs=1e-9)
             assert sample.linear == pytest.approx((0.0, 0.0, 0.0), abs=1e-9)
@@ -218,25 +204,25 @@ def test_noise_has_its_deviations_and_says_so_in_the_covariances(tmp_path: Path)
 
     # Three times 1,201 numbers: their deviation is known to 1.2 %.
     for topic in ("/a/odom", "/support/odom"):
-        assert scatter("position", samples, topic) == pytest.approx(0.01, rel=0.06)
-        assert scatter("linear", samples, topic) == pytest.approx(0.03, rel=0.06)
-        assert scatter("angular", samples, topic) == pytest.approx(0.04, rel=0.06)
+        assert scatter("position", samples_of, topic) == pytest.approx(0.01, rel=0.06)
+        assert scatter("linear", samples_of, topic) == pytest.approx(0.03, rel=0.06)
+        assert scatter("angular", samples_of, topic) == pytest.approx(0.04, rel=0.06)
     assert scatter("specific_force", measurements, "/b/imu") == pytest.approx(0.5, rel=0.06)
     assert scatter("angular", measurements, "/b/imu") == pytest.approx(0.06, rel=0.06)
-    for value in (*samples(noisy, "/a/odom"), *measurements(noisy, "/b/imu")):
+    for value in (*samples_of(noisy, "/a/odom"), *measurements(noisy, "/b/imu")):
         orientation = value.orientation
         assert orientation is not None
         assert np.linalg.norm(orientation) == pytest.approx(1.0, abs=1e-12)
-    turned = np.array([sample.orientation for sample in samples(noisy, "/a/odom")])
-    still = np.array([sample.orientation for sample in samples(clean, "/a/odom")])
+    turned = np.array([sample.orientation for sample in samples_of(noisy, "/a/odom")])
+    still = np.array([sample.orientation for sample in samples_of(clean, "/a/odom")])
     # The angle between two unit quaternions that are near, about three axes.
     angles = 2.0 * np.sqrt(np.maximum(0.0, 1.0 - (turned * still).sum(axis=1) ** 2))
     assert np.sqrt((angles**2).mean() / 3.0) == pytest.approx(0.02, rel=0.06)
-    sample = samples(noisy, "/a/odom")[0]
+    sample = samples_of(noisy, "/a/odom")[0]
     assert np.diag(np.reshape(sample.pose_covariance, (6, 6))) == pytest.approx([1e-4] * 3 + [4e-4] * 3)
     assert np.diag(np.reshape(sample.twist_covariance, (6, 6))) == pytest.approx([9e-4] * 3 + [16e-4] * 3)
     # SensorNoise is of the sensors: what happened stays.
-    assert truths(clean) == truths(noisy)
+    assert impacts_of(clean) == impacts_of(noisy)
 
 
 def test_the_same_seed_makes_the_same_bytes_and_another_one_others(tmp_path: Path) -> None:
@@ -257,9 +243,9 @@ def test_a_toppled_unit_tells_nothing_more_and_the_others_go_on(tmp_path: Path) 
     toppled, low = voyage.units
     assert toppled.end is End.OVERTURNED
     assert toppled.time < DURATION == low.time
-    last = samples(path, "/tall/odom")[-1].stamp / 1e9
+    last = samples_of(path, "/tall/odom")[-1].stamp / 1e9
     assert toppled.time - 1.0 / RATE < last <= toppled.time
-    assert samples(path, "/low/odom")[-1].stamp == samples(path, "/support/odom")[-1].stamp == DURATION * 1e9
+    assert samples_of(path, "/low/odom")[-1].stamp == samples_of(path, "/support/odom")[-1].stamp == DURATION * 1e9
 
 
 def test_a_long_record_is_made_while_it_is_written() -> None:
