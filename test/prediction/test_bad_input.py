@@ -64,13 +64,6 @@ def test_a_number_that_is_none_is_refused_in_any_field(field: str, count: int, b
         assert goes_on(predictor)
 
 
-def test_infinities_that_would_cancel_are_refused_too() -> None:
-    predictor = Predictor(CUBE_SCENE)
-    sample = flying_sample(linear=(math.inf, -math.inf, 0.0))
-    assert predictor.update(sample).status is Status.NOT_FINITE
-    assert goes_on(predictor)
-
-
 def test_numbers_that_no_body_has_are_refused() -> None:
     predictor = Predictor(CUBE_SCENE)
     for field in ("position", "linear", "angular"):
@@ -106,13 +99,6 @@ def test_an_orientation_must_be_a_unit_quaternion(orientation: Any, status: Stat
     assert goes_on(predictor)
 
 
-def test_a_repeated_stamp_is_refused_and_the_state_kept() -> None:
-    predictor = Predictor(CUBE_SCENE)
-    assert predictor.update(flying_sample(5)).status is Status.ACCEPTED
-    assert predictor.update(flying_sample(5)).status is Status.STAMP_REPEATED
-    assert goes_on(predictor)
-
-
 def test_a_stamp_a_little_back_is_refused_until_the_clock_has_caught_up() -> None:
     predictor = Predictor(CUBE_SCENE)
     assert predictor.update(flying_sample(PAUSE)).status is Status.ACCEPTED
@@ -142,23 +128,12 @@ def test_a_sample_of_another_frame_is_refused() -> None:
     assert goes_on(predictor)
 
 
-def test_a_scene_without_a_frame_takes_any() -> None:
-    assert Predictor(CUBE_SCENE).update(flying_sample(frame_id="odom")).status is Status.ACCEPTED
-
-
 def test_the_geometry_must_be_of_the_samples_body() -> None:
     predictor = Predictor(BARE_SCENE)
     assert predictor.set_geometry(Geometry(0, "crate", CUBE)) is Status.ACCEPTED
     assert predictor.update(flying_sample()).status is Status.WRONG_FRAME
     assert predictor.update(flying_sample(child_frame_id="")).status is Status.ACCEPTED
     assert predictor.set_geometry(Geometry(0, "cube", CUBE)) is Status.ACCEPTED
-    assert goes_on(predictor)
-
-
-def test_without_geometry_nothing_is_predicted() -> None:
-    predictor = Predictor(BARE_SCENE)
-    assert predictor.update(flying_sample()).status is Status.NO_GEOMETRY
-    predictor.set_geometry(Geometry(0, "cube", CUBE))
     assert goes_on(predictor)
 
 
@@ -169,6 +144,7 @@ def test_without_geometry_nothing_is_predicted() -> None:
         (((0.0, 0.0, 0.0),), Status.TOO_FEW_POINTS),
         (((0.0, 0.0, 0.0), (0.0, 0.0, 0.0)), Status.COINCIDENT_POINTS),
         (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (1.0, 1e-12, 0.0)), Status.COINCIDENT_POINTS),
+        (((0.1, 0.0, 0.0), (0.1, 1e-10, 0.0)), Status.COINCIDENT_POINTS),
         (((1.0, 0.0, 0.0), (math.nan, 1.0, 0.0)), Status.NOT_FINITE),
         (((1.0, 0.0, 0.0), (0.0, math.inf, -math.inf)), Status.NOT_FINITE),
         (((1.0, 0.0, 0.0), (0.0, 0.0, 1e200)), Status.NOT_FINITE),
@@ -181,11 +157,6 @@ def test_a_bad_geometry_is_refused_and_the_last_one_kept(points: tuple[Vector3, 
     predictor.set_geometry(Geometry(0, "cube", CUBE))
     assert predictor.set_geometry(Geometry(0, "cube", points)) is status
     assert goes_on(predictor)
-
-
-def test_points_a_micrometre_apart_do_not_coincide() -> None:
-    predictor = Predictor(BARE_SCENE)
-    assert predictor.set_geometry(Geometry(0, "cube", ((0.1, 0.0, 0.0), (0.1, 1e-6, 0.0)))) is Status.ACCEPTED
 
 
 NUMBERS = st.floats(width=64)

@@ -51,39 +51,21 @@ def rolled(angle: float) -> Quaternion:
     return sin(0.5 * angle), 0.0, 0.0, cos(0.5 * angle)
 
 
+def state(time: int, name: str, place: Vector3, angle: float, rate: float) -> Sample:
+    """What is at a place of a deck that is rolled by an angle in rad and turns at a rate in rad/s."""
+    orientation, spin = rolled(angle), (rate, 0.0, 0.0)
+    position, linear = to_world(axes_of(orientation), place), cross(spin, place)
+    return Sample(SECOND + time * PERIOD, "world", name, position, orientation, linear, spin, ZEROS, ZEROS)
+
+
 def deck(time: int, angle: float = 0.0, rate: float = 0.0, **changes: Any) -> Sample:
     """The deck at a time in 1/100 s, rolled by an angle in rad about its origin."""
-    sample = Sample(
-        SECOND + time * PERIOD,
-        "world",
-        "deck",
-        NOTHING,
-        rolled(angle),
-        NOTHING,
-        (rate, 0.0, 0.0),
-        ZEROS,
-        ZEROS,
-    )
-    return sample._replace(**changes)
+    return state(time, "deck", NOTHING, angle, rate)._replace(**changes)
 
 
 def standing(time: int, angle: float = 0.0, rate: float = 0.0, **changes: Any) -> Sample:
     """The crate, which stands on that deck."""
-    place, orientation = (0.0, 0.0, HEIGHT), rolled(angle)
-    position = to_world(axes_of(orientation), place)
-    linear = cross((rate, 0.0, 0.0), place)
-    sample = Sample(
-        SECOND + time * PERIOD,
-        "world",
-        "crate",
-        position,
-        orientation,
-        linear,
-        (rate, 0.0, 0.0),
-        ZEROS,
-        ZEROS,
-    )
-    return sample._replace(**changes)
+    return state(time, "crate", (0.0, 0.0, HEIGHT), angle, rate)._replace(**changes)
 
 
 def tilted(time: int, orientation: Quaternion | None = LEVEL, **changes: Any) -> Imu:
@@ -125,14 +107,15 @@ def test_a_body_alone_on_a_floor_is_answered_by_its_predictor_alone() -> None:
     assert monitor.finish() == {"": predictor.finish()}
 
 
-def test_a_scene_without_a_deck_and_a_watch_loads_neither() -> None:
+def test_a_scene_loads_nothing_that_it_does_without() -> None:
     code = """
 import sys
 from impact_predictor.prediction.monitor import Monitor
 from impact_predictor.prediction.scene import Scene
-Monitor({"": Scene(1.0, ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), 0.5)})
-print(*[name for name in ("deck", "watch", "walking") if f"impact_predictor.prediction.{name}" in sys.modules])
-print(*({"numpy"} & set(sys.modules)))
+Monitor({"": Scene(1.0, ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), 0.5, transverse_slip=False)})
+parts = [f"prediction.{name}" for name in ("deck", "watch", "walking", "uncertainty")] + ["mechanics.transverse"]
+print(*[name for name in parts if f"impact_predictor.{name}" in sys.modules])
+print(*({"numpy", "numba", "scipy"} & set(sys.modules)))
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=True, text=True)
     assert done.stdout.split() == []

@@ -13,8 +13,6 @@ from scipy.integrate import solve_ivp
 from impact_predictor.mechanics.impact import solve_impact
 from impact_predictor.mechanics.types import Contact, Twist, TwoPointBody
 from impact_predictor.prediction.checks import PAUSE
-from impact_predictor.prediction.impact import Collision, leftover_of
-from impact_predictor.prediction.planar import ActiveContacts, ImpactPlane
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.prediction.score import LONGEST
@@ -104,24 +102,6 @@ def only_score(scene: Scene, samples: list[Sample]) -> Score:
     scores = [answer.score for answer in run(Predictor(scene), samples) if answer.score is not None]
     (score,) = scores
     return score
-
-
-def test_a_prediction_is_revised_with_every_sample() -> None:
-    predictor = Predictor(SCENE)
-    samples = before()
-    samples[5] = falling(samples[5].stamp, spin=0.9)
-    answers = [answer.touchdown for answer in run(predictor, samples)]
-    for k, (sample, touchdown) in enumerate(zip(samples, answers, strict=True)):
-        assert touchdown is not None
-        revised = k == 5
-        assert (abs(touchdown.lead_time - (END - sample.stamp * 1e-9)) > 1e-4) is revised
-        assert (abs(touchdown.after.omega - AFTER.omega) > 1e-3) is revised
-
-
-def test_a_touchdown_is_scored_with_its_fourth_sample_and_only_once() -> None:
-    answers = run(Predictor(SCENE), before() + after(40))
-    scored = [k for k, answer in enumerate(answers) if answer.score is not None]
-    assert scored == [BEFORE_SAMPLES + 3]
 
 
 def test_a_touchdown_that_happened_as_predicted_has_no_error() -> None:
@@ -292,10 +272,13 @@ def test_a_record_that_ends_too_early_leaves_a_touchdown_without_measurement(cou
     assert predictor.finish() == ()
 
 
-def test_a_pause_ends_what_waits_for_its_measurement() -> None:
+@pytest.mark.parametrize("shift", [0, 2 * PAUSE])
+def test_a_pause_or_a_clock_that_starts_anew_ends_what_waits_for_its_measurement(shift: int) -> None:
     predictor = Predictor(SCENE)
-    run(predictor, before() + after(2))
-    late = landed(2 * PERIOD * BEFORE_SAMPLES + PAUSE)
+    run(predictor, [sample._replace(stamp=sample.stamp + shift) for sample in before() + after(2)])
+    late = before()[0] if shift else landed(2 * PERIOD * BEFORE_SAMPLES + PAUSE)
+    if shift:
+        assert predictor.update(late).status is Status.STAMP_WENT_BACK
     score = predictor.update(late).score
     assert score is not None
     assert score.leftover is Leftover.TOO_SHORT
@@ -310,22 +293,6 @@ def test_the_longest_gap_that_is_no_pause_keeps_the_touchdown() -> None:
     assert [score is not None and score.scored for score in scores] == [False, True]
 
 
-def test_a_clock_that_starts_anew_ends_what_waits_for_its_measurement() -> None:
-    predictor = Predictor(SCENE)
-    shift = 2 * PAUSE
-    run(predictor, [sample._replace(stamp=sample.stamp + shift) for sample in before() + after(2)])
-    assert predictor.update(before()[0]).status is Status.STAMP_WENT_BACK
-    score = predictor.update(before()[0]).score
-    assert score is not None
-    assert score.leftover is Leftover.TOO_SHORT
-
-
-def test_a_touchdown_that_is_only_announced_when_the_record_ends_is_no_score() -> None:
-    predictor = Predictor(SCENE)
-    run(predictor, before())
-    assert predictor.finish() == ()
-
-
 @pytest.mark.parametrize("window", [0.0, 0.002])
 def test_after_finish_the_stamps_may_begin_anew(window: float) -> None:
     predictor = Predictor(SCENE._replace(twist_window=window))
@@ -335,29 +302,21 @@ def test_after_finish_the_stamps_may_begin_anew(window: float) -> None:
         assert predictor.finish() == ()
 
 
-def test_a_geometry_that_changes_during_the_fall_ends_the_touchdown() -> None:
+@pytest.mark.parametrize(
+    ("seen", "shift", "scored"),
+    [(0, 0.001, []), (0, 0.0, [True]), (1, 0.001, [True])],
+    ids=["changes in the fall", "comes again", "changes after the touchdown"],
+)
+def test_only_a_geometry_that_changes_during_the_fall_ends_the_touchdown(
+    seen: int, shift: float, scored: list[bool]
+) -> None:
     predictor = Predictor(SCENE)
-    run(predictor, before())
-    other = tuple((x, y, z + 0.001) for x, y, z in BLOCK)
+    run(predictor, before() + after(seen))
+    other = tuple((x, y, z + shift) for x, y, z in BLOCK)
     assert predictor.set_geometry(Geometry(0, "block", other)) is Status.ACCEPTED
-    assert not any(answer.score for answer in run(predictor, after(6)))
-
-
-def test_a_geometry_that_comes_again_or_is_refused_changes_nothing() -> None:
-    predictor = Predictor(SCENE)
-    run(predictor, before())
-    assert predictor.set_geometry(Geometry(0, "block", BLOCK)) is Status.ACCEPTED
     assert predictor.set_geometry(Geometry(0, "block", ())) is Status.TOO_FEW_POINTS
-    scores = [answer.score for answer in run(predictor, after(4)) if answer.score]
-    assert [score.scored for score in scores] == [True]
-
-
-def test_a_geometry_that_changes_after_the_touchdown_does_not_lose_it() -> None:
-    predictor = Predictor(SCENE)
-    run(predictor, before() + after(1))
-    predictor.set_geometry(Geometry(0, "block", tuple((x, y, z + 0.001) for x, y, z in BLOCK)))
-    scores = [answer.score for answer in run(predictor, after(3, BEFORE_SAMPLES + 1)) if answer.score]
-    assert [score.scored for score in scores] == [True]
+    scores = [answer.score for answer in run(predictor, after(6 - seen, BEFORE_SAMPLES + seen)) if answer.score]
+    assert [score.scored for score in scores] == scored
 
 
 def test_whether_a_touchdown_is_scored_is_decided_before_it() -> None:
@@ -432,16 +391,6 @@ def test_what_waits_is_handed_out_one_score_for_each_sample_and_the_rest_at_the_
     rest = predictor.finish()
     assert [score.touchdown.new for score in rest] == [(4, 5)]
     assert predictor.finish() == ()
-
-
-def test_an_edge_whose_ends_close_one_after_the_other_is_not_scored() -> None:
-    """They would close together at their present speeds, but at the speed of the impact they are further apart."""
-    contacts = ActiveContacts((0, 1), (2, 3), 0.0)
-    plane = ImpactPlane((0, 1, 0), (1, 0, 0), (BACK, LOW), (FRONT, LOW), BEFORE, (0, -9.81, 0), 0.0, 0.0, 0.0)
-    body = TwoPointBody(1.0, 0.006, Contact(BACK, LOW, 1.2), Contact(FRONT, LOW, 1.2))
-    collision = Collision(contacts, plane, body, BEFORE, (0.0, 0.0), 0.0, 0.0, True, 1.0, 1.0)
-    for spread, leftover in ((0.0049, Leftover.NONE), (0.0051, Leftover.ONE_CORNER_FIRST)):
-        assert leftover_of(SCENE, collision, 0.1, spread) is leftover
 
 
 def test_the_memory_of_a_touchdown_that_never_comes_is_bounded() -> None:

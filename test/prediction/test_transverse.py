@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
-
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -157,15 +154,3 @@ def test_no_landing_gains_energy() -> None:
         assert after <= before + 1e-4
         assert touchdown.energy_lost == pytest.approx(0.5 * (before - after), abs=2e-3 * before)
     assert count > 150
-
-
-@pytest.mark.parametrize("on", [True, False])
-def test_the_law_for_it_is_loaded_only_where_a_scene_wants_it(on: bool) -> None:
-    code = (
-        "import sys; from impact_predictor.prediction.predictor import Predictor\n"
-        "from impact_predictor.prediction.scene import Scene\n"
-        f"Predictor(Scene(1.0, ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), 0.3, transverse_slip={on}))\n"
-        "print(any('transverse' in name for name in sys.modules))"
-    )
-    loaded = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
-    assert loaded.stdout.strip() == str(on)

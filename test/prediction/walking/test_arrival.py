@@ -2,7 +2,7 @@
 
 import pytest
 
-from impact_predictor.prediction.walking.arrival import FULL, MOST, ArrivalFit
+from impact_predictor.prediction.walking.arrival import MOST, ArrivalFit
 from impact_predictor.prediction.walking.cubic import GapNoise, PointFrame
 from impact_predictor.stamps import NANOSECONDS
 
@@ -46,34 +46,8 @@ def test_a_foot_that_strikes_arrives_where_its_cubic_meets_the_level(landing, me
     assert velocity == pytest.approx(expected, abs=1e-12 if measured else 5e-3)
 
 
-def test_velocities_that_begin_to_be_measured_on_the_way_down_change_the_arrival_little():
-    landing = 0.1007
-    frames = [frame(step, landing, measured=step > 47) for step in range(70)]
-    stamp, _, velocity = arrival(frames)
-    assert stamp == pytest.approx(landing * NANOSECONDS, abs=2e4)
-    assert velocity == pytest.approx(frame(50, landing, measured=True).velocity)
-
-
-@pytest.mark.parametrize("resting", [0, 1, 2, 3, 12])
-def test_an_arrival_asked_for_at_once_catches_up_with_all_frames(resting):
-    # Few resting frames leave most of the frames in the air to be looked at when the arrival is asked for.
-    landing = 0.1007
-    frames = [frame(step, landing, measured=False) for step in range(51 + resting)]
-    stamp, _, _ = arrival(frames)
-    if resting > 1:
-        assert stamp == pytest.approx(landing * NANOSECONDS, abs=1e5)
-
-
 def test_of_too_few_frames_no_velocity_is_told():
     frames = [frame(step, 0.003, measured=False) for step in range(4)]
     stamp, _, velocity = arrival(frames)
     assert frames[0].stamp <= stamp <= frames[2].stamp
     assert velocity is None
-
-
-def test_a_point_that_hovers_near_the_ground_is_full_in_the_end():
-    frames = [frame(step, 0.0, measured=False) for step in range(FULL)]
-    arriving = ArrivalFit(frames[:2], 0, LEVEL, TOLERANCE, NOISE)
-    for one in frames[2:]:
-        arriving.add(one)
-    assert arriving.is_full
