@@ -10,16 +10,24 @@ from click.testing import CliRunner
 
 from impact_predictor import Flag, Mode, rod
 from impact_predictor.cli import main
-from impact_predictor.commands.experiment import MILLIMETRES, SYMMETRIC, VERY_CLOSE
-from impact_predictor.report.experiment import ANGLES, LENGTH, THICKNESSES, border, falling, trial
+from impact_predictor.report import experiment
+from impact_predictor.report.experiment import (
+    ANGLES,
+    LENGTH,
+    SYMMETRIC,
+    THICKNESSES,
+    VERY_CLOSE,
+    border,
+    falling,
+    trial,
+)
 
 FRICTION = 0.4
 DOUBTS = Flag.THIN_BODY | Flag.SLOW_IMPACT
 
 
 def trials(angle):
-    places = [(a, a) for a in SYMMETRIC] + list(VERY_CLOSE)
-    return [trial(h, a / MILLIMETRES, b / MILLIMETRES, FRICTION, angle) for a, b in places for h in THICKNESSES]
+    return [one for row in experiment.trials((*SYMMETRIC, *VERY_CLOSE), FRICTION, angle) for one in row]
 
 
 @pytest.mark.parametrize("angle", ANGLES)

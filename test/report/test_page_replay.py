@@ -289,7 +289,6 @@ def test_of_many_bags_the_worst_are_listed_and_the_page_stays_small() -> None:
     assert names[:2] == ["broken.mcap could not be read", f"{LISTED + 9}.mcap"]
     assert len(names) == LISTED
     assert len([title for title in page.figures if title.endswith(".mcap")]) == DRAWN
-    assert page.figures["Errors of the bags"]["data"][0]["y"][100] == pytest.approx(2.05)
     assert page.tables["unused"][-1][2][0] == f"0.mcap and {LISTED + 9} more bags note"
 
 

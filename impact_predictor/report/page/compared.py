@@ -69,19 +69,14 @@ def _compared(answers: Sequence[BagAnswer]) -> Iterable[tuple[str, BagAnswer]]:
 
 def _against(title: str, pairs: Sequence[tuple[float, float]], rows: Sequence[tuple[str, BagAnswer]]) -> Chart:
     """Pairs of a measured and a predicted velocity in m/s: a point each, or squares that count them where many."""
-    values = [value for pair in pairs for value in pair]
-    # Of many points the last few may lie beyond, not to press the others together.
-    out = 0.0 if len(pairs) <= MANY else 0.002
-    low, high = quantile(values, out), quantile(values, 1.0 - out)
-    low, high = low - 0.06 * (high - low) - 1e-9, high + 0.06 * (high - low) + 1e-9
-    line = {"type": "scatter", "mode": "lines", "x": [low, high], "y": [low, high], "line": {"color": GREY}}
+    ends = [min(map(min, pairs)), max(map(max, pairs))]
+    line = {"type": "scatter", "mode": "lines", "x": ends, "y": ends, "line": {"color": GREY}}
     traces: list[dict[str, Any]] = [line | {"hoverinfo": "skip", "showlegend": False}]
     if len(pairs) > MANY:
-        bins = {"start": low, "end": high, "size": (high - low) / 36}
         x, y = ([round(value, 4) for value in column] for column in zip(*pairs, strict=True))
-        squares = {"type": "histogram2d", "x": x, "y": y, "autobinx": False, "autobiny": False}
         clear = [[0.0, "rgba(0,114,178,0)"], [0.001, "rgba(0,114,178,0.25)"], [1.0, "rgb(0,50,90)"]]
-        traces.append(squares | {"xbins": bins, "ybins": bins, "colorscale": clear, "colorbar": titled("touchdowns")})
+        squares = {"type": "histogram2d", "x": x, "y": y, "nbinsx": 40, "nbinsy": 40}
+        traces.append(squares | {"colorscale": clear, "colorbar": titled("touchdowns")})
     else:
         for mode in in_order(one["mode"] for _, one in rows):
             points = [
@@ -91,8 +86,7 @@ def _against(title: str, pairs: Sequence[tuple[float, float]], rows: Sequence[tu
             ]
             look = look_of(mode) | {"opacity": 0.75, "size": 8}
             traces.append(marks(f"{mode} ({len(points):,})", points, marker=look))
-    axis = {"range": [low, high], "constrain": "domain"}
-    axes = {"xaxis": titled("measured, m/s", **axis), "yaxis": titled("predicted, m/s", scaleanchor="x", **axis)}
+    axes = {"xaxis": titled("measured, m/s"), "yaxis": titled("predicted, m/s", scaleanchor="x")}
     wrong = [abs(predicted - measured) for measured, predicted in pairs]
     half, most = (max(quantile(wrong, part), 0.001) for part in (0.5, 0.9))
     many = " There are too many touchdowns for a point each: a square counts all that fall into it."

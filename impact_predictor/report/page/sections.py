@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from math import hypot, log10
+from math import hypot
 from statistics import median
 from typing import TYPE_CHECKING, Any, Final
 
@@ -15,10 +15,9 @@ from ...prediction.types import Status
 from ...stamps import NANOSECONDS
 from ...wording import counted, words
 from ..modes import MODES, PALETTE
-from ..summary import LEAST, PER_DECADE, WHY, quantile, without_bag
+from ..summary import PER_DECADE, WHY, without_bag
 from . import found
 from .document import (
-    GREY,
     Cell,
     Chart,
     PageTable,
@@ -66,7 +65,7 @@ def bags(answers: Sequence[BagAnswer], links: Mapping[int, str]) -> Section | No
     head = ["bag", "touchdowns", "found", "velocity error", "time error", "first ahead", "a sample"]
     kept = [k for k in range(len(head)) if any(row[k] not in ("", "–") for row in rows)]
     table = PageTable([head[k] for k in kept], [[row[k] for k in kept] for row in rows])
-    return Section("bags", "The bags", said, [table, *_spread_over_bags(answers)])
+    return Section("bags", "The bags", said, [table])
 
 
 def _of_bag(answer: BagAnswer) -> list[Cell | str]:
@@ -82,18 +81,6 @@ def _of_bag(answer: BagAnswer) -> list[Cell | str]:
         time_words(median(times) if times else None),
         time_words(None if cost is None else 1e-6 * cost),
     ]
-
-
-def _spread_over_bags(answers: Sequence[BagAnswer]) -> list[Chart]:
-    """The median errors of many bags, from the best to the worst; nothing where they are few."""
-    medians = (found.velocity_errors([answer]).median for answer in found.used(answers))
-    errors = [100.0 * error for error in medians if error is not None]
-    if len(errors) <= LISTED:
-        return []
-    points = [(0.5 * k, quantile(errors, 0.005 * k)) for k in range(201)]
-    line = marks("", [(x, y, f"{x:g} % of the bags are below {y:.3g} %") for x, y in points], mode="lines")
-    axes = {"xaxis": titled("bags with a smaller error, %"), "yaxis": titled("median relative error of a bag, %")}
-    return [Chart("Errors of the bags", plot([line], 300, **axes), "From the best bag to the worst.")]
 
 
 MEASURED: Final = (
@@ -232,26 +219,14 @@ def cost(answers: Sequence[BagAnswer]) -> Section | None:
     counts: Counter[int] = Counter()
     for place, count in spread.bins.items():
         counts[10 * place // PER_DECADE] += count
-    points = []
-    for place, count in sorted(counts.items()):
-        begin, end = (time_words(10.0 ** (0.1 * (place + k) - 6)) for k in (0, 1))
-        points.append((0.1 * (place + 0.5), count, f"{begin} to {end}: {counted(count, 'sample')}"))
-    shapes, notes = [], []
-    for k, name in enumerate(("median", "90 % below", "99 % below")):
-        x, y = log10(max(known[name] or 0.0, LEAST)), 1.0 + 0.08 * k
-        shapes.append({"type": "line", "x0": x, "x1": x, "yref": "paper", "y0": 0, "y1": y, "line": {"color": GREY}})
-        notes.append({"x": x, "yref": "paper", "y": y, "text": name, "showarrow": False, "xanchor": "left"})
-    decades = list(range(min(counts) // 10, max(counts) // 10 + 2))
-    names = [time_words(10.0 ** (decade - 6)) for decade in decades]
-    figure = plot(
-        [bars(points, width=0.09, marker={"color": PALETTE[0]})],
-        height=300,
-        margin={"l": 64, "r": 16, "t": 70, "b": 48},
-        xaxis=titled("time for a sample", tickvals=decades, ticktext=names),
-        yaxis=titled("samples"),
-        shapes=shapes,
-        annotations=[note | {"yanchor": "bottom"} for note in notes],
-    )
+    spans = [(10.0 ** (0.1 * place), 10.0 ** (0.1 * (place + 1)), count) for place, count in sorted(counts.items())]
+    points = [
+        (0.5 * (begin + end), n, f"{time_words(1e-6 * begin)} to {time_words(1e-6 * end)}: {counted(n, 'sample')}")
+        for begin, end, n in spans
+    ]
+    look = {"width": [0.9 * (end - begin) for begin, end, _ in spans], "marker": {"color": PALETTE[0]}}
+    across = titled("time for a sample, us", type="log", dtick=1)
+    figure = plot([bars(points, **look)], 300, xaxis=across, yaxis=titled("samples"))
     chart = Chart("Time for a sample", figure, "How many samples took how long.")
     return Section("cost", "What a sample costs", [said], [table, chart])
 
