@@ -6,9 +6,8 @@ A player, the node and a recorder run as processes of their own, in a ROS domain
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
-from itertools import pairwise
 from math import hypot
 from pathlib import Path
 from typing import Final, NamedTuple
@@ -20,7 +19,7 @@ from .bags.read import read_messages, topics
 from .errors import InputError
 from .report.figures import write_touchdowns
 from .report.replay import lead_time_table, touchdown_table
-from .report.summary import LEAD_TIME_EDGES, LeadTimeErrors, TouchdownRow, TouchdownTally, row_of_message, summarize
+from .report.summary import LEAD_TIME_EDGES, SpanErrors, TouchdownRow, TouchdownTally, errors_ahead, row_of_message
 from .report.table import show
 from .resources import find
 from .ros.messages import DIAGNOSTIC_ARRAY, Diagnostic, decode_diagnostic_array
@@ -44,7 +43,7 @@ class Recording(NamedTuple):
     """What was recorded: settled touchdowns, and the errors of the predictions of the scored ones by lead time."""
 
     rows: list[TouchdownRow]
-    lead_time_errors: list[LeadTimeErrors]
+    lead_time_errors: Sequence[SpanErrors]
 
 
 def run_demo(output: Path = Path("out/demo"), tosses: int = TOSSES) -> int:
@@ -148,11 +147,7 @@ def read_recording(path: Path) -> Recording:
             cost = float(message.values["cost_us.update.median"]) * 1e-6
             rows[without_cost:] = [row._replace(cost=cost) for row in rows[without_cost:]]
             without_cost = len(rows)
-    by_lead_time = [
-        LeadTimeErrors(begin, end, summarize([error for lead_time, error in errors if begin <= lead_time < end]))
-        for begin, end in pairwise(LEAD_TIME_EDGES)
-    ]
-    return Recording(rows, by_lead_time)
+    return Recording(rows, errors_ahead(errors))
 
 
 def _errors(row: TouchdownRow, predictions: list[Diagnostic]) -> list[tuple[float, float]]:

@@ -13,7 +13,7 @@ from ..calibration.scene_file import NewValues, number_text
 from ..calibration.search import FOLDS, Estimate
 from ..prediction.types import Leftover, Score
 from ..wording import counted, percent, words
-from .summary import Errors, summarize
+from .summary import Distribution, spread_of
 from .table import plain_table
 
 NAMES: Final = ("friction", "restitution", "inertia")
@@ -65,7 +65,7 @@ def sentences(calibration: Calibration, scores: Sequence[Score]) -> list[str]:
     if reasons := unscored(scores):
         counts = ", ".join(f"{count:,} {words(reason)}" for reason, count in reasons.items())
         said.append(f"{counted(sum(not score.scored for score in scores), 'more touchdown')} not scored: {counts}.")
-    given, held_out = (summarize(one.tolist()) for one in (calibration.given_errors, calibration.held_out))
+    given, held_out = (spread_of(one.tolist()) for one in (calibration.given_errors, calibration.held_out))
     said.append(
         f"Relative error: given {_error(given)}; fitted {_error(held_out)}, each touchdown predicted with what "
         f"was fitted to the other {min(FOLDS, blocks) - 1} of {min(FOLDS, blocks)} parts of the blocks."
@@ -100,7 +100,7 @@ def changes_of(calibration: Calibration) -> dict[str, NewValues]:
 
 def as_json(calibration: Calibration, bags: Sequence[str], scores: Sequence[Score]) -> dict[str, Any]:
     """A calibration as JSON; relative errors as fractions of 1, the inertia as a factor on the given one."""
-    given, held_out = (summarize(one.tolist()) for one in (calibration.given_errors, calibration.held_out))
+    given, held_out = (spread_of(one.tolist()) for one in (calibration.given_errors, calibration.held_out))
     return {
         "bags": list(bags),
         "touchdowns": len(calibration.touchdowns),
@@ -119,8 +119,8 @@ def _fields(one: Estimate) -> dict[str, Any]:
     return {"given": one.given, "value": one.value, "low": one.low, "high": one.high, "told": one.known}
 
 
-def _error(errors: Errors) -> str:
-    return f"{percent(errors.median)} % in the median, 90 % below {percent(errors.p90)} %"
+def _error(errors: Distribution) -> str:
+    return f"{percent(errors.p50)} % in the median, 90 % below {percent(errors.p90)} %"
 
 
 def _not_told(name: str, one: Estimate) -> str:

@@ -16,7 +16,7 @@ from ..wording import percent, words
 from .gait import MOST, Machine, machines_of, write_gait
 from .modes import MODES, PALETTE
 from .plot import GREY, Axes, Figure, Line2D, check_picture, headline, picture
-from .summary import LEAD_TIME_EDGES, LeadTimeErrors, TouchdownRow, TouchdownTally, errors_ahead, errors_of, row_of
+from .summary import LEAD_TIME_EDGES, SpanErrors, TouchdownRow, TouchdownTally, errors_ahead, errors_of, row_of
 
 if TYPE_CHECKING:
     from ..bags.replay import Result
@@ -81,7 +81,7 @@ class ReplayPicture:
 
 
 def write_touchdowns(
-    path: str | os.PathLike[str], rows: Sequence[TouchdownRow], errors: Sequence[LeadTimeErrors], title: str
+    path: str | os.PathLike[str], rows: Sequence[TouchdownRow], errors: Sequence[SpanErrors], title: str
 ) -> None:
     """Draw the scored rows, and the errors against lead time, into a PNG or SVG file.
 
@@ -132,7 +132,7 @@ def _draw_errors(axes: Axes, rows: Sequence[TouchdownRow]) -> None:
     axes.set(xlabel="relative error (%)", ylabel="touchdowns")
     errors = [100.0 * row.relative_error for row in rows if row.relative_error is not None]
     summary = errors_of(rows)
-    if summary.median is None or summary.p90 is None:
+    if summary.p50 is None or summary.p90 is None:
         _draw_nothing(axes, "no touchdown was scored")
         return
     # Errors far outside would press the others into one bar: they are counted in the last one.
@@ -142,7 +142,7 @@ def _draw_errors(axes: Axes, rows: Sequence[TouchdownRow]) -> None:
     counts: Any = axes.hist(shown, bins=bins, range=(0.0, end), color=_BLUE, alpha=0.7, edgecolor="white")[0]
     if outside := sum(error > end for error in errors):
         axes.annotate(f"{outside} beyond →", (end, counts[-1]), ha="right", va="bottom", fontsize=9, color=GREY)
-    for value, style, label in ((summary.median, "-", "median"), (summary.p90, "--", "90 % below")):
+    for value, style, label in ((summary.p50, "-", "median"), (summary.p90, "--", "90 % below")):
         said = f"{label} {percent(value)} %"
         axes.axvline(100.0 * value, color=_VERMILION, linestyle=style, linewidth=1.5, label=said)
     axes.set(xlim=(0.0, end), ylim=(0.0, 1.25 * max(counts)))
@@ -150,15 +150,15 @@ def _draw_errors(axes: Axes, rows: Sequence[TouchdownRow]) -> None:
     axes.legend(loc="upper right", frameon=True, framealpha=0.9, edgecolor="none")
 
 
-def _draw_lead_times(axes: Axes, errors: Sequence[LeadTimeErrors]) -> None:
+def _draw_lead_times(axes: Axes, errors: Sequence[SpanErrors]) -> None:
     axes.set_title("Relative error against lead time")
     axes.set(xlabel="prediction made before the touchdown (ms)", ylabel="relative error (%)")
-    known = [one for one in errors if one.errors.median is not None and one.errors.p90 is not None]
+    known = [one for one in errors if one.errors.p50 is not None and one.errors.p90 is not None]
     if not known:
         _draw_nothing(axes, "no prediction was scored")
         return
     middles = [500.0 * (one.begin + one.end) for one in known]
-    for part, style, marker, label in (("p90", "--", "s", "90 % below"), ("median", "-", "o", "median")):
+    for part, style, marker, label in (("p90", "--", "s", "90 % below"), ("p50", "-", "o", "median")):
         values = [100.0 * getattr(one.errors, part) for one in known]
         axes.plot(middles, values, style, marker=marker, color=_VERMILION, label=label)
     top = 1.25 * max(100.0 * (one.errors.p90 or 0.0) for one in known) or 1.0

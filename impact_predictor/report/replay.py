@@ -12,7 +12,7 @@ from ..mechanics.types import Twist
 from ..prediction.scene import CONTACT_GEOMETRY, STATES
 from ..prediction.types import Status
 from ..wording import NONE, counted, duration, fixed, percent, words
-from .summary import LeadTimeErrors, ReplayTally, TouchdownRow, error_by_lead_time, errors_of, row_of
+from .summary import ReplayTally, SpanErrors, TouchdownRow, error_by_lead_time, errors_of, row_of
 from .table import Column, first_stamp, say, show, table_of
 
 if TYPE_CHECKING:
@@ -109,12 +109,12 @@ def _notes(row: TouchdownRow) -> str:
     return said if row.scored else f"not scored: {said}"
 
 
-def lead_time_table(errors: Sequence[LeadTimeErrors]) -> Table:
+def lead_time_table(errors: Sequence[SpanErrors]) -> Table:
     """The error against the time before the touchdown at which a prediction was made."""
     columns = [
         Column("before touchdown\nms", lambda one: f"{one.begin * 1e3:.0f} to {one.end * 1e3:.0f}"),
         Column("predictions\n", lambda one: str(one.errors.number)),
-        Column("median error\n%", lambda one: percent(one.errors.median)),
+        Column("median error\n%", lambda one: percent(one.errors.p50)),
         Column("90 % below\n%", lambda one: percent(one.errors.p90)),
     ]
     return table_of(columns, errors)
@@ -137,7 +137,7 @@ def bodies_table(result: Result, bodies: Sequence[str]) -> Table:
         Column("samples", lambda body: f"{sum(counts[body].values()):,}"),
         Column("refused", lambda body: f"{_refused(counts[body]):,}"),
         Column("touchdowns\nscored", lambda body: _of(errors[body].number, len(rows[body]))),
-        Column("median\nerror %", lambda body: percent(errors[body].median)),
+        Column("median\nerror %", lambda body: percent(errors[body].p50)),
     ]
     if not any(map(_refused, counts.values())):
         del columns[2]

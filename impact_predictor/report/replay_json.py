@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from ..prediction.types import Landing, Status
 from ..stamps import NANOSECONDS
-from .summary import LEAD_TIME_EDGES, error_by_lead_time, errors_of, row_of, spread_of, to_json
+from .summary import error_by_lead_time, errors_ahead, errors_of, row_of, spread_of, to_json
 
 if TYPE_CHECKING:
     from ..bags.replay import Result
@@ -45,10 +44,10 @@ def as_json(result: Result) -> dict[str, Any]:
         "us_per_sample": result.seconds / result.samples * 1e6 if result.samples else None,
         "touchdowns": [_touchdown(settled) for settled in result.settled],
         "scored": errors.number,
-        "median_relative_error": errors.median,
+        "median_relative_error": errors.p50,
         "p90_relative_error": errors.p90,
         "error_by_lead_time": [
-            {"from": a, "to": b, "count": one.number, "median": one.median, "p90": one.p90}
+            {"from": a, "to": b, "count": one.number, "median": one.p50, "p90": one.p90}
             for a, b, one in error_by_lead_time(scores)
         ],
         "statuses": _counts(result.statuses),
@@ -130,11 +129,7 @@ def _counts(counts: Mapping[Status, int]) -> dict[str, int]:
 
 def _spans(made: Iterable[tuple[float, float]]) -> list[dict[str, Any]]:
     """The spreads of errors between borders of lead time, from the (lead time in s, error) of predictions."""
-    known = list(made)
-    return [
-        {"from": begin, "to": end} | to_json(spread_of([abs(error) for time, error in known if begin <= time < end]))
-        for begin, end in pairwise(LEAD_TIME_EDGES)
-    ]
+    return [{"from": begin, "to": end} | to_json(errors) for begin, end, errors in errors_ahead(made)]
 
 
 def times_ahead(result: Result) -> list[tuple[float, float]]:

@@ -7,8 +7,10 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
 from math import floor, log10
-from statistics import median
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+import numpy as np
 
 from ..mechanics.types import Mode, Twist
 from ..prediction.types import Leftover, Score
@@ -64,20 +66,26 @@ class TouchdownRow(NamedTuple):
     cost: float | None = None
 
 
-class Errors(NamedTuple):
-    """Relative errors all together: their number, their median, and what 90 % stay below; None where there are none."""
+class Distribution(NamedTuple):
+    """How many numbers there are, what parts of them stay below, the greatest one, and how many lie in each bin.
 
-    number: int
-    median: float | None
-    p90: float | None
+    A bin k holds the numbers from 10**(k / PER_DECADE) to 10**((k + 1) / PER_DECADE). None where there are no numbers.
+    """
+
+    number: int = 0
+    p50: float | None = None
+    p90: float | None = None
+    p99: float | None = None
+    most: float | None = None
+    bins: Mapping[int, int] = MappingProxyType({})
 
 
-class LeadTimeErrors(NamedTuple):
-    """The relative errors of the predictions made from `begin` to `end` (s) before their touchdowns."""
+class SpanErrors(NamedTuple):
+    """The errors of the predictions that were made from `begin` to `end` s before their touchdowns."""
 
     begin: float
     end: float
-    errors: Errors
+    errors: Distribution
 
 
 def row_of(body: str, score: Score, cost: float | None = None) -> TouchdownRow:
@@ -126,21 +134,21 @@ def row_of_message(body: str, values: Mapping[str, str], cost: float | None = No
     )
 
 
-def errors_of(rows: Iterable[TouchdownRow]) -> Errors:
-    """How wrong the scored rows were."""
-    return summarize([row.relative_error for row in rows if row.scored and row.relative_error is not None])
+def errors_of(rows: Iterable[TouchdownRow]) -> Distribution:
+    """The relative errors of the scored rows."""
+    return spread_of([row.relative_error for row in rows if row.scored and row.relative_error is not None])
 
 
-def error_by_lead_time(scores: Iterable[Score]) -> tuple[LeadTimeErrors, ...]:
+def error_by_lead_time(scores: Iterable[Score]) -> tuple[SpanErrors, ...]:
     """How wrong every prediction of the scored touchdowns was, by how long before the touchdown it was made."""
     return errors_ahead(prediction for score in scores if score.scored for prediction in score.history)
 
 
-def errors_ahead(predictions: Iterable[tuple[float, float]]) -> tuple[LeadTimeErrors, ...]:
-    """How wrong predictions were, from the (lead time in s, relative error) of each."""
+def errors_ahead(predictions: Iterable[tuple[float, float]]) -> tuple[SpanErrors, ...]:
+    """How wrong predictions were, from the (lead time in s, error) of each."""
     made = list(predictions)
     return tuple(
-        LeadTimeErrors(begin, end, summarize([error for lead_time, error in made if begin <= lead_time < end]))
+        SpanErrors(begin, end, spread_of([abs(error) for lead_time, error in made if begin <= lead_time < end]))
         for begin, end in pairwise(LEAD_TIME_EDGES)
     )
 
@@ -151,18 +159,9 @@ def reasons(rows: Iterable[TouchdownRow]) -> dict[str, int]:
     return dict(counts.most_common())
 
 
-def summarize(errors: Sequence[float]) -> Errors:
-    """Median and 90 % of relative errors."""
-    return Errors(len(errors), median(errors), quantile(errors, 0.9)) if errors else Errors(0, None, None)
-
-
 def quantile(values: Sequence[float], part: float) -> float:
     """What a part of the values stays below, interpolated linearly between them; at least one value."""
-    ordered = sorted(values)
-    place = part * (len(ordered) - 1)
-    below = int(place)
-    above = min(below + 1, len(ordered) - 1)
-    return ordered[below] + (place - below) * (ordered[above] - ordered[below])
+    return float(np.quantile(values, part))
 
 
 def without_bag(said: str, bag: str) -> str:
@@ -170,29 +169,12 @@ def without_bag(said: str, bag: str) -> str:
     return said.replace(f"in {bag}, ", "").replace(bag, "it")
 
 
-class Distribution(NamedTuple):
-    """How many numbers there are, what parts of them stay below, the greatest one, and how many lie in each bin.
-
-    A bin k holds the numbers from 10**(k / PER_DECADE) to 10**((k + 1) / PER_DECADE). None where there are no numbers.
-    """
-
-    number: int
-    p50: float | None
-    p90: float | None
-    p99: float | None
-    most: float | None
-    bins: Mapping[int, int]
-
-
-EMPTY: Final = Distribution(0, None, None, None, None, {})
-
-
 def spread_of(numbers: Sequence[float]) -> Distribution:
     """The spread of some numbers, its percentiles exact."""
     if not numbers:
-        return EMPTY
+        return Distribution()
     bins = Counter(floor(PER_DECADE * log10(max(number, LEAST))) for number in numbers)
-    p50, p90, p99 = (quantile(numbers, part) for part in (0.5, 0.9, 0.99))
+    p50, p90, p99 = np.quantile(numbers, (0.5, 0.9, 0.99)).tolist()
     return Distribution(len(numbers), p50, p90, p99, max(numbers), bins)
 
 
@@ -200,7 +182,7 @@ def together(spreads: Iterable[Distribution]) -> Distribution:
     """The spread of all the numbers of several spreads; with more than one its percentiles are right to 1 %."""
     known = [spread for spread in spreads if spread.number]
     if len(known) < 2:
-        return known[0] if known else EMPTY
+        return known[0] if known else Distribution()
     bins: Counter[int] = Counter()
     for spread in known:
         bins.update(spread.bins)
@@ -227,7 +209,7 @@ def to_json(spread: Distribution) -> dict[str, Any]:
 def from_json(entry: Mapping[str, Any] | None) -> Distribution:
     """What `to_json` wrote; empty where there is nothing."""
     if not entry:
-        return EMPTY
+        return Distribution()
     p50, p90, p99, most = (entry[name] for name in ("p50", "p90", "p99", "max"))
     return Distribution(entry["count"], p50, p90, p99, most, dict(entry["bins"]))
 
@@ -258,10 +240,10 @@ class TouchdownTally:
         """How wrong the scored touchdowns were, and why the others are not scored, one sentence each."""
         if not self._rows:
             return ["No touchdown was predicted."]
-        errors = summarize(self._errors)
+        errors = spread_of(self._errors)
         said = [f"{errors.number:,} of {counted(self._rows, 'touchdown')} scored"]
         if errors.number:
-            said[0] += f": relative error {percent(errors.median)} % in the median, 90 % below {percent(errors.p90)} %"
+            said[0] += f": relative error {percent(errors.p50)} % in the median, 90 % below {percent(errors.p90)} %"
         said[0] += "."
         if self._reasons:
             several = ", for one or several reasons each" if len(self._reasons) > 1 else ""

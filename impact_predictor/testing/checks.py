@@ -59,7 +59,7 @@ def _run_checks(result: Result, tolerances: Tolerances) -> Iterator[Check]:
 
 
 def _median_check(rows: list[TouchdownRow], tolerance: float) -> Check:
-    median = errors_of(rows).median
+    median = errors_of(rows).p50
     if median is None:
         why = ", ".join(f"{count:,} {words(reason)}" for reason, count in reasons(rows).items())
         return Check("median error", skipped=f"no touchdown is scored: {why}")

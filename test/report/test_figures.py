@@ -10,7 +10,7 @@ import pytest
 from impact_predictor.errors import InputError
 from impact_predictor.mechanics.types import Mode, Twist
 from impact_predictor.report.figures import write_touchdowns
-from impact_predictor.report.summary import LEAD_TIME_EDGES, Errors, LeadTimeErrors, TouchdownRow
+from impact_predictor.report.summary import LEAD_TIME_EDGES, Distribution, SpanErrors, TouchdownRow
 
 ROWS = [
     TouchdownRow(
@@ -33,10 +33,10 @@ ROWS = [
 OUTLIER = ROWS[0]._replace(relative_error=40.0)
 UNMEASURED = ROWS[0]._replace(measured=None, relative_error=None, scored=False)
 ERRORS = [
-    LeadTimeErrors(begin, begin + 0.01, Errors(5, 0.05, 0.1) if begin < 0.035 else Errors(0, None, None))
+    SpanErrors(begin, begin + 0.01, Distribution(5, 0.05, 0.1) if begin < 0.035 else Distribution())
     for begin in LEAD_TIME_EDGES[:-1]
 ]
-NO_ERRORS = [one._replace(errors=Errors(0, None, None)) for one in ERRORS]
+NO_ERRORS = [one._replace(errors=Distribution()) for one in ERRORS]
 
 
 @pytest.mark.parametrize("suffix", [".png", ".svg", ".PNG"])

@@ -11,7 +11,7 @@ from rich.table import Table
 
 from impact_predictor.mechanics.types import Mode, Twist
 from impact_predictor.report.replay import lead_time_table, touchdown_table
-from impact_predictor.report.summary import Errors, LeadTimeErrors, TouchdownRow, TouchdownTally
+from impact_predictor.report.summary import Distribution, SpanErrors, TouchdownRow, TouchdownTally
 from impact_predictor.report.table import show
 
 ROW = TouchdownRow(
@@ -92,7 +92,7 @@ def test_without_costs_and_notes_there_are_no_columns_for_them() -> None:
 
 
 def test_lead_times_without_predictions_have_no_error() -> None:
-    errors = [LeadTimeErrors(0.0, 0.01, Errors(3, 0.0625, 0.125)), LeadTimeErrors(0.01, 0.02, Errors(0, None, None))]
+    errors = [SpanErrors(0.0, 0.01, Distribution(3, 0.0625, 0.125)), SpanErrors(0.01, 0.02, Distribution())]
     lines = [re.split(r"\s{2,}", line.strip()) for line in printed(lead_time_table(errors), 80).splitlines()]
     assert ["0 to 10", "3", "6.2", "12.5"] in lines
     assert ["10 to 20", "0", "-", "-"] in lines

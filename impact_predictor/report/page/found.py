@@ -15,7 +15,7 @@ from zlib import compress, decompress
 from ...bags.find import told_apart
 from ...prediction.types import Leftover
 from ...stamps import NANOSECONDS
-from ..summary import Distribution, Errors, from_json, quantile, summarize, together
+from ..summary import Distribution, SpanErrors, from_json, quantile, spread_of, together
 
 BagAnswer = Mapping[str, Any]
 """What `as_json` says of the replay of one bag; of one that could not be read its `bag` and `error`."""
@@ -48,14 +48,6 @@ class TruthCount(NamedTuple):
     there: int
     found: int
     false: int
-
-
-class SpanErrors(NamedTuple):
-    """The errors of the predictions that were made from `begin` to `end` s before their touchdowns."""
-
-    begin: float
-    end: float
-    errors: Distribution
 
 
 class RefusedMessages(NamedTuple):
@@ -109,13 +101,13 @@ def uncompared(answers: Iterable[BagAnswer]) -> Counter[str]:
     return Counter(flag for one in others for flag in one["flags"] if flag in Leftover.__members__)
 
 
-def velocity_errors(answers: Iterable[BagAnswer]) -> Errors:
+def velocity_errors(answers: Iterable[BagAnswer]) -> Distribution:
     """Relative errors of the velocities: against the truth where a bag tells it, else against what was measured."""
     errors: list[float] = []
     for answer in answers:
         true = [one["velocity_error"] for one in true_touchdowns_of([answer]) if one["velocity_error"] is not None]
         errors += true or [one["relative_error"] for one in scored_of([answer])]
-    return summarize(errors)
+    return spread_of(errors)
 
 
 def measured_and_true(answers: Iterable[BagAnswer]) -> tuple[float, float] | None:
@@ -204,7 +196,7 @@ def badness(answer: BagAnswer) -> tuple[float, ...]:
         return (inf,)
     there = found_of([answer])
     wrong = 0.0 if there is None else (there.there - there.found + there.false) / max(1, there.there)
-    return (wrong, velocity_errors([answer]).median or 0.0, time_error(answer) or 0.0)
+    return (wrong, velocity_errors([answer]).p50 or 0.0, time_error(answer) or 0.0)
 
 
 def worst_of(answers: Sequence[BagAnswer], places: Sequence[int], most: int) -> Sequence[int]:

@@ -11,10 +11,10 @@ from typing import Any, Final
 from ...scenarios.matching import NEAREST
 from ...stamps import NANOSECONDS
 from ...wording import counted
-from ..summary import WHY, quantile
+from ..summary import WHY, SpanErrors, quantile
 from . import compared, found, sections
 from .document import Headline, page, script_beside, script_inside, time_words, within_words, write_html
-from .found import BagAnswer, SpanErrors
+from .found import BagAnswer
 
 LEAST_LEAD_TIME: Final = 0.02
 """Seconds before a touchdown, from which on the errors of the times are given."""
@@ -162,7 +162,7 @@ def _right(answers: Sequence[BagAnswer]) -> Headline | None:
             more += f" The mode is right in {right:,} of {both:,}."
         if time is not None:
             more += f" The time predicted {span} is {time_words(time.errors.p50)} wrong in the median."
-        return Headline("How right", f"velocities within {within_words(errors.median)}", more)
+        return Headline("How right", f"velocities within {within_words(errors.p50)}", more)
     if time is None:
         return None
     more = f"So close are half of the times that were predicted {span}; 90 % are within {time_words(time.errors.p90)}."

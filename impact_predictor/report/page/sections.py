@@ -15,7 +15,7 @@ from ...prediction.types import Status
 from ...stamps import NANOSECONDS
 from ...wording import counted, words
 from ..modes import MODES, PALETTE
-from ..summary import PER_DECADE, WHY, without_bag
+from ..summary import PER_DECADE, WHY, SpanErrors, without_bag
 from . import found
 from .document import (
     Cell,
@@ -30,7 +30,7 @@ from .document import (
     time_words,
     titled,
 )
-from .found import BagAnswer, SpanErrors
+from .found import BagAnswer
 from .timeline import in_order, lanes_of, timeline
 
 if TYPE_CHECKING:
@@ -76,7 +76,7 @@ def _of_bag(answer: BagAnswer) -> list[Cell | str]:
     return [
         f"{len(answer['touchdowns']):,}",
         "–" if there is None else Cell(f"{there.found:,} of {there.there:,}", alarms),
-        Cell(part_words(errors.median), compared) if compared else "–",
+        Cell(part_words(errors.p50), compared) if compared else "–",
         time_words(found.time_error(answer)),
         time_words(median(times) if times else None),
         time_words(None if cost is None else 1e-6 * cost),
