@@ -7,19 +7,16 @@ arithmetic. Where a body slips across the plane, no exact solution is known: the
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from functools import partial
 from importlib.util import find_spec
 from math import hypot, sqrt
 from random import Random
-from typing import Any, Final, NamedTuple
-
-import numpy as np
+from typing import Final, NamedTuple
 
 from ...mechanics import bodies, closed_forms
 from ...mechanics.compliant import compliant_impact
-from ...mechanics.impact import solve_impact
-from ...mechanics.impact.batch import Outcomes, solve_impacts
+from ...mechanics.impact import LAWS, solve_impact
 from ...mechanics.transverse import Transverse, solve_transverse_impact
 from ...mechanics.types import Contact, Mode, Twist, TwoPointBody
 from ...prediction.impact import TOLERANCE
@@ -50,33 +47,28 @@ class Aftermath(NamedTuple):
     mode: Mode | None = None
 
 
-def of_paper(shape: str, source: Random, **sizes: float) -> Struck:
-    """A body of the paper, which turns about A at rest: no restitution, one friction."""
-    given = {**sizes, "mass": 10.0 ** source.uniform(-1.0, 1.0)}
+def of_paper(source: Random, shape: str = "", stiff: bool = False) -> Struck:
+    """A body of the paper, which turns about A at rest: no restitution, one friction.
+
+    A `stiff` one is of any size and friction, slender or tall, or has its contacts nearly at one place.
+    """
+    shape = shape or source.choice(("rod", "plate", "cylinder"))
+
+    def drawn(ordinary: tuple[float, float], wide: tuple[float, float]) -> float:
+        return float(10.0 ** source.uniform(*(wide if stiff else ordinary)))
+
+    size, mass = drawn((-1.0, 0.5), (-6.0, 6.0)), 10.0 ** source.uniform(-1.0, 1.0)
+    given = {"mass": mass, "friction": 10.0 ** source.uniform(-3.0, 3.0) if stiff else source.uniform(0.0, 1.5)}
+    if shape == "rod":
+        a, b = (0.5 * size * drawn((-1.0, 0.0), (-6.0, 0.0)) for _ in range(2))
+        given |= {"length": size, "thickness": size * drawn((-2.0, -1.0), (-8.0, -2.0)), "a": a, "b": b}
+    elif shape == "plate":
+        given |= {"length": size, "height": size * drawn((-0.7, 0.7), (-8.0, 3.0))}
+    else:
+        given |= {"radius": size, "gamma": 1.4 * drawn((-1.4, 0.0), (-6.0, 0.0))}
     body: TwoPointBody = getattr(bodies, shape)(**given)
     omega = -(10.0 ** source.uniform(-1.0, 1.0))
     return Struck(body, body.turning(omega), shape, tuple({**given, "omega": omega}.items()))
-
-
-def rod(source: Random) -> Struck:
-    """A rod that falls from one support onto another."""
-    length = 10.0 ** source.uniform(-1.0, 0.5)
-    thickness = length * 10.0 ** source.uniform(-2.0, -1.0)
-    a, b = (length * source.uniform(0.05, 0.5) for _ in range(2))
-    return of_paper("rod", source, length=length, thickness=thickness, a=a, b=b, friction=source.uniform(0.0, 1.0))
-
-
-def plate(source: Random) -> Struck:
-    """A plate that falls back onto its side."""
-    length = 10.0 ** source.uniform(-1.0, 0.5)
-    height = length * 10.0 ** source.uniform(-0.7, 0.7)
-    return of_paper("plate", source, length=length, height=height, friction=source.uniform(0.0, 1.5))
-
-
-def cylinder(source: Random) -> Struck:
-    """A cylinder that rolls from one edge onto another."""
-    radius, gamma = 10.0 ** source.uniform(-1.0, 0.5), source.uniform(0.05, 1.4)
-    return of_paper("cylinder", source, radius=radius, gamma=gamma, friction=source.uniform(0.0, 1.0))
 
 
 def tall(source: Random) -> Struck:
@@ -88,21 +80,6 @@ def tall(source: Random) -> Struck:
     twist = body.turning(-(10.0 ** source.uniform(-1.0, 1.0)))
     slip = source.choice((0.0, 1.0)) * source.uniform(-2.0, 2.0) * twist.omega * length
     return Struck(body, twist._replace(vx=twist.vx + slip))
-
-
-def stiff(source: Random) -> Struck:
-    """A body of the paper of any size and friction, slender or tall, or with contacts nearly at one place."""
-    size, friction = 10.0 ** source.uniform(-6.0, 6.0), 10.0 ** source.uniform(-3.0, 3.0)
-    shape = source.choice(("rod", "plate", "cylinder"))
-    if shape == "plate":
-        height = size * 10.0 ** source.uniform(-8.0, 3.0)
-        return of_paper(shape, source, length=size, height=height, friction=friction)
-    if shape == "cylinder":
-        gamma = 1.5 * 10.0 ** source.uniform(-6.0, 0.0)
-        return of_paper(shape, source, radius=size, gamma=gamma, friction=friction)
-    thickness = size * 10.0 ** source.uniform(-8.0, -2.0)
-    a, b = (0.5 * size * 10.0 ** source.uniform(-6.0, 0.0) for _ in range(2))
-    return of_paper(shape, source, length=size, thickness=thickness, a=a, b=b, friction=friction)
 
 
 def crossing(source: Random) -> Struck:
@@ -120,21 +97,21 @@ PATH: Final = "the impulse-path law"
 SCENES: Final[dict[str, tuple[str, str, str, Callable[[Random], Struck]]]] = {
     "rod": (
         "Rod over two supports",
-        "Rods of many sizes that turn about one support, plastic, friction to 1.",
+        "Rods of many sizes that turn about one support, plastic, friction to 1.5.",
         FORMULA,
-        rod,
+        partial(of_paper, shape="rod"),
     ),
     "plate": (
         "Crate on a floor",
         "Plates with heights from a fifth to five times the length that turn about an edge, plastic, friction to 1.5.",
         FORMULA,
-        plate,
+        partial(of_paper, shape="plate"),
     ),
     "cylinder": (
         "Cylinder between edges",
-        "Cylinders that roll from one edge onto another, 6 to 160 degrees apart, plastic, friction to 1.",
+        "Cylinders that roll from one edge onto another, 6 to 160 degrees apart, plastic, friction to 1.5.",
         FORMULA,
-        cylinder,
+        partial(of_paper, shape="cylinder"),
     ),
     "squat": (
         "Tall blocks",
@@ -146,7 +123,7 @@ SCENES: Final[dict[str, tuple[str, str, str, Callable[[Random], Struck]]]] = {
         "Stiff bodies",
         "Rods, plates and cylinders of 1e-6 to 1e6 m, to 1e8 times as long as high, friction 0.001 to 1000.",
         FORMULA,
-        stiff,
+        partial(of_paper, stiff=True),
     ),
     "across": (
         "Slip across the plane",
@@ -188,27 +165,6 @@ def across(strike: Struck, tolerance: float) -> Aftermath:
     """One impact by the path law, with slip across the plane where there is any."""
     outcome = solve_transverse_impact(strike.body, strike.twist, Transverse(strike.across), tolerance).outcome
     return Aftermath(outcome.twist, outcome.mode)
-
-
-def batch(strikes: Sequence[Struck], name: str) -> Callable[[], Outcomes]:
-    """Many impacts at once, compiled where numba is there."""
-    body, twist = together([strike.body for strike in strikes]), together([strike.twist for strike in strikes])
-    return lambda: solve_impacts(body, twist, name)
-
-
-def together(values: Sequence[Any]) -> Any:
-    """Values of one form, tuples in tuples, as one of arrays."""
-    first = values[0]
-    if not isinstance(first, tuple):
-        return np.array(values)
-    parts = [together(column) for column in zip(*values, strict=True)]
-    return type(first)(*parts) if hasattr(first, "_fields") else tuple(parts)
-
-
-def unpack(outcomes: Outcomes) -> list[Aftermath]:
-    """The answers of a batch."""
-    both = zip(outcomes.twist.tolist(), outcomes.mode.tolist(), strict=True)
-    return [Aftermath(Twist(*twist), Mode(mode)) for twist, mode in both]
 
 
 def no_slip(strike: Struck) -> Aftermath:
@@ -282,7 +238,6 @@ def _geoms(contact: Contact, pad: float, bit: int) -> tuple[str, str]:
 
 
 ACROSS: Final = "path law with slip across"
-ONE, ALL = "one at a time", "all of the scene at once"
 USED: Final = (ACROSS, f"tolerance = {TOLERANCE:g}")
 """What the node uses; without slip across the plane it is the path law, to the bit."""
 
@@ -300,11 +255,8 @@ FAMILIES: Final = {
 
 def methods() -> list[Method]:
     """The methods that can run on this machine."""
-    found = []
-    for name in ("path", "total"):
-        found.append(Method(f"{name} law", f"{name} law", ONE, partial(law, name=name)))
-        found.append(Method(f"{name} law", f"{name} law", ALL, partial(batch, name=name), unpack=unpack))
-    found += [
+    found = [
+        *(Method(f"{name} law", f"{name} law", "", partial(law, name=name)) for name in LAWS),
         Method(ACROSS, ACROSS, f"tolerance = {TOLERANCE:g}", partial(across, tolerance=TOLERANCE)),
         Method(ACROSS, ACROSS, "tolerance = 1e-06", partial(across, tolerance=1e-6)),
         Method("no slip", "no slip (Housner)", "", no_slip),

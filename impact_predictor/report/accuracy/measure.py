@@ -57,7 +57,7 @@ class Method(NamedTuple):
     """A method with one setting; it answers a problem, or None where it has no answer.
 
     Where it `prepares`, `solve` gives the function that is timed: what a user would do once, such as building a model,
-    is left out of the time. With `unpack` it takes all problems of a scene at once; that makes the list of its answers.
+    is left out of the time.
     """
 
     family: str
@@ -66,7 +66,6 @@ class Method(NamedTuple):
     solve: Callable[[Any], Any]
     applies: Callable[[Any], bool] = lambda problem: True
     prepares: bool = False
-    unpack: Callable[[Any], list[Any]] | None = None
 
 
 class MethodRun(NamedTuple):
@@ -83,11 +82,6 @@ def run(method: Method, problems: Sequence[Any], seconds: float) -> MethodRun:
     with warnings.catch_warnings():
         # Methods that lose their way say so.
         warnings.simplefilter("ignore")
-        if method.unpack is not None:
-            call = _call(method, problems)
-            call()  # compiles
-            found = call()
-            return MethodRun(method, method.unpack(found), [1e6 * seconds_of(call) / len(problems)])
         for problem in problems:
             call = _call(method, problem)
             answers.append(call())
@@ -100,7 +94,7 @@ def run(method: Method, problems: Sequence[Any], seconds: float) -> MethodRun:
 def _call(method: Method, problem: Any) -> Callable[[], Any]:
     """What is timed; whatever a method raises, it has no answer, which must not break the report."""
     try:
-        solve = method.solve(problem) if method.prepares or method.unpack else lambda: method.solve(problem)
+        solve = method.solve(problem) if method.prepares else lambda: method.solve(problem)
     except Exception:
         return lambda: None
 

@@ -41,7 +41,7 @@ def test_a_method_that_breaks_has_no_answer() -> None:
     assert run(Method("f", "m", "", lambda n: 1 / n, prepares=True), [0], 1.0).answers == [None]
 
 
-def test_what_a_method_prepares_is_not_timed_and_one_for_all_problems_has_their_mean() -> None:
+def test_what_a_method_prepares_is_not_timed() -> None:
     def prepare(n: int) -> Any:
         busy(0.02)
         return lambda: n
@@ -49,10 +49,6 @@ def test_what_a_method_prepares_is_not_timed_and_one_for_all_problems_has_their_
     prepared = run(Method("f", "m", "", prepare, prepares=True), [5], 1.0)
     assert prepared.answers == [5]
     assert prepared.us[0] < 1e3
-    together = Method("f", "m", "", lambda problems: lambda: (busy(0.01), problems), unpack=lambda found: found[1])
-    found = run(together, list(range(10)), 1.0)
-    assert found.answers == list(range(10))
-    assert found.us == [pytest.approx(1e3, rel=0.5)]
 
 
 SCENES = [

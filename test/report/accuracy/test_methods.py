@@ -57,13 +57,6 @@ def test_both_laws_are_the_closed_forms_on_the_bodies_of_the_paper(name: str, la
         assert impacts.law(strike, law).mode is impacts.reference_of(strike).mode
 
 
-@pytest.mark.parametrize("law", ["path", "total"])
-def test_a_batch_answers_what_one_after_the_other_answers(law: str) -> None:
-    strikes = impacts.strikes("squat", COUNT)
-    found = impacts.unpack(impacts.batch(strikes, law)())
-    assert found == [impacts.law(strike, law) for strike in strikes]
-
-
 def test_no_slip_is_what_much_friction_gives_without_restitution() -> None:
     compared = 0
     for strike in impacts.strikes("squat", COUNT):
