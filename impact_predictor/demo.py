@@ -1,6 +1,6 @@
 """The demonstration: recorded tosses of a cube through real ROS topics, and what was predicted of their touchdowns.
 
-A player, the node and a recorder run as processes of their own, in a ROS domain of their own.
+The node and a player, which also records, run as processes of their own, in a ROS domain of their own.
 """
 
 from __future__ import annotations
@@ -23,9 +23,8 @@ from .report.summary import LEAD_TIME_EDGES, SpanErrors, TouchdownRow, Touchdown
 from .report.table import show
 from .resources import find
 from .ros.messages import DIAGNOSTIC_ARRAY, Diagnostic, decode_diagnostic_array
-from .ros.player import PLAYING, timed
+from .ros.player import NODE, PLAYED, PLAYING, RECORDED, timed
 from .ros.processes import Child, ros_environment
-from .ros.recorder import LISTENING, NODE, TOPICS
 
 BAG: Final = "examples/cube_tosses"
 SCENE: Final = "config/cube_tosses.yaml"
@@ -87,7 +86,7 @@ def play(bag: Path, scene: Path, tosses: int, output: Path) -> None:
     console = Console(stderr=True)
     columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
     with Progress(*columns, console=console, transient=True) as progress, ExitStack() as children:
-        task = progress.add_task("starting player, predictor and recorder", total=None)
+        task = progress.add_task("starting player and predictor", total=None)
         if not console.is_terminal:
             console.print(f"playing {tosses} tosses through ROS topics: about {sum(pauses) + 10.0:.0f} s")
 
@@ -104,24 +103,22 @@ def play(bag: Path, scene: Path, tosses: int, output: Path) -> None:
                     raise InputError(f"{what} did not happen within {seconds:.0f} s; is the machine overloaded?")
                 time.sleep(0.05)
 
-        recorder = start("recorder", str(output))
         node = start("node", "--ros-args", "--params-file", str(scene))
-        wait(lambda: LISTENING in recorder.said(), [recorder, node], START, "the connection of recorder and node")
-        player = start("player", str(bag), "--runs", str(tosses), "--ros-args", *REMAPPING)
-        wait(lambda: PLAYING in player.said() or player.ended, [recorder, node], START, "the start of the player")
+        options = ("--runs", str(tosses), "--record", str(output))
+        player = start("player", str(bag), *options, "--ros-args", *REMAPPING)
+        wait(lambda: PLAYING in player.said(), [player, node], START, "the connection of player and node")
         progress.update(task, description=f"playing {tosses} tosses", total=sum(pauses))
         began = time.monotonic()
 
         def played() -> bool:
             progress.update(task, completed=time.monotonic() - began)
-            return player.ended
+            return PLAYED in player.said()
 
-        wait(played, [recorder, node], 3.0 * sum(pauses) + START, "the end of the recorded tosses")
-        player.end()
+        wait(played, [player, node], 3.0 * sum(pauses) + START, "the end of the recorded tosses")
         time.sleep(PROCESSING)
-        # The last scores come at the end of the node, so the recorder ends after it.
+        # The last scores come at the end of the node, so the player, which records them, ends after it.
         node.end()
-        recorder.end()
+        player.end()
 
 
 def read_recording(path: Path) -> Recording:
@@ -130,7 +127,7 @@ def read_recording(path: Path) -> Recording:
     Raises:
         InputError: nothing can be read there.
     """
-    wanted = {topic: kind for topic, kind in TOPICS.items() if kind == DIAGNOSTIC_ARRAY}
+    wanted = {topic: kind for topic, kind in RECORDED.items() if kind == DIAGNOSTIC_ARRAY}
     rows: list[TouchdownRow] = []
     predictions: list[Diagnostic] = []
     errors: list[tuple[float, float]] = []

@@ -10,7 +10,7 @@ from impact_predictor.errors import InputError
 from impact_predictor.resources import find
 from impact_predictor.ros.cdr import OK, diagnostic_array, diagnostic_status, pairs_of
 from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY
-from impact_predictor.ros.recorder import NODE, TOPICS
+from impact_predictor.ros.player import NODE, RECORDED
 
 needs_ros = pytest.mark.skipif(
     importlib.util.find_spec("rclpy") is None,
@@ -105,7 +105,7 @@ def test_the_demonstration_writes_predictions_and_a_picture_and_prints_what_was_
     printed = capsys.readouterr().out
     assert "touchdowns scored" in printed
     assert "BACK_PIVOT" in printed
-    assert topics(tmp_path / "demo/predictions.mcap") == TOPICS
+    assert topics(tmp_path / "demo/predictions.mcap") == RECORDED
     assert (tmp_path / "demo/touchdowns.png").read_bytes().startswith(b"\x89PNG")
 
 

@@ -32,7 +32,7 @@ from .options import Whole, examples
 def demo(output: Path, tosses: int | None) -> int:
     """Play recorded tosses of a cube through ROS topics, and show what was predicted and what happened.
 
-    A player, the node and a recorder run as processes of their own; ROS 2 must be installed.
+    The node and a player, which also records, run as processes of their own; ROS 2 must be installed.
     """
     from ..demo import TOSSES, run_demo
 

@@ -2,7 +2,8 @@
 
     python3 -m impact_predictor.ros.player examples/cube_tosses --runs 3 --ros-args -r /cube/odom:=/odom
 
-Stamps stay as they are. It waits for subscribers, and ends when they have received everything.
+Stamps stay as they are. It waits for subscribers, and ends when they have received everything. With `--record FILE` it
+also records what the predictor publishes, byte for byte, with the time of its receipt as log time, until it is stopped.
 """
 
 from __future__ import annotations
@@ -12,13 +13,17 @@ import math
 import sys
 import time
 from collections.abc import Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager, nullcontext
+from functools import partial
 from typing import Any, Final
 
 from ..bags.read import BagMessage, read_messages, topics
+from ..bags.write import BagWriter
 from ..errors import InputError
 from ..stamps import NANOSECONDS
-from .messages import IMU, JOINT_STATE, JOINT_TRAJECTORY, ODOMETRY, POLYGON, WRENCH
-from .process import Stop, message_class, run
+from .messages import DIAGNOSTIC_ARRAY, IMU, JOINT_STATE, JOINT_TRAJECTORY, ODOMETRY, OUTPUTS, POLYGON, WRENCH
+from .process import Stop, message_class, run, spin
 
 AWAITED: Final = (ODOMETRY, IMU, POLYGON)
 """Types of the messages that are played when somebody has subscribed to them."""
@@ -47,8 +52,16 @@ SETTLING: Final = 0.5
 
 QUEUE: Final = 1000
 
-PLAYING: Final = "playing"
-"""What it prints when it has found its subscribers."""
+PLAYING, PLAYED = "playing", "played"
+"""What it prints when it has found its subscribers, and at the end of the recording."""
+
+NODE: Final = "/impact_predictor"
+
+RECORDED: Final[dict[str, str]] = {
+    **{f"{NODE}/{name}": output.type_name for name, output in OUTPUTS.items()},
+    "/diagnostics": DIAGNOSTIC_ARRAY,
+}
+"""Topics that are recorded, with the types of the messages."""
 
 
 def main(args: list[str] | None = None) -> int:
@@ -64,6 +77,7 @@ def _options(args: list[str]) -> argparse.Namespace:
     parser.add_argument("bag")
     parser.add_argument("--runs", type=int, default=0, help="how many runs between idle gaps; 0, the default, is all")
     parser.add_argument("--rate", type=float, default=1.0, help="times the recorded speed; default 1")
+    parser.add_argument("--record", metavar="FILE", help="bag for what the predictor publishes; none unless given")
     given = parser.parse_args(remove_ros_args(args)[1:])
     if given.runs < 0 or not 0.0 < given.rate < 1e6:
         raise InputError("--runs must not be negative, and --rate must be positive")
@@ -96,11 +110,16 @@ def _play(options: argparse.Namespace, stop: Stop) -> int:
     node = Node("player")
     try:
         publishers = {topic: _publisher(node, topic, kind) for topic, kind in types.items()}
-        if _await_subscribers([publishers[topic] for topic, kind in types.items() if kind in AWAITED], stop):
-            print(PLAYING, flush=True)
-            _publish_all(messages, types, publishers, options.rate, stop)
-            for publisher in publishers.values():
-                publisher.wait_for_all_acked(Duration(seconds=2))
+        awaited = [publishers[topic] for topic, kind in types.items() if kind in AWAITED]
+        with _recording(node, options.record, stop) if options.record else nullcontext():
+            if _await_others(node, awaited, RECORDED if options.record else (), stop):
+                print(PLAYING, flush=True)
+                _publish_all(messages, types, publishers, options.rate, stop)
+                for publisher in publishers.values():
+                    publisher.wait_for_all_acked(Duration(seconds=2))
+                print(PLAYED, flush=True)
+            while options.record and not stop.wait(1.0):
+                pass
     finally:
         node.destroy_node()
     return 0
@@ -118,18 +137,43 @@ def _publisher(node: Any, topic: str, kind: str) -> Any:
     )
 
 
-def _await_subscribers(publishers: list[Any], stop: Stop) -> bool:
-    """Wait until every topic has a subscriber; whether the stop left time for it.
+@contextmanager
+def _recording(node: Any, output: str, stop: Stop) -> Iterator[None]:
+    """Write what the predictor publishes, until the stop."""
+    received = [0]
+
+    def write(topic: str, kind: str, data: bytes) -> None:
+        writer.write(topic, kind, time.time_ns(), data)
+        received[0] += 1
+
+    with BagWriter(output) as writer:
+        for topic, kind in RECORDED.items():
+            node.create_subscription(message_class(kind), topic, partial(write, topic, kind), QUEUE, raw=True)
+        with ThreadPoolExecutor(max_workers=1) as pool:
+            receiving = pool.submit(spin, node, stop, lambda: received[0])
+            try:
+                yield
+            finally:
+                stop.request()
+            receiving.result()
+
+
+def _await_others(node: Any, publishers: list[Any], recorded: Iterable[str], stop: Stop) -> bool:
+    """Wait until every topic has a subscriber, or a publisher if it is recorded; whether the stop left time for it.
 
     Raises:
         InputError: a topic has none.
     """
     patience = time.monotonic() + DISCOVERY
-    while lonely := [one.topic_name for one in publishers if not one.get_subscription_count()]:
+    while True:
+        lonely = [one.topic_name for one in publishers if not one.get_subscription_count()]
+        silent = [topic for topic in recorded if not node.count_publishers(topic)]
+        if not lonely and not silent:
+            break
         if time.monotonic() > patience:
+            what = f"nobody has subscribed to {' and '.join(lonely)}" if lonely else f"nobody publishes {silent[0]}"
             raise InputError(
-                f"nobody has subscribed to {' and '.join(lonely)} within {DISCOVERY:.0f} s; "
-                "start the subscriber, or remap: --ros-args -r /from:=/to"
+                f"{what} within {DISCOVERY:.0f} s; start the other program, or remap: --ros-args -r /from:=/to"
             )
         if stop.wait(0.05):
             return False

@@ -16,9 +16,8 @@ from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.prediction.types import Leftover
 from impact_predictor.ros.messages import OUTPUTS, POLYGON, decode_odometry, decode_polygon
-from impact_predictor.ros.player import timed
+from impact_predictor.ros.player import PLAYED, timed
 from impact_predictor.ros.processes import Child
-from impact_predictor.ros.recorder import LISTENING
 
 ROOT = Path(__file__).parents[2]
 SCENE = ROOT / "config/cube_tosses.yaml"
@@ -82,14 +81,12 @@ def test_live_topics_give_what_the_replay_of_the_bag_gives_byte_for_byte(tmp_pat
     remapping = ("--ros-args", "-r", "/cube/odom:=/odom", "-r", "/cube/contact_geometry:=/contact_geometry")
     asked = [part for name, value in {"executor": executor, **more}.items() for part in ("-p", f"{name}:={value}")]
     arguments = ("--ros-args", "--params-file", str(SCENE), *asked, *LOSSLESS)
-    with program("recorder", str(tmp_path / "live.mcap")) as recorder, program("node", *arguments) as node:
-        wait(lambda: LISTENING in recorder.said(), recorder, node)
-        with program("player", str(tmp_path / "excerpt.mcap"), *remapping) as player:
-            wait(lambda: player.ended, recorder, node)
-            player.end()
+    played = (str(tmp_path / "excerpt.mcap"), "--record", str(tmp_path / "live.mcap"), *remapping)
+    with program("player", *played) as player, program("node", *arguments) as node:
+        wait(lambda: PLAYED in player.said(), player, node)
         time.sleep(0.5)
         node.end()
-        recorder.end()
+        player.end()
     for name, output in OUTPUTS.items():
         topic = f"/impact_predictor/{name}"
         live, offline = (
