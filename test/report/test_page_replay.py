@@ -76,7 +76,7 @@ def test_all_text_of_a_bag_is_escaped_on_the_page_and_in_its_figures() -> None:
     text = page_of_replay([given, {**UNREADABLE, "error": evil}], script="")
     assert "<script>alert" not in text
     page = PageReader(text)
-    assert page.text.count(evil) >= 4
+    assert page.text.count(evil) >= 3
     (lanes,) = [figure["layout"]["yaxis"]["ticktext"] for title, figure in page.figures.items() if title in evil]
     assert lanes[0] == '&lt;script&gt;alert("x")&lt;/script&gt; predicted'
 
@@ -164,7 +164,7 @@ def test_the_timeline_of_a_walk_has_lanes_for_each_foot_with_its_stances(page: P
     assert bars[2]["x"] == pytest.approx([0.6])
     table = page.tables["when"][1]
     assert table[1][3] == "+2.0 ms"
-    assert table[3][2:] == ["not announced", "–", "0.100 m/s", "5.00 N s", "–"]
+    assert table[3][2:] == ["not announced", "–", "0.100 m/s", "5.00 N s", "STOP", "–"]
     assert [row[5] for row in table[1:]] == ["5.00 N s 13.00 N s at other feet", "5.00 N s", "5.00 N s"]
 
 
@@ -238,7 +238,7 @@ def test_without_a_truth_the_page_says_that_modes_cannot_be_told() -> None:
         ["STOP", "1", "1", "20.0 %", "20.0 %"],
         ["PIVOT", "2", "1", "10.0 %", "10.0 %"],
     ]
-    assert read([WALK]).tables["modes"][0] == [["foot", "STOP"], ["right", "2"], ["left", "1"]]
+    assert read([WALK]).tables["modes"][0][1:] == [["STOP", "3", "0", "–", "–"]]
 
 
 def test_errors_ahead_and_costs_are_told_in_numbers(page: PageReader) -> None:

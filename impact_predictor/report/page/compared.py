@@ -114,21 +114,13 @@ def _worst(rows: Sequence[tuple[str, BagAnswer]]) -> PageTable:
 
 def modes(answers: Sequence[BagAnswer]) -> Section | None:
     """The modes that were predicted against the true ones, or what can be told of them without a truth."""
-    predicted = Counter(one["mode"] for one in found.touchdowns_of(answers))
+    # Of a landing it is the mode of an impact with the speed of the foot in its last sample in the air.
+    predicted = Counter(one.get("landing_mode") or one["mode"] for one in found.touchdowns_of(answers))
     if not predicted:
         return None
     counts = found.confusion(answers)
-    landings = list(found.landings_of(answers))
     if counts:
         return Section("modes", "Predicted against true modes", [_right_modes(counts)], [_confusion(counts)])
-    if landings:
-        said = ", ".join(f"{count:,} {mode}" for mode, count in Counter(one["mode"] for one in landings).items())
-        feet = (
-            "The record tells when feet stand, not what their impacts do: the modes of landings are predictions alone. "
-            "In the table they are of an impact with the speed of the foot in its last sample in the air."
-        )
-        all_modes = f"As they were predicted, with the speed that was expected at the ground: {said}."
-        return Section("modes", "Modes of the landings", [feet, all_modes], [_landing_modes(landings)])
     untold = (
         "The record does not tell in which modes the bodies truly went on, and its velocities do not either: whether a "
         "contact lifts shows in the vertical velocity, in which an impact is lost among what gravity and other contacts"
@@ -177,12 +169,3 @@ def _confusion(counts: Counter[tuple[str, str]]) -> PageTable:
     ]
     caption = "How many touchdowns of each true mode (a row) were predicted in which mode (a column)."
     return PageTable(["true mode", *("missed" if mode == found.NOTHING else mode for mode in predicted)], rows, caption)
-
-
-def _landing_modes(landings: Sequence[BagAnswer]) -> PageTable:
-    """How many landings of each foot were predicted in which mode."""
-    counts = Counter((one["foot"], one["landing_mode"]) for one in landings if one["landing_mode"])
-    modes = in_order(mode for _, mode in counts)
-    feet = dict.fromkeys(foot for foot, _ in counts)
-    rows = [[foot, *(f"{counts[foot, mode]:,}" for mode in modes)] for foot in feet]
-    return PageTable(["foot", *modes], rows, "Landings of each foot by the mode that its impact is predicted to have.")

@@ -201,8 +201,8 @@ def _cells(row: Iterable[Cell | str], words: int) -> Iterable[str]:
 
 
 def _css(name: str, number: bool) -> str:
-    names = " ".join(one for one in (name, "number" if number else "") if one)
-    return f' class="{names}"' if names else ""
+    names = f"{name} number" if number else name
+    return f' class="{names.strip()}"' if names else ""
 
 
 def script_inside() -> str:

@@ -89,13 +89,6 @@ def title_of(answers: Sequence[BagAnswer]) -> str:
     return f"Touchdowns: {', '.join(said)}" if said else "No touchdown was predicted"
 
 
-def announced_of(landings: Sequence[BagAnswer]) -> str:
-    """How many landings of feet there were, and how many of them were announced where that is not all."""
-    number = sum(one["time_error"] is not None for one in landings)
-    all_landings = counted(len(landings), "landing")
-    return all_landings if number == len(landings) else f"{number:,} of {all_landings}"
-
-
 def error_at(answers: Sequence[BagAnswer]) -> SpanErrors | None:
     """The errors in s of the times told 20 ms ahead or somewhat more; None where nothing tells the true ones."""
     spans = found.errors_ahead(answers, "time_errors_ahead")
@@ -125,7 +118,9 @@ def headlines_of(answers: Sequence[BagAnswer]) -> list[Headline]:
 def _many(answers: Sequence[BagAnswer]) -> Headline:
     there, landings = found.found_of(answers), list(found.landings_of(answers))
     if there is None and landings:
-        return Headline("How many", f"{announced_of(landings)} announced", "Their motion shows when feet landed.")
+        number, of = sum(one["time_error"] is not None for one in landings), counted(len(landings), "landing")
+        all_of = of if number == len(landings) else f"{number:,} of {of}"
+        return Headline("How many", f"{all_of} announced", "Their motion shows when feet landed.")
     if there is None:
         number, reasons = sum(1 for _ in found.scored_of(answers)), found.uncompared(answers)
         others = sum(1 for _ in found.touchdowns_of(answers)) - number

@@ -133,7 +133,7 @@ def _numbers(answer: BagAnswer) -> list[PageTable]:
     start = found.begin_of(answer)
     if landings := list(found.landings_of([answer])):
         rows = [_landing_cells(one, start) for one in landings[:ROWS]]
-        head = ["time", "foot", "first ahead", "last predicted time", "speed", "impulse", "after the plan"]
+        head = ["time", "foot", "first ahead", "last predicted time", "speed", "impulse", "mode", "after the plan"]
         more = f"The first {ROWS} of {len(landings):,} landings." if len(landings) > ROWS else ""
         return [PageTable(head, rows, more, 2, "Landing by landing")]
     wrong = [
@@ -155,20 +155,17 @@ def _numbers(answer: BagAnswer) -> list[PageTable]:
 
 def _landing_cells(one: BagAnswer, start: int) -> list[Cell | str]:
     impulse, others = one["impulse"], one.get("others_impulse")
-    below = f"{_size(others):.2f} N s at other feet" if others else ""
+    below = f"{hypot(*others):.2f} N s at other feet" if others else ""
     return [
         Cell(f"{(one['stamp'] - start) / NANOSECONDS:.3f} s", one["point"] or ""),
         one["foot"],
         time_words(one["announced_lead_time"]) if one["time_error"] is not None else "not announced",
         signed_ms(one["time_error"]),
         "–" if one["landing_speed"] is None else f"{one['landing_speed']:.3f} m/s",
-        "–" if impulse is None else Cell(f"{_size(impulse):.2f} N s", below),
+        "–" if impulse is None else Cell(f"{hypot(*impulse):.2f} N s", below),
+        one["landing_mode"] or "–",
         signed_ms(one["late"]),
     ]
-
-
-def _size(vector: Sequence[float]) -> float:
-    return hypot(*vector)
 
 
 def lead_times(answers: Sequence[BagAnswer]) -> Section | None:
