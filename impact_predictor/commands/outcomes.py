@@ -18,10 +18,10 @@ from ..wording import counted
 if TYPE_CHECKING:
     from ..bags.replay import Result
     from ..fleet.job import BagOutcome
-    from ..report.baseline import RunTouchdown
     from ..report.figures import ReplayPicture
     from ..report.page.found import Kept
     from ..report.parquet import TouchdownTable
+    from ..report.summary import TouchdownRow
 
 CHANGED: Final = 1
 """Exit status where something has changed against a baseline."""
@@ -201,7 +201,7 @@ class Baseline:
 
         self.has_changed = False
         self._path, self._wanted = path, wanted
-        self._runs: dict[str, tuple[RunTouchdown, ...]] = {}
+        self._runs: dict[str, tuple[TouchdownRow, ...]] = {}
         self._missing: dict[str, InputError] = {}
         earlier = Earlier(path)
         earlier.check_of_several(len(bags))

@@ -9,17 +9,17 @@ from __future__ import annotations
 import os
 from bisect import bisect_left
 from collections import Counter, defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from enum import Enum
 from math import hypot
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from rich.console import Console
 
-from ..mechanics.types import Twist
 from ..scenarios.matching import NEAREST
 from ..stamps import NANOSECONDS
 from ..wording import NONE, counted, percent
+from .summary import TouchdownRow, row_of
 from .table import Column, first_stamp, say, show, table_of
 
 if TYPE_CHECKING:
@@ -27,26 +27,6 @@ if TYPE_CHECKING:
 
 MOST_ROWS: Final = 20
 """Changes that are listed unless all are asked for."""
-
-
-class RunTouchdown(NamedTuple):
-    """A touchdown of a run, as its score has it; SI units, `stamp` in ns, twists in the impact plane.
-
-    `foot` is "" where it is no landing; `contacts` are the points that stood and that struck, None where the run does
-    not have them; `error` relative, of what is scored; `time_error` of a landing.
-    """
-
-    body: str
-    foot: str
-    stamp: int
-    contacts: tuple[tuple[int, ...], tuple[int, ...]] | None
-    mode: str
-    before: Twist
-    predicted: Twist
-    half_distance: float
-    scored: bool
-    error: float | None
-    time_error: float | None
 
 
 class ChangeLimits(NamedTuple):
@@ -108,47 +88,28 @@ class RunComparison(NamedTuple):
     start: int = 0
 
 
-def run_of(result: Result) -> tuple[RunTouchdown, ...]:
+def run_of(result: Result) -> tuple[TouchdownRow, ...]:
     """The touchdowns of a replay."""
-    from .replay_json import as_json
-
-    return tuple(map(touchdown_of, as_json(result)["touchdowns"]))
-
-
-def touchdown_of(fields: Mapping[str, Any]) -> RunTouchdown:
-    """The touchdown of an object in the JSON of a replay."""
-    return RunTouchdown(
-        body=fields["body"],
-        foot=fields.get("foot", ""),
-        stamp=int(fields["stamp"]),
-        contacts=(tuple(fields["old"]), tuple(fields["new"])) if "old" in fields else None,
-        mode=fields["mode"],
-        before=Twist(*fields["before_twist"]),
-        predicted=Twist(*fields["predicted_twist"]),
-        half_distance=fields["half_distance"],
-        scored=fields["scored"],
-        error=fields["relative_error"] if fields["scored"] else None,
-        time_error=fields.get("time_error"),
-    )
+    return tuple(row_of(*settled) for settled in result.settled)
 
 
 def compare_runs(
-    was: Sequence[RunTouchdown], now: Sequence[RunTouchdown], limits: ChangeLimits | None = None
+    was: Sequence[TouchdownRow], now: Sequence[TouchdownRow], limits: ChangeLimits | None = None
 ) -> RunComparison:
     """What has changed from one run of a bag to another."""
     pairs = _paired(was, now)
     found = [_changes(was[i], now[k], limits or ChangeLimits()) for i, k in pairs]
     gone, new = ({*range(len(run))} - {pair[k] for pair in pairs} for k, run in enumerate((was, now)))
     changes = [change for one in found for change in one]
-    changes += [_change(was[i], ChangeKind.VANISHED, was[i].mode, None) for i in gone]
-    changes += [_change(now[k], ChangeKind.APPEARED, None, now[k].mode) for k in new]
+    changes += [_change(was[i], ChangeKind.VANISHED, was[i].mode.name, None) for i in gone]
+    changes += [_change(now[k], ChangeKind.APPEARED, None, now[k].mode.name) for k in new]
     order = list(ChangeKind)
     changes.sort(key=lambda change: (change.stamp, change.body, change.foot, order.index(change.kind)))
     start = first_stamp(sorted(one.stamp for one in now or was))
     return RunComparison(tuple(changes), len(was), len(now), sum(not one for one in found), start)
 
 
-def _paired(was: Sequence[RunTouchdown], now: Sequence[RunTouchdown]) -> list[tuple[int, int]]:
+def _paired(was: Sequence[TouchdownRow], now: Sequence[TouchdownRow]) -> list[tuple[int, int]]:
     """The places of touchdowns that are the same in both runs."""
     places: dict[tuple[str, str], list[tuple[int, int]]] = defaultdict(list)
     for k, one in enumerate(now):
@@ -172,22 +133,22 @@ def _paired(was: Sequence[RunTouchdown], now: Sequence[RunTouchdown]) -> list[tu
     return pairs
 
 
-def _differ(was: RunTouchdown, now: RunTouchdown) -> bool:
+def _differ(was: TouchdownRow, now: TouchdownRow) -> bool:
     """Whether both have contacts, and others."""
     return was.contacts is not None and now.contacts is not None and was.contacts != now.contacts
 
 
-def _change(one: RunTouchdown, kind: ChangeKind, was: Any, now: Any) -> TouchdownChange:
+def _change(one: TouchdownRow, kind: ChangeKind, was: Any, now: Any) -> TouchdownChange:
     return TouchdownChange(stamp=one.stamp, body=one.body, foot=one.foot, kind=kind, was=was, now=now)
 
 
-def _changes(was: RunTouchdown, now: RunTouchdown, limits: ChangeLimits) -> list[TouchdownChange]:
+def _changes(was: TouchdownRow, now: TouchdownRow, limits: ChangeLimits) -> list[TouchdownChange]:
     """What has changed of one touchdown."""
     found = []
     if _differ(was, now):
         found.append(_change(now, ChangeKind.CONTACTS, _points(was), _points(now)))
     if was.mode != now.mode:
-        found.append(_change(now, ChangeKind.MODE, was.mode, now.mode))
+        found.append(_change(now, ChangeKind.MODE, was.mode.name, now.mode.name))
     if abs(now.stamp - was.stamp) > limits.time * NANOSECONDS:
         found.append(_change(now, ChangeKind.MOVED, was.stamp, now.stamp))
     if was.scored != now.scored:
@@ -206,14 +167,14 @@ def _changes(was: RunTouchdown, now: RunTouchdown, limits: ChangeLimits) -> list
     return found
 
 
-def _turned(was: RunTouchdown, now: RunTouchdown, limit: float) -> bool:
+def _turned(was: TouchdownRow, now: TouchdownRow, limit: float) -> bool:
     """Whether the velocities after a touchdown differ by more than a part of those before, as relative errors do."""
     arm = was.half_distance
     vx, vy, omega = (there - here for there, here in zip(now.predicted, was.predicted, strict=True))
     return hypot(vx, vy, omega * arm) > limit * hypot(was.before.vx, was.before.vy, was.before.omega * arm)
 
 
-def _points(one: RunTouchdown) -> str:
+def _points(one: TouchdownRow) -> str:
     old, new = one.contacts or ((), ())
     return f"{' '.join(map(str, old)) or 'none'} then {' '.join(map(str, new)) or 'none'}"
 

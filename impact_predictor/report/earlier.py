@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
 
@@ -13,16 +13,15 @@ from ..bags.find import name_of
 from ..bags.read import read_messages, topics
 from ..bags.run import NODE
 from ..errors import InputError
-from ..mechanics.types import Twist
 from ..ros.messages import DIAGNOSTIC_ARRAY, MalformedMessage, decode_diagnostic_array
-from .baseline import RunTouchdown, touchdown_of
+from .summary import TouchdownRow, row_of_json, row_of_message
 
 _HINT: Final = "give what `impact-predictor replay` wrote with -o, or printed with --json"
 _OTHER_JSON: Final = (KeyError, TypeError, ValueError, AttributeError)
 """What comes of taking another JSON for that of a replay."""
 
 
-def read_earlier(path: str | os.PathLike[str], bag: str | os.PathLike[str]) -> tuple[RunTouchdown, ...]:
+def read_earlier(path: str | os.PathLike[str], bag: str | os.PathLike[str]) -> tuple[TouchdownRow, ...]:
     """The touchdowns of an earlier run of a bag; raises what `Earlier` does."""
     return Earlier(path).touchdowns_of(bag)
 
@@ -58,7 +57,7 @@ class Earlier:
                 "several wrote: its folder (-o), or its --json"
             )
 
-    def touchdowns_of(self, bag: str | os.PathLike[str], name: str | os.PathLike[str] = "") -> tuple[RunTouchdown, ...]:
+    def touchdowns_of(self, bag: str | os.PathLike[str], name: str | os.PathLike[str] = "") -> tuple[TouchdownRow, ...]:
         """The touchdowns of a bag, which has a `name` in a run of several (`names_of`; without one that of its file).
 
         There it may also be called by more of its path: there were more bags in the earlier run.
@@ -95,7 +94,7 @@ class _Runs:
             for key in {run["bag"], name_of(run["bag"])}:
                 self._by_name[key].append(run)
 
-    def touchdowns_of(self, path: Path, bag: str, names: Sequence[Path]) -> tuple[RunTouchdown, ...]:
+    def touchdowns_of(self, path: Path, bag: str, names: Sequence[Path]) -> tuple[TouchdownRow, ...]:
         same = self._all
         if not self.is_of_one:
             same = [run for run in self._by_name[bag] if run["bag"] == bag]
@@ -104,7 +103,7 @@ class _Runs:
             if len(same) != 1 or "error" in same[0]:
                 raise InputError(f"the baseline {path} has no run of {bag}; replay that bag with --json again")
         try:
-            return tuple(map(touchdown_of, same[0]["touchdowns"]))
+            return tuple(map(row_of_json, same[0]["touchdowns"]))
         except _OTHER_JSON as error:
             raise InputError(f"the baseline {path} is not the JSON of a replay; {_HINT}") from error
 
@@ -135,7 +134,7 @@ def _runs_of(path: Path) -> _Runs:
         raise InputError(f"the baseline {path} is not the JSON of a replay; {_HINT}") from error
 
 
-def _read_bag(path: Path) -> tuple[RunTouchdown, ...]:
+def _read_bag(path: Path) -> tuple[TouchdownRow, ...]:
     recorded = topics(path)
     predictions = [topic for topic in recorded if f"{NODE}/" in topic and topic.endswith("/prediction")]
     if not predictions:
@@ -149,21 +148,7 @@ def _read_bag(path: Path) -> tuple[RunTouchdown, ...]:
     for topic, _, data in read_messages(path, wanted):
         body = topic.rpartition(f"{NODE}/")[2].removesuffix("score").strip("/")
         try:
-            found += [
-                touchdown_of(_fields(body or one.hardware_id, one.values)) for one in decode_diagnostic_array(data)
-            ]
+            found += [row_of_message(body or one.hardware_id, one.values) for one in decode_diagnostic_array(data)]
         except (MalformedMessage, KeyError, ValueError) as error:
             raise InputError(f"the baseline {path} has a message on {topic} that is no score; {_HINT}") from error
     return tuple(found)
-
-
-def _fields(body: str, values: Mapping[str, str]) -> dict[str, Any]:
-    """What the JSON of a replay has of the touchdown of a message on `~/score`."""
-    twists = {
-        f"{name}_twist": [float(values[f"{name}.{part}"]) for part in Twist._fields] for name in ("before", "predicted")
-    }
-    contacts = {name: map(int, values[name].split()) for name in ("old", "new") if name in values}
-    errors = {name: float(values[name]) for name in ("relative_error", "time_error") if name in values}
-    numbers = {"stamp": values["stamp"], "half_distance": float(values["half_distance"])}
-    others = {"body": body, "foot": values.get("foot", ""), "mode": values["mode"], "relative_error": None}
-    return {**others, **twists, **contacts, **errors, **numbers, "scored": values["scored"] == "true"}

@@ -47,7 +47,9 @@ class TouchdownRow(NamedTuple):
     prediction with its contacts was made; `lead_time` in s, `before` and `predicted` of the last prediction; twists of
     the mass centre in the impact plane; `half_distance` of the two contacts in m; `out_of_plane` the part of the
     angular velocity off the plane's axis (0..1); `flags` say what a reader should know and, where it is not `scored`,
-    why; `cost` of the last prediction in s, None where it is not known.
+    why; `contacts` the points that stood and that struck, None where a run does not have them; `foot` the one that has
+    landed, and `time_error` in s of when that was predicted last; `cost` of the last prediction in s, None where it is
+    not known.
     """
 
     body: str
@@ -63,7 +65,15 @@ class TouchdownRow(NamedTuple):
     out_of_plane: float
     scored: bool
     flags: tuple[str, ...]
+    contacts: tuple[tuple[int, ...], tuple[int, ...]] | None = None
+    foot: str = ""
+    time_error: float | None = None
     cost: float | None = None
+
+    @property
+    def error(self) -> float | None:
+        """The relative error of what is scored."""
+        return self.relative_error if self.scored else None
 
 
 class Distribution(NamedTuple):
@@ -90,23 +100,28 @@ class SpanErrors(NamedTuple):
 
 def row_of(body: str, score: Score, cost: float | None = None) -> TouchdownRow:
     """The row of a score; `cost` in s."""
-    touchdown = score.touchdown
-    history = score.history if score.landing is None else score.landing.history
+    touchdown, landing = score.touchdown, score.landing
+    history = score.history if landing is None else landing.history
     return TouchdownRow(
-        body,
-        score.stamp,
-        history[0][0] if history else touchdown.lead_time,
-        touchdown.lead_time,
-        touchdown.mode,
-        touchdown.before,
-        touchdown.after,
-        score.measured,
-        touchdown.half_distance,
-        score.relative_error,
-        touchdown.off_axis,
-        score.scored,
-        tuple(flag.name or "" for flags in (score.leftover, touchdown.flags) for flag in type(flags) if flag & flags),
-        cost,
+        body=body,
+        stamp=score.stamp,
+        announced=history[0][0] if history else touchdown.lead_time,
+        lead_time=touchdown.lead_time,
+        mode=touchdown.mode,
+        before=touchdown.before,
+        predicted=touchdown.after,
+        measured=score.measured,
+        half_distance=touchdown.half_distance,
+        relative_error=score.relative_error,
+        out_of_plane=touchdown.off_axis,
+        scored=score.scored,
+        flags=tuple(
+            flag.name or "" for flags in (score.leftover, touchdown.flags) for flag in type(flags) if flag & flags
+        ),
+        contacts=(tuple(touchdown.old), tuple(touchdown.new)),
+        foot="" if landing is None else landing.foot,
+        time_error=landing.history[-1][1] if landing is not None and landing.history else None,
+        cost=cost,
     )
 
 
@@ -116,21 +131,57 @@ def row_of_message(body: str, values: Mapping[str, str], cost: float | None = No
     def twist(name: str) -> Twist:
         return Twist(*(float(values[f"{name}.{part}"]) for part in Twist._fields))
 
+    def number(name: str) -> float | None:
+        return float(values[name]) if name in values else None
+
+    def points(name: str) -> tuple[int, ...]:
+        return tuple(map(int, values[name].split()))
+
     return TouchdownRow(
-        body,
-        int(values["stamp"]),
-        float(values["announced"]),
-        float(values["lead_time"]),
-        Mode[values["mode"]],
-        twist("before"),
-        twist("predicted"),
-        twist("measured") if "measured.vx" in values else None,
-        float(values["half_distance"]),
-        float(values["relative_error"]) if "relative_error" in values else None,
-        float(values["off_axis"]),
-        values["scored"] == "true",
-        tuple(flag for key in ("leftover", "flags") for flag in values[key].split("|") if flag != "NONE"),
-        cost,
+        body=body,
+        stamp=int(values["stamp"]),
+        announced=float(values["announced"]),
+        lead_time=float(values["lead_time"]),
+        mode=Mode[values["mode"]],
+        before=twist("before"),
+        predicted=twist("predicted"),
+        measured=twist("measured") if "measured.vx" in values else None,
+        half_distance=float(values["half_distance"]),
+        relative_error=number("relative_error"),
+        out_of_plane=float(values["off_axis"]),
+        scored=values["scored"] == "true",
+        flags=tuple(flag for key in ("leftover", "flags") for flag in values[key].split("|") if flag != "NONE"),
+        contacts=(points("old"), points("new")) if "old" in values else None,
+        foot=values.get("foot", ""),
+        time_error=number("time_error"),
+        cost=cost,
+    )
+
+
+def row_of_json(fields: Mapping[str, Any]) -> TouchdownRow:
+    """The row of a touchdown in the JSON of a replay; that of older versions tells neither contacts nor announcements.
+
+    Raises:
+        KeyError, TypeError, ValueError: it is none.
+    """
+    measured = fields["measured_twist"]
+    return TouchdownRow(
+        body=fields["body"],
+        stamp=int(fields["stamp"]),
+        announced=fields.get("announced_lead_time", fields["lead_time"]),
+        lead_time=fields["lead_time"],
+        mode=Mode[fields["mode"]],
+        before=Twist(*fields["before_twist"]),
+        predicted=Twist(*fields["predicted_twist"]),
+        measured=None if measured is None else Twist(*measured),
+        half_distance=fields["half_distance"],
+        relative_error=fields["relative_error"],
+        out_of_plane=fields["out_of_plane"],
+        scored=fields["scored"],
+        flags=tuple(fields["flags"]),
+        contacts=(tuple(fields["old"]), tuple(fields["new"])) if "old" in fields else None,
+        foot=fields.get("foot", ""),
+        time_error=fields.get("time_error"),
     )
 
 

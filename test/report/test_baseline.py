@@ -11,28 +11,41 @@ from hypothesis import given
 from hypothesis import strategies as st
 from rich.console import Console
 
-from impact_predictor.mechanics.types import Twist
+from impact_predictor.mechanics.types import Mode, Twist
 from impact_predictor.report.baseline import (
     ChangeKind,
     ChangeLimits,
     RunComparison,
-    RunTouchdown,
     compare_runs,
     comparison_as_json,
     concluded,
     print_changes,
     sentences,
 )
+from impact_predictor.report.summary import TouchdownRow
 
 MS = 1_000_000
-STOP = RunTouchdown(
-    "crate", "", 1000 * MS, ((0, 1), (2, 3)), "STOP", Twist(1.0, 0.0, -2.0), Twist(0.5, 0.0, -1.0), 0.5, True, 0.1, None
+STOP = TouchdownRow(
+    body="crate",
+    stamp=1000 * MS,
+    announced=0.05,
+    lead_time=0.01,
+    mode=Mode.STOP,
+    before=Twist(1.0, 0.0, -2.0),
+    predicted=Twist(0.5, 0.0, -1.0),
+    measured=None,
+    half_distance=0.5,
+    relative_error=0.1,
+    out_of_plane=0.0,
+    scored=True,
+    flags=(),
+    contacts=((0, 1), (2, 3)),
 )
-LATER = STOP._replace(stamp=2000 * MS, contacts=((2, 3), (0, 1)), mode="SLIDE", error=0.05)
-LANDED = STOP._replace(body="robot", foot="LF", scored=False, error=None, time_error=0.002)
+LATER = STOP._replace(stamp=2000 * MS, contacts=((2, 3), (0, 1)), mode=Mode.SLIDE, relative_error=0.05)
+LANDED = STOP._replace(body="robot", foot="LF", scored=False, relative_error=None, time_error=0.002)
 
 
-def kinds(was: list[RunTouchdown], now: list[RunTouchdown]) -> list[ChangeKind]:
+def kinds(was: list[TouchdownRow], now: list[TouchdownRow]) -> list[ChangeKind]:
     return [change.kind for change in compare_runs(was, now).changes]
 
 
@@ -43,20 +56,20 @@ RUNS = st.lists(
         # Often one stamp, or many within the time in which touchdowns may be the same.
         stamp=st.integers(0, 20).map(lambda k: k * 5 * MS),
         contacts=st.sampled_from([((0, 1), (2, 3)), ((2, 3), (4, 5)), None]),
-        mode=st.sampled_from(["STOP", "SLIDE"]),
-        error=st.floats(0.0, 2.0),
+        mode=st.sampled_from([Mode.STOP, Mode.SLIDE]),
+        relative_error=st.floats(0.0, 2.0),
     ),
     max_size=12,
 )
 
 
 @given(RUNS)
-def test_whatever_run_against_itself_has_not_changed(run: list[RunTouchdown]) -> None:
+def test_whatever_run_against_itself_has_not_changed(run: list[TouchdownRow]) -> None:
     assert compare_runs(run, run, ChangeLimits(0.0, 0.0)) == RunComparison((), len(run), len(run), len(run))
 
 
 @given(RUNS, RUNS)
-def test_two_runs_the_other_way_round_have_changed_too(was: list[RunTouchdown], now: list[RunTouchdown]) -> None:
+def test_two_runs_the_other_way_round_have_changed_too(was: list[TouchdownRow], now: list[TouchdownRow]) -> None:
     there, back = compare_runs(was, now), compare_runs(now, was)
     assert bool(there.changes) == bool(back.changes)
     assert there.were - len([one for one in there.changes if one.kind is ChangeKind.VANISHED]) == (
@@ -67,11 +80,11 @@ def test_two_runs_the_other_way_round_have_changed_too(was: list[RunTouchdown], 
 @pytest.mark.parametrize(
     ("changes", "kind", "was", "now"),
     [
-        ({"mode": "SLIDE"}, ChangeKind.MODE, "STOP", "SLIDE"),
+        ({"mode": Mode.SLIDE}, ChangeKind.MODE, "STOP", "SLIDE"),
         ({"stamp": 1002 * MS}, ChangeKind.MOVED, 1000 * MS, 1002 * MS),
-        ({"error": 0.2}, ChangeKind.WORSE, 0.1, 0.2),
-        ({"error": 0.02}, ChangeKind.BETTER, 0.1, 0.02),
-        ({"scored": False, "error": None}, ChangeKind.SCORED, "scored", "not scored"),
+        ({"relative_error": 0.2}, ChangeKind.WORSE, 0.1, 0.2),
+        ({"relative_error": 0.02}, ChangeKind.BETTER, 0.1, 0.02),
+        ({"scored": False, "relative_error": None}, ChangeKind.SCORED, "scored", "not scored"),
         ({"contacts": ((0, 1), (4, 5))}, ChangeKind.CONTACTS, "0 1 then 2 3", "0 1 then 4 5"),
         ({"contacts": ((), (4,))}, ChangeKind.CONTACTS, "0 1 then 2 3", "none then 4"),
         # 0.04 rad/s at half a metre, against hypot(1, 2 * 0.5) m/s before it: 1.4 %.
@@ -88,7 +101,7 @@ def test_a_change_is_told_with_what_was_and_what_is(
 
 @pytest.mark.parametrize(
     "changes",
-    [{"stamp": 1001 * MS}, {"error": 0.109}, {"predicted": Twist(0.5, 0.0, -1.02)}],
+    [{"stamp": 1001 * MS}, {"relative_error": 0.109}, {"predicted": Twist(0.5, 0.0, -1.02)}],
     ids=["1 ms", "0.9 %", "velocities by 0.7 %"],
 )
 def test_what_stays_within_the_limits_has_not_changed(changes: dict[str, Any]) -> None:
@@ -107,7 +120,7 @@ def test_touchdowns_come_and_go() -> None:
 
 
 def test_touchdowns_close_together_are_told_apart_by_their_contacts() -> None:
-    first, second = STOP, STOP._replace(stamp=1006 * MS, contacts=((2, 3), (4, 5)), mode="SLIDE")
+    first, second = STOP, STOP._replace(stamp=1006 * MS, contacts=((2, 3), (4, 5)), mode=Mode.SLIDE)
     # Each has moved by 4 ms, so that the other one is nearer.
     later = [one._replace(stamp=one.stamp + 4 * MS) for one in (first, second)]
     assert kinds([first, second], later) == [ChangeKind.MOVED, ChangeKind.MOVED]
@@ -137,7 +150,7 @@ MANY = [
     STOP._replace(stamp=6000 * MS),
 ]
 CHANGED = [
-    STOP._replace(mode="SLIDE", error=0.345),
+    STOP._replace(mode=Mode.SLIDE, relative_error=0.345),
     LATER._replace(stamp=2004 * MS),
     STOP._replace(stamp=3000 * MS, predicted=Twist(-10.5, -10.25, -12.25)),
     LANDED._replace(stamp=5000 * MS, time_error=-0.012),
