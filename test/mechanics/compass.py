@@ -9,10 +9,11 @@ Ruina and Coleman, "The simplest walking model: stability, complexity, and scali
 from __future__ import annotations
 
 from math import cos, sin
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
 
 from impact_predictor.mechanics.contact_space import ContactOutcome, solve
 
@@ -99,3 +100,45 @@ def inertia_of(compass: Compass, theta: float, psi: float) -> NDArray[np.float64
 def _free_rates(compass: Compass, theta: float, stance: float, swing: float) -> NDArray[np.float64]:
     """Velocities of the hip and rates of the legs while the foot of the first one stands."""
     return np.array([compass.leg * cos(theta) * stance, -compass.leg * sin(theta) * stance, stance, swing])
+
+
+def step(compass: Compass, gait: NDArray[np.float64], law: str) -> NDArray[np.float64]:
+    """The gait after one more step without slip, its impact by contacts; NaN where the compass falls.
+
+    A gait is how far the legs lean right after an impact, the standing one by minus that, and the rates of the standing
+    leg and of the other one. That one scuffs the ground as it swings past, and strikes when it comes down ahead.
+    """
+
+    def lands(_: float, state: NDArray[np.float64]) -> float:
+        return float(state[0] + state[1]) if state[0] > state[1] else 1.0
+
+    lands.terminal, lands.direction = True, 1.0  # type: ignore[attr-defined]
+    start = [-gait[0], *gait]
+    found: Any = solve_ivp(
+        lambda _, state: [state[2], state[3], *_accelerations(compass, *state)],
+        (0.0, 10.0),
+        start,
+        "DOP853",
+        events=lands,
+        rtol=3e-14,
+        atol=1e-15,
+    )
+    if not len(found.t_events[0]):
+        return np.full(3, np.nan)
+    theta, psi, stance, swing = found.y_events[0][0].tolist()
+    _, after = strike(compass, (theta, psi), (stance, swing), 10.0, law)
+    return np.array([theta, *after])
+
+
+def _accelerations(compass: Compass, theta: float, psi: float, stance: float, swing: float) -> tuple[float, float]:
+    """Angular accelerations of the legs while the foot of the first one stands; the second row is for unit mass."""
+    m, a, b, leg, g = compass.leg_mass, compass.to_foot, compass.to_hip, compass.leg, compass.gravity
+    own, coupling = compass.hip_mass * leg * leg + m * (a * a + leg * leg), -leg * b * cos(theta - psi)
+    turn = leg * b * sin(theta - psi)
+    weight = (compass.hip_mass * leg + m * (a + leg)) * g * sin(theta + compass.slope)
+    turning, swinging = m * turn * swing * swing + weight, -turn * stance * stance - b * g * sin(psi + compass.slope)
+    determinant = own * b * b - m * coupling * coupling
+    return (
+        (b * b * turning - m * coupling * swinging) / determinant,
+        (own * swinging - coupling * turning) / determinant,
+    )

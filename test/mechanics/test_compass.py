@@ -11,7 +11,8 @@ import math
 
 import numpy as np
 import pytest
-from compass import Compass, after_impact, contact_rows, inertia_of, strike
+from compass import Compass, after_impact, contact_rows, inertia_of, step, strike
+from scipy.optimize import root
 
 from impact_predictor import Mode
 from impact_predictor.mechanics.articulated import WholeBody
@@ -75,6 +76,37 @@ def closing(compass, half_angle, rates):
 
 SIMPLEST = Compass(hip_mass=1.0, leg_mass=1e-15, to_foot=0.0, to_hip=1.0, slope=0.009, gravity=1.0)
 """Its feet have hardly any mass: what is left of them is below rounding."""
+
+LONG, SHORT = (0.20031090049483, 0.19983247291764), (0.19393736960624, 0.20386692731962)
+"""Angle and rate of the standing leg right after an impact, of the published long and short steps of that slope."""
+
+
+def steady(compass, law, angle, rate):
+    """The steady gait near one of the simplest walker, whose impact gives the old leg cos(2 angle) times its rate."""
+    near = np.array([angle, rate, rate * math.cos(2.0 * angle)])
+    return root(lambda gait: step(compass, gait, law) - gait, near, tol=1e-13).x
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize(("published", "error"), [(LONG, 1e-9), (SHORT, 1e-8)])
+def test_the_steady_gaits_of_light_feet_come_to_the_published_ones_of_the_simplest_walker(published, error, law):
+    # W is known to 1e-15 / mass, so the gait without foot mass is the limit of the parabolas through three masses.
+    # The short gait multiplies errors by 4 with each step, so that its published digits are less sure, too.
+    masses = np.array([1e-4, 2e-4, 4e-4])
+    gaits = [steady(SIMPLEST._replace(leg_mass=mass), law, *published) for mass in masses]
+    found = np.linalg.solve(np.vander(masses, increasing=True), gaits)[0]
+    assert found[:2] == pytest.approx(published, abs=error)
+
+
+def test_the_long_steps_are_stable_and_the_short_ones_are_not():
+    light = SIMPLEST._replace(leg_mass=1e-5)
+    # The authors' program: 4.000 and 0.459; the paper: one of the two gaits is stable for slopes up to 0.015.
+    for published, multipliers in ((LONG, [0.5891, 0.5891, 0.0]), (SHORT, [4.0, 0.459, 0.0])):
+        gait = steady(light, "path", *published)
+        nudges = 1e-5 * np.eye(3)
+        change = [(step(light, gait + one, "path") - step(light, gait - one, "path")) / 2e-5 for one in nudges]
+        assert sorted(np.abs(np.linalg.eigvals(change)), reverse=True) == pytest.approx(multipliers, abs=5e-3)
+
 
 STEADY = Compass(slope=math.radians(3.0))
 ANGLES = 0.2710286804988206, -0.2710286804988206

@@ -1,4 +1,4 @@
-"""Which predictions belong to which true impacts, and what is said of them, on records that one can count by hand."""
+"""Which predictions belong to which true impacts and landings, and what is said of them, on records counted by hand."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ import pytest
 import touchdowns
 
 from impact_predictor.mechanics.types import Mode, Twist
-from impact_predictor.prediction.scene import Scene
-from impact_predictor.prediction.types import Prediction, Sample, Status
-from impact_predictor.scenarios.comparison import Truth
+from impact_predictor.prediction.scene import Scene, Walking
+from impact_predictor.prediction.types import Foot, Leftover, Prediction, Sample, Status
+from impact_predictor.scenarios.comparison import Compared, Landings, TrueLanding, Truth
 from impact_predictor.scenarios.comparison import compare as compare_all
 from impact_predictor.scenarios.matching import Announcements
 from impact_predictor.scenarios.truth import TrueImpact
@@ -42,25 +42,24 @@ def compare(impacts: Iterable[TrueImpact], announcements: Announcements, scene: 
 def impact(at: float, **changes: object) -> TrueImpact:
     """An impact at a time in ms, which `TOUCHDOWN` predicts exactly."""
     true = TrueImpact(
-        round(at * MS),
-        "rod",
-        Mode.PIVOT,
-        (0,),
-        (1,),
-        1.0,
-        0.5,
-        1.0,
-        (0.0, 0.0, -1.0),
-        (0.0, 2.0, 0.0),
-        (0.0, 0.0, 0.5),
-        (0.0, 1.0, 0.0),
+        stamp=round(at * MS),
+        body="rod",
+        mode=Mode.PIVOT,
+        old=(0,),
+        new=(1,),
+        approach=1.0,
+        half_distance=0.5,
+        energy_lost=1.0,
+        linear_before=(0.0, 0.0, -1.0),
+        angular_before=(0.0, 2.0, 0.0),
+        linear_after=(0.0, 0.0, 0.5),
+        angular_after=(0.0, 1.0, 0.0),
     )
     return true._replace(**changes)  # type: ignore[arg-type]
 
 
 def sample(at: float, body: str = "rod") -> Sample:
-    zeros = (0.0,) * 36
-    return Sample(round(at * MS), "world", body, (0.0,) * 3, (0.0, 0.0, 0.0, 1.0), (0.0,) * 3, (0.0,) * 3, zeros, zeros)
+    return touchdowns.SAMPLE._replace(stamp=round(at * MS), child_frame_id=body)
 
 
 def record(until: int, announced: dict[int, float] | None = None, **changes: object) -> Announcements:
@@ -72,11 +71,6 @@ def record(until: int, announced: dict[int, float] | None = None, **changes: obj
             touchdown = TOUCHDOWN._replace(lead_time=(announced[at] - at) * 1e-3, **changes)  # type: ignore[arg-type]
         made.add(Prediction(Status.ACCEPTED, sample(at), touchdown))
     return made
-
-
-def test_a_touchdown_that_is_predicted_exactly_has_no_error() -> None:
-    made = record(100, dict.fromkeys(range(20, 60), 60.0))
-    assert compare([impact(60)], made, SCENE) == Truth(1, 0, 0, 0, 1.0, 0.0, 0.0, 1, 1.0)
 
 
 def test_the_error_of_time_is_that_of_the_prediction_20_ms_ahead() -> None:
@@ -96,20 +90,41 @@ def test_the_error_of_time_is_told_by_how_long_ahead_and_how_long_ahead_the_firs
     assert nothing.least_lead_time is None
 
 
+EXACT = Truth(1, 0, 0, 0, 1.0, 0.0, 0.0, 1, 1.0)
+EARLY = dict.fromkeys(range(20, 60), 60.0)
+
+
+@pytest.mark.parametrize(
+    ("happened", "announced", "truth"),
+    [
+        pytest.param([60], EARLY, EXACT, id="exact"),
+        pytest.param([60], {at: 60.0 for at in EARLY if at not in (30, 31, 45)}, EXACT, id="pauses"),
+        pytest.param([150], EARLY, Truth(1, 1, 1, 0, None, None, None), id="missed"),
+        pytest.param([], EARLY, NOTHING._replace(false=1), id="false"),
+        # The impact lies before the first prediction, so 5 ms between them make no match.
+        pytest.param([50], {52: 55.0}, Truth(1, 1, 1, 0, None, None, None), id="of what has happened"),
+        pytest.param([], {52: 52.0}, NOTHING, id="without lead time"),
+        pytest.param([220], dict.fromkeys(range(150, 201), 220.0), NOTHING, id="beyond the record"),
+        pytest.param(
+            [198],
+            dict.fromkeys(range(150, 198), 203.0),
+            EXACT._replace(median_time_error=pytest.approx(0.005)),
+            id="announced for after the end",
+        ),
+    ],
+)
+def test_a_touchdown_is_found_or_missed_and_an_announcement_is_of_it_or_false(
+    happened: list[float], announced: dict[int, float], truth: Truth
+) -> None:
+    assert compare([impact(at) for at in happened], record(200, announced), SCENE) == truth
+
+
 def test_mode_and_velocity_are_those_of_the_last_prediction() -> None:
-    made = record(
-        100, dict.fromkeys(range(20, 60), 60.0), mode=Mode.STOP, linear=(0.3, 0.0, 0.5), angular=(0.0, 1.8, 0.0)
-    )
+    made = record(100, EARLY, mode=Mode.STOP, linear=(0.3, 0.0, 0.5), angular=(0.0, 1.8, 0.0))
     truth = compare([impact(60)], made, SCENE)
     assert truth.mode_accuracy == 0.0
     # Wrong by 0.3 m/s and 0.8 rad/s at 0.5 m, of -1 m/s and 2 rad/s at 0.5 m.
     assert truth.median_velocity_error == pytest.approx(0.5 / 2.0**0.5)
-
-
-def test_a_touchdown_without_a_prediction_is_missed_and_a_prediction_without_a_touchdown_is_false() -> None:
-    made = record(200, dict.fromkeys(range(20, 60), 60.0))
-    assert compare([impact(150)], made, SCENE) == Truth(1, 1, 1, 0, None, None, None)
-    assert compare([], made, SCENE) == NOTHING._replace(false=1)
 
 
 @pytest.mark.parametrize(("away", "found"), [(-20.0, True), (20.0, True), (-20.1, False), (20.1, False)])
@@ -119,28 +134,10 @@ def test_a_prediction_is_of_a_touchdown_within_20_ms(away: float, found: bool) -
     assert (truth.missed, truth.false) == ((0, 0) if found else (1, 1))
 
 
-def test_a_prediction_that_pauses_is_of_one_touchdown() -> None:
-    made = record(100, {at: 60.0 for at in range(20, 60) if at not in (30, 31, 45)})
-    assert compare([impact(60)], made, SCENE) == Truth(1, 0, 0, 0, 1.0, 0.0, 0.0, 1, 1.0)
-
-
 def test_of_two_touchdowns_close_together_each_has_its_own_predictions() -> None:
     first, second = dict.fromkeys(range(20, 50), 50.0), dict.fromkeys(range(51, 56), 56.0)
     truth = compare([impact(50), impact(56, mode=Mode.STOP)], record(100, first | second), SCENE)
     assert truth == Truth(2, 0, 0, 0, 0.5, 0.0, 0.0, 2, 0.5)
-
-
-def test_nothing_is_predicted_of_what_has_happened() -> None:
-    # The impact lies before the first prediction, so 5 ms between them make no match.
-    assert compare([impact(50)], record(100, {52: 55.0}), SCENE) == Truth(1, 1, 1, 0, None, None, None)
-
-
-def test_a_prediction_without_lead_time_announces_nothing() -> None:
-    assert compare([], record(100, {52: 52.0}), SCENE) == NOTHING
-
-
-def test_what_the_record_does_not_reach_is_not_counted() -> None:
-    assert compare([impact(120)], record(100, dict.fromkeys(range(50, 101), 120.0)), SCENE) == NOTHING
 
 
 @pytest.mark.parametrize(("until", "false"), [(100, 1), (99, 0), (90, 0), (81, 0)])
@@ -158,11 +155,6 @@ def test_what_is_announced_for_the_last_20_ms_of_a_record_is_neither_found_nor_f
     assert compare([impact(80)], made, SCENE).missed == 0
 
 
-def test_a_touchdown_that_was_told_for_after_the_end_and_came_before_it_is_found() -> None:
-    truth = compare([impact(98)], record(100, dict.fromkeys(range(50, 98), 103.0)), SCENE)
-    assert (truth.touchdowns, truth.missed, truth.false, truth.median_time_error) == (1, 0, 0, pytest.approx(0.005))
-
-
 def test_impacts_that_no_sample_shows_are_not_missed() -> None:
     # At 10.2 ms there was no sample since 10.1 ms, at 11.4 ms one; gravity makes 0.00981 m/s in the 1 ms of a contact.
     impacts = [impact(10.1), impact(10.2), impact(11.4), impact(20.5, approach=0.0098)]
@@ -171,7 +163,7 @@ def test_impacts_that_no_sample_shows_are_not_missed() -> None:
 
 
 def test_bodies_are_told_apart_and_those_without_samples_do_not_count() -> None:
-    made = record(100, dict.fromkeys(range(20, 60), 60.0))
+    made = record(100, EARLY)
     for at in range(101):
         made.add(Prediction(Status.ACCEPTED, sample(at, "plate"), None))
     impacts = [impact(60), impact(60, body="plate"), impact(60, body="cylinder")]
@@ -182,7 +174,7 @@ def test_bodies_are_told_apart_and_those_without_samples_do_not_count() -> None:
 def test_velocities_are_compared_at_the_mass_centre() -> None:
     # The body frame lies 0.2 m behind the mass centre, which moves up by 0.2 m * 1 rad/s less there.
     scene = SCENE._replace(center_of_mass=(0.2, 0.0, 0.0))
-    made = record(100, dict.fromkeys(range(20, 60), 60.0), linear=(0.0, 0.0, 0.7))
+    made = record(100, EARLY, linear=(0.0, 0.0, 0.7))
     assert compare([impact(60)], made, scene).median_velocity_error == pytest.approx(0.0, abs=1e-15)
 
 
@@ -198,9 +190,9 @@ def test_the_mode_counts_where_a_small_error_does_not_change_it() -> None:
 
 def test_a_wrong_prediction_of_an_impact_that_no_record_shows_is_counted_apart() -> None:
     slow = impact(60, approach=0.001, mode=Mode.STOP)
-    truth = compare([slow], record(100, dict.fromkeys(range(20, 60), 60.0)), SCENE)
+    truth = compare([slow], record(100, EARLY), SCENE)
     assert (truth.touchdowns, truth.false, truth.unresolved, truth.unresolved_wrong) == (0, 0, 1, 1)
-    right = compare([slow._replace(mode=Mode.PIVOT)], record(100, dict.fromkeys(range(20, 60), 60.0)), SCENE)
+    right = compare([slow._replace(mode=Mode.PIVOT)], record(100, EARLY), SCENE)
     assert (right.unresolved, right.unresolved_wrong) == (1, 0)
     assert compare([slow], record(100), SCENE).unresolved_wrong == 0
 
@@ -229,3 +221,119 @@ def test_each_body_is_compared_in_its_own_scene() -> None:
     impacts = [impact(60, body=name, approach=0.5) for name in ("crate", "drum")]
     _, bodies, _ = compare_all(impacts, made, {"crate": SCENE, "drum": SCENE._replace(contact_time=0.1)})
     assert [(truth.touchdowns, truth.unresolved) for truth in bodies.values()] == [(1, 0), (0, 1)]
+
+
+WALKER = SCENE._replace(walking=Walking(("left", "right")))
+LANDING = touchdowns.TOUCHDOWN._replace(old=(), new=(0,), leftover=Leftover.DRIVEN)
+NO_LANDING = NOTHING._replace(time_error_by_lead_time={"0.02": None, "0.05": None})
+
+Told = dict[int, float]
+"""For when a landing is announced, by when: both in ms."""
+
+
+def answer(
+    at: int, announced: dict[int, Told], standing: tuple[str, ...], feet: tuple[str, ...], each: int = 1
+) -> Prediction:
+    """What is told at a time in ms of points, by their indices, `each` foot having so many."""
+    touchdowns = [
+        LANDING._replace(lead_time=(told[at] - at) * 1e-3, new=(point,))
+        for point, told in announced.items()
+        if at in told
+    ]
+    touchdowns.sort(key=lambda one: one.lead_time)
+    soonest = {one.new[0] // each: one.lead_time for one in reversed(touchdowns)}
+    states = tuple(Foot(foot, foot in standing, 0, 0.1, 0.0, soonest.get(i)) for i, foot in enumerate(feet))
+    return Prediction(Status.ACCEPTED, sample(at, "base"), touchdowns[0] if touchdowns else None, feet=states)
+
+
+def landings(
+    until: int,
+    stands: dict[str, tuple[int, ...]],
+    announced: dict[int, Told],
+    scene: Scene = WALKER,
+    standing: tuple[str, ...] = (),
+) -> Landings:
+    """Samples each ms up to `until`; `stands` has the times in ms at which each foot begins and ends to stand."""
+    assert scene.walking is not None
+    made = Landings({"": scene})
+    for at in range(until + 1):
+        made.tell(
+            "base", at * MS, tuple(sum(at >= change for change in stands[foot]) % 2 == 1 for foot in scene.walking.feet)
+        )
+        made.add(answer(at, announced, standing, scene.walking.feet, scene.walking.points))
+    return made
+
+
+def compared(made: Landings) -> Compared:
+    return compare_all((), Announcements(), {"": WALKER}, made.matches())
+
+
+def test_a_foot_lands_when_its_flag_rises_but_not_with_the_first_one() -> None:
+    made = landings(100, {"left": (0, 20, 60), "right": (30, 80)}, {})
+    assert made.true == [TrueLanding(30 * MS, "base", "right"), TrueLanding(60 * MS, "base", "left")]
+
+
+def test_landings_of_feet_are_found_foot_by_foot_and_modes_are_not_compared() -> None:
+    announced = {0: dict.fromkeys(range(5, 70), 70.0), 1: dict.fromkeys(range(10, 71), 71.0)}
+    together, bodies, _ = compared(landings(100, {"left": (70,), "right": (71,)}, announced))
+    assert together == bodies["base"]
+    assert together == NO_LANDING._replace(
+        touchdowns=2,
+        median_time_error=0.0,
+        time_error_by_lead_time={"0.02": 0.0, "0.05": 0.0},
+        least_lead_time=pytest.approx(0.061),
+    )
+
+
+def test_an_announcement_of_the_wrong_foot_is_false_and_the_landing_missed() -> None:
+    nobody = compared(landings(100, {"left": (), "right": ()}, {0: dict.fromkeys(range(20, 60), 60.0)})).together
+    assert nobody == NO_LANDING._replace(false=1)
+    truth = compared(landings(100, {"left": (60,), "right": ()}, {1: dict.fromkeys(range(20, 60), 60.0)})).together
+    assert (truth.touchdowns, truth.missed, truth.false, truth.least_lead_time) == (1, 1, 1, None)
+
+
+def test_a_foot_may_still_seem_to_come_down_when_the_plan_says_that_it_stands() -> None:
+    announced = {0: {at: max(60.0, at + 2.0) for at in range(20, 75)}}
+    truth = compared(landings(200, {"left": (60,), "right": ()}, announced)).together
+    assert (truth.missed, truth.false, truth.time_error_by_lead_time["0.02"]) == (0, 0, 0.0)
+    longer = {0: {at: max(60.0, at + 2.0) for at in range(20, 85)}}
+    assert compared(landings(200, {"left": (60,), "right": ()}, longer)).together.false == 1
+
+
+def test_two_feet_that_take_turns_to_be_the_soonest_are_not_mixed_up() -> None:
+    announced = {0: {at: 60.0 + at % 2 for at in range(20, 60)}, 1: {at: 61.0 - at % 2 for at in range(20, 60)}}
+    truth = compared(landings(100, {"left": (60,), "right": (60,)}, announced)).together
+    assert (truth.touchdowns, truth.missed, truth.false) == (2, 0, 0)
+
+
+def test_the_toe_of_a_foot_that_stands_on_its_heel_lands_no_more() -> None:
+    soles = WALKER._replace(walking=Walking(("left", "right"), points=2))
+    toe = {1: dict.fromkeys(range(20, 60), 60.0)}
+    stands: dict[str, tuple[int, ...]] = {"left": (0,), "right": (0, 10, 90)}
+    assert compared(landings(100, stands, toe, soles, standing=("left",))).together.false == 0
+    assert compared(landings(100, stands, toe, soles)).together.false == 1
+    heel = {2: dict.fromkeys(range(20, 90), 90.0)}
+    assert (
+        compared(landings(100, stands, heel, soles)).together
+        == compared(landings(100, stands, {3: heel[2]}, soles)).together
+    )
+
+
+def test_true_landings_after_the_last_answer_are_counted_apart() -> None:
+    made = Landings({"": WALKER})
+    made.add(answer(100, {}, (), ("left", "right")))
+    for at, stands in ((50, (False, False)), (90, (True, False)), (130, (True, True))):
+        made.tell("base", at * MS, stands)
+    assert made.later() == 1
+    assert len(made.matches()["base"]) == 1
+
+
+def test_of_bodies_without_feet_no_landing_is_compared() -> None:
+    made = Landings({"walker": WALKER, "crate": SCENE})
+    for at in range(100):
+        made.tell("crate", at * MS, (at > 50,))
+        made.tell("walker", at * MS, (at > 50, True))
+        made.add(answer(at, {0: dict.fromkeys(range(20, 51), 51.0)}, (), ("left", "right")), "walker")
+        made.add(answer(at, {}, (), ()), "crate")
+    assert made.true == [TrueLanding(51 * MS, "walker", "left")]
+    assert list(made.matches()) == ["walker"]
