@@ -88,7 +88,7 @@ def steady(compass, law, angle, rate):
 
 
 @pytest.mark.parametrize("law", LAWS)
-@pytest.mark.parametrize(("published", "error"), [(LONG, 1e-9), (SHORT, 1e-8)])
+@pytest.mark.parametrize(("published", "error"), [(LONG, 1e-10), (SHORT, 3e-10)])
 def test_the_steady_gaits_of_light_feet_come_to_the_published_ones_of_the_simplest_walker(published, error, law):
     # W is known to 1e-15 / mass, so the gait without foot mass is the limit of the parabolas through three masses.
     # The short gait multiplies errors by 4 with each step, so that its published digits are less sure, too.
