@@ -41,6 +41,15 @@ def test_weights_are_those_of_the_least_squares_parabola(inner: list[float]) -> 
         assert weights == pytest.approx(wanted, abs=1e-10)  # rounding times the square of the condition
 
 
+def test_noise_and_lag_of_a_slope_are_those_that_its_window_is_chosen_by() -> None:
+    x = np.linspace(-1.0, 1.0, 81)
+    weights = np.array(slope_weights(x.tolist()))
+    # With n samples over T s 13.9 s/(T sqrt(n)), and 0.1 (w T)^2 of a derivative of frequency w: here T is 2.
+    assert np.linalg.norm(weights) == pytest.approx(13.9 / (2.0 * 9.0), rel=0.03)
+    for w in (0.1, 0.05):
+        assert weights @ np.sin(w * (x - 1.0)) / w - 1.0 == pytest.approx(0.1 * (2.0 * w) ** 2, rel=0.05)
+
+
 def test_stamps_in_two_clumps_give_the_slope_of_the_line_between_them() -> None:
     stamps = [0, 10, 199_999_990, 200_000_000]
     window = filled(0.2, stamps, [1.0, 1.0, 3.0, 3.0])

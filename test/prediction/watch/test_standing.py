@@ -94,15 +94,10 @@ def test_a_body_in_the_air_is_off_the_deck() -> None:
     assert standing.motion is BodyMotion.LIFTS
 
 
-def test_a_body_that_moves_along_the_deck_slides_and_noise_does_not() -> None:
-    standing = Standing(CRATE)
-    told = []
-    for k in range(100):
-        standing.update(sample((2.0 + 0.002 * (-1) ** k, 1.0 + 0.002 * (k % 3), 0.5), time=0.05 * k))
-        told.append(standing.slid)
-    assert not any(told)
-    for k in range(100, 110):
-        standing.update(sample((2.0, 1.0 + 0.004 * (k - 100), 0.5), time=0.05 * k))
+def test_a_body_that_moves_along_the_deck_slides() -> None:
+    standing, told = rested(), []
+    for k in range(110):
+        standing.update(sample((2.0, 1.0 + 0.004 * max(0, k - 100), 0.5), time=0.05 * k))
         told.append(standing.slid)
     found = [words for words in told if words]
     assert found

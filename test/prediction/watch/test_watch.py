@@ -263,13 +263,7 @@ def test_no_fault_of_a_body_is_ever_ok(status: Status) -> None:
 @pytest.mark.parametrize("source", ["odom", "imu"])
 def test_a_measured_unit_is_stale_until_it_is_heard_and_when_it_falls_silent(source: str) -> None:
     run = Run(TALL._replace(source=source))
-
-    def hear() -> None:
-        if source == "odom":
-            run.see()
-        else:
-            run.watch.update_tilt("u0", run.stamp, LEVEL)
-
+    hear = run.see if source == "odom" else lambda: run.watch.update_tilt("u0", run.stamp, LEVEL)
     run.deck(STILL, 8.0)
     report = run.report()
     assert report.level == Level.STALE
@@ -277,11 +271,9 @@ def test_a_measured_unit_is_stale_until_it_is_heard_and_when_it_falls_silent(sou
     assert report.values["tip_ratio"] == "0.000"  # the deck is known, and the unit taken to stand where it is placed
     hear()
     run.deck(STILL, 6.0, hear)
-    assert run.report().level == Level.OK
-    run.deck(STILL, 0.5)
-    assert run.report().level == Level.OK
-    run.deck(STILL, 0.2)
-    assert run.report().level == Level.STALE
+    for silent, level in ((0.0, Level.OK), (0.5, Level.OK), (0.2, Level.STALE)):
+        run.deck(STILL, silent)
+        assert run.report().level == level
 
 
 def test_what_becomes_known_for_the_first_time_is_not_held_as_stale() -> None:

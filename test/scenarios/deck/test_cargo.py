@@ -13,7 +13,7 @@ from cargo_scenes import box as a_box
 
 from impact_predictor.errors import InputError
 from impact_predictor.mechanics.bodies import cylinder, plate
-from impact_predictor.mechanics.motion import End, rock
+from impact_predictor.mechanics.motion import rock
 from impact_predictor.mechanics.motion.support import FixedSupport
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.scenarios.deck import cargo as deck_module
@@ -153,14 +153,6 @@ def test_onsets_are_where_a_unit_at_rest_begins_to_move(friction: float) -> None
         assert onset.stamp / 1e9 == pytest.approx(phase.start, abs=1e-6)
         assert onset.lifts == ("O" in phase.states)
         assert onset.slides == ("+" in phase.states or "-" in phase.states)
-
-
-def test_a_toppled_unit_ends_there() -> None:
-    unit = unit_of("box", box())
-    spans = list(follow(unit, a_deck(0.5), 60.0))
-    assert spans[-1].end is End.OVERTURNED
-    assert spans[-1].time < 60.0
-    assert all(span.end is End.TIME_UP for span in spans[:-1])
 
 
 def test_a_border_is_the_smallest_relative_change_to_another_mode() -> None:

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from impact_predictor.errors import InputError
 from impact_predictor.scenarios.deck.sea import RANGE, SeaState, Waves, density, waves_of
 
 HEIGHT, PERIOD = 3.0, 9.0
@@ -92,21 +91,6 @@ def test_the_same_seed_makes_the_same_sea_and_another_one_another() -> None:
     first, same, other = waves_of(state, 5), waves_of(state, 5), waves_of(state, 6)
     assert all((one == two).all() for one, two in zip(first, same, strict=True))
     assert not (first.phases == other.phases).any()
-
-
-@pytest.mark.parametrize(
-    ("state", "sentence"),
-    [
-        (SeaState(0.0, PERIOD), "significant wave height is 0.0"),
-        (SeaState(float("nan"), PERIOD), "significant wave height is nan"),
-        (SeaState(HEIGHT, 0.1), "peak period is 0.1"),
-        (SeaState(HEIGHT, PERIOD, "flat"), "spectrum is 'flat'; give one of jonswap, pm"),
-        (SeaState(HEIGHT, PERIOD, gamma=0.5), "peak enhancement is 0.5"),
-    ],
-)
-def test_what_is_no_sea_is_said_in_one_sentence(state: SeaState, sentence: str) -> None:
-    with pytest.raises(InputError, match=sentence):
-        waves_of(state, 1)
 
 
 @pytest.mark.extras
