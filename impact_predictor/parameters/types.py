@@ -86,20 +86,17 @@ def check(parameter: Parameter, value: object) -> Value:
         return _numbers(parameter, value, [value])[0]
     if isinstance(value, str | bytes) or not isinstance(value, Sequence):
         raise _refusal(parameter, value)
-    items: Any = _texts(parameter, value) if parameter.kind == "string_array" else _numbers(parameter, value, value)
+    items: Any = tuple(value)
+    if parameter.kind == "double_array":
+        items = _numbers(parameter, value, value)
+    elif not all(isinstance(item, str) for item in items):
+        raise _refusal(parameter, value)
     if parameter.lengths and len(items) not in parameter.lengths:
         raise _refusal(parameter, value)
     flaw = parameter.flaw(items) if parameter.flaw else ""
     if flaw:
         raise _refusal(parameter, value, flaw)
     return items  # type: ignore[no-any-return]
-
-
-def _texts(parameter: Parameter, value: Sequence[object]) -> tuple[str, ...]:
-    texts = tuple(item for item in value if isinstance(item, str))
-    if len(texts) < len(value):
-        raise _refusal(parameter, value)
-    return texts
 
 
 def _numbers(parameter: Parameter, value: object, numbers: Sequence[object]) -> tuple[float, ...]:

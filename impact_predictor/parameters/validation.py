@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
 from ..errors import InputError
@@ -47,7 +47,12 @@ def validate(values: Mapping[str, object]) -> dict[str, Value]:
     checked = defaults | checked
     of_each = [values_of(checked | own, body) for body in bodies or ("",)]
     for parameter in PARAMETERS.values():
-        lacking = [body for body, its in zip(bodies or ("",), of_each, strict=True) if not _is_known(parameter, its)]
+        # The model of a machine may tell it.
+        lacking = [
+            body
+            for body, its in zip(bodies or ("",), of_each, strict=True)
+            if not (parameter.name in its or (parameter.of_model and its["robot.urdf"]))
+        ]
         if lacking:
             raise _missing(parameter, lacking if bodies else [])
     # In one order, whatever that of the file.
@@ -111,17 +116,9 @@ def _hint(name: str, bodies: Sequence[str]) -> str:
     body, _, common = name.partition(".")
     if common in PARAMETERS and body not in _TAKEN:
         return f", for {body} is not among the bodies: {', '.join(bodies)}" if bodies else ", for bodies is not given"
-    close = difflib.get_close_matches(name, [*PARAMETERS, *_all_own(bodies)], n=1, cutoff=0.5)
+    of_bodies = [f"{body}.{one.name}" for body in bodies for one in PARAMETERS.values() if not one.shared]
+    close = difflib.get_close_matches(name, [*PARAMETERS, *of_bodies], n=1, cutoff=0.5)
     return f", did you mean {close[0]}?" if close else f"; there are {', '.join(PARAMETERS)}"
-
-
-def _all_own(bodies: Sequence[str]) -> Iterator[str]:
-    return (f"{body}.{name}" for body in bodies for name, parameter in PARAMETERS.items() if not parameter.shared)
-
-
-def _is_known(parameter: Parameter, values: Mapping[str, object]) -> bool:
-    """Whether there is a value, or the model of the machine tells it."""
-    return parameter.name in values or (parameter.of_model and bool(values["robot.urdf"]))
 
 
 def _missing(parameter: Parameter, lacking: Sequence[str]) -> InputError:
