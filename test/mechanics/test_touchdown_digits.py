@@ -12,7 +12,8 @@ from touchdown_digits import errors_of, reference_of
 from impact_predictor.mechanics.motion import next_touchdown
 from impact_predictor.mechanics.types import Twist
 from impact_predictor.report.accuracy import touchdowns
-from impact_predictor.report.accuracy.touchdowns import SCENES, FallingShape, PredictedTouchdown, falls
+from impact_predictor.report.accuracy.measure import problems
+from impact_predictor.report.accuracy.touchdowns import SCENES, FallingShape, PredictedTouchdown
 
 GOLDEN = Path(__file__).parent / "golden" / "motion.json"
 
@@ -28,7 +29,7 @@ def test_forty_digits_meet_the_golden_falls(fall: dict[str, str]) -> None:
 
 @pytest.mark.parametrize("name", SCENES)
 def test_the_next_touchdown_and_the_reference_of_the_report_meet_forty_digits(name: str) -> None:
-    for fall in falls(name, 3):
+    for fall in problems(touchdowns.SCENES, name, 3):
         end = next_touchdown(*fall, tolerance=1e-10)
         found = PredictedTouchdown(end.time, Twist(end.state.vx, end.state.vy, end.state.omega))
         assert max(errors_of(fall, found)) < 1e-12 if name == "balance" else 1e-13

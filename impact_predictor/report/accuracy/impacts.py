@@ -7,7 +7,7 @@ arithmetic. Where a body slips across the plane, no exact solution is known: the
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import partial
 from importlib.util import find_spec
 from math import hypot, sqrt
@@ -20,7 +20,7 @@ from ...mechanics.impact import LAWS, solve_impact
 from ...mechanics.transverse import Transverse, solve_transverse_impact
 from ...mechanics.types import Contact, Mode, Twist, TwoPointBody
 from ...prediction.impact import TOLERANCE
-from .measure import IMPACT, AccuracyScene, Method
+from .measure import Method
 
 FINEST: Final = 1e-7
 """Tolerance of the reference where a body slips across the plane, too."""
@@ -133,18 +133,6 @@ SCENES: Final[dict[str, tuple[str, str, str, Callable[[Random], Struck]]]] = {
     ),
 }
 """Title, description, reference, and what draws a body."""
-
-
-def scenes() -> Iterator[AccuracyScene]:
-    """The scenes of this question."""
-    for name, (title, description, reference, _) in SCENES.items():
-        yield AccuracyScene(name, IMPACT, title, description, reference)
-
-
-def strikes(name: str, count: int) -> list[Struck]:
-    """`count` bodies of a scene, always the same."""
-    source = Random(f"4 {name}")
-    return [SCENES[name][3](source) for _ in range(count)]
 
 
 def reference_of(strike: Struck) -> Aftermath:

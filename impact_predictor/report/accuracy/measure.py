@@ -9,6 +9,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from math import inf, isfinite
+from random import Random
 from statistics import mean, median
 from time import process_time
 from typing import Any, Final, NamedTuple
@@ -74,6 +75,12 @@ class MethodRun(NamedTuple):
     method: Method
     answers: list[Any]
     us: list[float]
+
+
+def problems(scenes: Mapping[str, tuple[Any, ...]], name: str, count: int) -> list[Any]:
+    """`count` problems of a scene, always the same; the last of what a scene has draws them."""
+    source = Random(f"4 {name}")
+    return [scenes[name][-1](source) for _ in range(count)]
 
 
 def run(method: Method, problems: Sequence[Any], seconds: float) -> MethodRun:

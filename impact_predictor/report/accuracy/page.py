@@ -153,7 +153,7 @@ def _picture(rows: Sequence[Mapping[str, Any]], scenes: Mapping[str, str], axis:
         look = {"size": 10, "color": PALETTE[number % len(PALETTE)], "symbol": SYMBOLS[number]}
         traces += [marks(family, points, marker=look)] if points else []
     log = {"type": "log", "exponentformat": "power"}
-    across = titled("time of one prediction, us", dtick=1, **log)
+    across = titled("time of one prediction, us", **log)
     return plot(traces, 480, xaxis=across, yaxis=titled(axis, dtick=2, **log))
 
 

@@ -35,6 +35,7 @@ from .measure import (
     choices_of,
     computed,
     default_of,
+    problems,
     row_of,
     run,
     seconds_of,
@@ -101,6 +102,15 @@ def variants(scene: Scene) -> Iterator[tuple[str, Scene]]:
     yield "total law, plastic", scene._replace(restitution=0.0, law="total", transverse_slip=False)
 
 
+def scenes_of_question(question: str) -> list[AccuracyScene]:
+    """The scenes of touchdowns or of impacts."""
+    drawn = {name: one[:3] for name, one in (touchdowns.SCENES if question == TOUCHDOWN else impacts.SCENES).items()}
+    return [
+        AccuracyScene(name, question, title, description, reference)
+        for name, (title, description, reference) in drawn.items()
+    ]
+
+
 def report(size: Size, command: str, tell: Callable[[int], None] = lambda done: None) -> dict[str, Any]:
     """Measure everything; the report as its JSON has it. `tell` is told how many steps are done of `steps(size)`."""
     done = count(1)
@@ -109,7 +119,7 @@ def report(size: Size, command: str, tell: Callable[[int], None] = lambda done: 
         for row in work(size):
             tell(next(done))
             rows += [row] if row else []
-    scenes = [*touchdowns.scenes(), *impacts.scenes(), *RANDOM, TOSSES]
+    scenes = [*scenes_of_question(TOUCHDOWN), *scenes_of_question(IMPACT), *RANDOM, TOSSES]
     there = {row["family"] for row in rows}
     families = {**touchdowns.FAMILIES, **impacts.FAMILIES}.items()
     used = {TOUCHDOWN: touchdowns.USED, IMPACT: impacts.USED}
@@ -136,14 +146,14 @@ def steps(size: Size) -> int:
 
 def touchdown_rows(size: Size) -> Iterator[AccuracyRow]:
     """The methods for touchdowns on each scene."""
-    for scene in touchdowns.scenes():
-        problems = touchdowns.falls(scene.name, size.falls)
-        references = [touchdowns.reference_of(problem) for problem in problems]
+    for scene in scenes_of_question(TOUCHDOWN):
+        falls = problems(touchdowns.SCENES, scene.name, size.falls)
+        references = list(map(touchdowns.reference_of, falls))
         for method in touchdowns.METHODS:
-            found = run(method, problems, size.seconds)
+            found = run(method, falls, size.seconds)
             errors = [
                 touchdowns.errors_of(fall, answer, right) if answer and isfinite(answer.time) else (inf, inf)
-                for fall, answer, right in zip(problems, found.answers, references, strict=False)
+                for fall, answer, right in zip(falls, found.answers, references, strict=False)
             ]
             times, twists = zip(*errors, strict=True)
             yield row_of(scene, method[:3], found.us, times, twists)
@@ -151,15 +161,15 @@ def touchdown_rows(size: Size) -> Iterator[AccuracyRow]:
 
 def impact_rows(size: Size) -> Iterator[AccuracyRow]:
     """The methods for impacts on each scene; nothing where one does not apply."""
-    for scene in impacts.scenes():
-        problems = impacts.strikes(scene.name, size.strikes)
-        references = [impacts.reference_of(problem) for problem in problems]
+    for scene in scenes_of_question(IMPACT):
+        strikes = problems(impacts.SCENES, scene.name, size.strikes)
+        references = list(map(impacts.reference_of, strikes))
         for method in impacts.methods():
-            if not all(map(method.applies, problems)):
+            if not all(map(method.applies, strikes)):
                 yield {}
                 continue
-            found = run(method, problems, size.seconds)
-            both = list(zip(problems, found.answers, references, strict=False))
+            found = run(method, strikes, size.seconds)
+            both = list(zip(strikes, found.answers, references, strict=False))
             errors = [inf if after is None else impacts.error_of_twist(one, after, right) for one, after, right in both]
             wrong = [after.mode != right.mode for _, after, right in both if after and after.mode is not None]
             part = sum(wrong) / len(wrong) if wrong else None

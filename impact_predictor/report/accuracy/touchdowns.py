@@ -6,19 +6,18 @@ program's own `next_touchdown`. It is right to about 1e-10; smaller errors are n
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import partial
 from math import atan2, cos, hypot, inf, pi, sin, sqrt
 from random import Random
 from typing import Any, Final, NamedTuple
 
-import numpy as np
 from scipy.integrate import solve_ivp
 
 from ...mechanics.motion import PlanarState, next_touchdown
 from ...mechanics.types import Twist, Vector
 from ...prediction.points import ACCURACY
-from .measure import TOUCHDOWN, AccuracyScene, Method
+from .measure import Method
 
 GRAVITY: Final = (0.0, -9.81)
 SLIPS: Final = 0.2
@@ -110,43 +109,37 @@ def thrown(source: Random) -> FallingBody:
     return FallingBody(state, ((-x, -y), (x, -y), (x, y), (-x, y)), None, CRATE.rho_squared, SLIPS)
 
 
-SCENES: Final[dict[str, tuple[str, str, Callable[[Random], FallingBody]]]] = {
+REFERENCE: Final = "the motion integrated by scipy to 13 digits"
+
+SCENES: Final[dict[str, tuple[str, str, str, Callable[[Random], FallingBody]]]] = {
     "plate": (
         "Crate on a floor",
         "A crate of 1 m by 0.6 m has been tipped about an edge and falls back.",
+        REFERENCE,
         partial(turning, CRATE),
     ),
     "cylinder": (
         "Cylinder between edges",
         "A cylinder of 0.1 m radius rolls over an edge onto the next one, 80 degrees apart.",
+        REFERENCE,
         partial(turning, CYLINDER),
     ),
     "extreme": (
         "Extreme plates",
         "Plates of 1 mm to 100 m, from a thousand times as long as high to ten times as high as long.",
+        REFERENCE,
         of_any_size,
     ),
-    "balance": ("Out of balance", "A crate is released 1e-4 to 0.1 rad from its balance.", leaving_balance),
+    "balance": ("Out of balance", "A crate is released 1e-4 to 0.1 rad from its balance.", REFERENCE, leaving_balance),
     "sliding": (
         "Sliding stance",
         "The edge on which a crate stands slips while the crate falls, friction 0.2.",
+        REFERENCE,
         slipping,
     ),
-    "flight": ("Flight", "A crate is thrown, turning; the first of its corners strikes.", thrown),
+    "flight": ("Flight", "A crate is thrown, turning; the first of its corners strikes.", REFERENCE, thrown),
 }
-"""Title, description, and what draws a body."""
-
-
-def scenes() -> Iterator[AccuracyScene]:
-    """The scenes of this question."""
-    for name, (title, description, _) in SCENES.items():
-        yield AccuracyScene(name, TOUCHDOWN, title, description, "the motion integrated by scipy to 13 digits")
-
-
-def falls(name: str, count: int) -> list[FallingBody]:
-    """`count` bodies of a scene, always the same."""
-    source = Random(f"4 {name}")
-    return [SCENES[name][2](source) for _ in range(count)]
+"""Title, description, reference, and what draws a body."""
 
 
 def accelerations(fall: FallingBody, state: Any) -> tuple[float, float, float]:
@@ -193,23 +186,10 @@ def integrated(fall: FallingBody, tolerance: float) -> PredictedTouchdown | None
 
 
 def reference_of(fall: FallingBody) -> PredictedTouchdown:
-    """The touchdown to 13 digits: the event of the integration, then Newton's method on whole integrations."""
+    """The touchdown to 13 digits."""
     found = integrated(fall, FINEST)
     assert found is not None
-    time = found.time
-    for _ in range(2):
-        end = solve_ivp(
-            lambda _, state: (*state[3:], *accelerations(fall, state)),
-            (0.0, time),
-            fall.state,
-            "DOP853",
-            rtol=FINEST,
-            atol=1e-15,
-        ).y[:, -1]
-        step = 1e-6
-        ahead = np.array(end) + step * np.array([*end[3:], *accelerations(fall, end)])
-        time -= gap(fall, end) * step / (gap(fall, ahead) - gap(fall, end))
-    return PredictedTouchdown(time, Twist(*end[3:].tolist()))
+    return found
 
 
 def extrapolated(fall: FallingBody, accelerated: bool) -> PredictedTouchdown | None:

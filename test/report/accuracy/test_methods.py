@@ -11,6 +11,7 @@ from impact_predictor.mechanics.impact import solve_impact
 from impact_predictor.mechanics.types import Mode, Twist
 from impact_predictor.report.accuracy import impacts, touchdowns
 from impact_predictor.report.accuracy.impacts import Aftermath, Struck
+from impact_predictor.report.accuracy.measure import problems
 from impact_predictor.report.accuracy.touchdowns import CRATE, FallingBody, PredictedTouchdown
 
 PAPER = ("rod", "plate", "cylinder", "stiff")
@@ -24,11 +25,11 @@ def touchdown_error(fall: FallingBody, found: PredictedTouchdown | None) -> floa
 
 @pytest.mark.parametrize("name", touchdowns.SCENES)
 def test_the_methods_for_touchdowns_keep_to_their_tolerances(name: str) -> None:
-    for fall in touchdowns.falls(name, 4):
+    for fall in problems(touchdowns.SCENES, name, 4):
         assert touchdown_error(fall, touchdowns.own(fall)) < 1e-6
         if name != "balance":  # where an error grows a thousand times before the body moves
             assert touchdown_error(fall, touchdowns.integrated(fall, 1e-9)) < 1e-7
-    assert touchdowns.falls(name, 4) == touchdowns.falls(name, 4)
+    assert problems(touchdowns.SCENES, name, 4) == problems(touchdowns.SCENES, name, 4)
 
 
 def test_extrapolations_are_right_for_the_motion_that_they_suppose() -> None:
@@ -42,7 +43,7 @@ def test_extrapolations_are_right_for_the_motion_that_they_suppose() -> None:
 
 def errors(name: str, solve: Callable[[Struck], Aftermath | None], count: int = COUNT) -> list[float]:
     found = []
-    for strike in impacts.strikes(name, count):
+    for strike in problems(impacts.SCENES, name, count):
         after = solve(strike)
         assert after is not None
         found.append(impacts.error_of_twist(strike, after, impacts.reference_of(strike)))
@@ -53,13 +54,13 @@ def errors(name: str, solve: Callable[[Struck], Aftermath | None], count: int = 
 @pytest.mark.parametrize("law", ["path", "total"])
 def test_both_laws_are_the_closed_forms_on_the_bodies_of_the_paper(name: str, law: str) -> None:
     assert max(errors(name, lambda strike: impacts.law(strike, law))) < 1e-12
-    for strike in impacts.strikes(name, COUNT):
+    for strike in problems(impacts.SCENES, name, COUNT):
         assert impacts.law(strike, law).mode is impacts.reference_of(strike).mode
 
 
 def test_no_slip_is_what_much_friction_gives_without_restitution() -> None:
     compared = 0
-    for strike in impacts.strikes("squat", COUNT):
+    for strike in problems(impacts.SCENES, "squat", COUNT):
         old, new = strike.body.old, strike.body.new
         assert old is not None
         rough = strike.body._replace(old=old._replace(friction=1e3), new=new._replace(friction=1e3, restitution=0.0))
@@ -74,7 +75,7 @@ def test_no_slip_is_what_much_friction_gives_without_restitution() -> None:
 def test_slip_across_the_plane_settles_with_its_tolerance_and_is_the_path_law_without_any() -> None:
     for tolerance in (1e-2, 1e-4, 1e-6):
         assert median(errors("across", lambda strike, t=tolerance: impacts.across(strike, t))) < tolerance  # type: ignore[misc]
-    for strike in impacts.strikes("plate", 4):
+    for strike in problems(impacts.SCENES, "plate", 4):
         assert impacts.across(strike, 1e-1) == impacts.law(strike, "path")
 
 
@@ -85,7 +86,7 @@ def test_compliant_contacts_come_near_the_path_law() -> None:
 @pytest.mark.extras
 @pytest.mark.skipif(not impacts.has_mujoco(), reason="MuJoCo is missing: make test-extras installs it")
 def test_mujoco_meets_the_law_where_nothing_slides() -> None:
-    for strike in [*impacts.strikes("rod", COUNT), *impacts.strikes("plate", COUNT)]:
+    for strike in [*problems(impacts.SCENES, "rod", COUNT), *problems(impacts.SCENES, "plate", COUNT)]:
         right = impacts.reference_of(strike)
         if right.mode in (Mode.STOP, Mode.PIVOT):
             # Its impedance is 0.9999 at most.
@@ -93,6 +94,6 @@ def test_mujoco_meets_the_law_where_nothing_slides() -> None:
 
 
 def test_an_error_is_relative_to_the_twist_before() -> None:
-    strike = impacts.strikes("plate", 1)[0]
+    strike = problems(impacts.SCENES, "plate", 1)[0]
     doubled = Aftermath(Twist(*(2.0 * part for part in strike.twist)))
     assert impacts.error_of_twist(strike, doubled, Aftermath(strike.twist)) == pytest.approx(1.0)
