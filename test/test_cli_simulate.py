@@ -20,7 +20,7 @@ from impact_predictor.commands.simulate import EXAMPLES
 from impact_predictor.parameters.file import read_parameters
 from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction.scene import Scene
-from impact_predictor.report import film
+from impact_predictor.report import plot
 from impact_predictor.ros.messages import POLYGON, decode_polygon
 from impact_predictor.scenarios.truth import TRUTH_TOPIC
 
@@ -206,7 +206,7 @@ def test_the_animation_moves_and_ends_where_the_body_stays(folder: Path, argumen
 @pytest.fixture
 def few_frames(monkeypatch: pytest.MonkeyPatch) -> None:
     """A tenth of the frames of a moving picture, where only that it is made counts."""
-    monkeypatch.setattr(film, "STEP", 10 * film.STEP)
+    monkeypatch.setattr(plot, "STEP", 10 * plot.STEP)
 
 
 @pytest.mark.slow
@@ -295,7 +295,7 @@ def test_what_is_interrupted_leaves_no_output_named_as_whole(
                 one.write_bytes(b"half")
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("impact_predictor.report.rocking_pictures.frames_of", lambda longest: [0.0, 0.1])
+    monkeypatch.setattr("impact_predictor.report.motion_pictures.frames_of", lambda longest: [0.0, 0.1])
     arguments = ["rod", option, name]
     assert run(*arguments).exit_code == 0
     older = Path(name).read_bytes()

@@ -186,7 +186,7 @@ def answer(
         names = [f"{name}_{k}" for k, name in enumerate(names, 1)] if len(names) > 1 else names
         products.record([rocking_actor(name, one.run) for name, one in zip(names, rockings, strict=True)])
     if products.draws:
-        from ..report.rocking_pictures import rocking_film, write_rocking_figure
+        from ..report.motion_pictures import rocking_film, write_rocking_figure
 
         products.draw(lambda path: write_rocking_figure(path, rockings), partial(rocking_film, rockings))
     answers = [rocking_as_json(rocking.run) for rocking in rockings]
@@ -254,7 +254,7 @@ def simulate_wheel(
 
         products.record([wheel_actor(rolling)])
     if products.draws:
-        from ..report.wheel_pictures import wheel_film, write_wheel_figure
+        from ..report.motion_pictures import wheel_film, write_wheel_figure
 
         products.draw(lambda path: write_wheel_figure(path, rolling), partial(wheel_film, rolling))
     products.say(partial(rolling_as_json, rolling), lambda console: print_rolling(console, rolling))

@@ -16,7 +16,7 @@ from .progress import progress, writing
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from ..report.film import Film
+    from ..report.plot import Film
     from ..scenarios.record import Actor
 
 RATE: Final = 1000.0
@@ -95,7 +95,7 @@ class Products(NamedTuple):
         if self.plot is not None:
             write_figure(self.plot)
         if self.animate is not None:
-            from ..report.film import write_film
+            from ..report.plot import write_film
 
             moving = film()
             with progress(Path(self.animate).name, "frames", len(moving.times)) as bar:

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from ..mechanics.motion import End, PlanarState
 from ..mechanics.motion.support import MovingSupport
-from ..mechanics.types import Mode
 from ..prediction.scene import Watching
 from ..prediction.watch.onset import Onset, motions
 from ..prediction.watch.standing import Standing
@@ -21,9 +20,31 @@ from ..scenarios.deck.cargo import CargoUnit, Span
 from ..scenarios.truth import TrueImpact, TrueOnset
 from ..stamps import NANOSECONDS
 from ..wording import counted, words
-from .film import CLOSED, LINE, OPEN, STEP, SUPPORT, Curve, Film, Flash, Outline, View, box, circle, placed, turned
 from .modes import EDGE, MODES, PALETTE
-from .plot import GREY, Axes, Line2D, Patch, picture
+from .plot import (
+    CLOSED,
+    LINE,
+    OPEN,
+    STEP,
+    STRUCK,
+    SUPPORT,
+    Band,
+    Curve,
+    Film,
+    Flash,
+    Line2D,
+    Outline,
+    Panel,
+    View,
+    around_zero,
+    box,
+    circle,
+    draw_panels,
+    patches,
+    picture,
+    placed,
+    turned,
+)
 
 LONGEST: Final = 12.0
 """Seconds of a motion that a film shows, in real time: those in which most units move."""
@@ -180,58 +201,48 @@ def write_deck_figure(path: str | os.PathLike[str], deck: MovingSupport, units: 
     Raises:
         InputError: the file cannot be written, or is of another format.
     """
-    shown, times = busiest(units, 6), units[0].times
+    shown = busiest(units, 6)
+    panels = [_deck_panel(deck, units[0].times), *(_unit_panel(deck, unit) for unit in shown)]
     with picture(path, 10.0, 2.6 + 1.25 * len(shown)) as figure:
-        upper, *lanes = figure.subplots(1 + len(shown), 1, sharex=True, height_ratios=(1.25, *[1.0] * len(shown)))
-        upper.set_title(title_of(units, len(shown)), fontweight="bold")
-        motion = deck.motion(times)
-        _draw_curve(upper, times, np.degrees(motion.angle), ROLL, "deck roll (°)")
-        heave = upper.twinx()
-        _draw_curve(heave, times, motion.y - np.mean(motion.y), HEAVE, "heave (m)", linestyle=(0, (4, 1.5)))
-        heave.grid(visible=False)
-        for axes, unit in zip(lanes, shown, strict=True):
-            _draw_unit(axes, deck, unit)
-        lanes[-1].set(xlim=(0.0, times[-1]), xlabel="time (s)")
-        figure.align_ylabels()
+        axes = figure.subplots(len(panels), 1, height_ratios=[panel.height for panel in panels])
+        draw_panels(axes, panels, float(units[0].times[-1]))
+        axes[0].set_title(title_of(units, len(shown)), fontweight="bold")
+        figure.align_ylabels(axes)
         figure.legend(handles=_signs(shown), loc="outside lower center", ncols=5, columnspacing=1.4, handletextpad=0.5)
 
 
-def _draw_curve(
-    axes: Axes, times: NDArray[np.float64], values: NDArray[np.float64], colour: str, label: str, **looks: Any
-) -> None:
-    """A curve about 0 with its axis in its colour."""
-    axes.plot(times, values, color=colour, linewidth=1.4, **looks)
-    axes.axhline(0.0, color=GREY, linewidth=0.8, zorder=1)
-    axes.set_ylabel(label, color=colour)
-    high = 1.2 * max(float(np.nanmax(np.abs(values))), 1e-3)
-    axes.set_ylim(-high, high)
+def _deck_panel(deck: MovingSupport, times: NDArray[np.float64]) -> Panel:
+    motion = deck.motion(times)
+    roll, heave = np.degrees(motion.angle), motion.y - np.mean(motion.y)
+    return Panel(
+        label="deck roll (°)",
+        curves=[Curve(times, roll, ROLL)],
+        height=1.25,
+        limits=around_zero(roll),
+        right=("heave (m)", Curve(times, heave, HEAVE, style="--")),
+    )
 
 
-def _draw_unit(axes: Axes, deck: MovingSupport, unit: UnitMotion) -> None:
+def _unit_panel(deck: MovingSupport, unit: UnitMotion) -> Panel:
+    """The tilt of a unit, how far it slid, its impacts, and along the bottom how much of its margin is used."""
     times, tilt = unit.times, np.degrees(unit.tilt)
-    if _greatest(unit.slid) > _SLID:
-        slid = axes.twinx()
-        _draw_curve(slid, times, unit.slid, SLID, "slid (m)")
-        slid.grid(visible=False)
-        slid.set_ylim(1.35 * slid.get_ylim()[0], slid.get_ylim()[1])
+    curves = [Curve(times, tilt, TILT, width=1.2)]
+    for mode in sorted({impact.mode for impact in unit.impacts}):
+        at = np.array([impact.stamp / NANOSECONDS for impact in unit.impacts if impact.mode is mode])
+        curves.append(Curve(at, 0.0 * at, MODES[mode].colour, style=MODES[mode].marker))
+    if unit.toppled:
+        curves.append(Curve(np.array([unit.ended]), np.zeros(1), MARGINS[2], style="X"))
     # A unit that has toppled would leave no room for how it rocked before.
     rocked = tilt if not unit.toppled else np.where(times < unit.ended - 2.0, tilt, np.nan)
-    high = 1.3 * max(10.0 * degrees(_TILTED), float(np.nanmax(np.abs(rocked), initial=0.0)))
-    axes.plot(times, tilt, color=TILT, linewidth=1.2)
-    axes.axhline(0.0, color=GREY, linewidth=0.8, zorder=1)
-    axes.set(ylim=(-1.35 * high, high), ylabel="tilt (°)")
-    axes.set_title(_fate(unit), fontsize=10, pad=3)
-    _draw_margin(axes, times, margin_used(deck, unit.unit, times))
-    for mode in sorted({impact.mode for impact in unit.impacts}):
-        at = [impact.stamp / NANOSECONDS for impact in unit.impacts if impact.mode is mode]
-        axes.plot(at, np.zeros(len(at)), color=MODES[mode].colour, **_sign(mode))
-    if unit.toppled:
-        axes.plot([unit.ended], [0.0], "X", color=MARGINS[2], markersize=11, markeredgecolor="white", zorder=5)
-
-
-def _sign(mode: Mode) -> dict[str, Any]:
-    sign = {"marker": MODES[mode].marker, "markersize": 6.5, "markeredgecolor": EDGE}
-    return {**sign, "markeredgewidth": 0.6, "linestyle": "", "zorder": 4}
+    slid = ("slid (m)", Curve(times, unit.slid, SLID)) if _greatest(unit.slid) > _SLID else None
+    return Panel(
+        label="tilt (°)",
+        curves=curves,
+        bands=_margin_bands(times, margin_used(deck, unit.unit, times)),
+        title=_fate(unit),
+        limits=around_zero(np.append(rocked, 10.0 * degrees(_TILTED)), 1.75),
+        right=slid,
+    )
 
 
 def _fate(unit: UnitMotion) -> str:
@@ -248,30 +259,31 @@ def _fate(unit: UnitMotion) -> str:
     return f"{unit.unit.name}: {', '.join(said) or 'stays where it is'}"
 
 
-def _draw_margin(axes: Axes, times: NDArray[np.float64], used: NDArray[np.float64]) -> None:
-    """A strip along the bottom: how much of the margin against sliding and tipping is used."""
+def _margin_bands(times: NDArray[np.float64], used: NDArray[np.float64]) -> list[Band]:
+    """How much of the margin against sliding and tipping is used, as bands along the bottom."""
     # Never thinner than can be seen.
     half = max(0.5 * (times[1] - times[0]), 8e-4 * (times[-1] - times[0]))
-    axes.axvspan(times[0], times[-1], 0.0, _STRIP, color=MARGINS[0], linewidth=0.0)
+    bands = [Band(times[0], times[-1], MARGINS[0], 0.0, _STRIP)]
     for least, colour in ((Watching().warn, MARGINS[1]), (1.0, MARGINS[2])):
         over = np.flatnonzero(np.diff(np.concatenate([[False], used >= least, [False]]).astype(int)))
         for first, last in over.reshape(-1, 2):
-            begin, end = times[first] - half, times[last - 1] + half
-            axes.axvspan(begin, end, 0.0, _STRIP, color=colour, linewidth=0.0)
+            bands.append(Band(times[first] - half, times[last - 1] + half, colour, 0.0, _STRIP))
+    return bands
 
 
 def _signs(units: Sequence[UnitMotion]) -> list[Any]:
     """The legend."""
     modes = sorted({impact.mode for one in units for impact in one.impacts})
-    handles: list[Any] = [
-        Line2D([], [], color=MODES[mode].colour, label=f"impact: {words(mode.name)}", **_sign(mode)) for mode in modes
-    ]
+    signs = [(f"impact: {words(mode.name)}", MODES[mode].colour, MODES[mode].marker) for mode in modes]
     if any(one.toppled for one in units):
-        sign: dict[str, Any] = {"marker": "X", "markersize": 10, "markeredgecolor": "white", "linestyle": ""}
-        handles.append(Line2D([], [], color=MARGINS[2], label="topples", **sign))
+        signs.append(("topples", MARGINS[2], "X"))
     warn = Watching().warn
     names = (f"margin: up to {warn:g} used", f"{warn:g} to 1", "used up: slides or tips")
-    return handles + [Patch(facecolor=colour, label=name) for colour, name in zip(MARGINS, names, strict=True)]
+    handles = [
+        Line2D([], [], color=colour, marker=marker, linestyle="", markeredgecolor=EDGE, label=name)
+        for name, colour, marker in signs
+    ]
+    return handles + patches(names, dict(zip(names, MARGINS, strict=True)))
 
 
 def deck_frames(units: Sequence[UnitMotion]) -> list[float]:
@@ -292,19 +304,23 @@ def deck_film(deck: MovingSupport, units: Sequence[UnitMotion]) -> Film:
     """The film of a deck in real time: the busiest units, its roll and the impacts below."""
     times = deck_frames(units)
     near = [UnitScene(deck, one, times) for one in busiest(units, _NEAR)]
-    impacts = sorted(impact.stamp / NANOSECONDS for one in near for impact in one.motion.impacts)
+    impacts = [impact.stamp / NANOSECONDS for one in near for impact in one.motion.impacts]
+    ticks = np.array([time for time in impacts if times[0] <= time <= times[-1]])
     warn = f"{100.0 * Watching().warn:.0f}"
     names = (f"margin up to {warn} % used", f"{warn} to 100 %", "used up, or it moves")
     seen = np.array(times)
+    roll = Curve(seen, np.degrees(deck.motion(seen).angle), ROLL)
     return Film(
         title="",
-        rows=[[one.view() for one in near]],
-        heights=[2.0],
-        curves=[Curve(seen, np.degrees(deck.motion(seen).angle), ROLL)],
-        curves_title="roll (°) against time (s), and the impacts; seen from astern, port on the left",
+        views=[one.view() for one in near],
+        height=2.0,
+        panel=Panel(
+            label="",
+            curves=[roll, Curve(ticks, 0.0 * ticks, STRUCK, style="|")],
+            title="roll (°) against time (s), and the impacts; seen from astern, port on the left",
+        ),
         speed=1.0,
         times=times,
-        ticks=[time for time in impacts if times[0] <= time <= times[-1]],
         legend=list(zip(LEVELS, names, strict=True)),
     )
 

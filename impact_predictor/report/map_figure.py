@@ -18,10 +18,9 @@ from scipy.ndimage import distance_transform_edt
 
 from ..mechanics.closed_forms import cylindrical, flat
 from ..mechanics.types import Mode
-from .film import box, circle, turned
 from .map import SUBJECTS, Axis, ModeMap, ambiguous, axis_label, conditions, given_in, meaning_of, problem_at, shares
 from .modes import MODES
-from .plot import Axes, Line2D, Patch, headline, picture
+from .plot import Axes, Line2D, Patch, box, circle, headline, picture, turned
 
 PAPER_NUMBERS: Final = {Mode.STOP: 1, Mode.SLIDE: 2}
 """The numbers that the paper uses for one mode all through; its 3 and 4 change places between its sections."""

@@ -27,7 +27,7 @@ from impact_predictor.report.deck_pictures import (
     title_of,
     write_deck_figure,
 )
-from impact_predictor.report.film import write_film
+from impact_predictor.report.plot import write_film
 from impact_predictor.scenarios.deck.cargo import follow, units_of
 
 matplotlib.use("agg")
