@@ -141,7 +141,7 @@ def test_a_violation_that_is_no_number_counts_as_endless(monkeypatch: pytest.Mon
 def test_one_of_many_problems_is_solved_as_it_was_among_them() -> None:
     for _, body, twist in random_problems(3, 17 * 20, 20):
         outcomes = solve_impacts(body, twist)
-        one_body, one_twist = problem_at(body, twist, 7)
+        one_body, one_twist = problem_at(body, 7), problem_at(twist, 7)
         assert np.array_equal(solve_impacts(one_body, one_twist).twist, outcomes.twist[7])
         assert type(one_body.new.normal[0]) is float
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import csv
 import json
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import click
 
-from ..errors import InputError, need
+from ..errors import need
+from ..report.files import make_folder, whole
 from .options import examples
 
 if TYPE_CHECKING:
@@ -48,8 +48,16 @@ def report(output: Path | None, quick: bool, as_json: bool) -> None:
     """
     folder = output or (None if as_json else Path("report"))
     if folder is not None:
-        make(folder)
-    fields = measured(quick, folder)
+        # Before the long work, so that a wrong name is told at once.
+        make_folder(folder)
+    need(*(["plotly"] if folder else []), "scipy")
+    from ..report.accuracy import study
+    from .progress import compiling_is_said, progress
+
+    size = study.QUICK if quick else study.FULL
+    command = "impact-predictor report" + (" --quick" if quick else "") + (f" -o {folder}" if folder else " --json")
+    with compiling_is_said(), progress("report", "methods", study.steps(size)) as tell:
+        fields = study.report(size, command, tell)
     if folder is not None:
         write(folder, fields)
     if as_json:
@@ -70,36 +78,6 @@ def report(output: Path | None, quick: bool, as_json: bool) -> None:
     click.echo(f"Page: {folder / PAGE}")
 
 
-def make(folder: Path) -> None:
-    """Make the folder before the long work, so that a wrong name is told at once.
-
-    Raises:
-        InputError: it cannot be made or written into.
-    """
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"the folder {folder} cannot be made: {error.strerror}; give another name") from error
-    if not os.access(folder, os.W_OK):
-        raise InputError(f"the folder {folder} cannot be written into; give another name")
-
-
-def measured(quick: bool, folder: Path | None) -> dict[str, Any]:
-    """The report as its JSON has it, with a bar on standard error.
-
-    Raises:
-        InputError: what it is made with is not installed.
-    """
-    need(*(["plotly"] if folder else []), "scipy")
-    from ..report.accuracy import study
-    from .progress import compiling_is_said, progress
-
-    size = study.QUICK if quick else study.FULL
-    command = "impact-predictor report" + (" --quick" if quick else "") + (f" -o {folder}" if folder else " --json")
-    with compiling_is_said(), progress("report", "methods", study.steps(size)) as tell:
-        return study.report(size, command, tell)
-
-
 def write(folder: Path, fields: dict[str, Any]) -> None:
     """Write JSON, CSV and page: each under another name first, so that none is ever there by half.
 
@@ -107,7 +85,6 @@ def write(folder: Path, fields: dict[str, Any]) -> None:
         InputError: a file cannot be written.
     """
     from ..report.accuracy.page import write_accuracy_page
-    from ..report.files import whole
 
     with whole(folder / DATA) as partial:
         partial.write_text(json.dumps(fields, indent=1, allow_nan=False), encoding="utf-8")

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .impact.batch import Outcomes, numbers_of, solve_impacts
+from .impact.batch import Outcomes, solve_impacts
 from .random_problems import CHUNK, KINDS, STIFF, random_problems
 from .types import Contact, Flag, Twist, TwoPointBody
 
@@ -301,8 +301,8 @@ class Soak:
         if violation > worst.limit and kind not in worst.broken_by:
             worst = worst._replace(broken_by=(*worst.broken_by, kind))
         if violation > worst.violation:
-            one_body, one_twist = problem_at(body, twist, i)
-            worst = worst._replace(violation=violation, kind=kind, body=one_body, twist=one_twist)
+            one = {"body": problem_at(body, i), "twist": problem_at(twist, i)}
+            worst = worst._replace(violation=violation, kind=kind, **one)
         self.worst[worst.law, worst.stiff, worst.invariant] = worst
 
     @property
@@ -311,15 +311,9 @@ class Soak:
         return [worst for worst in self.worst.values() if worst.broken_by]
 
 
-def problem_at(body: TwoPointBody, twist: Twist, i: int) -> tuple[TwoPointBody, Twist]:
-    """One of many problems, in plain numbers."""
-
-    def one(value: Any) -> float:
-        return float(value if np.ndim(value) == 0 else value[i])
-
-    def contact(many: Contact) -> Contact:
-        x, y, friction, nx, ny, restitution, ux, uy = map(one, numbers_of(many))
-        return Contact(x, y, friction, (nx, ny), restitution, (ux, uy))
-
-    old = None if body.old is None else contact(body.old)
-    return TwoPointBody(one(body.mass), one(body.inertia), old, contact(body.new)), Twist(*map(one, twist))
+def problem_at(many: Any, i: int) -> Any:
+    """One of many problems, in plain numbers: of a body or of a twist whose fields are arrays."""
+    if isinstance(many, tuple):
+        parts = [problem_at(part, i) for part in many]
+        return type(many)(*parts) if hasattr(many, "_fields") else tuple(parts)
+    return many if many is None else float(many if np.ndim(many) == 0 else many[i])

@@ -24,6 +24,20 @@ def named(path: str | os.PathLike[str], what: str, suffixes: Sequence[str]) -> P
     return path
 
 
+def make_folder(folder: Path) -> None:
+    """Make the folder of files that are yet to be made, unless there is one.
+
+    Raises:
+        InputError: it cannot be made or written into.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"the folder {folder} cannot be made: {error.strerror}; give another name") from error
+    if not os.access(folder, os.W_OK):
+        raise InputError(f"the folder {folder} cannot be written into; give another name")
+
+
 @contextmanager
 def whole(path: Path) -> Iterator[Path]:
     """Where to write a file: `X.partial`, which becomes X at the end, in the place of an older one.

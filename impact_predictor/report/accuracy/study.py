@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import platform
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from datetime import datetime, timezone
 from functools import partial
 from importlib.metadata import PackageNotFoundError, version
@@ -104,10 +104,10 @@ def variants(scene: Scene) -> Iterator[tuple[str, Scene]]:
 
 def scenes_of_question(question: str) -> list[AccuracyScene]:
     """The scenes of touchdowns or of impacts."""
-    drawn = {name: one[:3] for name, one in (touchdowns.SCENES if question == TOUCHDOWN else impacts.SCENES).items()}
+    drawn: Mapping[str, tuple[str, str, str, Any]] = touchdowns.SCENES if question == TOUCHDOWN else impacts.SCENES
     return [
         AccuracyScene(name, question, title, description, reference)
-        for name, (title, description, reference) in drawn.items()
+        for name, (title, description, reference, _) in drawn.items()
     ]
 
 

@@ -12,9 +12,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from ... import __version__
-from ...errors import InputError
 from ...wording import duration, percent
-from ..files import whole
+from ..files import make_folder, whole
 
 if TYPE_CHECKING:
     from plotly.graph_objects import Figure as PlotlyFigure
@@ -217,10 +216,7 @@ def script_beside(folder: Path) -> str:
     Raises:
         InputError: it cannot be written.
     """
-    try:
-        folder.mkdir(exist_ok=True)
-    except OSError as error:
-        raise InputError(f"the folder {folder} cannot be made: {error.strerror}; give another name") from error
+    make_folder(folder)
     with whole(folder / SHARED) as partial:
         partial.write_bytes(files("plotly").joinpath("package_data", SHARED).read_bytes())
     return f'<script src="{SHARED}"></script>'
