@@ -50,6 +50,7 @@ def test_an_mcap_file_is_read_whatever_its_compression_and_index(
     assert read(bag) == MESSAGES
     odometry = [message for message in MESSAGES if message.topic == "/cube/odom"]
     assert read(bag, {"/cube/odom": ODOMETRY}) == odometry
+    assert read(bag, {}) == []
 
 
 @pytest.mark.parametrize("indexed", [True, False])
@@ -68,7 +69,8 @@ def test_a_ros1_bag_is_read_whatever_its_compression(
 ) -> None:
     bag = write_ros1(tmp_path / "a.bag", MESSAGES, compression)
     assert topics(bag) == WANTED
-    assert read(bag) == MESSAGES
+    # The geometry of a toss has the log time of its first sample, and must come first to be of use to it.
+    assert read(bag) == read(bag, dict(reversed(WANTED.items()))) == MESSAGES
     polygons = [message for message in MESSAGES if message.topic != "/cube/odom"]
     assert read(bag, {"/cube/contact_geometry": POLYGON}) == polygons
 

@@ -7,7 +7,7 @@ import tracemalloc
 from pathlib import Path
 
 import pytest
-from recordings import RECORDED, TYPESTORE, WANTED, first_messages, write_ros1, write_ros2
+from recordings import RECORDED, TYPESTORE, WANTED, first_messages, write_ros2
 from rosbags.rosbag2 import StoragePlugin, Writer
 
 from impact_predictor.bags.read import BagMessage, read_messages, topics
@@ -38,21 +38,6 @@ def test_the_recorded_tosses_are_read_in_order_of_time() -> None:
 
 def test_the_topics_of_a_bag_have_their_types() -> None:
     assert topics(RECORDED) == topics(RECORDED.parent) == topics(str(RECORDED)) == WANTED
-
-
-def test_only_wanted_topics_are_read() -> None:
-    assert {topic for topic, _, _ in read_messages(RECORDED, {"/cube/contact_geometry": POLYGON})} == {
-        "/cube/contact_geometry"
-    }
-    assert list(read_messages(RECORDED, {})) == []
-
-
-def test_a_ros1_bag_keeps_the_order_of_its_topics_at_equal_times(tmp_path: Path, messages: list[BagMessage]) -> None:
-    # The geometry of a toss has the log time of its first sample, and must come first to be of use to it.
-    bag = write_ros1(tmp_path / "tosses.bag", messages)
-    first = next(read_messages(bag, dict(reversed(WANTED.items()))))
-    assert first == next(read_messages(bag, WANTED)) == messages[0]
-    assert first.topic == "/cube/contact_geometry"
 
 
 def test_a_bag_is_not_loaded_as_a_whole() -> None:

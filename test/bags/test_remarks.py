@@ -75,31 +75,29 @@ def test_another_number_of_points_is_told_with_the_one_that_the_scene_wants(
     assert f"400 of 400 messages on /contact_geometry are FEET_CHANGED: 4 points came, but {wanted}" in said
 
 
-@pytest.mark.parametrize("odom_first", [False, True])
-def test_feet_below_the_ground_are_told_with_their_depth(tmp_path: Path, odom_first: bool) -> None:
-    def lowered(_: int, one: Any) -> Any:
-        if isinstance(one, Sample):
-            x, y, z = one.position
-            return one._replace(position=(x, y, z - 0.3))
-        return one
+def lowered(_: int, one: Any) -> Any:
+    return one._replace(position=(*one.position[:2], one.position[2] - 0.3)) if isinstance(one, Sample) else one
 
+
+def in_mm(_: int, one: Any) -> Any:
+    if isinstance(one, Geometry):
+        return one._replace(points=tuple((1e3 * x, 1e3 * y, 1e3 * z) for x, y, z in one.points), velocities=())
+    return one
+
+
+@pytest.mark.parametrize(
+    ("change", "depth", "odom_first"),
+    # In mm the feet lie 500 m below a base that is 0.5 m high.
+    [(lowered, "0.3", False), (lowered, "0.3", True), (in_mm, "500", False)],
+)
+def test_feet_below_the_ground_are_told_with_their_depth(
+    tmp_path: Path, change: Callable[[int, Any], Any], depth: str, odom_first: bool
+) -> None:
     pairs = zip(STEPS[::2], STEPS[1::2], strict=True)
     steps = [one for pair in pairs for one in (pair[::-1] if odom_first else pair)]
-    said = replayed(tmp_path, change=lowered, steps=steps).unpredictable
-    assert "BELOW_GROUND: the lowest foot lies 0.3 m below the ground: compare support.height, the units" in said
+    said = replayed(tmp_path, change=change, steps=steps).unpredictable
+    assert f"BELOW_GROUND: the lowest foot lies {depth} m below the ground: compare support.height, the units" in said
     assert "no contact points are known" not in said
-
-
-def test_points_in_mm_are_told_with_a_depth_that_shows_it(tmp_path: Path) -> None:
-    def in_mm(_: int, one: Any) -> Any:
-        if isinstance(one, Geometry):
-            return one._replace(points=tuple((1e3 * x, 1e3 * y, 1e3 * z) for x, y, z in one.points), velocities=())
-        return one
-
-    # 500 m below a base that is 0.5 m high.
-    assert "lies 500 m below the ground: compare support.height, the units of the points (m)" in (
-        replayed(tmp_path, change=in_mm).unpredictable
-    )
 
 
 def test_feet_that_change_on_the_way_are_counted_with_what_to_do(tmp_path: Path) -> None:

@@ -12,7 +12,6 @@ import pytest
 from impact_predictor.bags.read import BagMessage, read_messages, topics
 from impact_predictor.bags.replay import Result, replay
 from impact_predictor.bags.write import BagWriter
-from impact_predictor.errors import InputError
 from impact_predictor.mechanics.types import Mode
 from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction.monitor import Monitor
@@ -206,22 +205,9 @@ def test_a_bag_gives_what_the_monitor_gives_in_the_order_of_the_recording(
         assert [(message.log_time, message.data) for message in read(output, topic)] == messages, topic
 
 
-def test_the_units_are_reported_together_once_a_second(output: Path) -> None:
-    reports = [decode_diagnostic_array(message.data) for message in read(output, "/diagnostics")]
-    assert all(len(statuses) == 4 for statuses in reports)
-    assert len(reports) >= END // 100
-    for statuses in reports:
-        assert [status.name.rpartition("/")[2] for status in statuses] == CARGO["bodies"]
-
-
 def test_two_runs_write_the_same_bytes(tmp_path: Path, bag: Path, output: Path, scenes: dict[str, Scene]) -> None:
     replay(bag, scenes, output=tmp_path / "again.mcap", markers=True)
     assert (tmp_path / "again.mcap").read_bytes() == output.read_bytes()
-
-
-def test_markers_are_written_where_they_are_asked_for(tmp_path: Path, bag: Path, scenes: dict[str, Scene]) -> None:
-    replay(bag, scenes, output=tmp_path / "out.mcap")
-    assert f"{NODE}/markers" not in topics(tmp_path / "out.mcap")
 
 
 def test_only_what_the_scene_needs_is_read(tmp_path: Path, bag: Path, scenes: dict[str, Scene]) -> None:
@@ -229,12 +215,6 @@ def test_only_what_the_scene_needs_is_read(tmp_path: Path, bag: Path, scenes: di
     result = replay(bag, few, output=tmp_path / "out.mcap")
     assert set(result.inputs) == {"support/odom", "crate/odom"}
     assert set(topics(tmp_path / "out.mcap")) == {f"{NODE}/crate/{name}" for name in ("mode", "prediction")}
-
-
-def test_a_bag_without_the_deck_is_refused(tmp_path: Path, scenes: dict[str, Scene]) -> None:
-    others = [message for message in recorded() if message.topic != "/support/odom"]
-    with pytest.raises(InputError, match=r"is told to be the deck \(support/odom\); it has /crate/odom"):
-        replay(write_bag(tmp_path / "bag.mcap", others), scenes)
 
 
 def test_a_body_that_is_not_in_the_bag_is_named_and_never_ok(tmp_path: Path, scenes: dict[str, Scene]) -> None:

@@ -41,18 +41,16 @@ def everything_in(folder: Path) -> dict[str, bytes]:
 
 
 @NAMES
-def test_what_was_written_is_read(tmp_path: Path, name: str) -> None:
-    write(tmp_path / name)
-    assert read(tmp_path / name) == MESSAGES
-    assert topics(tmp_path / name) == TOPICS
+@pytest.mark.parametrize("messages", [MESSAGES, []])
+def test_what_was_written_is_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, messages: list[BagMessage]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    write(Path(name), messages)
+    assert read(tmp_path / name) == messages
+    assert topics(tmp_path / name) == (TOPICS if messages else {})
     assert (tmp_path / name).is_file() == name.endswith(".mcap")
     assert [entry.name for entry in tmp_path.iterdir()] == [name]
-
-
-def test_a_bag_without_messages_is_a_bag(tmp_path: Path) -> None:
-    for name in ("empty.mcap", "empty"):
-        write(tmp_path / name, [])
-        assert topics(tmp_path / name) == {}
 
 
 def test_a_folder_that_is_not_there_is_not_made(tmp_path: Path) -> None:
@@ -60,12 +58,6 @@ def test_a_folder_that_is_not_there_is_not_made(tmp_path: Path) -> None:
         said = refused(tmp_path / name)
         assert said == f"the folder of {tmp_path / name} does not exist; make it, or give another name"
     assert not list(tmp_path.iterdir())
-
-
-def test_a_relative_name_is_enough(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    write(Path("out.mcap"))
-    assert read(tmp_path / "out.mcap") == MESSAGES
 
 
 def test_the_same_messages_make_the_same_bytes_under_any_name(tmp_path: Path) -> None:
@@ -94,6 +86,7 @@ def test_an_exception_leaves_what_was_written_and_the_older_output(
     older = everything_in(tmp_path)
     with pytest.raises(stop):
         write_and_stop(tmp_path / name, stop)
+    assert {entry.name for entry in tmp_path.iterdir()} == {name, f"{name}.partial"}
     assert read(tmp_path / f"{name}.partial/bag") == MESSAGES[:50]
     left = everything_in(tmp_path)
     assert {key: left[key] for key in older} == older
@@ -129,12 +122,6 @@ def test_of_a_writer_whose_process_was_ended_only_a_bag_with_messages_is_left(tm
     assert list(tmp_path.iterdir()) == []
 
 
-def test_until_the_end_there_is_only_the_partial_output(tmp_path: Path) -> None:
-    with BagWriter(tmp_path / "out.mcap") as writer:
-        writer.write("/other", UINT8, 1, MESSAGES[0].data)
-        assert [entry.name for entry in tmp_path.iterdir()] == ["out.mcap.partial"]
-
-
 def refused(path: Path) -> str:
     with pytest.raises(InputError) as caught, BagWriter(path):
         pytest.fail("the writer began")
@@ -142,32 +129,19 @@ def refused(path: Path) -> str:
     return str(caught.value)
 
 
-def test_what_others_made_is_never_replaced(tmp_path: Path) -> None:
-    (tmp_path / "notes.mcap").write_text("my notes")
-    (tmp_path / "folder").mkdir()
-    (tmp_path / "folder/notes.txt").write_text("my notes")
-    (tmp_path / "file").write_text("my notes")
+def test_what_others_made_or_put_into_an_output_is_never_replaced(tmp_path: Path) -> None:
+    write(tmp_path / "out")
+    for file in ("notes.mcap", "file", "folder/notes.txt", "out/notes.txt"):
+        (tmp_path / file).parent.mkdir(exist_ok=True)
+        (tmp_path / file).write_text("my notes")
     (tmp_path / "folder.mcap").mkdir()
-    before = everything_in(tmp_path)
-    for name in ("notes.mcap", "folder", "file", "folder.mcap"):
-        assert "is not an output of impact_predictor" in refused(tmp_path / name)
-    assert everything_in(tmp_path) == before
-
-
-def test_a_recording_is_never_replaced(tmp_path: Path) -> None:
     with Writer(tmp_path / "bag", version=9, storage_plugin=StoragePlugin.MCAP) as writer:
         connection = writer.add_connection("/other", UINT8, typestore=get_typestore(Stores.ROS2_JAZZY))
         writer.write(connection, 1, MESSAGES[0].data)
     before = everything_in(tmp_path)
-    for name in ("bag", "bag/bag.mcap"):
+    for name in ("notes.mcap", "file", "folder", "out", "folder.mcap", "bag", "bag/bag.mcap"):
         assert "is not an output of impact_predictor" in refused(tmp_path / name)
     assert everything_in(tmp_path) == before
-
-
-def test_an_output_with_a_file_of_the_user_in_it_is_not_replaced(tmp_path: Path) -> None:
-    write(tmp_path / "out")
-    (tmp_path / "out/notes.txt").write_text("my notes")
-    assert "is not an output of impact_predictor" in refused(tmp_path / "out")
 
 
 def test_a_partial_output_with_a_file_of_the_user_in_it_stays(tmp_path: Path) -> None:

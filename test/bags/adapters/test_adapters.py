@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import sqlite3
-import subprocess
 import sys
 from importlib.metadata import EntryPoint
 from math import sqrt
@@ -150,21 +149,6 @@ def test_a_recorded_odom_goes_before_any_adapter(monkeypatch: pytest.MonkeyPatch
     assert adapted_topics(recorded, found) == {}
 
 
-def test_a_bag_that_needs_no_adapter_imports_none() -> None:
-    script = f"""
-import sys
-from impact_predictor.bags.inputs import adapted_topics, find_topics
-from impact_predictor.bags.replay import replay
-from impact_predictor.prediction.scene import Input
-inputs = [Input("odom", "odom", "")]
-recorded = {{"/odom": {ODOMETRY!r}, "/state": {XPP!r}}}
-adapted_topics(recorded, find_topics("robot.bag", recorded, inputs, {{}})[0])
-print([name for name in sys.modules if "bags.adapters" in name or name == "impact_predictor.bags.events"])
-"""
-    result = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
-    assert result.stdout == "[]\n"
-
-
 def test_a_type_without_an_adapter_is_no_input() -> None:
     recorded = {"/state": "my_robot_msgs/msg/Unheard"}
     found, notes = find_topics("robot.bag", recorded, INPUTS, {"odom": "/state"})
@@ -210,6 +194,9 @@ def test_what_an_adapter_raises_says_whose_fault_it_is(tmp_path: Path, monkeypat
     module.adapt = refuse  # type: ignore[attr-defined]
     with pytest.raises(UnusableMessage, match=rf"the adapter faulty:adapt of {TYPE} refuses it: no fix yet"):
         read(bag)
+    said = replay(bag, FEET).unpredictable
+    assert f"3 of 3 messages on /state are MALFORMED: the adapter faulty:adapt of {TYPE} refuses it: no fix yet" in said
+    assert "who else publishes" not in said
     module.adapt = lambda message: None  # type: ignore[attr-defined]
     with pytest.raises(InputError, match=rf"the adapter faulty:adapt of {TYPE} returns None, not an Adapted; look at"):
         read(bag)
@@ -221,24 +208,6 @@ def test_what_an_adapter_raises_says_whose_fault_it_is(tmp_path: Path, monkeypat
 FEET = Scene.from_parameters(
     validate({"body.mass": 9.0, "body.inertia": [1.0], "contact.friction": 0.6, "feet.names": ["left", "right"]})
 )
-
-
-def test_what_an_adapter_says_of_the_messages_that_it_refuses_is_said_by_the_replay(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    module = ModuleType("picky")
-    monkeypatch.setitem(sys.modules, "picky", module)
-    install(monkeypatch, EntryPoint(TYPE, "picky:adapt", known.GROUP))
-    store = typestore()
-    bag = write(tmp_path / "robot", store, states(store))
-
-    def refuse(message: object) -> Adapted:
-        raise ValueError("no fix yet")
-
-    module.adapt = refuse  # type: ignore[attr-defined]
-    said = replay(bag, FEET).unpredictable
-    assert f"3 of 3 messages on /state are MALFORMED: the adapter picky:adapt of {TYPE} refuses it: no fix yet" in said
-    assert "who else publishes" not in said
 
 
 @pytest.mark.usefixtures("documented")
