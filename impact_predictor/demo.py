@@ -17,9 +17,10 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from .bags.read import read_messages, topics
 from .errors import InputError
+from .report.earlier import row_of_message
 from .report.figures import write_touchdowns
 from .report.replay import lead_time_table, touchdown_table
-from .report.summary import LEAD_TIME_EDGES, SpanErrors, TouchdownRow, TouchdownTally, errors_ahead, row_of_message
+from .report.summary import LEAD_TIME_EDGES, SpanErrors, TouchdownRow, TouchdownTally, errors_ahead
 from .report.table import show
 from .resources import find
 from .ros.messages import DIAGNOSTIC_ARRAY, Diagnostic, decode_diagnostic_array

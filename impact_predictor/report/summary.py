@@ -125,66 +125,6 @@ def row_of(body: str, score: Score, cost: float | None = None) -> TouchdownRow:
     )
 
 
-def row_of_message(body: str, values: Mapping[str, str], cost: float | None = None) -> TouchdownRow:
-    """The row of the values of a message on `~/score`, as `decode_diagnostic_array` reads them; `cost` in s."""
-
-    def twist(name: str) -> Twist:
-        return Twist(*(float(values[f"{name}.{part}"]) for part in Twist._fields))
-
-    def number(name: str) -> float | None:
-        return float(values[name]) if name in values else None
-
-    def points(name: str) -> tuple[int, ...]:
-        return tuple(map(int, values[name].split()))
-
-    return TouchdownRow(
-        body=body,
-        stamp=int(values["stamp"]),
-        announced=float(values["announced"]),
-        lead_time=float(values["lead_time"]),
-        mode=Mode[values["mode"]],
-        before=twist("before"),
-        predicted=twist("predicted"),
-        measured=twist("measured") if "measured.vx" in values else None,
-        half_distance=float(values["half_distance"]),
-        relative_error=number("relative_error"),
-        out_of_plane=float(values["off_axis"]),
-        scored=values["scored"] == "true",
-        flags=tuple(flag for key in ("leftover", "flags") for flag in values[key].split("|") if flag != "NONE"),
-        contacts=(points("old"), points("new")) if "old" in values else None,
-        foot=values.get("foot", ""),
-        time_error=number("time_error"),
-        cost=cost,
-    )
-
-
-def row_of_json(fields: Mapping[str, Any]) -> TouchdownRow:
-    """The row of a touchdown in the JSON of a replay; that of older versions tells neither contacts nor announcements.
-
-    Raises:
-        KeyError, TypeError, ValueError: it is none.
-    """
-    measured = fields["measured_twist"]
-    return TouchdownRow(
-        body=fields["body"],
-        stamp=int(fields["stamp"]),
-        announced=fields.get("announced_lead_time", fields["lead_time"]),
-        lead_time=fields["lead_time"],
-        mode=Mode[fields["mode"]],
-        before=Twist(*fields["before_twist"]),
-        predicted=Twist(*fields["predicted_twist"]),
-        measured=None if measured is None else Twist(*measured),
-        half_distance=fields["half_distance"],
-        relative_error=fields["relative_error"],
-        out_of_plane=fields["out_of_plane"],
-        scored=fields["scored"],
-        flags=tuple(fields["flags"]),
-        contacts=(tuple(fields["old"]), tuple(fields["new"])) if "old" in fields else None,
-        foot=fields.get("foot", ""),
-        time_error=fields.get("time_error"),
-    )
-
-
 def errors_of(rows: Iterable[TouchdownRow]) -> Distribution:
     """The relative errors of the scored rows."""
     return spread_of([row.relative_error for row in rows if row.scored and row.relative_error is not None])

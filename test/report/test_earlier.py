@@ -16,7 +16,7 @@ from impact_predictor.bags.write import BagWriter
 from impact_predictor.errors import InputError
 from impact_predictor.mechanics.types import Twist
 from impact_predictor.prediction.types import Landing, Leftover, Prediction, Score, Status
-from impact_predictor.report.earlier import Earlier, read_earlier
+from impact_predictor.report.earlier import Earlier
 from impact_predictor.report.replay_json import as_json
 from impact_predictor.report.summary import row_of
 from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY
@@ -64,8 +64,8 @@ def json_of(tmp_path: Path) -> Any:
 
 def test_bag_and_json_of_a_run_tell_the_same_to_the_last_bit(tmp_path: Path, json_of: Any) -> None:
     for body, name in (("", "cube"), ("crate", "crate")):
-        told = read_earlier(json_of(run(name)), "run.mcap")
-        assert told == read_earlier(write_run(tmp_path / f"{name}.mcap", body), "run.mcap")
+        told = Earlier(json_of(run(name))).touchdowns_of("run.mcap")
+        assert told == Earlier(write_run(tmp_path / f"{name}.mcap", body)).touchdowns_of("run.mcap")
         assert told == tuple(row_of(name, score) for score in SCORES)
         assert [one.error for one in told] == [0.25, None, None, None]
 
@@ -90,18 +90,18 @@ def test_a_bag_of_several_is_not_taken_for_another_of_its_name(json_of: Any) -> 
 def test_a_recording_of_a_node_in_a_namespace_is_a_run(tmp_path: Path, json_of: Any) -> None:
     for body, name in (("", "cube"), ("crate", "crate")):
         recorded = write_run(tmp_path / f"{name}.mcap", body, namespace="/robot")
-        assert read_earlier(recorded, "run.mcap") == read_earlier(json_of(run(name)), "run.mcap")
+        assert Earlier(recorded).touchdowns_of("run.mcap") == Earlier(json_of(run(name))).touchdowns_of("run.mcap")
 
 
 def test_a_run_without_a_touchdown_is_a_run(tmp_path: Path) -> None:
-    assert read_earlier(write_run(tmp_path / "none.mcap", scores=()), "run.mcap") == ()
+    assert Earlier(write_run(tmp_path / "none.mcap", scores=())).touchdowns_of("run.mcap") == ()
 
 
 def test_a_run_from_before_contacts_were_told_is_read(json_of: Any) -> None:
     answer = run("cube")
     for one in answer["touchdowns"]:
         del one["old"], one["new"]
-    assert {one.contacts for one in read_earlier(json_of(answer), "run.mcap")} == {None}
+    assert {one.contacts for one in Earlier(json_of(answer)).touchdowns_of("run.mcap")} == {None}
 
 
 def test_of_several_bags_the_run_of_this_one_is_read(tmp_path: Path, json_of: Any) -> None:
@@ -109,17 +109,10 @@ def test_of_several_bags_the_run_of_this_one_is_read(tmp_path: Path, json_of: An
     folder.mkdir()
     write_run(folder / "monday.mcap", scores=(SCORED,))
     write_run(folder / "tuesday.mcap", scores=(SCORED, UNSCORED))
-    assert len(read_earlier(folder, "bags/tuesday.bag")) == 2
+    assert len(Earlier(folder).touchdowns_of("bags/tuesday.bag")) == 2
     runs = [run("cube", SCORES[:k]) | {"bag": f"bags/{name}"} for k, name in ((1, "monday.mcap"), (2, "tuesday.mcap"))]
-    assert len(read_earlier(json_of(runs), "bags/tuesday.mcap")) == 2
-    assert len(read_earlier(json_of(runs), "elsewhere/monday.mcap")) == 1
-
-
-def test_the_json_of_many_bags_is_read_once(json_of: Any) -> None:
-    path = json_of([run("cube", SCORES[:k]) | {"bag": f"{k}.mcap"} for k in range(4)])
-    earlier = Earlier(path)
-    path.unlink()
-    assert [len(earlier.touchdowns_of(f"{k}.mcap")) for k in range(4)] == [0, 1, 2, 3]
+    assert len(Earlier(json_of(runs)).touchdowns_of("bags/tuesday.mcap")) == 2
+    assert len(Earlier(json_of(runs)).touchdowns_of("elsewhere/monday.mcap")) == 1
 
 
 @pytest.mark.parametrize(
@@ -137,22 +130,22 @@ def test_json_that_is_no_run_of_the_bag_is_refused_in_one_sentence(tmp_path: Pat
     path = tmp_path / "old.json"
     path.write_text(content)
     with pytest.raises(InputError, match=said) as caught:
-        read_earlier(path, "bags/run.mcap")
+        Earlier(path).touchdowns_of("bags/run.mcap")
     assert "\n" not in str(caught.value)
 
 
 def test_what_is_not_there_or_is_no_run_is_refused(tmp_path: Path) -> None:
     for name in ("none.json", "none.mcap"):
         with pytest.raises(InputError, match=name):
-            read_earlier(tmp_path / name, "run.mcap")
+            Earlier(tmp_path / name).touchdowns_of("run.mcap")
     with pytest.raises(InputError, match=r"has no run\.mcap; write it"):
-        read_earlier(tmp_path, "run.mcap")
+        Earlier(tmp_path).touchdowns_of("run.mcap")
     with BagWriter(tmp_path / "other.mcap") as writer:
         writer.write("/odom", DIAGNOSTIC_ARRAY, 1, b"")
     with pytest.raises(InputError, match="has no predictions"):
-        read_earlier(tmp_path / "other.mcap", "run.mcap")
+        Earlier(tmp_path / "other.mcap").touchdowns_of("run.mcap")
     with BagWriter(tmp_path / "damaged.mcap") as writer:
         for name in ("prediction", "score"):
             writer.write(f"/impact_predictor/{name}", DIAGNOSTIC_ARRAY, 1, bytes(8))
     with pytest.raises(InputError, match="a message on /impact_predictor/score that is no score"):
-        read_earlier(tmp_path / "damaged.mcap", "run.mcap")
+        Earlier(tmp_path / "damaged.mcap").touchdowns_of("run.mcap")

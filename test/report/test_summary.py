@@ -11,6 +11,7 @@ from touchdowns import SAMPLE, TOUCHDOWN
 from impact_predictor.bags.replay import BodyTruth, Result, Settled
 from impact_predictor.mechanics.types import Mode, Twist
 from impact_predictor.prediction.types import Landing, Leftover, Prediction, Score, Status
+from impact_predictor.report.earlier import row_of_message
 from impact_predictor.report.replay_json import as_json
 from impact_predictor.report.summary import (
     PER_DECADE,
@@ -20,7 +21,6 @@ from impact_predictor.report.summary import (
     from_json,
     reasons,
     row_of,
-    row_of_message,
     spread_of,
     to_json,
     together,

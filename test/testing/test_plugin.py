@@ -14,7 +14,7 @@ from click.testing import CliRunner
 # Loaded before any run within this process, or each of them would load numpy and rosbags anew.
 import impact_predictor.testing.collection  # noqa: F401
 from impact_predictor.cli import main
-from impact_predictor.report.earlier import read_earlier
+from impact_predictor.report.earlier import Earlier
 
 pytest_plugins = "pytester"
 
@@ -195,7 +195,7 @@ def test_bags_may_be_folders_patterns_and_outside_of_the_project(
 def test_a_baseline_fails_only_when_something_has_changed(run: Run, pytester: pytest.Pytester) -> None:
     bag, old = str(pytester.path / "run.mcap"), str(pytester.path / "old.mcap")
     assert CliRunner().invoke(main, ["replay", bag, "--params", "scene.yaml", "-o", old]).exit_code == 0
-    assert len(read_earlier(old, bag)) == 4
+    assert len(Earlier(old).touchdowns_of(bag)) == 4
     run(*BAG, "--impact-baseline", "old.mcap", "-k", "baseline").assert_outcomes(passed=1, deselected=len(TESTS))
     scene = pytester.path / "scene.yaml"
     scene.write_text(scene.read_text().replace("restitution: 0.1", "restitution: 0.3"))
