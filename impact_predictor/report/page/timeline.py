@@ -69,7 +69,7 @@ class Lane(NamedTuple):
     errors: Sequence[tuple[int, float]] = ()
 
 
-class Cuts(NamedTuple):
+class ShownTime(NamedTuple):
     """The time that a timeline shows: the pieces of a record that are no long pauses, as (begin, end, place) in ns."""
 
     pieces: Sequence[tuple[int, int, int]]
@@ -79,44 +79,39 @@ class Cuts(NamedTuple):
         piece = self.pieces[max(bisect_right(self.pieces, stamp, key=lambda one: one[0]) - 1, 0)]
         return (piece[2] + min(max(stamp, piece[0]), piece[1]) - piece[0]) / NANOSECONDS
 
-    @property
-    def places(self) -> list[float]:
-        """Where something is cut out, in s."""
-        return [place / NANOSECONDS for _, _, place in self.pieces[1:]]
-
-    @property
-    def shown(self) -> float:
-        """How much time is shown, in s."""
-        return self.at(self.pieces[-1][1])
-
 
 def timeline(answer: BagAnswer) -> tuple[PlotlyFigure, list[str]]:
     """The timeline of a bag, and sentences on what of it is not drawn as it is."""
     lanes, begin = lanes_of(answer), begin_of(answer)
-    cuts = cuts_of(answer, lanes)
+    time = shown_time(answer, lanes)
+    pieces = [
+        [(first - begin) / NANOSECONDS, (last - begin) / NANOSECONDS, place / NANOSECONDS]
+        for first, last, place in time.pieces
+    ]
+    cuts, shown = [place for _, _, place in pieces[1:]], time.at(time.pieces[-1][1])
     said: list[str] = []
     traces: list[dict[str, Any]] = []
     for number, lane in enumerate(lanes):
-        traces += [*_stances(lane, -number, cuts, begin), *_errors(lane, -number, cuts)]
+        traces += [*_stances(lane, -number, time, begin), *_errors(lane, -number, time)]
     if sum(len(lane.marks) for lane in lanes) > MOST:
         lanes = [lane._replace(marks=[mark for mark in lane.marks if not mark.faint][:MOST]) for lane in lanes]
         said.append(f"There are too many marks: of each lane the first {MOST:,} are drawn, and no faint ones.")
-    traces += _marks(lanes, cuts)
-    dashed = cuts.places if len(cuts.places) <= FEW else []
-    if cuts.places:
-        whole = (cuts.pieces[-1][1] - begin) / NANOSECONDS
+    traces += _marks(lanes, time)
+    dashed = cuts if len(cuts) <= FEW else []
+    if cuts:
         each = ", each at a dotted line" if dashed else ""
-        said.append(f"Pauses are cut out{each}: {time_words(cuts.shown)} of {time_words(whole)} are shown.")
-    pieces = [[(one[0] - begin) / NANOSECONDS, (one[1] - begin) / NANOSECONDS, cuts.at(one[0])] for one in cuts.pieces]
+        said.append(f"Pauses are cut out{each}: {time_words(shown)} of {time_words(pieces[-1][1])} are shown.")
     line = {"dash": "dot", "color": GREY, "width": 1}
     figure = plot(
         traces,
         height=120 + LANE * len(lanes),
         margin={"l": 16, "r": 16, "t": 40, "b": 48},
-        xaxis=titled("time in the record, s", range=[-0.01 * cuts.shown, 1.01 * cuts.shown]),
+        xaxis=titled("time in the record, s", range=[-0.01 * shown, 1.01 * shown]),
         yaxis={
             "tickvals": [-number for number in range(len(lanes))],
-            "ticktext": [safe(name_of(lane)) for lane in lanes],
+            "ticktext": [
+                safe(f"{lane.name} to {part_words(highest(lane))}" if lane.errors else lane.name) for lane in lanes
+            ],
             "range": [0.6 - len(lanes), 0.6],
             "automargin": True,
             "fixedrange": True,
@@ -124,7 +119,7 @@ def timeline(answer: BagAnswer) -> tuple[PlotlyFigure, list[str]]:
         },
         barmode="overlay",
         shapes=[{"type": "line", "x0": x, "x1": x, "yref": "paper", "y0": 0, "y1": 1, "line": line} for x in dashed],
-        meta={"pieces": pieces} if cuts.places else None,
+        meta={"pieces": pieces} if cuts else None,
     )
     return figure, said
 
@@ -144,31 +139,26 @@ def in_order(marks: Iterable[str]) -> list[str]:
     return sorted(set(marks), key=order.index)
 
 
-def name_of(lane: Lane) -> str:
-    """The name of a lane, with how high its errors can be."""
-    return f"{lane.name} to {part_words(highest(lane))}" if lane.errors else lane.name
-
-
 def highest(lane: Lane) -> float:
     """The error that is drawn in full height: a few greater ones do not press down the others."""
     values = [error for _, error in lane.errors]
     return min(max(values), 3.0 * quantile(values, 0.9)) or 1.0
 
 
-def _marks(lanes: Sequence[Lane], cuts: Cuts) -> list[dict[str, Any]]:
+def _marks(lanes: Sequence[Lane], time: ShownTime) -> list[dict[str, Any]]:
     """The marks, those of a mode at once, above the lines back to when each was first announced."""
     drawn = [(mark, -number) for number, lane in enumerate(lanes) for mark in lane.marks]
     back_x: list[float | None] = []
     back_y: list[float | None] = []
     for mark, y in drawn:
         if mark.since is not None:
-            back_x += [cuts.at(mark.since), cuts.at(mark.stamp), None]
+            back_x += [time.at(mark.since), time.at(mark.stamp), None]
             back_y += [y, y, None]
     back = {"type": "scatter", "mode": "lines", "name": "announced until it came", "x": back_x, "y": back_y}
     traces = [back | {"line": {"color": GREY, "width": 1.5}, "hoverinfo": "skip"}] if back_x else []
     # What is faint lies below what counts.
     for name, faint in [(name, faint) for faint in (True, False) for name in in_order(mark.mark for mark, _ in drawn)]:
-        points = [(cuts.at(mark.stamp), y, mark.said) for mark, y in drawn if mark.mark == name and mark.faint == faint]
+        points = [(time.at(mark.stamp), y, mark.said) for mark, y in drawn if mark.mark == name and mark.faint == faint]
         if points:
             # The opacity of a trace, not of its marks: faint ones on each other are no darker than one.
             label, opacity = (f"{name}, faint", 0.3) if faint else (name, 1.0)
@@ -176,33 +166,33 @@ def _marks(lanes: Sequence[Lane], cuts: Cuts) -> list[dict[str, Any]]:
     return traces
 
 
-def _stances(lane: Lane, y: int, cuts: Cuts, begin: int) -> list[dict[str, Any]]:
+def _stances(lane: Lane, y: int, time: ShownTime, begin: int) -> list[dict[str, Any]]:
     """Bars from when a foot comes to stand until it leaves."""
-    points = []
-    for first, last in lane.stances:
-        said = f"stands from {(first - begin) / NANOSECONDS:.3f} to {(last - begin) / NANOSECONDS:.3f} s"
-        points.append((cuts.at(last) - cuts.at(first), y, said))
-    if not points:
+    if not lane.stances:
         return []
-    base = [cuts.at(first) for first, _ in lane.stances]
+    points = [
+        (time.at(last) - time.at(first), y, f"stands from {_moment(first, begin)} to {_moment(last, begin)}")
+        for first, last in lane.stances
+    ]
+    base = [time.at(first) for first, _ in lane.stances]
     look = {"color": GREY if lane.name == TRUTH else BLUE}
     return [bars(points, orientation="h", base=base, width=0.5, marker=look)]
 
 
-def _errors(lane: Lane, y: int, cuts: Cuts) -> list[dict[str, Any]]:
+def _errors(lane: Lane, y: int, time: ShownTime) -> list[dict[str, Any]]:
     """A stem for each error, as high as it is."""
     if not lane.errors:
         return []
     heights = [0.8 * min(error / highest(lane), 1.0) for _, error in lane.errors]
     points = [
-        (cuts.at(stamp), y - 0.4 + height, f"relative error {part_words(error)}")
+        (time.at(stamp), y - 0.4 + height, f"relative error {part_words(error)}")
         for (stamp, error), height in zip(lane.errors, heights, strict=True)
     ]
     stems = {"array": [0.0] * len(heights), "arrayminus": heights, "width": 0, "thickness": 2, "color": BLUE}
     return [marks(lane.name, points, error_y=stems, showlegend=False, marker={"color": BLUE, "size": 3})]
 
 
-def cuts_of(answer: BagAnswer, lanes: Iterable[Lane]) -> Cuts:
+def shown_time(answer: BagAnswer, lanes: Iterable[Lane]) -> ShownTime:
     """From the first sample to the last one, and what lies beyond; without long pauses where they are most of it."""
     begin = begin_of(answer)
     moments = {begin, max(answer.get("end") or 0, begin + 1)}
@@ -221,7 +211,7 @@ def cuts_of(answer: BagAnswer, lanes: Iterable[Lane]) -> Cuts:
     for first, last in zip(begins, ends, strict=True):
         pieces.append((first, last, place))
         place += last - first
-    return Cuts(pieces)
+    return ShownTime(pieces)
 
 
 def lanes_of(answer: BagAnswer) -> list[Lane]:
@@ -244,9 +234,13 @@ def _feet(answer: BagAnswer, body: str) -> Iterable[Lane]:
             yield Lane(TRUTH, stances=[(begin, end) for place, begin, end in gait["true_stances"] if place == number])
 
 
+def _moment(stamp: int, start: int) -> str:
+    return f"{(stamp - start) / NANOSECONDS:.3f} s"
+
+
 def _landing(one: BagAnswer, start: int) -> TimelineMark:
     """A landing where it was predicted last; one that was not announced where it came, as missed."""
-    at = f"{one['foot']} lands at {(one['stamp'] - start) / NANOSECONDS:.3f} s"
+    at = f"{one['foot']} lands at {_moment(one['stamp'], start)}"
     if one["time_error"] is None:
         return TimelineMark(one["stamp"], MISSED, f"{at}, not announced")
     lead = one["announced_lead_time"]
@@ -281,7 +275,7 @@ def _body(answer: BagAnswer, body: str) -> Iterable[Lane]:
 def _touchdown(one: BagAnswer, start: int) -> TimelineMark:
     """A touchdown that was predicted and came; faint where nothing measured can be compared with it."""
     lead = one["announced_lead_time"]
-    said = f"{(one['stamp'] - start) / NANOSECONDS:.3f} s: {one['mode']}\nannounced {time_words(lead)} ahead"
+    said = f"{_moment(one['stamp'], start)}: {one['mode']}\nannounced {time_words(lead)} ahead"
     if one["scored"]:
         said += f"\nrelative error {part_words(one['relative_error'])}"
     else:
@@ -292,7 +286,7 @@ def _touchdown(one: BagAnswer, start: int) -> TimelineMark:
 
 def _predicted(one: BagAnswer, start: int) -> TimelineMark:
     """What was announced: of a true touchdown, or in vain."""
-    said = f"predicted for {(one['predicted_stamp'] - start) / NANOSECONDS:.3f} s: {one['predicted_mode']}"
+    said = f"predicted for {_moment(one['predicted_stamp'], start)}: {one['predicted_mode']}"
     if one["stamp"] is None:
         return TimelineMark(one["predicted_stamp"], FALSE, f"{FALSE}, {said}", since=one["first_seen"])
     said += f"\nfirst announced {time_words((one['stamp'] - one['first_seen']) / NANOSECONDS)} ahead"
@@ -304,7 +298,7 @@ def _predicted(one: BagAnswer, start: int) -> TimelineMark:
 
 def _true(one: BagAnswer, start: int) -> TimelineMark:
     """What happened; faint what such a record cannot show."""
-    said = f"{(one['stamp'] - start) / NANOSECONDS:.3f} s: {one['mode']}"
+    said = f"{_moment(one['stamp'], start)}: {one['mode']}"
     missed = one["shown"] and one["predicted_stamp"] is None
     if not one["shown"]:
         said += "\nwhich cannot be seen at this rate of samples"
