@@ -1,4 +1,4 @@
-"""What happened in a replay: stances and landings of feet, and the true impacts and onsets where the bag tells them."""
+"""What happened in a replay: stances of feet, and the true impacts and onsets where the bag tells them."""
 
 from __future__ import annotations
 
@@ -6,11 +6,10 @@ from collections import defaultdict
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from functools import partial
-from math import hypot
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..prediction.scene import Walking
-from ..prediction.types import Prediction, Score
+from ..prediction.types import Prediction
 from ..ros.messages import MalformedMessage
 from ..scenarios.matching import Announcements
 from ..scenarios.truth import (
@@ -25,9 +24,6 @@ from ..scenarios.truth import (
 if TYPE_CHECKING:
     from ..scenarios.warned import Warned, Warnings
 
-AHEAD: Final = 0.05
-"""Seconds before a landing at which the prediction is made that is kept."""
-
 
 class FootStance(NamedTuple):
     """A foot, by its place in feet.names, that stands from `begin` to `end` (stamps in ns)."""
@@ -37,26 +33,11 @@ class FootStance(NamedTuple):
     end: int
 
 
-class GaitLanding(NamedTuple):
-    """A foot that has come to stand at `stamp` (ns), with the first of its points.
-
-    `announced` is the stamp that the last prediction made `AHEAD` of it announced, None where there was none so early;
-    `speed` (m/s) that of the foot in its last sample in the air, and `impulse` (N s) what it gets with that speed.
-    """
-
-    foot: int
-    stamp: int
-    announced: int | None
-    speed: float | None
-    impulse: float | None
-
-
 class Gait:
-    """The stances of one machine as they were inferred, the true ones where they are known, and its landings."""
+    """The stances of one machine as they were inferred, and the true ones where they are known."""
 
     def __init__(self, walking: Walking) -> None:
         self.feet = walking.feet
-        self.landings: list[GaitLanding] = []
         self.begin = self.end = 0
         """Stamps of the first and the last sample in ns."""
         self.samples = 0
@@ -85,19 +66,6 @@ class Gait:
         for number, foot in enumerate(prediction.feet):
             # What stands or swings from the beginning on has not begun at any stamp.
             self._inferred.take(number, foot.stands, foot.since or self.begin)
-        if prediction.score is not None:
-            self.end_with([prediction.score])
-
-    def end_with(self, scores: Iterable[Score]) -> None:
-        """Take the landings that are settled."""
-        for landing in [score.landing for score in scores if score.landing is not None]:
-            foot = self.feet.index(landing.foot)
-            if landing.point is not None and self._inferred.since(foot, landing.stamp) < landing.stamp:
-                continue  # More of a foot that stands already.
-            impulse = None if landing.impact is None else hypot(*landing.impact.impulses[1])
-            errors = [error for ahead, error in landing.history if ahead >= AHEAD]
-            announced = landing.stamp + round(1e9 * errors[-1]) if errors else None
-            self.landings.append(GaitLanding(foot, landing.stamp, announced, landing.speed, impulse))
 
 
 class _Stances:
@@ -113,10 +81,6 @@ class _Stances:
             self._since.setdefault(foot, stamp)
         elif foot in self._since:
             self._ended.append(FootStance(foot, self._since.pop(foot), stamp))
-
-    def since(self, foot: int, stamp: int) -> int:
-        """When the stance of a foot began that lasts; the stamp given where it does not stand."""
-        return self._since.get(foot, stamp)
 
     def until(self, end: int) -> list[FootStance]:
         return [*self._ended, *[FootStance(foot, begin, end) for foot, begin in self._since.items()]]

@@ -193,8 +193,6 @@ class Run:
         for body, scores in self.monitor.finish().items():
             stream = self._streams[body]
             self.settled += [stream.end(score) for score in scores]
-            if body in self.gaits:
-                self.gaits[body].end_with(scores)
 
     @property
     def extent(self) -> tuple[int, int] | None:

@@ -8,15 +8,20 @@ from pathlib import Path
 from statistics import median
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-from ..bags.events import AHEAD, Gait, GaitLanding
+from ..bags.events import Gait
+from ..scenarios.comparison import LEAD_TIMES
 from ..stamps import NANOSECONDS
 from ..wording import counted
+from .landings import LandingRow, landings_of
 from .modes import PALETTE
 from .plot import GREY, Axes, Line2D, Patch, headline, picture
 from .summary import quantile
 
 if TYPE_CHECKING:
     from ..bags.replay import Result
+
+AHEAD: Final = LEAD_TIMES[-1]
+"""Seconds before a landing at which the prediction is made that is shown."""
 
 MOST: Final = 3
 """Machines in one picture."""
@@ -32,16 +37,22 @@ _TRUE: Final = "#d0d0d0"
 
 
 class Machine(NamedTuple):
-    """A machine in a picture, by the name of its record, or of it in its record."""
+    """A machine in a picture, by the name of its record, or of it in its record, and the landings of its feet."""
 
     name: str
     gait: Gait
+    landings: Sequence[LandingRow]
 
 
 def machines_of(results: Sequence[Result]) -> list[Machine]:
     """The machines of some replays."""
     return [
-        Machine(f"{Path(result.bag).name} {body}".rstrip(), gait)
+        Machine(
+            name=f"{Path(result.bag).name} {body}".rstrip(),
+            gait=gait,
+            # What follows of a foot that stands already is no landing of its own.
+            landings=[one for one in landings_of(result.settled) if one.body == (body or one.body) and not one.second],
+        )
         for result in results
         for body, gait in result.gaits.items()
     ]
@@ -57,7 +68,7 @@ class FootLandings(NamedTuple):
     colour: str
     start: int
     period: float
-    landings: list[GaitLanding]
+    landings: list[LandingRow]
     true: list[int]
 
     def seconds(self, stamp: int) -> float:
@@ -69,11 +80,16 @@ class FootLandings(NamedTuple):
         """Time and error in s of every landing that was predicted."""
         made = []
         for one in self.landings:
-            if one.announced is not None:
-                predicted = one.announced
+            if (predicted := _predicted(one)) is not None:
                 stamp = min(self.true, key=lambda true: abs(true - predicted), default=one.stamp)
                 made.append((self.seconds(stamp), (predicted - stamp) / NANOSECONDS))
         return made
+
+
+def _predicted(landing: LandingRow) -> int | None:
+    """The stamp in ns that was predicted `AHEAD` of a landing; None where none was so early."""
+    error = landing.time_errors[-1]
+    return None if error is None else landing.stamp + round(error * NANOSECONDS)
 
 
 def write_gait(path: str | os.PathLike[str], machines: Sequence[Machine]) -> None:
@@ -108,7 +124,7 @@ def _feet(machine: Machine, several: bool) -> list[FootLandings]:
             colour=PALETTE[foot % len(PALETTE)],
             start=gait.begin,
             period=(gait.end - gait.begin) / NANOSECONDS / max(1, gait.samples - 1),
-            landings=[one for one in gait.landings if one.foot == foot],
+            landings=[one for one in machine.landings if one.foot.split()[0] == name],
             true=sorted(one.begin for one in true if one.foot == foot and one.begin > gait.begin),
         )
         for foot, name in enumerate(gait.feet)
@@ -131,7 +147,7 @@ def _draw_stances(axes: Axes, machines: Sequence[Machine], feet: Sequence[FootLa
                     axes.barh(row, ends - begins, height, begins, color=colour, zorder=2 if of_truth else 3)
         first += len(gait.feet)
     for number, foot in enumerate(feet):
-        times = [foot.seconds(one.announced) for one in foot.landings if one.announced is not None]
+        times = [foot.seconds(stamp) for one in foot.landings if (stamp := _predicted(one)) is not None]
         shown = [time for time in times if time <= end]
         marks = axes.plot(shown, [number - 0.33] * len(shown), "v", color="black", markersize=6, zorder=4)
         # The layout takes the extent of unclipped marks for infinite where there are none.

@@ -9,20 +9,43 @@ from pathlib import Path
 import matplotlib
 import pytest
 
-from impact_predictor.bags.events import Gait, GaitLanding
+from impact_predictor.bags.events import Gait
+from impact_predictor.mechanics.types import Mode
 from impact_predictor.prediction.scene import Walking
 from impact_predictor.prediction.types import Foot, Prediction, Sample, Status
 from impact_predictor.report.gait import Machine, write_gait
+from impact_predictor.report.landings import LandingRow
 
 SECOND = 10**9
 STILL = (0.0, 0.0, 0.0)
+LANDING = LandingRow(
+    body="base",
+    foot="left",
+    stamp=0,
+    second=False,
+    announced=0.06,
+    time_errors=(None, None),
+    mode=Mode.STOP,
+    speed=None,
+    impulse=None,
+    others=None,
+    velocity=None,
+    late=None,
+    confirmed=None,
+)
 
 
-def gait_of(
-    seconds: int, *, error: float = 0.001, speed: float = 0.2, ahead: bool = True, truth: bool = False, start: int = 0
-) -> Gait:
+def machine(
+    name: str,
+    seconds: int,
+    *,
+    error: float | None = 0.001,
+    speed: float = 0.2,
+    truth: bool = False,
+    start: int = 0,
+) -> Machine:
     """Two feet that stand in turn, 0.5 s each, ten samples a second, announced by an error in s too late."""
-    gait = Gait(Walking(("left", "right")))
+    gait, landings = Gait(Walking(("left", "right"))), list[LandingRow]()
     for k in range(10 * seconds + 1):
         stamp = start + k * SECOND // 10
         half = k // 5 * SECOND // 2 + start
@@ -33,9 +56,9 @@ def gait_of(
         if truth:
             gait.tell(stamp, stands)
         if k % 5 == 0 and k:
-            told = stamp + round(error * SECOND) if ahead else None
-            gait.landings.append(GaitLanding(k // 5 % 2, stamp, told, speed, 40.0 * speed))
-    return gait
+            foot = gait.feet[k // 5 % 2]
+            landings.append(LANDING._replace(foot=foot, stamp=stamp, time_errors=(error, error), speed=speed))
+    return Machine(name, gait, [one._replace(impulse=40.0 * speed) for one in landings])
 
 
 def texts(path: Path, *machines: Machine) -> list[str]:
@@ -45,7 +68,7 @@ def texts(path: Path, *machines: Machine) -> list[str]:
 
 
 def test_it_says_how_well_landings_were_predicted_and_names_the_feet(tmp_path: Path) -> None:
-    told = texts(tmp_path / "gait.svg", Machine("walk.bag", gait_of(6, truth=True, start=7 * SECOND)))
+    told = texts(tmp_path / "gait.svg", machine("walk.bag", 6, truth=True, start=7 * SECOND))
     title = "walk.bag: 12 landings, 12 predicted 50 ms ahead, half of them within 1.0 ms, 90 % within 1.0 ms"
     assert {title, "left", "right", "When each foot stands", "stands, as the record tells"} <= set(told)
     assert any("true time" in text for text in told)
@@ -54,39 +77,39 @@ def test_it_says_how_well_landings_were_predicted_and_names_the_feet(tmp_path: P
 
 
 def test_without_a_truth_errors_are_those_against_the_inferred_landings(tmp_path: Path) -> None:
-    told = texts(tmp_path / "gait.svg", Machine("walk.bag", gait_of(6, error=-0.002)))
+    told = texts(tmp_path / "gait.svg", machine("walk.bag", 6, error=-0.002))
     assert "walk.bag: 12 landings, 12 predicted 50 ms ahead, half of them within 2.0 ms, 90 % within 2.0 ms" in told
     assert any("inferred time" in text for text in told)
     assert not any("as the record tells" in text or "grey" in text for text in told)
 
 
 def test_of_a_long_record_the_stances_of_its_beginning_are_shown(tmp_path: Path) -> None:
-    told = texts(tmp_path / "gait.svg", Machine("walk.bag", gait_of(60)))
+    told = texts(tmp_path / "gait.svg", machine("walk.bag", 60))
     assert "When each foot stands, the first 12 s of 60 s" in told
     assert any(text.startswith("walk.bag: 120 landings, 120 predicted") for text in told)
 
 
 def test_feet_that_land_without_speed_are_told(tmp_path: Path) -> None:
-    told = texts(tmp_path / "gait.svg", Machine("walk.bag", gait_of(3, speed=0.0)))
+    told = texts(tmp_path / "gait.svg", machine("walk.bag", 3, speed=0.0))
     assert {"none above 0.001 m/s", "none above 0.001 N s"} <= set(told)
 
 
 def test_landings_that_nobody_announced_are_said(tmp_path: Path) -> None:
-    told = texts(tmp_path / "gait.svg", Machine("walk.bag", gait_of(3, ahead=False)))
+    told = texts(tmp_path / "gait.svg", machine("walk.bag", 3, error=None))
     assert "walk.bag: 6 landings, none predicted 50 ms ahead" in told
 
 
 def test_of_many_machines_the_first_three_are_shown(tmp_path: Path) -> None:
-    told = texts(tmp_path / "gait.svg", *[Machine(f"{name}.bag", gait_of(2)) for name in "abcd"])
+    told = texts(tmp_path / "gait.svg", *[machine(f"{name}.bag", 2) for name in "abcd"])
     assert any(text.startswith("a.bag, b.bag, c.bag, ...: 12 landings") for text in told)
     assert {"a.bag left", "c.bag right"} <= set(told)
     assert "d.bag left" not in told
 
 
-@pytest.mark.parametrize("gait", [Gait(Walking(("left", "right"))), gait_of(0)])
+@pytest.mark.parametrize("gait", [Gait(Walking(("left", "right"))), machine("stands.bag", 0).gait])
 def test_a_record_without_a_landing_makes_a_picture_without_a_warning(
     tmp_path: Path, gait: Gait, recwarn: pytest.WarningsRecorder
 ) -> None:
-    write_gait(tmp_path / "gait.png", [Machine("stands.bag", gait)])
+    write_gait(tmp_path / "gait.png", [Machine("stands.bag", gait, ())])
     assert (tmp_path / "gait.png").stat().st_size > 5_000
     assert not recwarn.list
