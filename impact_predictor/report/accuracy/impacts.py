@@ -1,8 +1,9 @@
 """The impact: bodies right before it, methods that tell what follows, and what they are held against.
 
 The bodies of the paper are held against its closed forms, which share no code with the laws. For the others the law of
-this program, the impulse path, is what counts as right: that the law itself is right is shown elsewhere, by exact
-arithmetic. Where a body slips across the plane, no exact solution is known: there it is the finest tolerance.
+this program, the impulse path, counts as right, computed with the longest floats of the machine: so its own error is
+rounding alone, and that the law itself is right is shown elsewhere, by exact arithmetic. Where a body slips across the
+plane, no exact solution is known: there it is the finest tolerance.
 """
 
 from __future__ import annotations
@@ -12,7 +13,9 @@ from functools import partial
 from importlib.util import find_spec
 from math import hypot, sqrt
 from random import Random
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
+
+import numpy as np
 
 from ...mechanics import bodies, closed_forms
 from ...mechanics.compliant import compliant_impact
@@ -92,7 +95,7 @@ def crossing(source: Random) -> Struck:
 
 
 FORMULA: Final = "the paper's closed forms"
-PATH: Final = "the impulse-path law"
+PATH: Final = "the impulse-path law with the longest floats of the machine: its own error is rounding alone"
 
 SCENES: Final[dict[str, tuple[str, str, str, Callable[[Random], Struck]]]] = {
     "rod": (
@@ -140,7 +143,17 @@ def reference_of(strike: Struck) -> Aftermath:
     if strike.shape:
         found = getattr(closed_forms, strike.shape)(**dict(strike.given))
         return Aftermath(Twist(*found.twist.tolist()), Mode(int(found.mode)))
-    return across(strike, FINEST) if strike.across else law(strike, "path")
+    if strike.across:
+        return across(strike, FINEST)
+    return law(strike._replace(body=with_long_floats(strike.body), twist=with_long_floats(strike.twist)), "path")
+
+
+def with_long_floats(value: Any) -> Any:
+    """Nested tuples of numbers with more digits than a double has, where the machine has such numbers."""
+    if isinstance(value, tuple):
+        parts = [with_long_floats(part) for part in value]
+        return type(value)(*parts) if hasattr(value, "_fields") else tuple(parts)
+    return value if value is None else np.longdouble(value)
 
 
 def law(strike: Struck, name: str) -> Aftermath:

@@ -58,6 +58,11 @@ def test_both_laws_are_the_closed_forms_on_the_bodies_of_the_paper(name: str, la
         assert impacts.law(strike, law).mode is impacts.reference_of(strike).mode
 
 
+def test_the_error_of_the_path_law_against_more_digits_is_rounding_and_that_of_the_total_law_is_not() -> None:
+    assert max(errors("squat", lambda strike: impacts.law(strike, "path"))) < 1e-15
+    assert max(errors("squat", lambda strike: impacts.law(strike, "total"))) > 1e-3
+
+
 def test_no_slip_is_what_much_friction_gives_without_restitution() -> None:
     compared = 0
     for strike in problems(impacts.SCENES, "squat", COUNT):
