@@ -7,12 +7,41 @@ slips across the plane any more the rest is straight, with the states of the pla
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import inf, sqrt
 
-from .impact.contacts import JAMMED, MINUS, NO_SOLUTION, OPEN, PLUS, REVERSED, SHARED_FRICTION, STICK, WORK_LIMITED
+from .impact.contacts import (
+    JAMMED,
+    MINUS,
+    NO_SOLUTION,
+    OPEN,
+    PLUS,
+    REVERSED,
+    ROUNDING,
+    SHARED_FRICTION,
+    STICK,
+    WORK_LIMITED,
+    below_rounding,
+    planar_contacts,
+)
+from .impact.rates import Rates, choose, open_rates, state_alone
 from .impact.restitution import poisson
-from .transverse_states import Across, StatesAcross, descent, margin, rates, spatial_states, way_of
-from .transverse_step import EXPLICIT, Arc, State, advance, straight_arc
+from .transverse_step import (
+    EXPLICIT,
+    SLACK,
+    SLIP,
+    Across,
+    Arc,
+    Instant,
+    RatesAcross,
+    Slips,
+    State,
+    advance,
+    margin,
+    rates,
+    straight_arc,
+    way_of,
+)
 
 MAX_STEPS = 400
 """An impact needs two to forty, at the finest tolerance two hundred; jams can follow each other without end."""
@@ -37,6 +66,20 @@ SpatialPath = tuple[State, int, int]
 
 SpatialVelocities = tuple[float, float, float, float, float, float]
 """c_nA, c_tA, c_zA, c_nB, c_tB, c_zB."""
+
+StatesAcross = tuple[int, int, Slips, RatesAcross, bool]
+"""States of A and B, the directions in which they slip, the rates, and whether these stay as they are."""
+
+COMPASS = tuple(
+    (x / sqrt(x * x + z * z), z / sqrt(x * x + z * z))
+    for x, z in (
+        *((4.0, float(k)) for k in range(-4, 4)),
+        *((float(-k), 4.0) for k in range(-4, 4)),
+        *((-4.0, float(-k)) for k in range(-4, 4)),
+        *((float(k), -4.0) for k in range(-4, 4)),
+    )
+)
+"""Directions all around, in the order of their angle."""
 
 
 def follow(across: Across, before: SpatialVelocities, small: float, restitution: float) -> SpatialPath:
@@ -114,7 +157,7 @@ def follow(across: Across, before: SpatialVelocities, small: float, restitution:
             if straight or span == 0.0:
                 arc = straight_arc(state, rate, span, way)
             else:
-                step = advance(across, a, b, way, state, rate, span, ends and compressing, small, tries)
+                step = advance(Instant(across, a, b, way, state, rate), span, ends and compressing, small, tries)
                 if step is None:
                     break
                 arc, longer, tries = step
@@ -233,3 +276,103 @@ def grows(t: float, z: float, rate_t: float, rate_z: float) -> bool:
     """Whether a slip (t, z) grows in the direction that it has, as one does that has just begun."""
     along = t * rate_t + z * rate_z
     return along > 0.0 and along * along >= STRAIGHT * (t * t + z * z) * (rate_t * rate_t + rate_z * rate_z)
+
+
+def spatial_states(across: Across, velocities: tuple[float, ...], compressing: bool) -> StatesAcross | None:
+    """The first consistent states in the order O, S, slip (A before B); None where the path jams."""
+    pair, _, _, _ = across
+    cos, sin, qa, _, qb, sb, _, fb = pair
+    contacts = planar_contacts(*pair)
+    cna, cta, cza, _, ctb, czb = velocities
+    way = way_of(cta, cza, ctb, czb, (1.0, 0.0, 1.0, 0.0), 0.0)
+    if czb == 0.0 and (cna > 0.0 or cza == 0.0):
+        found, a, b, rate = choose(contacts, cna, cta, ctb, compressing, 0)
+        return (a, b, way, from_plane(rate), True) if found else None
+    if ctb == 0.0 and czb == 0.0:
+        b = state_alone(contacts, 0.0)
+        alone = open_rates(contacts, b, cna)
+        if alone[0]:
+            return OPEN, b, way, from_plane(alone), True
+        return slipping(across, SLIP, STICK, way) or set_off(across, 1, way)
+    if cna > 0.0:
+        return slipping(across, OPEN, SLIP, way)
+    tb = -fb * way[2]
+    lift, turn = tb * sin + cos, qa * (qb + tb * sb)
+    if not below_rounding(lift + turn, ROUNDING, lift, turn):
+        return slipping(across, OPEN, SLIP, way)
+    if cta == 0.0 and cza == 0.0:
+        return slipping(across, STICK, SLIP, way) or set_off(across, 0, way)
+    return slipping(across, SLIP, SLIP, way)
+
+
+def slipping(across: Across, a: int, b: int, way: Slips) -> StatesAcross | None:
+    """These states, if their impulses lie within the cones."""
+    rate = rates(across, a, b, way)
+    if rate is None or margin(across, a, b, rate) < 0.0:
+        return None
+    return a, b, way, rate, False
+
+
+def set_off(across: Across, contact: int, way: Slips) -> StatesAcross | None:
+    """Both contacts slip, the one at rest, A (0) or B (1), in the direction in which its own slip grows.
+
+    The direction is one that the slip keeps, and to which it returns when it is turned. Of several the slip that
+    grows most is taken.
+    """
+    t, z = (7, 8) if contact == 0 else (10, 11)
+
+    def towards(x: float, y: float) -> tuple[Slips, RatesAcross | None]:
+        size = sqrt(x * x + y * y)
+        x, y = x / size, y / size
+        there = (x, y, way[2], way[3]) if contact == 0 else (way[0], way[1], x, y)
+        return there, rates(across, SLIP, SLIP, there)
+
+    def turning(x: float, y: float) -> float:
+        _, rate = towards(x, y)
+        return (x * rate[z] - y * rate[t]) if rate is not None and rate[0] >= 0.0 else -1.0
+
+    best: StatesAcross | None = None
+    growth = -SLACK
+    turns = [turning(x, y) for x, y in COMPASS]
+    for k, (x, y) in enumerate(COMPASS):
+        u, v = COMPASS[k - 1]
+        if turns[k - 1] > 0.0 >= turns[k]:
+
+            def between(part: float, u: float = u, v: float = v, x: float = x, y: float = y) -> float:
+                return turning(u + part * (x - u), v + part * (y - v))
+
+            part = descent(between, turns[k - 1], turns[k])
+            there, rate = towards(u + part * (x - u), v + part * (y - v))
+            if rate is not None and rate[0] >= 0.0:
+                grows = there[2 * contact] * rate[t] + there[2 * contact + 1] * rate[z]
+                if grows > growth:
+                    best, growth = (SLIP, SLIP, there, rate, False), grows
+    return best
+
+
+def descent(value: Callable[[float], float], first: float, last: float) -> float:
+    """Where in 0..1 a value falls to zero, on the far side, from its values at both ends (regula falsi, Illinois)."""
+    low, high, side = 0.0, 1.0, 0
+    for _ in range(60):
+        if high - low < SLACK or first == last:  # both are zero where halves of the least number were
+            break
+        middle = high - last * (high - low) / (last - first)
+        middle = min(max(middle, low + 0.25 * SLACK), high - 0.25 * SLACK)
+        now = value(middle)
+        if now > 0.0:
+            low, first = middle, now
+            if side == 1:
+                last *= 0.5
+            side = 1
+        else:
+            high, last = middle, now
+            if side == -1:
+                first *= 0.5
+            side = -1
+    return high
+
+
+def from_plane(rate: Rates) -> RatesAcross:
+    """Rates of a body that no friction pushes across the plane."""
+    _, na, ta, tb, rna, rta, rnb, rtb, _, _, _ = rate
+    return na, ta, 0.0, 1.0, tb, 0.0, rna, rta, 0.0, rnb, rtb, 0.0
