@@ -192,12 +192,8 @@ def choose(contacts: ContactRows, cna: float, cta: float, ctb: float, compressin
     best = open_rates(contacts, b, cna)
     if cna > 0.0:
         return 1, OPEN, b, best
-    if rounding != ROUNDING:
+    if rounding != ROUNDING or ctb == 0.0:
         return try_all(contacts, b, best, cta, ctb, compressing, choice)
-    if ctb == 0.0:
-        if cta == 0.0:
-            return at_rest(contacts, b, best, compressing, choice)
-        return while_old_slides(contacts, b, best, cta, compressing, choice)
     if best[0]:
         if fa * abs(qa * sa) < 1.0 + qa * qa:
             return 1, OPEN, b, best
@@ -213,28 +209,6 @@ def choose(contacts: ContactRows, cna: float, cta: float, ctb: float, compressin
     return 1 if goes_on(best, a, b, cta, ctb, compressing) else 0, a, b, best
 
 
-def at_rest(contacts: ContactRows, b: int, best: Rates, compressing: bool, choice: int) -> States:
-    """As `choose`, where neither contact slips; `best` are the rates if A opens, with B in state `b`.
-
-    On one flat floor they have one answer.
-    """
-    (_, _, qa, _, _), (nx, ny, nq, _, _, _, _, _), _, _, _ = contacts
-    if not (nx == 0.0 and ny > 0.0 and nq > qa and tied(contacts)):
-        return try_all(contacts, b, best, 0.0, 0.0, compressing, choice)
-    if best[0]:
-        return 1, OPEN, b, best
-    rate = rolling_rates(contacts)
-    consistent, _, ta, _, _, _, _, _, _, _, _ = rate
-    if consistent:
-        return 1, STICK, STICK, rate
-    a = MINUS if ta > 0.0 else PLUS
-    rate = slide_rates(contacts, a, a, 0.0, 0.0)
-    if not rate[0]:
-        a = PLUS + MINUS - a
-        rate = slide_rates(contacts, a, a, 0.0, 0.0)
-    return 1 if rate[0] else 0, a, a, rate
-
-
 def tied(contacts: ContactRows) -> bool:
     """Whether B's tangent passes through A, so that at rest both contacts stick or none does."""
     (an, at, qa, sa, _), (_, _, _, tx, ty, tq, _, _), _, (_, arm, _, _), rounding = contacts
@@ -243,29 +217,21 @@ def tied(contacts: ContactRows) -> bool:
     return rounding == ROUNDING and abs(arm) <= ROUNDING * (abs(sa * tx) + abs(qa * ty) + abs(tq))
 
 
-def while_old_slides(contacts: ContactRows, b: int, best: Rates, cta: float, compressing: bool, choice: int) -> States:
-    """As `choose`, where A slips and B does not; `best` are the rates if A opens, with B in state `b`.
+def one_answer(contacts: ContactRows, cta: float) -> bool:
+    """Whether a planar body whose B does not slip has one pair of consistent states, as far as is told at once.
 
-    c_nA and c_tB answer N_A and T_B linearly. If that 2 x 2 matrix has positive principal minors (a P-matrix), there
-    is one answer.
+    On one flat floor it has at rest. Where A slips c_nA and c_tB answer N_A and T_B linearly: one answer if that 2 x 2
+    matrix has positive principal minors (a P-matrix).
     """
-    (_, _, qa, sa, fa), (_, _, _, tx, ty, tq, _, _), _, _, _ = contacts
-    a = PLUS if cta > 0.0 else MINUS
+    (_, _, qa, sa, fa), (nx, ny, nq, tx, ty, tq, _, _), _, _, rounding = contacts
+    if rounding != ROUNDING:
+        return False
+    if cta == 0.0:
+        return nx == 0.0 and ny > 0.0 and nq > qa and tied(contacts)
     ax = -fa if cta > 0.0 else fa
     aq = qa + ax * sa
     normal = 1.0 + qa * aq
-    minor = normal * (1.0 + tq * tq) - (ty + tq * qa) * (tx * ax + ty + tq * aq)
-    one_answer = normal > 0.0 and minor > 0.0
-    best_a, best_b, found = OPEN, b, 1 if best[0] else 0
-    for b in (STICK, PLUS, MINUS):
-        if one_answer and found:
-            break
-        rate = slide_stick_rates(contacts, a, cta) if b == STICK else slide_rates(contacts, a, b, cta, 0.0)
-        if goes_on(rate, a, b, cta, 0.0, compressing):
-            if found <= choice:
-                best_a, best_b, best = a, b, rate
-            found += 1
-    return found, best_a, best_b, best
+    return normal > 0.0 and normal * (1.0 + tq * tq) > (ty + tq * qa) * (tx * ax + ty + tq * aq)
 
 
 def try_all(
@@ -279,6 +245,7 @@ def try_all(
     (an, _, _, _, _), _, _, _, rounding = contacts
     given = rounding != ROUNDING
     together = cta == 0.0 and ctb == 0.0 and tied(contacts)
+    single = ctb == 0.0 and one_answer(contacts, cta)
     if given and best[0]:
         _, b, best = without_rounding(contacts, OPEN, b, best, 1.0, ctb)
     best_a, best_b, found, seen = OPEN, b, 1 if best[0] else 0, 0
@@ -287,6 +254,8 @@ def try_all(
     for state_a in range(first_a, last_a + 1):
         for state_b in range(first_b, last_b + 1):
             a, b = state_a, state_b
+            if single and found:
+                return found, best_a, best_b, best
             if together and (a == STICK) != (b == STICK):
                 continue
             if a > STICK and b > STICK:
