@@ -109,6 +109,19 @@ def test_fields_of_any_shape_broadcast_together():
             assert row_of(outcomes, (i, j)) == row(solve_impact(body, body.turning(omega=-1.0)))
 
 
+@pytest.mark.parametrize("shape", [(), (3,), (0, 4)])
+def test_the_outcome_has_the_shape_of_its_fields_and_begins_another_impact(shape):
+    body = plate(length=1.0, height=np.full(shape, 0.4), mass=10.0, friction=0.2, restitution=0.5)
+    outcomes = solve_impacts(body, body.turning(omega=-1.0))
+    assert (outcomes.mode.shape, outcomes.twist.shape) == (shape, (*shape, 3))
+    again = solve_impacts(body, outcomes.twist)
+    assert again.mode.shape == shape
+    if outcomes.mode.size:
+        one = plate(1.0, 0.4, 10.0, 0.2, restitution=0.5)
+        last = again.twist.reshape(-1, 3)[-1]
+        assert tuple(last) == solve_impact(one, solve_impact(one, one.turning(-1.0)).twist).twist
+
+
 def test_the_outcome_has_the_dtypes_that_are_promised():
     body = plate(length=1.0, height=np.ones(3), mass=1.0, friction=0.3)
     outcomes = solve_impacts(body, body.turning(omega=-1.0))
@@ -124,21 +137,6 @@ def test_the_outcome_has_the_dtypes_that_are_promised():
     }
 
 
-def test_numbers_alone_give_an_outcome_without_dimensions():
-    body = plate(length=1.0, height=0.4, mass=10.0, friction=0.2)
-    outcomes = solve_impacts(body, body.turning(omega=-1.0))
-    assert outcomes.mode.shape == ()
-    assert outcomes.twist.shape == (3,)
-    assert outcomes.mode == Mode.SLIDE
-
-
-def test_no_impacts_give_empty_arrays():
-    body = plate(length=1.0, height=np.empty((0, 4)), mass=1.0, friction=0.3)
-    outcomes = solve_impacts(body, body.turning(omega=-1.0))
-    assert outcomes.mode.shape == (0, 4)
-    assert outcomes.twist.shape == (0, 4, 3)
-
-
 def test_more_impacts_than_a_chunk_all_get_their_answer():
     frictions = np.linspace(0.0, 1.5, 3 * batch.CHUNK + 1)
     body = plate(length=1.0, height=1.0, mass=1.0, friction=frictions)
@@ -146,14 +144,6 @@ def test_more_impacts_than_a_chunk_all_get_their_answer():
     middle = plate(length=1.0, height=1.0, mass=1.0, friction=float(frictions[2 * batch.CHUNK]))
     assert row_of(outcomes, 2 * batch.CHUNK) == row(solve_impact(middle, middle.turning(omega=-1.0)))
     assert set(outcomes.mode) == {Mode.SLIDE, Mode.PIVOT_SLIDE, Mode.PIVOT}
-
-
-def test_the_twist_of_outcomes_is_a_twist_to_begin_with():
-    body = plate(length=1.0, height=np.linspace(0.1, 3.0, 4), mass=1.0, friction=0.3, restitution=0.5)
-    first = solve_impacts(body, body.turning(omega=-1.0))
-    again = solve_impacts(body, first.twist)
-    assert again.mode.shape == (4,)
-    assert row_of(again, 2) == row(solve_impact(element_of_body(body, 2), Twist(*map(float, first.twist[2]))))
 
 
 def element_of_body(body, i):
