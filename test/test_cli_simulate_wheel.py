@@ -59,14 +59,11 @@ def test_where_no_friction_is_enough_for_steady_rolling_its_rates_are_not_told()
     said = "Without slip it cannot roll steadily: no friction is enough, the ground would have to hold its spokes down"
     assert text.endswith(f"{said} (closed form).\n")
     assert "teady rolling" not in text
-    slips = run("--slope", "20").stdout
-    assert said in slips
-    assert "Its spokes slip: in its last impact it slows down from 3.06" in slips
+    assert said in run("--slope", "20").stdout
 
 
-def test_a_wheel_that_slips_is_told_with_its_own_rates() -> None:
+def test_a_wheel_that_slips_is_told_what_it_needs() -> None:
     text = run("--friction", "0.35").stdout
-    assert "Its spokes slip: in its last impact it slows down from 1.564424314 to 0.985513828 rad/s." in text
     assert "Without slip it would come to steady rolling, closed form: 1.605412029 rad/s" in text
     assert "This needs a friction coefficient of 0.370775 in the impacts, between them 0.375327; it has 0.35." in text
 

@@ -340,7 +340,7 @@ class UnitScene:
         self._edges = placed(self._contacts, start)
         standing = placed(self._outline, start)[:, 0]
         self._pivot = np.array([0.5 * (standing.min() + standing.max()), self._edges[:, 1].min()])
-        seen = np.concatenate([self._camera(placed(self._outline, motion.at(time)), time) for time in times[::5]])
+        seen = np.concatenate([self._seen(placed(self._outline, motion.at(time)), time) for time in times[::5]])
         low, high = seen.min(axis=0), seen.max(axis=0)
         self._middle, self._size = 0.5 * (low + high), max(float((high - low).max()), 1e-3)
 
@@ -352,9 +352,9 @@ class UnitScene:
         for impact in self.motion.impacts:
             time, contacts = impact.stamp / NANOSECONDS, self.motion.unit.contacts
             place = self._places(self.motion.at(time))[contacts.index(impact.new) if impact.new in contacts else 1]
-            flashes.append(Flash(time, impact.mode.name, place))
+            flashes.append(Flash(time, impact.mode.name, self._seen(place[None], time)[0]))
         name = self.motion.unit.name
-        return View(name, lambda time: window, self._outlines, self._caption, flashes, self._camera)
+        return View(name, lambda time: window, self._outlines, self._caption, flashes)
 
     def colour(self, time: float) -> str:
         """Red while it moves, else by how much of its margin is used."""
@@ -368,7 +368,7 @@ class UnitScene:
         for place in self._places(state):
             closed = self._is_disc or place[1] - self._pivot[1] < 1e-3
             shown.append(Outline(place[None], CLOSED if closed else OPEN, CLOSED, 6.0, "o"))
-        return shown
+        return [one._replace(points=self._seen(one.points, time)) for one in shown]
 
     def _places(self, state: PlanarState) -> NDArray[np.float64]:
         return self._edges if self._is_disc else placed(self._contacts, state)
@@ -389,5 +389,5 @@ class UnitScene:
             return True, used, f"slides at {abs(state.vx):.2g} m/s"
         return False, used, f"stands, {100.0 * min(used, 9.99):.0f} % of its margin used"
 
-    def _camera(self, points: NDArray[np.float64], time: float) -> NDArray[np.float64]:
+    def _seen(self, points: NDArray[np.float64], time: float) -> NDArray[np.float64]:
         return np.asarray(turned(points - self._pivot, float(self._deck.motion(time).angle)) + self._pivot)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from functools import partial
 from math import atan2, cos, degrees, pi, radians, sin
 from pathlib import Path
 from textwrap import wrap
@@ -18,9 +19,11 @@ from scipy.ndimage import distance_transform_edt
 
 from ..mechanics.closed_forms import cylindrical, flat
 from ..mechanics.types import Mode
+from ..scenarios.rocking import release, rocking_cylinder, rocking_plate, rocking_rod
 from .map import SUBJECTS, Axis, ModeMap, ambiguous, axis_label, conditions, given_in, meaning_of, problem_at, shares
 from .modes import MODES
-from .plot import Axes, Line2D, Patch, box, circle, headline, picture, turned
+from .motion_pictures import RockingScene
+from .plot import Axes, Line2D, Patch, draw_outline, headline, picture
 
 PAPER_NUMBERS: Final = {Mode.STOP: 1, Mode.SLIDE: 2}
 """The numbers that the paper uses for one mode all through; its 3 and 4 change places between its sections."""
@@ -34,9 +37,12 @@ _LETTER: Final = 8.0
 """Pixels that a letter of a formula takes, about."""
 _LINE_OF_LEGEND: Final = 33
 """Letters that a line of the legend has room for."""
-_INK, _BODY, _SUPPORT = "#333333", "#dddddd", "#999999"
-_TILT: Final = radians(14.0)
-"""How far a sketched body is from its touchdown."""
+_SKETCHED: Final = {
+    "plate": partial(rocking_plate, 2.0, 1.0, None, None),
+    "rod": partial(rocking_rod, 2.6, 0.16, 0.75, 0.75),
+    "cylinder": partial(rocking_cylinder, 1.0, radians(38.0), radians(38.0)),
+}
+"""The bodies of the sketches, from their mass, friction, inertia and restitution."""
 
 
 class Border(NamedTuple):
@@ -301,87 +307,9 @@ def _formula_note(modes: ModeMap) -> str:
 
 
 def draw_sketch(axes: Axes, subject: str) -> None:
-    """Draw the body right before it strikes, with the names that its parameters have."""
+    """Draw the body right before it strikes, as the film of its motion shows it, with A and B."""
     axes.set_axis_off()
     axes.set_aspect("equal")
-    sketch = _SKETCHES[subject]
-    for support in sketch.supports:
-        axes.fill(*np.asarray(support).T, color=_SUPPORT)
-    axes.fill(*sketch.outline.T, facecolor=_BODY, edgecolor=_INK)
-    for line, style in sketch.lines:
-        axes.plot(*np.asarray(line).T, color=_INK, linewidth=0.9, linestyle=style)
-    for name, place, (right, up) in sketch.points:
-        axes.plot(*place, "o", color=_INK, markersize=4, zorder=5)
-        axes.text(place[0] + right, place[1] + up, name, ha="center", va="center", fontweight="bold")
-    for name, place in sketch.labels:
-        axes.text(place[0], place[1], name, ha="center", va="center")
-    x, y = sketch.points[-1][1]
-    tips = [(x + 0.4 * cos(angle), y + 0.4 * sin(angle)) for angle in np.radians((150.0, 30.0))]
-    axes.annotate(
-        "", tips[1], tips[0], arrowprops={"arrowstyle": "-|>", "color": _INK, "connectionstyle": "arc3,rad=-0.55"}
-    )
-    axes.margins(0.06)
-
-
-class Sketch(NamedTuple):
-    """What is drawn of a body: polygons and lines, points with names beside them (the mass centre last), and labels."""
-
-    supports: list[Any]
-    outline: NDArray[np.float64]
-    lines: list[tuple[Any, str]]
-    points: list[tuple[str, Any, tuple[float, float]]]
-    labels: list[tuple[str, Any]]
-
-
-def _tilted(*points: tuple[float, float]) -> NDArray[np.float64]:
-    """Points of a body that has still to turn by _TILT about A, the origin."""
-    return turned(np.array(points), _TILT)
-
-
-def _cylinder_sketch() -> Sketch:
-    gamma = radians(38.0)
-    a, b = np.array([-sin(gamma), -cos(gamma)]), np.array([sin(gamma), -cos(gamma)])
-    # Turned about A until its touchdown, the axis comes down to the origin; the angles are those there.
-    axis = a + _tilted((-a[0], -a[1]))[0]
-    blocks = [box(-1.25, a[0], a[1] - 0.35, a[1]), box(b[0], 1.25, b[1] - 0.35, b[1])]
-    turns = np.linspace(-gamma, gamma, 30)
-    arc = 0.45 * np.column_stack([np.sin(turns), -np.cos(turns)])
-    middle = 0.62 * np.array([sin(0.5 * gamma), -cos(0.5 * gamma)])
-    return Sketch(
-        supports=blocks,
-        outline=circle(1.0) + axis,
-        lines=[([(0.0, 0.0), a], "--"), ([(0.0, 0.0), b], "--"), ([(0.0, 0.0), (0.0, -1.0)], ":"), (arc, "-")],
-        points=[("A", a, (-0.2, -0.2)), ("B", b, (0.2, -0.2)), ("C", axis, (0.0, 0.18))],
-        labels=[("$γ_1$", middle * (-1.0, 1.0)), ("$γ_2$", middle)],
-    )
-
-
-_SKETCHES: Final = {
-    "plate": Sketch(
-        supports=[box(-0.35, 2.5, -0.04, 0.0)],
-        outline=_tilted((0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (0.0, 1.0)),
-        lines=[],
-        points=[
-            ("A", (0.0, 0.0), (-0.16, 0.09)),
-            ("B", _tilted((2.0, 0.0))[0], (0.17, 0.02)),
-            ("C", _tilted((1.0, 0.5))[0], (0.0, 0.15)),
-        ],
-        labels=[("L", _tilted((1.0, 1.15))[0]), ("H", _tilted((-0.16, 0.5))[0])],
-    ),
-    "rod": Sketch(
-        supports=[
-            [(0.0, 0.0), (-0.12, -0.45), (0.12, -0.45)],
-            [(1.5, 0.0), (1.38, -0.45), (1.62, -0.45)],
-            box(-0.7, 2.1, -0.49, -0.45),
-        ],
-        outline=_tilted((-0.55, 0.0), (2.05, 0.0), (2.05, 0.16), (-0.55, 0.16)),
-        lines=[([(x, -0.64), (x, -0.8), (x, -0.72), (x + 0.75, -0.72), (x + 0.75, -0.8)], "-") for x in (0.0, 0.75)],
-        points=[
-            ("A", (0.0, 0.0), (0.2, -0.18)),
-            ("B", (1.5, 0.0), (0.2, -0.18)),
-            ("C", _tilted((0.75, 0.08))[0], (0.0, 0.18)),
-        ],
-        labels=[("a", (0.375, -0.93)), ("b", (1.125, -0.93))],
-    ),
-    "cylinder": _cylinder_sketch(),
-}
+    falls = release(_SKETCHED[subject](1.0, None, None, 0.0), radians(14.0), duration=1.0)
+    for outline in RockingScene(falls).outlines(0.0):
+        draw_outline(axes, outline)

@@ -220,11 +220,9 @@ class RockingScene:
             last = number == len(self._run.impacts)
             accumulate = last and any(one.time >= strike.time for one in self._run.accumulations)
             said = "impacts accumulate" if accumulate else f"impact {number}: {strike.outcome.mode.name}"
-            flashes.append(Flash(strike.time, said, self._places(strike.before)[strike.new]))
-        return View(self._label, lambda time: window, self.outlines, self._caption, flashes, self._camera)
-
-    def _camera(self, points: NDArray[np.float64], time: float) -> NDArray[np.float64]:
-        return turned(points, self._slope)
+            place = turned(self._places(strike.before), self._slope)[strike.new]
+            flashes.append(Flash(strike.time, said, place))
+        return View(self._label, lambda time: window, self.outlines, self._caption, flashes)
 
     def outlines(self, time: float) -> list[Outline]:
         """What is seen at a time in s."""
@@ -240,7 +238,7 @@ class RockingScene:
             below = place - (0.0, 0.13 * self._distance)
             shown.append(Outline(place[None], colour, CLOSED, 7.0, "o"))
             shown.append(Outline(below[None], LINE, "none", 7.0, f"${name}$"))
-        return shown
+        return [one._replace(points=turned(one.points, self._slope)) for one in shown]
 
     def _caption(self, time: float) -> tuple[str, str]:
         stance = stance_of(self._run.states(time))

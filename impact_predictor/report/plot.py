@@ -11,7 +11,7 @@ from typing import Any, Final, Literal, NamedTuple
 
 import matplotlib
 import numpy as np
-from matplotlib.animation import FuncAnimation, PillowWriter
+from matplotlib.animation import PillowWriter
 from matplotlib.axes import Axes as Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure as Figure
@@ -77,16 +77,11 @@ class Flash(NamedTuple):
     place: NDArray[np.float64]
 
 
-def fixed_camera(points: NDArray[np.float64], time: float) -> NDArray[np.float64]:
-    """Points (n, 2) as they are seen by a camera that does not move."""
-    return points
-
-
 class View(NamedTuple):
     """What is seen of a body, as functions of the time in s.
 
     `window` is (left, right, bottom, top) in m, `outlines` come from the back to the front, and `caption` is what the
-    body does, in words on a colour. `camera` turns points to where they are seen.
+    body does, in words on a colour.
     """
 
     title: str
@@ -94,7 +89,6 @@ class View(NamedTuple):
     outlines: Callable[[float], Sequence[Outline]]
     caption: Callable[[float], tuple[str, str]]
     flashes: Sequence[Flash]
-    camera: Callable[[NDArray[np.float64], float], NDArray[np.float64]] = fixed_camera
 
 
 class Curve(NamedTuple):
@@ -266,14 +260,13 @@ def write_film(path: str | os.PathLike[str], film: Film, tell: Callable[[int], N
     """
     path = check_film(path)
     with matplotlib.rc_context(STYLE), whole(path) as partial:
-        screen = _Screen(film)
-        shown = FuncAnimation(screen.figure, screen.draw, frames=film.times, repeat=False, cache_frame_data=False)
-        shown.save(
-            partial,
-            writer=_GifWriter(),
-            dpi=_DPI,
-            progress_callback=lambda frame, frames: None if tell is None else tell(frame + 1),
-        )
+        screen, writer = _Screen(film), _GifWriter()
+        with writer.saving(screen.figure, partial, _DPI):
+            for done, time in enumerate(film.times, 1):
+                screen.draw(time)
+                writer.grab_frame()
+                if tell is not None:
+                    tell(done)
 
 
 class _GifWriter(PillowWriter):
@@ -338,7 +331,7 @@ class _Screen:
             left, right, bottom, top = view.window(time)
             axes.set(xlim=(left, right), ylim=(bottom, top))
             for outline in view.outlines(time):
-                self._drawn += draw_outline(axes, outline._replace(points=view.camera(outline.points, time)))
+                self._drawn += draw_outline(axes, outline)
             self._draw_words(axes, view, time)
         for curve, line, dot in self._growing:
             passed = ~(curve.time > time + 1e-9)
@@ -354,9 +347,8 @@ class _Screen:
         last = next((flash for flash in reversed(view.flashes) if flash.time <= time), None)
         age = 1.0 if last is None else (time - last.time) / (self._film.speed * _FLASH)
         if last is not None and age < 1.0:
-            x, y = view.camera(last.place[None], time).T
             ring: dict[str, Any] = {"markersize": 8.0 + 20.0 * age, "markeredgewidth": 3.0 * (1.0 - age)}
-            self._drawn += axes.plot(x, y, "o", markerfacecolor="none", markeredgecolor=STRUCK, **ring)
+            self._drawn += axes.plot(*last.place, "o", markerfacecolor="none", markeredgecolor=STRUCK, **ring)
             self._drawn.append(axes.text(0.5, 1.0, last.words, va="bottom", color=STRUCK, fontweight="bold", **words))
 
 

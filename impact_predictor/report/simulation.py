@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable
+from itertools import islice
 from math import degrees, hypot, inf
 from typing import Any, Final
 
 from rich.console import Console
 from rich.table import Table
 
-from ..mechanics.motion import Accumulation, End, PlanarState, RockingImpact, Trajectory
-from ..mechanics.types import TwoPointBody
+from ..mechanics.motion import Accumulation, End, RockingImpact, Trajectory
 from ..scenarios.deck.voyage import Followed, Voyage
 from ..scenarios.rocking import Rocking
 from ..scenarios.truth import TrueImpact, TrueOnset
@@ -50,9 +50,7 @@ UNIT_ENDS: Final = {
 }
 
 _REST: Final = 1e-12
-"""A rate of a wheel (rad/s) this small is none."""
-_ROUNDING: Final = 1e-13
-"""An angular velocity below this part of what the speeds come to is none."""
+"""An angular velocity (rad/s) this small is none."""
 
 
 def strike_as_json(strike: RockingImpact) -> dict[str, Any]:
@@ -65,33 +63,26 @@ def strike_as_json(strike: RockingImpact) -> dict[str, Any]:
     }
 
 
-def strikes_table(
-    places: tuple[str, str], strikes: Iterable[tuple[str, RockingImpact]], rounding: float, digits: int = 4
-) -> Table:
-    """The first impacts of a motion: where they were, and the angular velocities, of which those below a `rounding`
-    are none; `places` are a header and how the angular velocities count, "-" where they count ahead, clockwise.
+def strikes_table(header: str, strikes: Iterable[tuple[str, RockingImpact]], sign: float, rounding: float) -> Table:
+    """The first impacts of a motion: where they were, and the angular velocities times a sign.
+
+    Those below a `rounding` are none.
     """
-    header, sign = places
-
-    def rates(strike: RockingImpact) -> tuple[float, ...]:
-        both = strike.before.omega, strike.after.omega
-        return tuple((-rate if sign == "-" else rate) if abs(rate) > rounding else 0.0 for rate in both)
-
-    def ratio(strike: RockingImpact) -> str:
-        before, after = rates(strike)
-        return f"{after / before:.4f}" if before and after else NONE
-
     columns = [
         Column("impact\n", lambda row: str(row[0])),
-        Column("time\ns", lambda row: f"{row[2].time:.6f}"),
-        Column(header, lambda row: row[1], left=True),
-        Column("mode\n", lambda row: row[2].outcome.mode.name, left=True),
-        Column(("before\nrad/s", "after\nrad/s"), lambda row: tuple(f"{rate:.{digits}g}" for rate in rates(row[2]))),
-        Column("ratio\n", lambda row: ratio(row[2])),
-        Column("energy\nlost, J", lambda row: f"{row[2].outcome.energy_lost:.3g}"),
+        Column("time\ns", lambda row: f"{row[1].time:.6f}"),
+        Column(header, lambda row: row[2], left=True),
+        Column("mode\n", lambda row: row[1].outcome.mode.name, left=True),
+        Column("before\nrad/s", lambda row: f"{row[3]:.6g}"),
+        Column("after\nrad/s", lambda row: f"{row[4]:.6g}"),
+        Column("ratio\n", lambda row: f"{row[4] / row[3]:.4f}" if row[3] and row[4] else NONE),
+        Column("energy\nlost, J", lambda row: f"{row[1].outcome.energy_lost:.3g}"),
     ]
-    rows = [(number, place, strike) for number, (place, strike) in enumerate(strikes, 1)]
-    return table_of(columns, rows[:MOST_ROWS])
+    rows = []
+    for number, (place, strike) in enumerate(islice(strikes, MOST_ROWS), 1):
+        rates = [sign * rate for rate in (strike.before.omega, strike.after.omega)]
+        rows.append((number, strike, place, *(rate if abs(rate) > rounding else 0.0 for rate in rates)))
+    return table_of(columns, rows)
 
 
 def _more(impacts: int) -> list[str]:
@@ -121,14 +112,9 @@ def print_rocking(console: Console, rocking: Rocking) -> None:
     run = rocking.run
     say(console, f"{rocking.rocker.name}, {rocking.rocker.label}")
     if run.impacts:
-        rounding = _ROUNDING * max(_turning(strike.before, run.body) for strike in run.impacts)
-        show(console, strikes_table(("at\n", "+"), [("AB"[one.new], one) for one in run.impacts], rounding))
+        strikes = [("AB"[one.new], one) for one in run.impacts]
+        show(console, strikes_table("at\n", strikes, 1.0, _REST))
     say(console, *rocking_sentences(run))
-
-
-def _turning(state: PlanarState, body: TwoPointBody) -> float:
-    """Angular velocity of a state, or of the size of its velocity."""
-    return abs(state.omega) + hypot(state.vx, state.vy) / hypot(body.new.x, body.new.y)
 
 
 def rocking_sentences(run: Trajectory) -> list[str]:
@@ -179,26 +165,15 @@ def print_rolling(console: Console, rolling: Rolling) -> None:
     say(console, f"wheel, {wheel.spokes} spokes {wheel.hub.leg:g} m long, slope {slope}")
     if rolling.impacts:
         strikes = [(f"{NONE if old is None else old} > {new}", strike) for old, new, strike in rolling.impacts]
-        show(console, strikes_table(("from, to\nspoke", "-"), strikes, _REST, digits=6))
+        show(console, strikes_table("from, to\nspoke", strikes, -1.0, _REST))
     say(console, *rolling_sentences(rolling))
 
 
 def rolling_sentences(rolling: Rolling) -> list[str]:
     """What came after the impacts that are listed, how the motion ended, and what steady rolling would be."""
-    ended = f"At {rolling.time:.6f} s it {ROLL_ENDS[rolling.end]}, {_way(rolling)}"
+    way = f"{counted(rolling.steps, 'step')} and {rolling.distance:.3f} m ahead"
+    ended = f"At {rolling.time:.6f} s it {ROLL_ENDS[rolling.end]}, {way}"
     return [f"{said}." for said in (*_more(len(rolling.impacts)), ended, *_steadily(rolling))]
-
-
-def _way(rolling: Rolling) -> str:
-    """How far a wheel has come, and where to."""
-    uphill = rolling.wheel.hub.slope < 0.0
-    ahead, back = ("up", "down") if uphill else ("down", "up")
-    steps, metres = rolling.steps, rolling.distance
-    ways = [f"{ahead} the slope" if one >= 0 else f"backwards, {back} the slope" for one in (steps, metres)]
-    made, come = counted(abs(steps), "step"), f"{abs(metres):.3f} m"
-    if steps == 0 or ways[0] == ways[1]:
-        return f"{made} and {come} {ways[1]}"
-    return f"{made} {ways[0]} and {come} {ways[1]}"
 
 
 def _steadily(rolling: Rolling) -> list[str]:
@@ -210,7 +185,7 @@ def _steadily(rolling: Rolling) -> list[str]:
     struck, needed = impact_friction(wheel.hub, wheel.alpha), least_friction(down)
     if needed == inf:
         none = "no friction is enough, the ground would have to hold its spokes down (closed form)"
-        return [*_really(rolling), f"Without slip it cannot roll steadily: {none}"]
+        return [f"Without slip it cannot roll steadily: {none}"]
     rates = (
         f"{rolls.before:.9f} rad/s before each impact, {rolls.after:.9f} after it, "
         f"a step in {rolls.time:.6f} s, {rolls.speed:.4f} m/s"
@@ -223,22 +198,7 @@ def _steadily(rolling: Rolling) -> list[str]:
         backwards = " backwards" if wheel.hub.slope < 0.0 else ""
         return [f"Steady rolling{backwards}, closed form: {rates}", f"It {friction}"]
     without = f"Without slip it would come to steady rolling, closed form: {rates}"
-    return [*_really(rolling), without, f"This {friction}"]
-
-
-def _really(rolling: Rolling) -> list[str]:
-    """What a wheel does that has less friction than steady rolling needs; nothing where its end has told it."""
-    if rolling.end in (RollEnd.RESTS, RollEnd.BALANCED, RollEnd.TAKES_OFF):
-        return []
-    slips = any(state != "S" for stand in rolling.stands for _, state in stand.tips)
-    state, said = rolling.world(rolling.time), "Its spokes slip: in" if slips else "In"
-    turns = abs(state.omega) > _REST
-    if turns and rolling.impacts:
-        last = rolling.impacts[-1].strike
-        before, after = abs(last.before.omega), abs(last.after.omega)
-        return [f"{said} its last impact it slows down from {before:.9f} to {after:.9f} rad/s"]
-    still = "" if turns else " and it does not turn"
-    return [f"{said} the end its hub moves at {hypot(state.vx, state.vy):.4g} m/s{still}"]
+    return [without, f"This {friction}"]
 
 
 def voyage_as_json(voyage: Voyage) -> dict[str, Any]:
