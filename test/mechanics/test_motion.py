@@ -447,6 +447,20 @@ def test_the_point_that_strikes_is_on_the_support_and_moves_down_while_the_stanc
                 assert tangential == pytest.approx(0.0, abs=4e-15)
 
 
+def test_a_body_that_rises_first_turns_back_and_falls() -> None:
+    angle, omega = 0.2, 0.7
+    points, height = PLATE[:2], math.hypot(0.5, 0.3)
+    rising = Case(standing(points[0], angle, omega), points, 0, RHO_SQUARED, HELD).fall()
+    thrown_down = Case(standing(points[0], angle, -omega), points, 0, RHO_SQUARED, HELD).fall()
+    climb = omega**2 * (RHO_SQUARED + height**2) / (2 * 9.81 * height)
+    bearing = math.atan2(0.3, 0.5)
+    top = math.asin(math.sin(angle + bearing) + climb) - bearing
+    from_top = Case(standing(points[0], top, 0.0), points, 0, RHO_SQUARED, HELD).fall()
+    assert rising.state == pytest.approx(tuple(thrown_down.state), rel=ROUNDING, abs=ROUNDING)
+    # Up and down again, and then as if thrown down: the way up takes as long as the way down.
+    assert rising.time - from_top.time == pytest.approx(from_top.time - thrown_down.time, rel=1e-12)
+
+
 def passing(excess: float) -> tuple[Case, float, float, float]:
     """A plate on its corner, thrown up with this much more than the speed that brings it to its balance."""
     height = math.hypot(0.5, 0.3)
@@ -641,6 +655,15 @@ def test_a_slip_of_one_rounding_is_none() -> None:
     assert sticking.motion is MotionKind.TURNING
     nudged = Case(state._replace(vx=math.nextafter(state.vx, 1.0)), PLATE, 0, RHO_SQUARED, 1.5).fall()
     assert nudged == sticking
+
+
+def test_a_slip_that_stops_on_the_way_sticks() -> None:
+    slipping = Case(standing(PLATE[0], 0.4, 0.0, 0.02), PLATE, 0, RHO_SQUARED, 1.5).fall()
+    sticking = Case(standing(PLATE[0], 0.4, 0.0), PLATE, 0, RHO_SQUARED, 1.5).fall()
+    assert slipping.motion is MotionKind.TURNING
+    assert slipping.time == pytest.approx(sticking.time, rel=0.02)
+    # It moved by half the slip over the time it took to stop.
+    assert 0.0 < slipping.state.x - sticking.state.x < 1e-4
 
 
 def test_a_foot_that_slips_while_nothing_turns_the_body_stops_after_the_time_of_a_block() -> None:

@@ -320,6 +320,18 @@ def test_numbers_that_cannot_be_followed_have_no_next_strike(wrong: float) -> No
             assert fall is None or math.isfinite(sum(fall.state))
 
 
+@pytest.mark.parametrize("turns", [-2, 1])
+def test_a_body_that_has_turned_around_strikes_as_one_that_has_not(turns: int) -> None:
+    start = standing(CRATE, 0.2)
+    shift = 2.0 * math.pi * turns
+    one, other = (
+        next_strike(CRATE, start._replace(angle=start.angle + by), 0, Told(CONSTANT), 1.0) for by in (0.0, shift)
+    )
+    assert one is not None
+    assert other is not None
+    assert other.state == pytest.approx(one.state._replace(angle=one.state.angle + shift), abs=1e-12)
+
+
 def test_a_body_of_neither_shape_is_refused() -> None:
     with pytest.raises(InputError):
         next_strike(CRATE._replace(old=None), standing(CRATE, 0.1), 0, Told(CONSTANT), 1.0)

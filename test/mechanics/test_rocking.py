@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from impact_predictor import Contact, InputError, Mode, TwoPointBody, cylinder, plate, rod
-from impact_predictor.mechanics.motion import End, PlanarState, rock, standing
+from impact_predictor.mechanics.motion import End, MotionKind, PlanarState, next_touchdown, rock, standing
 from impact_predictor.mechanics.motion.support import FixedSupport
 
 GOLDEN = json.loads((Path(__file__).parent / "golden" / "motion.json").read_text())["rocking"]
@@ -89,6 +89,41 @@ def test_unequal_arms_lose_two_ratios_in_turn_and_the_sum_of_the_rest_agrees_wit
     limit = times[-1] + (times[-1] - times[-3]) * ratio / (1.0 - ratio)
     assert accumulation.time == pytest.approx(limit, rel=1e-11)
     assert run.end is End.RESTS
+
+
+def test_every_impact_is_the_next_touchdown() -> None:
+    """The event that is found is the one that `next_touchdown` finds from the state after the impact before."""
+    for body, start in (
+        (plate(1.0, 1.6, mass=1.0, friction=0.5), 0.3),
+        (plate(1.0, 2.5, mass=1.0, friction=0.12), 0.2),
+        (plate(0.5, 1.1, mass=1.0, friction=0.05), -0.25),
+    ):
+        assert body.old is not None
+        points = ((body.old.x, body.old.y), (body.new.x, body.new.y))
+        run = rock(body, standing(body, start))
+        state, time, stance = standing(body, start), 0.0, 0 if start > 0.0 else 1
+        kinds = set()
+        for strike in run.impacts[:4]:
+            fall = next_touchdown(state, points, stance, body.inertia / body.mass, body.new.friction)
+            kinds.add(fall.motion)
+            assert fall.point == strike.new
+            # Slip is integrated by both, to 1e-10 in each step there.
+            assert time + fall.time == pytest.approx(strike.time, rel=1e-9)
+            assert fall.state == pytest.approx(strike.before, rel=1e-7, abs=1e-9)
+            state, time, stance = strike.after, strike.time, strike.new
+        assert kinds <= {MotionKind.TURNING, MotionKind.SLIDING}
+        assert len(run.impacts) >= 4
+
+
+def test_on_a_steep_slope_a_body_slides_for_ever() -> None:
+    body = plate(1.0, 0.3, mass=1.0, friction=0.2)
+    slope = math.radians(-20.0)  # the x axis falls
+    run = rock(body, standing(body, 0.0), FixedSupport(slope), duration=7.0)
+    assert run.end is End.TIME_UP
+    assert [phase.states for phase in run.phases] == ["++"]
+    drive = G * (math.sin(-slope) - 0.2 * math.cos(slope))
+    assert run.state(7.0).vx == pytest.approx(7.0 * drive, rel=EXACT)
+    assert run.state(7.0).x - run.state(0.0).x == pytest.approx(0.5 * 49.0 * drive, rel=EXACT)
 
 
 def test_on_a_gentle_slope_it_slides_to_a_stop() -> None:

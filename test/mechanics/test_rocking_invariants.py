@@ -115,6 +115,47 @@ def test_contacts_never_go_into_the_support(data: st.DataObject) -> None:
 
 @given(st.data())
 @calm
+def test_mirrored_bodies_move_as_mirror_images(data: st.DataObject) -> None:
+    body = data.draw(points(plastic=True))
+    assert body.old is not None
+    angle, pace = data.draw(st.floats(-0.7, 0.7)), data.draw(st.floats(-1.0, 1.0))
+    slope = data.draw(st.floats(-0.4, 0.4))
+    mirrored = TwoPointBody(body.mass, body.inertia, *(c._replace(x=-c.x) for c in (body.new, body.old)))
+    start = standing(body, angle, pace, 0.3)
+    image = start._replace(x=-start.x, angle=-start.angle, vx=-start.vx, omega=-start.omega)
+    one = rock(body, start, FixedSupport(slope), duration=3.0)
+    other = rock(mirrored, image, FixedSupport(-slope), duration=3.0)
+    assert one.end is other.end
+    assert len(one.impacts) == len(other.impacts)
+    for mine, theirs in zip(one.impacts[:6], other.impacts[:6], strict=True):
+        assert mine.time == pytest.approx(theirs.time, rel=1e-9)
+        assert (mine.after.vx, mine.after.omega) == pytest.approx(
+            (-theirs.after.vx, -theirs.after.omega), rel=1e-6, abs=1e-9
+        )
+
+
+@given(st.data())
+@calm
+def test_impacts_keep_the_balance_of_momentum(data: st.DataObject) -> None:
+    body = data.draw(bodies)
+    run = rock(body, data.draw(starts(body)), data.draw(st.one_of(fixed, moving)), duration=3.0)
+    for strike in run.impacts[:20]:
+        struck = strike.outcome.body
+        assert struck is not None
+        x = y = turn = 0.0
+        for contact, (n, t) in zip((struck.old, struck.new), strike.outcome.impulses, strict=True):
+            if contact is not None:
+                nx, ny = contact.normal
+                px, py = n * nx + t * ny, n * ny - t * nx
+                x, y, turn = x + px, y + py, turn + contact.x * py - contact.y * px
+        before, after = strike.before, strike.after
+        change = (after.vx - before.vx, after.vy - before.vy, (after.omega - before.omega) * body.inertia)
+        size = abs(before.vx) + abs(before.vy) + size_of(body) * abs(before.omega)
+        assert change == pytest.approx((x, y, turn), abs=1e-10 * size * (1.0 + size_of(body)))
+
+
+@given(st.data())
+@calm
 def test_the_motion_does_not_depend_on_the_tolerance_of_its_steps(data: st.DataObject) -> None:
     body = data.draw(points(plastic=True))
     support = data.draw(st.one_of(fixed, moving))
