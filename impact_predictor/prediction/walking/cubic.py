@@ -178,20 +178,11 @@ class Fit(NamedTuple):
         """Stamp in ns of the first of the frames."""
         return self.stamp - round(self.end * SCALE * NANOSECONDS)
 
-    def gap_deviation(self, time: float) -> float:
-        """Standard deviation in m of the gap `time` s after the stamp."""
+    def deviation_of(self, order: int, time: float) -> float:
+        """Standard deviation `time` s after the stamp: of the gap in m, of its first or of its second derivative."""
         s = self.end + time / SCALE
-        return self.deviation * sqrt(square_of(self.factor, (1.0, s, s * s, s * s * s)))
-
-    def rate_deviation(self, time: float) -> float:
-        """Standard deviation in m/s of the gap's rate `time` s after the stamp."""
-        s = self.end + time / SCALE
-        return self.deviation / SCALE * sqrt(square_of(self.factor, (0.0, 1.0, 2.0 * s, 3.0 * s * s)))
-
-    def acceleration_deviation(self, time: float) -> float:
-        """Standard deviation in m/s^2 of the gap's acceleration `time` s after the stamp."""
-        s = self.end + time / SCALE
-        return self.deviation / SCALE**2 * sqrt(square_of(self.factor, (0.0, 0.0, 2.0, 6.0 * s)))
+        powers = ((1.0, s, s * s, s * s * s), (0.0, 1.0, 2.0 * s, 3.0 * s * s), (0.0, 0.0, 2.0, 6.0 * s))[order]
+        return self.deviation / SCALE**order * sqrt(square_of(self.factor, powers))
 
     def now(self) -> Cubic:
         """Coefficients of the gap over the time in s since the stamp."""
@@ -221,15 +212,15 @@ class Fit(NamedTuple):
             lowest = -b / (c + sqrt(square))
         if lowest < horizon:
             depth = a + lowest * (b + lowest * (c + lowest * d))
-            if depth > tolerance and depth > tolerance + REACH * self.gap_deviation(lowest):
+            if depth > tolerance and depth > tolerance + REACH * self.deviation_of(0, lowest):
                 return None
             rests = depth >= 0.0
             if not rests:
                 time = first_below(a, b, c, d, lowest)
-                if depth > -DOUBT * self.gap_deviation(lowest):
+                if depth > -DOUBT * self.deviation_of(0, lowest):
                     rate = b + time * (2.0 * c + 3.0 * d * time)
                     bend = 2.0 * c + 6.0 * d * lowest
-                    rests = self.gap_deviation(time) * bend > -rate * self.rate_deviation(lowest)
+                    rests = self.deviation_of(0, time) * bend > -rate * self.deviation_of(1, lowest)
             if rests:
                 return self._descent(a, b, c, d, lowest, 0.0)
         elif a + horizon * (b + horizon * (c + horizon * d)) < 0.0:
@@ -241,13 +232,13 @@ class Fit(NamedTuple):
     def _descent(self, a: float, b: float, c: float, d: float, time: float, rate: float) -> Descent:
         """A landing, and how well it is known; speed and braking are taken to be less by their standard deviations."""
         later = time + SPREAD
-        below = a + later * (b + later * (c + later * d)) < -SURE * self.gap_deviation(later)
-        turned = b + later * (2.0 * c + 3.0 * d * later) > SURE * self.rate_deviation(later)
+        below = a + later * (b + later * (c + later * d)) < -SURE * self.deviation_of(0, later)
+        turned = b + later * (2.0 * c + 3.0 * d * later) > SURE * self.deviation_of(1, later)
         if rate < 0.0:
-            precise = self.gap_deviation(time) < PRECISE * (-rate - self.rate_deviation(time))
+            precise = self.deviation_of(0, time) < PRECISE * (-rate - self.deviation_of(1, time))
         else:
             bend = 2.0 * c + 6.0 * d * time
-            precise = self.rate_deviation(time) < PRECISE * (bend - self.acceleration_deviation(time))
+            precise = self.deviation_of(1, time) < PRECISE * (bend - self.deviation_of(2, time))
         return Descent(time, rate, below or turned, precise)
 
 

@@ -25,12 +25,10 @@ from ..types import (
     Wrench,
 )
 from ..vectors import add, axes_of, cross, dot, to_world
-from .base import REMEMBERED, BaseMotion
 from .cubic import PointFrame
-from .landings import LandingTracker, PendingLanding, part_of
-from .mechanism import ArticulatedMachine, LeggedMachine, RigidMachine
-from .point import ExpectedLanding, FootPoint
-from .stance import FootForces, Ground, LandingSchedule
+from .landings import FootForces, LandingSchedule, LandingTracker, PendingLanding, part_of
+from .mechanism import REMEMBERED, ArticulatedMachine, BaseMotion, LeggedMachine, RigidMachine
+from .stance import ExpectedLanding, FootPoint, Ground
 
 
 class FeetContacts(Contacts):
@@ -181,7 +179,7 @@ class FeetContacts(Contacts):
         The first contact of a foot is told even where it was not announced.
         """
         point, each = self._points[i], self._walking.points
-        stamp, announced = point.stance.since, self._tracker.settle(i)
+        stamp, announced = point.since, self._tracker.settle(i)
         first = i - i % each
         if announced is None and any(one.stands for one in self._points[first : first + each] if one is not point):
             return
@@ -228,7 +226,7 @@ class FeetContacts(Contacts):
         name, each = self._walking.feet[number], self._walking.points
         own = self._points[number * each : (number + 1) * each]
         standing = [landed for point in own if (landed := point.landed) is not None]
-        since = min(standing) if standing else max([point.stance.since for point in own])
+        since = min(standing) if standing else max([point.since for point in own])
         gaps = [point.trajectory.frames[-1].gap for point in own]
         lowest = own[gaps.index(min(gaps))].trajectory
         lead_time = speed = late = place = None

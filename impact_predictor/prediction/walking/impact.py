@@ -87,6 +87,9 @@ def touchdown_of(
     arms = [add(point, center, -1.0) for point in ((mean(stood), struck) if first else (struck,))]
     span = add(arms[-1], arms[0], -1.0)
     gaps = [dot(normal, points[i]) for i in new]
+    _, gravity, contact_time, share = scene.validity
+    push = share * outcome.impulses[1][0]
+    slow = outcome.mode is not Mode.NO_IMPACT and push < scene.mass * gravity * contact_time
     return Touchdown(
         lead_time=lead_time,
         mode=outcome.mode,
@@ -95,7 +98,7 @@ def touchdown_of(
         impulses=outcome.impulses,
         segments=outcome.segments,
         energy_lost=outcome.energy_lost,
-        flags=outcome.flags | doubts(scene, outcome),
+        flags=outcome.flags | (Flag.SLOW_IMPACT if slow else Flag.NONE),
         unique=outcome.unique,
         law=outcome.law,
         old=first,
@@ -167,11 +170,3 @@ def planar_twist(
     """The twist of the mass centre in the impact plane, from that of the base."""
     velocity = add(linear, cross(angular, center))
     return Twist(dot(ahead, velocity), dot(normal, velocity), -dot(axis, angular))
-
-
-def doubts(scene: Scene, outcome: ContactOutcome) -> Flag:
-    """Whether gravity matters while the impact lasts (see `Validity`)."""
-    gravity, contact_time, share = scene.validity[1:]
-    impulse = outcome.impulses[1][0]
-    slow = outcome.mode is not Mode.NO_IMPACT and share * impulse < scene.mass * gravity * contact_time
-    return Flag.SLOW_IMPACT if slow else Flag.NONE

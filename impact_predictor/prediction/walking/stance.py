@@ -1,22 +1,19 @@
-"""Which points of the feet stand, from their gaps and velocities; what a planner and force sensors say of it.
-
-Neither of these decides a stance: landings are compared with a schedule, and a force confirms them.
-"""
+"""A point of a foot: whether it stands, as its gaps and velocities tell, and the landing that it announces."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from itertools import pairwise
+from collections import deque
 from math import sqrt
+from typing import NamedTuple
 
 from ...stamps import NANOSECONDS
-from ..checks import LARGEST, PAUSE, order_of
 from ..planar import hardly
-from ..scene import Scene, Walking
-from ..types import Schedule, Status, Wrench
-from ..vectors import dot, total
-from .cubic import GapNoise, PointFrame
-from .trajectory import DescentPrior
+from ..scene import Scene
+from ..types import Vector3
+from ..vectors import add, dot, total
+from .arrival import MOST, Arrival, ArrivalFit
+from .cubic import Fit, GapNoise, PointFrame
+from .trajectory import DescentPrior, FootTrajectory
 
 LEAST = 1e-5
 """Noise of a gap in m below which none counts: by so much a planned course differs from a cubic over few frames ..."""
@@ -42,11 +39,18 @@ FEWEST = 10
 FAR = 3.0
 """A point was off the ground when its gap was so many standard deviations above it."""
 
-LONGEST = 10_000_000_000
-"""ns for which what was planned is remembered."""
+AHEAD = 1.5
+"""A landing is first announced when it is no further ahead than so many times as long as the point has descended: from
+less the cubic of a foot that need not follow one tells nothing."""
 
-FURTHEST = 1_000_000_000
-"""ns from a planned landing beyond which a landing is another one, which nobody planned."""
+SOON = 0.5
+"""... and where noise leaves doubt that it lands at all, no further than so many times."""
+
+LASTS = 0.8
+"""... or up to so many times, once it has shown in every sample for the dead time."""
+
+SETTLED = 3
+"""A frame shows the ground when the point is still near it so many dead times later: it has not begun to lift then."""
 
 
 class Ground:
@@ -79,29 +83,149 @@ class Ground:
             self.noise = GapNoise(max(LEAST, sqrt(self._square)), rate)
 
 
-class StanceDetector:
-    """Whether one point stands. A change is believed when it has lasted for the dead time.
+class ExpectedLanding(NamedTuple):
+    """A landing that is announced: `stamp` in ns, and where and how fast the point will be then (m, m/s)."""
 
-    A point comes to stand when it has stayed within the contact tolerance above the ground and has hardly moved; it
-    stands until it has stayed further away.
+    stamp: int
+    position: Vector3
+    velocity: Vector3
+
+
+class FootPoint:
+    """A point of a foot: its trajectory, whether it stands, and the landing that it announces.
+
+    A change of the stance is believed when it has lasted for the dead time. A point comes to stand when it has stayed
+    within the contact tolerance above the ground and has hardly moved; it stands until it has stayed further away.
     """
 
     def __init__(self, scene: Scene, dead_time: int) -> None:
-        """Believe changes of a point of a scene after a `dead_time` in ns."""
+        """Follow a point of a scene; `dead_time` in ns."""
+        self.trajectory = FootTrajectory()
         self.stands = False
         self.since = 0
+        """Stamp in ns of the last change of the stance, 0 where there was none."""
+        self.due: ExpectedLanding | None = None
+        """The landing last announced, until the point stands or the announcement is withdrawn."""
+        self.arrival: Arrival | None = None
+        """How the point came to stand last."""
+        self.closed = False
+        """Whether it was to land by now and is near the ground: it stands, though not yet for the dead time."""
+        self._tolerance, self._horizon, self._normal = scene.tolerance, scene.horizon, scene.normal
         self._dead_time = dead_time
-        self._tolerance = scene.tolerance
         self._slow = hardly(scene)
-        self._begun = False
         self._other: int | None = None
+        self._doubted: int | None = None
+        self._shown: int | None = None
+        self._last: Fit | None = None
+        self._arriving: ArrivalFit | None = None
+        self._standing: deque[PointFrame] = deque()
 
-    def update(self, frames: Sequence[PointFrame], ground: Ground, awaited: bool = False) -> bool:
-        """Whether the last of the frames changes the stance; not to standing while that is still `awaited`."""
+    @property
+    def landed(self) -> int | None:
+        """Stamp in ns since which it stands, or has just closed, if it does."""
+        if self.stands:
+            return self.since
+        return self.due.stamp if self.closed and self.due is not None else None
+
+    @property
+    def lands(self) -> int | None:
+        """Stamp in ns at which it lands, as announced, or has landed."""
+        return self.landed if self.due is None else self.due.stamp
+
+    def stood(self, stamp: int) -> bool:
+        """Whether it stood at a stamp in ns, as its last change tells."""
+        landed = self.landed
+        return self.since > stamp if landed is None else landed <= stamp
+
+    def add(self, frame: PointFrame, ground: Ground) -> bool:
+        """Take the next frame; whether the point has come to stand.
+
+        A foot that brakes before it lands seems to rest before it does: while its landing is surely ahead it swings.
+        """
+        trajectory = self.trajectory
+        trajectory.add(frame)
+        awaited = self.due is not None and self._doubted is None and self.due.stamp > frame.stamp
+        changed = self._changes(ground, awaited)
+        near = frame.gap - ground.level <= self._tolerance
+        if not near:
+            self._arriving = None
+        elif self._arriving is not None and not self._arriving.is_full:
+            self._arriving.add(frame)
+        elif changed or not self.stands:
+            begin = trajectory.top if self._last is None else max(trajectory.top, self._last.begin)
+            self._arriving = ArrivalFit(trajectory.last(MOST), begin, ground.level, self._tolerance, ground.noise)
+        if not self.stands:
+            if changed:
+                self._standing.clear()
+            trajectory.follow()
+            return False
+        if changed and self._arriving is not None:
+            if self._last is not None:
+                ground.prior.learn(self._last)
+            self.arrival = self._arriving.arrival()
+            self.since, self._last, self._arriving = self.arrival.stamp, None, None
+        trajectory.rest()
+        if near:
+            self._standing.append(frame)
+            if frame.stamp - self._standing[0].stamp > SETTLED * self._dead_time:
+                ground.add(self._standing.popleft(), self._standing[0])
+        self.due = self._doubted = None
+        self._shown = None
+        self.closed = False
+        return changed
+
+    def revise(self, stamp: int, ground: Ground) -> ExpectedLanding | None:
+        """The landing ahead of a stamp in ns."""
+        if self.stands:
+            return None
+        last = self.trajectory.frames[-1]
+        near = last.gap - ground.level <= self._tolerance
+        due = self.due
+        self.closed = due is not None and due.stamp <= stamp and near
+        if self.closed:
+            return None  # What its trajectory shows is the ground already.
+        trajectory = self.trajectory
+        fit = trajectory.fit(ground.noise, ground.prior)
+        if fit is not None and not near:
+            self._last = fit
+        if due is not None and near and trajectory.broke:
+            return due if due.stamp > stamp else None  # It may be landing already, so its last announcement stands.
+        landing = None if fit is None else fit.landing(ground.level, self._tolerance, self._horizon)
+        if fit is None or landing is None:
+            self._shown = None
+            if due is not None and self._doubted_for(stamp):
+                due = self.due = self._doubted = None
+            return due if due is not None and due.stamp > stamp else None
+        self._shown = stamp if self._shown is None else self._shown
+        descended, wait = fit.stamp - trajectory.top, landing.time * NANOSECONDS
+        sure = landing.sure and (due is not None or wait < AHEAD * descended)
+        sure |= landing.precise and wait < SOON * descended
+        sure |= stamp - self._shown >= self._dead_time and wait < LASTS * descended
+        # So near to the ground a little noise makes the curve of a foot that brakes pass through it at once.
+        leaps = near and due is not None and due.stamp - fit.stamp - wait > self._dead_time
+        sure = sure and not (trajectory.broke or leaps)
+        if sure or self._doubted_for(stamp):
+            if sure:
+                self._doubted = None
+            position, velocity = trajectory.motion(fit, landing.time)
+            velocity = add(velocity, self._normal, landing.rate - dot(velocity, self._normal))
+            due = self.due = ExpectedLanding(fit.stamp + round(landing.time * NANOSECONDS), position, velocity)
+        return due if due is not None and due.stamp > stamp else None
+
+    def _doubted_for(self, stamp: int) -> bool:
+        """Whether what is announced has not surely shown for the dead time."""
+        if self.due is None:
+            return False
+        if self._doubted is None:
+            self._doubted = stamp
+        return stamp - self._doubted >= self._dead_time
+
+    def _changes(self, ground: Ground, awaited: bool) -> bool:
+        """Whether the last frame changes the stance; not to standing while that is still `awaited`."""
+        frames = self.trajectory.frames
         frame = frames[-1]
         near = frame.gap - ground.level <= self._tolerance
-        if not self._begun:
-            self._begun = True
+        if len(frames) == 1:
             self.stands = near and (frame.rate is None or abs(frame.rate) <= self._slow + 3.0 * ground.noise.rate)
             return False
         if near is self.stands:
@@ -114,7 +238,7 @@ class StanceDetector:
         self.stands, self.since, self._other = near, self._other if near else self._left(frames, ground), None
         return True
 
-    def _left(self, frames: Sequence[PointFrame], ground: Ground) -> int:
+    def _left(self, frames: deque[PointFrame], ground: Ground) -> int:
         """The stamp in ns of the last frame in which the point was on the ground: the tolerance is left later."""
         since = frames[-1].stamp
         for frame in reversed(frames):
@@ -123,7 +247,7 @@ class StanceDetector:
                 break
         return max(since, self.since)
 
-    def _rests(self, frames: Sequence[PointFrame], noise: GapNoise) -> bool:
+    def _rests(self, frames: deque[PointFrame], noise: GapNoise) -> bool:
         """Whether the point has hardly moved along the normal within the dead time."""
         begin = frames[-1].stamp - self._dead_time
         lasted = [frame for frame in frames if frame.stamp >= begin]
@@ -138,69 +262,3 @@ class StanceDetector:
         span = (sum([f.stamp for f in late]) - sum([f.stamp for f in early])) / half / NANOSECONDS
         rise = (total([f.gap for f in late]) - total([f.gap for f in early])) / half
         return abs(rise) <= self._slow * span + 3.0 * noise.gap * sqrt(2.0 / half)
-
-
-class LandingSchedule:
-    """The planned landings of some feet; a schedule replaces what was planned from its first time on."""
-
-    def __init__(self, feet: Sequence[str]) -> None:
-        self._stances: dict[str, list[tuple[int, bool]]] = {foot: [] for foot in feet}
-        self._landings: dict[str, list[int]] = {foot: [] for foot in feet}
-
-    def set(self, schedule: Schedule) -> Status:
-        """Take a schedule; what became of it."""
-        times = schedule.times
-        if not set(schedule.feet) <= set(self._stances):
-            return Status.FEET_CHANGED
-        if any(b <= a for a, b in pairwise(times)) or len(schedule.stands) != len(times):
-            return Status.MALFORMED
-        if any(len(stands) != len(schedule.feet) for stands in schedule.stands):
-            return Status.MALFORMED
-        if not times:
-            return Status.ACCEPTED
-        for number, foot in enumerate(schedule.feet):
-            kept = [one for one in self._stances[foot] if times[0] - LONGEST < one[0] < times[0]]
-            following = [(time, stands[number]) for time, stands in zip(times, schedule.stands, strict=True)]
-            # Planners tell the same stance again and again: only its changes are kept.
-            told = [*kept, *following]
-            planned = told[:1] + [one for before, one in pairwise(told) if one[1] is not before[1]]
-            self._stances[foot] = planned
-            self._landings[foot] = [time for (_, before), (time, now) in pairwise(planned) if now and not before]
-        return Status.ACCEPTED
-
-    def late(self, foot: str, stamp: int) -> float | None:
-        """How much later than planned, in s, a foot lands at a stamp in ns; None where none is planned near it."""
-        late = min([stamp - planned for planned in self._landings[foot]], key=abs, default=None)
-        return None if late is None or abs(late) > FURTHEST else late / NANOSECONDS
-
-
-class FootForces:
-    """The last force on each foot of a machine."""
-
-    def __init__(self, walking: Walking) -> None:
-        self._feet = walking.feet
-        self._least = walking.force**2
-        self._timeout = round(walking.timeout * NANOSECONDS)
-        self._pressed: dict[str, tuple[int, bool]] = {}
-
-    def set(self, wrench: Wrench) -> Status:
-        """Take the force on a foot; what became of the message."""
-        foot, square = wrench.frame_id, dot(wrench.force, wrench.force)
-        if foot not in self._feet:
-            return Status.WRONG_FRAME
-        if not square < LARGEST:
-            return Status.NOT_FINITE
-        last = self._pressed[foot][0] if foot in self._pressed else None
-        status = order_of(wrench.stamp, last)
-        if status is Status.ACCEPTED:
-            self._pressed[foot] = wrench.stamp, square >= self._least
-        elif last is not None and last - wrench.stamp > PAUSE:
-            del self._pressed[foot]
-        return status
-
-    def agree(self, foot: str, stands: bool, stamp: int) -> bool | None:
-        """Whether the sensor of a foot shows the same stance near a stamp in ns; None where it shows nothing then."""
-        pressed = self._pressed.get(foot)
-        if pressed is None or abs(stamp - pressed[0]) > self._timeout:
-            return None
-        return pressed[1] is stands

@@ -200,9 +200,9 @@ class FootTrajectory:
         before tells nothing of the landing, and is left out of the fits from then on.
         """
         _, slope, bend, _ = fit.now()
-        if slope > TURNED * fit.rate_deviation(0.0):
+        if slope > TURNED * fit.deviation_of(1, 0.0):
             self._falls = False
-        elif not self._falls and slope < -TURNED * fit.rate_deviation(0.0):
+        elif not self._falls and slope < -TURNED * fit.deviation_of(1, 0.0):
             self._falls = True
             top = fit.stamp + 0.5 * slope / -bend * NANOSECONDS if bend < 0.0 else 0.0
             self.top = round(top)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from impact_predictor.prediction.types import Schedule, Status
-from impact_predictor.prediction.walking.stance import LandingSchedule
+from impact_predictor.prediction.walking.landings import LandingSchedule
 
 MS = 1_000_000
 

@@ -10,8 +10,7 @@ import pytest
 
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.prediction.walking.cubic import PointFrame
-from impact_predictor.prediction.walking.point import FootPoint
-from impact_predictor.prediction.walking.stance import Ground, StanceDetector
+from impact_predictor.prediction.walking.stance import FootPoint, Ground
 
 MS = 1_000_000
 DEAD_TIME = 20 * MS
@@ -28,12 +27,13 @@ def changes(
     gap: Callable[[float], float], rate: Callable[[float], float | None], end: float
 ) -> list[tuple[float, bool]]:
     """When a point is seen to stand or to swing (ms), at 400 Hz."""
-    stance, ground, frames = StanceDetector(SCENE, DEAD_TIME), Ground(SCENE), []
-    found = []
+    point, ground = FootPoint(SCENE, DEAD_TIME), Ground(SCENE)
+    found, stood = [], gap(0.0) == 0.0
     for time in np.arange(0.0, end, 2.5).tolist():
-        frames.append(frame(time, gap(time), rate(time)))
-        if stance.update(frames, ground):
-            found.append((time, stance.stands))
+        point.add(frame(time, gap(time), rate(time)), ground)
+        if point.stands is not stood:
+            stood = point.stands
+            found.append((time, stood))
     return found
 
 

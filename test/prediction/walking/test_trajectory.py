@@ -104,7 +104,7 @@ def test_the_noise_that_is_predicted_is_that_of_many_fits() -> None:
         found.append((a + 0.05 * (b + 0.05 * (c + 0.05 * d)), b + 0.05 * (2.0 * c + 0.15 * d)))
     scatter = np.std(found, axis=0)
     # 300 draws tell a standard deviation to 4 %.
-    assert scatter == pytest.approx([fit.gap_deviation(0.05), fit.rate_deviation(0.05)], rel=0.15)
+    assert scatter == pytest.approx([fit.deviation_of(0, 0.05), fit.deviation_of(1, 0.05)], rel=0.15)
 
 
 def test_too_few_frames_and_rising_ones_are_no_descent() -> None:
