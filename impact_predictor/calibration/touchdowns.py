@@ -11,9 +11,9 @@ import numpy as np
 
 from ..mechanics.impact import solve_impact
 from ..mechanics.types import Twist, TwoPointBody
-from ..prediction.impact import Collision, LateralMotion, impact_across, lateral_motion
+from ..prediction.impact import Collision, impact_across
 from ..prediction.monitor import Monitor
-from ..prediction.planar import ImpactPlane, Posture
+from ..prediction.planar import Posture
 from ..prediction.points import PointContacts, collision_of
 from ..prediction.predictor import Predictor
 from ..prediction.scene import InertiaTensor, Scene
@@ -37,21 +37,6 @@ class Coefficients(NamedTuple):
     inertia: float = 1.0
 
 
-class RecordedImpact(NamedTuple):
-    """The impact behind a prediction, as `Predictor` solves it: its plane, the support normal in the body frame, the
-    body with its contacts, the twist before it in the plane and the motion across, the angle turned until then, and
-    whether the contacts are edges that block the roll.
-    """
-
-    plane: ImpactPlane
-    normal: Vector3
-    body: TwoPointBody
-    before: Twist
-    across: LateralMotion
-    angle: float
-    blocked: bool
-
-
 class Start(NamedTuple):
     """What a prediction was made from: the sample, its posture, and the contact points in the body frame."""
 
@@ -72,7 +57,7 @@ class ScoredTouchdown(NamedTuple):
     body: str
     stamp: int
     scene: Scene
-    impact: RecordedImpact
+    impact: Collision
     measured: Twist
     half_distance: float
     bend: float = 0.0
@@ -95,16 +80,15 @@ class ScoredTouchdown(NamedTuple):
         body = self.impact.body
         if approach is None or (approach.body.old is None) != (body.old is None):
             return self
-        impact = impact_of(sample, posture, approach)
         # The inertia is that of the scene as it was given: `solve` scales it.
-        return self._replace(impact=impact._replace(body=impact.body._replace(inertia=body.inertia)))
+        return self._replace(impact=approach._replace(body=approach.body._replace(inertia=body.inertia)))
 
     def after(self, coefficients: Coefficients) -> Twist:
         """The twist after the impact with other coefficients, by the law of the scene."""
         return solve(self.scene, self.impact, coefficients)
 
 
-def solve(scene: Scene, impact: RecordedImpact, coefficients: Coefficients) -> Twist:
+def solve(scene: Scene, impact: Collision, coefficients: Coefficients) -> Twist:
     """The twist after an impact with other coefficients, by the law and with the transverse slip of the scene."""
     slipped = solve_across(scene, impact, coefficients)
     if slipped is not None:
@@ -113,17 +97,16 @@ def solve(scene: Scene, impact: RecordedImpact, coefficients: Coefficients) -> T
     return solve_impact(body, impact.before, scene.law, scene.validity).twist
 
 
-def solve_across(scene: Scene, impact: RecordedImpact, coefficients: Coefficients) -> Twist | None:
+def solve_across(scene: Scene, impact: Collision, coefficients: Coefficients) -> Twist | None:
     """The twist after an impact that slips across its plane; None where it hardly does, or the scene leaves that out.
 
     Which of them slip does not depend on the coefficients, as long as there is friction.
     """
     if not scene.transverse_slip or scene.law != "path" or scene.radius or coefficients.friction == 0.0:
         return None
-    plane, normal, body, before, across, angle, blocked = impact
-    body = with_coefficients(body, coefficients)
+    impact = impact._replace(body=with_coefficients(impact.body, coefficients))
     scene = scene._replace(inertia=scaled(scene.inertia, coefficients.inertia))
-    slipped = impact_across(scene, plane, normal, body, before, across, angle, blocked)
+    slipped = impact_across(scene, impact)
     return None if slipped is None else slipped[0].twist
 
 
@@ -134,19 +117,6 @@ def with_coefficients(body: TwoPointBody, coefficients: Coefficients) -> TwoPoin
         inertia=factor * body.inertia,
         old=None if body.old is None else body.old._replace(friction=friction),
         new=body.new._replace(friction=friction, restitution=restitution),
-    )
-
-
-def impact_of(sample: Sample, posture: Posture, collision: Collision) -> RecordedImpact:
-    """The impact of a collision."""
-    return RecordedImpact(
-        plane=collision.plane,
-        normal=posture.normal,
-        body=collision.body,
-        before=collision.before,
-        across=lateral_motion(sample, posture, collision.plane, collision.lead_time),
-        angle=collision.angle,
-        blocked=collision.blocked,
     )
 
 
@@ -166,7 +136,7 @@ class Observer(Predictor):
         super().__init__(scene, deck)
         self.name = name
         self.touchdowns: list[ScoredTouchdown] = []
-        self._impacts: deque[tuple[RecordedImpact, Start | None]] = deque(maxlen=_REMEMBERED)
+        self._impacts: deque[tuple[Collision, Start | None]] = deque(maxlen=_REMEMBERED)
         self._samples: deque[Sample] = deque(maxlen=_REMEMBERED)
 
     def update(self, sample: Sample) -> Prediction:
@@ -178,7 +148,7 @@ class Observer(Predictor):
             seen, posture, collision = contacts.collision
             fixed = self.scene.deck is None and not self.scene.radius
             start = Start(seen, posture, contacts.points) if fixed else None
-            self._impacts.append((impact_of(seen, posture, collision), start))
+            self._impacts.append((collision, start))
         self._samples.append(sample)
         if prediction.score is not None:
             self._collect(prediction.score)

@@ -15,9 +15,8 @@ from ..mechanics.motion import PlanarState, next_strike
 from ..mechanics.motion.support import FixedSupport
 from ..mechanics.types import Contact, Twist, TwoPointBody, Vector
 from .deck.approach import PlanarSupport, gravity_over, is_uniform
-from .impact import Collision
+from .impact import Collision, collision_after
 from .planar import (
-    GRAZES,
     ActiveContacts,
     ImpactPlane,
     Posture,
@@ -94,95 +93,47 @@ class CylinderContacts(PointContacts):
         if contacts is None:
             return None
         age = 0.5 * scene.twist_window
-        struck = contacts.new[0]
-        sides = (0, 1) if struck == 1 else (1, 0)
-        forth = 1.0 if struck == 1 else -1.0
+        # The plane runs from one edge to the other, which closes next.
+        behind = 1 - contacts.new[0]
+        forth = 1.0 - 2.0 * behind
         axis, ahead = times(self._along, forth), times(self._ahead, forth)
-        place = center_of(scene, sample, posture)
-        arm = add(place, scene.edges[sides[0]], -1.0)
+        arm = add(center_of(scene, sample, posture), scene.edges[behind], -1.0)
         x, y = dot(ahead, arm), dot(scene.normal, arm)
-        plane = self._plane(sample, posture, moment, contacts, axis, ahead, (x, y))
+        pull = scene.gravity if moment is None else gravity_over(scene, moment, sample, posture)
+        gx, gy = dot(ahead, pull), dot(scene.normal, pull)
+        edges, center = ((0.0, 0.0), self._lines[behind]), self._centers[behind]
+        own_axis, own_ahead = to_body(posture.axes, axis), to_body(posture.axes, ahead)
+        rate, lateral = dot(own_axis, sample.angular), dot(own_axis, posture.velocity)
+        vx, vy, omega = dot(own_ahead, posture.velocity), dot(posture.normal, posture.velocity), -rate
+        plane = ImpactPlane(
+            axis=own_axis,
+            ahead=own_ahead,
+            normal=posture.normal,
+            old=(-x, -y) if contacts.old else None,
+            new=(edges[1][0] - x, edges[1][1] - y),
+            twist=Twist(vx, vy, omega),
+            gravity=(gx, gy, dot(axis, pull)),
+            off_axis=off_axis_of(sample.angular, own_axis, rate),
+            lateral=lateral,
+            offset=0.0,
+        )
         inertia = inertia_about(scene, plane.axis, blocked=True)
-        vx, vy, omega = plane.twist
         start = PlanarState(x=x - vx * age, y=y - vy * age, angle=-omega * age, vx=vx, vy=vy, omega=omega)
-        gx, gy, _ = plane.gravity
         support: FixedSupport | PlanarSupport
         if moment is None or is_uniform(moment, scene.horizon):
             support = FixedSupport(atan2(-gx, -gy), hypot(gx, gy))
         else:
-            origin = add(scene.edges[sides[0]], self._along, dot(arm, self._along))
-            support = PlanarSupport(moment, age, origin, ahead, scene.normal, plane.lateral)
-        body = self._body(forth, inertia)
+            origin = add(scene.edges[behind], self._along, dot(arm, self._along))
+            support = PlanarSupport(moment, age, origin, ahead, scene.normal, lateral)
+        body = TwoPointBody(scene.mass, inertia, self._contact(edges[0], center), self._contact(edges[1], center))
         fall = next_strike(body, start, 0 if contacts.old else None, support, scene.horizon + age)
         if fall is None or (contacts.old and fall.point != 1):
             return None
-        body = self._body_at(body, forth, fall.point, fall.state, bool(contacts.old))
-        nx, ny = body.new.normal
-        speed = -(nx * fall.state.vx + ny * fall.state.vy)
-        if speed < GRAZES:
-            return None
-        new = (sides[fall.point],)
-        state = fall.state
-        return Collision(
-            contacts=ActiveContacts(contacts.old, new, contacts.base),
-            plane=plane,
-            body=body,
-            before=Twist(state.vx, state.vy, state.omega),
-            shift=(state.x - x, state.y - y),
-            angle=state.angle,
-            lead_time=max(0.0, fall.time - age),
-            blocked=True,
-            measured=-posture.rates[new[0]],
-            speed=speed,
-        )
-
-    def _plane(
-        self,
-        sample: Sample,
-        posture: Posture,
-        moment: Moment | None,
-        contacts: ActiveContacts,
-        axis: Vector3,
-        ahead: Vector3,
-        center: Vector,
-    ) -> ImpactPlane:
-        """The impact plane, in the body frame; `axis` and `ahead` are given in the support's frame, and the axis of the
-        cylinder in the plane from the edge behind.
-        """
-        scene, axes, velocity = self.scene, posture.axes, posture.velocity
-        gravity = scene.gravity if moment is None else gravity_over(scene, moment, sample, posture)
-        line = self._lines[0 if contacts.new[0] == 1 else 1]
-        own_axis, own_ahead = to_body(axes, axis), to_body(axes, ahead)
-        rate = dot(own_axis, sample.angular)
-        return ImpactPlane(
-            axis=own_axis,
-            ahead=own_ahead,
-            old=(-center[0], -center[1]) if contacts.old else None,
-            new=(line[0] - center[0], line[1] - center[1]),
-            twist=Twist(dot(own_ahead, velocity), dot(posture.normal, velocity), -rate),
-            gravity=(dot(ahead, gravity), dot(scene.normal, gravity), dot(axis, gravity)),
-            off_axis=off_axis_of(sample.angular, own_axis, rate),
-            lateral=dot(own_axis, velocity),
-            offset=0.0,
-        )
-
-    def _body(self, forth: float, inertia: float) -> TwoPointBody:
-        """The body on both edges, `forth` being 1 from the first to the second and -1 back."""
-        side = 0 if forth > 0.0 else 1
-        return TwoPointBody(
-            self.scene.mass,
-            inertia,
-            self._contact((0.0, 0.0), self._centers[side]),
-            self._contact(self._lines[side], self._centers[side]),
-        )
-
-    def _body_at(self, body: TwoPointBody, forth: float, struck: int, state: PlanarState, stood: bool) -> TwoPointBody:
-        """The body when it strikes: on both edges where it stood on the other one until then."""
-        edges = (0.0, 0.0), self._lines[0 if forth > 0.0 else 1]
-        other = edges[1 - struck]
-        if stood and hypot(state.x - other[0], state.y - other[1]) - self.scene.radius <= self.scene.tolerance:
-            return body
-        return body._replace(old=None, new=self._contact(edges[struck], (state.x, state.y)))
+        other, place = edges[1 - fall.point], (fall.state.x, fall.state.y)
+        if not contacts.old or hypot(place[0] - other[0], place[1] - other[1]) - scene.radius > scene.tolerance:
+            body = body._replace(old=None, new=self._contact(edges[fall.point], place))
+        contacts = ActiveContacts(contacts.old, (abs(behind - fall.point),))
+        return collision_after(sample, posture, contacts, plane, body, fall, (x, y), age, blocked=True)
 
     def _contact(self, edge: Vector, center: Vector) -> Contact:
         """A contact at an edge of a cylinder with its axis at `center`."""

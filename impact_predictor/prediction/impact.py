@@ -6,11 +6,12 @@ from math import cos, hypot, inf, sin
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..mechanics.impact import solve_impact
+from ..mechanics.motion import Fall
 from ..mechanics.types import Outcome, Twist, TwoPointBody, Vector
-from .planar import ORIGIN, ActiveContacts, ImpactPlane, Posture, hardly, inertia_about
+from .planar import GRAZES, ORIGIN, ActiveContacts, ImpactPlane, Posture, hardly, inertia_about
 from .scene import Scene
 from .types import Leftover, Quaternion, Sample, Touchdown, Vector3
-from .vectors import add, axes_of, combine, cross, dot, to_body, to_world, turned
+from .vectors import add, axes_of, combine, cross, dot, to_body, to_world, total, turned
 
 if TYPE_CHECKING:
     from .uncertainty import Sampler
@@ -33,27 +34,6 @@ SLOWEST = 4.0
 """An impact can be told from rest when it approaches this many times faster than gravity moves it in a contact time."""
 
 
-class Collision(NamedTuple):
-    """The collision that a sample shows to be ahead, before its impact.
-
-    `body` and its twist `before` are those of the impact, in the impact plane; `shift` (m) is how far the mass centre
-    moves there until then, and `angle` how far the body turns; `lead_time` in s; `blocked` whether its contacts are
-    edges, off whose line it cannot turn. `measured` is the speed in m/s at which the sample shows the new points to
-    approach, `speed` that of the touchdown.
-    """
-
-    contacts: ActiveContacts
-    plane: ImpactPlane
-    body: TwoPointBody
-    before: Twist
-    shift: Vector
-    angle: float
-    lead_time: float
-    blocked: bool
-    measured: float
-    speed: float
-
-
 class LateralMotion(NamedTuple):
     """Motion across the impact plane: velocity of the mass centre along the axis (m/s), angular velocities about d
     (roll) and about the support normal (yaw) in rad/s.
@@ -62,6 +42,67 @@ class LateralMotion(NamedTuple):
     velocity: float
     roll: float
     yaw: float
+
+
+class Collision(NamedTuple):
+    """The collision that a sample shows to be ahead, before its impact.
+
+    `body` and its twist `before` are those of the impact, in the impact plane, and `across` is the motion across it;
+    `shift` (m) is how far the mass centre moves there until then, and `angle` how far the body turns; `lead_time` in s;
+    `blocked` whether its contacts are edges, off whose line it cannot turn. `measured` is the speed in m/s at which the
+    sample shows the new points to approach, `speed` that of the touchdown.
+    """
+
+    contacts: ActiveContacts
+    plane: ImpactPlane
+    body: TwoPointBody
+    before: Twist
+    across: LateralMotion
+    shift: Vector
+    angle: float
+    lead_time: float
+    blocked: bool
+    measured: float
+    speed: float
+
+
+def collision_after(
+    sample: Sample,
+    posture: Posture,
+    contacts: ActiveContacts,
+    plane: ImpactPlane,
+    body: TwoPointBody,
+    fall: Fall,
+    start: Vector,
+    age: float,
+    blocked: bool,
+) -> Collision | None:
+    """The collision of a body after a fall; None where it only grazes its support.
+
+    The fall began `age` s before the sample, at which its mass centre was at `start` (m, in the impact plane).
+    """
+    x, y, angle, vx, vy, omega = fall.state
+    nx, ny = body.new.normal
+    speed = -(nx * (vx - omega * body.new.y) + ny * (vy + omega * body.new.x))
+    if speed < GRAZES:
+        return None
+    time = max(0.0, fall.time - age)
+    # The contacts leave what is across the plane as it is; in flight gravity adds to it.
+    pull = plane.gravity[2] if plane.old is None else 0.0
+    velocity, spin = dot(plane.axis, posture.velocity) + pull * time, sample.angular
+    return Collision(
+        contacts=contacts,
+        plane=plane,
+        body=body,
+        before=Twist(vx, vy, omega),
+        across=LateralMotion(velocity, dot(plane.ahead, spin), dot(posture.normal, spin)),
+        shift=(x - start[0], y - start[1]),
+        angle=angle,
+        lead_time=time,
+        blocked=blocked,
+        measured=-total([posture.rates[i] for i in contacts.new]) / len(contacts.new),
+        speed=speed,
+    )
 
 
 class ImpactModel:
@@ -86,18 +127,14 @@ class ImpactModel:
         scene, contacts, plane, body = self._scene, collision.contacts, collision.plane, collision.body
         before = collision.before
         along = to_world(posture.axes, plane.axis)
-        lateral = after = lateral_motion(sample, posture, plane, collision.lead_time)
-        slipped = None
-        if self._slips_across:
-            slipped = impact_across(
-                scene, plane, posture.normal, body, before, lateral, collision.angle, collision.blocked
-            )
+        after = collision.across
+        slipped = impact_across(scene, collision) if self._slips_across else None
         if slipped is None:
             outcome = solve_impact(body, before, scene.law, scene.validity)
         else:
             outcome, after = slipped
         position, orientation, linear, angular = in_space(
-            scene, sample, posture, collision, along, lateral, outcome.twist, after
+            scene, sample, posture, collision, along, outcome.twist, after
         )
         gaps = [posture.gaps[i] for i in contacts.new]
         spread = (max(gaps) - min(gaps)) / collision.speed
@@ -138,34 +175,15 @@ class ImpactModel:
         )
 
 
-def lateral_motion(sample: Sample, posture: Posture, plane: ImpactPlane, time: float) -> LateralMotion:
-    """The motion across the plane at a touchdown `time` after the sample: what the contacts leave as it is, and in
-    flight gravity.
-    """
-    pull = plane.gravity[2] if plane.old is None else 0.0
-    spin = sample.angular
-    velocity = dot(plane.axis, posture.velocity) + pull * time
-    return LateralMotion(velocity, dot(plane.ahead, spin), dot(posture.normal, spin))
-
-
-def impact_across(
-    scene: Scene,
-    plane: ImpactPlane,
-    normal: Vector3,
-    body: TwoPointBody,
-    before: Twist,
-    lateral: LateralMotion,
-    angle: float,
-    blocked: bool,
-) -> tuple[Outcome, LateralMotion] | None:
+def impact_across(scene: Scene, collision: Collision) -> tuple[Outcome, LateralMotion] | None:
     """The impact of a body that also moves across its plane, and how it does so after it; None where it hardly slips.
 
-    `normal` is the support's, in the body frame, and `angle` how far the body has turned in the plane since. Where its
-    contacts are edges its roll is `blocked`.
+    Where its contacts are edges its roll is blocked.
     """
+    plane, body, before, blocked = collision.plane, collision.body, collision.before, collision.blocked
     # z = ahead cross normal is against the axis.
-    velocity, yaw = -lateral.velocity, lateral.yaw
-    roll = 0.0 if blocked else lateral.roll
+    velocity, yaw = -collision.across.velocity, collision.across.yaw
+    roll = 0.0 if blocked else collision.across.roll
     new, old = body.new, body.old
     slip = abs(velocity + roll * new.y - yaw * new.x)
     if old is not None:
@@ -175,15 +193,15 @@ def impact_across(
         return None
     from ..mechanics.transverse import Transverse, solve_transverse_impact  # only where a scene may need it
 
-    c, s = cos(angle), sin(angle)
-    upright = combine(c, normal, s, plane.ahead, 0.0, plane.axis)
+    c, s = cos(collision.angle), sin(collision.angle)
+    upright = combine(c, plane.normal, s, plane.ahead, 0.0, plane.axis)
     yaw_inertia = inertia_about(scene, upright, blocked)
     roll_inertia = inf
     if not blocked:
-        roll_inertia = inertia_about(scene, combine(c, plane.ahead, -s, normal, 0.0, plane.axis), blocked)
+        roll_inertia = inertia_about(scene, combine(c, plane.ahead, -s, plane.normal, 0.0, plane.axis), blocked)
     motion = Transverse(velocity, roll, yaw, roll_inertia, yaw_inertia)
     outcome, after, _ = solve_transverse_impact(body, before, motion, TOLERANCE, scene.validity)
-    return outcome, LateralMotion(-after.velocity, lateral.roll if blocked else after.roll, after.yaw)
+    return outcome, LateralMotion(-after.velocity, collision.across.roll if blocked else after.roll, after.yaw)
 
 
 def in_space(
@@ -192,16 +210,16 @@ def in_space(
     posture: Posture,
     collision: Collision,
     along: Vector3,
-    lateral: LateralMotion,
     after: Twist,
     lateral_after: LateralMotion,
 ) -> tuple[Vector3, Quaternion, Vector3, Vector3]:
     """Position, orientation, linear and angular velocity of the body frame after an impact in the plane.
 
-    `along` is the axis of the plane in the frame of the support, `lateral` the motion along it until the impact;
-    `after` and `lateral_after` are the motion in the plane and across it after the impact.
+    `along` is the axis of the plane in the frame of the support; `after` and `lateral_after` are the motion in the
+    plane and across it after the impact.
     """
     plane, time, n, center = collision.plane, collision.lead_time, scene.normal, scene.center_of_mass
+    lateral = collision.across
     roll, yaw = lateral.roll * time, lateral.yaw * time
     rotation = combine(-collision.angle, plane.axis, roll, plane.ahead, yaw, posture.normal)
     orientation = turned(sample.orientation, rotation)

@@ -45,23 +45,23 @@ class Posture(NamedTuple):
 
 
 class ActiveContacts(NamedTuple):
-    """The points that stand, those that strike next together, and the mean gap of the standing ones."""
+    """The points that stand, and those that strike next together."""
 
     old: tuple[int, ...]
     new: tuple[int, ...]
-    base: float
 
 
 class ImpactPlane(NamedTuple):
     """The impact plane, in the body frame, and the body in it.
 
-    `axis` and `ahead` (d) are unit vectors; `old` (None in flight) and `new` the contacts from the mass centre along
-    (d, n) in m; `twist` of the mass centre; `gravity` along (d, n, axis). Left over:
-    `off_axis` (0..1), `lateral` velocity (m/s) and `offset` of the contacts along the axis (m).
+    `axis`, `ahead` (d) and `normal` (n) are unit vectors; `old` (None in flight) and `new` the contacts from the mass
+    centre along (d, n) in m; `twist` of the mass centre; `gravity` along (d, n, axis). Left over: `off_axis` (0..1),
+    `lateral` velocity (m/s) and `offset` of the contacts along the axis (m).
     """
 
     axis: Vector3
     ahead: Vector3
+    normal: Vector3
     old: Vector | None
     new: Vector
     twist: Twist
@@ -114,7 +114,7 @@ def contacts_of(scene: Scene, posture: Posture) -> ActiveContacts | None:
     new = [i for i, time in zip(closing, due, strict=True) if time <= last]
     if min([rates[i] for i in new]) >= slowest:
         return None
-    return ActiveContacts(tuple(old), tuple(new), base)
+    return ActiveContacts(tuple(old), tuple(new))
 
 
 def hardly(scene: Scene) -> float:
@@ -132,7 +132,7 @@ def plane_of(
 ) -> ImpactPlane:
     """The impact plane of a posture's contacts; `gravity` in the frame of the sample is the scene's unless given."""
     n, spin, velocity = posture.normal, sample.angular, posture.velocity
-    old, new, _ = contacts
+    old, new = contacts
     center = scene.center_of_mass
     struck = add(mean([points[i] for i in new]), center, -1.0)
     if old:
@@ -155,6 +155,7 @@ def plane_of(
     return ImpactPlane(
         axis=axis,
         ahead=ahead,
+        normal=n,
         old=stance,
         new=(dot(ahead, struck), dot(n, struck)),
         twist=Twist(dot(ahead, velocity), dot(n, velocity), -rate),

@@ -6,13 +6,12 @@ from collections import deque
 from math import cos, hypot, sin
 
 from ..mechanics.motion import PlanarState, next_touchdown
-from ..mechanics.types import Contact, Twist, TwoPointBody, Vector
+from ..mechanics.types import Contact, TwoPointBody, Vector
 from ..stamps import NANOSECONDS
 from .checks import check_points
 from .contacts import DEEP, DEEP_TOLERANCES, Contacts
-from .impact import Collision, ImpactModel
+from .impact import Collision, ImpactModel, collision_after
 from .planar import (
-    GRAZES,
     ImpactPlane,
     Posture,
     center_of,
@@ -231,29 +230,13 @@ def collision_of(
         fall = fall_over(scene, moment, sample, posture, plane, inertia, start, height)
     if fall.point != len(striking) - 1:
         return None
-    x, y, angle, vx, vy, omega = fall.state
-    body = body_at(scene, plane, inertia, angle)
+    body = body_at(scene, plane, inertia, fall.state.angle)
     blocked = on_edge and body.old is not None and len(contacts.new) > 1
     if on_edge and not blocked:
         body = TwoPointBody(body.mass, inertia_about(scene, plane.axis, blocked=False), body.old, body.new)
     if body.old is not None and body.old.x >= body.new.x:
         return None  # it falls back, and other points strike before
-    speed = -(vy + omega * body.new.x)
-    if speed < GRAZES:
-        return None
-    measured = -total([posture.rates[i] for i in contacts.new]) / len(contacts.new)
-    return Collision(
-        contacts=contacts,
-        plane=plane,
-        body=body,
-        before=Twist(vx, vy, omega),
-        shift=(x, y - height),
-        angle=angle,
-        lead_time=max(0.0, fall.time - age),
-        blocked=blocked,
-        measured=measured,
-        speed=speed,
-    )
+    return collision_after(sample, posture, contacts, plane, body, fall, (0.0, height), age, blocked)
 
 
 def body_at(scene: Scene, plane: ImpactPlane, inertia: float, angle: float) -> TwoPointBody:

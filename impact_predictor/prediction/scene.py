@@ -138,6 +138,7 @@ class Scene(NamedTuple):
         """The scene of validated parameters (see `impact_predictor.parameters.validation`)."""
         normal = values["support.normal"]
         length = hypot(*normal)
+        robot = Robot(values["robot.urdf"], values["robot.frames"]) if values["robot.urdf"] else None
         points = () if values["body.radius"] or values["feet.names"] else values["body.contact_points"]
         return cls(
             mass=values.get("body.mass", 1.0),
@@ -160,20 +161,21 @@ class Scene(NamedTuple):
             friction_deviation=values["uncertainty.friction"],
             restitution_deviation=values["uncertainty.restitution"],
             margins=values["margins"],
-            validity=Validity(
-                slenderness=values["validity.slenderness"],
-                gravity=hypot(*values["gravity"]),
-                contact_time=values["contact.time"],
-                gravity_share=values["validity.gravity_share"],
+            validity=_record(
+                Validity, "validity", values, gravity=hypot(*values["gravity"]), contact_time=values["contact.time"]
             ),
-            deck=_moving_deck(values) if values["support.motion"] != "fixed" else None,
+            deck=_record(MovingDeck, "support", values, source=values["support.motion"])
+            if values["support.motion"] != "fixed"
+            else None,
             source=values["source"],
             place=triple(values["place.position"]),
             yaw=values["place.yaw"],
             radius=values["body.radius"],
             edges=triples(values["support.edges"]),
-            watching=_watching(values) if values["onset.watch"] else None,
-            walking=_walking(values) if values["feet.names"] else None,
+            watching=_record(Watching, "onset", values) if values["onset.watch"] else None,
+            walking=_record(Walking, "feet", values, feet=values["feet.names"], robot=robot)
+            if values["feet.names"]
+            else None,
         )
 
     @property
@@ -205,63 +207,29 @@ def inputs_of(scenes: Mapping[str, Scene]) -> tuple[Input, ...]:
 
     The support comes first and what is told about a body before its states, so that a state finds what it needs.
     """
-    found = []
     deck = shared_by(scenes).deck
-    if deck is not None:
-        found.append(Input(f"support/{deck.source}", deck.source, None))
-    names = {body: f"{body}/" if body else "" for body in scenes}
-    found += [Input(names[body] + kind, kind, body) for body, scene in scenes.items() for kind in _told_about(scene)]
-    found += [
-        Input(names[body] + scene.source, scene.source, body)
-        for body, scene in scenes.items()
-        if scene.source in STATES
-    ]
-    return tuple(found)
+    found = [] if deck is None else [Input(f"support/{deck.source}", deck.source, None)]
+    told = [(body, kind) for body, scene in scenes.items() for kind in _told_about(scene)]
+    told += [(body, scene.source) for body, scene in scenes.items() if scene.source in STATES]
+    return (*found, *[Input(f"{body}/{kind}" if body else kind, kind, body) for body, kind in told])
 
 
 def _told_about(scene: Scene) -> list[str]:
     """What is told about a body besides its states."""
     walking = scene.walking
-    told = [CONTACT_GEOMETRY] if scene.needs_geometry else []
-    if walking is not None:
-        told += [JOINTS] if walking.robot is not None else []
-        told += [WRENCH] if walking.force else []
-        told += [SCHEDULE] if walking.has_schedule else []
-    return told
+    told = {
+        CONTACT_GEOMETRY: scene.needs_geometry,
+        JOINTS: walking is not None and walking.robot is not None,
+        WRENCH: walking is not None and walking.force > 0.0,
+        SCHEDULE: walking is not None and walking.has_schedule,
+    }
+    return [kind for kind, is_told in told.items() if is_told]
 
 
-def _moving_deck(values: Mapping[str, Any]) -> MovingDeck:
-    return MovingDeck(
-        source=values["support.motion"],
-        imu_position=triple(values["support.imu_position"]),
-        window=values["support.window"],
-        extrapolation=values["support.extrapolation"],
-        harmonic_window=values["support.harmonic_window"],
-        timeout=values["support.timeout"],
-        extent=tuple(values["support.extent"]),
-    )
-
-
-def _watching(values: Mapping[str, Any]) -> Watching:
-    return Watching(
-        warn=values["onset.warn"],
-        error=values["onset.error"],
-        hysteresis=values["onset.hysteresis"],
-        hold=values["onset.hold"],
-        horizon=values["onset.horizon"],
-    )
-
-
-def _walking(values: Mapping[str, Any]) -> Walking:
-    return Walking(
-        feet=tuple(values["feet.names"]),
-        points=values["feet.points"],
-        dead_time=values["feet.dead_time"],
-        timeout=values["feet.timeout"],
-        force=values["feet.force"],
-        has_schedule=values["feet.has_schedule"],
-        robot=Robot(values["robot.urdf"], tuple(values["robot.frames"])) if values["robot.urdf"] else None,
-    )
+def _record(record: Any, group: str, values: Mapping[str, Any], **others: Any) -> Any:
+    """A record whose fields are the parameters of a group, or `others`."""
+    names = [name for name in record._fields if name not in others]
+    return record(**{name: values[f"{group}.{name}"] for name in names}, **others)
 
 
 def inertia_matrix(numbers: Sequence[float]) -> InertiaTensor:

@@ -8,17 +8,17 @@ import numpy as np
 import pytest
 
 from impact_predictor.calibration.fit import KNOWN, NEEDED, Calibration, calibrate
-from impact_predictor.calibration.touchdowns import Coefficients, RecordedImpact, ScoredTouchdown
+from impact_predictor.calibration.touchdowns import Coefficients, ScoredTouchdown
 from impact_predictor.errors import InputError
 from impact_predictor.mechanics.bodies import plate
 from impact_predictor.mechanics.types import Twist
-from impact_predictor.prediction.impact import LateralMotion
-from impact_predictor.prediction.planar import ImpactPlane
+from impact_predictor.prediction.impact import Collision, LateralMotion
+from impact_predictor.prediction.planar import ActiveContacts, ImpactPlane
 from impact_predictor.prediction.scene import Scene, inertia_matrix
 
 LENGTH, HEIGHT, MASS = 1.0, 0.4, 1.0
 PLANE = ImpactPlane(
-    (0.0, -1.0, 0.0), (1.0, 0.0, 0.0), None, (0.0, 0.0), Twist(0.0, 0.0, 0.0), (0.0,) * 3, 0.0, 0.0, 0.0
+    (0.0, 1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0), None, (0.0, 0.0), Twist(0.0, 0.0, 0.0), (0.0,) * 3, 0.0, 0.0, 0.0
 )
 
 
@@ -44,7 +44,19 @@ def touchdowns(
         body = plate(length=LENGTH, height=height, mass=MASS, friction=0.0, a=1.0 - ahead, b=ahead, inertia=inertia)
         before = body.turning(omega=-rng.uniform(1.0, 3.0))
         before = before._replace(vx=before.vx + slip * rng.uniform(-1.0, 1.0))
-        impact = RecordedImpact(PLANE, (0.0, 0.0, 1.0), body, before, LateralMotion(0.0, 0.0, 0.0), 0.0, True)
+        impact = Collision(
+            ActiveContacts((0,), (1,)),
+            PLANE,
+            body,
+            before,
+            LateralMotion(0.0, 0.0, 0.0),
+            (0.0, 0.0),
+            0.0,
+            0.0,
+            True,
+            1.0,
+            1.0,
+        )
         one = ScoredTouchdown("", k * 10**10, scene, impact, before, 0.5 * LENGTH)
         after = one.after(truth)
         error = rng.normal(0.0, noise * one.speed, 2) if noise else (0.0, 0.0)

@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 
 from impact_predictor.calibration.solver import Solver
-from impact_predictor.calibration.touchdowns import Coefficients, RecordedImpact, ScoredTouchdown, scaled
+from impact_predictor.calibration.touchdowns import Coefficients, ScoredTouchdown, scaled
 from impact_predictor.mechanics.bodies import plate
 from impact_predictor.mechanics.types import Twist
-from impact_predictor.prediction.impact import LateralMotion
-from impact_predictor.prediction.planar import ImpactPlane
+from impact_predictor.prediction.impact import Collision, LateralMotion
+from impact_predictor.prediction.planar import ActiveContacts, ImpactPlane
 from impact_predictor.prediction.scene import Scene, inertia_matrix
 
 PLANE = ImpactPlane(
-    (0.0, -1.0, 0.0), (1.0, 0.0, 0.0), None, (0.0, 0.0), Twist(0.0, 0.0, 0.0), (0.0,) * 3, 0.0, 0.0, 0.0
+    (0.0, 1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0), None, (0.0, 0.0), Twist(0.0, 0.0, 0.0), (0.0,) * 3, 0.0, 0.0, 0.0
 )
 SCENE = Scene(1.0, inertia_matrix([0.1]), friction=0.3, restitution=0.1)
 
@@ -30,7 +30,9 @@ def touchdowns() -> list[ScoredTouchdown]:
         before = plate(length=1.0, height=0.4, mass=1.0, friction=0.3).turning(omega=-rng.uniform(1.0, 3.0))
         across = LateralMotion(rng.uniform(0.2, 0.5) if k % 2 else 0.0, 0.0, 0.0)
         scene = SCENE._replace(law="total" if k % 5 == 0 else "path", transverse_slip=k % 7 != 0)
-        impact = RecordedImpact(PLANE, (0.0, 0.0, 1.0), body, before, across, 0.1, True)
+        impact = Collision(
+            ActiveContacts((0,), (1,)), PLANE, body, before, across, (0.0, 0.0), 0.1, 0.0, True, 1.0, 1.0
+        )
         made.append(ScoredTouchdown("", k, scene, impact, Twist(0.1 * k, 0.0, -0.2), rng.uniform(0.3, 0.6)))
     return made
 
