@@ -109,7 +109,7 @@ class TouchdownTable:
         self._arrow = pyarrow
         self._schema = pyarrow.schema(
             [
-                pyarrow.field(one.name, _arrow_type(pyarrow, one.type), metadata={"unit": one.unit} if one.unit else {})
+                pyarrow.field(one.name, self._type(one.type), metadata={"unit": one.unit} if one.unit else {})
                 for one in COLUMNS
             ]
         )
@@ -136,6 +136,12 @@ class TouchdownTable:
         if len(self._rows) >= _GROUP:
             self._flush()
 
+    def _type(self, name: str) -> Any:
+        """A type of Arrow by its name; `list<string>` is one of strings."""
+        if name.startswith("list<"):
+            return self._arrow.list_(self._type(name[5:-1]))
+        return self._arrow.type_for_alias(name)
+
     def _flush(self) -> None:
         # One group of rows, wherever the borders of the bags are.
         table = self._arrow.Table.from_pylist(self._rows, schema=self._schema)
@@ -156,11 +162,3 @@ class TouchdownTable:
         with self._stack:
             if self._rows:
                 self._flush()
-
-
-def _arrow_type(arrow: Any, name: str) -> Any:
-    types = {"string": arrow.string(), "bool": arrow.bool_(), "int32": arrow.int32(), "int64": arrow.int64()}
-    types["float64"] = arrow.float64()
-    if name.startswith("list<"):
-        return arrow.list_(types[name[5:-1]])
-    return types[name]

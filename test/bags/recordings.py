@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from functools import cache
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from rosbags.rosbag2.enums import CompressionFormat, CompressionMode
 from rosbags.typesys import Stores, get_typestore
 
 from impact_predictor.bags.read import BagMessage, read_messages
+from impact_predictor.bags.write import BagWriter
 from impact_predictor.ros.messages import ODOMETRY, POLYGON
 
 RECORDED = Path(__file__).parents[2] / "examples/cube_tosses/cube_tosses.mcap"
@@ -29,6 +31,14 @@ def first_messages(count: int) -> list[BagMessage]:
     """The first messages of the recorded tosses."""
     stream = read_messages(RECORDED, WANTED)
     return [next(stream) for _ in range(count)]
+
+
+def write_bag(path: Path, messages: Iterable[BagMessage], types: Mapping[str, str] = WANTED) -> Path:
+    """A bag as the package writes it."""
+    with BagWriter(path) as writer:
+        for topic, log_time, data in messages:
+            writer.write(topic, types[topic], log_time, data)
+    return path
 
 
 def write_ros2(

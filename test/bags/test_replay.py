@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from pathlib import Path
 
 import pytest
+from recordings import RECORDED, WANTED, write_bag
 
 from impact_predictor.bags.read import BagMessage, read_messages, topics
 from impact_predictor.bags.replay import Result, remapping, replay
-from impact_predictor.bags.write import BagWriter
 from impact_predictor.errors import InputError
 from impact_predictor.mechanics.types import Mode
 from impact_predictor.parameters.file import read_parameters
@@ -22,7 +21,6 @@ from impact_predictor.ros.messages import (
     DIAGNOSTIC_ARRAY,
     ODOMETRY,
     OUTPUTS,
-    POLYGON,
     UINT8,
     decode_odometry,
     decode_polygon,
@@ -30,8 +28,6 @@ from impact_predictor.ros.messages import (
 from impact_predictor.scenarios.truth import TRUTH_TOPIC, TrueImpact, encode_true_impact
 
 ROOT = Path(__file__).parents[2]
-RECORDED = ROOT / "examples/cube_tosses/cube_tosses.mcap"
-WANTED = {"/cube/odom": ODOMETRY, "/cube/contact_geometry": POLYGON}
 END = 75_000_000_000
 """Log time in ns that ends the excerpt: four tosses."""
 TWIST_OFFSET = -8 * 36 - 8
@@ -58,13 +54,6 @@ def messages() -> list[BagMessage]:
 @pytest.fixture(scope="module")
 def bag(tmp_path_factory: pytest.TempPathFactory, messages: list[BagMessage]) -> Path:
     return write_bag(tmp_path_factory.mktemp("excerpt") / "tosses.mcap", messages)
-
-
-def write_bag(path: Path, messages: Iterable[BagMessage], types: dict[str, str] = WANTED) -> Path:
-    with BagWriter(path) as writer:
-        for topic, log_time, data in messages:
-            writer.write(topic, types[topic], log_time, data)
-    return path
 
 
 def read_outputs(path: Path) -> list[Output]:

@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from recordings import write_bag
 
 from impact_predictor.bags.read import BagMessage, read_messages, topics
 from impact_predictor.bags.replay import Result, replay
-from impact_predictor.bags.write import BagWriter
 from impact_predictor.mechanics.types import Mode
 from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction.monitor import Monitor
@@ -115,13 +115,6 @@ def recorded() -> Iterator[BagMessage]:
         yield BagMessage("/falling/odom", log_time, encode_odometry(aboard(time, "falling", *falls(time))))
 
 
-def write_bag(path: Path, messages: Iterator[BagMessage] | list[BagMessage]) -> Path:
-    with BagWriter(path) as writer:
-        for topic, log_time, data in messages:
-            writer.write(topic, TYPES[topic], log_time, data)
-    return path
-
-
 @pytest.fixture(scope="module")
 def scenes() -> dict[str, Scene]:
     return scenes_of(validate(CARGO))
@@ -129,7 +122,7 @@ def scenes() -> dict[str, Scene]:
 
 @pytest.fixture(scope="module")
 def bag(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return write_bag(tmp_path_factory.mktemp("cargo") / "cargo.mcap", recorded())
+    return write_bag(tmp_path_factory.mktemp("cargo") / "cargo.mcap", recorded(), TYPES)
 
 
 @pytest.fixture(scope="module")
@@ -219,7 +212,7 @@ def test_only_what_the_scene_needs_is_read(tmp_path: Path, bag: Path, scenes: di
 
 def test_a_body_that_is_not_in_the_bag_is_named_and_never_ok(tmp_path: Path, scenes: dict[str, Scene]) -> None:
     others = [message for message in recorded() if message.topic != "/crate/odom"]
-    path = write_bag(tmp_path / "bag.mcap", others)
+    path = write_bag(tmp_path / "bag.mcap", others, TYPES)
     result = replay(path, scenes, output=tmp_path / "out.mcap")
     assert result.notes == (f"{path} has no crate/odom: nothing is predicted there",)
     for message in read(tmp_path / "out.mcap", "/diagnostics"):
@@ -229,7 +222,7 @@ def test_a_body_that_is_not_in_the_bag_is_named_and_never_ok(tmp_path: Path, sce
 
 def test_a_deck_that_is_never_accepted_leaves_nothing_to_predict(tmp_path: Path, scenes: dict[str, Scene]) -> None:
     broken = [message._replace(data=b"x") if message.topic == "/support/odom" else message for message in recorded()]
-    result = replay(write_bag(tmp_path / "bag.mcap", broken), scenes)
+    result = replay(write_bag(tmp_path / "bag.mcap", broken, TYPES), scenes)
     assert result.inputs["support/odom"] == {Status.MALFORMED: END}
     assert "840 of 840 messages on /crate/odom, /falling/odom, /leaning/imu are NO_SUPPORT: " in result.unpredictable
 
@@ -253,7 +246,7 @@ def test_the_truth_is_compared_for_each_body_and_says_who_was_warned(
         BagMessage(ONSET_TOPIC, onset.stamp, encode_true_onset(onset, "deck")),
     ]
     messages = sorted([*recorded(), *told], key=lambda message: message.log_time)
-    known = replay(write_bag(tmp_path / "known.mcap", messages), scenes)
+    known = replay(write_bag(tmp_path / "known.mcap", messages, TYPES), scenes)
     assert known.truth is not None
     assert (known.truth.touchdowns, known.truth.missed) == (3, 1)
     assert set(known.truths) == set(CARGO["bodies"])

@@ -92,6 +92,8 @@ def rows_of(text: str, body: str) -> list[list[str]]:
 def test_several_bodies_have_tables_of_their_own(width: int) -> None:
     text = printed(CARGO, width)
     assert "…" not in text
+    assert "\n\n\n" not in text
+    assert "No touchdown was predicted." in text
     assert rows_of(text, "crate") == [
         ["1,000", "0", "-", "-"],
         ["47_of_50", "1", "98.0", "0.5", "11_of_12", "2.0"],
@@ -124,6 +126,7 @@ def test_what_comes_before_the_deck_is_known_is_no_fault_of_the_samples() -> Non
     early = {"crate/odom": {Status.ACCEPTED: 5, Status.NO_SUPPORT: 1}}
     text = printed(CARGO._replace(statuses=early["crate/odom"], inputs=early))
     assert "1 sample came before" in text
+    # What no body has takes no column.
     assert "refused" not in text.lower()
 
 
@@ -135,19 +138,6 @@ def test_a_sample_before_the_first_contact_points_is_not_told_as_an_error() -> N
     none = {"odom": {Status.NO_GEOMETRY: 6}}
     text = printed(CARGO._replace(truth=None, truths={}, statuses=none["odom"], inputs=none))
     assert "Refused samples: 6 no geometry." in text
-
-
-def test_where_nothing_is_listed_no_empty_lines_follow_each_other() -> None:
-    text = printed(CARGO)
-    assert "\n\n\n" not in text
-    assert "No touchdown was predicted." in text
-
-
-def test_what_no_body_has_takes_no_column() -> None:
-    plain = CARGO._replace(truth=None, truths={}, inputs={"crate/odom": {Status.ACCEPTED: 5}})
-    lines = printed(plain).splitlines()
-    assert any(line.split() == ["crate", "5", "-", "-"] for line in lines)
-    assert "refused" not in printed(plain)
 
 
 def test_what_was_refused_of_every_input_is_said() -> None:
