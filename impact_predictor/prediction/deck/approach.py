@@ -16,7 +16,7 @@ from __future__ import annotations
 from math import cos, floor, hypot, inf, pi
 
 from ...mechanics.motion import Fall, MotionKind, PlanarState, next_strike
-from ...mechanics.motion.support import FrameAcceleration, at_place
+from ...mechanics.motion.support import FrameAcceleration
 from ...mechanics.types import Contact, TwoPointBody
 from ..planar import ORIGIN, ImpactPlane, Posture, center_of
 from ..scene import Scene
@@ -31,10 +31,8 @@ APART = 1e-6
 PART = 0.25
 """Length in s of one polynomial."""
 
-NODES = tuple(cos(k * pi / 14.0) for k in (5, 3, 1))
-"""The nodes of a polynomial on -1..1, Chebyshev's: 0, and these on both sides."""
-
-SQUARES = tuple(node * node for node in NODES)
+NODES = tuple(cos((k + 0.5) * pi / 7.0) for k in range(7))
+"""The nodes of a polynomial on -1..1, Chebyshev's."""
 
 
 class PlanarSupport:
@@ -66,7 +64,12 @@ class PlanarSupport:
         part = self._parts.get(number)
         if part is None:
             part = self._parts[number] = self._fit((number + 0.5) * PART)
-        return at_place(part, (time / PART - number) * 2.0 - 1.0)
+        place = (time / PART - number) * 2.0 - 1.0
+        x = y = w = a = 0.0
+        for (cx, cy, cw, ca), node in zip(part, NODES, strict=True):
+            s = place - node
+            x, y, w, a = x * s + cx, y * s + cy, w * s + cw, a * s + ca
+        return x, y, w, a
 
     def felt_exactly(self, time: float) -> FrameAcceleration:
         felt = self._later(time - self._age)
@@ -75,28 +78,15 @@ class PlanarSupport:
         return dot(self._ahead, pull), dot(self._normal, pull), -dot(axis, felt.angular), -dot(axis, felt.turning)
 
     def _fit(self, middle: float) -> tuple[FrameAcceleration, ...]:
-        """Coefficients of the polynomials about the middle of a part, the highest power first."""
-        half, felt = 0.5 * PART, self.felt_exactly
-        steps = [half * node for node in NODES]
-        here = felt(middle)
-        sides = zip(
-            here, *[felt(middle + step) for step in steps], *[felt(middle - step) for step in steps], strict=True
-        )
+        """Coefficients of the polynomials about the middle of a part, the last first: Newton's divided differences."""
         columns = []
-        for f, *values in sides:
-            pairs = list(zip(values[:3], values[3:], NODES, SQUARES, strict=True))
-            odd = parabola([0.5 * (up - down) / node for up, down, node, _ in pairs])
-            even = parabola([(0.5 * (up + down) - f) / square for up, down, _, square in pairs])
-            columns.append((even[0], odd[0], even[1], odd[1], even[2], odd[2], f))
+        for values in zip(*[self.felt_exactly(middle + 0.5 * PART * node) for node in NODES[::-1]], strict=True):
+            column = list(values)
+            for k in range(1, len(NODES)):
+                for i in range(len(NODES) - 1, k - 1, -1):
+                    column[i] = (column[i] - column[i - 1]) / (NODES[-1 - i] - NODES[k - 1 - i])
+            columns.append(column[::-1])
         return tuple(zip(*columns, strict=True))
-
-
-def parabola(values: list[float]) -> tuple[float, float, float]:
-    """Coefficients of the parabola with these values at `SQUARES`, the highest power first."""
-    (first, second, third), (a, b, c) = values, SQUARES
-    slope = (second - first) / (b - a)
-    bend = ((third - second) / (c - b) - slope) / (c - a)
-    return bend, slope - bend * (a + b), first - a * (slope - bend * b)
 
 
 def gravity_over(scene: Scene, moment: Moment, sample: Sample, posture: Posture) -> Vector3:
@@ -130,14 +120,14 @@ def fall_over(
     support = PlanarSupport(moment, age, place, ahead, scene.normal, dot(plane.axis, posture.velocity))
     new = Contact(*plane.new, scene.friction)
     duration = scene.horizon + age
-    if plane.old is None:
-        fall = next_strike(TwoPointBody(scene.mass, inertia, None, new), start, None, support, duration)
-        return never(start) if fall is None else fall._replace(point=0)
-    old = Contact(*plane.old, scene.friction)
-    fall = None
-    if hypot(new.x - old.x, new.y - old.y) > APART * (hypot(new.x, new.y) + hypot(old.x, old.y)):
-        fall = next_strike(TwoPointBody(scene.mass, inertia, old, new), start, 0, support, duration)
-    return never(start) if fall is None else fall
+    old = None if plane.old is None else Contact(*plane.old, scene.friction)
+    if old and hypot(new.x - old.x, new.y - old.y) <= APART * (hypot(new.x, new.y) + hypot(old.x, old.y)):
+        return never(start)
+    body = TwoPointBody(scene.mass, inertia, old, new)
+    fall = next_strike(body, start, None if old is None else 0, support, duration)
+    if fall is None:
+        return never(start)
+    return fall if old else fall._replace(point=0)
 
 
 def never(state: PlanarState) -> Fall:

@@ -28,16 +28,12 @@ def seen_from(moment: Moment, frame: str, sample: Sample) -> Sample | None:
     orientation = composed((-x, -y, -z, w), sample.orientation)
     axes = axes_of(orientation)
     spin = moment.felt.angular
-    return Sample(
-        sample.stamp,
-        moment.child_frame_id,
-        sample.child_frame_id,
-        place,
-        orientation,
-        add(sample.linear, to_body(axes, add(moment.linear, cross(spin, place))), -1.0),
-        add(sample.angular, to_body(axes, spin), -1.0),
-        sample.pose_covariance,
-        sample.twist_covariance,
+    return sample._replace(
+        frame_id=moment.child_frame_id,
+        position=place,
+        orientation=orientation,
+        linear=add(sample.linear, to_body(axes, add(moment.linear, cross(spin, place))), -1.0),
+        angular=add(sample.angular, to_body(axes, spin), -1.0),
     )
 
 

@@ -213,7 +213,12 @@ class WatchedBody:
             found.append("has toppled: it lies on another side")
         if standing.motion is BodyMotion.ROCKS:
             tilt = "" if standing.tilt is None else f", tilted by {degrees(standing.tilt):.1f} degrees"
-            found.append(standing.motion.value + tilt + self._short_of_toppling(outlook))
+            left, edge, short = outlook.barrier - standing.kinetic, outlook.barrier_edge, ""
+            if used is not None and edge and left > 0.0:
+                short = f", {left:.3g} J short of toppling over its {edge} edge"
+            elif used is not None and edge:
+                short = f", would topple over its {edge} edge if the deck stayed so"
+            found.append(standing.motion.value + tilt + short)
         elif standing.motion is BodyMotion.LIFTS:
             found.append(standing.motion.value)
         if standing.slid:
@@ -222,21 +227,11 @@ class WatchedBody:
             time, mode = outlook.strikes
             found.append(f"strikes in {time:.2f} s: {mode.name}")
         if used is not None:
-            tips, _, slides, _ = self._verbs
-            for part, time, verb in (
-                (used.tip, outlook.time_to_tip, tips),
-                (used.slide, outlook.time_to_slide, slides),
-            ):
+            times = outlook.time_to_tip, outlook.time_to_slide
+            for part, time, verb in zip((used.tip, used.slide), times, self._verbs[::2], strict=True):
                 if part < 1.0 and 0.0 < time < inf:
                     found.append(f"{verb} in {time:.1f} s if the deck goes on so")
         return found
-
-    def past_reason(self) -> str:
-        """Why its level rose, in words."""
-        words = [self.why] if self.why else []
-        if max(self.top.tip, self.top.slide) >= self.watching.warn:
-            words.append(self._margins(self.top))
-        return "; ".join(words)
 
     def message(self, outlook: BodyOutlook, held: float | None) -> str:
         """The message of a report; `held` is how long ago (s) the level was raised, where nothing justifies it now."""
@@ -248,7 +243,12 @@ class WatchedBody:
             words.append("weighs nothing on the deck: it lifts off")
         elif used is not None:
             words.append(self._margins(used))
-        past = "" if held is None else f" ({held:.1f} s ago: {self.past_reason()})"
+        past = ""
+        if held is not None:
+            rose = [self.why] if self.why else []
+            if max(self.top.tip, self.top.slide) >= self.watching.warn:
+                rose.append(self._margins(self.top))
+            past = f" ({held:.1f} s ago: {'; '.join(rose)})"
         return "; ".join(words) + past
 
     def values(self, outlook: BodyOutlook, per_hour: tuple[float, float, float]) -> dict[str, str]:
@@ -288,14 +288,6 @@ class WatchedBody:
             found.append((part, (does if part >= 1.0 else near + doing) + where))
         (first, what), (second, other) = sorted(found, key=lambda one: -one[0])
         return f"{what}: {first:.2f} of the margin used; {other}: {second:.2f}"
-
-    def _short_of_toppling(self, outlook: BodyOutlook) -> str:
-        if outlook.used is None or not outlook.barrier_edge:
-            return ""
-        energy = outlook.barrier - self.standing.kinetic
-        if energy > 0.0:
-            return f", {energy:.3g} J short of toppling over its {outlook.barrier_edge} edge"
-        return f", would topple over its {outlook.barrier_edge} edge if the deck stayed so"
 
 
 def rank_of(status: Status) -> int:

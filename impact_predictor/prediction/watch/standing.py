@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from enum import Enum
-from math import acos, hypot, sqrt
+from math import acos, dist, hypot, sqrt
 from typing import Final
 
 from ..planar import edge_of
@@ -78,14 +78,11 @@ class Standing:
     def update(self, sample: Sample) -> bool:
         """Take a sample relative to the support; whether the stance has changed."""
         pose = BodyPose(sample.position, axes_of(sample.orientation))
-        feet = [pose.place(foot) for foot in self._feet]
-        gaps = self._gaps(pose, feet)
-        lowest, highest = min(gaps), max(gaps)
-        if not self._scene.radius and (not self._seen or highest - lowest > self._clear):
+        feet, gaps = self._gaps(pose)
+        if not self._scene.radius and (not self._seen or max(gaps) - min(gaps) > self._clear):
             if self._lies_otherwise(pose):
-                feet = [pose.place(foot) for foot in self._feet]
-                gaps = self._gaps(pose, feet)
-                lowest, highest = min(gaps), max(gaps)
+                feet, gaps = self._gaps(pose)
+        lowest, highest = min(gaps), max(gaps)
         self._seen = True
         self.tilt = self._tilt_of(pose)
         self.slid = ""
@@ -157,17 +154,13 @@ class Standing:
         highest = min(heights) + self._touch
         return [point for point, height in zip(points, heights, strict=True) if height <= highest]
 
-    def _gaps(self, pose: BodyPose, feet: list[Vector3]) -> list[float]:
-        """How far the feet are from the support, or a cylinder from its edges, in m."""
-        scene = self._scene
+    def _gaps(self, pose: BodyPose) -> tuple[list[Vector3], list[float]]:
+        """The feet, and how far they are from the support, or a cylinder from its edges, in m."""
+        scene, feet = self._scene, [pose.place(foot) for foot in self._feet]
         if not scene.radius:
-            return [dot(scene.normal, foot) - scene.height for foot in feet] or [0.0]
+            return feet, [dot(scene.normal, foot) - scene.height for foot in feet] or [0.0]
         center = pose.place(scene.center_of_mass)
-        gaps = []
-        for edge in scene.edges:
-            arm = add(center, edge, -1.0)
-            gaps.append(hypot(*add(arm, self._axis, -dot(arm, self._axis))) - scene.radius)
-        return gaps
+        return feet, [dist(center, self._at_center(edge, pose)) - scene.radius for edge in scene.edges]
 
     def _tilt_of(self, pose: BodyPose) -> float:
         cosine = dot(self._up, to_body(pose.axes, self._scene.normal))
@@ -271,9 +264,4 @@ class Standing:
 
 def _within(points: list[Vector3], others: list[Vector3], distance: float) -> bool:
     """Whether each point is within a distance in m from its counterpart."""
-    square = distance * distance
-    for (ax, ay, az), (bx, by, bz) in zip(points, others, strict=True):
-        x, y, z = ax - bx, ay - by, az - bz
-        if x * x + y * y + z * z > square:
-            return False
-    return True
+    return all(dist(point, other) <= distance for point, other in zip(points, others, strict=True))

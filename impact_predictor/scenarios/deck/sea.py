@@ -8,7 +8,7 @@ wave height and peak period. Angular frequencies in rad/s, one-sided densities i
 
 from __future__ import annotations
 
-from math import log, pi, sqrt
+from math import log, pi
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -48,11 +48,6 @@ class Waves(NamedTuple):
     frequencies: NDArray[np.float64]
     amplitudes: NDArray[np.float64]
     phases: NDArray[np.float64]
-
-    @property
-    def significant_height(self) -> float:
-        """4 sqrt(m0) in m, m0 the variance of the surface."""
-        return 4.0 * sqrt(0.5 * float(self.amplitudes @ self.amplitudes))
 
 
 def density(state: SeaState, frequencies: NDArray[np.float64]) -> NDArray[np.float64]:
