@@ -14,14 +14,15 @@ rotation
 from __future__ import annotations
 
 from math import cos, floor, hypot, inf, pi
+from operator import mul
 
 from ...mechanics.motion import Fall, MotionKind, PlanarState, next_strike
-from ...mechanics.motion.support import FrameAcceleration
+from ...mechanics.motion.support import FrameAcceleration, at_place
 from ...mechanics.types import Contact, TwoPointBody
 from ..planar import ORIGIN, ImpactPlane, Posture, center_of
 from ..scene import Scene
 from ..types import Moment, Sample, Vector3
-from ..vectors import add, cross, dot, times, to_world
+from ..vectors import add, cross, dot, times, to_world, total
 from .frame import pull_at
 
 APART = 1e-6
@@ -33,6 +34,19 @@ PART = 0.25
 
 NODES = tuple(cos((k + 0.5) * pi / 7.0) for k in range(7))
 """The nodes of a polynomial on -1..1, Chebyshev's."""
+
+
+def lagrange(node: float) -> list[float]:
+    """Coefficients of the polynomial that is 1 at one of the nodes and 0 at the others, the highest power first."""
+    row = [1.0]
+    for other in NODES:
+        if other != node:
+            row = [(up - other * low) / (node - other) for up, low in zip([*row, 0.0], [0.0, *row], strict=True)]
+    return row
+
+
+POWERS = tuple(zip(*map(lagrange, NODES), strict=True))
+"""What the values at the nodes count in the coefficient of each power."""
 
 
 class PlanarSupport:
@@ -64,12 +78,7 @@ class PlanarSupport:
         part = self._parts.get(number)
         if part is None:
             part = self._parts[number] = self._fit((number + 0.5) * PART)
-        place = (time / PART - number) * 2.0 - 1.0
-        x = y = w = a = 0.0
-        for (cx, cy, cw, ca), node in zip(part, NODES, strict=True):
-            s = place - node
-            x, y, w, a = x * s + cx, y * s + cy, w * s + cw, a * s + ca
-        return x, y, w, a
+        return at_place(part, (time / PART - number) * 2.0 - 1.0)
 
     def felt_exactly(self, time: float) -> FrameAcceleration:
         felt = self._later(time - self._age)
@@ -78,15 +87,18 @@ class PlanarSupport:
         return dot(self._ahead, pull), dot(self._normal, pull), -dot(axis, felt.angular), -dot(axis, felt.turning)
 
     def _fit(self, middle: float) -> tuple[FrameAcceleration, ...]:
-        """Coefficients of the polynomials about the middle of a part, the last first: Newton's divided differences."""
-        columns = []
-        for values in zip(*[self.felt_exactly(middle + 0.5 * PART * node) for node in NODES[::-1]], strict=True):
-            column = list(values)
-            for k in range(1, len(NODES)):
-                for i in range(len(NODES) - 1, k - 1, -1):
-                    column[i] = (column[i] - column[i - 1]) / (NODES[-1 - i] - NODES[k - 1 - i])
-            columns.append(column[::-1])
-        return tuple(zip(*columns, strict=True))
+        """Coefficients of the polynomials about the middle of a part, the highest power first."""
+        values = [self.felt_exactly(middle + 0.5 * PART * node) for node in NODES]
+        x, y, rate, turning = zip(*values, strict=True)
+        return tuple(
+            (
+                total(map(mul, weights, x)),
+                total(map(mul, weights, y)),
+                total(map(mul, weights, rate)),
+                total(map(mul, weights, turning)),
+            )
+            for weights in POWERS
+        )
 
 
 def gravity_over(scene: Scene, moment: Moment, sample: Sample, posture: Posture) -> Vector3:
