@@ -9,15 +9,15 @@ from typing import Any
 
 import pytest
 from click.testing import CliRunner, Result
+from records import impacts_of, samples_of
 
-from impact_predictor.bags.read import read_messages, topics
+from impact_predictor.bags.read import topics
 from impact_predictor.cli import main
 from impact_predictor.commands.simulate_deck import EXAMPLES, SCENE
 from impact_predictor.parameters.file import read_values
 from impact_predictor.prediction.scene import Scene, scenes_of
-from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY, ODOMETRY, decode_odometry
+from impact_predictor.ros.messages import ODOMETRY
 from impact_predictor.scenarios.deck.cargo import units_of
-from impact_predictor.scenarios.truth import TRUTH_TOPIC, decode_true_impacts
 
 ROOT = Path(__file__).parents[1]
 SCENES = ("deck_crate.yaml", "deck_drum.yaml", "deck_many.yaml")
@@ -106,13 +106,8 @@ def test_the_bag_is_that_of_the_default_scene_and_its_truth() -> None:
     assert result.stdout.splitlines()[-1] == "Bag: crate.mcap"
     found = topics("crate.mcap")
     assert found["/odom"] == found["/support/odom"] == ODOMETRY
-    count = {topic: len(list(read_messages("crate.mcap", {topic: ODOMETRY}))) for topic in ("/odom", "/support/odom")}
-    assert count == {"/odom": 601, "/support/odom": 1201}
-    told = [
-        impact
-        for message in read_messages("crate.mcap", {TRUTH_TOPIC: DIAGNOSTIC_ARRAY})
-        for impact in decode_true_impacts(message.data)
-    ]
+    assert [len(samples_of("crate.mcap", topic)) for topic in ("/odom", "/support/odom")] == [601, 1201]
+    told = impacts_of("crate.mcap")
     answer = simulated("--duration", "30", "--hs", "1.8")
     assert [impact.stamp / 1e9 for impact in told] == [impact["time"] for impact in answer["impacts"]]
     assert [impact.mode.name for impact in told] == [impact["mode"] for impact in answer["impacts"]]
@@ -168,10 +163,7 @@ def test_compliant_contacts_tell_impacts_too() -> None:
 def test_the_noise_is_that_of_the_options() -> None:
     for name, options in (("one", []), ("two", ["--noise-position", "0.05"])):
         assert run("--duration", "10", "-o", name, *options).exit_code == 0
-    places = [
-        [decode_odometry(message.data).position[0] for message in read_messages(name, {"/odom": ODOMETRY})]
-        for name in ("one", "two")
-    ]
+    places = [[sample.position[0] for sample in samples_of(name)] for name in ("one", "two")]
     apart = [one - two for one, two in zip(*places, strict=True)]
     assert (sum(part * part for part in apart) / len(apart)) ** 0.5 == pytest.approx(0.05, rel=0.15)
 

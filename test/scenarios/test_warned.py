@@ -35,50 +35,43 @@ def lift(stamp: int) -> TrueOnset:
     return TrueOnset(stamp, "crate", slides=False, lifts=True)
 
 
-def test_the_first_warning_and_the_first_events_are_told() -> None:
-    warned = reported(OK, OK, WARN, ERROR).of("crate", [impact(9), impact(7)], [slide(8), slide(6), lift(5)])
-    assert warned == Warned(0, 2, 6, 7, 5, warned_ahead=4e-9, events=1, events_warned=1)
-    assert (warned.first_event, warned.before_first_impact) == (6, True)
+FOUND = {"events": 1, "events_warned": 1}
+
+
+@pytest.mark.parametrize(
+    ("levels", "impacts", "onsets", "expected"),
+    [
+        ((OK, OK, WARN, ERROR), [9, 7], [slide(8), slide(6), lift(5)], Warned(0, 2, 6, 7, 5, 4e-9, **FOUND)),
+        # It did not stand until then.
+        ((OK, WARN, OK, OK), [5], [], Warned(0, 1, None, 5, events=1)),
+        ((OK, WARN, STALE, OK), [5], [], Warned(0, 1, None, 5, events=1)),
+        # It is as old as its last beginning, and ends after the event.
+        ((OK, WARN, OK, OK, WARN, ERROR, WARN), [8], [], Warned(0, 1, None, 8, None, 4e-9, **FOUND)),
+        ((OK, WARN, WARN, WARN, OK), [3], [], Warned(0, 1, None, 3, None, 2e-9, **FOUND)),
+        # That something is not known is no warning, and what happened before anything was known does not count.
+        ((OK, STALE, STALE), [3], [], Warned(0, None, None, 3, events=1)),
+        ((STALE, OK, WARN), [0, 5 + APART], [slide(0)], Warned(1, 2, None, 5 + APART, None, 5.000000003, **FOUND)),
+        ((STALE, STALE), [1], [], Warned(None, None, None, None)),
+        # It only lifts, or nothing happens.
+        ((OK, WARN), [], [lift(3)], Warned(0, 1, None, None, 3, 2e-9, **FOUND)),
+        ((OK, WARN), [], [], Warned(0, 1, None, None)),
+    ],
+)
+def test_the_first_warning_and_the_first_events_are_told(
+    levels: tuple[Level, ...], impacts: list[int], onsets: list[TrueOnset], expected: Warned
+) -> None:
+    assert reported(*levels).of("crate", map(impact, impacts), onsets) == expected
+
+
+def test_the_first_event_is_a_slide_or_an_impact_and_a_lift_where_there_is_neither() -> None:
+    events = Warned(0, 2, 6, 7, 5, 4e-9), Warned(0, 1, None, None, 3, 2e-9)
+    assert [(one.first_event, one.before_first_impact) for one in events] == [(6, True), (3, None)]
 
 
 @pytest.mark.parametrize(("happened", "answer"), [(2, False), (3, True)])
 def test_a_warning_comes_before_what_it_warns_of(happened: int, answer: bool) -> None:
     assert reported(OK, OK, WARN).of("crate", [impact(happened)], []).before_first_impact is answer
     assert reported(OK, OK, WARN).of("crate", [], [slide(happened)]).before_first_impact is answer
-
-
-@pytest.mark.parametrize("other", [OK, STALE])
-def test_a_warning_that_did_not_stand_until_then_does_not_count(other: Level) -> None:
-    warned = reported(OK, WARN, other, OK).of("crate", [impact(5)], [])
-    assert (warned.first_warning, warned.warned_ahead, warned.before_first_impact) == (1, None, False)
-    assert (warned.events, warned.events_warned) == (1, 0)
-
-
-def test_a_warning_is_as_old_as_its_last_beginning() -> None:
-    warned = reported(OK, WARN, OK, OK, WARN, ERROR, WARN).of("crate", [impact(8)], [])
-    assert (warned.first_warning, warned.warned_ahead) == (1, 4e-9)
-
-
-def test_a_warning_that_ends_after_the_event_counts() -> None:
-    assert reported(OK, WARN, WARN, WARN, OK).of("crate", [impact(3)], []).warned_ahead == 2e-9
-
-
-def test_that_something_is_not_known_is_no_warning() -> None:
-    assert reported(OK, STALE, STALE).of("crate", [impact(3)], []) == Warned(0, None, None, 3, events=1)
-    assert reported(OK, STALE).of("crate", [impact(3)], []).before_first_impact is False
-
-
-def test_what_happened_before_anything_was_known_does_not_count() -> None:
-    warned = reported(STALE, STALE, OK, WARN).of("crate", [impact(1), impact(5 + APART)], [slide(0)])
-    assert warned[:4] == (2, 3, None, 5 + APART)
-    assert (warned.events, warned.events_warned) == (1, 1)
-    assert reported(STALE, STALE).of("crate", [impact(1)], []) == Warned(None, None, None, None)
-
-
-def test_a_body_that_only_lifts_has_an_event_but_neither_slide_nor_impact() -> None:
-    warned = reported(OK, WARN).of("crate", [], [lift(3)])
-    assert warned == Warned(0, 1, None, None, 3, warned_ahead=2e-9, events=1, events_warned=1)
-    assert (warned.first_event, warned.before_first_impact) == (3, None)
 
 
 def test_what_follows_soon_is_the_same_event() -> None:
@@ -94,6 +87,5 @@ def test_each_event_is_looked_at_for_a_warning_of_its_own() -> None:
     assert (warned.events, warned.events_warned) == (3, 1)
 
 
-def test_where_nothing_happened_there_is_no_answer() -> None:
-    assert reported(OK, WARN).of("crate", [], []).before_first_impact is None
+def test_of_a_body_without_reports_nothing_is_known() -> None:
     assert reported(OK, WARN).of("drum", [], []) == Warned(None, None, None, None)
