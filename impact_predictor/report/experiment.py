@@ -36,9 +36,6 @@ THICKNESSES: Final = (0.020, 0.010, 0.005, 0.002)
 FARTHEST: Final = 0.2
 """m from the middle: the ends of the rod, where the farthest supports stood."""
 
-ANGLES: Final = (15.0, 30.0)
-"""degrees, the least and the greatest from which the rods were released at rest."""
-
 REBOUNDED: Final = 0.002
 """m, the thickness of the rod that rebounded from both supports wherever they were."""
 

@@ -12,7 +12,6 @@ from impact_predictor import Flag, Mode, rod
 from impact_predictor.cli import main
 from impact_predictor.report import experiment
 from impact_predictor.report.experiment import (
-    ANGLES,
     LENGTH,
     SYMMETRIC,
     THICKNESSES,
@@ -23,6 +22,9 @@ from impact_predictor.report.experiment import (
 )
 
 FRICTION = 0.4
+ANGLES = (15.0, 30.0)
+"""degrees, the least and the greatest from which the rods were released at rest."""
+
 DOUBTS = Flag.THIN_BODY | Flag.SLOW_IMPACT
 
 

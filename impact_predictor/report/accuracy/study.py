@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import platform
+import re
 from collections.abc import Callable, Iterator, Mapping
 from datetime import datetime, timezone
 from functools import partial
@@ -227,9 +228,6 @@ def installed(name: str) -> str:
 
 def processor() -> str:
     """The name of the processor, as far as the system tells it."""
-    try:
-        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
-    except OSError:
-        lines = []
-    names = (line.partition(":")[2].strip() for line in lines if line.startswith("model name"))
-    return next(names, platform.processor() or platform.machine())
+    file = Path("/proc/cpuinfo")
+    found = re.search(r"^model name\s*:\s*(.+)", file.read_text(encoding="utf-8") if file.exists() else "", re.M)
+    return found[1] if found else platform.processor() or platform.machine()
