@@ -16,7 +16,7 @@ from ..ros.messages import INPUT_TYPES
 from ..stamps import NANOSECONDS
 
 if TYPE_CHECKING:
-    from ..prediction.contacts import Contacts
+    from ..prediction.predictor import Contacts
     from .run import Run
 
 StatusCounts = Mapping[Status, int]

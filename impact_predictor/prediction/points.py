@@ -9,7 +9,6 @@ from ..mechanics.motion import PlanarState, next_touchdown
 from ..mechanics.types import Contact, TwoPointBody, Vector
 from ..stamps import NANOSECONDS
 from .checks import check_points
-from .contacts import DEEP, DEEP_TOLERANCES, Contacts
 from .impact import Collision, ImpactModel, collision_after
 from .planar import (
     ImpactPlane,
@@ -21,6 +20,7 @@ from .planar import (
     plane_of,
     posture_of,
 )
+from .predictor import DEEP, DEEP_TOLERANCES, Contacts
 from .scene import Scene
 from .score import Pending, Track
 from .types import Geometry, Joints, Moment, Sample, Schedule, Status, Touchdown, Vector3, Wrench

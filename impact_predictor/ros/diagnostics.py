@@ -14,7 +14,7 @@ from ..stamps import NANOSECONDS
 from .cdr import ERROR, OK, WARN, StatusBytes, diagnostic_status, pairs_of
 
 if TYPE_CHECKING:
-    from ..prediction.contacts import Contacts
+    from ..prediction.predictor import Contacts
 
 STALE_AFTER: Final = 1.0
 """Seconds without a sample after which the input counts as stale."""

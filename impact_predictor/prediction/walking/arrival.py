@@ -157,15 +157,9 @@ class ArrivalFit:
                 stamp = before + round(part * (frames[one.last + 1].stamp - before))
         velocity = frames[last].velocity
         if velocity is None and found is not None and found.places:
-            velocity = self._velocity(found, last)
+            # By the cubic through the frames up to the end of the air.
+            s = (frames[last].stamp - frames[0].stamp) / (SCALE * NANOSECONDS)
+            cubics = [solved(found.factor, along) for along in found.places]
+            x, y, z = [(b + s * (2.0 * c + 3.0 * d * s)) / SCALE for _, b, c, d in cubics]
+            velocity = x, y, z
         return Arrival(stamp, len(frames) - last, velocity)
-
-    def _velocity(self, between: ArrivalCandidate, last: int) -> Vector3:
-        """The velocity in a frame without velocities, by the cubic through those up to the end of the air."""
-        frames = self._frames
-        s = (frames[last].stamp - frames[0].stamp) / (SCALE * NANOSECONDS)
-        x, y, z = [
-            (b + s * (2.0 * c + 3.0 * d * s)) / SCALE
-            for _, b, c, d in [solved(between.factor, along) for along in between.places]
-        ]
-        return x, y, z

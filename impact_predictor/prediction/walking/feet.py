@@ -8,8 +8,8 @@ from operator import attrgetter
 
 from ...stamps import NANOSECONDS
 from ..checks import LARGEST, PAUSE, order_of
-from ..contacts import DEEP, DEEP_TOLERANCES, Contacts
 from ..planar import posture_of
+from ..predictor import DEEP, DEEP_TOLERANCES, Contacts
 from ..scene import Scene, Walking
 from ..score import MEASURED, Pending, Track
 from ..types import (

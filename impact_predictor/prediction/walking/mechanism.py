@@ -168,12 +168,7 @@ class RigidMachine:
         self._inverse_mass: list[list[float]] = rows.tolist()
 
     def response(
-        self,
-        old: tuple[int, ...],
-        new: tuple[int, ...],
-        normal: Vector3,
-        ahead: Vector3,
-        points: tuple[Vector3, ...],
+        self, old: tuple[int, ...], new: tuple[int, ...], normal: Vector3, ahead: Vector3, points: tuple[Vector3, ...]
     ) -> ImpulseResponse | Status:
         """The response at the mean of the `old` and at the mean of the `new` points, by their indices.
 
@@ -233,12 +228,7 @@ class ArticulatedMachine:
         return Geometry(joints.stamp, "", tuple(map(tuple, body.points.tolist())), tuple(map(tuple, moving)))
 
     def response(
-        self,
-        old: tuple[int, ...],
-        new: tuple[int, ...],
-        normal: Vector3,
-        ahead: Vector3,
-        points: tuple[Vector3, ...],
+        self, old: tuple[int, ...], new: tuple[int, ...], normal: Vector3, ahead: Vector3, points: tuple[Vector3, ...]
     ) -> ImpulseResponse | Status:
         """See `RigidMachine`; the `points` are the model's own, at the last joint positions."""
         if self._status is not Status.ACCEPTED:
