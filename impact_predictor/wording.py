@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Final
 
 NONE: Final = "-"
@@ -11,6 +12,13 @@ NONE: Final = "-"
 def counted(number: int, noun: str) -> str:
     """A number of things, in words that fit one of them and many."""
     return f"{number:,} {noun}" if number == 1 else f"{number:,} {noun}s"
+
+
+def listed(names: Sequence[str], most: int = 20, last: str = "") -> str:
+    """Some names as a part of a sentence, at most so many of them; `last` stands before the last one, as "and"."""
+    if len(names) > most:
+        return f"{', '.join(names[:most])} and {len(names) - most:,} more"
+    return ", ".join(names) if not last or len(names) < 2 else f"{', '.join(names[:-1])} {last} {names[-1]}"
 
 
 def words(name: str) -> str:

@@ -9,12 +9,11 @@ from typing import Final
 from ..errors import InputError
 from ..prediction.scene import CONTACT_GEOMETRY, IMU, JOINTS, ODOM, STATES, Input
 from ..ros.messages import INPUT_TYPES
+from ..wording import listed
 from .read import listing
 
 GUESSED: Final = (ODOM, IMU, CONTACT_GEOMETRY, JOINTS)
 """Kinds of inputs that the only topic of their type is taken for; trajectories and wrenches may be of anything."""
-
-_MOST_NAMED: Final = 20
 
 
 def remapping(rules: Iterable[str]) -> dict[str, str]:
@@ -79,12 +78,12 @@ def find_topics(
         notes.append(f"in {os.fspath(path)}, took {took}: there is no other of the type")
     if adapted:
         adapting = [
-            f"{topic} as {_listing([one.name for one in inputs if adapted.get(one) == topic], 'and')}"
+            f"{topic} as {listed([one.name for one in inputs if adapted.get(one) == topic], last='and')}"
             for topic in dict.fromkeys(adapted.values())
         ]
         notes.append(f"in {os.fspath(path)}, took {', '.join(adapting)}: its messages have an adapter")
     if missing and len(missing) < len(states):
-        names = _listing([one.name for one in missing], "and")
+        names = listed([one.name for one in missing], last="and")
         notes.append(f"{os.fspath(path)} has no {names}: nothing is predicted there")
     return {one: found[one] for one in inputs if one in found}, tuple(notes)
 
@@ -141,19 +140,19 @@ def _remapped(inputs: Sequence[Input], remap: Mapping[str, str]) -> dict[Input, 
         if relative in by_name:
             found[by_name[relative]] = "/" + topic.removeprefix("/")
         elif relative not in unused:
-            names = _listing(list(dict.fromkeys([*by_name, *unused])), "and")
+            names = listed(list(dict.fromkeys([*by_name, *unused])), last="and")
             raise InputError(f"the remapping {name}:={topic} is of no input; the inputs are {names}")
     return found
 
 
 def _ambiguous(path: str | os.PathLike[str], free: Sequence[str], one: Input) -> str:
-    could = f"{len(free)} topics that could be {one.name}: {_listing(free)}"
+    could = f"{len(free)} topics that could be {one.name}: {listed(free)}"
     return f"{os.fspath(path)} has {could}; choose one: --remap {one.name}:={free[0]}"
 
 
 def _untold(path: str | os.PathLike[str], recorded: Mapping[str, str], inputs: Sequence[Input]) -> str:
     """That no topic is told to be the support, or none to be any of the bodies on it, and what there is."""
-    names = _listing([one.name for one in inputs], "or")
+    names = listed([one.name for one in inputs], last="or")
     what = "the deck" if inputs[0].body is None else "a unit"
     there = listing(recorded, _type(inputs[0]))
     return (
@@ -169,12 +168,3 @@ def _check_distinct(found: Mapping[Input, str], adapted: Collection[str]) -> Non
         first = by_topic.setdefault(topic, one)
         if first is not one and not (topic in adapted and first.body == one.body):
             raise InputError(f"{first.name} and {one.name} cannot both be {topic}; remap one of them to another topic")
-
-
-def _listing(names: Sequence[str], last: str = "") -> str:
-    """Some names as a part of a sentence."""
-    if len(names) > _MOST_NAMED:
-        return f"{', '.join(names[:_MOST_NAMED])} and {len(names) - _MOST_NAMED} more"
-    if not last or len(names) < 2:
-        return ", ".join(names)
-    return f"{', '.join(names[:-1])} {last} {names[-1]}"

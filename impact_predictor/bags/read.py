@@ -12,7 +12,7 @@ from typing import Any, Final, NamedTuple
 
 from ..errors import InputError
 from ..ros.messages import MalformedMessage
-from ..wording import counted
+from ..wording import counted, listed
 from .chunks import UNKNOWN, ZSTD_MAGIC, BagChannel, Flaw, decompress_file, decompressed_message
 from .find import COMPRESSED, files_of, storage_of
 from .mcap_file import McapFile
@@ -26,8 +26,6 @@ _REPAIRS: Final = {
     ".mcap": "repair a copy with `mcap recover`",
     ".bag": "repair a copy with `rosbag reindex`",
 }
-
-_MOST_TOPICS_NAMED: Final = 20
 
 
 class UnusableMessage(MalformedMessage):
@@ -255,9 +253,7 @@ def listing(types: Mapping[str, str], type_name: str) -> str:
     if not types:
         return "no topics at all"
     ordered = sorted(types, key=lambda topic: types[topic] != type_name)
-    named = ", ".join(f"{topic} ({types[topic] or 'no type'})" for topic in ordered[:_MOST_TOPICS_NAMED])
-    more = len(ordered) - _MOST_TOPICS_NAMED
-    return named if more <= 0 else f"{named} and {more} more"
+    return listed([f"{topic} ({types[topic] or 'no type'})" for topic in ordered])
 
 
 def _is_wanted(channel: BagChannel, wanted: Mapping[str, str]) -> bool:

@@ -14,6 +14,7 @@ from ..prediction.types import Geometry, Joints, Prediction, Sample, Status, Vec
 from ..prediction.vectors import add, axes_of, dot, to_world
 from ..ros.messages import INPUT_TYPES
 from ..stamps import NANOSECONDS
+from ..wording import listed
 
 if TYPE_CHECKING:
     from ..prediction.predictor import Contacts
@@ -227,7 +228,8 @@ class ContactPoints:
         """What is left out of the messages, and what speaks against the scene although they fit it."""
         said = []
         if self._left_out:
-            said.append(f"robot.urdf does not know {some(self._left_out)}, so what is told of these joints is left out")
+            unknown = listed(self._left_out, _MOST_NAMED)
+            said.append(f"robot.urdf does not know {unknown}, so what is told of these joints is left out")
         near = NEAR * self._scene.tolerance
         if near < self._nearest < inf:
             said.append(f"no foot came nearer to the ground than {self._nearest:.3g} m")
@@ -282,11 +284,6 @@ def _wrong_joints(joints: Joints, known: Sequence[str]) -> str:
         sizes = f"{len(joints.names)} names, {len(joints.positions)} positions and {len(joints.velocities)} velocities"
         return f"it has {sizes}, or a joint twice: tell each joint once, with its position"
     unknown = [name for name in joints.names if name not in known]
-    others = f", while robot.urdf does not know its {some(unknown)}" if unknown else ""
-    return f"it lacks {some(lacking)} of robot.urdf{others}: tell every joint of the model by its name there"
-
-
-def some(names: Sequence[str]) -> str:
-    """Some names as a part of a sentence."""
-    more = f" and {len(names) - _MOST_NAMED} more" if len(names) > _MOST_NAMED else ""
-    return ", ".join(names[:_MOST_NAMED]) + more
+    others = f", while robot.urdf does not know its {listed(unknown, _MOST_NAMED)}" if unknown else ""
+    lacks = listed(lacking, _MOST_NAMED)
+    return f"it lacks {lacks} of robot.urdf{others}: tell every joint of the model by its name there"

@@ -127,23 +127,24 @@ def replay(
     unpredictable = why_unpredictable(run, inputs, names, by_name)
     if not unpredictable:
         notes += tuple(f"in {os.fspath(path)}, {said}" for said in remarks(run, inputs, names, by_name))
+    of_states = [counts for one, counts in inputs.items() if one.body is not None and one.kind in STATES]
     return Result(
-        os.fspath(path),
-        run.samples,
-        perf_counter() - started,
-        tuple(run.settled),
-        total_of([counts for one, counts in inputs.items() if one.body is not None and one.kind in STATES]),
-        total_of([counts for one, counts in inputs.items() if one.kind == CONTACT_GEOMETRY]),
-        notes,
-        unpredictable,
-        damage[0] if damage else "",
-        truth,
-        truths,
-        {one.name: counts for one, counts in inputs.items()},
-        run.gaits,
-        run.extent,
-        run.costs,
-        matches,
+        bag=os.fspath(path),
+        samples=run.samples,
+        seconds=perf_counter() - started,
+        settled=tuple(run.settled),
+        statuses=total_of(of_states),
+        geometry_statuses=total_of([counts for one, counts in inputs.items() if one.kind == CONTACT_GEOMETRY]),
+        notes=notes,
+        unpredictable=unpredictable,
+        damaged=damage[0] if damage else "",
+        truth=truth,
+        truths=truths,
+        inputs={one.name: counts for one, counts in inputs.items()},
+        gaits=run.gaits,
+        extent=run.extent,
+        costs=run.costs,
+        matches=matches,
     )
 
 

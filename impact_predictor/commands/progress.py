@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
+from ..wording import listed
+
 if TYPE_CHECKING:
     from rich.progress import Progress, TaskID
 
@@ -106,10 +108,9 @@ def say_unfinished(outputs: Sequence[Path | None], scheduler: str | None = None)
 
     left = [str(bag) for bag in map(left_of, files) if bag is not None]
     if left:
-        more = f" and {len(left) - NAMED:,} more" if len(left) > NAMED else ""
         stay, them = ("stays as a bag in", "it") if len(left) == 1 else ("stays as bags in", "them")
         click.echo(
-            f"note: what was written until Ctrl-C {stay} {', '.join(left[:NAMED])}{more}, until the next run with this "
+            f"note: what was written until Ctrl-C {stay} {listed(left, NAMED)}, until the next run with this "
             f"-o replaces {them}",
             err=True,
         )
