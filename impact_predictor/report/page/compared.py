@@ -69,13 +69,17 @@ def _compared(answers: Sequence[BagAnswer]) -> Iterable[tuple[str, BagAnswer]]:
 
 def _against(title: str, pairs: Sequence[tuple[float, float]], rows: Sequence[tuple[str, BagAnswer]]) -> Chart:
     """Pairs of a measured and a predicted velocity in m/s: a point each, or squares that count them where many."""
-    ends = [min(map(min, pairs)), max(map(max, pairs))]
+    values = [value for pair in pairs for value in pair]
+    # Of many points the last few may lie beyond, not to press the others together.
+    out = 0.0 if len(pairs) <= MANY else 0.002
+    ends = [quantile(values, out), quantile(values, 1.0 - out) + 1e-9]
     line = {"type": "scatter", "mode": "lines", "x": ends, "y": ends, "line": {"color": GREY}}
     traces: list[dict[str, Any]] = [line | {"hoverinfo": "skip", "showlegend": False}]
     if len(pairs) > MANY:
         x, y = ([round(value, 4) for value in column] for column in zip(*pairs, strict=True))
         clear = [[0.0, "rgba(0,114,178,0)"], [0.001, "rgba(0,114,178,0.25)"], [1.0, "rgb(0,50,90)"]]
-        squares = {"type": "histogram2d", "x": x, "y": y, "nbinsx": 40, "nbinsy": 40}
+        bins = {"start": ends[0], "end": ends[1], "size": (ends[1] - ends[0]) / 36}
+        squares = {"type": "histogram2d", "x": x, "y": y, "xbins": bins, "ybins": bins}
         traces.append(squares | {"colorscale": clear, "colorbar": titled("touchdowns")})
     else:
         for mode in in_order(one["mode"] for _, one in rows):
