@@ -138,23 +138,6 @@ def test_samples_are_answered_once_the_deck_is_known_and_seen_from_it() -> None:
     assert answer.relative.linear == pytest.approx(NOTHING, abs=1e-12)
 
 
-def test_every_unit_is_reported_once_a_second_and_at_once_when_a_level_changes() -> None:
-    monitor = Monitor(scenes())
-    told = []
-    for time in range(600):
-        monitor.update_support(deck(time))
-        if time % 5 == 0:
-            monitor.update("crate", standing(time))
-            monitor.update_imu("leaning", tilted(time))
-        if reports := monitor.reports():
-            assert list(by_body(reports)) == list(CARGO["bodies"])
-            told.append(time)
-    seconds = [time for time in told if time >= 100]
-    assert seconds == [100, 200, 300, 400, 500]
-    last = by_body(reports or monitor.reports() or ())
-    assert all(report.level is Level.OK for report in last.values())
-
-
 def level_of(monitor: Monitor, body: str) -> Level:
     """The level of a body as it would be reported, whenever it was told last."""
     watch = monitor.watch
