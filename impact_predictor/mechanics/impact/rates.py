@@ -194,7 +194,8 @@ def choose(contacts: ContactRows, cna: float, cta: float, ctb: float, compressin
         return 1, OPEN, b, best
     if rounding != ROUNDING or ctb == 0.0:
         return try_all(contacts, b, best, cta, ctb, compressing, choice)
-    if best[0]:
+    opens, _, _, _, _, _, _, _, _, _, _ = best
+    if opens:
         if fa * abs(qa * sa) < 1.0 + qa * qa:
             return 1, OPEN, b, best
         return try_all(contacts, b, best, cta, ctb, compressing, choice)
@@ -242,13 +243,14 @@ def try_all(
     Where the rows come from a W that is singular a contact may stick by more than one set of impulses; one at the
     border of the friction cone is then taken, which is a slip that does not begin, and counts as sticking.
     """
-    (an, _, _, _, _), _, _, _, rounding = contacts
+    _, _, _, _, rounding = contacts
     given = rounding != ROUNDING
     together = cta == 0.0 and ctb == 0.0 and tied(contacts)
     single = ctb == 0.0 and one_answer(contacts, cta)
-    if given and best[0]:
+    opens, _, _, _, _, _, _, _, _, _, _ = best
+    if given and opens:
         _, b, best = without_rounding(contacts, OPEN, b, best, 1.0, ctb)
-    best_a, best_b, found, seen = OPEN, b, 1 if best[0] else 0, 0
+    best_a, best_b, found, seen = OPEN, b, 1 if opens else 0, 0
     first_a, last_a = (STICK, MINUS) if cta == 0.0 else (PLUS, PLUS) if cta > 0.0 else (MINUS, MINUS)
     first_b, last_b = (STICK, MINUS) if ctb == 0.0 else (PLUS, PLUS) if ctb > 0.0 else (MINUS, MINUS)
     for state_a in range(first_a, last_a + 1):
@@ -266,7 +268,8 @@ def try_all(
                 rate = slide_stick_rates(contacts, a, cta)
             else:
                 rate = rolling_rates(contacts) if together else wedged_rates(contacts)
-            if given and rate[0]:
+            consistent, _, _, _, _, _, _, _, _, _, _ = rate
+            if given and consistent:
                 a, b, rate = without_rounding(contacts, a, b, rate, cta, ctb)
             if goes_on(rate, a, b, cta, ctb, compressing) and not seen & (1 << (4 * a + b)):
                 seen |= 1 << (4 * a + b)

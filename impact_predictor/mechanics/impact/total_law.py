@@ -287,7 +287,7 @@ def all_that_hold(contacts: ContactRows, c: Velocities, zero: float, found: Solu
     """Add the solutions while both contacts hold, by trial of all states: of any W."""
     gna, cta, gnb, ctb = c
     solution = both_stick(contacts, gna, cta, gnb, ctb, zero)
-    stick = solution[0]
+    stick, _, _, _, _, _, _, _, _, _ = solution
     found = add(found, solution, choice)
     for number in range(8):
         state, other = PLUS + number % 2, PLUS + number // 2 % 2
@@ -311,33 +311,33 @@ def both_hold(contacts: ContactRows, c: Velocities, zero: float, found: Solution
     (_, _, qa, _, _), (nx, ny, nq, _, _, _, _, _), _, (lever, _, old_lever, _), _ = contacts
     gna, cta, gnb, ctb = c
     x, y, q = nq - qa * ny, qa * nx, -nx
+    several, _, _ = found
     solution = both_stick(contacts, gna, cta, gnb, ctb, zero)
-    several = found[0] > 0
-    if solution[0]:
+    held, state, _, _, _, _, _, dx, dy, dq = solution
+    if held:
         found = add(found, solution, choice)
         if not several and one_answer(contacts, cta, ctb):
             return found
     a = b = PLUS
-    if solution[1] == STICK:
-        _, _, _, _, _, _, _, dx, dy, dq = solution
+    if state == STICK:
         least = most = x * dx + y * dy + q * dq
     else:
         least, most = inf, -inf
         if lever != 0.0:
             solution = old_sticks(contacts, gna, cta, gnb, ctb)
-            if solution[0]:
+            held, _, b, _, _, _, _, dx, dy, dq = solution
+            if held:
                 found = add(found, solution, choice)
                 if not several and one_answer(contacts, cta, ctb):
                     return found
-            _, _, b, _, _, _, _, dx, dy, dq = solution
             least = most = x * dx + y * dy + q * dq
         if old_lever != 0.0:
             solution = new_sticks(contacts, gna, cta, gnb, ctb)
-            if solution[0]:
+            held, a, _, _, _, _, _, dx, dy, dq = solution
+            if held:
                 found = add(found, solution, choice)
                 if not several and one_answer(contacts, cta, ctb):
                     return found
-            _, a, _, _, _, _, _, dx, dy, dq = solution
             along = x * dx + y * dy + q * dq
             least, most = min(least, along), max(most, along)
             if lever != 0.0:
@@ -403,7 +403,8 @@ def one_answer(contacts: ContactRows, cta: float, ctb: float) -> bool:
 def add(found: Solutions, other: Solution, choice: int) -> Solutions:
     """Count a solution that holds if it differs from the first one, and keep the one of number `choice`."""
     count, first, chosen = found
-    if not other[0] or (count and same(first, other)):
+    held, _, _, _, _, _, _, _, _, _ = other
+    if not held or (count and same(first, other)):
         return found
     return count + 1, first if count else other, other if count <= choice else chosen
 
@@ -427,8 +428,9 @@ def solve(problem: Problem, choice: int) -> Impact:
     given = rounding != ROUNDING
     gna, gnb = newton(restitution_old, cna), newton(restitution, cnb)
     solution = new_alone(contacts, gna, gnb, ctb) if gnb < 0.0 or (given and gnb == 0.0) else NOT_POSSIBLE
-    found = (1 if solution[0] else 0), solution, solution
-    if cna < inf and not (solution[0] and not given and one_answer(contacts, cta, ctb)):
+    alone, _, _, _, _, _, _, _, _, _ = solution
+    found = (1 if alone else 0), solution, solution
+    if cna < inf and not (alone and not given and one_answer(contacts, cta, ctb)):
         # Where its own friction presses it down, A takes the impulse even if it is not struck.
         if gna < 0.0 or (gna == 0.0 and (given or (cta != 0.0 and fa * abs(qa * sa) > 1.0 + qa * qa))):
             found = add(found, old_alone(contacts, gna, cta, gnb), choice)
@@ -437,7 +439,8 @@ def solve(problem: Problem, choice: int) -> Impact:
             found = all_that_hold(contacts, c, zero, found, choice)
         else:
             found = both_hold(contacts, c, zero, found, choice)
-        if not found[0]:
+        count, _, _ = found
+        if not count:
             found = any_that_holds(contacts, c, found, choice)
 
     count, _, (_, a, b, na, ta, nb, tb, dx, dy, dq) = found
