@@ -321,7 +321,11 @@ def test_a_stance_that_slips_is_followed_to_1e_9_of_time_and_twist(
     found = case.fall()
     assume(found.point >= 0)
     conditioned = condition(case, found)
-    time, point, state = Reference(case, 0.02, 1e-13).fall()
+    # The reference sees an event only between two of its steps: a slip may stop and start again within one.
+    for max_step in (0.02, 0.002):
+        time, point, state = Reference(case, max_step, 1e-13).fall()
+        if max(differences(found, time, state[3:])) <= 1e-9:
+            break
     assert point == found.point
     # The given numbers make the touchdown no better known than by their own rounding, times the condition.
     assert max(differences(found, time, state[3:])) <= 1e-9 + 1e-12 * conditioned

@@ -23,8 +23,6 @@ to a node are exact to seven terms, however small they are.
 from __future__ import annotations
 
 import math
-import operator
-from functools import reduce
 from typing import NamedTuple
 
 _LEAST_ROOT = 1e-9
@@ -94,21 +92,19 @@ def _integrals(nodes: NodeWeights, power: int, step: int) -> tuple[NodeWeights, 
 def _last(nodes: NodeWeights, weights: NodeWeights, power: int, step: int) -> tuple[NodeWeights, NodeWeights]:
     """Rows for the last two coefficients over s^power, in polynomials in s^step.
 
-    These are orthogonal on the nodes, and 1 at the end (Stieltjes' procedure).
+    These are orthogonal on the nodes, and 1 at the end: a divided difference is orthogonal to all lower powers.
     """
+    places = [s**step for s in nodes]
+    differences = [1.0 / math.prod(place - other for other in places if other != place) for place in places]
     masses = [weight * s**power for weight, s in zip(weights, nodes, strict=True)]
-    rows: list[NodeWeights] = []
-    last, values, last_norm = [0.0] * 7, [1.0] * 7, 1.0
-    for _ in nodes:
-        # Not `sum`, which compensates its rounding from Python 3.12 on: every Python shall give the same bits.
-        norm = reduce(operator.add, [mass * value * value for mass, value in zip(masses, values, strict=True)])
-        rows.append(tuple([w * value * values[-1] / norm for w, value in zip(weights, values, strict=True)]))
-        products = [m * s**step * v * v for m, s, v in zip(masses, nodes, values, strict=True)]
-        middle = reduce(operator.add, products) / norm
-        ratio = norm / last_norm
-        following = [(s**step - middle) * v - ratio * w for s, v, w in zip(nodes, values, last, strict=True)]
-        last, values, last_norm = values, following, norm
-    return rows[-2], rows[-1]
+    squares = [d * d / mass for d, mass in zip(differences, masses, strict=True)]
+    middle = weighted(tuple(places), squares) / weighted((1.0,) * 7, squares)
+    rows = []
+    for factors in ([place - middle for place in places], [1.0] * 7):
+        terms = [factor * d for factor, d in zip(factors, differences, strict=True)]
+        end = terms[6] / (masses[6] * weighted(tuple([factor * factor for factor in factors]), squares))
+        rows.append(tuple([end * term / s**power for term, s in zip(terms, nodes, strict=True)]))
+    return rows[0], rows[1]
 
 
 def _rule(inner: tuple[float, ...], force: int, lag: int, step: int, share: float) -> QuadratureRule:

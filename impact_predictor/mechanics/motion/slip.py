@@ -275,10 +275,8 @@ class SlipPhase:
 
     def until_stop(self, pose: PivotPose) -> float:
         """How far in rad the body turns until the slip stops, if slip and turning change at their present rates."""
-        (drag, side, *_), (x, y, rate, lever, _, alpha, _) = self.stance, pose
-        swing = drag * x - y
-        slip = side * (self.slip + self.drive * self.time - (rate * swing - self.spin))
-        change = side * (self.drive - alpha * swing + rate * rate * lever)
+        x, y, rate, lever, bracket, alpha, _ = pose
+        slip, change = self.slips((0.0, 0.0, rate, x, y, lever, bracket))
         if not slip > 0.0 > change:
             return math.inf
         time = -slip / change
@@ -310,14 +308,12 @@ class SlipPhase:
         (drag, side, _, gravity), fastest = self.stance, max(swept.rates)
         lifts = stops = (math.inf, 0.0)
         if fastest * fastest * self.radius > (_MARGIN - 1.0) * gravity:
-            lifts = _first_fall(along, [-rate * rate * y - gravity for _, _, rate, _, y, _, _ in along], self.load, 0.0)
+            lifts = _first_fall(along, self.load, 0.0)
         if side:
-            start, drive = self.slip + self.spin + self.drive * self.time, self.drive
-            slips = [side * (start + drive * time - rate * (drag * x - y)) for time, _, rate, x, y, _, _ in along]
             terms = abs(self.slip) + abs(self.spin) + fastest * self.radius * (1.0 + abs(drag))
             # A slip that begins is smaller than the errors at the nodes, and does not end by them.
             noise = _ROUNDING if self.slip or self.time else max(_ROUNDING, swept.error)
-            stops = _first_fall(along, slips, self.slips, noise * (terms + abs(drive) * swept.time))
+            stops = _first_fall(along, self.slips, noise * (terms + abs(self.drive) * swept.time))
         time, angle = min(lifts, stops)
         if time == math.inf or self.time + time > horizon:
             return None
@@ -388,17 +384,18 @@ def _instants(swept: Sweep, back: bool) -> list[SweepInstant]:
 
 
 def _first_fall(
-    along: list[SweepInstant], values: list[float], condition: Callable[[SweepInstant], Condition], noise: float
+    along: list[SweepInstant], condition: Callable[[SweepInstant], Condition], noise: float
 ) -> tuple[float, float]:
-    """Time and turned angle where a condition with these values first falls to zero, or might; inf where none."""
-    last = len(values) - 1
+    """Time and turned angle where a condition first falls to zero, or might; inf where it does not."""
+    found = [condition(now) for now in along]
+    values, last = [value for value, _ in found], len(along) - 1
     for index in range(1, last + 1):
         before, here = values[index - 1], values[index]
         dips = before <= here and (index == 1 or values[index - 2] >= before)
         dips = dips or (here <= before and (index == last or values[index + 1] >= here))
         if here <= 0.0 or dips:
             start, now = along[index - 1], along[index]
-            (value, slope), (end_value, end_slope), gap = condition(start), condition(now), now[0] - start[0]
+            (value, slope), (end_value, end_slope), gap = found[index - 1], found[index], now[0] - start[0]
             at = fall(value, slope * gap, end_value, end_slope * gap, noise)
             if at <= 1.0:
                 square, cube = cubic(start[1], start[2] * gap, now[1], now[2] * gap)
