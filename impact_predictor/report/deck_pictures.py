@@ -50,8 +50,6 @@ LONGEST: Final = 12.0
 """Seconds of a motion that a film shows, in real time: those in which most units move."""
 MARGINS: Final = ("#dfe6e1", "#f2a91a", "#d62728")
 """Colours of a margin that is used little, enough to warn, and up."""
-LEVELS: Final = ("#8fc9a3", "#f2a91a", "#e0584f")
-"""The same of a unit of the film."""
 ROLL, HEAVE, TILT, SLID = PALETTE[0], "#8a6d3b", "#1a1a1a", PALETTE[2]
 
 _MOST: Final = 200_000
@@ -306,8 +304,6 @@ def deck_film(deck: MovingSupport, units: Sequence[UnitMotion]) -> Film:
     near = [UnitScene(deck, one, times) for one in busiest(units, _NEAR)]
     impacts = [impact.stamp / NANOSECONDS for one in near for impact in one.motion.impacts]
     ticks = np.array([time for time in impacts if times[0] <= time <= times[-1]])
-    warn = f"{100.0 * Watching().warn:.0f}"
-    names = (f"margin up to {warn} % used", f"{warn} to 100 %", "used up, or it moves")
     seen = np.array(times)
     roll = Curve(seen, np.degrees(deck.motion(seen).angle), ROLL)
     return Film(
@@ -321,7 +317,6 @@ def deck_film(deck: MovingSupport, units: Sequence[UnitMotion]) -> Film:
         ),
         speed=1.0,
         times=times,
-        legend=list(zip(LEVELS, names, strict=True)),
     )
 
 
@@ -359,7 +354,7 @@ class UnitScene:
     def colour(self, time: float) -> str:
         """Red while it moves, else by how much of its margin is used."""
         moves, used, _ = self._doing(time)
-        return LEVELS[2 if moves or used >= 1.0 else 1 if used >= Watching().warn else 0]
+        return MARGINS[2 if moves or used >= 1.0 else 1 if used >= Watching().warn else 0]
 
     def _outlines(self, time: float) -> list[Outline]:
         state, far = self.motion.at(time), 3.0 * self._size

@@ -7,7 +7,7 @@ from array import array
 from collections.abc import Sequence
 from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from matplotlib.ticker import FixedLocator, FuncFormatter, MaxNLocator, NullLocator, PercentFormatter
@@ -103,28 +103,21 @@ def _draw_velocities(axes: Axes, rows: Sequence[TouchdownRow]) -> None:
     if not rows:
         _draw_nothing(axes, "no touchdown was scored")
         return
-    handles = [
-        Line2D([], [], linestyle="", marker="s", markersize=8, color=colour, label=name) for name, colour in _VELOCITIES
-    ]
-    extent = 0.0
+    handles = [Line2D([], [], linestyle="", marker="s", color=colour, label=name) for name, colour in _VELOCITIES]
     # Those of a mode at once: a line of its own for each of many touchdowns takes minutes.
     for mode in sorted({row.mode for row in rows}):
-        mine = [(row.measured, row.predicted, row.half_distance) for row in rows if row.mode is mode]
+        mine = [(row.measured, row.predicted, row.half_distance) for row in rows if row.mode is mode and row.measured]
+        pairs = np.array(
+            [((one.vx, other.vx), (one.omega * arm, other.omega * arm)) for one, other, arm in mine], dtype=float
+        )
         marker = MODES[mode].marker
-        known = [(measured, predicted, arm) for measured, predicted, arm in mine if measured is not None]
-        for colour, pairs in (
-            (_BLUE, [(measured.vx, predicted.vx) for measured, predicted, _ in known]),
-            (_VERMILION, [(measured.omega * arm, predicted.omega * arm) for measured, predicted, arm in known]),
-        ):
-            extent = max([extent, *(abs(velocity) for pair in pairs for velocity in pair)])
-            axes.plot(*zip(*pairs, strict=True), marker, color=colour, markersize=6, alpha=0.6, markeredgewidth=0)
+        for k, (_, colour) in enumerate(_VELOCITIES):
+            axes.plot(*pairs[:, k].T, marker, color=colour, alpha=0.6, markeredgewidth=0)
         label = f"{words(mode.name)} ({len(mine)})"
         handles.append(Line2D([], [], linestyle="", marker=marker, color=GREY, label=label))
-    extent = 1.08 * extent or 1.0
     axes.axline((0.0, 0.0), slope=1.0, color=GREY, linewidth=1.0, zorder=1)
-    axes.set(xlim=(-extent, extent), ylim=(-extent, extent), aspect="equal")
-    axes.text(-0.96 * extent, -0.76 * extent, "exact", color=GREY, va="bottom", fontsize=9)
-    axes.legend(handles=handles, loc="upper left", borderaxespad=0.2, handletextpad=0.2)
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.legend(handles=handles, title="on the line: exact", loc="upper left", borderaxespad=0.2, handletextpad=0.2)
 
 
 def _draw_errors(axes: Axes, rows: Sequence[TouchdownRow]) -> None:
@@ -137,17 +130,15 @@ def _draw_errors(axes: Axes, rows: Sequence[TouchdownRow]) -> None:
         return
     # Errors far outside would press the others into one bar: they are counted in the last one.
     end = max(min(1.4 * max(errors), 300.0 * summary.p90), 1.0)
-    shown = [min(error, end) for error in errors]
-    bins = min(40, max(10, len(errors) // 5))
-    counts: Any = axes.hist(shown, bins=bins, range=(0.0, end), color=_BLUE, alpha=0.7, edgecolor="white")[0]
+    axes.hist(np.minimum(errors, end), bins=min(40, max(10, len(errors) // 5)), color=_BLUE, alpha=0.7)
     if outside := sum(error > end for error in errors):
-        axes.annotate(f"{outside} beyond →", (end, counts[-1]), ha="right", va="bottom", fontsize=9, color=GREY)
+        axes.plot([], [], " ", label=f"{outside} beyond, in the last bar")
     for value, style, label in ((summary.p50, "-", "median"), (summary.p90, "--", "90 % below")):
         said = f"{label} {percent(value)} %"
         axes.axvline(100.0 * value, color=_VERMILION, linestyle=style, linewidth=1.5, label=said)
-    axes.set(xlim=(0.0, end), ylim=(0.0, 1.25 * max(counts)))
+    axes.set_xlim(0.0, end)
     axes.yaxis.set_major_locator(MaxNLocator(integer=True))
-    axes.legend(loc="upper right", frameon=True, framealpha=0.9, edgecolor="none")
+    axes.legend(loc="upper right", frameon=True)
 
 
 def _draw_lead_times(axes: Axes, errors: Sequence[SpanErrors]) -> None:

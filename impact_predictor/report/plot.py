@@ -132,8 +132,7 @@ class Panel(NamedTuple):
 class Film(NamedTuple):
     """A moving picture: views side by side, `height` inches high, and a panel below them whose solid curves grow.
 
-    `speed` is seconds of the motion for each one of the film, `times` (s) those of its frames; `legend` has colours and
-    their meanings.
+    `speed` is seconds of the motion for each one of the film, `times` (s) those of its frames.
     """
 
     title: str
@@ -142,7 +141,6 @@ class Film(NamedTuple):
     panel: Panel
     speed: float
     times: Sequence[float]
-    legend: Sequence[tuple[str, str]] = ()
 
 
 def check_picture(path: str | os.PathLike[str]) -> Path:
@@ -278,7 +276,15 @@ class _GifWriter(PillowWriter):
     def finish(self) -> None:
         frames = self._frames  # type: ignore[attr-defined]
         some = np.concatenate([np.asarray(frame) for frame in frames[:: max(1, len(frames) // 24)]])
-        palette = Image.fromarray(some).quantize(_COLOURS)
+        counted = Image.fromarray(some).quantize(_COLOURS)
+        colours = np.array(counted.getpalette()).reshape(-1, 3)
+        # Pillow does not tell colours apart whose parts differ by less than eight: the commonest of them stays.
+        apart: dict[tuple[int, ...], NDArray[np.int64]] = {}
+        used: Any = counted.getcolors()  # how many pixels have which colour
+        for _, index in sorted(used, reverse=True):
+            apart.setdefault(tuple(colours[index] // 8), colours[index])
+        palette = Image.new("P", (1, 1))
+        palette.putpalette(np.concatenate(list(apart.values())).tolist())
         first, *others = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
         durations = [round(1000 * STEP)] * len(others) + [round(1000 * _STILL)]
         first.save(self.outfile, "GIF", save_all=True, append_images=others, duration=durations, loop=0, optimize=True)
@@ -288,7 +294,7 @@ class _Screen:
     """The figure of a film."""
 
     def __init__(self, film: Film) -> None:
-        head, room, foot = (0.85 if film.legend else 0.65), 0.65, 0.3
+        head, room, foot = 0.65, 0.65, 0.3
         total = head + film.height + room + 1.0 + foot
         self._film, self._drawn = film, list[Any]()
         self.figure = Figure(figsize=(_WIDTH, total))
@@ -315,10 +321,6 @@ class _Screen:
         said = "\n".join(filter(None, (film.title, pace_of(film.speed))))
         self.figure.text(0.02, top, said, va="top")
         self._clock = self.figure.text(0.98, top, "", ha="right", va="top", family="monospace")
-        colours = {words: colour for colour, words in film.legend}
-        if colours:
-            place = 0.0, 1.0 - 0.3 / total
-            self.figure.legend(handles=patches(colours, colours), loc="upper left", bbox_to_anchor=place, ncols=3)
 
     def draw(self, time: float) -> None:
         """Show the motion at a time in s."""
