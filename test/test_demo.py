@@ -86,7 +86,7 @@ def test_the_errors_of_earlier_predictions_are_those_with_the_contacts_of_the_la
         (f"{NODE}/prediction", predicted(5, vx=0.8)),
         (f"{NODE}/score", message(SCORE)),
     )
-    medians = [one.errors.median for one in result.lead_time_errors]
+    medians = [one.errors.p50 for one in result.lead_time_errors]
     # The velocity scale is hypot(1.0, 8.0 * 0.05).
     assert medians == [
         pytest.approx(0.1 / 1.0770, rel=1e-3),

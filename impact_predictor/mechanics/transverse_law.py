@@ -32,10 +32,10 @@ from .transverse_step import (
     SLIP,
     Across,
     Arc,
-    Instant,
     RatesAcross,
     Slips,
     State,
+    TransverseInstant,
     advance,
     margin,
     rates,
@@ -157,7 +157,9 @@ def follow(across: Across, before: SpatialVelocities, small: float, restitution:
             if straight or span == 0.0:
                 arc = straight_arc(state, rate, span, way)
             else:
-                step = advance(Instant(across, a, b, way, state, rate), span, ends and compressing, small, tries)
+                step = advance(
+                    TransverseInstant(across, a, b, way, state, rate), span, ends and compressing, small, tries
+                )
                 if step is None:
                     break
                 arc, longer, tries = step

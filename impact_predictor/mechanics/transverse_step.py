@@ -140,7 +140,7 @@ def way_of(cta: float, cza: float, ctb: float, czb: float, way: Slips, small: fl
     return ut, uz, wt, wz
 
 
-class Instant(NamedTuple):
+class TransverseInstant(NamedTuple):
     """Where a step begins: contacts, states of A and B, ways of their slips, the state of the path, the rates."""
 
     across: Across
@@ -193,7 +193,7 @@ def straight_arc(y: State, rate: RatesAcross, span: float, way: Slips) -> Arc:
     return Arc(y, end, rate, rate, span, span, 0.5 * span * (y[9] + end[9]), way)
 
 
-def advance(now: Instant, span: float, ends: bool, small: float, tries: int) -> tuple[Arc, float, int] | None:
+def advance(now: TransverseInstant, span: float, ends: bool, small: float, tries: int) -> tuple[Arc, float, int] | None:
     """A step in which N_B grows by `span` or less, with an error below `small` in every slip; None where none is found.
 
     With `ends` the compression would end with the step, were the rates to stay. Returns also how many times as long the
@@ -214,7 +214,7 @@ def advance(now: Instant, span: float, ends: bool, small: float, tries: int) -> 
     return None
 
 
-def explicit_step(now: Instant, span: float, ends: bool, small: float) -> tuple[Arc, float] | None:
+def explicit_step(now: TransverseInstant, span: float, ends: bool, small: float) -> tuple[Arc, float] | None:
     """The stretch that a step makes, and the largest error of a slip in it.
 
     None where the rates end on the way: a slip jams, or B is not slowed down by all of them.
@@ -269,7 +269,7 @@ def way_along(y: State, rate: RatesAcross, span: float, way: Slips) -> Slips:
     return way_of(cta + span * rta, cza + span * rza, ctb + span * rtb, czb + span * rzb, way, 0.0)
 
 
-def implicit_step(now: Instant, span: float, _: bool, small: float) -> tuple[Arc, float] | None:
+def implicit_step(now: TransverseInstant, span: float, ends: bool, small: float) -> tuple[Arc, float] | None:
     """As `explicit_step`, linearly implicit and along N_B; the error is that of all contact velocities.
 
     None where the step is too long: a slip turns away further than it can be followed, or jams.

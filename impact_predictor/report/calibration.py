@@ -6,6 +6,8 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import Any, Final
 
+import numpy as np
+from numpy.typing import NDArray
 from rich.table import Table
 
 from ..calibration.fit import Calibration
@@ -100,7 +102,6 @@ def changes_of(calibration: Calibration) -> dict[str, NewValues]:
 
 def as_json(calibration: Calibration, bags: Sequence[str], scores: Sequence[Score]) -> dict[str, Any]:
     """A calibration as JSON; relative errors as fractions of 1, the inertia as a factor on the given one."""
-    given, held_out = (spread_of(one.tolist()) for one in (calibration.given_errors, calibration.held_out))
     return {
         "bags": list(bags),
         "touchdowns": len(calibration.touchdowns),
@@ -108,11 +109,16 @@ def as_json(calibration: Calibration, bags: Sequence[str], scores: Sequence[Scor
         "left_out": calibration.left_out,
         "blocks": int(calibration.blocks.max()) + 1,
         "coefficients": {name: _fields(one) for name, one in estimates_of(calibration).items()},
-        "given_error": {**given._asdict(), "mean": float(calibration.given_errors.mean())},
-        "held_out_error": {**held_out._asdict(), "mean": float(calibration.held_out.mean())},
+        "given_error": _error_fields(calibration.given_errors),
+        "held_out_error": _error_fields(calibration.held_out),
         "inertia_profile": [list(pair) for pair in calibration.inertias],
         "parameters": {name: list(change.values) for name, change in changes_of(calibration).items()},
     }
+
+
+def _error_fields(errors: NDArray[np.float64]) -> dict[str, Any]:
+    spread = spread_of(errors.tolist())
+    return {"number": spread.number, "median": spread.p50, "p90": spread.p90, "mean": float(errors.mean())}
 
 
 def _fields(one: Estimate) -> dict[str, Any]:

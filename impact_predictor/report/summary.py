@@ -10,8 +10,6 @@ from math import floor, log10
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
-import numpy as np
-
 from ..mechanics.types import Mode, Twist
 from ..prediction.types import Leftover, Score
 from ..wording import counted, percent, words
@@ -152,6 +150,8 @@ def reasons(rows: Iterable[TouchdownRow]) -> dict[str, int]:
 
 def quantile(values: Sequence[float], part: float) -> float:
     """What a part of the values stays below, interpolated linearly between them; at least one value."""
+    import numpy as np  # commands whose help this file serves load none
+
     return float(np.quantile(values, part))
 
 
@@ -165,7 +165,7 @@ def spread_of(numbers: Sequence[float]) -> Distribution:
     if not numbers:
         return Distribution()
     bins = Counter(floor(PER_DECADE * log10(max(number, LEAST))) for number in numbers)
-    p50, p90, p99 = np.quantile(numbers, (0.5, 0.9, 0.99)).tolist()
+    p50, p90, p99 = (quantile(numbers, part) for part in (0.5, 0.9, 0.99))
     return Distribution(len(numbers), p50, p90, p99, max(numbers), bins)
 
 
