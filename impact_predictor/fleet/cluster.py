@@ -58,7 +58,7 @@ def connected(workers: int, scheduler: str | None = None) -> Iterator[Client]:
     Raises:
         InputError: Dask is missing, or the scheduler does not answer or has no workers.
     """
-    need("dask", "distributed")
+    need("distributed")
     from dask import config
     from distributed import Client, LocalCluster
 
