@@ -270,7 +270,7 @@ def write_film(path: str | os.PathLike[str], film: Film, tell: Callable[[int], N
 class _GifWriter(PillowWriter):
     """Writes all frames with the colours of some, so that only what changes is stored, and shows the last for longer.
 
-    `PillowWriter` itself gives each frame colours of its own, in a file three times as large.
+    `PillowWriter` itself gives each frame colours of its own, so that pixels that stand still are stored again.
     """
 
     def finish(self) -> None:
