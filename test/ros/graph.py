@@ -9,12 +9,13 @@ import rclpy
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import QoSProfile
 
-from impact_predictor.ros.messages import OUTPUTS, decode_diagnostic_array
+from impact_predictor.ros.cdr import STALE, Diagnostic, decode_diagnostic_array
+from impact_predictor.ros.messages import OUTPUTS
 from impact_predictor.ros.process import message_class
 from impact_predictor.ros.processes import Child
 
-# A busy machine starts a process within a second or two; a test that waits longer has failed.
-PATIENCE = 20.0
+# A process starts within a second or two, on a busy machine within ten; a test that waits longer has failed.
+PATIENCE = 60.0
 
 
 class Peer:
@@ -55,12 +56,27 @@ class Peer:
         self.until(lambda: self.reported("samples.publishers") == "1")
         return self.connected(publisher)
 
+    def until_reported(self, condition, act=bool):
+        """Serve the topics, and act again and again, until the node's latest report on itself is so; that report.
+
+        Each report that comes is looked at, so that one that holds for a second alone is not missed.
+        """
+
+        def reported():
+            act()
+            return self.heard["diagnostics"] and condition(self.report())
+
+        self.until(reported)
+        return self.report()
+
     def report(self):
-        """The latest of the node's reports on itself."""
-        return decode_diagnostic_array(self.heard["diagnostics"][-1])[0] if self.heard["diagnostics"] else None
+        """The latest of the node's reports on itself, one that tells nothing where none has come yet."""
+        heard = self.heard["diagnostics"]
+        return decode_diagnostic_array(heard[-1])[0] if heard else Diagnostic("", STALE, "", {}, "")
 
     def reported(self, key):
-        return None if self.report() is None else self.report().values.get(key)
+        """A value of the latest report; None where it has none, or none has come yet."""
+        return self.report().values.get(key)
 
 
 def arguments_of(values):

@@ -12,9 +12,9 @@ import pickle
 import sys
 import time
 
-PATIENCE = 20.0
-SILENCE = 0.3
-"""Seconds without a message after which all was heard."""
+PATIENCE = 60.0
+SILENCE = 50
+"""Rounds without a message after which all was heard."""
 
 
 def main() -> None:
@@ -49,10 +49,8 @@ def main() -> None:
     publishers = {
         topic: other.create_publisher(message_class(kind), topic, 100) for topic, kind, _ in messages if topic in topics
     }
-    until(lambda: all(one.get_subscription_count() for one in publishers.values()))
-    until(lambda: all(node.count_subscribers(topic) for topic in outputs))
-    end = time.monotonic() + SILENCE
-    until(lambda: time.monotonic() > end)
+    spoken = [one for one in node.publishers if one.topic_name in outputs]
+    until(lambda: all(one.get_subscription_count() for one in (*publishers.values(), *spoken)))
     predictors = node._monitor.predictors
     for topic, _, data in messages:
         predictor = predictors.get(topic[1:].rpartition("/")[0])
@@ -65,13 +63,11 @@ def main() -> None:
             publishers[topic].publish(data)
             until(lambda served=served: node.served() > served)
     node.finish()
-    last = [0.0, time.monotonic()]
+    counts = [0]
 
     def silent():
-        count = sum(map(len, heard.values()))
-        if count != last[0]:
-            last[:] = count, time.monotonic()
-        return time.monotonic() - last[1] > SILENCE
+        counts.append(sum(map(len, heard.values())))
+        return len(counts) > SILENCE and counts[-SILENCE] == counts[-1]
 
     until(silent, hearing)
     sys.stdout.buffer.write(pickle.dumps((heard, topics, set(sys.modules))))

@@ -133,15 +133,14 @@ def test_a_node_that_cannot_keep_up_answers_the_newest_sample_and_tells_what_it_
     with Child("node", dict(os.environ), "-c", SLOW, *arguments) as node:
         count = 300
         feed(peer, count, 400.0)
-        peer.until(lambda: counts(peer) >= count)
-        assert counts(peer) == count
+        peer.until(lambda: counts(peer) == count)
         assert int(peer.reported("samples.dropped")) > count / 2
         reports = [decode_diagnostic_array(data)[0].message for data in peer.heard["diagnostics"]]
         assert any("samples dropped in the last second" in message for message in reports)
         node.end()
         ages = [float(line) for line in node.said().split()]
-    # Were none dropped, the last would be 2 s old. Once the node is behind it is an answer or two; a busy machine adds.
-    assert median(ages[len(ages) // 2 :]) < 0.15
+    # Were none dropped, these would be 1.7 s old. Once the node is behind it is an answer or two; a busy machine adds.
+    assert median(ages[len(ages) // 2 :]) < 0.5
 
 
 def counts(peer):

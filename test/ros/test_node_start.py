@@ -18,7 +18,7 @@ needs_ros = pytest.mark.skipif(
 NODE = [sys.executable, "-m", "impact_predictor.ros.node"]
 CONFIG = Path(__file__).parents[2] / "config"
 SCENE = CONFIG / "cube_tosses.yaml"
-PATIENCE = 20.0
+PATIENCE = 60.0
 
 
 @needs_ros
