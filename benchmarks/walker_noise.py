@@ -29,7 +29,7 @@ from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene, scenes_of
 from impact_predictor.prediction.types import Prediction
 from impact_predictor.report.table import plain_table, show
-from impact_predictor.scenarios.comparison import Landings
+from impact_predictor.scenarios.comparison import Comparison
 from impact_predictor.scenarios.matching import Match
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -68,7 +68,7 @@ def scene() -> Scene:
 def run(record: Sequence[Adapted], machine: Scene, seed: int | None = None, on_robot: bool = False) -> Outcome:
     """Predict the landings of a record, with the noise of a seed."""
     rng = np.random.default_rng(seed)
-    walker, landings = Predictor(machine), Landings({"": machine})
+    walker, landings = Predictor(machine), Comparison({"": machine})
     answers: list[Prediction] = []
     for one in record:
         assert one.sample is not None
@@ -76,12 +76,12 @@ def run(record: Sequence[Adapted], machine: Scene, seed: int | None = None, on_r
         sample, geometry = one.sample, one.geometry
         if seed is not None:
             sample, geometry = noisy(sample, geometry, rng, on_robot=on_robot)
-        landings.tell(sample.child_frame_id, sample.stamp, one.stands)
+        landings.add_stances(sample.child_frame_id, sample.stamp, one.stands)
         walker.set_geometry(geometry)
         answers.append(walker.update(sample))
         landings.add(answers[-1])
     scores = [one.score for one in answers if one.score is not None] + list(walker.finish())
-    (matches,) = landings.matches().values()
+    matches = landings.compare().matches
     true = [one for one in matches if one.stamp is not None]
     found = [one for one in true if one.predictions]
     stands = np.array([one.stands for one in record])

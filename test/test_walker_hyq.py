@@ -22,7 +22,7 @@ from scipy.spatial.transform import Rotation
 from impact_predictor.bags.read import read_messages, topics
 from impact_predictor.mechanics.types import Flag
 from impact_predictor.prediction.predictor import Predictor
-from impact_predictor.scenarios.warned import Warned
+from impact_predictor.scenarios.comparison import Warned
 
 ROOT = Path(__file__).parents[1]
 BAG = ROOT / "examples/hyq/hyq.bag"

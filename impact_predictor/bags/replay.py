@@ -8,7 +8,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from time import perf_counter
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from ..errors import InputError
 from ..prediction.scene import CONTACT_GEOMETRY, STATES, Scene, inputs_of
@@ -27,19 +27,9 @@ from .write import BagWriter
 
 if TYPE_CHECKING:
     from ..prediction.monitor import Monitor
-    from ..scenarios.comparison import Truth
+    from ..scenarios.comparison import BodyTruth, Truth
     from ..scenarios.matching import Match
-    from ..scenarios.warned import Warned
-    from .events import Gait
-
-_TRUTH: Final = (TRUTH_TOPIC, ONSET_TOPIC)
-
-
-class BodyTruth(NamedTuple):
-    """How the predictions of a body compare with what happened to it, and whether it was warned of; None where not."""
-
-    truth: Truth | None
-    warned: Warned | None
+    from .body import Gait
 
 
 class Result(NamedTuple):
@@ -110,7 +100,9 @@ def replay(
         wanted = {topic: INPUT_TYPES[one.kind].name for one, topic in names.items()} | adapted
         knows_truth = recorded.get(TRUTH_TOPIC) == DIAGNOSTIC_ARRAY
         if knows_truth:
-            wanted |= {one: DIAGNOSTIC_ARRAY for one in _TRUTH if recorded.get(one) == DIAGNOSTIC_ARRAY}
+            wanted |= {
+                one: DIAGNOSTIC_ARRAY for one in (TRUTH_TOPIC, ONSET_TOPIC) if recorded.get(one) == DIAGNOSTIC_ARRAY
+            }
         messages, readers = bag.messages(wanted), {}
         if adapted:
             from .adapters import readers as readers_of
@@ -123,7 +115,7 @@ def replay(
         if damage and not any(counts for one, counts in inputs.items() if one.kind in STATES):
             raise InputError(damage[0])
         run.finish()
-    truth, truths, matches = _compare(run, by_name)
+    compared = None if run.comparison is None else run.comparison.compare()
     unpredictable = why_unpredictable(run, inputs, names, by_name)
     if not unpredictable:
         notes += tuple(f"in {os.fspath(path)}, {said}" for said in remarks(run, inputs, names, by_name))
@@ -138,13 +130,13 @@ def replay(
         notes=notes,
         unpredictable=unpredictable,
         damaged=damage[0] if damage else "",
-        truth=truth,
-        truths=truths,
+        truth=None if compared is None else compared.together,
+        truths={} if compared is None else compared.bodies,
         inputs={one.name: counts for one, counts in inputs.items()},
-        gaits=run.gaits,
+        gaits={body: record.gait for body, record in run.bodies.items() if record.gait is not None},
         extent=run.extent,
         costs=run.costs,
-        matches=matches,
+        matches=() if compared is None else compared.matches,
     )
 
 
@@ -158,18 +150,3 @@ def _readable(messages: Iterator[BagMessage], damage: list[str]) -> Iterator[Bag
 
 def _counts(by_number: list[int]) -> StatusCounts:
     return {status: by_number[status] for status in Status if by_number[status]}
-
-
-def _compare(run: Run, scenes: Mapping[str, Scene]) -> tuple[Truth | None, dict[str, BodyTruth], list[Match]]:
-    """How the predictions compare with the true impacts and landings, all together and of each body."""
-    landings = {} if run.landings is None else run.landings.matches()
-    if run.truth is None and not landings:
-        return None, {}, []
-    from ..scenarios.comparison import compare
-    from ..scenarios.matching import Announcements
-
-    truth = run.truth
-    impacts, announcements = ([], Announcements()) if truth is None else (truth.impacts, truth.announcements)
-    together, bodies, matches = compare(impacts, announcements, scenes, landings)
-    warned = {} if truth is None else truth.warned(body for body, one in scenes.items() if one.watching is not None)
-    return together, {body: BodyTruth(bodies.get(body), warned.get(body)) for body in {**bodies, **warned}}, matches

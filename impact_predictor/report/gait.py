@@ -8,7 +8,7 @@ from pathlib import Path
 from statistics import median
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-from ..bags.events import Gait
+from ..bags.body import Gait
 from ..scenarios.comparison import LEAD_TIMES
 from ..stamps import NANOSECONDS
 from ..wording import counted

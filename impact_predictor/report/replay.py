@@ -16,9 +16,8 @@ from .summary import ReplayTally, SpanErrors, TouchdownRow, error_by_lead_time, 
 from .table import Column, first_stamp, say, show, table_of
 
 if TYPE_CHECKING:
-    from ..bags.replay import BodyTruth, Result, Settled, StatusCounts
-    from ..scenarios.comparison import Truth
-    from ..scenarios.warned import Warned
+    from ..bags.replay import Result, Settled, StatusCounts
+    from ..scenarios.comparison import BodyTruth, Truth, Warned
 
 MOST_ROWS: Final = 20
 """Touchdowns that are listed unless all are asked for."""
@@ -240,7 +239,7 @@ def _warned(warned: Sequence[Warned]) -> list[str]:
         )
     events = sum(one.events for one in warned)
     if events:
-        from ..scenarios.warned import APART
+        from ..scenarios.comparison import APART
 
         stood = sum(one.events_warned for one in warned)
         said.append(

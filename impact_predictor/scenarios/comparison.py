@@ -3,6 +3,9 @@
 Touchdowns are those of impacts, or landings of feet. The truth of these is what a plan or a simulation says of every
 foot: whether it stands. It comes beside the samples, is never an input of a prediction, and knows neither modes nor
 velocities, so that these are not compared.
+
+A body under watch may be warned of before something happens to it. A warning counts only if it stands: a level of WARN
+or ERROR from its beginning up to what happens, without a report of another level between them.
 """
 
 from __future__ import annotations
@@ -10,17 +13,22 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
-from math import dist, hypot
+from itertools import pairwise
+from math import dist, hypot, inf
 from statistics import median
-from types import MappingProxyType
-from typing import Final, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from ..prediction.planar import hardly
 from ..prediction.scene import Scene
 from ..prediction.types import Prediction, Vector3
 from ..prediction.vectors import add, axes_of, cross, to_world
-from .matching import NEAREST, Announcement, Announcements, Match, Rows, match
-from .truth import TrueImpact
+from ..ros.cdr import ERROR, STALE, WARN
+from ..stamps import NANOSECONDS
+from .matching import NEAREST, Announcement, Match, Rows, match
+from .truth import TrueImpact, TrueOnset
+
+if TYPE_CHECKING:
+    from ..prediction.watch.watch import Report
 
 LEAD_TIMES: Final = (0.02, 0.05)
 """Seconds before a touchdown at which the predictions are made whose errors of time count."""
@@ -30,6 +38,10 @@ BORDER: Final = 0.02
 
 SEEN: Final = 2
 """Samples between two impacts of which the last one shows the second ahead: a body that rocks rises before it falls."""
+
+APART: Final = 5_000_000_000
+"""ns without slide, lift or impact after which the next one is an event of its own: half a roll of a ship, as long as
+levels are usually held. A body that rocks strikes many times within it."""
 
 
 class Truth(NamedTuple):
@@ -63,65 +75,229 @@ class Truth(NamedTuple):
     least_lead_time: float | None = None
 
 
-class Compared(NamedTuple):
-    """How the predictions of all bodies together compare with what happened, those of each body, and each touchdown."""
+class Warned(NamedTuple):
+    """How a body was warned of.
 
-    together: Truth
-    bodies: dict[str, Truth]
+    Stamps in ns of the first report on it with another level than STALE and of the first with WARN or ERROR; from that
+    on which it was known at all, of its first slide, its first impact and the first time that it lifted a contact.
+    `warned_ahead`: how long before the first event a warning had been standing, in s. None where there was none.
+
+    `events`: slides, lifts and impacts that follow each other by less than `APART` are one; of them `events_warned`
+    found a warning standing when they began.
+    """
+
+    first_known: int | None
+    first_warning: int | None
+    first_slide: int | None
+    first_impact: int | None
+    first_lift: int | None = None
+    warned_ahead: float | None = None
+    events: int = 0
+    events_warned: int = 0
+
+    @property
+    def first_event(self) -> int | None:
+        """The first slide or impact; of a body that only lifted, as one that topples may, that."""
+        happened = [stamp for stamp in (self.first_slide, self.first_impact) if stamp is not None]
+        return min(happened, default=self.first_lift)
+
+    @property
+    def before_first_impact(self) -> bool | None:
+        """Whether a warning stood before the first slide or impact; None where there was none."""
+        if self.first_slide is None and self.first_impact is None:
+            return None
+        return self.warned_ahead is not None
+
+
+class BodyTruth(NamedTuple):
+    """How the predictions of a body compare with what happened to it, and whether it was warned of; None where not."""
+
+    truth: Truth | None
+    warned: Warned | None
+
+
+class Compared(NamedTuple):
+    """All bodies together (None where no truth is known), each body, and each touchdown and false alarm."""
+
+    together: Truth | None
+    bodies: dict[str, BodyTruth]
     matches: list[Match]
 
 
-def compare(
-    impacts: Iterable[TrueImpact],
-    announcements: Announcements,
-    scenes: Mapping[str, Scene],
-    others: Mapping[str, list[Match]] = MappingProxyType({}),
-) -> Compared:
-    """Compare the predictions of all bodies that have samples with the true impacts.
+class Comparison:
+    """What was predicted of the bodies of some scenes, and what truly happened to them.
 
-    `scenes` are those of the bodies by their names, or that of bodies without names by "". `others` are the
-    matches of bodies with another truth.
+    A body goes by its name, or where it has none by its frame. `impacts` and `onsets` are the true ones; where
+    `knows_impacts` is False, a record tells of no impacts, and only bodies are compared whose true stances are told.
     """
-    of_body: dict[str, list[TrueImpact]] = defaultdict(list)
-    for impact in impacts:
-        of_body[announcements.names.get(impact.body, impact.body)].append(impact)
-    matches = {
-        body: _matches(
-            body, of_body[body], announcements.rows[body].all, sorted(samples), scenes[body if body in scenes else ""]
+
+    def __init__(self, scenes: Mapping[str, Scene], *, knows_impacts: bool = True) -> None:
+        self.impacts: list[TrueImpact] = []
+        self.onsets: list[TrueOnset] = []
+        self._knows_impacts = knows_impacts
+        self._scenes = scenes
+        # The names of bodies by their frames, by which a truth may call them too.
+        self._names: dict[str, str] = {}
+        self._samples: dict[str, list[int]] = defaultdict(list)
+        # Of the touchdowns of each body, under "", and of the landings of each foot.
+        self._rows: dict[str, dict[str, Rows]] = defaultdict(lambda: defaultdict(Rows))
+        self._stands: dict[str, tuple[bool, ...]] = {}
+        self._landings: dict[tuple[str, str], list[int]] = defaultdict(list)
+        self._known: dict[str, int] = {}
+        # When each warning began, and when another level ended it.
+        self._stood: dict[str, list[tuple[int, float]]] = defaultdict(list)
+
+    def add(self, prediction: Prediction, name: str = "") -> None:
+        """Take the answer to an accepted sample: a foot that stands lands no more, though more of it may touch down."""
+        stamp, frame, soonest = prediction.sample.stamp, prediction.sample.child_frame_id, prediction.touchdown
+        body = self._names[frame] = name or frame
+        self._samples[body].append(stamp)
+        self._rows[body][""].add(stamp, None if soonest is None else soonest.lead_time, soonest)
+        walking = self._scene(body).walking
+        if walking is not None:
+            first = None if soonest is None else walking.feet[soonest.new[0] // walking.points]
+            for foot in prediction.feet:
+                lead_time = None if foot.stands else foot.lead_time
+                self._rows[body][foot.name].add(stamp, lead_time, soonest if foot.name == first else None)
+
+    def add_stances(self, body: str, stamp: int, stands: tuple[bool, ...]) -> None:
+        """Take which feet of a body truly stand at a stamp in ns, in the order of the scene.
+
+        Feet that stand from the beginning have not landed.
+        """
+        walking = self._scene(body).walking
+        if walking is not None:
+            before = self._stands.get(body, stands)
+            self._stands[body] = stands
+            for foot, stood, now in zip(walking.feet, before, stands, strict=False):
+                if now and not stood:
+                    self._landings[body, foot].append(stamp)
+
+    def add_reports(self, reports: Iterable[Report]) -> None:
+        """Take reports of the watch in the order of their stamps."""
+        for report in reports:
+            if report.level != STALE:
+                self._known.setdefault(report.body, report.stamp)
+            stood = self._stood[report.body]
+            stands = bool(stood) and stood[-1][1] == inf
+            if report.level in (WARN, ERROR):
+                if not stands:
+                    stood.append((report.stamp, inf))
+            elif stands:
+                stood[-1] = stood[-1][0], report.stamp
+
+    def later_landings(self) -> int:
+        """How many true landings come after the last sample of their body that was accepted: they are not compared."""
+        last = {body: stamps[-1] for body, stamps in self._samples.items()}
+        return sum(stamp > last.get(body, stamp) for (body, _), stamps in self._landings.items() for stamp in stamps)
+
+    def compare(self) -> Compared:
+        """Compare the predictions of all bodies that have samples with what truly happened to them."""
+        impacts: dict[str, list[TrueImpact]] = defaultdict(list)
+        onsets: dict[str, list[TrueOnset]] = defaultdict(list)
+        for impact in self.impacts:
+            impacts[self._names.get(impact.body, impact.body)].append(impact)
+        for onset in self.onsets:
+            onsets[self._names.get(onset.body, onset.body)].append(onset)
+        matches: dict[str, list[Match]] = {}
+        for body in self._samples:
+            if body in self._stands:
+                matches[body] = self._matched_landings(body)
+            elif self._knows_impacts:
+                matches[body] = self._matched_impacts(body, impacts[body])
+        warned: dict[str, Warned] = {}
+        # A body alone may have no name; it goes by its frame.
+        alone = next(iter([*self._names.values(), *impacts]), "")
+        for name, scene in self._scenes.items():
+            if self._knows_impacts and scene.watching is not None:
+                warned[name or alone] = self._warned(name, impacts[name or alone], onsets[name or alone])
+        everything = [one for of_body in matches.values() for one in of_body]
+        return Compared(
+            _truth(everything) if self._knows_impacts or matches else None,
+            {
+                body: BodyTruth(_truth(matches[body]) if body in matches else None, warned.get(body))
+                for body in {**matches, **warned}
+            },
+            everything,
         )
-        for body, samples in announcements.samples.items()
-    } | dict(others)
-    everything = [one for of_one in matches.values() for one in of_one]
-    return Compared(_truth(everything), {body: _truth(of_one) for body, of_one in matches.items()}, everything)
+
+    def _scene(self, body: str) -> Scene:
+        return self._scenes[body if body in self._scenes else ""]
+
+    def _matched_impacts(self, body: str, impacts: Iterable[TrueImpact]) -> list[Match]:
+        """The impacts of a body until its last sample, and its false alarms."""
+        scene, samples = self._scene(body), sorted(self._samples[body])
+        happened = sorted((one for one in impacts if one.stamp <= samples[-1]), key=lambda one: one.stamp)
+        matched, alarms = match([impact.stamp for impact in happened], self._rows[body][""].all, samples[-1])
+        found, before = list[Match](), 0
+        for k, impact in enumerate(happened):
+            # A record at its rate shows an impact only with enough samples since the one before.
+            until = bisect_right(samples, impact.stamp)
+            shown = until - before >= SEEN and impact.approach > hardly(scene)
+            before, predictions = until, matched.get(k, [])
+            found.append(
+                Match(
+                    body=body,
+                    foot="",
+                    stamp=impact.stamp,
+                    mode=impact.mode,
+                    predictions=predictions,
+                    shown=shown,
+                    velocity_error=_velocity_error(impact, predictions[-1], scene.center_of_mass)
+                    if shown and predictions
+                    else None,
+                    border=impact.border,
+                )
+            )
+        return found + [Match(body, "", None, None, row) for row in alarms]
+
+    def _matched_landings(self, body: str) -> list[Match]:
+        """The landings of a body until its last sample, foot by foot, and its false alarms."""
+        found, end = list[Match](), self._samples[body][-1]
+        for foot, rows in self._rows[body].items():
+            if foot:
+                stamps = [stamp for stamp in self._landings[body, foot] if stamp <= end]
+                # A foot comes down softly: it may seem to come down still when the plan says that it stands.
+                matched, alarms = match(stamps, rows.all, end, late=NEAREST)
+                found += [Match(body, foot, stamp, None, matched.get(k, ())) for k, stamp in enumerate(stamps)]
+                found += [Match(body, foot, None, None, row) for row in alarms]
+        return found
+
+    def _warned(self, name: str, impacts: Sequence[TrueImpact], onsets: Sequence[TrueOnset]) -> Warned:
+        """How a body was warned of, with what happened to it since something was known of it."""
+        known, stood = self._known.get(name), self._stood[name]
+        if known is None:
+            return Warned(None, None, None, None)
+        slides = [onset.stamp for onset in onsets if onset.slides]
+        lifts = [onset.stamp for onset in onsets if onset.lifts]
+        struck = [impact.stamp for impact in impacts]
+        first_slide, first_impact, first_lift = (
+            min((stamp for stamp in stamps if stamp >= known), default=None) for stamps in (slides, struck, lifts)
+        )
+        events = [stamp for stamp in events_of([*slides, *lifts, *struck]) if stamp >= known]
+        warned = Warned(
+            first_known=known,
+            first_warning=stood[0][0] if stood else None,
+            first_slide=first_slide,
+            first_impact=first_impact,
+            first_lift=first_lift,
+            events=len(events),
+            events_warned=sum(_standing(stood, stamp) is not None for stamp in events),
+        )
+        first = warned.first_event
+        return warned._replace(warned_ahead=None if first is None else _standing(stood, first))
 
 
-def _matches(
-    body: str,
-    impacts: Sequence[TrueImpact],
-    announced: Sequence[list[Announcement]],
-    recorded: Sequence[int],
-    scene: Scene,
-) -> list[Match]:
-    """The impacts of a body until its last sample, and its false alarms."""
-    happened = sorted((one for one in impacts if one.stamp <= recorded[-1]), key=lambda one: one.stamp)
-    matched, alarms = match([impact.stamp for impact in happened], announced, recorded[-1])
-    shown = resolved(happened, recorded, hardly(scene))
-    true = [
-        Match(
-            body=body,
-            foot="",
-            stamp=impact.stamp,
-            mode=impact.mode,
-            predictions=matched.get(k, ()),
-            shown=k in shown,
-            velocity_error=velocity_error(impact, matched[k][-1], scene.center_of_mass)
-            if k in shown and k in matched
-            else None,
-            border=impact.border,
-        )
-        for k, impact in enumerate(happened)
-    ]
-    return true + [Match(body, "", None, None, row) for row in alarms]
+def events_of(stamps: Iterable[int]) -> list[int]:
+    """The stamps, in ns, at which something begins to happen after a time of `APART` in which nothing did."""
+    happened = sorted(stamps)
+    return happened[:1] + [after for before, after in pairwise(happened) if after - before >= APART]
+
+
+def _standing(stood: Iterable[tuple[int, float]], stamp: int) -> float | None:
+    """How long a warning had been standing at a stamp, in s; None where none stood."""
+    begun = [begin for begin, end in stood if begin < stamp <= end]
+    return (stamp - begun[-1]) / NANOSECONDS if begun else None
 
 
 def _truth(matches: Sequence[Match]) -> Truth:
@@ -130,15 +306,14 @@ def _truth(matches: Sequence[Match]) -> Truth:
     found = [one for one in shown if one.predictions]
     right = [one.mode_is_right for one in found if one.mode is not None]
     clear = [one.mode_is_right for one in found if one.mode is not None and one.border > BORDER]
-    errors = [one.velocity_error for one in matches if one.velocity_error is not None]
-    time_errors = {str(lead_time): median_time_error(found, lead_time) for lead_time in LEAD_TIMES}
+    time_errors = {str(lead_time): _median(one.time_error(lead_time) for one in found) for lead_time in LEAD_TIMES}
     return Truth(
         touchdowns=len(shown),
         missed=len(shown) - len(found),
         false=sum(one.stamp is None for one in matches),
         unresolved=len(hidden),
         mode_accuracy=sum(right) / len(right) if right else None,
-        median_velocity_error=median(errors) if errors else None,
+        median_velocity_error=_median(one.velocity_error for one in matches),
         median_time_error=time_errors[str(LEAD_TIMES[0])],
         clear=len(clear),
         clear_mode_accuracy=sum(clear) / len(clear) if clear else None,
@@ -148,23 +323,12 @@ def _truth(matches: Sequence[Match]) -> Truth:
     )
 
 
-def median_time_error(found: Iterable[Match], lead_time: float) -> float | None:
-    """Median error in s of the times that were announced a lead time in s ahead, or last before that."""
-    errors = [error for one in found if (error := one.time_error(lead_time)) is not None]
-    return median(errors) if errors else None
+def _median(values: Iterable[float | None]) -> float | None:
+    known = [value for value in values if value is not None]
+    return median(known) if known else None
 
 
-def resolved(happened: Sequence[TrueImpact], samples: Sequence[int], slowest: float) -> list[int]:
-    """The places of the impacts that a record shows, from the stamps of its samples, in order."""
-    shown = []
-    for k, impact in enumerate(happened):
-        before = bisect_right(samples, happened[k - 1].stamp) if k else 0
-        if bisect_right(samples, impact.stamp) - before >= SEEN and impact.approach > slowest:
-            shown.append(k)
-    return shown
-
-
-def velocity_error(impact: TrueImpact, last: Announcement, center: Vector3) -> float:
+def _velocity_error(impact: TrueImpact, last: Announcement, center: Vector3) -> float:
     """Error of the twist after an impact, as announced last, relative to the twist before it; `center`: mass centre in
     the body frame.
 
@@ -177,72 +341,3 @@ def velocity_error(impact: TrueImpact, last: Announcement, center: Vector3) -> f
     angular = to_world(axes, touchdown.angular)
     wrong = hypot(dist(linear, impact.linear_after), dist(angular, impact.angular_after) * impact.half_distance)
     return wrong / hypot(*impact.linear_before, *[part * impact.half_distance for part in impact.angular_before])
-
-
-class TrueLanding(NamedTuple):
-    """A foot that comes to stand: `stamp` in ns; `body` by its name, or where it has none its frame; `foot` by name."""
-
-    stamp: int
-    body: str
-    foot: str
-
-
-class Landings:
-    """The true landings of feet and those that are announced, of the bodies of some scenes by their names.
-
-    A body goes by its name, or where it has none by its frame.
-    """
-
-    def __init__(self, scenes: Mapping[str, Scene]) -> None:
-        self.true: list[TrueLanding] = []
-        self._scenes = scenes
-        self._stands: dict[str, tuple[bool, ...]] = {}
-        self._rows: dict[str, dict[str, Rows]] = defaultdict(lambda: defaultdict(Rows))
-        self._last: dict[str, int] = {}
-
-    def tell(self, body: str, stamp: int, stands: tuple[bool, ...]) -> None:
-        """Take which feet of a body truly stand at a stamp in ns, in the order of the scene.
-
-        Feet that stand from the beginning have not landed.
-        """
-        walking = self._scene(body).walking
-        before = self._stands.get(body, stands)
-        self._stands[body] = stands
-        if walking is not None:
-            changes = zip(walking.feet, before, stands, strict=False)
-            self.true += [TrueLanding(stamp, body, foot) for foot, stood, now in changes if now and not stood]
-
-    def add(self, prediction: Prediction, name: str = "") -> None:
-        """Take the answer to an accepted sample: a foot that stands lands no more, though more of it may touch down."""
-        sample = prediction.sample
-        body = name or sample.child_frame_id
-        walking = self._scene(body).walking
-        if walking is None:
-            return
-        soonest = prediction.touchdown
-        first = None if soonest is None else walking.feet[soonest.new[0] // walking.points]
-        for foot in prediction.feet:
-            lead_time = None if foot.stands else foot.lead_time
-            self._rows[body][foot.name].add(sample.stamp, lead_time, soonest if foot.name == first else None)
-        self._last[body] = sample.stamp
-
-    def matches(self) -> dict[str, list[Match]]:
-        """The landings of each body whose truth is known, foot by foot, and its false alarms."""
-        return {body: self._matches(body, last) for body, last in self._last.items() if body in self._stands}
-
-    def later(self) -> int:
-        """How many true landings come after the last sample of their body that was accepted: they are not compared."""
-        return sum(one.stamp > self._last.get(one.body, one.stamp) for one in self.true)
-
-    def _matches(self, body: str, end: int) -> list[Match]:
-        found: list[Match] = []
-        for foot, rows in self._rows[body].items():
-            stamps = sorted(one.stamp for one in self.true if (one.body, one.foot) == (body, foot) and one.stamp <= end)
-            # A foot comes down softly: it may seem to come down still when the plan says that it stands.
-            matched, alarms = match(stamps, rows.all, end, late=NEAREST)
-            found += [Match(body, foot, stamp, None, matched.get(k, ())) for k, stamp in enumerate(stamps)]
-            found += [Match(body, foot, None, None, row) for row in alarms]
-        return found
-
-    def _scene(self, body: str) -> Scene:
-        return self._scenes[body if body in self._scenes else ""]

@@ -16,7 +16,7 @@ from math import inf
 from typing import Final, NamedTuple
 
 from ..mechanics.types import Mode
-from ..prediction.types import Prediction, Touchdown
+from ..prediction.types import Touchdown
 from ..stamps import NANOSECONDS
 
 NEAREST: Final = 20_000_000
@@ -83,42 +83,18 @@ class Rows:
         if lead_time is None:
             self._goes_on = False
         elif lead_time > 0.0:
-            announced = Announcement(seen, seen + round(lead_time * NANOSECONDS), touchdown)
-            if self._goes_on and follows(announced, self.all[-1][-1]):
-                self.all[-1].append(announced)
-            else:
-                self.all.append([announced])
+            last = self.all[-1][-1] if self._goes_on else None
+            same = (
+                last is not None
+                and seen <= last.stamp
+                and (
+                    touchdown is None or last.touchdown is None or not set(touchdown.new).isdisjoint(last.touchdown.new)
+                )
+            )
+            if not same:
+                self.all.append([])
+            self.all[-1].append(Announcement(seen, seen + round(lead_time * NANOSECONDS), touchdown))
             self._goes_on = True
-
-
-class Announcements:
-    """The predictions of each body.
-
-    A body goes by its name, or where it has none by its frame.
-    """
-
-    def __init__(self) -> None:
-        self.samples: dict[str, list[int]] = defaultdict(list)
-        """Stamps in ns."""
-        self.rows: dict[str, Rows] = defaultdict(Rows)
-        self.names: dict[str, str] = {}
-        """The names of bodies by their frames, by which a truth may call them too."""
-
-    def add(self, prediction: Prediction, name: str = "") -> None:
-        """Take the answer to an accepted sample."""
-        sample = prediction.sample
-        body = name or sample.child_frame_id
-        self.names[sample.child_frame_id] = body
-        self.samples[body].append(sample.stamp)
-        touchdown = prediction.touchdown
-        self.rows[body].add(sample.stamp, None if touchdown is None else touchdown.lead_time, touchdown)
-
-
-def follows(announced: Announcement, last: Announcement) -> bool:
-    """Whether a prediction is of the same touchdown as the one before it."""
-    one, other = announced.touchdown, last.touchdown
-    same = one is None or other is None or not set(one.new).isdisjoint(other.new)
-    return same and announced.seen <= last.stamp
 
 
 def match(

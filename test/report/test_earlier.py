@@ -10,11 +10,12 @@ import pytest
 import touchdowns
 from touchdowns import SAMPLE
 
+from impact_predictor.bags.body import BodyRecord
 from impact_predictor.bags.replay import Result, Settled
-from impact_predictor.bags.run import BodyStream
 from impact_predictor.bags.write import BagWriter
 from impact_predictor.errors import InputError
 from impact_predictor.mechanics.types import Twist
+from impact_predictor.prediction.scene import Scene
 from impact_predictor.prediction.types import Landing, Leftover, Prediction, Score, Status
 from impact_predictor.report.earlier import Earlier
 from impact_predictor.report.replay_json import as_json
@@ -39,16 +40,15 @@ def run(body: str, scores: tuple[Score, ...] = SCORES) -> dict[str, Any]:
 
 
 def write_run(path: Path, body: str = "", scores: tuple[Score, ...] = SCORES, namespace: str = "") -> Path:
-    answers = iter([Prediction(Status.ACCEPTED, SAMPLE, None, score) for score in scores])
     with BagWriter(path) as writer:
 
         def write(topic: str, type_name: str, log_time: int, data: bytes) -> None:
             writer.write(namespace + topic, type_name, log_time, data)
 
-        stream = BodyStream(body, lambda _: next(answers), write)
-        stream.answered(Prediction(Status.ACCEPTED, SAMPLE), 1, 0.0)
-        for _ in scores:
-            stream.answered(stream.update(SAMPLE), 1, 0.0)
+        record = BodyRecord(body, Scene(1.0, ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), 0.5), write)
+        record.answered(Prediction(Status.ACCEPTED, SAMPLE), 1, 0.0)
+        for score in scores:
+            record.answered(Prediction(Status.ACCEPTED, SAMPLE, None, score), 1, 0.0)
     return path
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import matplotlib
 import pytest
 
-from impact_predictor.bags.events import Gait
+from impact_predictor.bags.body import Gait
 from impact_predictor.mechanics.types import Mode
 from impact_predictor.prediction.scene import Walking
 from impact_predictor.prediction.types import Foot, Prediction, Sample, Status

@@ -7,11 +7,10 @@ import io
 import pytest
 from rich.console import Console
 
-from impact_predictor.bags.replay import BodyTruth, Result
+from impact_predictor.bags.replay import Result
 from impact_predictor.prediction.types import Status
 from impact_predictor.report.replay import print_replay, truth_sentences
-from impact_predictor.scenarios.comparison import Truth
-from impact_predictor.scenarios.warned import Warned
+from impact_predictor.scenarios.comparison import BodyTruth, Truth, Warned
 
 
 def test_the_truth_is_said_in_whole_sentences() -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from touchdowns import SAMPLE, TOUCHDOWN
 
-from impact_predictor.bags.replay import BodyTruth, Result, Settled
+from impact_predictor.bags.replay import Result, Settled
 from impact_predictor.mechanics.types import Mode, Twist
 from impact_predictor.prediction.types import Landing, Leftover, Prediction, Score, Status
 from impact_predictor.report.earlier import row_of_message
@@ -26,9 +26,8 @@ from impact_predictor.report.summary import (
     together,
 )
 from impact_predictor.ros.messages import decode_diagnostic_array, encode_score
-from impact_predictor.scenarios.comparison import Truth
+from impact_predictor.scenarios.comparison import BodyTruth, Truth, Warned
 from impact_predictor.scenarios.matching import Announcement, Match
-from impact_predictor.scenarios.warned import Warned
 
 SCORED = Score(
     1_004_000_000,

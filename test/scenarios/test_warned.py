@@ -5,19 +5,27 @@ from __future__ import annotations
 import pytest
 
 from impact_predictor.mechanics.types import Mode
+from impact_predictor.prediction.scene import Scene, Watching
 from impact_predictor.prediction.watch.watch import Level, Report
+from impact_predictor.scenarios.comparison import APART, Comparison, Warned, events_of
 from impact_predictor.scenarios.truth import TrueImpact, TrueOnset
-from impact_predictor.scenarios.warned import APART, Warned, Warnings, events_of
 
 ZERO = (0.0, 0.0, 0.0)
 
 
-def reported(*levels: Level, body: str = "crate") -> Warnings:
-    """A report for each level, one after the other from stamp 0 on."""
-    warnings = Warnings()
+WATCHED = Scene(1.0, ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), 0.5, watching=Watching())
+
+
+def warned_of(levels: tuple[Level, ...], impacts: list[int], onsets: list[TrueOnset], body: str = "crate") -> Warned:
+    """How a body was warned of by a report on the crate for each level, one after the other from stamp 0 on."""
+    made = Comparison({body: WATCHED})
+    made.impacts += map(impact, impacts)
+    made.onsets += onsets
     for stamp, level in enumerate(levels):
-        warnings.take([Report(body, stamp, level, "", {})])
-    return warnings
+        made.add_reports([Report("crate", stamp, level, "", {})])
+    warned = made.compare().bodies[body].warned
+    assert warned is not None
+    return warned
 
 
 def impact(stamp: int) -> TrueImpact:
@@ -60,7 +68,7 @@ FOUND = {"events": 1, "events_warned": 1}
 def test_the_first_warning_and_the_first_events_are_told(
     levels: tuple[Level, ...], impacts: list[int], onsets: list[TrueOnset], expected: Warned
 ) -> None:
-    assert reported(*levels).of("crate", map(impact, impacts), onsets) == expected
+    assert warned_of(levels, impacts, onsets) == expected
 
 
 def test_the_first_event_is_a_slide_or_an_impact_and_a_lift_where_there_is_neither() -> None:
@@ -70,8 +78,8 @@ def test_the_first_event_is_a_slide_or_an_impact_and_a_lift_where_there_is_neith
 
 @pytest.mark.parametrize(("happened", "answer"), [(2, False), (3, True)])
 def test_a_warning_comes_before_what_it_warns_of(happened: int, answer: bool) -> None:
-    assert reported(OK, OK, WARN).of("crate", [impact(happened)], []).before_first_impact is answer
-    assert reported(OK, OK, WARN).of("crate", [], [slide(happened)]).before_first_impact is answer
+    assert warned_of((OK, OK, WARN), [happened], []).before_first_impact is answer
+    assert warned_of((OK, OK, WARN), [], [slide(happened)]).before_first_impact is answer
 
 
 def test_what_follows_soon_is_the_same_event() -> None:
@@ -82,10 +90,9 @@ def test_what_follows_soon_is_the_same_event() -> None:
 
 
 def test_each_event_is_looked_at_for_a_warning_of_its_own() -> None:
-    warnings = reported(OK, WARN, OK)
-    warned = warnings.of("crate", [impact(2), impact(2 * APART)], [lift(4 * APART)])
+    warned = warned_of((OK, WARN, OK), [2, 2 * APART], [lift(4 * APART)])
     assert (warned.events, warned.events_warned) == (3, 1)
 
 
 def test_of_a_body_without_reports_nothing_is_known() -> None:
-    assert reported(OK, WARN).of("drum", [], []) == Warned(None, None, None, None)
+    assert warned_of((OK, WARN), [], [], body="drum") == Warned(None, None, None, None)

@@ -26,7 +26,7 @@ from impact_predictor.prediction.types import (
     Wrench,
 )
 from impact_predictor.prediction.vectors import add, axes_of, cross, to_body, turned
-from impact_predictor.scenarios.comparison import Landings
+from impact_predictor.scenarios.comparison import Comparison
 
 MS = 1_000_000
 RATE = 400
@@ -401,12 +401,12 @@ def test_a_foot_that_lands_sooner_stands_when_the_next_one_lands() -> None:
 def test_the_toe_of_a_foot_that_has_just_landed_on_its_heel_makes_no_false_alarm() -> None:
     courses = [swing(0.3, 0.6, speed=0.2), swing(0.3, 0.68, height=0.12), stands, stands]
     scene = BIPED
-    walker, landings = Predictor(scene), Landings({"": scene})
+    walker, landings = Predictor(scene), Comparison({"": scene})
     for sample, geometry in record(courses, 0.9, places=SOLES):
-        landings.tell("base", sample.stamp, (not START + 300 * MS < sample.stamp < START + 600 * MS, True))
+        landings.add_stances("base", sample.stamp, (not START + 300 * MS < sample.stamp < START + 600 * MS, True))
         walker.set_geometry(geometry)
         landings.add(walker.update(sample))
-    ((landing,),) = landings.matches().values()
+    (landing,) = landings.compare().matches
     assert landing.stamp is not None
     assert landing.predictions
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from impact_predictor.bags.events import FootStance, Gait
+from impact_predictor.bags.body import FootStance, Gait
 from impact_predictor.prediction.scene import Walking
 from impact_predictor.prediction.types import Foot, Prediction, Sample, Status
 
