@@ -15,7 +15,7 @@ from ..mechanics.motion.support import MovingSupport
 from ..prediction.scene import Watching
 from ..prediction.watch.onset import Onset, motions
 from ..prediction.watch.standing import Standing
-from ..ros.markers.shapes import box_of
+from ..ros.markers.body import box_of
 from ..scenarios.deck.cargo import CargoUnit, Span
 from ..scenarios.truth import TrueImpact, TrueOnset
 from ..stamps import NANOSECONDS

@@ -7,28 +7,23 @@ without any transform. Colours are never the only sign: levels and modes are wri
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Final
+from functools import lru_cache, partial
+from math import acos, degrees, floor, hypot, log10
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from ...prediction.scene import Scene
-from ...prediction.types import Foot, Geometry, Moment, Prediction, Quaternion, Status
-from ...prediction.vectors import add, axes_of, dot, to_body, to_world
-from ...stamps import NANOSECONDS
-from .drawing import BodyView, SeenPose, ShownTouchdown, draw_support, draw_unit
-from .message import DELETE, DELETE_ALL, Marker, encode_markers
-from .shapes import about, deck_of, patch_of, shape_of
+from ...prediction.types import Geometry, Moment, Prediction, Quaternion, Status, Vector3
+from ...prediction.vectors import Axes, add, axes_of, combine, dot
+from .body import PAUSE, Body, turn_to
+from .message import DELETE, DELETE_ALL, NO_LOOK, NOWHERE, Marker, encode_markers
 
 if TYPE_CHECKING:
     from ...prediction.watch.watch import Report
 
 PERIOD: Final = 100_000_000
 """ns from one message to the next."""
-PAUSE: Final = 1_000_000_000
-"""ns without news after which a body counts as stale; a clock that goes back by more has started anew."""
-AFTERWARDS: Final = 1_000_000_000
-"""ns for which a touchdown that has happened is still shown, where no other one is ahead."""
 LETTER: Final = 0.2
 """Height of a letter, in the size of a body that is neither small nor large among the others."""
-_OK, _STALE = 0, 3
 
 
 class MarkerScene:
@@ -40,7 +35,7 @@ class MarkerScene:
 
     def __init__(self, scenes: Mapping[str, Scene]) -> None:
         """Draw the bodies of these names as their scenes describe them; "" is the name of a body alone."""
-        self._bodies = {name: KnownBody(name, scene) for name, scene in scenes.items()}
+        self._bodies = {name: Body(number, name, scene) for number, (name, scene) in enumerate(scenes.items())}
         self._scene = next(iter(scenes.values()))
         self._slab = deck_of(self._scene)
         self._moment: Moment | None = None
@@ -71,15 +66,16 @@ class MarkerScene:
         for report in reports:
             if report.body in self._bodies:
                 one = self._bodies[report.body]
-                one.level, one.message = int(report.level), "" if report.level == _OK else _why(report.values)
+                one.level, one.message = int(report.level), _why(report.values) if report.level else ""
 
     def due(self, stamp: int) -> bytes | None:
         """The message of a stamp in ns, or None when it is too early for one, or nothing is known yet."""
         first: list[Marker] = []
+        gone = partial(Marker, scale=NOWHERE, look=NO_LOOK)
         if self._last is not None and stamp - self._last < PERIOD:
             if self._last - stamp <= PAUSE:
                 return None
-            first = [Marker("", 0, action=DELETE_ALL)]
+            first = [gone("", 0, action=DELETE_ALL)]
             self._shown = frozenset()
             for body in self._bodies.values():
                 body.forget_after(stamp)
@@ -88,7 +84,7 @@ class MarkerScene:
             return None
         self._last = stamp
         now = frozenset([(marker.namespace, marker.number) for marker in drawn])
-        first += [Marker(*key, action=DELETE) for key in sorted(self._shown - now)]
+        first += [gone(*key, action=DELETE) for key in sorted(self._shown - now)]
         self._shown = now
         return encode_markers(first + drawn, stamp, self._frame)
 
@@ -96,18 +92,17 @@ class MarkerScene:
         scene, moment = self._scene, self._moment
         if scene.deck is not None and moment is None:
             return []
-        found = [body.unit(number, stamp) for number, body in enumerate(self._bodies.values())]
-        units = [unit for unit in found if unit is not None]
+        found = [(body, known) for body in self._bodies.values() if (known := body.at(stamp)) is not None]
+        sizes = sorted([shape.size for _, (_, shape) in found])
         slab = self._slab
         if slab is None:
-            if not units:
+            if not found:
                 return []
-            slab = patch_of(scene, [unit.seen.position for unit in units], max([unit.shape.size for unit in units]))
-        sizes = sorted([unit.shape.size for unit in units]) or [0.1 * slab.half_x]
-        letter = LETTER * sizes[len(sizes) // 2]
+            slab = patch_of(scene, [seen.position for _, (seen, _) in found], sizes[-1])
+        letter = LETTER * (sizes[len(sizes) // 2] if sizes else 0.1 * slab.half_x)
         drawn = draw_support(slab, scene, moment, letter)
-        for unit in units:
-            drawn += draw_unit(unit, stamp, letter)
+        for body, (seen, shape) in found:
+            drawn += body.draw(seen, shape, stamp, letter)
         return drawn
 
 
@@ -129,85 +124,76 @@ def _part(ratio: str) -> str:
     return f"{100.0 * float(ratio):.0f} %" if float(ratio) < 10.0 else "all"
 
 
-class KnownBody:
-    """What is known of one body."""
+class Slab(NamedTuple):
+    """A part of the support in its frame: the middle of its surface, half its sides in m, its axes (x, y, normal)."""
 
-    def __init__(self, name: str, scene: Scene) -> None:
-        self.scene = scene
-        self.seen: SeenPose | None = None
-        self.level: int | None = None
-        self.message = ""
-        self._name = name
-        self._points = scene.points
-        self._shape = shape_of(scene, scene.points)
-        self._ahead: ShownTouchdown | None = None
-        self._feet: tuple[Foot, ...] = ()
+    middle: Vector3
+    half_x: float
+    half_y: float
+    axes: Axes
 
-    def set_points(self, geometry: Geometry) -> None:
-        # Feet are drawn where the answers say that they are.
-        if self.scene.walking is None and geometry.points != self._points:
-            self._points = geometry.points
-            self._shape = shape_of(self.scene, geometry.points)
 
-    def take(self, prediction: Prediction) -> bool:
-        """Note an answer; whether it says where the body is."""
-        sample = prediction.sample if self.scene.deck is None else prediction.relative
-        if sample is None:
-            return False
-        self.seen = SeenPose(sample.stamp, sample.position, sample.orientation)
-        self._name = self._name or sample.child_frame_id
-        self._feet = prediction.feet
-        touchdown, score = prediction.touchdown, prediction.score
-        if touchdown is not None:
-            self._ahead = ShownTouchdown(sample.stamp + round(touchdown.lead_time * NANOSECONDS), touchdown)
-        elif score is not None:
-            self._ahead = ShownTouchdown(score.stamp, score.touchdown, happened=True, error=score.relative_error)
-        elif self._ahead is not None and not self._ahead.happened:
-            self._ahead = None
-        return True
+def deck_of(scene: Scene) -> Slab | None:
+    """The whole support, or None where it has no end."""
+    if scene.deck is None or not scene.deck.extent:
+        return None
+    x0, x1, y0, y1 = scene.deck.extent
+    return _slab(scene, (0.5 * (x0 + x1), 0.5 * (y0 + y1), 0.0), 0.5 * (x1 - x0), 0.5 * (y1 - y0))
 
-    def lean(self, stamp: int, orientation: Quaternion) -> None:
-        """Stand with an orientation at the scene's place, on the lowest point."""
-        scene, axes = self.scene, axes_of(orientation)
-        position = scene.place
-        if scene.radius == 0.0 and self._points:
-            heights = [dot(scene.normal, add(position, to_world(axes, point))) for point in self._points]
-            position = add(position, scene.normal, scene.height - min(heights))
-        self.seen = SeenPose(stamp, position, orientation)
 
-    def forget_after(self, stamp: int) -> None:
-        """Forget what is later than a stamp in ns."""
-        if self.seen is not None and self.seen.stamp > stamp:
-            self.seen = self._ahead = None
+def patch_of(scene: Scene, places: list[Vector3], size: float) -> Slab:
+    """A part of the support with room of at least `size` around places; it moves and grows in steps."""
+    axes, step = axes_of(turn_to(scene.normal)), 2.0 * size
+    along = [[dot(axis, place) for place in places] for axis in axes[:2]]
+    (x0, x1), (y0, y1) = [(floor(min(one) / step - 0.5), floor(max(one) / step + 1.5)) for one in along]
+    middle = combine(0.5 * step * (x0 + x1), axes[0], 0.5 * step * (y0 + y1), axes[1], 0.0, axes[2])
+    return _slab(scene, middle, 0.5 * step * (x1 - x0), 0.5 * step * (y1 - y0))
 
-    def unit(self, number: int, stamp: int) -> BodyView | None:
-        """The body as it is to be drawn at a stamp in ns, or None where it cannot be."""
-        scene, seen = self.scene, self.seen
-        if seen is not None and self._feet:
-            axes = axes_of(seen.orientation)
-            places = [add(foot.position, seen.position, -1.0) for foot in self._feet if foot.position is not None]
-            self._points = tuple(to_body(axes, place) for place in places)
-            self._shape = shape_of(scene, self._points)
-        shape = self._shape
-        if seen is None and scene.deck is not None and scene.source != "odom":
-            seen = SeenPose(stamp, scene.place, about(scene.normal, scene.yaw))
-        if seen is None or shape is None:
-            return None
-        level = self.level
-        if scene.watching is None and stamp - seen.stamp > PAUSE:
-            level = _STALE
-        ahead = self._ahead
-        if ahead is not None and stamp - ahead.stamp > AFTERWARDS:
-            ahead = None
-        return BodyView(
-            number=number,
-            name=self._name,
-            scene=scene,
-            points=self._points,
-            shape=shape,
-            seen=seen,
-            ahead=ahead,
-            level=level,
-            message=self.message,
-            feet=self._feet,
-        )
+
+def _slab(scene: Scene, middle: Vector3, half_x: float, half_y: float) -> Slab:
+    on_plane = add(middle, scene.normal, scene.height - dot(scene.normal, middle))
+    return Slab(middle=on_plane, half_x=half_x, half_y=half_y, axes=axes_of(turn_to(scene.normal)))
+
+
+@lru_cache(maxsize=8)
+def grid_of(slab: Slab) -> tuple[float, tuple[Vector3, ...]]:
+    """The spacing in m, a 1, 2 or 5 with zeros, of about ten lines on a slab, and their ends seen from its middle."""
+    longest = 2.0 * max(slab.half_x, slab.half_y)
+    decade = 10.0 ** floor(log10(longest / 10.0))
+    spacing = next(step * decade for step in (1.0, 2.0, 5.0, 10.0) if longest <= 12.0 * step * decade)
+    ends: list[Vector3] = []
+    for half, across, along_x in ((slab.half_x, slab.half_y, True), (slab.half_y, slab.half_x, False)):
+        count = floor(half / spacing)
+        inside = [k * spacing for k in range(-count, count + 1) if half - abs(k * spacing) > 0.3 * spacing]
+        for place in (-half, *inside, half):
+            ends += [(place, end, 0.0) if along_x else (end, place, 0.0) for end in (-across, across)]
+    return spacing, tuple(ends)
+
+
+def draw_support(slab: Slab, scene: Scene, moment: Moment | None, letter: float) -> list[Marker]:
+    """The support with a grid; over a moving one also a plumb line beside the normal, which shows what is felt.
+
+    A `letter` of the words is so many m high.
+    """
+    normal, longest = slab.axes[2], 2.0 * max(slab.half_x, slab.half_y)
+    turned, thickness, width = turn_to(normal), 0.01 * longest, 0.002 * longest
+    spacing, grid = grid_of(slab)
+    below, above = add(slab.middle, normal, -0.5 * thickness), add(slab.middle, normal, 5e-4 * longest)
+    sides = 2.0 * slab.half_x, 2.0 * slab.half_y, thickness
+    drawn = [
+        Marker("support", 0, position=below, orientation=turned, scale=sides),
+        Marker("support/grid", 0, width, grid, above, turned),
+    ]
+    corner = combine(-slab.half_x, slab.axes[0], slab.half_y, slab.axes[1], 1.0, slab.middle)
+    words = f"grid {spacing:g} m"
+    if moment is not None:
+        gravity = moment.felt.gravity
+        size, high = hypot(*gravity), 0.15 * longest
+        away = degrees(acos(max(-1.0, min(1.0, -dot(gravity, normal) / size)))) if size > 0.0 else 0.0
+        words = f"felt gravity {size:.2f} m/s², {away:.1f}° off the normal\n{words}"
+        top = add(corner, normal, high)
+        hangs = add(top, gravity, high / hypot(*scene.gravity))
+        drawn.append(Marker("support/plumb", 0, 0.006 * longest, (top, hangs)))
+        drawn.append(Marker("support/normal", 0, width, (corner, top)))
+        corner = top
+    return [*drawn, Marker("support/text", 0, letter, position=add(corner, normal, 2.0 * letter), text=words)]

@@ -16,6 +16,7 @@ from impact_predictor.prediction.scene import MovingDeck, Scene, Watching
 from impact_predictor.prediction.types import Felt, Geometry, Moment, Prediction, Sample, Status, Vector3
 from impact_predictor.prediction.vectors import axes_of, to_world
 from impact_predictor.prediction.watch.watch import Level, Report
+from impact_predictor.ros.markers.body import PAUSE, shape_of, turn_to
 from impact_predictor.ros.markers.message import (
     ARROW,
     CUBE,
@@ -29,8 +30,7 @@ from impact_predictor.ros.markers.message import (
     Marker,
     encode_markers,
 )
-from impact_predictor.ros.markers.scene import PAUSE, PERIOD, MarkerScene
-from impact_predictor.ros.markers.shapes import shape_of, turn_to
+from impact_predictor.ros.markers.scene import PERIOD, MarkerScene
 from impact_predictor.ros.messages import MARKER_ARRAY
 
 TYPESTORE = get_typestore(Stores.ROS2_JAZZY)
@@ -119,16 +119,15 @@ def test_the_bytes_are_those_of_rosbags_and_rclpy_at_every_alignment() -> None:
     for length in range(9):
         markers = [
             Marker(
-                "n" * rng.randrange(9),
-                rng.randrange(-5, 99),
-                rng.randrange(10),
-                (rng.gauss(0, 1), rng.gauss(0, 1), 5e-324),
-                (0.0, 0.6, 0.0, 0.8),
-                (1.0, 2.0, 3.0),
-                (0.25, 0.5, 0.75, 1.0),
-                tuple((rng.gauss(0, 1), 2.0, 3.0) for _ in range(rng.randrange(3))),
-                "é" * rng.randrange(5),
-                DELETE if rng.random() < 0.2 else 0,
+                namespace="n" * rng.randrange(9),
+                number=rng.randrange(-5, 99),
+                points=tuple((rng.gauss(0, 1), 2.0, 3.0) for _ in range(rng.randrange(3))),
+                position=(rng.gauss(0, 1), rng.gauss(0, 1), 5e-324),
+                orientation=(0.0, 0.6, 0.0, 0.8),
+                text="é" * rng.randrange(5),
+                scale=(1.0, 2.0, 3.0),
+                look=(rng.randrange(10), (0.25, 0.5, 0.75, 1.0)),
+                action=DELETE if rng.random() < 0.2 else 0,
             )
             for _ in range(length)
         ]
@@ -138,7 +137,11 @@ def test_the_bytes_are_those_of_rosbags_and_rclpy_at_every_alignment() -> None:
         assert data == again + bytes(-len(again) % 4)
         of_rclpy = serialization.deserialize_message(data, MarkerArray)
         for marker, of_rosbags, one in zip(markers, message.markers, of_rclpy.markers, strict=True):  # type: ignore[attr-defined]
-            assert (one.ns, one.id, one.type, one.action, one.text) == (*marker[:3], marker.action, marker.text)
+            assert (one.ns, one.id, (one.type, (one.color.r, one.color.g, one.color.b, one.color.a))) == (
+                *marker[:2],
+                marker.look,
+            )
+            assert (one.action, one.text) == (marker.action, marker.text)
             assert triple(one.pose.position) == marker.position == triple(of_rosbags.pose.position)
             assert [triple(point) for point in one.points] == list(marker.points)
             assert (one.header.frame_id, one.header.stamp.sec, one.header.stamp.nanosec) == ("f" * length, 12, 5)
@@ -166,8 +169,8 @@ def test_points_that_are_no_corners_of_a_box_are_drawn_as_lines_from_the_mass_ce
     shape = shape_of(BOX, feet)
     assert shape is not None
     assert shape.shape == LINE_LIST
-    assert shape.lines[0::2] == ((0.0, 0.0, 0.0),) * 4
-    assert shape.lines[1::2] == feet
+    assert shape.outline[0::2] == ((0.0, 0.0, 0.0),) * 4
+    assert shape.outline[1::2] == feet
     assert shape_of(BOX, ()) is None
 
 
