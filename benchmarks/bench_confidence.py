@@ -90,7 +90,7 @@ def samples_table() -> Table:
         updates, encodings = [], []
         for topic, _, data in messages:
             if topic == "/cube/contact_geometry":
-                predictor.set_geometry(decode_polygon(data))
+                predictor.tell(decode_polygon(data))
                 continue
             sample = decode_odometry(data)._replace(twist_covariance=covariance)
             start = perf_counter_ns()

@@ -64,7 +64,7 @@ def run(scene: Scene, record: Sequence[BagMessage]) -> tuple[list[float], list[i
     costs, kinds = [], []
     for topic, _, data in record:
         if topic == "/cube/contact_geometry":
-            body.set_geometry(decode_polygon(data))
+            body.tell(decode_polygon(data))
             continue
         sample = decode_odometry(data)
         started = perf_counter_ns()

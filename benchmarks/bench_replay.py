@@ -59,7 +59,7 @@ def parts(bag: Path, scene: Scene, output: Path) -> dict[str, Callable[[], objec
 
     def predict() -> None:
         predictor = Predictor(scene)
-        predictor.set_geometry(geometry)
+        predictor.tell(geometry)
         for sample in samples:
             predictor.update(sample)
 
@@ -73,7 +73,7 @@ def parts(bag: Path, scene: Scene, output: Path) -> dict[str, Callable[[], objec
                 one.encode(prediction)
 
     predictor = Predictor(scene)
-    predictor.set_geometry(geometry)
+    predictor.tell(geometry)
     predictions = [predictor.update(sample) for sample in samples]
     encoded = [
         (f"{NODE}/{name}", output_.type_name, prediction.sample.stamp, data)

@@ -32,7 +32,7 @@ def run(machine: Scene, record: Record) -> tuple[list[float], list[int]]:
     costs, ahead = [], []
     for sample, geometry in record:
         started = perf_counter_ns()
-        walker.set_geometry(geometry)
+        walker.tell(geometry)
         prediction = walker.update(sample)
         costs.append((perf_counter_ns() - started) * 1e-3)
         ahead.append(sum(foot.lead_time is not None for foot in prediction.feet))

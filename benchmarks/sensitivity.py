@@ -66,7 +66,7 @@ def scores_of(scene: Scene, record: list[Sample | Geometry]) -> list[Score]:
     scores = []
     for message in record:
         if isinstance(message, Geometry):
-            body.set_geometry(message)
+            body.tell(message)
         else:
             scores.append(body.update(message).score)
     scores.extend(body.finish())

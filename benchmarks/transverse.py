@@ -80,7 +80,7 @@ def replay(scene: Scene, record: list[Sample | Geometry]) -> list[Score]:
     scores = []
     for message in record:
         if isinstance(message, Geometry):
-            predictor.set_geometry(message)
+            predictor.tell(message)
         else:
             scores.append(predictor.update(message).score)
     return [score for score in [*scores, *predictor.finish()] if score is not None and score.scored]

@@ -77,7 +77,7 @@ def run(record: Sequence[Adapted], machine: Scene, seed: int | None = None, on_r
         if seed is not None:
             sample, geometry = noisy(sample, geometry, rng, on_robot=on_robot)
         landings.add_stances(sample.child_frame_id, sample.stamp, one.stands)
-        walker.set_geometry(geometry)
+        walker.tell(geometry)
         answers.append(walker.update(sample))
         landings.add(answers[-1])
     scores = [one.score for one in answers if one.score is not None] + list(walker.finish())

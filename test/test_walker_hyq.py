@@ -173,7 +173,7 @@ def test_the_plan_brakes_its_feet_and_their_impacts_are_those_of_the_last_sample
     machine, samples, scores = noise.scene(), {}, []
     walker = Predictor(machine)
     for told in noise.plan():
-        walker.set_geometry(told.geometry)
+        walker.tell(told.geometry)
         prediction = walker.update(told.sample)
         samples[told.sample.stamp] = told
         scores += [] if prediction.score is None else [prediction.score]

@@ -119,7 +119,7 @@ def predicted(machine: Machine, scene: Scene) -> Announce:
 
     def announce(made: Walk) -> Announcement | None:
         # Through the bytes of the message, which has float32.
-        predictor.set_geometry(decode_polygon(encode_polygon(geometry_of(made))))
+        predictor.tell(decode_polygon(encode_polygon(geometry_of(made))))
         return announced(predictor.update(sample_of(made)))
 
     return announce

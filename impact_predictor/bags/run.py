@@ -193,7 +193,7 @@ class Run:
         return status
 
     def _set_geometry(self, record: BodyRecord, geometry: Geometry, log_time: int) -> Status:
-        status = self.monitor.set_geometry(record.body, geometry)
+        status = self.monitor.tell(record.body, geometry)
         if status in _FITTING:
             record.take_geometry(geometry)
         if status is Status.ACCEPTED and self._drawing is not None:

@@ -163,17 +163,14 @@ class Monitor:
         assert self.deck is not None
         return self._moved(self.deck.update_imu(imu), imu.stamp)
 
-    def set_geometry(self, body: str, geometry: Geometry) -> Status:
-        """Take the contact points of a body."""
-        status = self.tell(body, geometry)
-        if self.watch is not None and status is Status.ACCEPTED and body in self._watched:
-            self._points[body] = geometry.points
-            self.watch.set_points(body, geometry.points)
-        return status
-
     def tell(self, body: str, message: Geometry | Joints | Wrench | Schedule) -> Status:
         """Take what is told about the contacts of a body; what became of the message."""
-        return self.predictors[body].tell(message)
+        status = self.predictors[body].tell(message)
+        if status is Status.ACCEPTED and isinstance(message, Geometry) and body in self._watched:
+            assert self.watch is not None
+            self._points[body] = message.points
+            self.watch.set_points(body, message.points)
+        return status
 
     def silent(self, stamp: int) -> None:
         """Know that no message came until a stamp (ns), so that what is too old by then counts as lost."""

@@ -143,10 +143,6 @@ class Predictor:
         """
         return self.contacts.tell(message)
 
-    def set_geometry(self, geometry: Geometry) -> Status:
-        """Take the contact points of the body, as `tell` does."""
-        return self.tell(geometry)
-
     def update(self, sample: Sample) -> Prediction:
         """The prediction from a sample: its status, the touchdown ahead, and a score that is complete."""
         status = self._check(sample)

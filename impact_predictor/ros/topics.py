@@ -91,7 +91,7 @@ class BodyTopics:
         if kind == IMU:
             update, accepted = partial(monitor.update_imu, body), self._draw_tilt
         elif kind == CONTACT_GEOMETRY:
-            update, accepted = partial(monitor.set_geometry, body), self._draw_points if is_fixed else None
+            accepted = self._draw_points if is_fixed else None
         one = InputTopic(self._reporter, topic, kind, update, accepted)
         type_name = INPUT_TYPES[kind].name
         # Feet move, and what was published of them before is of no use.

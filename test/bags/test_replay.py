@@ -74,7 +74,7 @@ def predicted_directly(scene: Scene, messages: list[BagMessage]) -> list[Output]
     outputs = []
     for topic, log_time, data in messages:
         if topic == "/cube/contact_geometry":
-            predictor.set_geometry(decode_polygon(data))
+            predictor.tell(decode_polygon(data))
             continue
         last = predictor.update(decode_odometry(data))
         for name, output in OUTPUTS.items():

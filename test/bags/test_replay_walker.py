@@ -75,7 +75,7 @@ def predicted_directly(messages: list[BagMessage]) -> list[tuple[str, int, bytes
         if topic == "/odom":
             answers.append((log_time, walker.update(decode_odometry(data))))
         elif topic == "/contact_geometry":
-            walker.set_geometry(decode_polygon(data))
+            walker.tell(decode_polygon(data))
         elif topic == "/contact_wrench":
             walker.tell(decode_wrench(data))
         else:

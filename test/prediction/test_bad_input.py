@@ -130,10 +130,10 @@ def test_a_sample_of_another_frame_is_refused() -> None:
 
 def test_the_geometry_must_be_of_the_samples_body() -> None:
     predictor = Predictor(BARE_SCENE)
-    assert predictor.set_geometry(Geometry(0, "crate", CUBE)) is Status.ACCEPTED
+    assert predictor.tell(Geometry(0, "crate", CUBE)) is Status.ACCEPTED
     assert predictor.update(flying_sample()).status is Status.WRONG_FRAME
     assert predictor.update(flying_sample(child_frame_id="")).status is Status.ACCEPTED
-    assert predictor.set_geometry(Geometry(0, "cube", CUBE)) is Status.ACCEPTED
+    assert predictor.tell(Geometry(0, "cube", CUBE)) is Status.ACCEPTED
     assert goes_on(predictor)
 
 
@@ -152,10 +152,10 @@ def test_the_geometry_must_be_of_the_samples_body() -> None:
 )
 def test_a_bad_geometry_is_refused_and_the_last_one_kept(points: tuple[Vector3, ...], status: Status) -> None:
     predictor = Predictor(BARE_SCENE)
-    assert predictor.set_geometry(Geometry(0, "cube", points)) is status
+    assert predictor.tell(Geometry(0, "cube", points)) is status
     assert predictor.update(flying_sample()).status is Status.NO_GEOMETRY
-    predictor.set_geometry(Geometry(0, "cube", CUBE))
-    assert predictor.set_geometry(Geometry(0, "cube", points)) is status
+    predictor.tell(Geometry(0, "cube", CUBE))
+    assert predictor.tell(Geometry(0, "cube", points)) is status
     assert goes_on(predictor)
 
 

@@ -51,7 +51,7 @@ def record() -> Record:
             answers.append(predictor.update(sample))
         else:
             points = decode_polygon(data).points
-            assert predictor.set_geometry(decode_polygon(data)) is Status.ACCEPTED
+            assert predictor.tell(decode_polygon(data)) is Status.ACCEPTED
     scores = [answer.score for answer in answers if answer.score is not None]
     return Record(samples, scene._replace(points=points), answers, [*scores, *predictor.finish()])
 

@@ -243,8 +243,8 @@ def test_points_from_a_topic_reach_predictor_and_watch() -> None:
         monitor.update_support(deck(time))
     assert monitor.update("crate", standing(60)).status is Status.NO_GEOMETRY
     points = tuple((BOX[i], BOX[i + 1], BOX[i + 2]) for i in range(0, len(BOX), 3))
-    assert monitor.set_geometry("crate", Geometry(0, "crate", points[:1])) is Status.TOO_FEW_POINTS
-    assert monitor.set_geometry("crate", Geometry(0, "crate", points)) is Status.ACCEPTED
+    assert monitor.tell("crate", Geometry(0, "crate", points[:1])) is Status.TOO_FEW_POINTS
+    assert monitor.tell("crate", Geometry(0, "crate", points)) is Status.ACCEPTED
     monitor.update_support(deck(61))
     assert monitor.update("crate", standing(61)).status is Status.ACCEPTED
     for time in range(62, 800):
@@ -337,8 +337,8 @@ def test_what_is_told_about_feet_goes_to_the_machine_that_has_them() -> None:
     monitor = Monitor(walking())
     feet = Geometry(SECOND, "walker", ((0.0, 0.2, -HEIGHT), (0.0, -0.2, -HEIGHT)))
     assert monitor.update("walker", standing(0, child_frame_id="walker")).status is Status.NO_GEOMETRY
-    assert monitor.set_geometry("walker", feet) is Status.ACCEPTED
-    assert monitor.set_geometry("walker", feet._replace(points=feet.points[:1])) is Status.FEET_CHANGED
+    assert monitor.tell("walker", feet) is Status.ACCEPTED
+    assert monitor.tell("walker", feet._replace(points=feet.points[:1])) is Status.FEET_CHANGED
     assert monitor.tell("walker", Wrench(SECOND, "left", (0.0, 0.0, 50.0))) is Status.ACCEPTED
     assert monitor.tell("walker", Schedule(SECOND, ("left",), (SECOND,), ((False,),))) is Status.ACCEPTED
     answer = monitor.update("walker", standing(0, child_frame_id="walker"))

@@ -313,8 +313,8 @@ def test_only_a_geometry_that_changes_during_the_fall_ends_the_touchdown(
     predictor = Predictor(SCENE)
     run(predictor, before() + after(seen))
     other = tuple((x, y, z + shift) for x, y, z in BLOCK)
-    assert predictor.set_geometry(Geometry(0, "block", other)) is Status.ACCEPTED
-    assert predictor.set_geometry(Geometry(0, "block", ())) is Status.TOO_FEW_POINTS
+    assert predictor.tell(Geometry(0, "block", other)) is Status.ACCEPTED
+    assert predictor.tell(Geometry(0, "block", ())) is Status.TOO_FEW_POINTS
     scores = [answer.score for answer in run(predictor, after(6 - seen, BEFORE_SAMPLES + seen)) if answer.score]
     assert [score.scored for score in scores] == scored
 

@@ -52,7 +52,7 @@ def excerpt(path):
     last_score = 0
     for k, message in enumerate(messages):
         if types[message.topic] == POLYGON:
-            predictor.set_geometry(decode_polygon(message.data))
+            predictor.tell(decode_polygon(message.data))
         elif predictor.update(decode_odometry(message.data)).score is not None:
             last_score = k
     with BagWriter(path) as writer:

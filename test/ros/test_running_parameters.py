@@ -79,7 +79,7 @@ def test_contact_points_that_were_told_stay_known_when_the_scene_changes():
     given = read_parameters(SCENE)
     monitor = Monitor(scenes_of(validate(given)))
     points = tuple(tuple(CUBE[i : i + 3]) for i in range(0, 24, 3))
-    monitor.set_geometry("", Geometry(0, "cube", points))
+    monitor.tell("", Geometry(0, "cube", points))
     monitor.changed(scenes_of(validate({**given, "contact.friction": 0.9})))()
     assert monitor.update("", sample(0)).status is Status.ACCEPTED
     assert monitor.update("", sample(1, "other")).status is Status.WRONG_FRAME
@@ -94,7 +94,7 @@ def test_a_machine_that_walks_goes_on_with_the_next_message_about_its_feet():
 
     def status_of(k, told=True):
         if told:
-            monitor.set_geometry("", Geometry(k * 10_000_000, "", feet))
+            monitor.tell("", Geometry(k * 10_000_000, "", feet))
         return monitor.update("", base._replace(stamp=k * 10_000_000)).status
 
     assert [status_of(k) for k in (1, 2)] == [Status.ACCEPTED] * 2

@@ -111,16 +111,22 @@ def answer(
 
 def doubts(contacts: ContactRows, stands: bool, nb: float, validity: Validity) -> int:
     """The notes on an impact of `nb` N s per kg at the new contact for which rigid theory is too simple."""
-    slenderness, gravity, contact_time, gravity_share = validity
+    slenderness, _, _, _ = validity
     # the depths of the contacts below the mass centre, over rho
     (_, _, _, depth_old, _), (_, _, _, _, _, depth_new, _, _), _, _, _ = contacts
     thin = SQRT_3 * slenderness
     notes = 0
     if stands and -thin < depth_old < thin and -thin < depth_new < thin:
         notes |= THIN_BODY
-    if gravity_share * nb < gravity * contact_time:
+    if is_slow(nb, validity):
         notes |= SLOW_IMPACT
     return notes
+
+
+def is_slow(nb: float, validity: Validity) -> bool:
+    """Whether gravity matters during an impact of `nb` N s per kg at the new contact (see `Validity`)."""
+    _, gravity, contact_time, gravity_share = validity
+    return gravity_share * nb < gravity * contact_time
 
 
 def unchanged(twist: Twist, notes: int, law: int) -> BodyAnswer:

@@ -12,23 +12,12 @@ from ..types import Vector3
 SCALE = 0.1
 """Times are counted in so many s while sums of their powers are taken, which keeps those near one."""
 
-DOUBT = 2.0
-"""Standard deviations within which the lowest point of a course may be a foot that brakes to rest on the ground."""
-
-REACH = 1.0
-"""Standard deviations by which the lowest point of a foot that brakes may seem to lie above the tolerance."""
-
-SURE = 2.5
-"""A landing is sure when so many standard deviations of the course ..."""
-
-SPREAD = 0.03
-"""... leave no doubt that so many s after the announced time the foot would be through the ground, or rise again."""
-
-PRECISE = 0.01
-"""A time is known well when its standard deviation is below so many s."""
-
-SINGULAR = 1e-12
-"""A pivot below this part of its diagonal is rounding: the frames are too few instants for a cubic."""
+DOUBT = 2.0  # standard deviations within which a lowest point may be a foot that brakes to rest on the ground
+REACH = 1.0  # standard deviations by which the lowest point of a foot that brakes may seem to lie above the tolerance
+SURE = 2.5  # a landing is sure when so many standard deviations of the course leave no doubt ...
+SPREAD = 0.03  # ... that so many s after the announced time the foot would be through the ground, or rise again
+PRECISE = 0.01  # a time is known well when its standard deviation is below so many s
+SINGULAR = 1e-12  # a pivot below this part of its diagonal is rounding: the frames are too few instants for a cubic
 
 Cubic = tuple[float, float, float, float]
 """Coefficients, from that of the zeroth power."""
@@ -42,6 +31,11 @@ class GapNoise(NamedTuple):
 
     gap: float
     rate: float
+
+    @property
+    def ratio(self) -> float:
+        """What the square of a rate in units of the scale counts beside that of a gap, by how much surer it is."""
+        return (self.gap / (self.rate * SCALE)) ** 2
 
 
 class PointFrame(NamedTuple):
@@ -57,35 +51,6 @@ class PointFrame(NamedTuple):
     velocity: Vector3 | None
 
 
-class Series:
-    """Sums of a coordinate of the frames and of its rates over powers of time: the right side of least squares."""
-
-    def __init__(self) -> None:
-        self._values = [0.0] * 4
-        self._rates = [0.0] * 3
-
-    def add(self, value: float, s: float, s2: float, s3: float) -> None:
-        """Take the coordinate at a time."""
-        values = self._values
-        values[0] += value
-        values[1] += s * value
-        values[2] += s2 * value
-        values[3] += s3 * value
-
-    def add_rate(self, rate: float, s: float, s2: float) -> None:
-        """Take its rate at a time."""
-        rates = self._rates
-        rates[0] += rate
-        rates[1] += 2.0 * s * rate
-        rates[2] += 3.0 * s2 * rate
-
-    def right(self, ratio: float) -> Cubic:
-        """The right side, with `ratio` the weight of the rates."""
-        a, b, c, d = self._values
-        p, q, r = self._rates
-        return a, b + ratio * p, c + ratio * q, d + ratio * r
-
-
 class CubicSums:
     """Sums over frames that follow each other, from which the cubic nearest to their gaps is found.
 
@@ -99,10 +64,11 @@ class CubicSums:
         self.count = 0
         self.measured = True
         """Whether every frame has a velocity."""
-        self.powers = [0.0] * 7
-        self.gaps = Series()
-        self.places = [Series() for _ in range(3)] if places else []
-        self.square = self.square_rate = 0.0
+        self._powers = [0.0] * 7
+        # Of the gap, and of the three coordinates: its values and its rates times powers of the time.
+        self._values = [[0.0] * 4 for _ in range(4 if places else 1)]
+        self._rates = [[0.0] * 3 for _ in self._values]
+        self._square = self._square_rate = 0.0
         for frame in frames:
             self.add(frame)
 
@@ -113,7 +79,7 @@ class CubicSums:
         s2 = s * s
         s3 = s * s2
         self.count += 1
-        powers = self.powers
+        powers = self._powers
         powers[0] += 1.0
         powers[1] += s
         powers[2] += s2
@@ -122,25 +88,60 @@ class CubicSums:
         powers[5] += s2 * s3
         powers[6] += s3 * s3
         gap = frame.gap - first.gap
-        self.square += gap * gap
-        self.gaps.add(gap, s, s2, s3)
-        if frame.rate is None:
+        self._square += gap * gap
+        (x, y, z), (x0, y0, z0) = frame.position, first.position
+        for sums, value in zip(self._values, (gap, x - x0, y - y0, z - z0)):  # noqa: B905 (places may be left out)
+            sums[0] += value
+            sums[1] += s * value
+            sums[2] += s2 * value
+            sums[3] += s3 * value
+        if frame.rate is None or frame.velocity is None:
             self.measured = False
-        else:
-            rate = SCALE * frame.rate
-            self.square_rate += rate * rate
-            self.gaps.add_rate(rate, s, s2)
-        for axis, series in enumerate(self.places):
-            series.add(frame.position[axis] - first.position[axis], s, s2, s3)
-            if frame.velocity is not None:
-                series.add_rate(SCALE * frame.velocity[axis], s, s2)
+            return
+        self._square_rate += (SCALE * frame.rate) ** 2
+        for sums, speed in zip(self._rates, (frame.rate, *frame.velocity)):  # noqa: B905
+            rate = SCALE * speed
+            sums[0] += rate
+            sums[1] += 2.0 * s * rate
+            sums[2] += 3.0 * s2 * rate
 
-    def normal(self, ratio: float) -> Factor:
-        """The matrix of the least squares, with `ratio` the weight of rates: its lower triangle by rows."""
-        p0, p1, p2, p3, p4, p5, p6 = self.powers
+    def normal(self, ratio: float, weight: float = 0.0) -> Factor:
+        """The lower triangle of the matrix of the least squares by rows, with `ratio` the weight of the rates.
+
+        `weight` is that of what is expected of the third power's coefficient.
+        """
+        p0, p1, p2, p3, p4, p5, p6 = self._powers
         n11, n12, n13 = p2 + ratio * p0, p3 + 2.0 * ratio * p1, p4 + 3.0 * ratio * p2
         n22, n23, n33 = p4 + 4.0 * ratio * p2, p5 + 6.0 * ratio * p3, p6 + 9.0 * ratio * p4
-        return p0, p1, n11, p2, n12, n22, p3, n13, n23, n33
+        return p0, p1, n11, p2, n12, n22, p3, n13, n23, n33 + weight
+
+    def fit(self, ratio: float, weight: float = 0.0, expected: float = 0.0) -> tuple[Cubic, Factor, float] | None:
+        """The cubic nearest to the gaps (weighted least squares), the factor of its matrix, and what it leaves of the
+        squares; None where the frames are too few instants. The third power's coefficient is `expected` with a weight.
+        """
+        factor = factored(self.normal(ratio, weight))
+        if factor is None:
+            return None
+        b0, b1, b2, b3 = self._right(0, ratio)
+        b3 += weight * expected
+        c0, c1, c2, c3 = cubic = solved(factor, (b0, b1, b2, b3))
+        square = self._square + ratio * self._square_rate + weight * expected * expected
+        return cubic, factor, max(0.0, square - c0 * b0 - c1 * b1 - c2 * b2 - c3 * b3)
+
+    def motion(self, factor: Factor, ratio: float, s: float) -> tuple[Vector3, Vector3]:
+        """Position and velocity at a time, in units of `SCALE`, by the cubics nearest to the positions."""
+        places, speeds = [], []
+        for axis in range(3):
+            cubic = solved(factor, self._right(1 + axis, ratio))
+            places.append(self.first.position[axis] + value_of(cubic, s))
+            speeds.append(slope_of(cubic, s) / SCALE)
+        return (places[0], places[1], places[2]), (speeds[0], speeds[1], speeds[2])
+
+    def _right(self, axis: int, ratio: float) -> Cubic:
+        """The right side of the least squares of the gap (axis 0) or of a coordinate."""
+        a, b, c, d = self._values[axis]
+        p, q, r = self._rates[axis]
+        return a, b + ratio * p, c + ratio * q, d + ratio * r
 
 
 class Descent(NamedTuple):
@@ -157,11 +158,12 @@ class Descent(NamedTuple):
 
 
 class Fit(NamedTuple):
-    """The cubic nearest to the last frames of a point, in units of `SCALE` s from the first of them.
+    """The cubic nearest to the last frames of a point.
 
-    `gap` has the coefficients of the gap in m, `end` the time in those units of the last frame, whose stamp is `stamp`;
-    `deviation` (m) is what the gaps scatter about it, and `fits` whether that is their noise. `prior` has the weight
-    and the value with which the third power's coefficient went into it.
+    `gap` has the coefficients of the gap (m) over the time in s since the last frame, whose stamp is `stamp`; `end` is
+    the time in units of `SCALE` s from the first of the frames to that. `deviation` (m) is what the gaps scatter about
+    it, and `fits` whether that is their noise. `prior` has the weight and the value with which the third power's
+    coefficient went into it, in those units.
     """
 
     stamp: int
@@ -171,7 +173,7 @@ class Fit(NamedTuple):
     ratio: float
     deviation: float
     fits: bool
-    prior: tuple[float, float] = (0.0, 0.0)
+    prior: tuple[float, float]
 
     @property
     def begin(self) -> int:
@@ -184,17 +186,6 @@ class Fit(NamedTuple):
         powers = ((1.0, s, s * s, s * s * s), (0.0, 1.0, 2.0 * s, 3.0 * s * s), (0.0, 0.0, 2.0, 6.0 * s))[order]
         return self.deviation / SCALE**order * sqrt(square_of(self.factor, powers))
 
-    def now(self) -> Cubic:
-        """Coefficients of the gap over the time in s since the stamp."""
-        a, b, c, d = self.gap
-        s, unit = self.end, 1.0 / SCALE
-        return (
-            a + s * (b + s * (c + s * d)),
-            (b + s * (2.0 * c + 3.0 * d * s)) * unit,
-            (c + 3.0 * d * s) * unit**2,
-            d * unit**3,
-        )
-
     def landing(self, level: float, tolerance: float, horizon: float) -> Descent | None:
         """When the gap first descends through a `level`, or comes to its lowest point within the `tolerance` above it.
 
@@ -202,59 +193,67 @@ class Fit(NamedTuple):
         unless the time at which the curve, which nearly touches, comes through is known better. None where it does not
         come down within the `horizon`.
         """
-        a, b, c, d = self.now()
-        a -= level
+        height, b, c, d = self.gap
+        off = height - level, b, c, d
         if b >= 0.0:
             return None
         square = c * c - 3.0 * b * d
-        lowest = inf
-        if square >= 0.0 and c + sqrt(square) > 0.0:
-            lowest = -b / (c + sqrt(square))
-        if lowest < horizon:
-            depth = a + lowest * (b + lowest * (c + lowest * d))
-            if depth > tolerance and depth > tolerance + REACH * self.deviation_of(0, lowest):
+        lowest = -b / (c + sqrt(square)) if square >= 0.0 and c + sqrt(square) > 0.0 else inf
+        end = min(lowest, horizon)
+        depth = value_of(off, end)
+        if depth >= 0.0:
+            if lowest >= horizon or (depth > tolerance and depth > tolerance + REACH * self.deviation_of(0, lowest)):
                 return None
-            rests = depth >= 0.0
-            if not rests:
-                time = first_below(a, b, c, d, lowest)
-                if depth > -DOUBT * self.deviation_of(0, lowest):
-                    rate = b + time * (2.0 * c + 3.0 * d * time)
-                    bend = 2.0 * c + 6.0 * d * lowest
-                    rests = self.deviation_of(0, time) * bend > -rate * self.deviation_of(1, lowest)
-            if rests:
-                return self._descent(a, b, c, d, lowest, 0.0)
-        elif a + horizon * (b + horizon * (c + horizon * d)) < 0.0:
-            time = first_below(a, b, c, d, horizon)
-        else:
-            return None
-        return self._descent(a, b, c, d, time, min(0.0, b + time * (2.0 * c + 3.0 * d * time)))
+            return self._descent(off, lowest, 0.0)
+        time = first_below(off, end)
+        rate = min(0.0, slope_of(off, time))
+        if lowest < horizon and depth > -DOUBT * self.deviation_of(0, lowest):
+            bend = 2.0 * c + 6.0 * d * lowest
+            if self.deviation_of(0, time) * bend > -slope_of(off, time) * self.deviation_of(1, lowest):
+                time, rate = lowest, 0.0
+        return self._descent(off, time, rate)
 
-    def _descent(self, a: float, b: float, c: float, d: float, time: float, rate: float) -> Descent:
+    def _descent(self, off: Cubic, time: float, rate: float) -> Descent:
         """A landing, and how well it is known; speed and braking are taken to be less by their standard deviations."""
         later = time + SPREAD
-        below = a + later * (b + later * (c + later * d)) < -SURE * self.deviation_of(0, later)
-        turned = b + later * (2.0 * c + 3.0 * d * later) > SURE * self.deviation_of(1, later)
+        below = value_of(off, later) < -SURE * self.deviation_of(0, later)
+        turned = slope_of(off, later) > SURE * self.deviation_of(1, later)
         if rate < 0.0:
             precise = self.deviation_of(0, time) < PRECISE * (-rate - self.deviation_of(1, time))
         else:
-            bend = 2.0 * c + 6.0 * d * time
+            bend = 2.0 * off[2] + 6.0 * off[3] * time
             precise = self.deviation_of(1, time) < PRECISE * (bend - self.deviation_of(2, time))
         return Descent(time, rate, below or turned, precise)
 
 
-def first_below(a: float, b: float, c: float, d: float, end: float) -> float:
-    """Where a + b t + c t^2 + d t^3, which falls until `end` and is below zero there, passes zero; 0 if it is now."""
-    if a <= 0.0:
+def value_of(cubic: Cubic, x: float) -> float:
+    a, b, c, d = cubic
+    return a + x * (b + x * (c + x * d))
+
+
+def slope_of(cubic: Cubic, x: float) -> float:
+    _, b, c, d = cubic
+    return b + x * (2.0 * c + 3.0 * d * x)
+
+
+def shifted(cubic: Cubic, x: float, unit: float) -> Cubic:
+    """The coefficients over (x' - x) / unit of a cubic in x'."""
+    _, _, c, d = cubic
+    return value_of(cubic, x), slope_of(cubic, x) * unit, (c + 3.0 * d * x) * unit**2, d * unit**3
+
+
+def first_below(cubic: Cubic, end: float) -> float:
+    """Where a cubic that falls until `end`, and is below zero there, passes zero; 0 if it is below now."""
+    if cubic[0] <= 0.0:
         return 0.0
     low, high = 0.0, end
-    time = min(end, -a / b)
+    time = min(end, -cubic[0] / cubic[1])
     for _ in range(60):
-        value = a + time * (b + time * (c + time * d))
+        value, slope = value_of(cubic, time), slope_of(cubic, time)
         if value > 0.0:
             low = time
         else:
             high = time
-        slope = b + time * (2.0 * c + 3.0 * d * time)
         following = time - value / slope if slope < 0.0 else low
         if not low < following < high:
             following = 0.5 * (low + high)

@@ -5,19 +5,18 @@ from __future__ import annotations
 from collections.abc import Mapping
 from math import hypot, inf
 
-from ...mechanics.contact_space import ContactOutcome, solve, unchanged
+from ...mechanics.contact_space import solve, unchanged
+from ...mechanics.impact.answer import is_slow
 from ...mechanics.types import Flag, Mode, Twist
 from ..planar import GRAZES, ORIGIN, ROUNDING, direction_of, edge_of, hardly, off_axis_of
 from ..scene import Scene
 from ..types import Leftover, Sample, Status, Touchdown, Vector3
 from ..vectors import add, axes_of, cross, dot, mean, to_body, to_world
-from .mechanism import ImpulseResponse, LeggedMachine
+from .mechanism import LeggedMachine
 
 USABLE = 0.2
 """The machine turns about the line of its standing points where the landing one is further from it than this part of
 their distance: else that line says nothing of where the machine goes."""
-
-NOTHING: Mapping[int, Vector3] = {}
 
 COLLINEAR = 0.05
 """Standing points no further from a line than this part of its length stand on it."""
@@ -32,7 +31,7 @@ def touchdown_of(
     new: tuple[int, ...],
     lead_time: float,
     velocity: Vector3,
-    together: Mapping[int, Vector3] = NOTHING,
+    together: Mapping[int, Vector3] | None = None,
 ) -> Touchdown | Status:
     """The touchdown of the `new` points of one foot while the `old` ones stand, with its impact.
 
@@ -45,56 +44,58 @@ def touchdown_of(
     would be pressed into the ground that these two contacts leave out. Feet that have braked before they land make no
     impact (Mode.NO_IMPACT). A status, where the machine has no response.
     """
+    together = together or {}
     axes = axes_of(base.orientation)
-    normal = to_body(axes, scene.normal)
-    striking = to_body(axes, velocity)
+    normal, striking = to_body(axes, scene.normal), to_body(axes, velocity)
     beside = to_body(axes, mean(list(together.values()))) if together else ORIGIN
-    center = scene.center_of_mass
     struck = mean([points[i] for i in new])
-    first = tuple(together) or standing_with(scene, old, new)
-    watched = dict.fromkeys(old, 0.0) | {i: dot(scene.normal, moves) for i, moves in together.items()}
+    first = tuple(together)
+    if not together:
+        each = 1 if scene.walking is None else scene.walking.points
+        same_foot = [i for i in old if each > 1 and i // each == new[0] // each]
+        first = tuple(same_foot) or old
     leftover = Leftover.DRIVEN if first else Leftover.DRIVEN | Leftover.ONE_POINT
-    approach = without_grazing(dot(normal, striking)), without_grazing(dot(normal, beside))
+    # Negative; 0 where a contact only grazes, or leaves.
+    fall, other = [rate if rate < -GRAZES else 0.0 for rate in (dot(normal, striking), dot(normal, beside))]
     # Of feet that land together the total law says the same whichever is the new one, also where one has braked.
-    law = "total" if together and not approach[1] else scene.law
+    law = "total" if together and not other else scene.law
     kick = spin = ORIGIN
     while True:
         stood = [points[i] for i in first]
         ahead = ahead_of(scene, normal, stood, struck, striking)
-        c = approach[1] if first else inf, dot(ahead, beside), approach[0], dot(ahead, striking)
-        if approach == (0.0, 0.0):
+        c = other if first else inf, dot(ahead, beside), fall, dot(ahead, striking)
+        if fall == 0.0 and other == 0.0:
             outcome = unchanged(c, scene.law, 0)
             break
         response = machine.response(first, new, normal, ahead, points)
         if isinstance(response, Status):
             return response
-        restitution = (scene.restitution if approach[1] else 0.0), scene.restitution
+        restitution = (scene.restitution if other else 0.0), scene.restitution
         outcome = solve(response.W, c, (scene.friction, scene.friction), restitution, law)
-        kick, spin = changes(response, outcome)
-        rates = {i: rate + dot(normal, add(kick, cross(spin, points[i]))) for i, rate in watched.items()}
-        pressed = [i for i, rate in rates.items() if rate < -GRAZES]
+        (na, ta), (nb, tb) = outcome.impulses
+        x, y, z, p, q, r = [row[0] * na + row[1] * ta + row[2] * nb + row[3] * tb for row in response.twist]
+        kick, spin = (x, y, z), (p, q, r)
+        # The mean of several feet rolls freely, into the ground on one side: those that are pressed prevent it alone.
+        rates = dict.fromkeys(old, 0.0) | {i: dot(scene.normal, moves) for i, moves in together.items()}
+        pressed = [i for i in rates if rates[i] + dot(normal, add(kick, cross(spin, points[i]))) < -GRAZES]
         if not (machine.is_rigid and pressed):
             break
-        # The mean of several feet rolls freely, into the ground on one side: those that are pressed prevent it alone.
         held = tuple([i for i in pressed if i in first])
         if together or len(held) in (0, len(first)):
             leftover |= Leftover.OUT_OF_PLANE
             break
         first = held
-    linear, angular = add(base.linear, kick), add(base.angular, spin)
     axis = cross(normal, ahead)
-
-    arms = [add(point, center, -1.0) for point in ((mean(stood), struck) if first else (struck,))]
+    linear, angular = add(base.linear, kick), add(base.angular, spin)
+    arms = [add(point, scene.center_of_mass, -1.0) for point in ((mean(stood), struck) if first else (struck,))]
     span = add(arms[-1], arms[0], -1.0)
     gaps = [dot(normal, points[i]) for i in new]
-    _, gravity, contact_time, share = scene.validity
-    push = share * outcome.impulses[1][0]
-    slow = outcome.mode is not Mode.NO_IMPACT and push < scene.mass * gravity * contact_time
+    slow = outcome.mode is not Mode.NO_IMPACT and is_slow(outcome.impulses[1][0] / scene.mass, scene.validity)
     return Touchdown(
         lead_time=lead_time,
         mode=outcome.mode,
-        before=planar_twist(base.linear, base.angular, center, ahead, normal, axis),
-        after=planar_twist(linear, angular, center, ahead, normal, axis),
+        before=planar_twist(scene, base.linear, base.angular, ahead, normal, axis),
+        after=planar_twist(scene, linear, angular, ahead, normal, axis),
         impulses=outcome.impulses,
         segments=outcome.segments,
         energy_lost=outcome.energy_lost,
@@ -111,31 +112,10 @@ def touchdown_of(
         half_distance=0.5 * hypot(dot(span, ahead), dot(span, normal)),
         off_axis=off_axis_of(base.angular, axis, dot(axis, base.angular)),
         lateral=dot(axis, striking),
-        closing_spread=(max(gaps) - min(gaps)) / -c[2] if c[2] < 0.0 else 0.0,
+        closing_spread=(max(gaps) - min(gaps)) / -fall if fall < 0.0 else 0.0,
         offset=max([abs(dot(axis, arm)) for arm in arms]),
         leftover=leftover,
     )
-
-
-def standing_with(scene: Scene, old: tuple[int, ...], new: tuple[int, ...]) -> tuple[int, ...]:
-    """The standing points that make the old contact: those of the landing foot, or else all."""
-    count = 1 if scene.walking is None else scene.walking.points
-    if count == 1:
-        return old
-    foot = new[0] // count
-    return tuple([i for i in old if i // count == foot]) or old
-
-
-def without_grazing(rate: float) -> float:
-    """The speed at which a contact strikes, negative; 0 where it only grazes, or leaves."""
-    return rate if rate < -GRAZES else 0.0
-
-
-def changes(response: ImpulseResponse, outcome: ContactOutcome) -> tuple[Vector3, Vector3]:
-    """The changes of linear and angular velocity of the base by an impact, along its axes."""
-    (na, ta), (nb, tb) = outcome.impulses
-    x, y, z, p, q, r = [row[0] * na + row[1] * ta + row[2] * nb + row[3] * tb for row in response.twist]
-    return (x, y, z), (p, q, r)
 
 
 def ahead_of(scene: Scene, normal: Vector3, stood: list[Vector3], struck: Vector3, velocity: Vector3) -> Vector3:
@@ -145,28 +125,24 @@ def ahead_of(scene: Scene, normal: Vector3, stood: list[Vector3], struck: Vector
     Where nothing stands it is the direction of the slip, which friction opposes.
     """
     slow = hardly(scene) ** 2
-    ways = [(velocity, slow), (add(struck, scene.center_of_mass, -1.0), 0.0)]
-    if stood:
-        arm = add(struck, mean(stood), -1.0)
-        square = dot(arm, arm)
-        line = edge_of(stood) if len(stood) > 1 else ORIGIN
+    if not stood:
+        return direction_of(normal, [(velocity, slow), (add(struck, scene.center_of_mass, -1.0), 0.0)])
+    arm = add(struck, mean(stood), -1.0)
+    square = dot(arm, arm)
+    ways = [(arm, ROUNDING * square), (velocity, slow)]
+    if len(stood) > 1:
+        line = edge_of(stood)
         across = cross(cross(line, arm), line)
-        ways = [(arm, ROUNDING * square), (velocity, slow)]
-        if is_line(stood, line) and dot(across, across) > USABLE**2 * dot(line, line) ** 2 * square:
+        length, offsets = dot(line, line), [cross(line, add(point, stood[0], -1.0)) for point in stood]
+        straight = all(dot(offset, offset) <= (COLLINEAR * length) ** 2 for offset in offsets)
+        if straight and dot(across, across) > (USABLE * length) ** 2 * square:
             ways.insert(0, (across, 0.0))
     return direction_of(normal, ways)
 
 
-def is_line(stood: list[Vector3], line: Vector3) -> bool:
-    """Whether two or more standing points lie on one `line`, which leads from one end of them to the other."""
-    least = (COLLINEAR * dot(line, line)) ** 2
-    offsets = [cross(line, add(point, stood[0], -1.0)) for point in stood]
-    return len(stood) > 1 and all(dot(offset, offset) <= least for offset in offsets)
-
-
 def planar_twist(
-    linear: Vector3, angular: Vector3, center: Vector3, ahead: Vector3, normal: Vector3, axis: Vector3
+    scene: Scene, linear: Vector3, angular: Vector3, ahead: Vector3, normal: Vector3, axis: Vector3
 ) -> Twist:
     """The twist of the mass centre in the impact plane, from that of the base."""
-    velocity = add(linear, cross(angular, center))
+    velocity = add(linear, cross(angular, scene.center_of_mass))
     return Twist(dot(ahead, velocity), dot(normal, velocity), -dot(axis, angular))

@@ -14,19 +14,17 @@ from typing import NamedTuple
 
 from ...stamps import NANOSECONDS
 from ..checks import LARGEST, PAUSE, order_of
+from ..planar import posture_of
 from ..scene import Scene, Walking
-from ..score import LONGEST, Pending
+from ..score import LONGEST, MEASURED, Pending, Track
 from ..types import Landing, Sample, Schedule, Score, Status, Touchdown, Vector3, Wrench
 from ..vectors import add, axes_of, dot, mean, to_body
 from .impact import touchdown_of
 from .mechanism import BaseMotion, LeggedMachine, TwistLine, extrapolated
 from .stance import ExpectedLanding, FootPoint
 
-PLANNED = 10_000_000_000
-"""ns for which what was planned is remembered."""
-
-FURTHEST = 1_000_000_000
-"""ns from a planned landing beyond which a landing is another one, which nobody planned."""
+PLANNED = 10_000_000_000  # ns for which what was planned is remembered
+FURTHEST = 1_000_000_000  # ns from a planned landing beyond which a landing is another one, which nobody planned
 
 
 class FootCollision(NamedTuple):
@@ -48,84 +46,41 @@ class FootCollision(NamedTuple):
     together: dict[int, Vector3]
 
 
-class AnnouncedLanding:
-    """What was announced of one landing: when and how long ahead, and the last of it."""
+class PendingLanding:
+    """A landing that was announced or has happened, until it is scored."""
 
-    def __init__(self, last: FootCollision) -> None:
+    def __init__(self) -> None:
         self.times: deque[tuple[int, float]] = deque(maxlen=LONGEST)
-        """Stamps in ns and lead times in s."""
-        self.last = last
-        self.settled = False
-        """Whether one of its points has come to stand."""
-
-
-class PendingLanding(NamedTuple):
-    """A landing that is not settled yet: the samples after it, what was announced of it last, and what was seen."""
-
-    pending: Pending
-    landing: Landing
-    announced: FootCollision | None
-    seen: FootCollision | None
+        """Stamps in ns at which it was announced, with its lead times in s."""
+        self.announced: FootCollision | None = None
+        """The last announcement."""
+        self.seen: FootCollision | None = None
+        """What was seen of it, until its impact is computed."""
+        self.landing: Landing | None = None
+        """The landing, once one of its points has come to stand."""
+        self.after = Pending(Track(), 0)
+        """The samples after it."""
 
 
 class LandingTracker:
-    """The landings that the points of a machine's feet announce."""
+    """The landings that the points of a machine's feet announce and make."""
 
     def __init__(
-        self, scene: Scene, machine: LeggedMachine, points: Sequence[FootPoint], each: int, base: BaseMotion
+        self,
+        scene: Scene,
+        machine: LeggedMachine,
+        points: Sequence[FootPoint],
+        base: BaseMotion,
+        schedule: LandingSchedule,
+        forces: FootForces,
     ) -> None:
-        """Follow the points of the feet of a machine, `each` of which has so many."""
-        self._scene = scene
-        self._machine = machine
-        self._points = points
-        self._base = base
-        self._each = each
+        assert scene.walking is not None
+        self._scene, self._walking, self._machine = scene, scene.walking, machine
+        self._points, self._base, self._schedule, self._forces = points, base, schedule, forces
+        self._each = scene.walking.points
         self._contact_time = round(scene.contact_time * NANOSECONDS)
-        self._announced: dict[int, AnnouncedLanding] = {}
-
-    def settle(self, i: int) -> AnnouncedLanding | None:
-        """End the landing of a point, which has come to stand: what was announced of it.
-
-        None where nothing was, or where it belongs to a landing that its foot has made already.
-        """
-        announcement = self._announced.pop(i, None)
-        if announcement is None or announcement.settled:
-            return None
-        announcement.settled = True
-        return announcement
-
-    def impact(self, collision: FootCollision) -> Touchdown | Status:
-        """The touchdown that a landing makes, with its impact."""
-        base = extrapolated(collision.sample, collision.line, collision.time)
-        axes, position = axes_of(base.orientation), base.position
-        return touchdown_of(
-            self._scene,
-            self._machine,
-            base,
-            points=tuple([to_body(axes, add(place, position, -1.0)) for place in collision.places]),
-            old=collision.old,
-            new=collision.new,
-            lead_time=collision.lead_time,
-            velocity=collision.velocity,
-            together=collision.together,
-        )
-
-    def struck(self, landed: PendingLanding) -> PendingLanding:
-        """A landing with the impact that was seen, where one was."""
-        pending, landing, announced, seen = landed
-        impact = None if seen is None else self.impact(seen)
-        if seen is not None and isinstance(impact, Touchdown):
-            landing = landing._replace(speed=hypot(*seen.velocity), impact=impact)
-        return PendingLanding(pending, landing, announced, None)
-
-    def score(self, landed: PendingLanding) -> Score | None:
-        """The score of a landing, as announced last, or else with the velocity that was seen; None without both."""
-        pending, landing, announced, _ = landed if landed.seen is None else self.struck(landed)
-        touchdown = landing.impact if announced is None else self.impact(announced)
-        if not isinstance(touchdown, Touchdown):
-            return None
-        pending.track.add(landing.stamp, touchdown, 0.0)
-        return (pending.score(self._scene) if pending.complete else pending.unmeasured())._replace(landing=landing)
+        self._announced: dict[int, PendingLanding] = {}
+        self._landed: deque[PendingLanding] = deque()
 
     def soonest(self, sample: Sample, dues: list[ExpectedLanding | None]) -> Touchdown | Status | None:
         """The touchdown of the foot that lands next; None where none does.
@@ -137,15 +92,13 @@ class LandingTracker:
         landings = [(min([due.stamp for due in own.values()]), own) for foot in feet if (own := self._own(foot, dues))]
         for i in [i for i in self._announced if points[i].due is None]:
             del self._announced[i]
-        if not landings:
-            return None
         landings.sort(key=itemgetter(0))
         standing = [i for i, point in enumerate(points) if point.stands or point.closed]
         places = [
             point.trajectory.frames[-1].position if due is None else due.position
             for point, due in zip(points, dues, strict=True)
         ]
-        next_one = None
+        following = None
         while landings:
             begin = landings[0][0]
             group = [one for one in landings if one[0] <= begin + self._contact_time]
@@ -162,13 +115,109 @@ class LandingTracker:
                     velocity=mean([due.velocity for due in own.values()]),
                     together={i: velocity for i, velocity in struck if i not in own},
                 )
-                self._announce(collision)
-                next_one = next_one or collision
+                known = [one for i in own if (one := self._announced.get(i)) and one.landing is None]
+                pending = known[0] if known else PendingLanding()
+                pending.times.append((now, collision.lead_time))
+                pending.announced = collision
+                self._announced |= dict.fromkeys(own, pending)
+                following = following or collision
             standing = sorted(standing + [i for i, _ in struck])
             landings = landings[len(group) :]
-        return None if next_one is None else self.impact(next_one)
+        return None if following is None else self._impact(following)
 
-    def seen(self, i: int, new: tuple[int, ...]) -> FootCollision | None:
+    def land(self, i: int) -> None:
+        """Take that a point has come to stand, alone or as the first of its foot.
+
+        The first contact of a foot is told even where it was not announced.
+        """
+        point, each, number = self._points[i], self._each, i // self._each
+        pending = self._announced.pop(i, None)
+        if pending is None or pending.landing is not None:
+            if any(one.stands for one in self._points[number * each : (number + 1) * each] if one is not point):
+                return
+            pending = PendingLanding()
+        stamp, foot, announced = point.since, self._walking.feet[number], pending.announced
+        new = announced.new if announced is not None and i in announced.new else (i,)
+        errors = [
+            ((stamp - made) / NANOSECONDS, (made - stamp) / NANOSECONDS + lead_time)
+            for made, lead_time in pending.times
+            if made <= stamp
+        ]
+        part = [("heel", "toe")[j % 2] if each == 2 else str(j % each) for j in new]
+        pending.landing = Landing(
+            foot=foot,
+            stamp=stamp,
+            late=self._schedule.late(foot, stamp),
+            confirmed=self._forces.agree(foot, True, self._base.samples[-1].stamp),
+            history=tuple(errors),
+            point=None if len(new) == each else " ".join(part),
+        )
+        pending.seen = self._seen(i, new)
+        pending.after.stamp = stamp
+        self._landed.append(pending)
+        self._base.begin(stamp)
+
+    def settle(self) -> Score | None:
+        """The score of the next landing that is complete; of its two impacts a sample computes one."""
+        if not self._landed:
+            return None
+        pending = self._landed[0]
+        self._measure(pending.after)
+        if not pending.after.complete:
+            return None
+        if pending.seen is not None:
+            self._strike(pending)
+            return None
+        return self._score(self._landed.popleft())
+
+    def finish(self) -> list[Score]:
+        """End the record: the scores of the landings that have happened."""
+        for pending in self._landed:
+            self._measure(pending.after)
+            self._strike(pending)
+        return [score for pending in self._landed if (score := self._score(pending)) is not None]
+
+    def _impact(self, collision: FootCollision) -> Touchdown | Status:
+        """The touchdown that a landing makes, with its impact."""
+        base = extrapolated(collision.sample, collision.line, collision.time)
+        axes, position = axes_of(base.orientation), base.position
+        return touchdown_of(
+            self._scene,
+            self._machine,
+            base,
+            points=tuple([to_body(axes, add(place, position, -1.0)) for place in collision.places]),
+            old=collision.old,
+            new=collision.new,
+            lead_time=collision.lead_time,
+            velocity=collision.velocity,
+            together=collision.together,
+        )
+
+    def _measure(self, after: Pending) -> None:
+        """Hand the samples after a landing to it, once there are enough of them."""
+        samples = [sample for sample in self._base.samples if sample.stamp > after.stamp][: MEASURED.stop]
+        if len(samples) == MEASURED.stop and not after.complete:
+            for sample in samples:
+                after.add(sample, posture_of(self._scene, (), sample))
+
+    def _strike(self, pending: PendingLanding) -> None:
+        """Compute the impact that was seen of a landing."""
+        seen, pending.seen = pending.seen, None
+        impact = None if seen is None else self._impact(seen)
+        if seen is not None and pending.landing is not None and isinstance(impact, Touchdown):
+            pending.landing = pending.landing._replace(speed=hypot(*seen.velocity), impact=impact)
+
+    def _score(self, pending: PendingLanding) -> Score | None:
+        """The score of a landing, as announced last, or else with the velocity that was seen; None without both."""
+        landing, announced, after = pending.landing, pending.announced, pending.after
+        assert landing is not None
+        touchdown = landing.impact if announced is None else self._impact(announced)
+        if not isinstance(touchdown, Touchdown):
+            return None
+        after.track.add(landing.stamp, touchdown, 0.0)
+        return (after.score(self._scene) if after.complete else after.unmeasured())._replace(landing=landing)
+
+    def _seen(self, i: int, new: tuple[int, ...]) -> FootCollision | None:
         """The landing of the `new` points of a foot, of which `i` has come to stand, as the last frame before shows it.
 
         No foot that lands together with it has landed then: the base has still the twist of before their impact. None
@@ -217,15 +266,6 @@ class LandingTracker:
             last = min([due.stamp for due in own.values()], default=0) + self._contact_time
             own = {i: due for i, due in own.items() if due.stamp <= last}
         return own
-
-    def _announce(self, collision: FootCollision) -> None:
-        """Remember what is announced of a landing."""
-        known = [one for i in collision.new if (one := self._announced.get(i)) and not one.settled]
-        announcement = known[0] if known else AnnouncedLanding(collision)
-        announcement.times.append((collision.sample.stamp, collision.lead_time))
-        announcement.last = collision
-        for i in collision.new:
-            self._announced[i] = announcement
 
 
 class LandingSchedule:
@@ -292,10 +332,3 @@ class FootForces:
         if pressed is None or abs(stamp - pressed[0]) > self._timeout:
             return None
         return pressed[1] is stands
-
-
-def part_of(new: tuple[int, ...], each: int) -> str | None:
-    """What the part of a foot with so many points is called that lands; None for all of it."""
-    if len(new) == each:
-        return None
-    return " ".join([("heel", "toe")[i % 2] if each == 2 else str(i % each) for i in new])

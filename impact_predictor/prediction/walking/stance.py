@@ -11,46 +11,25 @@ from ..planar import hardly
 from ..scene import Scene
 from ..types import Vector3
 from ..vectors import add, dot, total
-from .arrival import MOST, Arrival, ArrivalFit
 from .cubic import Fit, GapNoise, PointFrame
-from .trajectory import DescentPrior, FootTrajectory
+from .trajectory import NEAREST, Arrival, ArrivalFit, DescentPrior, FootTrajectory
 
-LEAST = 1e-5
-"""Noise of a gap in m below which none counts: by so much a planned course differs from a cubic over few frames ..."""
+LEAST = GapNoise(gap=1e-5, rate=2e-4)  # by so much a planned course differs from a cubic over few frames: no noise
+GUESS = 0.2  # until feet have stood their gaps are taken to scatter by this part of the contact tolerance ...
+GUESS_RATE = 0.02  # ... and the rates of those by so much, in m/s
+DRIFT = 1.0  # contact tolerances in a second by which a standing foot may shift the level: an estimator's drift
+MEMORY = 100  # frames of standing feet over which level and noise are averaged ...
+FEWEST = 10  # ... and from how many on that is believed
+FAR = 3.0  # a point was off the ground when its gap was so many standard deviations above it
+SETTLED = (
+    3  # a frame shows the ground when the point is still near it, and has not begun to lift, so many dead times later
+)
 
-LEAST_RATE = 2e-4
-"""... and its rate by so much, in m/s."""
-
-GUESS = 0.2
-"""Until feet have stood their gaps are taken to scatter by this part of the contact tolerance ..."""
-
-GUESS_RATE = 0.02
-"""... and the rates of those by so much, in m/s."""
-
-DRIFT = 1.0
-"""Contact tolerances in a second by which a standing foot may shift the level, which follows an estimator's drift."""
-
-MEMORY = 100
-"""Frames of standing feet over which level and noise are averaged."""
-
-FEWEST = 10
-"""... and from how many on that is believed."""
-
-FAR = 3.0
-"""A point was off the ground when its gap was so many standard deviations above it."""
-
+# A landing is announced when it is no further ahead than so many times as long as the point has descended: from less
+# the cubic of a foot that need not follow one tells nothing.
 AHEAD = 1.5
-"""A landing is first announced when it is no further ahead than so many times as long as the point has descended: from
-less the cubic of a foot that need not follow one tells nothing."""
-
-SOON = 0.5
-"""... and where noise leaves doubt that it lands at all, no further than so many times."""
-
-LASTS = 0.8
-"""... or up to so many times, once it has shown in every sample for the dead time."""
-
-SETTLED = 3
-"""A frame shows the ground when the point is still near it so many dead times later: it has not begun to lift then."""
+SOON = 0.5  # ... where noise leaves doubt that it lands at all
+LASTS = 0.8  # ... once it has shown in every sample for the dead time
 
 
 class Ground:
@@ -63,6 +42,10 @@ class Ground:
         self._tolerance = scene.tolerance
         self._seen = 0
         self._square = self._square_rate = 0.0
+
+    def is_near(self, frame: PointFrame) -> bool:
+        """Whether a point is within the contact tolerance above the ground."""
+        return frame.gap - self.level <= self._tolerance
 
     def add(self, frame: PointFrame, before: PointFrame) -> None:
         """Take two frames of a standing point that follow each other."""
@@ -78,9 +61,9 @@ class Ground:
         rate = self.noise.rate
         if frame.rate is not None:
             self._square_rate += share * (frame.rate**2 - self._square_rate)
-            rate = max(LEAST_RATE, sqrt(self._square_rate))
+            rate = max(LEAST.rate, sqrt(self._square_rate))
         if self._seen >= FEWEST:
-            self.noise = GapNoise(max(LEAST, sqrt(self._square)), rate)
+            self.noise = GapNoise(max(LEAST.gap, sqrt(self._square)), rate)
 
 
 class ExpectedLanding(NamedTuple):
@@ -110,9 +93,9 @@ class FootPoint:
         """How the point came to stand last."""
         self.closed = False
         """Whether it was to land by now and is near the ground: it stands, though not yet for the dead time."""
-        self._tolerance, self._horizon, self._normal = scene.tolerance, scene.horizon, scene.normal
+        self._scene, self._slow = scene, hardly(scene)
         self._dead_time = dead_time
-        self._slow = hardly(scene)
+        # Stamps in ns since when the other stance shows, the announcement is in doubt, and a landing shows.
         self._other: int | None = None
         self._doubted: int | None = None
         self._shown: int | None = None
@@ -142,18 +125,18 @@ class FootPoint:
 
         A foot that brakes before it lands seems to rest before it does: while its landing is surely ahead it swings.
         """
-        trajectory = self.trajectory
-        trajectory.add(frame)
+        trajectory, near = self.trajectory, ground.is_near(frame)
+        trajectory.frames.append(frame)
         awaited = self.due is not None and self._doubted is None and self.due.stamp > frame.stamp
         changed = self._changes(ground, awaited)
-        near = frame.gap - ground.level <= self._tolerance
         if not near:
             self._arriving = None
         elif self._arriving is not None and not self._arriving.is_full:
             self._arriving.add(frame)
         elif changed or not self.stands:
             begin = trajectory.top if self._last is None else max(trajectory.top, self._last.begin)
-            self._arriving = ArrivalFit(trajectory.last(MOST), begin, ground.level, self._tolerance, ground.noise)
+            frames = trajectory.last(NEAREST)
+            self._arriving = ArrivalFit(frames, begin, ground.level, self._scene.tolerance, ground.noise)
         if not self.stands:
             if changed:
                 self._standing.clear()
@@ -169,8 +152,7 @@ class FootPoint:
             self._standing.append(frame)
             if frame.stamp - self._standing[0].stamp > SETTLED * self._dead_time:
                 ground.add(self._standing.popleft(), self._standing[0])
-        self.due = self._doubted = None
-        self._shown = None
+        self.due = self._doubted = self._shown = None
         self.closed = False
         return changed
 
@@ -178,24 +160,31 @@ class FootPoint:
         """The landing ahead of a stamp in ns."""
         if self.stands:
             return None
-        last = self.trajectory.frames[-1]
-        near = last.gap - ground.level <= self._tolerance
-        due = self.due
+        trajectory, due = self.trajectory, self.due
+        near = ground.is_near(trajectory.frames[-1])
         self.closed = due is not None and due.stamp <= stamp and near
         if self.closed:
             return None  # What its trajectory shows is the ground already.
-        trajectory = self.trajectory
         fit = trajectory.fit(ground.noise, ground.prior)
         if fit is not None and not near:
             self._last = fit
-        if due is not None and near and trajectory.broke:
-            return due if due.stamp > stamp else None  # It may be landing already, so its last announcement stands.
-        landing = None if fit is None else fit.landing(ground.level, self._tolerance, self._horizon)
+        # Near the ground it may be landing already where it breaks off its course: its last announcement stands.
+        if due is None or not (near and trajectory.broke):
+            self._announce(fit, stamp, near, ground)
+        due = self.due
+        return due if due is not None and due.stamp > stamp else None
+
+    def _announce(self, fit: Fit | None, stamp: int, near: bool, ground: Ground) -> None:
+        """Announce the landing that a fit shows, if that is sure enough, or withdraw what was announced."""
+        trajectory, due = self.trajectory, self.due
+        landing = None
+        if fit is not None:
+            landing = fit.landing(ground.level, self._scene.tolerance, self._scene.horizon)
         if fit is None or landing is None:
             self._shown = None
-            if due is not None and self._doubted_for(stamp):
-                due = self.due = self._doubted = None
-            return due if due is not None and due.stamp > stamp else None
+            if self._doubted_for(stamp):
+                self.due = self._doubted = None
+            return
         self._shown = stamp if self._shown is None else self._shown
         descended, wait = fit.stamp - trajectory.top, landing.time * NANOSECONDS
         sure = landing.sure and (due is not None or wait < AHEAD * descended)
@@ -203,14 +192,13 @@ class FootPoint:
         sure |= stamp - self._shown >= self._dead_time and wait < LASTS * descended
         # So near to the ground a little noise makes the curve of a foot that brakes pass through it at once.
         leaps = near and due is not None and due.stamp - fit.stamp - wait > self._dead_time
-        sure = sure and not (trajectory.broke or leaps)
-        if sure or self._doubted_for(stamp):
-            if sure:
-                self._doubted = None
-            position, velocity = trajectory.motion(fit, landing.time)
-            velocity = add(velocity, self._normal, landing.rate - dot(velocity, self._normal))
-            due = self.due = ExpectedLanding(fit.stamp + round(landing.time * NANOSECONDS), position, velocity)
-        return due if due is not None and due.stamp > stamp else None
+        if sure and not (trajectory.broke or leaps):
+            self._doubted = None
+        elif not self._doubted_for(stamp):
+            return
+        position, velocity = trajectory.motion(fit, landing.time)
+        velocity = add(velocity, self._scene.normal, landing.rate - dot(velocity, self._scene.normal))
+        self.due = ExpectedLanding(fit.stamp + round(landing.time * NANOSECONDS), position, velocity)
 
     def _doubted_for(self, stamp: int) -> bool:
         """Whether what is announced has not surely shown for the dead time."""
@@ -224,7 +212,7 @@ class FootPoint:
         """Whether the last frame changes the stance; not to standing while that is still `awaited`."""
         frames = self.trajectory.frames
         frame = frames[-1]
-        near = frame.gap - ground.level <= self._tolerance
+        near = ground.is_near(frame)
         if len(frames) == 1:
             self.stands = near and (frame.rate is None or abs(frame.rate) <= self._slow + 3.0 * ground.noise.rate)
             return False
@@ -233,31 +221,29 @@ class FootPoint:
             return False
         if self._other is None:
             self._other = frame.stamp
-        if frame.stamp - self._other < self._dead_time or (near and (awaited or not self._rests(frames, ground.noise))):
+        if frame.stamp - self._other < self._dead_time or (near and (awaited or not self._rests(ground.noise))):
             return False
-        self.stands, self.since, self._other = near, self._other if near else self._left(frames, ground), None
+        self.stands, self.since, self._other = near, self._other if near else self._left(ground), None
         return True
 
-    def _left(self, frames: deque[PointFrame], ground: Ground) -> int:
+    def _left(self, ground: Ground) -> int:
         """The stamp in ns of the last frame in which the point was on the ground: the tolerance is left later."""
-        since = frames[-1].stamp
-        for frame in reversed(frames):
-            since = frame.stamp
-            if since < self.since or frame.gap - ground.level <= FAR * ground.noise.gap:
+        for frame in reversed(self.trajectory.frames):
+            if frame.stamp < self.since or frame.gap - ground.level <= FAR * ground.noise.gap:
                 break
-        return max(since, self.since)
+        return max(frame.stamp, self.since)
 
-    def _rests(self, frames: deque[PointFrame], noise: GapNoise) -> bool:
+    def _rests(self, noise: GapNoise) -> bool:
         """Whether the point has hardly moved along the normal within the dead time."""
+        frames = self.trajectory.frames
         begin = frames[-1].stamp - self._dead_time
         lasted = [frame for frame in frames if frame.stamp >= begin]
-        count = len(lasted)
-        if count < 2:
-            lasted, count = list(frames)[-2:], 2
+        if len(lasted) < 2:
+            lasted = self.trajectory.last(2)
         rates = [frame.rate for frame in lasted if frame.rate is not None]
         if rates:
             return abs(total(rates)) / len(rates) <= self._slow + 3.0 * noise.rate / sqrt(len(rates))
-        half = count // 2
+        half = len(lasted) // 2
         late, early = lasted[-half:], lasted[:half]
         span = (sum([f.stamp for f in late]) - sum([f.stamp for f in early])) / half / NANOSECONDS
         rise = (total([f.gap for f in late]) - total([f.gap for f in early])) / half

@@ -1,4 +1,4 @@
-"""The trajectory of a point of a foot over the ground: where it was, and the cubic that it follows now.
+"""The way of a point of a foot over the ground: the cubic that it follows, and when it reached the ground.
 
 A cubic is the simplest curve that has a foot brake before it lands, and begin to brake before that.
 """
@@ -6,49 +6,34 @@ A cubic is the simplest curve that has a foot brake before it lands, and begin t
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Sequence
 from itertools import islice
-from math import sqrt
+from math import inf, sqrt
+from typing import NamedTuple
 
 from ...stamps import NANOSECONDS
 from ..types import Vector3
-from .cubic import SCALE, CubicSums, Fit, GapNoise, PointFrame, factored, solved
+from .cubic import SCALE, CubicSums, Fit, GapNoise, PointFrame, factored, shifted, square_of, value_of
 
-FEWEST = 5
-"""Frames that a cubic is fitted to at least: four would leave nothing to tell how well it fits."""
+FEWEST = 5  # frames that a cubic is fitted to at least: four would leave nothing to tell how well it fits ...
+MOST = 200  # ... and at most: half a second at 400 Hz
+SHORTER = 3  # quarters of the frames that are kept where one cubic does not fit them all
+MISFIT = 4.0  # a cubic does not fit where the residuals' mean square is so many standard deviations above the noise's
+BROKE = 2.0  # the last frame did not follow the others where it makes them scatter so many times more about their cubic
+TURNED = 3.0  # a rate is surely not zero when it is so many standard deviations from it
 
-MOST = 200
-"""... and at most: half a second at 400 Hz."""
+JERK = 1000.0  # standard deviation in m/s^3 of how the acceleration of a foot changes, as long as none has landed
+DIFFERENCE = 0.2  # a foot comes down otherwise than before by this part of the mean at least
+FORGETS = 0.98  # part of what was known before that counts beside one more landing
+TELLING = 0.01  # a descent tells something by itself from this part of what is known in the end
+LEAST_DEVIATION = 100.0  # m/s^3 by which the next descent may differ: a machine may change its gait
+JERK_UNIT = SCALE**3 / 6.0  # the third power's coefficient in a fit of a jerk of 1 m/s^3
 
-SHORTER = 3
-"""Quarters of the frames that are kept where one cubic does not fit them all."""
-
-MISFIT = 4.0
-"""A cubic does not fit where the mean square of its residuals is further above that of the noise than so many standard
-deviations of it."""
-
-BROKE = 2.0
-"""The last frame did not follow the others where it makes them scatter so many times more about their cubic."""
-
-TURNED = 3.0
-"""A rate is surely not zero when it is so many standard deviations from it."""
-
-JERK = 1000.0
-"""Standard deviation in m/s^3 of how the acceleration of a foot changes, as long as none has landed."""
-
-DIFFERENCE = 0.2
-"""A foot comes down otherwise than before by this part of the mean at least."""
-
-FORGETS = 0.98
-"""Part of what was known before that counts beside one more landing."""
-
-TELLING = 0.01
-"""A descent tells something by itself from this part of what is known in the end."""
-
-LEAST_DEVIATION = 100.0
-"""m/s^3 by which the next descent may differ, however alike the last ones were: a machine may change its gait."""
-
-JERK_UNIT = SCALE**3 / 6.0
-"""The third power's coefficient in a fit of a jerk of 1 m/s^3."""
+LEAST = 6  # frames in the air in which an arrival is looked for; they may be from before the foot began to descend
+NEAREST = 42  # the most of them that are looked at, besides those that may have been on the ground already
+FULL = 150  # frames after which a point that hovers near the ground is looked at anew
+SHARE = 4  # frames that are caught up with while the next one comes in
+SAME = 0.01  # a later arrival is believed where it leaves less by this part of the noise's square
 
 
 class DescentPrior:
@@ -69,7 +54,8 @@ class DescentPrior:
         own = whole - weight
         if own <= TELLING * whole:
             return
-        jerk, doubt = (whole * fit.gap[3] - weight * expected) / own / JERK_UNIT, fit.deviation / sqrt(own) / JERK_UNIT
+        jerk = (whole * fit.gap[3] * SCALE**3 - weight * expected) / own / JERK_UNIT
+        doubt = fit.deviation / sqrt(own) / JERK_UNIT
         # What noise adds to a jerk is none of the prior: an unsure one counts less, and spreads less than it seems to.
         precision = 1.0 / (doubt * doubt + LEAST_DEVIATION * LEAST_DEVIATION)
         self._precision = FORGETS * self._precision + precision
@@ -95,10 +81,6 @@ class FootTrajectory:
         """Stamp in ns of the highest place that the point descends from."""
         self.broke = False
         """Whether the last frame did not follow the cubic of those before it."""
-
-    def add(self, frame: PointFrame) -> None:
-        """Take the next frame, in the order of their stamps."""
-        self.frames.append(frame)
 
     @property
     def rate(self) -> float:
@@ -148,44 +130,32 @@ class FootTrajectory:
 
     def motion(self, fit: Fit, time: float) -> tuple[Vector3, Vector3]:
         """Position and velocity of the point `time` s after the fit's stamp, by the cubic through the same frames."""
-        sums = self._sums
-        assert sums is not None
-        s = fit.end + time / SCALE
+        assert self._sums is not None
         # What is expected of the gap says nothing of the motion along the ground.
-        factor = factored(sums.normal(fit.ratio)) or fit.factor
-        places, speeds = [], []
-        for axis in range(3):
-            a, b, c, d = solved(factor, sums.places[axis].right(fit.ratio))
-            places.append(sums.first.position[axis] + a + s * (b + s * (c + s * d)))
-            speeds.append((b + s * (2.0 * c + 3.0 * d * s)) / SCALE)
-        return (places[0], places[1], places[2]), (speeds[0], speeds[1], speeds[2])
+        factor = factored(self._sums.normal(fit.ratio)) or fit.factor
+        return self._sums.motion(factor, fit.ratio, fit.end + time / SCALE)
 
     def last(self, count: int) -> list[PointFrame]:
         """The last `count` frames."""
         return list(islice(self.frames, max(0, len(self.frames) - count), None))
 
     def _fit_of(self, sums: CubicSums, noise: GapNoise, prior: DescentPrior) -> Fit | None:
-        """The cubic nearest to the gaps, and to their rates where all are measured (weighted least squares)."""
-        # A rate in units of the scale weighs as the square of how much surer it is than a gap.
-        ratio = (noise.gap / (noise.rate * SCALE)) ** 2 if sums.measured else 0.0
+        """The cubic nearest to the gaps, and to their rates where all are measured."""
+        ratio = noise.ratio if sums.measured else 0.0
         weight, expected = prior.coefficient(noise.gap)
-        n00, n10, n11, n20, n21, n22, n30, n31, n32, n33 = sums.normal(ratio)
-        factor = factored((n00, n10, n11, n20, n21, n22, n30, n31, n32, n33 + weight))
-        if factor is None:
+        found = sums.fit(ratio, weight, expected)
+        if found is None:
             return None
-        b0, b1, b2, b3 = sums.gaps.right(ratio)
-        b = b0, b1, b2, b3 + weight * expected
-        c = solved(factor, b)
-        square = sums.square + ratio * sums.square_rate + weight * expected * expected
-        left = max(0.0, square - c[0] * b[0] - c[1] * b[1] - c[2] * b[2] - c[3] * b[3])
+        cubic, factor, left = found
         free = (2 if sums.measured else 1) * sums.count - 3
         share = left / (free * noise.gap * noise.gap)
         fits = share <= 1.0 + MISFIT * sqrt(2.0 / free)
         stamp = self.frames[-1].stamp
+        end = (stamp - sums.first.stamp) / (SCALE * NANOSECONDS)
         return Fit(
             stamp=stamp,
-            end=(stamp - sums.first.stamp) / (SCALE * NANOSECONDS),
-            gap=(sums.first.gap + c[0], c[1], c[2], c[3]),
+            end=end,
+            gap=shifted((sums.first.gap + cubic[0], *cubic[1:]), end, 1.0 / SCALE),
             factor=factor,
             ratio=ratio,
             deviation=noise.gap if fits else noise.gap * sqrt(share),
@@ -199,7 +169,7 @@ class FootTrajectory:
         At its highest place a planner goes over from lifting the foot to lowering it, by another curve: what came
         before tells nothing of the landing, and is left out of the fits from then on.
         """
-        _, slope, bend, _ = fit.now()
+        _, slope, bend, _ = fit.gap
         if slope > TURNED * fit.deviation_of(1, 0.0):
             self._falls = False
         elif not self._falls and slope < -TURNED * fit.deviation_of(1, 0.0):
@@ -211,3 +181,121 @@ class FootTrajectory:
                 self._sums = CubicSums(self.last(max(1, since)))
             return False
         return self._falls
+
+
+class Arrival(NamedTuple):
+    """A point reached the ground at `stamp` (ns); its frame of index -`age` was the last in the air.
+
+    `velocity` (m/s) is what it had there: measured, or else that of the cubic through its frames in the air; None where
+    these are too few.
+    """
+
+    stamp: int
+    age: int
+    velocity: Vector3 | None
+
+
+class ArrivalCandidate(NamedTuple):
+    """The cubic of the frames up to `last`, if the point arrived between that and the next frame.
+
+    `left` is the least square of what it leaves of them; `here` and `there` are its gaps (m) at the two frames, with
+    what is unsure of them; `near` are the sums over the frames near the ground up to the last.
+    """
+
+    last: int
+    left: float
+    here: tuple[float, float]
+    there: tuple[float, float]
+    near: tuple[float, float]
+
+
+class ArrivalFit:
+    """A point that is near the ground and does not stand yet, from its first frame there on.
+
+    `frames` are the last ones up to that; the point came down since `begin` (ns) to about a `level` (m). The work is
+    shared between the frames that come in: the first of them finds many that are new.
+    """
+
+    def __init__(
+        self, frames: Sequence[PointFrame], begin: int, level: float, tolerance: float, noise: GapNoise
+    ) -> None:
+        first = max(0, len(frames) - 2)
+        start = next((k for k, frame in enumerate(frames) if frame.stamp >= begin), 0)
+        start = max(0, min(start, first - LEAST))
+        self._frames = list(frames[start:])
+        self._first = first - start
+        self._level, self._tolerance, self._noise = level, tolerance, noise
+        self._sums = CubicSums(self._frames[:1], places=False)
+        self._near = 0.0, 0.0
+        self._tried: list[ArrivalCandidate] = []
+
+    @property
+    def is_full(self) -> bool:
+        """Whether it has so many frames that the next one is to begin another."""
+        return len(self._frames) >= FULL
+
+    def add(self, frame: PointFrame) -> None:
+        """Take the next frame near the ground."""
+        self._frames.append(frame)
+        self._catch_up(SHARE)
+
+    def _catch_up(self, most: int) -> None:
+        """Look at up to so many of the frames that were not looked at yet."""
+        done = self._sums.count
+        for k in range(done, min(done + most, len(self._frames))):
+            frame = self._frames[k]
+            if k > self._first:
+                ratio = self._noise.ratio if self._sums.measured else 0.0
+                if k >= FEWEST:
+                    self._try(k, ratio)
+                off, (near, square) = frame.gap - self._level, self._near
+                self._near = near + off, square + off * off + ratio * (SCALE * (frame.rate or 0.0)) ** 2
+            self._sums.add(frame)
+
+    def _try(self, k: int, ratio: float) -> None:
+        """The arrival between frame `k`, which is the next one, and the one before."""
+        frames, found = self._frames, self._sums.fit(ratio)
+        if found is None:
+            return
+        cubic, factor, left = found
+        ends = []
+        for one in frames[k - 1 : k + 1]:
+            s = (one.stamp - frames[0].stamp) / (SCALE * NANOSECONDS)
+            off = frames[0].gap - self._level + value_of(cubic, s)
+            ends.append((off, square_of(factor, (1.0, s, s * s, s * s * s))))
+        self._tried.append(ArrivalCandidate(last=k - 1, left=left, here=ends[0], there=ends[1], near=self._near))
+
+    def arrival(self) -> Arrival:
+        """The arrival, once the point rests.
+
+        In the air the frames follow one cubic, then they rest at the level of the cubic's end: of all pairs of
+        neighbours that the arrival may lie between it is the one where both together leave least (least squares). A
+        foot that strikes arrives where the cubic meets the level; one that brakes to rest hardly meets it: it arrives
+        with the nearest frame.
+        """
+        self._catch_up(FULL)
+        frames, noise = self._frames, self._noise
+        best, last, air = inf, self._first, 0
+        stamp = frames[min(last + 1, len(frames) - 1)].stamp
+        # What comes to rest does so near the level of the others, by half a tolerance or so: as good as so many frames.
+        known = (2.0 * noise.gap / self._tolerance) ** 2
+        for one in self._tried:
+            near, square = self._near[0] - one.near[0], self._near[1] - one.near[1]
+            rest = near / (len(frames) - 1 - one.last + known)
+            here, there = one.here[0] - rest, one.there[0] - rest
+            cost, later = here * here / one.here[1], there * there / one.there[1]
+            part = 0.0 if cost <= later else 1.0
+            if here > 0.0 > there:
+                part, cost = here / (here - there), 0.0
+            left = one.left + square - near * rest + min(cost, later)
+            if left < best - SAME * noise.gap**2:
+                best, air, last = left, one.last + 1, one.last if part > 0.0 else one.last - 1
+                before = frames[one.last].stamp
+                stamp = before + round(part * (frames[one.last + 1].stamp - before))
+        velocity = frames[last].velocity
+        sums = None if air == 0 or self._sums.measured else CubicSums(frames[:air])
+        factor = None if sums is None else factored(sums.normal(0.0))
+        if velocity is None and sums is not None and factor is not None:
+            s = (frames[last].stamp - frames[0].stamp) / (SCALE * NANOSECONDS)
+            _, velocity = sums.motion(factor, 0.0, s)
+        return Arrival(stamp, len(frames) - last, velocity)

@@ -128,7 +128,7 @@ def walk(scene: Scene, messages: Iterable[Message]) -> Seen:
     walker = Predictor(scene)
     predictions = []
     for sample, geometry in messages:
-        assert walker.set_geometry(geometry) is Status.ACCEPTED
+        assert walker.tell(geometry) is Status.ACCEPTED
         predictions.append(walker.update(sample))
     scores = [one.score for one in predictions if one.score is not None]
     return Seen(predictions, [*scores, *walker.finish()])
@@ -404,7 +404,7 @@ def test_the_toe_of_a_foot_that_has_just_landed_on_its_heel_makes_no_false_alarm
     walker, landings = Predictor(scene), Comparison({"": scene})
     for sample, geometry in record(courses, 0.9, places=SOLES):
         landings.add_stances("base", sample.stamp, (not START + 300 * MS < sample.stamp < START + 600 * MS, True))
-        walker.set_geometry(geometry)
+        walker.tell(geometry)
         landings.add(walker.update(sample))
     (landing,) = landings.compare().matches
     assert landing.stamp is not None
@@ -469,7 +469,7 @@ def test_landings_are_told_late_or_early_against_the_plan() -> None:
     assert walker.tell(Schedule(START, FEET, times, (swings, stance))) is Status.ACCEPTED
     late, scores = [], []
     for sample, geometry in record([swing(0.3, 0.6), stands, stands, stands], 0.8):
-        walker.set_geometry(geometry)
+        walker.tell(geometry)
         prediction = walker.update(sample)
         late += [foot.late for foot in prediction.feet[:1] if foot.lead_time is not None]
         scores += [prediction.score] if prediction.score else []
@@ -486,8 +486,8 @@ def test_a_force_sensor_confirms_and_never_decides() -> None:
         pressed = (0.0, 0.0, 0.0 if 300 * MS < sample.stamp - START < 600 * MS else 200.0)
         assert walker.tell(Wrench(sample.stamp, "LF", pressed)) is Status.ACCEPTED
         assert walker.tell(Wrench(sample.stamp, "RF", (0.0, 0.0, 1.0))) is Status.ACCEPTED
-        walker.set_geometry(geometry)
-        blind.set_geometry(geometry)
+        walker.tell(geometry)
+        blind.tell(geometry)
         left, right, *others = walker.update(sample).feet
         assert [foot.stands for foot in (left, right, *others)] == [foot.stands for foot in blind.update(sample).feet]
         assert right.confirmed is False
@@ -506,7 +506,7 @@ def test_geometry_between_the_samples_is_carried_with_the_base(offset: float) ->
     messages = sorted([one.sample for one in samples] + [one.geometry for one in feet], key=lambda one: one.stamp)
     for message in messages:
         if isinstance(message, Geometry):
-            walker.set_geometry(message)
+            walker.tell(message)
         else:
             feet = walker.update(message).feet
             told += [message.stamp + round(one.lead_time * 1e9) for one in feet if one.lead_time]
@@ -520,16 +520,16 @@ def test_odd_messages_get_a_named_status_and_the_walker_goes_on() -> None:
     walker = Predictor(machine())
     sample, geometry = messages[0]
     assert walker.update(sample).status is Status.NO_GEOMETRY
-    assert walker.set_geometry(geometry._replace(points=geometry.points[:3])) is Status.FEET_CHANGED
-    assert walker.set_geometry(geometry._replace(velocities=geometry.velocities[:3])) is Status.FEET_CHANGED
+    assert walker.tell(geometry._replace(points=geometry.points[:3])) is Status.FEET_CHANGED
+    assert walker.tell(geometry._replace(velocities=geometry.velocities[:3])) is Status.FEET_CHANGED
     broken = ((math.nan, 0.0, 0.0), *geometry.points[1:])
-    assert walker.set_geometry(geometry._replace(points=broken)) is Status.NOT_FINITE
+    assert walker.tell(geometry._replace(points=broken)) is Status.NOT_FINITE
     told = []
     for sample, geometry in messages:
-        assert walker.set_geometry(geometry) is Status.ACCEPTED
-        assert walker.set_geometry(geometry) is Status.STAMP_REPEATED
-        assert walker.set_geometry(geometry._replace(stamp=geometry.stamp - MS)) is Status.STAMP_WENT_BACK
-        assert walker.set_geometry(geometry._replace(stamp=geometry.stamp + 1, points=broken)) is Status.NOT_FINITE
+        assert walker.tell(geometry) is Status.ACCEPTED
+        assert walker.tell(geometry) is Status.STAMP_REPEATED
+        assert walker.tell(geometry._replace(stamp=geometry.stamp - MS)) is Status.STAMP_WENT_BACK
+        assert walker.tell(geometry._replace(stamp=geometry.stamp + 1, points=broken)) is Status.NOT_FINITE
         assert walker.update(sample._replace(child_frame_id="cube")).status is Status.WRONG_FRAME
         prediction = walker.update(sample)
         assert prediction.status is Status.ACCEPTED
@@ -545,22 +545,22 @@ def test_feet_far_below_the_ground_are_refused() -> None:
         for one in messages
     ]
     for sample, geometry in sunk[:20]:
-        walker.set_geometry(geometry)
+        walker.tell(geometry)
         prediction = walker.update(sample)
         assert prediction.status is Status.BELOW_GROUND
         assert prediction.feet == ()
     for sample, geometry in messages[20:]:
-        walker.set_geometry(geometry)
+        walker.tell(geometry)
         assert walker.update(sample).status is Status.ACCEPTED
 
 
 def test_feet_that_are_told_no_more_are_stale() -> None:
     messages = record([stands] * 4, 0.4)
     walker = Predictor(machine(timeout=0.1))
-    walker.set_geometry(messages[0].geometry)
+    walker.tell(messages[0].geometry)
     statuses = [walker.update(one.sample).status for one in messages]
     assert statuses == [Status.ACCEPTED] * 41 + [Status.GEOMETRY_STALE] * (len(messages) - 41)
-    walker.set_geometry(messages[-1].geometry)
+    walker.tell(messages[-1].geometry)
     assert walker.update(messages[-1].sample).status is Status.ACCEPTED
 
 
@@ -572,12 +572,12 @@ def test_after_a_pause_or_a_new_clock_the_feet_are_learnt_anew() -> None:
     assert len(seen.scores) == 1
     walker = Predictor(machine())
     for sample, geometry in messages:
-        walker.set_geometry(geometry)
+        walker.tell(geometry)
         walker.update(sample)
-    assert walker.set_geometry(messages[0].geometry) is Status.STAMP_WENT_BACK
+    assert walker.tell(messages[0].geometry) is Status.STAMP_WENT_BACK
     scores = []
     for sample, geometry in messages[1:]:
-        walker.set_geometry(geometry)
+        walker.tell(geometry)
         prediction = walker.update(sample)
         assert prediction.status is Status.ACCEPTED
         scores += [prediction.score] if prediction.score else []

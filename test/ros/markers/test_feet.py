@@ -25,7 +25,7 @@ def seen_at(stamp: int) -> tuple[Prediction, dict[str, Any]]:
     """The answer at a stamp in ns, and what is drawn of it, by namespaces."""
     walker, drawing = Predictor(SCENE), MarkerScene({"": SCENE})
     for geometry, sample in trot(500.0, 2.0):
-        walker.set_geometry(geometry)
+        walker.tell(geometry)
         # Feet are drawn from the answers, wherever they were told.
         drawing.set_geometry("", geometry._replace(points=()))
         prediction = walker.update(sample)
