@@ -12,9 +12,9 @@ from math import atan2, hypot, sqrt
 
 from ..errors import InputError
 from ..mechanics.motion import PlanarState, next_strike
-from ..mechanics.motion.support import FixedSupport
+from ..mechanics.motion.support import FeltSupport, FixedSupport
 from ..mechanics.types import Contact, Twist, TwoPointBody, Vector
-from .deck.approach import PlanarSupport, gravity_over, is_uniform
+from .deck.approach import gravity_over, is_uniform, planar_support
 from .impact import Collision, collision_after
 from .planar import (
     ActiveContacts,
@@ -119,12 +119,12 @@ class CylinderContacts(PointContacts):
         )
         inertia = inertia_about(scene, plane.axis, blocked=True)
         start = PlanarState(x=x - vx * age, y=y - vy * age, angle=-omega * age, vx=vx, vy=vy, omega=omega)
-        support: FixedSupport | PlanarSupport
+        support: FeltSupport
         if moment is None or is_uniform(moment, scene.horizon):
             support = FixedSupport(atan2(-gx, -gy), hypot(gx, gy))
         else:
             origin = add(scene.edges[behind], self._along, dot(arm, self._along))
-            support = PlanarSupport(moment, age, origin, ahead, scene.normal, lateral)
+            support = planar_support(moment, age, origin, ahead, scene.normal, lateral)
         body = TwoPointBody(scene.mass, inertia, self._contact(edges[0], center), self._contact(edges[1], center))
         fall = next_strike(body, start, 0 if contacts.old else None, support, scene.horizon + age)
         if fall is None or (contacts.old and fall.point != 1):

@@ -9,7 +9,7 @@ import math
 
 from ..impact.contacts import MINUS, OPEN, PLUS, STICK
 from ..types import TwoPointBody, Vector
-from .equations import RockingBody, TwoPoints, rocking_body, turned
+from .equations import RockingBody, rocking_body, turned, two_points
 from .events import Event
 from .flight import FlightEnd, FlightPhase
 from .phases import ContactPhase, MotionPhase, PhaseEnd
@@ -236,7 +236,7 @@ def next_strike(
     alone = body.old is None and old is None
     if alone:  # the contact opposite to it is above it until it touches
         body = body._replace(old=body.new._replace(x=-body.new.x, y=-body.new.y))
-    engine = _ToStrike(TwoPoints(body) if alone else rocking_body(body), support, duration, tolerance)
+    engine = _ToStrike(two_points(body) if alone else rocking_body(body), support, duration, tolerance)
     if not math.isfinite(sum(state)):
         return None
     try:
@@ -257,7 +257,7 @@ class _ToStrike(MotionEngine):
     def follow(self, state: PlanarState, old: int | None, contacts: tuple[int, ...]) -> None:
         """Go from event to event until a contact strikes or nothing more can."""
         body = self.body
-        angle = body.own_angle(state.angle)
+        angle = math.remainder(state.angle + body.lean, 2.0 * math.pi)
         self.shift = state.angle - angle
         state = state._replace(angle=angle)
         if old is None:

@@ -132,7 +132,7 @@ class RockingEngine(MotionEngine):
     def run(self, start: PlanarState) -> Trajectory:
         """Follow the motion to its end."""
         start = PlanarState(*[part if abs(part) >= _NOTHING else 0.0 for part in start])
-        angle = self.body.own_angle(start.angle)
+        angle = math.remainder(start.angle + self.body.lean, 2.0 * math.pi)
         shift = start.angle - angle
         try:
             self._begin(start._replace(angle=angle))

@@ -23,11 +23,8 @@ if TYPE_CHECKING:
 FrameAcceleration = tuple[float, float, float, float]
 """Acceleration felt at rest at the origin, along the support's axes (m/s^2); rate (rad/s); angular acceleration."""
 
-Polynomials = tuple[tuple[float, ...], ...]
-"""Coefficients of the polynomials of the four numbers felt, the highest power first; empty where they do not fit."""
-
 _NODES = 10
-"""Values that the polynomials of a moving support go through: with `_PART` they are exact to rounding."""
+"""Values that a polynomial of a moving support goes through: with `_PART` they are exact to rounding."""
 _PART = 1.0 / 24.0
 """Length of one polynomial, in shortest periods."""
 _MAX_PARTS = 4096
@@ -100,13 +97,85 @@ class FixedSupport(NamedTuple):
         return SupportMotion(self.slope + rest, *[rest] * 8)
 
 
+class FeltPolynomials:
+    """What is felt, from polynomials in time: a motion asks for it a hundred times, and a sum of waves takes long.
+
+    Each has a `length` in s and goes through the exact values at `nodes` Chebyshev nodes of it. Where its last terms
+    are not below `fit`, relative, the exact value is taken instead. `exactly` gives the exact values at some times.
+    """
+
+    period = math.inf
+
+    def __init__(
+        self,
+        exactly: Callable[[list[float]], Sequence[Sequence[float]]],
+        length: float,
+        nodes: int,
+        fit: float = math.inf,
+        gravity: float = 9.81,
+    ) -> None:
+        self._exactly, self._length, self._fit, self._nodes = exactly, length, fit, _nodes(nodes)
+        self.gravity = gravity
+        self._parts: dict[int, list[tuple[float, Sequence[float]]]] = {}
+
+    def felt(self, time: float) -> FrameAcceleration:
+        """What a body feels at rest at the support's origin."""
+        place = time / self._length
+        number = math.floor(place)
+        part = self._parts.get(number)
+        if part is None:
+            if len(self._parts) >= _MAX_PARTS:
+                self._parts.clear()
+            part = self._parts[number] = self._polynomials(number)
+        if not part:
+            ((x, y, w, a),) = self._exactly([time])
+            return x, y, w, a
+        s = 2.0 * (place - number) - 1.0
+        x = y = w = a = 0.0
+        for node, (cx, cy, cw, ca) in part:
+            s_node = s - node
+            x = x * s_node + cx
+            y = y * s_node + cy
+            w = w * s_node + cw
+            a = a * s_node + ca
+        return x, y, w, a
+
+    def _polynomials(self, number: int) -> list[tuple[float, Sequence[float]]]:
+        """Nodes and divided differences of one part (Newton's form), the highest first; none where they do not fit."""
+        nodes, length = self._nodes, self._length
+        rows = self._exactly([(number + 0.5 + 0.5 * node) * length for node in nodes])
+        x, y, rate, turning = (max(map(abs, column)) for column in zip(*rows, strict=True))
+        sizes = (x + y, x + y, rate, rate / length + turning)
+        differences = list(rows)
+        for order in range(1, len(nodes)):
+            for k in range(len(nodes) - 1, order - 1, -1):
+                gap = nodes[k] - nodes[k - order]
+                differences[k] = [(b - a) / gap for a, b in zip(differences[k - 1], differences[k], strict=True)]
+        share = 0.5 ** (len(nodes) - 2)  # of a highest power in the polynomial of Chebyshev that begins with it
+        for one, other, size in zip(differences[-1], differences[-2], sizes, strict=True):
+            if share * (abs(one) + 2.0 * abs(other)) > self._fit * size:
+                return []
+        return list(zip(nodes, differences, strict=True))[::-1]
+
+
+@cache
+def _nodes(count: int) -> list[float]:
+    """Chebyshev's nodes on -1..1, each as far from those before it as can be: Newton's form keeps its digits then."""
+    left = [math.cos((k + 0.5) * math.pi / count) for k in range(count)]
+    nodes: list[float] = []
+    while left:
+        nodes.append(max(left, key=lambda node: math.prod(abs(node - other) for other in nodes)))
+        left.remove(nodes[-1])
+    return nodes
+
+
 class MovingSupport:
     """A straight support that moves as `function` of time tells, about the point of it where its frame has its origin.
 
     `function(time)` gives a SupportMotion with derivatives that belong together, for a time in s or, if it can, an
     array of times. `period` is the shortest time in s in which the motion swings to and fro: no shorter swing may be in
     it. `gravity` in m/s^2 downwards; `origin` (x, y) in m is where the frame's origin lies in the frame of `function`.
-    Not to be changed once it is made.
+    `felt(time)` is what a body feels at rest at the origin. Not to be changed once it is made.
 
     Raises:
         InputError: the period is not a finite time above 0.
@@ -122,7 +191,7 @@ class MovingSupport:
         if not 0.0 < period < math.inf:
             raise InputError(f"period of the moving support is {period}; give a finite number of seconds above 0")
         self.function, self.period, self.gravity, self.origin = function, period, gravity, origin
-        self._parts: dict[int, Polynomials] = {}
+        self.felt = FeltPolynomials(self._felt_at_all, _PART * period, _NODES, _FIT).felt
         self._takes_arrays = True
 
     def at(self, x: float, y: float) -> MovingSupport:
@@ -161,48 +230,13 @@ class MovingSupport:
                 self._takes_arrays = False
         return np.array([self.felt_exactly(time) for time in times.tolist()], dtype=float)
 
-    def felt(self, time: float) -> FrameAcceleration:
-        """What a body feels at rest at the origin, from polynomials in time: a sum of many waves costs no more."""
-        width = _PART * self.period
-        number = math.floor(time / width)
-        part = self._parts.get(number)
-        if part is None:
-            part = self._fit(number, width)
-        if not part:
-            return self.felt_exactly(time)
-        return at_place(part, (time / width - number) * 2.0 - 1.0)
-
-    def _fit(self, number: int, width: float) -> Polynomials:
-        """The polynomials of one part; none where they do not fit."""
+    def _felt_at_all(self, times: list[float]) -> list[list[float]]:
         import numpy as np
 
-        nodes = np.cos(np.pi * (np.arange(_NODES) + 0.5) / _NODES)
-        values = self.felt_at((number + 0.5 + 0.5 * nodes) * width)
-        waves = np.polynomial.chebyshev.chebvander(nodes, _NODES - 1).T @ values * (2.0 / _NODES)
-        waves[0] *= 0.5
-        push, rate = np.abs(values[:, :2]).max(), np.abs(values[:, 2]).max()
-        size = np.array([push, push, rate, rate / width]) + np.abs(waves).sum(axis=0)
-        part: Polynomials = ()
-        if (np.abs(waves[-2:]).sum(axis=0) <= _FIT * size).all():
-            part = tuple(map(tuple, (_powers() @ waves)[::-1].tolist()))
-        if len(self._parts) >= _MAX_PARTS:
-            self._parts.clear()
-        self._parts[number] = part
-        return part
+        return self.felt_at(np.array(times)).tolist()  # type: ignore[no-any-return]
 
 
 Support = FixedSupport | MovingSupport
-
-
-def at_place(part: Polynomials, s: float) -> FrameAcceleration:
-    """What is felt at a place of a part, where s runs from -1 to 1: its polynomials, the highest power first."""
-    x = y = w = a = 0.0
-    for cx, cy, cw, ca in part:
-        x = x * s + cx
-        y = y * s + cy
-        w = w * s + cw
-        a = a * s + ca
-    return x, y, w, a
 
 
 def in_world(motion: SupportMotion, state: PlanarState) -> PlanarState:
@@ -256,16 +290,23 @@ def harmonic_support(
     Raises:
         InputError: no wave has a frequency above 0.
     """
-    frequencies = [abs(wave.frequency) for wave in (*angle, *x, *y)]
-    if not frequencies or not 0.0 < max(frequencies) < math.inf:
+    import numpy as np
+
+    waves = *angle, *x, *y
+    amplitude, frequency, phase = np.array([*waves, Wave(0.0, 0.0)]).T
+    if not 0.0 < np.abs(frequency).max() < math.inf:
         raise InputError("the waves of the support have no frequency above 0; give one, or use FixedSupport")
-    sums = tuple(angle), tuple(x), tuple(y)
+    part = np.repeat(np.arange(4), [len(angle), len(x), len(y), 1])
+    places = np.where(part[:, None] == np.arange(3), (amplitude * np.exp(1j * phase))[:, None], 0.0)
+    rates = 1j * frequency[:, None] * places
+    moves = np.hstack([places, rates, 1j * frequency[:, None] * rates])
 
     def motion(time: Any) -> SupportMotion:
-        (a, da, dda), (px, vx, ax), (py, vy, ay) = (_sum_of(waves, time) for waves in sums)
+        turns = np.exp(1j * np.multiply.outer(np.asarray(time, dtype=float), frequency))
+        a, px, py, da, vx, vy, dda, ax, ay = np.einsum("...i,ij->j...", turns, moves).imag
         return SupportMotion(angle=mean_angle + a, rate=da, acceleration=dda, x=px, y=py, vx=vx, vy=vy, ax=ax, ay=ay)
 
-    return MovingSupport(motion, 2.0 * math.pi / max(frequencies), gravity)
+    return MovingSupport(motion, 2.0 * math.pi / float(np.abs(frequency).max()), gravity)
 
 
 def sampled_support(times: Any, angle: Any, x: Any, y: Any, gravity: float = 9.81) -> MovingSupport:
@@ -297,27 +338,3 @@ def sampled_support(times: Any, angle: Any, x: Any, y: Any, gravity: float = 9.8
         return SupportMotion(angle=a, rate=da, acceleration=dda, x=px, y=py, vx=vx, vy=vy, ax=ax, ay=ay)
 
     return MovingSupport(motion, 4.0 * float(np.diff(times).min()), gravity)
-
-
-def _sum_of(waves: tuple[Wave, ...], time: Any) -> tuple[Any, Any, Any]:
-    """A sum of waves and its two derivatives, at a time or an array of times."""
-    import numpy as np
-
-    if not waves:
-        rest = 0.0 * time
-        return rest, rest, rest
-    amplitude, frequency, phase = np.array(waves).T
-    angle = np.multiply.outer(np.asarray(time, dtype=float), frequency) + phase
-    swing = amplitude * np.sin(angle)
-    return swing.sum(axis=-1), np.cos(angle) @ (amplitude * frequency), -(swing @ (frequency * frequency))
-
-
-@cache
-def _powers() -> NDArray[np.float64]:
-    """Coefficients of powers, the lowest first, from those of Chebyshev's polynomials."""
-    import numpy as np
-
-    powers = np.zeros((_NODES, _NODES))
-    for k, unit in enumerate(np.eye(_NODES)):
-        powers[: k + 1, k] = np.polynomial.chebyshev.cheb2poly(unit)
-    return powers

@@ -13,16 +13,17 @@ rotation
 
 from __future__ import annotations
 
-from math import cos, floor, hypot, inf, pi
-from operator import mul
+from collections.abc import Callable, Sequence
+from functools import partial
+from math import hypot, inf
 
 from ...mechanics.motion import Fall, MotionKind, PlanarState, next_strike
-from ...mechanics.motion.support import FrameAcceleration, at_place
+from ...mechanics.motion.support import FeltPolynomials, FrameAcceleration
 from ...mechanics.types import Contact, TwoPointBody
 from ..planar import ORIGIN, ImpactPlane, Posture, center_of
 from ..scene import Scene
-from ..types import Moment, Sample, Vector3
-from ..vectors import add, cross, dot, times, to_world, total
+from ..types import Felt, Moment, Sample, Vector3
+from ..vectors import add, cross, dot, times, to_world
 from .frame import pull_at
 
 APART = 1e-6
@@ -32,73 +33,40 @@ APART = 1e-6
 PART = 0.25
 """Length in s of one polynomial."""
 
-NODES = tuple(cos((k + 0.5) * pi / 7.0) for k in range(7))
-"""The nodes of a polynomial on -1..1, Chebyshev's."""
+NODES = 7
+"""Values that a polynomial goes through. Of what swings at w rad/s it misses (w / 8 s)^7 / 322560: 2e-10 at 2 rad/s."""
 
 
-def lagrange(node: float) -> list[float]:
-    """Coefficients of the polynomial that is 1 at one of the nodes and 0 at the others, the highest power first."""
-    row = [1.0]
-    for other in NODES:
-        if other != node:
-            row = [(up - other * low) / (node - other) for up, low in zip([*row, 0.0], [0.0, *row], strict=True)]
-    return row
-
-
-POWERS = tuple(zip(*map(lagrange, NODES), strict=True))
-"""What the values at the nodes count in the coefficient of each power."""
-
-
-class PlanarSupport:
+def planar_support(
+    moment: Moment, age: float, place: Vector3, ahead: Vector3, normal: Vector3, lateral: float
+) -> FeltPolynomials:
     """A moving support as an impact plane sees it, from `age` s before the moment on.
 
     The plane has its origin at `place` in the support's frame, and `ahead` and `normal` are its axes there; what is
-    felt counts along them. The body moves with `lateral` m/s along the axis normal x ahead, which is against the
-    plane's own z.
+    felt counts along them, and rates counter-clockwise. The body moves with `lateral` m/s along the axis normal x
+    ahead, which is against the plane's own z.
     """
+    axis = cross(normal, ahead)
+    felt_at = partial(_felt_at, moment.ahead, age, place, times(axis, lateral), (ahead, normal, axis))
+    return FeltPolynomials(felt_at, PART, NODES, gravity=hypot(*moment.felt.gravity))
 
-    period = inf
 
-    def __init__(
-        self, moment: Moment, age: float, place: Vector3, ahead: Vector3, normal: Vector3, lateral: float
-    ) -> None:
-        self._later, self._age, self._place, self._ahead, self._normal = moment.ahead, age, place, ahead, normal
-        self._axis = cross(normal, ahead)
-        self._velocity = times(self._axis, lateral)
-        self.gravity = hypot(*moment.felt.gravity)
-        self._parts: dict[int, tuple[FrameAcceleration, ...]] = {}
-
-    def felt(self, time: float) -> FrameAcceleration:
-        """Acceleration felt at rest at the origin, ahead and along the normal; rate and angular acceleration, CCW.
-
-        From polynomials through seven values for each quarter of a second, because a motion asks a hundred times. Of
-        what swings at w rad/s they miss (w / 8 s)^7 / 322560: 2e-10 at 2 rad/s.
-        """
-        number = floor(time / PART)
-        part = self._parts.get(number)
-        if part is None:
-            part = self._parts[number] = self._fit((number + 0.5) * PART)
-        return at_place(part, (time / PART - number) * 2.0 - 1.0)
-
-    def felt_exactly(self, time: float) -> FrameAcceleration:
-        felt = self._later(time - self._age)
-        pull = pull_at(felt, self._place, self._velocity)
-        axis = self._axis
-        return dot(self._ahead, pull), dot(self._normal, pull), -dot(axis, felt.angular), -dot(axis, felt.turning)
-
-    def _fit(self, middle: float) -> tuple[FrameAcceleration, ...]:
-        """Coefficients of the polynomials about the middle of a part, the highest power first."""
-        values = [self.felt_exactly(middle + 0.5 * PART * node) for node in NODES]
-        x, y, rate, turning = zip(*values, strict=True)
-        return tuple(
-            (
-                total(map(mul, weights, x)),
-                total(map(mul, weights, y)),
-                total(map(mul, weights, rate)),
-                total(map(mul, weights, turning)),
-            )
-            for weights in POWERS
-        )
+def _felt_at(
+    later: Callable[[float], Felt],
+    age: float,
+    place: Vector3,
+    velocity: Vector3,
+    axes: tuple[Vector3, Vector3, Vector3],
+    moments: Sequence[float],
+) -> list[FrameAcceleration]:
+    """What is felt at the plane's origin at some times, exactly."""
+    ahead, normal, axis = axes
+    found = []
+    for time in moments:
+        felt = later(time - age)
+        pull = pull_at(felt, place, velocity)
+        found.append((dot(ahead, pull), dot(normal, pull), -dot(axis, felt.angular), -dot(axis, felt.turning)))
+    return found
 
 
 def gravity_over(scene: Scene, moment: Moment, sample: Sample, posture: Posture) -> Vector3:
@@ -129,7 +97,7 @@ def fall_over(
     age = 0.5 * scene.twist_window
     place = add(center_of(scene, sample, posture), scene.normal, -height)
     ahead = to_world(posture.axes, plane.ahead)
-    support = PlanarSupport(moment, age, place, ahead, scene.normal, dot(plane.axis, posture.velocity))
+    support = planar_support(moment, age, place, ahead, scene.normal, dot(plane.axis, posture.velocity))
     new = Contact(*plane.new, scene.friction)
     duration = scene.horizon + age
     old = None if plane.old is None else Contact(*plane.old, scene.friction)
