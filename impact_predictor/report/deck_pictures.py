@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Sequence
-from math import degrees, hypot, pi
-from typing import Any, Final
+from functools import partial
+from math import degrees, hypot, radians
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,19 +29,11 @@ from .plot import (
     STEP,
     STRUCK,
     SUPPORT,
-    Band,
-    Curve,
+    Axes,
     Film,
-    Flash,
-    Line2D,
-    Outline,
-    Panel,
-    View,
-    around_zero,
     box,
     circle,
-    draw_panels,
-    patches,
+    common_legend,
     picture,
     placed,
     turned,
@@ -50,20 +43,16 @@ LONGEST: Final = 12.0
 """Seconds of a motion that a film shows, in real time: those in which most units move."""
 MARGINS: Final = ("#dfe6e1", "#f2a91a", "#d62728")
 """Colours of a margin that is used little, enough to warn, and up."""
-ROLL, HEAVE, TILT, SLID = PALETTE[0], "#8a6d3b", "#1a1a1a", PALETTE[2]
+ROLL, HEAVE, SLID = PALETTE[0], "#8a6d3b", PALETTE[2]
 
 _MOST: Final = 200_000
 """Moments of a picture of a long motion; a rocking unit takes a second or so to and fro."""
 _MOMENT: Final = 0.05
 """Seconds between the moments of a picture of a shorter one."""
-_NEAR: Final = 3
-"""Units that the film shows from near by."""
-_TILTS, _SLIDES = 0.003, 0.02
-"""A unit of the film moves that is turned by so many rad, or slides at so many m/s."""
-_TILTED, _SLID = pi / 1800.0, 0.005
-"""A tilt of so many rad, and a slide of so many m, are told."""
-_STRIP: Final = 0.09
-"""Part of a lane's height on which its margin is drawn."""
+_TILTS, _SLIDES = radians(0.1), 0.02
+"""A unit moves that is tilted by so many rad, or slides at so many m/s."""
+_SLID: Final = 0.005
+"""A slide of so many m is told."""
 
 
 def moments(duration: float) -> NDArray[np.float64]:
@@ -85,17 +74,15 @@ class UnitMotion:
         self.end, self.ended = End.TIME_UP, 0.0
         self._states: NDArray[np.float64] = np.full((6, len(times)), np.nan)
 
-    def taking(self, spans: Iterable[Span]) -> Iterator[Span]:
-        """The spans of the motion, each taken up as it passes."""
-        for span in spans:
-            within = (self.times >= span.start) & (self.times <= span.time)
-            if within.any():
-                self._states[:, within] = np.array(span.state(self.times[within]))
-                self._states[:2, within] += np.array(self.unit.foot)[:, None]
-            self.impacts += span.impacts
-            self.onsets += span.onsets
-            self.end, self.ended = span.end, span.time
-            yield span
+    def take(self, span: Span) -> None:
+        """Take a span of the motion."""
+        within = (self.times >= span.start) & (self.times <= span.time)
+        if within.any():
+            self._states[:, within] = np.array(span.state(self.times[within]))
+            self._states[:2, within] += np.array(self.unit.foot)[:, None]
+        self.impacts += span.impacts
+        self.onsets += span.onsets
+        self.end, self.ended = span.end, span.time
 
     def at(self, time: float) -> PlanarState:
         """The state at a time in s; the last one that is known where it is not followed any more."""
@@ -120,10 +107,10 @@ class UnitMotion:
         if self.unit.scene.radius > 0.0:
             return np.asarray(0.0 * angle)
         c, s = np.cos(angle), np.sin(angle)
-        old, new = body.old, body.new
-        old_is_lower = s * old.x + c * old.y < s * new.x + c * new.y
-        turns = np.where(old_is_lower, (c - 1.0) * old.x - s * old.y, (c - 1.0) * new.x - s * new.y)
-        return np.asarray(turns + x - self.unit.foot[0] - self.unit.start.x)
+        (low_old, old), (low_new, new) = (
+            (s * one.x + c * one.y, (c - 1.0) * one.x - s * one.y) for one in (body.old, body.new)
+        )
+        return np.asarray(np.where(low_old < low_new, old, new) + x - self.unit.foot[0] - self.unit.start.x)
 
     @property
     def moves(self) -> NDArray[np.bool_]:
@@ -144,7 +131,9 @@ class DeckMotion:
         """The spans of a unit, taken up as they pass."""
         motion = UnitMotion(unit, self.times)
         self.units.append(motion)
-        return motion.taking(spans)
+        for span in spans:
+            motion.take(span)
+            yield span
 
 
 def outline_of(unit: CargoUnit) -> NDArray[np.float64]:
@@ -180,17 +169,12 @@ def busiest(units: Sequence[UnitMotion], most: int) -> list[UnitMotion]:
     return [one for one in units if one in chosen]
 
 
+def _seconds(impacts: Iterable[TrueImpact]) -> list[float]:
+    return [one.stamp / NANOSECONDS for one in impacts]
+
+
 def _greatest(values: NDArray[np.float64]) -> float:
     return float(np.nanmax(np.abs(values)))
-
-
-def title_of(units: Sequence[UnitMotion], shown: int) -> str:
-    """What happened, in words."""
-    impacts = sum(len(one.impacts) for one in units)
-    toppled = sum(one.toppled for one in units)
-    them = f"{len(units)} units" if len(units) > 1 else "One unit"
-    said = f"{them} on a rolling deck: {counted(impacts, 'impact')}" + (f", {toppled} toppled" if toppled else "")
-    return said + (f"; the {shown} that moved most" if shown < len(units) else "")
 
 
 def write_deck_figure(path: str | os.PathLike[str], deck: MovingSupport, units: Sequence[UnitMotion]) -> None:
@@ -199,100 +183,75 @@ def write_deck_figure(path: str | os.PathLike[str], deck: MovingSupport, units: 
     Raises:
         InputError: the file cannot be written, or is of another format.
     """
-    shown = busiest(units, 6)
-    panels = [_deck_panel(deck, units[0].times), *(_unit_panel(deck, unit) for unit in shown)]
+    shown, times = busiest(units, 6), units[0].times
+    said = f"{counted(len(units), 'unit')} on a rolling deck"
     with picture(path, 10.0, 2.6 + 1.25 * len(shown)) as figure:
-        axes = figure.subplots(len(panels), 1, height_ratios=[panel.height for panel in panels])
-        draw_panels(axes, panels, float(units[0].times[-1]))
-        axes[0].set_title(title_of(units, len(shown)), fontweight="bold")
-        figure.align_ylabels(axes)
-        figure.legend(handles=_signs(shown), loc="outside lower center", ncols=5, columnspacing=1.4, handletextpad=0.5)
+        upper, *panels = figure.subplots(1 + len(shown), 1, sharex=True)
+        motion = deck.motion(times)
+        upper.plot(times, np.degrees(motion.angle), color=ROLL)
+        upper.set_ylabel("deck roll (°)", color=ROLL)
+        upper.set_title(said + (f": the {len(shown)} that moved most" if shown != units else ""), fontweight="bold")
+        heave = upper.twinx()
+        heave.plot(times, motion.y - np.mean(motion.y), "--", color=HEAVE, linewidth=1.0)
+        heave.set_ylabel("heave (m)", color=HEAVE)
+        heave.grid(visible=False)
+        for axes, unit in zip(panels, shown, strict=True):
+            _draw_unit(axes, deck, unit)
+        panels[-1].set(xlabel="time (s)", xlim=(0.0, times[-1]))
+        figure.align_ylabels([upper, *panels])
+        common_legend(figure)
 
 
-def _deck_panel(deck: MovingSupport, times: NDArray[np.float64]) -> Panel:
-    motion = deck.motion(times)
-    roll, heave = np.degrees(motion.angle), motion.y - np.mean(motion.y)
-    return Panel(
-        label="deck roll (°)",
-        curves=[Curve(times, roll, ROLL)],
-        height=1.25,
-        limits=around_zero(roll),
-        right=("heave (m)", Curve(times, heave, HEAVE, style="--")),
-    )
-
-
-def _unit_panel(deck: MovingSupport, unit: UnitMotion) -> Panel:
-    """The tilt of a unit, how far it slid, its impacts, and along the bottom how much of its margin is used."""
+def _draw_unit(axes: Axes, deck: MovingSupport, unit: UnitMotion) -> None:
+    """Draw the tilt of a unit, how far it slid, its impacts, and along the bottom how much of its margin is used."""
     times, tilt = unit.times, np.degrees(unit.tilt)
-    curves = [Curve(times, tilt, TILT, width=1.2)]
-    for mode in sorted({impact.mode for impact in unit.impacts}):
-        at = np.array([impact.stamp / NANOSECONDS for impact in unit.impacts if impact.mode is mode])
-        curves.append(Curve(at, 0.0 * at, MODES[mode].colour, style=MODES[mode].marker))
-    if unit.toppled:
-        curves.append(Curve(np.array([unit.ended]), np.zeros(1), MARGINS[2], style="X"))
+    axes.set_title(f"{unit.unit.name}: {_fate(unit)}", fontsize=10, pad=3)
+    axes.plot(times, tilt, color="black", linewidth=1.2)
     # A unit that has toppled would leave no room for how it rocked before.
-    rocked = tilt if not unit.toppled else np.where(times < unit.ended - 2.0, tilt, np.nan)
-    slid = ("slid (m)", Curve(times, unit.slid, SLID)) if _greatest(unit.slid) > _SLID else None
-    return Panel(
-        label="tilt (°)",
-        curves=curves,
-        bands=_margin_bands(times, margin_used(deck, unit.unit, times)),
-        title=_fate(unit),
-        limits=around_zero(np.append(rocked, 10.0 * degrees(_TILTED)), 1.75),
-        right=slid,
-    )
+    rocked = _greatest(tilt[times < unit.ended - 2.0]) if unit.toppled and unit.ended > 2.0 else _greatest(tilt)
+    high = 1.75 * max(rocked, 1.0)
+    axes.set(ylabel="tilt (°)", ylim=(-high, high))
+    for mode in sorted({impact.mode for impact in unit.impacts}):
+        at = _seconds(impact for impact in unit.impacts if impact.mode is mode)
+        look, label = MODES[mode], f"impact: {words(mode.name)}"
+        axes.plot(at, [0.0] * len(at), look.marker, color=look.colour, markeredgecolor=EDGE, label=label)
+    if unit.toppled:
+        axes.plot(unit.ended, 0.0, "X", color=MARGINS[2], markeredgecolor=EDGE, label="topples")
+    used, warn = margin_used(deck, unit.unit, times), Watching().warn
+    bottom = axes.get_xaxis_transform()
+    for least, colour, label in (
+        (warn, MARGINS[1], f"{warn:.0%} of the margin used"),
+        (1.0, MARGINS[2], "margin used up: slides or tips"),
+    ):
+        over = times[used >= least]
+        axes.plot(over, [0.06] * len(over), "|", color=colour, markersize=9, transform=bottom, label=label)
+    if _greatest(unit.slid) > _SLID:
+        other = axes.twinx()
+        other.plot(times, unit.slid, color=SLID)
+        other.set_ylabel("slid (m)", color=SLID)
+        other.grid(visible=False)
 
 
 def _fate(unit: UnitMotion) -> str:
     """What became of a unit, in words."""
     said = [counted(len(unit.impacts), "impact")] if unit.impacts else []
-    if not unit.toppled and _greatest(unit.tilt) > _TILTED:
+    if not unit.toppled and _greatest(unit.tilt) > _TILTS:
         said.append(f"tilts {degrees(_greatest(unit.tilt)):.2g}°")
     if _greatest(unit.slid) > _SLID:
         said.append(f"slides {_greatest(unit.slid):.2g} m")
-    if unit.toppled:
-        said.append(f"topples at {unit.ended:.0f} s")
-    elif unit.end is not End.TIME_UP:
-        said.append(f"is lost at {unit.ended:.0f} s")
-    return f"{unit.unit.name}: {', '.join(said) or 'stays where it is'}"
-
-
-def _margin_bands(times: NDArray[np.float64], used: NDArray[np.float64]) -> list[Band]:
-    """How much of the margin against sliding and tipping is used, as bands along the bottom."""
-    # Never thinner than can be seen.
-    half = max(0.5 * (times[1] - times[0]), 8e-4 * (times[-1] - times[0]))
-    bands = [Band(times[0], times[-1], MARGINS[0], 0.0, _STRIP)]
-    for least, colour in ((Watching().warn, MARGINS[1]), (1.0, MARGINS[2])):
-        over = np.flatnonzero(np.diff(np.concatenate([[False], used >= least, [False]]).astype(int)))
-        for first, last in over.reshape(-1, 2):
-            bands.append(Band(times[first] - half, times[last - 1] + half, colour, 0.0, _STRIP))
-    return bands
-
-
-def _signs(units: Sequence[UnitMotion]) -> list[Any]:
-    """The legend."""
-    modes = sorted({impact.mode for one in units for impact in one.impacts})
-    signs = [(f"impact: {words(mode.name)}", MODES[mode].colour, MODES[mode].marker) for mode in modes]
-    if any(one.toppled for one in units):
-        signs.append(("topples", MARGINS[2], "X"))
-    warn = Watching().warn
-    names = (f"margin: up to {warn:g} used", f"{warn:g} to 1", "used up: slides or tips")
-    handles = [
-        Line2D([], [], color=colour, marker=marker, linestyle="", markeredgecolor=EDGE, label=name)
-        for name, colour, marker in signs
-    ]
-    return handles + patches(names, dict(zip(names, MARGINS, strict=True)))
+    if unit.end is not End.TIME_UP:
+        said.append(f"{'topples' if unit.toppled else 'is lost'} at {unit.ended:.0f} s")
+    return ", ".join(said) or "stays where it is"
 
 
 def deck_frames(units: Sequence[UnitMotion]) -> list[float]:
-    """The times in s of the frames: the part of the motion in which most units move, a little before them included."""
+    """The times in s of the frames: the part of the motion in which most units move."""
     times = units[0].times
     step = float(times[1] - times[0])
     busy = np.sum([one.moves for one in units], axis=0, dtype=float)
-    length = min(len(times), round(LONGEST / step))
-    sums = np.convolve(busy, np.ones(length), mode="valid")
-    best = np.flatnonzero(sums >= sums.max() - 1e-9)
+    sums = np.convolve(busy, np.ones(min(len(times), round(LONGEST / step))), mode="valid")
     # In the middle of those that show as much.
+    best = np.flatnonzero(sums >= sums.max() - 1e-9)
     begin = float(times[best[len(best) // 2]]) if sums.max() > 0.0 else 0.0
     end = min(begin + LONGEST, float(times[-1]))
     return [begin + STEP * k for k in range(max(2, 1 + int((end - begin) / STEP)))]
@@ -300,89 +259,66 @@ def deck_frames(units: Sequence[UnitMotion]) -> list[float]:
 
 def deck_film(deck: MovingSupport, units: Sequence[UnitMotion]) -> Film:
     """The film of a deck in real time: the busiest units, its roll and the impacts below."""
-    times = deck_frames(units)
-    near = [UnitScene(deck, one, times) for one in busiest(units, _NEAR)]
-    impacts = [impact.stamp / NANOSECONDS for one in near for impact in one.motion.impacts]
-    ticks = np.array([time for time in impacts if times[0] <= time <= times[-1]])
-    seen = np.array(times)
-    roll = Curve(seen, np.degrees(deck.motion(seen).angle), ROLL)
+    times, near = deck_frames(units), busiest(units, 3)
     return Film(
-        title="",
-        views=[one.view() for one in near],
-        height=2.0,
-        panel=Panel(
-            label="",
-            curves=[roll, Curve(ticks, 0.0 * ticks, STRUCK, style="|")],
-            title="roll (°) against time (s), and the impacts; seen from astern, port on the left",
-        ),
+        scenes=[UnitScene(deck, one, times) for one in near],
+        height=2.2,
+        draw_curves=partial(_draw_roll, deck, near, np.array(times)),
         speed=1.0,
         times=times,
     )
 
 
+def _draw_roll(deck: MovingSupport, units: Sequence[UnitMotion], times: NDArray[np.float64], axes: Axes) -> None:
+    axes.plot(times, np.degrees(deck.motion(times).angle), color=ROLL)
+    for unit in units:
+        at = _seconds(unit.impacts)
+        axes.plot(at, [0.0] * len(at), "|", color=STRUCK)
+    axes.set(xlim=(times[0], times[-1]), xlabel="time (s); red: impacts", ylabel="roll (°)")
+
+
 class UnitScene:
-    """One unit on its piece of the deck; what it does, and how much of its margin is used, in words."""
+    """One unit on its piece of the deck, seen from astern by a camera that stays upright: port is on the left."""
 
     def __init__(self, deck: MovingSupport, motion: UnitMotion, times: Sequence[float]) -> None:
         """Look at the motion at some times (s), to know how much room it needs."""
-        self._deck, self.motion, self._outline = deck, motion, outline_of(motion.unit)
-        self._used = margin_used(deck, motion.unit, motion.times)
         unit, body = motion.unit, motion.unit.body
         assert body.old is not None
+        self.title, self._deck, self._motion, self._outline = unit.name, deck, motion, outline_of(unit)
+        self._used = margin_used(deck, unit, motion.times)
         self._contacts = np.array([(body.old.x, body.old.y), (body.new.x, body.new.y)])
-        self._is_disc = unit.scene.radius > 0.0
         start = unit.start._replace(x=unit.start.x + unit.foot[0], y=unit.start.y + unit.foot[1])
         self._edges = placed(self._contacts, start)
-        standing = placed(self._outline, start)[:, 0]
-        self._pivot = np.array([0.5 * (standing.min() + standing.max()), self._edges[:, 1].min()])
+        self._pivot = np.array([np.mean(self._edges[:, 0]), self._edges[:, 1].min()])
         seen = np.concatenate([self._seen(placed(self._outline, motion.at(time)), time) for time in times[::5]])
-        low, high = seen.min(axis=0), seen.max(axis=0)
-        self._middle, self._size = 0.5 * (low + high), max(float((high - low).max()), 1e-3)
+        self._middle = 0.5 * (seen.min(axis=0) + seen.max(axis=0))
+        self._size = max(float(np.ptp(seen, axis=0).max()), 1e-3)
 
-    def view(self) -> View:
-        """The view by a camera that goes with the deck but stays upright; port is on the left."""
+    def draw(self, axes: Axes, time: float) -> str:
+        """Draw the unit at a time in s, red while it moves, else by its margin; what it does."""
+        state, far = self._motion.at(time), 3.0 * self._size
+        used = float(np.interp(time, self._motion.times, self._used))
+        tilt = degrees(abs(state.angle - self._motion.unit.start.angle))
+        if self._motion.toppled and time >= self._motion.ended:
+            does, moves = "has toppled", True
+        elif tilt > degrees(_TILTS):
+            does, moves = f"rocks, tilted by {tilt:.2g}°", True
+        elif abs(state.vx) > _SLIDES:
+            does, moves = f"slides at {abs(state.vx):.2g} m/s", True
+        else:
+            does, moves = f"stands, margin used: {min(used, 9.99):.0%}", False
+        colour = MARGINS[2 if moves or used >= 1.0 else 1 if used >= Watching().warn else 0]
+        deck = box(-far, far, -0.05 * self._size, 0.0) + self._pivot
+        axes.fill(*self._seen(deck, time).T, color=SUPPORT)
+        axes.fill(*self._seen(placed(self._outline, state), time).T, facecolor=colour, edgecolor=LINE)
+        is_disc = self._motion.unit.scene.radius > 0.0
+        for place in self._edges if is_disc else placed(self._contacts, state):
+            closed = is_disc or place[1] - self._pivot[1] < 1e-3
+            shown = self._seen(place[None], time)[0]
+            axes.plot(*shown, "o", color=CLOSED if closed else OPEN, markeredgecolor=CLOSED, markersize=6)
         (x, y), half = self._middle, 0.575 * self._size
-        window = (x + 1.3 * half, x - 1.3 * half, y - half, y + half)
-        flashes = []
-        for impact in self.motion.impacts:
-            time, contacts = impact.stamp / NANOSECONDS, self.motion.unit.contacts
-            place = self._places(self.motion.at(time))[contacts.index(impact.new) if impact.new in contacts else 1]
-            flashes.append(Flash(time, impact.mode.name, self._seen(place[None], time)[0]))
-        name = self.motion.unit.name
-        return View(name, lambda time: window, self._outlines, self._caption, flashes)
-
-    def colour(self, time: float) -> str:
-        """Red while it moves, else by how much of its margin is used."""
-        moves, used, _ = self._doing(time)
-        return MARGINS[2 if moves or used >= 1.0 else 1 if used >= Watching().warn else 0]
-
-    def _outlines(self, time: float) -> list[Outline]:
-        state, far = self.motion.at(time), 3.0 * self._size
-        shown = [Outline(box(-far, far, -0.05 * self._size, 0.0) + self._pivot, SUPPORT, size=0.0)]
-        shown.append(Outline(placed(self._outline, state), self.colour(time), LINE))
-        for place in self._places(state):
-            closed = self._is_disc or place[1] - self._pivot[1] < 1e-3
-            shown.append(Outline(place[None], CLOSED if closed else OPEN, CLOSED, 6.0, "o"))
-        return [one._replace(points=self._seen(one.points, time)) for one in shown]
-
-    def _places(self, state: PlanarState) -> NDArray[np.float64]:
-        return self._edges if self._is_disc else placed(self._contacts, state)
-
-    def _caption(self, time: float) -> tuple[str, str]:
-        return self._doing(time)[2], "none"
-
-    def _doing(self, time: float) -> tuple[bool, float, str]:
-        """Whether it moves on the deck, how much of its margin is used, and what it does in words."""
-        motion, state = self.motion, self.motion.at(time)
-        used = float(np.interp(time, motion.times, self._used))
-        tilt = degrees(state.angle - motion.unit.start.angle)
-        if motion.toppled and time >= motion.ended:
-            return True, used, "has toppled"
-        if abs(tilt) > 0.03:
-            return True, used, f"rocks, tilted by {abs(tilt):.2g}°"
-        if abs(state.vx) > _SLIDES:
-            return True, used, f"slides at {abs(state.vx):.2g} m/s"
-        return False, used, f"stands, {100.0 * min(used, 9.99):.0f} % of its margin used"
+        axes.set(xlim=(x + 1.3 * half, x - 1.3 * half), ylim=(y - half, y + half))
+        return does
 
     def _seen(self, points: NDArray[np.float64], time: float) -> NDArray[np.float64]:
         return np.asarray(turned(points - self._pivot, float(self._deck.motion(time).angle)) + self._pivot)

@@ -23,7 +23,7 @@ from ..scenarios.rocking import release, rocking_cylinder, rocking_plate, rockin
 from .map import SUBJECTS, Axis, ModeMap, ambiguous, axis_label, conditions, given_in, meaning_of, problem_at, shares
 from .modes import MODES
 from .motion_pictures import RockingScene
-from .plot import Axes, Line2D, Patch, draw_outline, headline, picture
+from .plot import Axes, Line2D, Patch, headline, picture
 
 PAPER_NUMBERS: Final = {Mode.STOP: 1, Mode.SLIDE: 2}
 """The numbers that the paper uses for one mode all through; its 3 and 4 change places between its sections."""
@@ -311,5 +311,4 @@ def draw_sketch(axes: Axes, subject: str) -> None:
     axes.set_axis_off()
     axes.set_aspect("equal")
     falls = release(_SKETCHED[subject](1.0, None, None, 0.0), radians(14.0), duration=1.0)
-    for outline in RockingScene(falls).outlines(0.0):
-        draw_outline(axes, outline)
+    RockingScene(falls).draw(axes, 0.0)
