@@ -10,8 +10,7 @@ import click
 
 from ..errors import InputError
 from ..mechanics.bodies import cylinder, fraction, not_negative, plate, positive, rod
-from ..mechanics.impact import LAWS, solve_impact
-from ..mechanics.impact.body import approach
+from ..mechanics.impact import LAWS, approach, solve_impact
 from ..mechanics.types import Contact, Flag, Mode, Outcome, Twist, TwoPointBody
 from .options import choice, examples, json_flag, number, together
 

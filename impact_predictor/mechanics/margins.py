@@ -12,9 +12,8 @@ from collections.abc import Callable
 from math import copysign, hypot, inf
 from typing import NamedTuple
 
-from .impact import MODES, NOWHERE, number_of
+from .impact import MODES, NOWHERE, number_of, see
 from .impact.answer import answer
-from .impact.body import see
 from .types import Contact, Flag, Mode, Outcome, Twist, TwoPointBody, Vector
 
 STEPS = tuple([k / 32.0 for k in (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64)])

@@ -9,9 +9,8 @@ from importlib.util import find_spec, module_from_spec
 from types import ModuleType
 from typing import Any, NamedTuple, Union
 
-from .impact import NOWHERE, number_of
+from .impact import NOWHERE, number_of, see
 from .impact.answer import answer
-from .impact.body import see
 from .types import Contact, Flag, Twist, TwoPointBody
 
 Triple = tuple[float, float, float]

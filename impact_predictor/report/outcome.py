@@ -7,7 +7,7 @@ from typing import Final
 
 from rich.console import Console
 
-from ..mechanics.impact.body import approach
+from ..mechanics.impact import approach
 from ..mechanics.types import Contact, Flag, Mode, Outcome, Twist, TwoPointBody
 from ..wording import NONE
 from .modes import MODES
@@ -62,7 +62,7 @@ def _rows(body: TwoPointBody, before: Twist, outcomes: Sequence[Outcome]) -> Ite
     contacts = [("new contact", body.new, 1)]
     if body.old is not None:
         contacts.insert(0, ("old contact", body.old, 0))
-    speed = max(abs(part) for _, contact, _ in contacts for part in approach(contact, before)[:2])
+    speed = max(abs(part) for _, contact, _ in contacts for part in approach(contact, before))
     yield ("mass centre",)
     for name, unit in (("vx", "m/s"), ("vy", "m/s"), ("omega", "rad/s")):
         yield f"  {name}, {unit}", *(_number(getattr(twist, name), speed) for twist in twists)
@@ -71,8 +71,8 @@ def _rows(body: TwoPointBody, before: Twist, outcomes: Sequence[Outcome]) -> Ite
         impulses = [outcome.impulses[index] for outcome in outcomes]
         scale = body.mass * speed
         yield (which,)
-        yield "  normal velocity, m/s", *(_number(normal, speed) for normal, _, _ in motions)
-        yield "  slip, m/s", *(_number(slip, speed) for _, slip, _ in motions)
+        yield "  normal velocity, m/s", *(_number(normal, speed) for normal, _ in motions)
+        yield "  slip, m/s", *(_number(slip, speed) for _, slip in motions)
         yield "  normal impulse N, N s", "", *(_number(normal, scale) for normal, _ in impulses)
         yield "  tangential impulse T, N s", "", *(_number(tangent, scale) for _, tangent in impulses)
         yield "  friction used, |T| / (f N)", "", *(_friction_used(contact, impulse) for impulse in impulses)

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from math import cos, hypot, inf, sin
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-from ..mechanics.impact.body import approach
+from ..mechanics.impact import approach
 from ..mechanics.types import Mode, Outcome, TwoPointBody
 from ..prediction.types import Vector3
 from ..ros.cdr import OK, MalformedMessage, decode_diagnostic_array, diagnostic_array, diagnostic_status, pairs_of

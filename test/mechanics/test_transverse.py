@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 
 from impact_predictor import Contact, Flag, Mode, Twist, TwoPointBody, solve_impact
-from impact_predictor.mechanics import transverse_step
 from impact_predictor.mechanics.transverse import Transverse, TransverseOutcome
 from impact_predictor.mechanics.transverse import solve_transverse_impact as solve
 from impact_predictor.mechanics.types import Validity
@@ -246,26 +245,15 @@ def test_the_answer_converges_with_the_tolerance() -> None:
         assert np.median(errors) < 0.5 * tolerance
 
 
-def test_implicit_steps_follow_the_same_path(monkeypatch: pytest.MonkeyPatch) -> None:
-    """All steps of a path, not only those after its first explicit ones."""
-    explicit = [velocities(solve_transverse_impact(*case, tolerance=1e-5)) for case in cases(40, seed=9)]
-    monkeypatch.setattr(transverse_step, "EXPLICIT", 0)
-    for case, expected in zip(cases(40, seed=9), explicit, strict=True):
-        space = Body(*case)
-        implicit = velocities(solve_transverse_impact(*case, tolerance=1e-5))
-        assert np.abs(space.rows @ (implicit - expected)).max() < 2e-4 * space.speed
-
-
-def test_a_body_that_yaws_far_more_easily_than_it_moves_needs_no_more_steps(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A million times as easily; explicit steps alone would be lost after hundreds of them."""
+def test_a_body_that_yaws_far_too_easily_gets_the_planar_answer_and_a_flag() -> None:
+    """A million times more easily than it moves: its slip turns within a millionth of the impulse."""
     body = TwoPointBody(1.0, 0.1, Contact(-0.5, -0.3, 0.2), Contact(0.5, -0.3, 0.2))
     twist = body.turning(-1.0)
-    case = body, twist._replace(vx=twist.vx + 2.0), Transverse(1.0, yaw_inertia=1e-6)
-    answer = solve(*case)
-    assert not answer.outcome.flags & Flag.LAST_RESORT
-    assert answer.outcome.twist == pytest.approx(solve_transverse_impact(*case).outcome.twist, abs=1e-4)
-    monkeypatch.setattr(transverse_step, "EXPLICIT", 10**6)
-    assert solve(*case).outcome.flags & Flag.LAST_RESORT
+    twist, across = twist._replace(vx=twist.vx + 2.0), Transverse(1.0, yaw_inertia=1e-6)
+    answer = solve(body, twist, across)
+    assert answer.outcome.flags & Flag.LAST_RESORT
+    assert answer.outcome.twist == solve_impact(body, twist).twist
+    assert answer.transverse == across
 
 
 def test_momentum_energy_and_friction_are_kept() -> None:
@@ -431,7 +419,7 @@ def test_any_magnitude_has_an_answer_that_gains_no_energy() -> None:
             assert answer.transverse == across
         elif answer.outcome.mode is not Mode.NO_IMPACT and not answer.outcome.flags & Flag.BOTH_STRUCK:
             assert answer.outcome.energy_lost >= -1e-4 * body.mass * Body(body, twist, across).speed ** 2
-    assert lost < 30
+    assert lost < 100
 
 
 def test_a_motion_of_the_least_number_is_no_division_by_zero():

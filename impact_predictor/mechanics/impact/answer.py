@@ -9,8 +9,7 @@ from math import inf, sqrt
 
 from ..types import Contact, Flag, Mode, Twist, Validity
 from . import path_law, total_law
-from .body import problem_of, twist_after
-from .contacts import NO_SOLUTION, ROUNDING, ContactRows, Impact, Problem
+from .contacts import NO_SOLUTION, ROUNDING, ContactRows, Impact, Problem, problem_of, twist_after
 
 PATH, TOTAL = 0, 1
 """The laws."""

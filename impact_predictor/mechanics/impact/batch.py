@@ -17,13 +17,13 @@ from numpy.typing import NDArray
 
 from .. import types
 from ..types import Contact, Twist, TwoPointBody, Validity
-from . import answer, body, contacts, path_law, rates, restitution, total_law
+from . import answer, contacts, path_law, rates, restitution, total_law
 from .solve import NOWHERE, number_of
 
 CHUNK = 2048
 """Impacts that are handed over at a time, so that the copies of broadcast fields stay small."""
 
-LAW_CODE = (contacts, rates, restitution, path_law, total_law, body, answer)
+LAW_CODE = (contacts, rates, restitution, path_law, total_law, answer)
 
 CALLED = (path_law.solve, total_law.solve, total_law.any_that_holds, total_law.all_that_hold)
 """Law functions that are compiled on their own. All others become a part of those that call them, which halves the

@@ -12,6 +12,7 @@ from .answer import (
     PATH,
     STAYS,
     VALIDITY,
+    BodyAnswer,
     answer,
     differ,
     mode_of,
@@ -20,8 +21,7 @@ from .answer import (
     speed_of,
     without_restitution,
 )
-from .body import problem_of, twist_after
-from .contacts import Impact, Problem
+from .contacts import Impact, Problem, problem_of, twist_after
 
 LAWS = ("path", "total")
 """The names of the laws, at their numbers."""
@@ -46,9 +46,14 @@ def solve_impact(body: TwoPointBody, twist: Twist, law: str = "path", validity: 
     """
     number = number_of(law)
     mass, inertia, old, new = body
-    mode, after, na, ta, nb, tb, segments, flags, energy_lost, unique, used = answer(
-        mass, inertia, old is not None, old or NOWHERE, new, twist, number, validity
-    )
+    found = answer(mass, inertia, old is not None, old or NOWHERE, new, twist, number, validity)
+    return outcome_of(found, body, twist)
+
+
+def outcome_of(found: BodyAnswer, body: TwoPointBody | None = None, before: Twist | None = None) -> Outcome:
+    """An answer by its names; with what it was asked about where its law may allow others too."""
+    mode, after, na, ta, nb, tb, segments, flags, energy_lost, unique, used = found
+    more = () if unique or body is None or before is None else alternatives(body, before, used, flags)
     return Outcome(
         mode=MODES[mode],
         twist=Twist(*after),
@@ -57,10 +62,10 @@ def solve_impact(body: TwoPointBody, twist: Twist, law: str = "path", validity: 
         flags=flags_of(flags),
         energy_lost=energy_lost,
         unique=unique,
-        alternatives=() if unique else alternatives(body, twist, used, flags),
+        alternatives=more,
         law=LAWS[used],
         body=body,
-        before=twist,
+        before=before,
     )
 
 
