@@ -27,9 +27,8 @@ from rich.table import Table
 
 from impact_predictor.mechanics.bodies import cylinder, plate, rod
 from impact_predictor.mechanics.compliant import STAYS, compliant_motion, damping_ratio
-from impact_predictor.mechanics.impact import solve_impact
+from impact_predictor.mechanics.impact import see, solve_impact
 from impact_predictor.mechanics.impact.answer import mode_of
-from impact_predictor.mechanics.impact import see
 from impact_predictor.mechanics.motion import rock, standing
 from impact_predictor.mechanics.motion.support import FixedSupport, Wave, harmonic_support
 from impact_predictor.mechanics.types import Flag, Mode, Twist, Vector

@@ -33,8 +33,8 @@ from impact_predictor.mechanics.compliant import (
     damping_ratio,
     force,
 )
-from impact_predictor.mechanics.impact.answer import mode_of
 from impact_predictor.mechanics.impact import see
+from impact_predictor.mechanics.impact.answer import mode_of
 from impact_predictor.mechanics.types import Contact, Mode, Twist, TwoPointBody, Vector
 
 METHODS = ("Radau", "BDF", "LSODA", "DOP853", "RK45")
