@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import isfinite
 from typing import Final
 
-from .types import Sample, Status, Vector3
+from .types import Quaternion, Sample, Status, Vector3
 from .vectors import dot
 
 PAUSE = 250_000_000
@@ -31,10 +31,15 @@ def check_numbers(sample: Sample) -> Status:
         or all(map(isfinite, sample.pose_covariance + sample.twist_covariance))
     ):
         return Status.NOT_FINITE
-    x, y, z, w = sample.orientation
-    if not -UNIT < x * x + y * y + z * z + w * w - 1.0 < UNIT:
-        return Status.BAD_QUATERNION if all(map(isfinite, sample.orientation)) else Status.NOT_FINITE
-    return Status.ACCEPTED
+    return check_orientation(sample.orientation)
+
+
+def check_orientation(orientation: Quaternion) -> Status:
+    """Whether a quaternion is one of a rotation."""
+    x, y, z, w = orientation
+    if -UNIT < x * x + y * y + z * z + w * w - 1.0 < UNIT:
+        return Status.ACCEPTED
+    return Status.BAD_QUATERNION if all(map(isfinite, orientation)) else Status.NOT_FINITE
 
 
 def order_of(stamp: int, last: int | None) -> Status:
@@ -42,6 +47,14 @@ def order_of(stamp: int, last: int | None) -> Status:
     if last is None or stamp > last:
         return Status.ACCEPTED
     return Status.STAMP_REPEATED if stamp == last else Status.STAMP_WENT_BACK
+
+
+def followed(stamp: int, last: int | None) -> tuple[Status, int | None]:
+    """As `order_of`, and the last stamp of the stream then: None where it begins anew after its clock went back."""
+    status = order_of(stamp, last)
+    if status is Status.ACCEPTED:
+        return status, stamp
+    return status, None if last is not None and last - stamp > PAUSE else last
 
 
 def check_points(points: tuple[Vector3, ...]) -> Status:

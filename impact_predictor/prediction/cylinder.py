@@ -14,7 +14,7 @@ from ..errors import InputError
 from ..mechanics.motion import PlanarState, next_strike
 from ..mechanics.motion.support import FeltSupport, FixedSupport
 from ..mechanics.types import Contact, Twist, TwoPointBody, Vector
-from .deck.approach import gravity_over, is_uniform, planar_support
+from .deck.frame import gravity_over, is_uniform, planar_support
 from .impact import Collision, collision_after
 from .planar import (
     ActiveContacts,

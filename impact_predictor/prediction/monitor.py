@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import TYPE_CHECKING
 
 from ..stamps import NANOSECONDS
@@ -25,7 +26,6 @@ from .types import (
 
 if TYPE_CHECKING:
     from .deck.imu import Tilt
-    from .deck.motion import RestingSupport
     from .deck.tracker import Deck
     from .watch.watch import Report, Watch
 
@@ -53,7 +53,7 @@ class Monitor:
         shared = shared_by(scenes)
         self.deck: Deck | None = None
         self.watch: Watch | None = None
-        self._resting: RestingSupport | None = None
+        self._resting: Moment | None = None
         self._watched: dict[str, Scene] = {}
         self._points: dict[str, tuple[Vector3, ...]] = {}  # of bodies under watch, as messages told them
         self._tilts: dict[str, Tilt] = {}
@@ -74,9 +74,9 @@ class Monitor:
         self.scenes |= {body: predictor.scene for body, predictor in self.predictors.items()}
         if any(scene.watching is not None for scene in scenes.values()):
             if self.deck is None:
-                from .deck.motion import RestingSupport
+                from .deck.motion import resting
 
-                self._resting = RestingSupport(shared.gravity)
+                self._resting = resting(shared.gravity)
             self.watch = self._begin_to_watch(scenes)
         of_imu = {body: scene for body, scene in scenes.items() if scene.source == "imu"}
         if of_imu:
@@ -85,12 +85,14 @@ class Monitor:
             self._tilts = {body: Tilt(scene) for body, scene in of_imu.items()}
 
     def _begin_to_watch(self, scenes: Mapping[str, Scene]) -> Watch:
+        from .deck.motion import forecast
         from .watch.watch import Watch
 
         self._watched = {body: scene for body, scene in scenes.items() if scene.watching is not None}
-        forecaster = self._resting or self.deck
-        assert forecaster is not None
-        return Watch(self._watched, forecaster.forecast)
+        if self._resting is not None:
+            return Watch(self._watched, partial(forecast, self._resting, None))
+        assert self.deck is not None
+        return Watch(self._watched, self.deck.forecast)
 
     def changed(self, scenes: Mapping[str, Scene]) -> Callable[[], None]:
         """What makes other scenes of the same bodies those of this monitor: nothing has changed before it is called.
@@ -210,7 +212,7 @@ class Monitor:
     def _rest(self, watch: Watch, stamp: int) -> None:
         """Know that a fixed support is at rest still."""
         if self._resting is not None:
-            watch.update_support(self._resting.at(stamp))
+            watch.update_support(self._resting._replace(stamp=stamp))
 
     def _refused(self, watch: Watch, body: str, status: Status, stamp: int) -> None:
         if status in OF_SUPPORT and self._lost(status):

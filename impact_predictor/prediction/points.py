@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from math import cos, hypot, sin
 
-from ..mechanics.motion import PlanarState, next_touchdown
+from ..mechanics.motion import Fall, PlanarState, next_touchdown
 from ..mechanics.types import Contact, TwoPointBody, Vector
 from ..stamps import NANOSECONDS
 from .checks import check_points
@@ -196,7 +196,7 @@ def collision_of(
         return None
     gravity = scene.gravity
     if moment is not None:
-        from .deck.approach import fall_over, gravity_over, is_uniform  # only where the support moves
+        from .deck.frame import fall_over, gravity_over, is_uniform  # only where the support moves
 
         gravity = gravity_over(scene, moment, sample, posture)
         if is_uniform(moment, scene.horizon):
@@ -215,6 +215,7 @@ def collision_of(
         striking = (old, new)
         height = -old[1]
     start = PlanarState(x=-vx * age, y=height - vy * age, angle=-omega * age, vx=vx, vy=vy, omega=omega)
+    fall: Fall | None
     if moment is None:
         fall = next_touchdown(
             start,
@@ -228,7 +229,7 @@ def collision_of(
         )
     else:
         fall = fall_over(scene, moment, sample, posture, plane, inertia, start, height)
-    if fall.point != len(striking) - 1:
+    if fall is None or fall.point != len(striking) - 1:
         return None
     body = body_at(scene, plane, inertia, fall.state.angle)
     blocked = on_edge and body.old is not None and len(contacts.new) > 1

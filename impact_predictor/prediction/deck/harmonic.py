@@ -14,45 +14,26 @@ from ..types import Felt, Vector3
 from ..vectors import add, combine, times, to_body
 from .motion import SupportState, ahead, blend, turned_back
 
-STEP = 100_000_000
-"""ns between two steps."""
-
+STEP = 100_000_000  # ns between two steps
 SECONDS = STEP / 1e9
 
-ORDER = 32
-"""Values in the recursion, over 3.2 s: sixteen harmonics, with their damping."""
-
+ORDER = 32  # values in the recursion, over 3.2 s: sixteen harmonics, with their damping
 RIDGE = 1e-7
 """Of the variance, added to that of each value: the recursion is not fitted to what is smaller. Noise does the same, as
 far as there is any."""
 
-REFIT = 3
-"""Steps between two fits."""
-
-REACH = 100
-"""Steps that are predicted; later the last one stands."""
-
-PIECE = 200
-"""Equations that are added at once."""
-
-DIVERGED = 1e6
-"""Times the largest value in the window, beyond which a prediction is not led on."""
-
+REFIT = 3  # steps between two fits
+REACH = 100  # steps that are predicted; later the last one stands
+PIECE = 200  # equations that are added at once
+DIVERGED = 1e6  # times the largest value in the window, beyond which a prediction is not led on
 REST = np.exp(-0.5 * np.arange(1, REACH + 1))[:, None]
 """What is left, at each of them, of that by which the last value missed the recursion: the next errors are like it, and
 it does not jump where the prediction begins."""
 
-LEAST = 20
-"""Steps without which nothing is fitted."""
-
-PAST = 10
-"""Steps before the last one that a forecast tells of, too."""
-
-FADE = 0.5
-"""s in which the difference of the estimate now from the fit fades."""
-
-LIMIT = 1.5
-"""Of the largest value in the window, beyond which nothing is predicted."""
+LEAST = 20  # steps without which nothing is fitted
+PAST = 10  # steps before the last one that a forecast tells of, too
+FADE = 0.5  # s in which the difference of the estimate now from the fit fades
+LIMIT = 1.5  # of the largest value in the window, beyond which nothing is predicted
 
 
 class MotionForecast:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from math import atan2, exp, hypot, isfinite, sqrt
 
 from ...stamps import NANOSECONDS
-from ..checks import PAUSE, UNIT, order_of
+from ..checks import check_orientation, followed
 from ..scene import Scene
 from ..types import Imu, Moment, Quaternion, Status, Vector3
 from ..vectors import add, any_across, axes_of, cross, dot, times, to_body, turned
-from .motion import LEVEL, NOWHERE, SupportState
+from .motion import LEVEL, SupportState
 
 AVERAGED = 10.0
 """s over which what the sensor feels is averaged, with exponential weights, before it is compared with gravity."""
@@ -18,11 +18,8 @@ SPEED = 10.0
 """m/s: no support moves faster along its normal for long, so that the mean acceleration is at most 2 SPEED / AVERAGED.
 The deck of a ship heaves with up to 5 m/s, a fast boat's bow with up to 8."""
 
-SHARE = 0.5
-"""Of gravity, by which the mean along the normal may differ from it: a list of 60 degrees is the limit."""
-
-FIRST = 1.0
-"""s of averaging before the sensor is trusted."""
+SHARE = 0.5  # of gravity, by which the mean along the normal may differ from it: a list of 60 degrees is the limit
+FIRST = 1.0  # s of averaging before the sensor is trusted
 
 
 class DeckImu:
@@ -58,14 +55,7 @@ class DeckImu:
                 time = (imu.stamp - before.stamp) / NANOSECONDS
                 orientation = turned(before.orientation, times(add(before.angular, imu.angular), 0.5 * time))
             orientation = self._righted(orientation, imu.specific_force, time)
-        return SupportState(
-            stamp=imu.stamp,
-            position=NOWHERE,
-            orientation=orientation,
-            axes=axes_of(orientation),
-            velocity=NOWHERE,
-            angular=imu.angular,
-        )
+        return SupportState(stamp=imu.stamp, orientation=orientation, axes=axes_of(orientation), angular=imu.angular)
 
     def _righted(self, orientation: Quaternion, force: Vector3, time: float) -> Quaternion:
         """The orientation turned a little towards the one in which the force of now would point up.
@@ -81,9 +71,10 @@ class DeckImu:
             return orientation
         return turned(orientation, times(across, part * atan2(sine, dot(force, up)) / sine))
 
-    def felt(self, force: Vector3, angular: Vector3) -> Vector3:
-        """What is felt at the frame's origin, along the support's axes, but for `euler`."""
-        return add(cross(angular, cross(angular, self._place)), force, -1.0)
+    def felt(self, imu: Imu) -> Vector3:
+        """What is felt at the frame's origin, along the support's axes, while the angular velocity stays."""
+        outwards = cross(imu.angular, cross(imu.angular, self._place))
+        return add(outwards, imu.specific_force, -1.0)
 
     def euler(self, turning: Vector3) -> Vector3:
         """What the origin feels more than the sensor does when the angular velocity changes."""
@@ -125,27 +116,18 @@ class Tilt:
 
     def check(self, imu: Imu) -> Status:
         """What becomes of a measurement; one without an orientation tells no tilt."""
-        numbers = (*imu.angular, *imu.specific_force, *(imu.orientation or ()))
-        if not all(map(isfinite, numbers)):
+        if not all(map(isfinite, (*imu.angular, *imu.specific_force))):
             return Status.NOT_FINITE
-        if imu.orientation is None or not abs(sum(part * part for part in imu.orientation) - 1.0) < UNIT:
-            return Status.BAD_QUATERNION
-        last = self._last
-        status = order_of(imu.stamp, last)
+        status = Status.BAD_QUATERNION if imu.orientation is None else check_orientation(imu.orientation)
         if status is Status.ACCEPTED:
-            self._last = imu.stamp
-        elif last is not None and last - imu.stamp > PAUSE:
-            self._last = None
+            status, self._last = followed(imu.stamp, self._last)
         return status
 
     def on(self, support: Moment | None, orientation: Quaternion) -> Quaternion:
         """The orientation relative to the support, moving or (None) fixed, of a body with one in the world."""
         up = self._up if support is None else to_body(axes_of(support.orientation), self._up)
-        return turned(self._placed, rotation(to_body(axes_of(orientation), self._up), self._placed_up(up)))
-
-    def _placed_up(self, up: Vector3) -> Vector3:
-        """Which way is up for the body as it was placed."""
-        return to_body(axes_of(self._placed), up)
+        placed_up = to_body(axes_of(self._placed), up)
+        return turned(self._placed, rotation(to_body(axes_of(orientation), self._up), placed_up))
 
 
 def rotation(first: Vector3, second: Vector3) -> Vector3:

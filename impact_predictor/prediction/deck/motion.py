@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
 from math import atan2, sin, sqrt
 from typing import TYPE_CHECKING, NamedTuple
@@ -20,17 +19,14 @@ NOWHERE: Vector3 = (0.0, 0.0, 0.0)
 
 LEVEL: Quaternion = (0.0, 0.0, 0.0, 1.0)
 
-AVERAGED = 60.0
-"""s over which means are taken, about ten waves."""
-
+AVERAGED = 60.0  # s over which means are taken, about ten waves
 FIRST_MEAN = 5.0
 """s for which the support counts as level and slow before its first message: a mean does not begin with a wave."""
 
 SLOW = 1e-6, 1e-6
 """Mean squares of the angular velocity (rad/s) and of its derivative then: waves of 6 s, too low to be seen."""
 
-QUARTER = 1.4
-"""rad after which a wave is no longer like what it was: nearly a quarter of it."""
+QUARTER = 1.4  # rad after which a wave is no longer like what it was: nearly a quarter of it
 
 
 class SupportState(NamedTuple):
@@ -44,11 +40,11 @@ class SupportState(NamedTuple):
     """
 
     stamp: int
-    position: Vector3
     orientation: Quaternion
     axes: Axes
-    velocity: Vector3
     angular: Vector3
+    position: Vector3 = NOWHERE
+    velocity: Vector3 = NOWHERE
     acceleration: Vector3 = NOWHERE
     felt: Vector3 = NOWHERE
     turning: Vector3 = NOWHERE
@@ -76,28 +72,20 @@ class MeanMotion:
         self._turning += part * (dot(state.turning, state.turning) - self._turning)
 
 
-class RestingSupport:
-    """A support at rest, with the methods of a moving one: gravity (m/s^2) and nothing else is felt, now and later."""
-
-    def __init__(self, gravity: Vector3) -> None:
-        self._felt = Felt(gravity, NOWHERE, NOWHERE)
-
-    def at(self, stamp: int) -> Moment:
-        """The support at a stamp in ns, in its own frame."""
-        return Moment(
-            stamp=stamp,
-            frame_id="",
-            child_frame_id="",
-            position=NOWHERE,
-            orientation=LEVEL,
-            linear=NOWHERE,
-            felt=self._felt,
-            ahead=lambda time: self._felt,
-        )
-
-    def forecast(self, times: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
-        """As `Deck.forecast`."""
-        return forecast(self.at(0), None, times)
+def resting(gravity: Vector3) -> Moment:
+    """A support at rest, in its own frame: gravity (m/s^2) and nothing else is felt, now and later."""
+    felt = Felt(gravity, NOWHERE, NOWHERE)
+    return Moment(
+        stamp=0,
+        frame_id="",
+        child_frame_id="",
+        position=NOWHERE,
+        orientation=LEVEL,
+        linear=NOWHERE,
+        felt=felt,
+        ahead=partial(ahead, *felt),
+        gravity=gravity,
+    )
 
 
 def ahead(gravity: Vector3, angular: Vector3, turning: Vector3, time: float) -> Felt:
@@ -150,12 +138,10 @@ def later(state: SupportState, stamp: int) -> SupportState:
 def between(first: SupportState, second: SupportState, stamp: int) -> SupportState:
     """The support at a stamp between those of two messages: both velocities are met, and what is felt blends over."""
     whole = (second.stamp - first.stamp) / NANOSECONDS
-    start = first._replace(
-        acceleration=times(add(second.velocity, first.velocity, -1.0), 1.0 / whole),
-        turning=times(add(second.angular, first.angular, -1.0), 1.0 / whole),
-    )
+    acceleration = times(add(second.velocity, first.velocity, -1.0), 1.0 / whole)
+    turning = times(add(second.angular, first.angular, -1.0), 1.0 / whole)
     part = (stamp - first.stamp) / NANOSECONDS / whole
-    return later(start, stamp)._replace(
+    return later(first._replace(acceleration=acceleration, turning=turning), stamp)._replace(
         acceleration=blend(first.acceleration, second.acceleration, part),
         felt=blend(first.felt, second.felt, part),
         turning=blend(first.turning, second.turning, part),
@@ -164,29 +150,6 @@ def between(first: SupportState, second: SupportState, stamp: int) -> SupportSta
 
 def blend(first: Vector3, second: Vector3, part: float) -> Vector3:
     return add(first, add(second, first, -1.0), part)
-
-
-def moment_of(
-    state: SupportState,
-    frames: tuple[str, str],
-    gravity: Vector3,
-    extrapolate: Callable[[SupportState], Callable[[float], Felt]] | None = None,
-) -> Moment:
-    """The support as its users see it, whose `frames` are the world's and its own; `extrapolate` gives
-    another `ahead` than constant accelerations.
-    """
-    felt = Felt(to_body(state.axes, state.felt), state.angular, state.turning)
-    return Moment(
-        stamp=state.stamp,
-        frame_id=frames[0],
-        child_frame_id=frames[1],
-        position=state.position,
-        orientation=state.orientation,
-        linear=to_body(state.axes, state.velocity),
-        felt=felt,
-        ahead=partial(ahead, *felt) if extrapolate is None else extrapolate(state),
-        gravity=gravity,
-    )
 
 
 def forecast(

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections import deque
-from math import isfinite, sqrt
+from functools import partial
+from math import sqrt
 from typing import TYPE_CHECKING
 
 from ...stamps import NANOSECONDS
-from ..checks import LARGEST, PAUSE, UNIT, order_of
+from ..checks import LARGEST, PAUSE, check_orientation, order_of
 from ..scene import MovingDeck
-from ..types import Imu, Moment, Quaternion, Sample, Status, Vector3
-from ..vectors import add, axes_of, dot, times, to_world
-from .motion import LEVEL, NOWHERE, MeanMotion, SupportState, between, forecast, later, moment_of
+from ..types import Felt, Imu, Moment, Sample, Status, Vector3
+from ..vectors import add, axes_of, dot, times, to_body, to_world
+from .motion import MeanMotion, SupportState, ahead, between, forecast, later, resting
 from .window import JumpDetector, MotionWindow
 
 if TYPE_CHECKING:
@@ -67,28 +68,25 @@ class Deck:
         # False for NaN as well.
         if not dot(position, position) + dot(linear, linear) + dot(angular, angular) < LARGEST:
             return Status.NOT_FINITE
-        status = check_unit(sample.orientation) or self._in_order(
-            sample.stamp, (sample.frame_id, sample.child_frame_id)
-        )
+        frames = sample.frame_id, sample.child_frame_id
+        status = check_orientation(sample.orientation) or self._in_order(sample.stamp, frames)
         if status:
             return status
         axes = axes_of(sample.orientation)
-        velocity = to_world(axes, linear)
         seen = SupportState(
             stamp=sample.stamp,
-            position=position,
             orientation=sample.orientation,
             axes=axes,
-            velocity=velocity,
             angular=angular,
+            position=position,
+            velocity=to_world(axes, linear),
         )
-        if not self._spans(seen, velocity):
+        if not self._spans(seen, seen.velocity):
             return self._refused()
         ax, ay, az, tx, ty, tz = self._window.slopes()
-        acceleration = ax, ay, az
-        felt = add(self._gravity, acceleration, -1.0)
+        felt = add(self._gravity, (ax, ay, az), -1.0)
         upright = dot(to_world(axes, self._normal), self._gravity) < 0.0
-        known = seen._replace(acceleration=acceleration, felt=felt, turning=(tx, ty, tz))
+        known = seen._replace(acceleration=(ax, ay, az), felt=felt, turning=(tx, ty, tz))
         return self._know(known, Status.ACCEPTED if upright else Status.GRAVITY_WRONG)
 
     def update_imu(self, imu: Imu) -> Status:
@@ -96,10 +94,9 @@ class Deck:
         sensor = self._imu
         if sensor is None:
             return Status.MALFORMED
-        force, angular = imu.specific_force, imu.angular
-        if not dot(force, force) + dot(angular, angular) < LARGEST:
+        if not dot(imu.specific_force, imu.specific_force) + dot(imu.angular, imu.angular) < LARGEST:
             return Status.NOT_FINITE
-        status = Status.ACCEPTED if imu.orientation is None else check_unit(imu.orientation)
+        status = Status.ACCEPTED if imu.orientation is None else check_orientation(imu.orientation)
         status = status or self._in_order(imu.stamp, ("", imu.frame_id))
         if status:
             return status
@@ -110,13 +107,12 @@ class Deck:
         seen = sensor.seen(imu, self._seen)
         verdict = sensor.judge(imu)
         # In a frame that does not turn what is felt changes with the support's acceleration alone.
-        if not self._spans(seen, to_world(seen.axes, sensor.felt(force, angular))):
+        if not self._spans(seen, to_world(seen.axes, sensor.felt(imu))):
             return self._refused()
         _, _, _, tx, ty, tz = self._window.slopes()
         fx, fy, fz, *_ = self._window.ends()
-        turning = tx, ty, tz
-        felt = add((fx, fy, fz), to_world(seen.axes, sensor.euler(turning)))
-        return self._know(seen._replace(felt=felt, turning=turning), verdict)
+        felt = add((fx, fy, fz), to_world(seen.axes, sensor.euler((tx, ty, tz))))
+        return self._know(seen._replace(felt=felt, turning=(tx, ty, tz)), verdict)
 
     @property
     def last(self) -> Moment | None:
@@ -158,12 +154,8 @@ class Deck:
         from them later; a harmonic fit tells what it can up to 10 s ahead. While nothing is known of the support
         (`last` is None) it counts as level and at rest.
         """
-        moment = self.last
-        if moment is None:
-            level = SupportState(0, NOWHERE, LEVEL, axes_of(LEVEL), NOWHERE, NOWHERE, felt=self._still)
-            moment = moment_of(level, self._frames, self._gravity)
         fitted = self._harmonic is not None and self._harmonic.fitted
-        return forecast(moment, None if fitted else self._mean, times)
+        return forecast(self.last or resting(self._still), None if fitted else self._mean, times)
 
     def _in_order(self, stamp: int, frames: tuple[str, str]) -> Status:
         last = None if self._seen is None else self._seen.stamp
@@ -226,12 +218,16 @@ class Deck:
         return heard is not None and stamp - heard <= self._timeout and heard - last > self._timeout // 2
 
     def _moment(self, known: SupportState) -> Moment:
-        extrapolate = None if self._harmonic is None else self._harmonic.ahead
-        return moment_of(known, self._frames, self._gravity, extrapolate)
-
-
-def check_unit(orientation: Quaternion) -> Status:
-    x, y, z, w = orientation
-    if -UNIT < x * x + y * y + z * z + w * w - 1.0 < UNIT:
-        return Status.ACCEPTED
-    return Status.BAD_QUATERNION if all(map(isfinite, orientation)) else Status.NOT_FINITE
+        """The support as its users see it."""
+        felt = Felt(to_body(known.axes, known.felt), known.angular, known.turning)
+        return Moment(
+            stamp=known.stamp,
+            frame_id=self._frames[0],
+            child_frame_id=self._frames[1],
+            position=known.position,
+            orientation=known.orientation,
+            linear=to_body(known.axes, known.velocity),
+            felt=felt,
+            ahead=partial(ahead, *felt) if self._harmonic is None else self._harmonic.ahead(known),
+            gravity=self._gravity,
+        )

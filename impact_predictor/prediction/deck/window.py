@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import deque
 from itertools import repeat
 from operator import mul, sub
-from typing import NamedTuple
 
 from ...stamps import NANOSECONDS
 from ..vectors import add, dot, total
@@ -101,32 +100,20 @@ def slope_weights(x: list[float]) -> list[float]:
     return [c0 + c1 * each + c2 * square for each, square in zip(x, squares, strict=True)]
 
 
-class JumpBound(NamedTuple):
-    """How far one quantity may be from where the message before leads it, in its unit.
-
-    `least` and `most` bound what is allowed to noise, which is learnt; `slam` is what one of 30 m/s^2 or 10 rad/s^2
-    makes of it in 1 s, and grows with that power of the time between two messages.
-    """
-
-    least: float
-    most: float
-    slam: float
-    power: int
-
-
 BOUNDS = (
-    JumpBound(least=0.05, most=0.5, slam=3.75, power=2),
-    JumpBound(least=0.01, most=0.1, slam=1.25, power=2),
-    JumpBound(least=0.1, most=1.0, slam=30.0, power=1),
-    JumpBound(least=0.05, most=0.5, slam=10.0, power=1),
+    (0.05, 0.5, 3.75, 2),  # position
+    (0.01, 0.1, 1.25, 2),  # orientation
+    (0.1, 1.0, 30.0, 1),  # velocity
+    (0.05, 0.5, 10.0, 1),  # angular velocity
 )
-"""Of position, orientation, velocity and angular velocity."""
+"""How far each quantity may be from where the message before leads it, in its unit: the least and the most that is
+allowed to noise, which is learnt; and what a slam of 30 m/s^2 or 10 rad/s^2 makes of it in 1 s, with the power of the
+time between two messages that this grows with."""
 
 FACTOR = 6.0
 """Allowed to noise, in root mean squares of the steps; for three normal parts these are ten standard deviations."""
 
-MEMORY = 1.0 / 32.0
-"""Of the mean square, the part of the newest step."""
+MEMORY = 1.0 / 32.0  # of the mean square, the part of the newest step
 
 
 class JumpDetector:
@@ -138,7 +125,7 @@ class JumpDetector:
     """
 
     def __init__(self) -> None:
-        self._squares = [(bound.least / FACTOR) ** 2 for bound in BOUNDS]
+        self._squares = [(least / FACTOR) ** 2 for least, _, _, _ in BOUNDS]
 
     def follows(self, before: SupportState, now: SupportState) -> bool:
         """Whether a message follows from the one before; it is learnt from in any case."""
@@ -149,10 +136,11 @@ class JumpDetector:
         turned = add(rotated, add(now.angular, before.angular), -half)
         accelerated, spun = add(now.velocity, before.velocity, -1.0), add(now.angular, before.angular, -1.0)
         squares, follows = self._squares, True
-        for i, (bound, error) in enumerate(zip(BOUNDS, (moved, turned, accelerated, spun), strict=True)):
+        errors = moved, turned, accelerated, spun
+        for i, ((least, most, slam, power), error) in enumerate(zip(BOUNDS, errors, strict=True)):
             square = dot(error, error)
-            noise = min(max(FACTOR * squares[i] ** 0.5, bound.least), bound.most)
-            if square > (noise + bound.slam * time**bound.power) ** 2:
+            noise = min(max(FACTOR * squares[i] ** 0.5, least), most)
+            if square > (noise + slam * time**power) ** 2:
                 follows = False
-            squares[i] += MEMORY * (min(square, bound.most * bound.most) - squares[i])
+            squares[i] += MEMORY * (min(square, most * most) - squares[i])
         return follows

@@ -28,11 +28,8 @@ FULL: Final = 99.0
 _ROUNDING: Final = 1e-12
 """Part of the acceleration felt below which its tangential part is none: without friction any other slides."""
 
-_LEAST: Final = 1e-300
-"""Of what is divided by."""
-
-_MOTIONS: Final = 12
-"""Numbers of a support's motion: g, W', and the products xx, yy, zz, xy, xz, yz of W."""
+_LEAST: Final = 1e-300  # of what is divided by
+_MOTIONS: Final = 12  # numbers of a support's motion: g, W', and the products xx, yy, zz, xy, xz, yz of W
 
 
 LEAST_WATCHED: Final = 60.0

@@ -9,8 +9,7 @@ from ..scene import InertiaTensor, Scene
 from ..types import Vector3
 from ..vectors import Axes, add, any_across, axes_of, cross, dot, times, to_body, to_world, turned
 
-NARROW = 1e-6
-"""A support polygon narrower than this part of its length is a line: it has the extent of rounding."""
+NARROW = 1e-6  # a support polygon narrower than this part of its length is a line: it has the extent of rounding
 
 
 class Edge(NamedTuple):
@@ -135,8 +134,7 @@ def inertia_in_support(inertia: InertiaTensor, axes: Axes) -> InertiaTensor:
     return rows[0], rows[1], rows[2]
 
 
-_DIAGONAL = 0.4142135623730951
-"""tan 22.5 degrees: the eight directions are 45 degrees wide."""
+_DIAGONAL = 0.4142135623730951  # tan 22.5 degrees: the eight directions are 45 degrees wide
 
 _Corner = tuple[float, float, Vector3]
 

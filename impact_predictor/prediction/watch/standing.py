@@ -22,9 +22,7 @@ CLEAR: Final = 2.0
 CONFIRMED: Final = 3
 """Samples in a row that must show a body off its feet, or moved: noise of one passes any bound now and then."""
 
-LEANS: Final = 0.02
-"""rad: a tilt that two inertial sensors show, and more than they are mounted askew."""
-
+LEANS: Final = 0.02  # rad: a tilt that two inertial sensors show, and more than they are mounted askew
 SLID: Final = 4.0
 """As CLEAR, of a foot along the support from where it stood on the mean: there the tilt's noise counts more."""
 

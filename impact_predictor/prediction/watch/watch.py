@@ -27,9 +27,7 @@ SECOND: Final = 1_000_000_000
 JUDGED_EVERY: Final = 15_000_000
 """ns: a message that comes sooner after the last judgement waits for the next: margins hardly move."""
 
-FORECAST_EVERY: Final = 250_000_000
-"""ns from one look ahead to the next."""
-
+FORECAST_EVERY: Final = 250_000_000  # ns from one look ahead to the next
 FORECAST_TIMES: Final = 50
 """How many times ahead are looked at: 0.1 s apart in a horizon of 5 s, in which no deck rolls to and fro."""
 

@@ -14,7 +14,7 @@ from touchdowns import SAMPLE, TOUCHDOWN
 
 from impact_predictor.mechanics.types import Mode
 from impact_predictor.prediction.checks import REMEDIES
-from impact_predictor.prediction.deck.motion import RestingSupport
+from impact_predictor.prediction.deck.motion import resting
 from impact_predictor.prediction.scene import MovingDeck, Scene, Watching
 from impact_predictor.prediction.types import Quaternion, Status, Touchdown, Vector3
 from impact_predictor.prediction.watch.standing import CONFIRMED
@@ -72,10 +72,10 @@ class Run:
     def deck(self, gravity: Vector3 = STILL, seconds: float = 0.1, each: Callable[[], None] | None = None) -> None:
         """Let the deck tell that this is felt, until so many seconds later."""
         self.felt = gravity
-        resting = RestingSupport(gravity)
+        support = resting(gravity)
         for _ in range(round(seconds * 10)):
             self.time = round(self.time + 0.1, 1)
-            self.watch.update_support(resting.at(self.stamp))
+            self.watch.update_support(support._replace(stamp=self.stamp))
             if each is not None:
                 each()
 
