@@ -17,11 +17,11 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from .bags.read import read_messages, topics
 from .errors import InputError
-from .report.earlier import row_of_message
 from .report.figures import write_touchdowns
 from .report.replay import lead_time_table, touchdown_table
-from .report.summary import LEAD_TIME_EDGES, SpanErrors, TouchdownRow, TouchdownTally, errors_ahead
+from .report.summary import LEAD_TIME_EDGES, SpanErrors, Tally, errors_ahead
 from .report.table import show
+from .report.touchdowns import TouchdownRow, row_of_message
 from .resources import find
 from .ros.messages import DIAGNOSTIC_ARRAY, Diagnostic, decode_diagnostic_array
 from .ros.player import NODE, PLAYED, PLAYING, RECORDED, timed
@@ -63,11 +63,11 @@ def run_demo(output: Path = Path("out/demo"), tosses: int = TOSSES) -> int:
     console = Console()
     scored = [row for row in recording.rows if row.scored]
     console.print(f"{tosses} recorded tosses of a cube, played through ROS topics", style="bold")
-    show(console, touchdown_table(scored, console.width))
+    show(console, touchdown_table(scored))
     console.print()
     show(console, lead_time_table(recording.lead_time_errors))
     console.print()
-    for sentence in TouchdownTally(recording.rows).sentences():
+    for sentence in Tally(recording.rows).sentences():
         console.print(sentence, soft_wrap=True)
     write_touchdowns(
         picture, recording.rows, recording.lead_time_errors, f"{tosses} tosses of a cube, live on ROS topics"
@@ -151,16 +151,16 @@ def read_recording(path: Path) -> Recording:
 def _errors(row: TouchdownRow, predictions: list[Diagnostic]) -> list[tuple[float, float]]:
     """Lead time (s) and relative error of every prediction of a scored touchdown that named the same contacts."""
     earlier = [one.values for one in predictions if int(one.values["stamp"]) <= row.stamp]
-    if not row.scored or row.measured is None or not earlier or "old" not in earlier[-1]:
+    if not row.scored or row.measured_twist is None or not earlier or "old" not in earlier[-1]:
         return []
-    scale = hypot(row.before.vx, row.before.omega * row.half_distance)
+    scale = hypot(row.before_twist.vx, row.before_twist.omega * row.half_distance)
     found = []
     for values in reversed(earlier):
         lead_time = (row.stamp - int(values["stamp"])) * 1e-9
         if lead_time >= LEAD_TIME_EDGES[-1] or "old" not in values:
             break
         if (values["old"], values["new"]) == (earlier[-1]["old"], earlier[-1]["new"]):
-            dvx = float(values["after.vx"]) - row.measured.vx
-            domega = float(values["after.omega"]) - row.measured.omega
+            dvx = float(values["after.vx"]) - row.measured_twist.vx
+            domega = float(values["after.omega"]) - row.measured_twist.omega
             found.append((lead_time, hypot(dvx, domega * row.half_distance) / scale))
     return found

@@ -23,6 +23,8 @@ SCORE = {
     "stamp": str(SECOND),
     "mode": "PIVOT",
     "scored": "true",
+    "old": "0",
+    "new": "1",
     "leftover": "NONE",
     "flags": "NONE",
     "announced": "0.058",

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from ..report.figures import ReplayPicture
     from ..report.page.found import Kept
     from ..report.parquet import TouchdownTable
-    from ..report.summary import TouchdownRow
+    from ..report.touchdowns import TouchdownRow
 
 CHANGED: Final = 1
 """Exit status where something has changed against a baseline."""
@@ -87,9 +87,9 @@ class ReplayReport:
 
             self._table = stack.enter_context(TouchdownTable(wanted.table))
         if not wanted.as_json:
-            from ..report.summary import ReplayTally
+            from ..report.summary import Tally
 
-            self._together = ReplayTally()
+            self._together = Tally()
 
     def take(self, outcome: BagOutcome, output: Path | None) -> None:
         """Say what became of a bag.
@@ -176,11 +176,14 @@ class ReplayReport:
             self._picture.add(result)
         if self._wanted.as_json:
             return
-        self._together.add(result.settled)
-        from ..report.replay import concluded, print_replay
+        from ..report.replay import print_replay
+        from ..report.summary import Tally
+        from ..report.touchdowns import rows_of
 
+        rows = rows_of(result.settled)
+        self._together.add(rows)
         if self._bags > MANY and not self._wanted.every:
-            click.echo(f"{result.bag}: {concluded(result.settled)[0]}")
+            click.echo(f"{result.bag}: {Tally(rows).sentences()[0]}")
             return
         from rich.console import Console
 
@@ -197,11 +200,11 @@ class Baseline:
             InputError: it cannot be read, is the run of one bag where several are given, or lacks the only one.
         """
         from ..bags.find import names_of
-        from ..report.earlier import Earlier
+        from ..report.baseline import Earlier
 
         self.has_changed = False
         self._path, self._wanted = path, wanted
-        self._runs: dict[str, tuple[TouchdownRow, ...]] = {}
+        self._runs: dict[str, Sequence[TouchdownRow]] = {}
         self._missing: dict[str, InputError] = {}
         earlier = Earlier(path)
         earlier.check_of_several(len(bags))
@@ -218,7 +221,8 @@ class Baseline:
 
         A bag that the earlier run does not have is a change: nothing vouches for it.
         """
-        from ..report.baseline import ChangeLimits, compare_runs, comparison_as_json, print_changes, run_of
+        from ..report.baseline import ChangeLimits, compare_runs, comparison_as_json, print_changes
+        from ..report.touchdowns import rows_of
 
         if result.bag in self._missing:
             self.has_changed = True
@@ -226,7 +230,7 @@ class Baseline:
             click.echo(f"note: {flaw}", err=True)
             return {"baseline": {"file": self._path, "error": flaw}} if self._wanted.as_json else {}
         limits = ChangeLimits(self._wanted.baseline_time, self._wanted.baseline_error)
-        compared = compare_runs(self._runs[result.bag], run_of(result), limits)
+        compared = compare_runs(self._runs[result.bag], rows_of(result.settled), limits)
         self.has_changed |= bool(compared.changes)
         if self._wanted.as_json:
             return {"baseline": comparison_as_json(compared, self._path)}

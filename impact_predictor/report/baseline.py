@@ -1,32 +1,139 @@
 """What has changed since an earlier run of the same bag: touchdowns that are new, gone, elsewhere, better or worse.
 
-Touchdowns of two runs are the same one if body, foot and contacts are, and their times are within `NEAREST` of each
-other; the nearest first. What is left is the same with other contacts if body, foot and time agree.
+An earlier run is what `replay` wrote into a bag or printed as JSON. Touchdowns of two runs are the same one if body,
+foot and contacts are, and their times are within `NEAREST` of each other; the nearest first. What is left is the same
+with other contacts if body, foot and time agree.
 """
 
 from __future__ import annotations
 
+import json
 import os
 from bisect import bisect_left
 from collections import Counter, defaultdict
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from enum import Enum
+from itertools import takewhile
 from math import hypot
+from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
-from rich.console import Console
-
+from ..bags.find import METADATA, name_of
+from ..bags.read import read_messages, topics
+from ..bags.body import NODE
+from ..errors import InputError
+from ..ros.messages import DIAGNOSTIC_ARRAY, MalformedMessage, decode_diagnostic_array
 from ..scenarios.matching import NEAREST
 from ..stamps import NANOSECONDS
 from ..wording import NONE, counted, percent
-from .summary import TouchdownRow, row_of
-from .table import Column, first_stamp, say, show, table_of
+from .table import MOST_ROWS, Column, first_stamp, more, say, show, table_of
+from .touchdowns import TouchdownRow, row_of_json, row_of_message
 
 if TYPE_CHECKING:
-    from ..bags.replay import Result
+    from rich.console import Console
 
-MOST_ROWS: Final = 20
-"""Changes that are listed unless all are asked for."""
+_HINT: Final = "give what `impact-predictor replay` wrote with -o, or printed with --json"
+
+
+class Earlier:
+    """An earlier run of one bag or of several.
+
+    That is the bag that the run wrote or a recording of the node's topics, or the JSON of the run; of a run of several
+    bags the folder of what was written, or the JSON with one object for each.
+    """
+
+    def __init__(self, path: str | os.PathLike[str]) -> None:
+        """Look at it; JSON is read at once, bags when they are asked for.
+
+        Raises:
+            InputError: it does not exist, or is JSON that cannot be read, or none of a replay.
+        """
+        self.path = Path(path)
+        self._runs = _runs_of(self.path)
+
+    def check_of_several(self, bags: int) -> None:
+        """Whether it can be of so many bags.
+
+        Raises:
+            InputError: it is the run of one bag, and there are several.
+        """
+        if bags > 1 and "" in self._runs:
+            raise InputError(
+                f"the baseline {self.path} is the run of one bag, but {bags:,} bags are given; give what a run of "
+                "several wrote: its folder (-o), or its --json"
+            )
+
+    def touchdowns_of(self, bag: str | os.PathLike[str], name: str | os.PathLike[str] = "") -> Sequence[TouchdownRow]:
+        """The touchdowns of a bag; its `name` (`names_of`) tells it from the others that are replayed with it.
+
+        Raises:
+            InputError: nothing is there, it is no run, or none of this bag.
+        """
+        chosen = "" if "" in self._runs else chosen_run(bag, name or name_of(bag), self._runs)
+        if chosen is None:
+            raise InputError(f"the baseline {self.path} has no run of {bag}; replay that bag with -o or --json again")
+        run = self._runs[chosen]
+        return _read_bag(run) if isinstance(run, Path) else run
+
+
+def _runs_of(path: Path) -> dict[str, Path | Sequence[TouchdownRow]]:
+    """The touchdowns of each bag, or the file that has them, by the bag's path; of a run of one bag by ""."""
+    if not path.exists():
+        raise InputError(f"the baseline {path} does not exist; {_HINT}")
+    if path.suffix == ".json":
+        try:
+            answer = json.loads(path.read_bytes())
+            runs = answer if isinstance(answer, list) else [answer | {"bag": ""}]
+            return {run["bag"]: [*map(row_of_json, run["touchdowns"])] for run in runs if "error" not in run}
+        except OSError as error:
+            raise InputError(f"the baseline {path} cannot be read: {error.strerror}") from error
+        except (AttributeError, KeyError, TypeError, ValueError) as error:
+            raise InputError(f"the baseline {path} is not the JSON of a replay; {_HINT}") from error
+    if path.is_dir() and not (path / METADATA).exists():
+        return {os.fspath(file.relative_to(path).with_suffix("")): file for file in path.rglob("*.mcap")}
+    return {"": path}
+
+
+def chosen_run(bag: str | os.PathLike[str], name: str | os.PathLike[str], runs: Iterable[str]) -> str | None:
+    """Which of the runs of several bags, by their paths, is that of a bag with a `name` that tells it from others.
+
+    That is the run with the same path; else the one whose path agrees with the bag's farthest from its end on, and at
+    least as far as the name does. None where there is none, or several.
+    """
+    runs, own, name = list(runs), Path(bag).resolve(), PurePath(name)
+    if os.fspath(bag) in runs:
+        return os.fspath(bag)
+    agreeing: dict[tuple[int, bool], list[str]] = defaultdict(list)
+    for run in runs:
+        path = PurePath(run)
+        backwards = zip((name_of(own), *own.parts[-2::-1]), (name_of(path), *path.parts[-2::-1]), strict=False)
+        agreed = len([*takewhile(lambda parts: parts[0] == parts[1], backwards)])
+        same_suffix = own.name == path.name
+        # A name keeps its suffix only where another bag has none but another suffix.
+        if agreed >= len(name.parts) and (same_suffix or name.name == name_of(own)):
+            agreeing[agreed, same_suffix].append(run)
+    best = agreeing[max(agreeing)] if agreeing else []
+    return best[0] if len(best) == 1 else None
+
+
+def _read_bag(path: Path) -> tuple[TouchdownRow, ...]:
+    recorded = topics(path)
+    predictions = [topic for topic in recorded if f"{NODE}/" in topic and topic.endswith("/prediction")]
+    if not predictions:
+        raise InputError(f"the baseline {path} has no predictions: no topic {NODE}/prediction; {_HINT}")
+    # A run without any touchdown has no scores.
+    topics_of_scores = [topic.removesuffix("prediction") + "score" for topic in predictions]
+    wanted = {topic: DIAGNOSTIC_ARRAY for topic in topics_of_scores if topic in recorded}
+    if not wanted:
+        return ()
+    found = []
+    for topic, _, data in read_messages(path, wanted):
+        body = topic.rpartition(f"{NODE}/")[2].removesuffix("score").strip("/")
+        try:
+            found += [row_of_message(body or one.hardware_id, one.values) for one in decode_diagnostic_array(data)]
+        except (MalformedMessage, KeyError, TypeError, ValueError) as error:
+            raise InputError(f"the baseline {path} has a message on {topic} that is no score; {_HINT}") from error
+    return tuple(found)
 
 
 class ChangeLimits(NamedTuple):
@@ -37,22 +144,18 @@ class ChangeLimits(NamedTuple):
 
 
 class ChangeKind(Enum):
-    """What has changed: its name in the JSON, and in the table."""
+    """What has changed, in the words of the table; the JSON has the names in small letters."""
 
-    APPEARED = "appeared", "appeared"
-    VANISHED = "vanished", "vanished"
-    CONTACTS = "contacts", "other contacts"
-    MODE = "mode", "other mode"
-    MOVED = "moved", "moved"
-    SCORED = "scored", "scored or not"
-    BETTER = "better", "better"
-    WORSE = "worse", "worse"
+    APPEARED = "appeared"
+    VANISHED = "vanished"
+    CONTACTS = "other contacts"
+    MODE = "other mode"
+    MOVED = "moved"
+    SCORED = "scored or not"
+    BETTER = "better"
+    WORSE = "worse"
     # No error says whether that is better.
-    VELOCITIES = "velocities", "other vx, vy, omega"
-
-    def __init__(self, key: str, label: str) -> None:
-        """Take both names."""
-        self.key, self.label = key, label
+    VELOCITIES = "other vx, vy, omega"
 
 
 class TouchdownChange(NamedTuple):
@@ -88,28 +191,29 @@ class RunComparison(NamedTuple):
     start: int = 0
 
 
-def run_of(result: Result) -> tuple[TouchdownRow, ...]:
-    """The touchdowns of a replay."""
-    return tuple(row_of(*settled) for settled in result.settled)
-
-
 def compare_runs(
     was: Sequence[TouchdownRow], now: Sequence[TouchdownRow], limits: ChangeLimits | None = None
 ) -> RunComparison:
     """What has changed from one run of a bag to another."""
+    was, now = (sorted(rows, key=lambda row: row.stamp) for rows in (was, now))
     pairs = _paired(was, now)
-    found = [_changes(was[i], now[k], limits or ChangeLimits()) for i, k in pairs]
-    gone, new = ({*range(len(run))} - {pair[k] for pair in pairs} for k, run in enumerate((was, now)))
+    found = [_changes(was[i], now[k], limits or ChangeLimits()) for i, k in pairs.items()]
     changes = [change for one in found for change in one]
+    gone, new = {*range(len(was))} - pairs.keys(), {*range(len(now))} - {*pairs.values()}
     changes += [_change(was[i], ChangeKind.VANISHED, was[i].mode.name, None) for i in gone]
     changes += [_change(now[k], ChangeKind.APPEARED, None, now[k].mode.name) for k in new]
     order = list(ChangeKind)
     changes.sort(key=lambda change: (change.stamp, change.body, change.foot, order.index(change.kind)))
-    start = first_stamp(sorted(one.stamp for one in now or was))
-    return RunComparison(tuple(changes), len(was), len(now), sum(not one for one in found), start)
+    return RunComparison(
+        changes=tuple(changes),
+        were=len(was),
+        are=len(now),
+        alike=sum(not one for one in found),
+        start=first_stamp(one.stamp for one in now or was),
+    )
 
 
-def _paired(was: Sequence[TouchdownRow], now: Sequence[TouchdownRow]) -> list[tuple[int, int]]:
+def _paired(was: Sequence[TouchdownRow], now: Sequence[TouchdownRow]) -> dict[int, int]:
     """The places of touchdowns that are the same in both runs."""
     places: dict[tuple[str, str], list[tuple[int, int]]] = defaultdict(list)
     for k, one in enumerate(now):
@@ -123,19 +227,14 @@ def _paired(was: Sequence[TouchdownRow], now: Sequence[TouchdownRow]) -> list[tu
             if stamp > one.stamp + NEAREST:
                 break
             # Where a bag was played in a loop, one stamp comes again and again, in the same order in both runs.
-            near.append((_differ(one, now[k]), abs(stamp - one.stamp), abs(i - k), i, k))
-    pairs, taken, met = [], set[int](), set[int]()
+            near.append((_points(one) != _points(now[k]), abs(stamp - one.stamp), abs(i - k), i, k))
+    pairs: dict[int, int] = {}
+    met = set[int]()
     for *_, i, k in sorted(near):
-        if i not in taken and k not in met:
-            taken.add(i)
+        if i not in pairs and k not in met:
+            pairs[i] = k
             met.add(k)
-            pairs.append((i, k))
     return pairs
-
-
-def _differ(was: TouchdownRow, now: TouchdownRow) -> bool:
-    """Whether both have contacts, and others."""
-    return was.contacts is not None and now.contacts is not None and was.contacts != now.contacts
 
 
 def _change(one: TouchdownRow, kind: ChangeKind, was: Any, now: Any) -> TouchdownChange:
@@ -144,39 +243,35 @@ def _change(one: TouchdownRow, kind: ChangeKind, was: Any, now: Any) -> Touchdow
 
 def _changes(was: TouchdownRow, now: TouchdownRow, limits: ChangeLimits) -> list[TouchdownChange]:
     """What has changed of one touchdown."""
-    found = []
-    if _differ(was, now):
-        found.append(_change(now, ChangeKind.CONTACTS, _points(was), _points(now)))
+    found: dict[ChangeKind, tuple[Any, Any]] = {}
+    if _points(was) != _points(now):
+        found[ChangeKind.CONTACTS] = _points(was), _points(now)
     if was.mode != now.mode:
-        found.append(_change(now, ChangeKind.MODE, was.mode.name, now.mode.name))
+        found[ChangeKind.MODE] = was.mode.name, now.mode.name
     if abs(now.stamp - was.stamp) > limits.time * NANOSECONDS:
-        found.append(_change(now, ChangeKind.MOVED, was.stamp, now.stamp))
+        found[ChangeKind.MOVED] = was.stamp, now.stamp
     if was.scored != now.scored:
-        found.append(_change(now, ChangeKind.SCORED, *("scored" if one.scored else "not scored" for one in (was, now))))
-    judged = False
-    for before, after, limit in (
-        (was.error, now.error, limits.error),
-        (was.time_error, now.time_error, limits.time),
-    ):
-        if before is not None and after is not None and abs(abs(after) - abs(before)) > limit:
-            worse = abs(after) > abs(before)
-            found.append(_change(now, ChangeKind.WORSE if worse else ChangeKind.BETTER, before, after))
-            judged = True
-    if not judged and was.mode == now.mode and _turned(was, now, limits.error):
-        found.append(_change(now, ChangeKind.VELOCITIES, tuple(was.predicted), tuple(now.predicted)))
-    return found
+        before, after = ("scored" if one.scored else "not scored" for one in (was, now))
+        found[ChangeKind.SCORED] = before, after
+    # Of a landing the error is that of its time.
+    old, new = (one.time_error if one.foot else one.error for one in (was, now))
+    limit = limits.time if now.foot else limits.error
+    if old is not None and new is not None and abs(abs(new) - abs(old)) > limit:
+        found[ChangeKind.WORSE if abs(new) > abs(old) else ChangeKind.BETTER] = old, new
+    elif was.mode == now.mode and _turned(was, now, limits.error):
+        found[ChangeKind.VELOCITIES] = tuple(was.predicted_twist), tuple(now.predicted_twist)
+    return [_change(now, kind, *values) for kind, values in found.items()]
 
 
 def _turned(was: TouchdownRow, now: TouchdownRow, limit: float) -> bool:
     """Whether the velocities after a touchdown differ by more than a part of those before, as relative errors do."""
-    arm = was.half_distance
-    vx, vy, omega = (there - here for there, here in zip(now.predicted, was.predicted, strict=True))
-    return hypot(vx, vy, omega * arm) > limit * hypot(was.before.vx, was.before.vy, was.before.omega * arm)
+    arm, before = was.half_distance, was.before_twist
+    vx, vy, omega = (there - here for there, here in zip(now.predicted_twist, was.predicted_twist, strict=True))
+    return hypot(vx, vy, omega * arm) > limit * hypot(before.vx, before.vy, before.omega * arm)
 
 
 def _points(one: TouchdownRow) -> str:
-    old, new = one.contacts or ((), ())
-    return f"{' '.join(map(str, old)) or 'none'} then {' '.join(map(str, new)) or 'none'}"
+    return " then ".join(" ".join(map(str, points)) or "none" for points in (one.old, one.new))
 
 
 def print_changes(
@@ -186,19 +281,16 @@ def print_changes(
     changes, start = compared.changes, compared.start
     if changes:
         columns = [
-            Column("since first\ns" if start else "time\ns", lambda change: _seconds(change.stamp, start)),
+            Column("since first\ns" if start else "time\ns", lambda change: _seconds(change.stamp - start)),
             Column("body", lambda change: change.who, left=True),
-            Column("change", lambda change: change.kind.label, left=True),
-            Column("was", lambda change: _values(change, start)[0], fold=8),
-            Column("now", lambda change: _values(change, start)[1], fold=8),
+            Column("change", lambda change: change.kind.value, left=True),
+            Column("was", lambda change: _text(change, change.was, start), fold=8),
+            Column("now", lambda change: _text(change, change.now, start), fold=8),
         ]
-        if len({change.who for change in changes}) == 1:
-            del columns[1]
         listed = changes if every else changes[:MOST_ROWS]
         console.print()
         show(console, table_of(columns, listed))
-        if more := len(changes) - len(listed):
-            say(console, f"{counted(more, 'more change')}: list them with --all, or read them with --json.")
+        say(console, *more(len(changes) - len(listed), "change"))
     say(console, concluded(compared, baseline))
 
 
@@ -207,19 +299,19 @@ def concluded(compared: RunComparison, baseline: str | os.PathLike[str]) -> str:
     name = os.fspath(baseline)
     if not compared.changes:
         return f"Nothing has changed against {name}: {counted(compared.are, 'touchdown')}."
-    counts = Counter(change.kind.label for change in compared.changes)
+    counts = Counter(change.kind.value for change in compared.changes)
     said = ", ".join(f"{count:,} {label}" for label, count in counts.most_common())
     return f"Against {name} {compared.alike:,} of {counted(compared.were, 'touchdown')} are as they were: {said}."
 
 
 def sentences(compared: RunComparison) -> list[str]:
     """The changes, one line each."""
-    lines = []
-    for change in compared.changes:
-        was, now = _values(change, compared.start)
-        when = _seconds(change.stamp, compared.start)
-        lines.append(f"{when} s {change.who}: {change.kind.label}, was {was}, now {now}")
-    return lines
+    start = compared.start
+    return [
+        f"{_seconds(one.stamp - start)} s {one.who}: {one.kind.value}, was {_text(one, one.was, start)}, "
+        f"now {_text(one, one.now, start)}"
+        for one in compared.changes
+    ]
 
 
 def comparison_as_json(compared: RunComparison, baseline: str | os.PathLike[str]) -> dict[str, Any]:
@@ -234,7 +326,7 @@ def comparison_as_json(compared: RunComparison, baseline: str | os.PathLike[str]
                 "stamp": change.stamp,
                 "body": change.body,
                 "foot": change.foot or None,
-                "change": change.kind.key,
+                "change": change.kind.name.lower(),
                 "was": change.was,
                 "now": change.now,
             }
@@ -243,25 +335,18 @@ def comparison_as_json(compared: RunComparison, baseline: str | os.PathLike[str]
     }
 
 
-def _seconds(stamp: int, start: int) -> str:
-    return f"{(stamp - start) / 1e9:.3f}"
+def _seconds(nanoseconds: int) -> str:
+    return f"{nanoseconds / NANOSECONDS:.3f}"
 
 
-def _values(change: TouchdownChange, start: int) -> tuple[str, str]:
-    """What was and what is, as texts."""
-    if change.kind is ChangeKind.MOVED:
-        moved = (change.now - change.was) / 1e6
-        return _seconds(change.was, start), f"{_seconds(change.now, start)} ({moved:+.1f} ms)"
-    return _text(change.was, change.foot), _text(change.now, change.foot)
-
-
-def _text(value: Any, foot: str) -> str:
-    """A value of a change as text: a number is the error of a landing in s, or relative; twists are in SI units."""
+def _text(change: TouchdownChange, value: Any, start: int) -> str:
+    """A value of a change: times in s, the error of a landing in ms, velocities in SI units."""
     if value is None:
         return NONE
-    if isinstance(value, tuple):
-        vx, vy, omega = value
-        return f"{vx:.3f} {vy:.3f} {omega:.2f}"
-    if isinstance(value, float):
-        return f"{value * 1e3:+.1f} ms" if foot else f"{percent(value)} %"
+    if change.kind is ChangeKind.MOVED:
+        return f"{(value - start) / NANOSECONDS:.4f}"
+    if change.kind is ChangeKind.VELOCITIES:
+        return f"{value[0]:.3f} {value[1]:.3f} {value[2]:.2f}"
+    if change.kind in (ChangeKind.BETTER, ChangeKind.WORSE):
+        return f"{value * 1e3:+.1f} ms" if change.foot else f"{percent(value)} %"
     return str(value)

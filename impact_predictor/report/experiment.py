@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from math import degrees, inf, radians
 from typing import Any, Final, NamedTuple
 
@@ -185,14 +185,18 @@ def trial_table(rows: Sequence[Sequence[RodTrial]]) -> Table:
 
     The last column is what was seen of all but the thinnest, which was seen to rebound everywhere.
     """
-    thicknesses = tuple(f"predicted\n{thickness * MILLIMETRES:g} mm thick" for thickness in THICKNESSES)
     columns = [
         Column("a\nmm", lambda row: f"{row[0].a * MILLIMETRES:g}"),
         Column("b\nmm", lambda row: f"{row[0].b * MILLIMETRES:g}"),
-        Column(thicknesses, lambda row: tuple(map(cell, row)), left=True),
-        Column("seen", lambda row: row[0].observed.name, left=True),
     ]
+    for k, thickness in enumerate(THICKNESSES):
+        columns.append(Column(f"predicted\n{thickness * MILLIMETRES:g} mm thick", _cell(k), left=True))
+    columns.append(Column("seen", lambda row: row[0].observed.name, left=True))
     return table_of(columns, rows)
+
+
+def _cell(place: int) -> Callable[[Sequence[RodTrial]], str]:
+    return lambda row: cell(row[place])
 
 
 def cell(one: RodTrial) -> str:

@@ -16,7 +16,8 @@ from ..wording import percent, words
 from .gait import MOST, Machine, machines_of, write_gait
 from .modes import MODES, PALETTE
 from .plot import GREY, Axes, Figure, Line2D, check_picture, headline, picture
-from .summary import LEAD_TIME_EDGES, SpanErrors, TouchdownRow, TouchdownTally, errors_ahead, errors_of, row_of
+from .summary import LEAD_TIME_EDGES, SpanErrors, Tally, errors_ahead, errors_of
+from .touchdowns import TouchdownRow, row_of
 
 if TYPE_CHECKING:
     from ..bags.replay import Result
@@ -47,7 +48,7 @@ class ReplayPicture:
         self.path = check_picture(path)
         self._names: list[str] = []
         self._machines: list[Machine] = []
-        self._tally = TouchdownTally()
+        self._tally = Tally()
         self._scored: list[TouchdownRow] = []
         # Lead time and error in turns.
         self._ahead = array("d")
@@ -59,7 +60,7 @@ class ReplayPicture:
         self._machines += islice(machines_of([result]), MOST + 1 - len(self._machines))
         for settled in result.settled:
             row = row_of(*settled)
-            self._tally.add(row)
+            self._tally.add([row])
             if row.scored:
                 self._scored.append(row)
                 for lead_time, error in settled.score.history:
@@ -88,7 +89,7 @@ def write_touchdowns(
     Raises:
         InputError: the file cannot be written, or is of another format.
     """
-    scored = [row for row in rows if row.scored and row.measured is not None and row.relative_error is not None]
+    scored = [row for row in rows if row.scored and row.measured_twist is not None and row.relative_error is not None]
     with picture(path, 13.5, 4.9) as figure:
         left, middle, right = figure.subplots(1, 3, width_ratios=(1.1, 1.0, 1.0))
         headline(figure, title)
@@ -106,9 +107,10 @@ def _draw_velocities(axes: Axes, rows: Sequence[TouchdownRow]) -> None:
     handles = [Line2D([], [], linestyle="", marker="s", color=colour, label=name) for name, colour in _VELOCITIES]
     # Those of a mode at once: a line of its own for each of many touchdowns takes minutes.
     for mode in sorted({row.mode for row in rows}):
-        mine = [(row.measured, row.predicted, row.half_distance) for row in rows if row.mode is mode and row.measured]
+        mine = [row for row in rows if row.mode is mode]
+        twists = [(one, row.predicted_twist, row.half_distance) for row in mine if (one := row.measured_twist)]
         pairs = np.array(
-            [((one.vx, other.vx), (one.omega * arm, other.omega * arm)) for one, other, arm in mine], dtype=float
+            [((one.vx, other.vx), (one.omega * arm, other.omega * arm)) for one, other, arm in twists], dtype=float
         )
         marker = MODES[mode].marker
         for k, (_, colour) in enumerate(_VELOCITIES):

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from math import hypot
 from pathlib import Path
 from statistics import median
 from typing import TYPE_CHECKING, Final, NamedTuple
@@ -12,10 +13,10 @@ from ..bags.body import Gait
 from ..scenarios.comparison import LEAD_TIMES
 from ..stamps import NANOSECONDS
 from ..wording import counted
-from .landings import LandingRow, landings_of
 from .modes import PALETTE
 from .plot import GREY, Axes, Line2D, Patch, headline, picture
 from .summary import quantile
+from .touchdowns import TouchdownRow, rows_of
 
 if TYPE_CHECKING:
     from ..bags.replay import Result
@@ -41,7 +42,7 @@ class Machine(NamedTuple):
 
     name: str
     gait: Gait
-    landings: Sequence[LandingRow]
+    landings: Sequence[TouchdownRow]
 
 
 def machines_of(results: Sequence[Result]) -> list[Machine]:
@@ -51,7 +52,11 @@ def machines_of(results: Sequence[Result]) -> list[Machine]:
             name=f"{Path(result.bag).name} {body}".rstrip(),
             gait=gait,
             # What follows of a foot that stands already is no landing of its own.
-            landings=[one for one in landings_of(result.settled) if one.body == (body or one.body) and not one.second],
+            landings=[
+                one
+                for one in rows_of(result.settled)
+                if one.foot and one.body == (body or one.body) and not one.is_second
+            ],
         )
         for result in results
         for body, gait in result.gaits.items()
@@ -68,7 +73,7 @@ class FootLandings(NamedTuple):
     colour: str
     start: int
     period: float
-    landings: list[LandingRow]
+    landings: list[TouchdownRow]
     true: list[int]
 
     def seconds(self, stamp: int) -> float:
@@ -86,7 +91,7 @@ class FootLandings(NamedTuple):
         return made
 
 
-def _predicted(landing: LandingRow) -> int | None:
+def _predicted(landing: TouchdownRow) -> int | None:
     """The stamp in ns that was predicted `AHEAD` of a landing; None where none was so early."""
     error = landing.time_errors[-1]
     return None if error is None else landing.stamp + round(error * NANOSECONDS)
@@ -108,8 +113,16 @@ def write_gait(path: str | os.PathLike[str], machines: Sequence[Machine]) -> Non
         headline(figure, f"{names}: {_conclusion(feet)}")
         _draw_stances(gait, shown, feet, last)
         _draw_errors(errors, feet)
-        _draw_landings(speeds, feet, "Speed of the foot in its last sample in the air", "m/s", "speed")
-        _draw_landings(impulses, feet, "Impulse that it gets where it lands with that speed", "N s", "impulse")
+        _draw_landings(
+            speeds, feet, "Speed of the foot in its last sample in the air", "m/s", lambda one: one.landing_speed
+        )
+        _draw_landings(
+            impulses,
+            feet,
+            "Impulse that it gets where it lands with that speed",
+            "N s",
+            lambda one: one.impulse and hypot(*one.impulse),
+        )
         for axes in (errors, speeds, impulses):
             axes.set_xlim(0.0, last or 1.0)
         impulses.set_xlabel("time (s)")
@@ -124,7 +137,7 @@ def _feet(machine: Machine, several: bool) -> list[FootLandings]:
             colour=PALETTE[foot % len(PALETTE)],
             start=gait.begin,
             period=(gait.end - gait.begin) / NANOSECONDS / max(1, gait.samples - 1),
-            landings=[one for one in machine.landings if one.foot.split()[0] == name],
+            landings=[one for one in machine.landings if one.foot == name],
             true=sorted(one.begin for one in true if one.foot == foot and one.begin > gait.begin),
         )
         for foot, name in enumerate(gait.feet)
@@ -182,12 +195,14 @@ def _draw_errors(axes: Axes, feet: Sequence[FootLandings]) -> None:
         axes.set_ylim(-1.0, 1.0)
 
 
-def _draw_landings(axes: Axes, feet: Sequence[FootLandings], title: str, unit: str, field: str) -> None:
+def _draw_landings(
+    axes: Axes, feet: Sequence[FootLandings], title: str, unit: str, get: Callable[[TouchdownRow], float | None]
+) -> None:
     axes.set_title(title)
     axes.set_ylabel(unit)
     highest = 0.0
     for foot in feet:
-        values = [(foot.seconds(one.stamp), getattr(one, field)) for one in foot.landings]
+        values = [(foot.seconds(one.stamp), get(one)) for one in foot.landings]
         known = [(time, value) for time, value in values if value is not None]
         _draw_points(axes, foot, known)
         highest = max([highest, *(value for _, value in known)])

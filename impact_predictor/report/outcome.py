@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Final
 
 from rich.console import Console
@@ -48,11 +48,15 @@ _STATES: Final = {"O": "is open", "S": "sticks", "+": "slides forwards", "-": "s
 def print_outcomes(console: Console, body: TwoPointBody, before: Twist, outcomes: Sequence[Outcome]) -> None:
     """Print what one or several laws say about an impact."""
     columns = [Column("", lambda row: row[0], left=True)]
-    headers = ["before", *(f"after, {outcome.law} law" for outcome in outcomes)]
-    columns.append(Column(tuple(headers), lambda row: (*row[1:], *[""] * (len(headers) + 1 - len(row)))))
+    for k, header in enumerate(["before", *(f"after, {outcome.law} law" for outcome in outcomes)], 1):
+        columns.append(Column(header, _cell(k)))
     show(console, table_of(columns, _rows(body, before, outcomes)))
     for outcome in outcomes:
         console.print("", *_sentences(body, outcome), sep="\n", markup=False, highlight=False)
+
+
+def _cell(place: int) -> Callable[[tuple[str, ...]], str]:
+    return lambda row: row[place] if place < len(row) else ""
 
 
 def _rows(body: TwoPointBody, before: Twist, outcomes: Sequence[Outcome]) -> Iterator[tuple[str, ...]]:

@@ -11,9 +11,14 @@ from typing import Any, Final, NamedTuple
 from ..errors import need
 from ..mechanics.types import Twist
 from .files import named, whole
+from .touchdowns import FIELDS, TouchdownField
 
 _GROUP: Final = 10_000
 """Rows that are written at a time: few enough for any memory, many enough to be read fast."""
+
+
+_PARTS: Final = {"twist": Twist._fields, "impulse": ("normal", "tangential")}
+"""What a column of numbers is split into."""
 
 
 class ParquetColumn(NamedTuple):
@@ -24,8 +29,14 @@ class ParquetColumn(NamedTuple):
     unit: str = ""
 
 
-def _twist(name: str) -> list[ParquetColumn]:
-    return [ParquetColumn(f"{name}_{part}", "float64", "rad/s" if part == "omega" else "m/s") for part in Twist._fields]
+def _columns_of(field: TouchdownField) -> list[ParquetColumn]:
+    if field.type == "mode":
+        return [ParquetColumn(field.key, "string")]
+    if field.type not in _PARTS:
+        return [ParquetColumn(field.key, field.type, field.unit)]
+    units = {"omega": "rad/s", "vx": "m/s", "vy": "m/s"}
+    stem = field.key.removesuffix("_twist")
+    return [ParquetColumn(f"{stem}_{part}", "float64", units.get(part, field.unit)) for part in _PARTS[field.type]]
 
 
 COLUMNS: Final = (
@@ -33,58 +44,27 @@ COLUMNS: Final = (
     ParquetColumn("bag_status", "string"),
     ParquetColumn("bag_problem", "string"),
     ParquetColumn("bag_samples", "int64"),
-    ParquetColumn("body", "string"),
-    ParquetColumn("foot", "string"),
-    ParquetColumn("point", "string"),
-    ParquetColumn("stamp", "int64", "ns"),
-    ParquetColumn("announced_lead_time", "float64", "s"),
-    ParquetColumn("lead_time", "float64", "s"),
-    ParquetColumn("mode", "string"),
-    *_twist("before"),
-    *_twist("predicted"),
-    *_twist("measured"),
-    ParquetColumn("relative_error", "float64", "1"),
-    ParquetColumn("half_distance", "float64", "m"),
-    ParquetColumn("out_of_plane", "float64", "1"),
-    ParquetColumn("scored", "bool"),
-    ParquetColumn("flags", "list<string>"),
-    ParquetColumn("old", "list<int32>"),
-    ParquetColumn("new", "list<int32>"),
-    ParquetColumn("time_error", "float64", "s"),
-    ParquetColumn("late", "float64", "s"),
-    ParquetColumn("confirmed", "bool"),
-    ParquetColumn("landing_speed", "float64", "m/s"),
-    ParquetColumn("landing_mode", "string"),
-    ParquetColumn("impulse_normal", "float64", "N s"),
-    ParquetColumn("impulse_tangential", "float64", "N s"),
-    ParquetColumn("others_impulse_normal", "float64", "N s"),
-    ParquetColumn("others_impulse_tangential", "float64", "N s"),
-    *_twist("velocity_change"),
+    *(column for field in FIELDS for column in _columns_of(field)),
 )
 """What is known of a touchdown, in SI units; docs/fleets.md tells what each column is."""
 
-_SPLIT: Final = {
-    **{f"{name}_twist": [f"{name}_{part}" for part in Twist._fields] for name in ("before", "predicted", "measured")},
-    "velocity_change": [f"velocity_change_{part}" for part in Twist._fields],
-    **{name: [f"{name}_normal", f"{name}_tangential"] for name in ("impulse", "others_impulse")},
-}
-"""What the JSON has as a list of numbers, and the columns of these."""
 
-
-def rows_of(answer: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
+def _rows(answer: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
     """The rows of the JSON of a replay: one for each touchdown, and of a bag without any one that tells of the bag."""
     problem = answer.get("error") or answer.get("unpredictable") or answer.get("damaged")
-    status = "failed" if answer.get("error") or answer.get("unpredictable") else "damaged" if problem else "ok"
+    failed = answer.get("error") or answer.get("unpredictable")
     bag = {
         "bag": answer["bag"],
-        "bag_status": status,
+        "bag_status": "failed" if failed else "damaged" if problem else "ok",
         "bag_problem": problem,
         "bag_samples": answer.get("samples"),
     }
     for touchdown in answer.get("touchdowns") or [{}]:
-        row = bag | {name: value for name, value in touchdown.items() if name not in _SPLIT}
-        for name, columns in _SPLIT.items():
-            row |= zip(columns, touchdown.get(name) or [None] * len(columns), strict=True)
+        row = dict(bag)
+        for field in FIELDS:
+            columns, value = _columns_of(field), touchdown.get(field.key)
+            values = (value or [None] * len(columns)) if field.type in _PARTS else [value]
+            row |= {column.name: one for column, one in zip(columns, values, strict=True)}
         yield row
 
 
@@ -132,7 +112,7 @@ class TouchdownTable:
 
     def add(self, answer: Mapping[str, Any]) -> None:
         """Add the touchdowns of a bag, from the JSON of its replay (`summary.as_json`, or its `bag` and `error`)."""
-        self._rows += rows_of(answer)
+        self._rows += _rows(answer)
         if len(self._rows) >= _GROUP:
             self._flush()
 

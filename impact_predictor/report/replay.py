@@ -1,9 +1,11 @@
-"""What a replay prints: touchdowns, landings, errors, the comparison with the truth, and what became of the samples."""
+"""What a replay prints: bodies, touchdowns, landings, errors, the comparison with the truth, and what it cost."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Final
+from collections.abc import Callable, Sequence
+from math import hypot
+from statistics import median
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from rich.console import Console
 from rich.table import Table
@@ -11,96 +13,89 @@ from rich.table import Table
 from ..mechanics.types import Twist
 from ..prediction.scene import CONTACT_GEOMETRY, STATES
 from ..prediction.types import Status
+from ..scenarios.comparison import LEAD_TIMES
 from ..wording import NONE, counted, duration, fixed, percent, words
-from .summary import ReplayTally, SpanErrors, TouchdownRow, error_by_lead_time, errors_of, row_of
-from .table import Column, first_stamp, say, show, table_of
+from .summary import Distribution, SpanErrors, Tally, errors_ahead, errors_of
+from .table import MOST_ROWS, Column, first_stamp, more, say, show, table_of
+from .touchdowns import TouchdownRow, rows_of
 
 if TYPE_CHECKING:
-    from ..bags.replay import Result, Settled, StatusCounts
-    from ..scenarios.comparison import BodyTruth, Truth, Warned
+    from ..bags.replay import Result
+    from ..scenarios.comparison import Truth, Warned
 
-MOST_ROWS: Final = 20
-"""Touchdowns that are listed unless all are asked for."""
-EARLY: Final = Status.NO_SUPPORT
-"""What becomes of samples while the support is not known yet: that they come early is no fault of theirs."""
+TOO_EARLY: Final = {
+    Status.NO_SUPPORT: "before the deck's motion was known",
+    Status.NO_GEOMETRY: "before the first contact points",
+}
+"""Samples that came before something is known, which is no fault of theirs."""
 
 
 def print_replay(console: Console, result: Result, every: bool = False) -> None:
     """Print the touchdowns (the first scored ones, or `every` one), the errors and what became of the samples."""
-    others = [settled for settled in result.settled if settled.score.landing is None]
-    rows = sorted([row_of(*settled) for settled in others], key=lambda row: row.stamp)
-    listed = rows if every else [row for row in rows if row.scored][:MOST_ROWS]
-    errors = error_by_lead_time(settled.score for settled in others)
+    rows = rows_of(result.settled)
+    landings, others = [row for row in rows if row.foot], [row for row in rows if not row.foot]
+    errors = errors_ahead(one for _, score, _ in result.settled if score.scored for one in score.history)
     say(console, result.bag)
-    if bodies := bodies_of(result):
-        _show(console, bodies_table(result, bodies))
-        if any(one.truth or one.warned for one in result.truths.values()):
-            _show(console, truths_table(result.truths, bodies))
-    if len(others) < len(result.settled):
-        from .landings import feet_table, landings_of, landings_table  # only where feet have landed
-
-        landings = landings_of(result.settled)
-        shown = landings if every else landings[:MOST_ROWS]
-        _show(console, landings_table(shown, console.width), _hint(len(landings) - len(shown), "more landing"))
+    if bodies := bodies_of(result, rows):
+        _show(console, bodies_table(bodies))
+    if landings:
+        listed = landings if every else landings[:MOST_ROWS]
+        _show(console, landings_table(listed), *more(len(landings) - len(listed), "landing"))
         _show(console, feet_table(landings))
-    if listed:
-        _show(console, touchdown_table(listed, console.width), _hint(len(rows) - len(listed), "more touchdown"))
+    if listed := others if every else [row for row in others if row.scored][:MOST_ROWS]:
+        _show(console, touchdown_table(listed), *more(len(others) - len(listed), "touchdown"))
     if any(one.errors.number for one in errors):
         _show(console, lead_time_table(errors))
-    say(console, *concluded(result.settled))
+    say(console, *Tally(rows).sentences())
     if result.truth is not None:
         say(console, *truth_sentences(result.truth))
-    say(console, *_warned([one.warned for one in result.truths.values() if one.warned is not None]), *_costs(result))
+    say(console, *_warnings([one.warned for one in result.truths.values() if one.warned is not None]), *_costs(result))
 
 
-def concluded(settled: Iterable[Settled]) -> list[str]:
-    """What touchdowns that have happened say all together, one sentence each: landings of feet, and all others."""
-    tally = ReplayTally()
-    tally.add(settled)
-    return tally.sentences()
-
-
-def _hint(number: int, noun: str) -> str:
-    """How the rows can be read that are not listed."""
-    return f"{counted(number, noun)}: list them with --all, or read them with --json." if number else ""
-
-
-def _show(console: Console, table: Table, remark: str = "") -> None:
-    """Print a table, a remark on it and an empty line."""
+def _show(console: Console, table: Table, *remarks: str) -> None:
+    """Print a table, remarks on it and an empty line."""
     show(console, table)
-    say(console, f"{remark}\n" if remark else "")
+    say(console, *remarks, "")
 
 
-def touchdown_table(rows: Sequence[TouchdownRow], width: int) -> Table:
-    """The touchdowns with the velocities right after them, for a terminal that is `width` characters wide."""
+def touchdown_table(rows: Sequence[TouchdownRow]) -> Table:
+    """The touchdowns with the velocities right after them: what was predicted, and below it what was measured."""
     start = first_stamp(row.stamp for row in rows)
-    time = "since\nfirst\ns" if start else "time\ns"
-    columns = [Column(time, lambda row: fixed((row.stamp - start) / 1e9, 3))]
-    if len({row.body for row in rows}) > 1:
-        columns = [Column(("body", time), lambda row: (row.body, fixed((row.stamp - start) / 1e9, 3)), f"body\n{time}")]
-    columns += [
-        Column(
-            ("ahead\nfirst\nms", "last\nms"),
-            lambda row: (fixed(1e3 * row.announced, 1), fixed(1e3 * row.lead_time, 1)),
-            "ahead\nfirst\nlast ms",
-        ),
-        Column(("predicted\nmode",), lambda row: (row.mode.name,), "predicted\nmode, below\nmeasured", left=True),
-        Column(
-            ("predicted\nvx\nm/s", "vy\nm/s", "omega\nrad/s", "measured\nvx\nm/s", "vy\nm/s", "omega\nrad/s"),
-            lambda row: (*_velocities(row.predicted), *_velocities(row.measured)),
-            ("vx\nm/s", "vy\nm/s", "omega\nrad/s"),
-        ),
-        Column("error\n%", lambda row: percent(row.relative_error)),
+    several = len({row.body for row in rows}) > 1
+
+    def time(row: TouchdownRow) -> str:
+        seconds = fixed((row.stamp - start) / 1e9, 3)
+        return f"{row.body}\n{seconds}" if several else seconds
+
+    columns = [
+        Column(("body\n" if several else "") + _time_header(start), time),
+        Column("ahead\nfirst\nlast ms", lambda row: f"{_ms(row.ahead)}\n{_ms(row.lead_time)}"),
+        Column("predicted\nmode, below\nmeasured", lambda row: row.mode.name, left=True),
     ]
+    for part, unit, decimals in (("vx", "m/s", 3), ("vy", "m/s", 3), ("omega", "rad/s", 2)):
+        columns.append(Column(f"{part}\n{unit}", _velocity(part, decimals)))
+    columns.append(Column("error\n%", lambda row: percent(row.relative_error)))
     if any(row.cost is not None for row in rows):
         columns.append(Column("cost\nus", lambda row: fixed(None if row.cost is None else 1e6 * row.cost, 0)))
     if any(map(_notes, rows)):
         columns.append(Column("notes", _notes, left=True, fold=11))
-    return table_of(columns, rows, width, lambda row: "" if row.scored else "dim")
+    return table_of(columns, rows, lambda row: "" if row.scored else "dim")
 
 
-def _velocities(twist: Twist | None) -> tuple[str, str, str]:
-    return (NONE, NONE, NONE) if twist is None else (fixed(twist.vx, 3), fixed(twist.vy, 3), fixed(twist.omega, 2))
+def _time_header(start: int) -> str:
+    return "since\nfirst\ns" if start else "time\ns"
+
+
+def _ms(seconds: float | None, decimals: int = 1, sign: str = "") -> str:
+    return fixed(None if seconds is None else 1e3 * seconds, decimals, sign)
+
+
+def _velocity(part: str, decimals: int) -> Callable[[TouchdownRow], str]:
+    def cell(row: TouchdownRow) -> str:
+        twists: tuple[Twist | None, ...] = (row.predicted_twist, row.measured_twist)
+        return "\n".join(NONE if twist is None else fixed(getattr(twist, part), decimals) for twist in twists)
+
+    return cell
 
 
 def _notes(row: TouchdownRow) -> str:
@@ -119,134 +114,200 @@ def lead_time_table(errors: Sequence[SpanErrors]) -> Table:
     return table_of(columns, errors)
 
 
-def bodies_of(result: Result) -> list[str]:
-    """The names of the bodies of a replay, in the order of its inputs; nothing where the only one has no name."""
-    named = [name.rpartition("/")[0] for name in result.inputs]
-    found = [body for body in dict.fromkeys([*named, *result.truths]) if body != "support"]
-    return [] if "" in found else found
+def landings_table(landings: Sequence[TouchdownRow]) -> Table:
+    """One row for each landing; below the impulse of the foot that of the others, if they get any."""
+    start, names = first_stamp(one.stamp for one in landings), _feet(landings)
 
+    def impulses(row: TouchdownRow) -> str:
+        shown = [_size(row.impulse)] + ([_size(row.others_impulse)] if any(row.others_impulse or ()) else [])
+        return "\n".join(fixed(one, 2) for one in shown)
 
-def bodies_table(result: Result, bodies: Sequence[str]) -> Table:
-    """One row for each body: what came of its samples and touchdowns."""
-    counts = {body: _counts(result, body) for body in bodies}
-    rows = {body: [row_of(*settled) for settled in result.settled if settled.body == body] for body in bodies}
-    errors = {body: errors_of(rows[body]) for body in bodies}
     columns = [
-        Column("body", lambda body: body, left=True),
-        Column("samples", lambda body: f"{sum(counts[body].values()):,}"),
-        Column("refused", lambda body: f"{_refused(counts[body]):,}"),
-        Column("touchdowns\nscored", lambda body: _of(errors[body].number, len(rows[body]))),
-        Column("median\nerror %", lambda body: percent(errors[body].p50)),
+        Column(_time_header(start), lambda row: fixed((row.stamp - start) / 1e9, 3)),
+        Column("foot", lambda row: names[row.body, _part(row)], left=True),
+        Column("first\nms\nahead", lambda row: _ms(row.ahead, 0)),
+        Column(f"error\nms, at\n{1e3 * LEAD_TIMES[0]:.0f} ms", lambda row: _ms(row.time_errors[0], 1, "+")),
+        Column("predicted\nmode", lambda row: row.mode.name, left=True),
+        Column("foot's\nspeed\nm/s", lambda row: fixed(row.landing_speed, 3)),
+        Column("N s at\nfoot,\nothers", impulses),
+        Column("body's\nchange\nm/s", lambda row: fixed(_size(row.velocity_change), 3)),
     ]
-    if not any(map(_refused, counts.values())):
-        del columns[2]
-    return table_of(columns, bodies)
+    if any(row.late is not None for row in landings):
+        columns.append(Column("late\nms", lambda row: _ms(row.late, 1, "+")))
+    if any(row.confirmed is not None for row in landings):
+        columns.append(Column("force\nagrees", lambda row: {True: "yes", False: "no", None: NONE}[row.confirmed]))
+    return table_of(columns, landings)
 
 
-def truths_table(truths: Mapping[str, BodyTruth], bodies: Sequence[str]) -> Table:
-    """One row for each body: how what was predicted, and warned of, compares with the truth in the bag."""
-    columns = [Column("body", lambda body: body, left=True)]
-    if any(one.truth for one in truths.values()):
-        headers = ("touchdowns\nfound", "false\nalarms", "right\nmode %", "speed\nerror %")
-        columns.append(Column(headers, lambda body: _truth_cells(truths[body].truth if body in truths else None)))
-    if any(one.warned for one in truths.values()):
-        warnings = ("events\nwarned of", "first one\ns ahead")
-        columns.append(Column(warnings, lambda body: _warned_cells(truths[body].warned if body in truths else None)))
+def feet_table(landings: Sequence[TouchdownRow]) -> Table:
+    """One row for each foot, and one for all: the least time ahead of a first prediction, medians of times, and the
+    greatest of what an impact does.
+    """
+    rows = [
+        (name, [row for row in landings if (row.body, _part(row)) == foot]) for foot, name in _feet(landings).items()
+    ]
+    rows += [("all", list(landings))] if len(rows) > 1 else []
+    columns = [
+        Column("foot", lambda foot: foot[0], left=True),
+        Column("landings", lambda foot: f"{len(foot[1]):,}"),
+        Column("first\nms\nahead", lambda foot: _ms(_known(min, [row.ahead for row in foot[1]]), 0)),
+    ]
+    for k, lead_time in enumerate(LEAD_TIMES):
+        columns.append(Column(f"error\nms, at\n{1e3 * lead_time:.0f} ms", _median_error(k)))
+    columns += [
+        Column("most\nspeed\nm/s", lambda foot: fixed(_known(max, [row.landing_speed for row in foot[1]]), 3)),
+        Column("most\nimpulse\nN s", lambda foot: fixed(_known(max, [_size(row.impulse) for row in foot[1]]), 2)),
+        Column(
+            "most\nchange\nm/s", lambda foot: fixed(_known(max, [_size(row.velocity_change) for row in foot[1]]), 3)
+        ),
+    ]
+    if any(row.late is not None for row in landings):
+        columns.append(Column("late\nms", lambda foot: _ms(_known(median, [row.late for row in foot[1]]), 1, "+")))
+    if any(row.confirmed is not None for row in landings):
+        columns.append(Column("force\nagrees", _agreeing))
+    return table_of(columns, rows, style=lambda foot: "bold" if foot[0] == "all" else "")
+
+
+def _part(row: TouchdownRow) -> str:
+    """The foot, and the part of it that has landed."""
+    return f"{row.foot} {row.point or ''}".rstrip()
+
+
+def _feet(landings: Sequence[TouchdownRow]) -> dict[tuple[str, str], str]:
+    """What the feet are called, in the order in which they landed first: with their bodies where there are several."""
+    feet = dict.fromkeys((row.body, _part(row)) for row in landings)
+    several = len({body for body, _ in feet}) > 1
+    return {(body, foot): f"{body}/{foot}" if several else foot for body, foot in feet}
+
+
+def _size(vector: Sequence[float] | None) -> float | None:
+    """The magnitude of an impulse, or of the velocity of a twist."""
+    return None if vector is None else hypot(*vector[:2])
+
+
+def _known(take: Callable[[list[float]], float], values: Sequence[float | None]) -> float | None:
+    known = [value for value in values if value is not None]
+    return take(known) if known else None
+
+
+def _median_error(k: int) -> Callable[[tuple[str, list[TouchdownRow]]], str]:
+    def cell(foot: tuple[str, list[TouchdownRow]]) -> str:
+        errors = [row.time_errors[k] for row in foot[1]]
+        return _ms(_known(median, [None if error is None else abs(error) for error in errors]))
+
+    return cell
+
+
+def _agreeing(foot: tuple[str, list[TouchdownRow]]) -> str:
+    felt = [row.confirmed for row in foot[1] if row.confirmed is not None]
+    return f"{sum(felt):,}/{len(felt):,}" if felt else NONE
+
+
+class BodySummary(NamedTuple):
+    """A body of a replay: its samples, its touchdowns, their errors, and how the truth in the bag compares."""
+
+    name: str
+    samples: int
+    touchdowns: int
+    errors: Distribution
+    truth: Truth | None
+    warned: Warned | None
+
+
+def bodies_of(result: Result, rows: Sequence[TouchdownRow]) -> list[BodySummary]:
+    """The bodies of a replay, in the order of its inputs; nothing where the only one has no name."""
+    named = [name.rpartition("/")[0] for name in result.inputs]
+    names = [body for body in dict.fromkeys([*named, *result.truths]) if body != "support"]
+    found = []
+    for body in () if "" in names else names:
+        known, mine = result.truths.get(body), [row for row in rows if row.body == body]
+        found.append(
+            BodySummary(
+                name=body,
+                samples=sum(sum(result.inputs.get(f"{body}/{kind}", {}).values()) for kind in STATES),
+                touchdowns=len(mine),
+                errors=errors_of(mine),
+                truth=None if known is None else known.truth,
+                warned=None if known is None else known.warned,
+            )
+        )
+    return found
+
+
+def bodies_table(bodies: Sequence[BodySummary]) -> Table:
+    """One row for each body: its samples, and how its predictions compare with the truth, or else with the samples."""
+    columns = [
+        Column("body", lambda body: body.name, left=True),
+        Column("samples", lambda body: f"{body.samples:,}"),
+    ]
+    if any(body.truth for body in bodies):
+        columns += [
+            Column("touchdowns\nfound", lambda body: _found(body.truth), fold=10),
+            Column("false\nalarms", lambda body: NONE if body.truth is None else f"{body.truth.false:,}"),
+            Column("right\nmode %", lambda body: percent(body.truth and body.truth.mode_accuracy)),
+            Column("speed\nerror %", lambda body: percent(body.truth and body.truth.median_velocity_error)),
+        ]
+    else:
+        columns += [
+            Column("touchdowns\nscored", lambda body: _of(body.errors.number, body.touchdowns), fold=10),
+            Column("median\nerror %", lambda body: percent(body.errors.p50)),
+        ]
+    if any(body.warned for body in bodies):
+        columns += [
+            Column("events\nwarned of", lambda body: _events(body.warned), fold=9),
+            Column("first\ns ahead", lambda body: _warned_ahead(body.warned)),
+        ]
     return table_of(columns, bodies)
 
 
 def _of(part: int, whole: int) -> str:
-    """How many of some, with spaces at which no terminal breaks a line."""
-    return f"{part:,}\u00a0of\u00a0{whole:,}" if whole else NONE
+    return f"{part:,} of {whole:,}" if whole else NONE
 
 
-def _counts(result: Result, body: str) -> StatusCounts:
-    """What became of the states of a body."""
-    return next((result.inputs[name] for kind in STATES if (name := f"{body}/{kind}") in result.inputs), {})
+def _found(truth: Truth | None) -> str:
+    return NONE if truth is None else _of(truth.touchdowns - truth.missed, truth.touchdowns)
 
 
-def _refused(counts: StatusCounts) -> int:
-    return sum(counts.values()) - counts.get(Status.ACCEPTED, 0) - counts.get(EARLY, 0)
+def _events(warned: Warned | None) -> str:
+    return NONE if warned is None else _of(warned.events_warned, warned.events)
 
 
-def _truth_cells(truth: Truth | None) -> tuple[str, ...]:
-    if truth is None:
-        return (NONE,) * 4
-    found = _of(truth.touchdowns - truth.missed, truth.touchdowns)
-    return found, f"{truth.false:,}", percent(truth.mode_accuracy), percent(truth.median_velocity_error)
-
-
-def _warned_cells(warned: Warned | None) -> tuple[str, ...]:
-    """How many events a warning stood before, and since how many seconds at the first one."""
+def _warned_ahead(warned: Warned | None) -> str:
+    """Since how many seconds a warning stood at the first event."""
     if warned is None or warned.first_event is None:
-        return (NONE,) * 2
-    ahead = "not" if warned.warned_ahead is None else f"{warned.warned_ahead:.1f}"
-    return _of(warned.events_warned, warned.events), ahead
+        return NONE
+    return "not" if warned.warned_ahead is None else f"{warned.warned_ahead:.1f}"
 
 
 def truth_sentences(truth: Truth) -> list[str]:
     """How the predictions compare with the true impacts of the bag, one sentence each."""
-    from ..scenarios.comparison import BORDER
-    from ..scenarios.matching import NEAREST
-
     found = truth.touchdowns - truth.missed
-    of = f"{found:,} of {counted(truth.touchdowns, 'touchdown')} found"
-    if not truth.touchdowns:
-        of = "no touchdown that this rate of samples can show"
-    said = [f"Against the truth in the bag: {of}, {counted(truth.false, 'false alarm')}"]
-    if truth.missed:
-        others = "the other was" if truth.missed == 1 else f"the other {truth.missed:,} were"
-        said.append(
-            f"A touchdown is found where a prediction before it has its time to {NEAREST / 1e6:.0f} ms; {others} "
-            "predicted too late, too far off, or not at all"
-        )
+    touchdowns, alarms = counted(truth.touchdowns, "touchdown"), counted(truth.false, "false alarm")
+    said = [f"Against the truth in the bag: {found:,} of {touchdowns} found, {alarms}"]
     if truth.mode_accuracy is not None:
         said.append(
-            f"Of those found, {percent(truth.mode_accuracy)} % have the right mode; "
-            f"the velocities after them are within {percent(truth.median_velocity_error)} % of the "
-            "true ones in the median"
-        )
-    if truth.clear_mode_accuracy is not None and truth.clear < found:
-        are = "is" if truth.clear == 1 else "are"
-        said.append(
-            f"{truth.clear:,} of them {are} farther than {100.0 * BORDER:g} % of friction or geometry from "
-            f"another mode; of these {percent(truth.clear_mode_accuracy)} % have the right one"
+            f"Of those found, {percent(truth.mode_accuracy)} % have the right mode; the velocities after them are "
+            f"within {percent(truth.median_velocity_error)} % of the true ones in the median"
         )
     if truth.median_time_error is not None:
-        said.append(f"The time predicted 20 ms ahead is {duration(truth.median_time_error)} wrong in the median")
-        further = truth.time_error_by_lead_time.get("0.05")
-        said[-1] += "" if further is None else f", that predicted 50 ms ahead {duration(further)}"
-    if truth.least_lead_time is not None:
-        said.append(f"The first prediction of each came {duration(truth.least_lead_time)} ahead of it or earlier")
+        ahead = f"{1e3 * LEAD_TIMES[0]:.0f} ms ahead"
+        said.append(f"The time predicted {ahead} is {duration(truth.median_time_error)} wrong in the median")
     if truth.unresolved:
         said.append(
             f"{counted(truth.unresolved, 'more impact')} cannot be seen at this rate of samples: too soon after the "
-            "one before, or too slow to be told from rest"
+            "one before, or too slow"
         )
-        if truth.unresolved_wrong:
-            were = "was" if truth.unresolved_wrong == 1 else "were"
-            said[-1] += f"; {truth.unresolved_wrong:,} of them {were} predicted all the same, with another mode"
     return [f"{sentence}." for sentence in said]
 
 
-def _warned(warned: Sequence[Warned]) -> list[str]:
-    said = []
-    answers = [one.before_first_impact for one in warned if one.before_first_impact is not None]
-    if answers:
-        bodies = "1 body" if len(answers) == 1 else f"{len(answers)} bodies"
-        said.append(
-            f"{bodies} slid or struck; a warning stood before the first time in {sum(answers)} of {len(answers)}."
-        )
+def _warnings(warned: Sequence[Warned]) -> list[str]:
     events = sum(one.events for one in warned)
-    if events:
-        from ..scenarios.comparison import APART
-
-        stood = sum(one.events_warned for one in warned)
-        said.append(
-            f"{counted(events, 'event')} in all (slides, lifts and impacts less than {APART / 1e9:.0f} s apart are "
-            f"one); a warning stood before {stood:,} of {events:,}."
-        )
-    return said
+    if not events:
+        return []
+    stood = sum(one.events_warned for one in warned)
+    answers = [one.before_first_impact for one in warned if one.before_first_impact is not None]
+    first = f", and before the first slide or impact of {_of(sum(answers), len(answers))} bodies" if answers else ""
+    return [f"A warning stood before {stood:,} of {counted(events, 'event')}{first}."]
 
 
 def _costs(result: Result) -> list[str]:
@@ -255,18 +316,16 @@ def _costs(result: Result) -> list[str]:
         cost, rate = result.seconds / result.samples * 1e6, result.samples / result.seconds
         samples = counted(result.samples, "sample")
         said = [f"{samples} at {cost:.0f} us each, {rate:,.0f} per second, with reading and writing."]
-    if early := result.statuses.get(EARLY, 0):
-        said.append(f"{counted(early, 'sample')} came before the deck's motion was known.")
-    expected = {Status.ACCEPTED, EARLY}
-    if Status.ACCEPTED in result.statuses and (first := result.statuses.get(Status.NO_GEOMETRY, 0)):
-        said.append(f"{counted(first, 'sample')} came before the first contact points.")
-        expected.add(Status.NO_GEOMETRY)
     inputs = {"samples": result.statuses, "messages of contact_geometry": result.geometry_statuses}
     for name, counts in result.inputs.items():
         if name.startswith("support/") or name.rpartition("/")[2] not in (*STATES, CONTACT_GEOMETRY):
             inputs[f"messages of {name}"] = counts
     for name, counts in inputs.items():
-        faults = [f"{count:,} {words(one.name)}" for one, count in counts.items() if one not in expected]
+        faults = [
+            f"{count:,} {TOO_EARLY.get(one, words(one.name))}"
+            for one, count in counts.items()
+            if one != Status.ACCEPTED
+        ]
         if faults:
             said.append(f"Refused {name}: {', '.join(faults)}.")
     return said

@@ -2,28 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from ..prediction.types import Landing, Status
+from ..prediction.types import Status
 from ..stamps import NANOSECONDS
-from .summary import error_by_lead_time, errors_ahead, errors_of, row_of, spread_of, to_json
+from .summary import SpanErrors, errors_ahead, errors_of, spread_of, to_json
+from .touchdowns import row_as_json, row_of
 
 if TYPE_CHECKING:
     from ..bags.replay import Result
-    from ..bags.run import Settled
+    from ..scenarios.comparison import BodyTruth
     from ..scenarios.matching import Match
 
 
 def as_json(result: Result) -> dict[str, Any]:
     """Everything that a replay found; what a bag does not have, its JSON has not."""
-    scores = [settled.score for settled in result.settled]
-    errors = errors_of(row_of(*settled) for settled in result.settled)
+    rows = [row_of(*settled) for settled in result.settled]
+    errors = errors_of(rows)
+    ahead = errors_ahead(one for _, score, _ in result.settled if score.scored for one in score.history)
+    times = times_ahead(result)
     begin, end = result.extent or (None, None)
     known = {
         "inputs": {name: _counts(counts) for name, counts in result.inputs.items()},
         "damaged": result.damaged,
-        "time_errors_ahead": _spans(times_ahead(result)) if times_ahead(result) else None,
+        "truth": {} if result.truth is None else _truth(result),
+        "time_errors_ahead": [_span(one) for one in errors_ahead(times)] if times else None,
         "true_touchdowns": [_match(match) for match in result.matches],
         "gaits": {
             body: {
@@ -42,94 +46,29 @@ def as_json(result: Result) -> dict[str, Any]:
         "bag": result.bag,
         "samples": result.samples,
         "us_per_sample": result.seconds / result.samples * 1e6 if result.samples else None,
-        "touchdowns": [_touchdown(settled) for settled in result.settled],
+        "touchdowns": [row_as_json(row) for row in rows],
         "scored": errors.number,
         "median_relative_error": errors.p50,
         "p90_relative_error": errors.p90,
         "error_by_lead_time": [
-            {"from": a, "to": b, "count": one.number, "median": one.p50, "p90": one.p90}
-            for a, b, one in error_by_lead_time(scores)
+            {"from": a, "to": b, "count": one.number, "median": one.p50, "p90": one.p90} for a, b, one in ahead
         ],
         "statuses": _counts(result.statuses),
         "geometry_statuses": _counts(result.geometry_statuses),
-        **({} if result.truth is None else {"truth": _truth(result)}),
         "begin": begin,
         "end": end,
         "cost_us": to_json(spread_of([1e6 * cost for cost in result.costs])),
-        "relative_errors_ahead": _spans([one for score in scores if score.scored for one in score.history]),
+        "relative_errors_ahead": [_span(one) for one in ahead],
         **{key: value for key, value in known.items() if value},
     }
-
-
-def _touchdown(settled: Settled) -> dict[str, Any]:
-    row, score = row_of(*settled), settled.score
-    fields = {
-        "body": row.body,
-        "stamp": row.stamp,
-        "announced_lead_time": row.announced,
-        "lead_time": row.lead_time,
-        "mode": row.mode.name,
-        "predicted_twist": row.predicted,
-        "measured_twist": row.measured,
-        "before_twist": row.before,
-        "half_distance": row.half_distance,
-        "relative_error": row.relative_error,
-        "out_of_plane": row.out_of_plane,
-        "scored": row.scored,
-        "flags": row.flags,
-        "old": score.touchdown.old,
-        "new": score.touchdown.new,
-    }
-    return fields if score.landing is None else fields | landing_as_json(score.landing)
-
-
-def landing_as_json(landing: Landing) -> dict[str, Any]:
-    """What the JSON of a touchdown says of the landing of a foot."""
-    from .landings import change_by  # only where feet have landed
-
-    impact = landing.impact
-    return {
-        "foot": landing.foot,
-        "point": landing.point,
-        "late": landing.late,
-        "confirmed": landing.confirmed,
-        "time_error": landing.history[-1][1] if landing.history else None,
-        "landing_speed": landing.speed,
-        "landing_mode": None if impact is None else impact.mode.name,
-        "impulse": None if impact is None else impact.impulses[1],
-        "others_impulse": None if impact is None or not impact.old else impact.impulses[0],
-        "velocity_change": None if impact is None else change_by(impact),
-    }
-
-
-def _truth(result: Result) -> dict[str, Any]:
-    """The comparison with the truth, of all bodies and of each."""
-    assert result.truth is not None
-    answer: dict[str, Any] = result.truth._asdict()
-    warned = [one.warned for one in result.truths.values() if one.warned is not None]
-    if warned:
-        happened = [one.before_first_impact for one in warned if one.before_first_impact is not None]
-        answer |= {
-            "bodies_with_slide_or_impact": len(happened),
-            "warned_before_first_impact": sum(happened),
-            "events": sum(one.events for one in warned),
-            "events_warned": sum(one.events_warned for one in warned),
-        }
-    bodies: dict[str, dict[str, Any]] = {}
-    for body, one in result.truths.items():
-        bodies[body] = {} if one.truth is None else one.truth._asdict()
-        if one.warned is not None:
-            bodies[body] |= {**one.warned._asdict(), "warned_before_first_impact": one.warned.before_first_impact}
-    return answer | ({"bodies": bodies} if bodies else {})
 
 
 def _counts(counts: Mapping[Status, int]) -> dict[str, int]:
     return {status.name: count for status, count in counts.items()}
 
 
-def _spans(made: Iterable[tuple[float, float]]) -> list[dict[str, Any]]:
-    """The spreads of errors between borders of lead time, from the (lead time in s, error) of predictions."""
-    return [{"from": begin, "to": end} | to_json(errors) for begin, end, errors in errors_ahead(made)]
+def _span(span: SpanErrors) -> dict[str, Any]:
+    return {"from": span.begin, "to": span.end} | to_json(span.errors)
 
 
 def times_ahead(result: Result) -> list[tuple[float, float]]:
@@ -146,6 +85,30 @@ def times_ahead(result: Result) -> list[tuple[float, float]]:
         ]
     landings = [settled.score.landing for settled in result.settled]
     return [one for landing in landings if landing is not None for one in landing.history]
+
+
+def _truth(result: Result) -> dict[str, Any]:
+    """The comparison with the truth, of all bodies and of each."""
+    assert result.truth is not None
+    answer: dict[str, Any] = result.truth._asdict()
+    warned = [one.warned for one in result.truths.values() if one.warned is not None]
+    if warned:
+        answers = [one.before_first_impact for one in warned if one.before_first_impact is not None]
+        answer |= {
+            "bodies_with_slide_or_impact": len(answers),
+            "warned_before_first_impact": sum(answers),
+            "events": sum(one.events for one in warned),
+            "events_warned": sum(one.events_warned for one in warned),
+        }
+    bodies = {body: _body_truth(one) for body, one in result.truths.items()}
+    return answer | ({"bodies": bodies} if bodies else {})
+
+
+def _body_truth(one: BodyTruth) -> dict[str, Any]:
+    truth = {} if one.truth is None else one.truth._asdict()
+    if one.warned is None:
+        return truth
+    return {**truth, **one.warned._asdict(), "warned_before_first_impact": one.warned.before_first_impact}
 
 
 def _match(match: Match) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""Settled touchdowns in the form in which they are shown, the distributions of their errors, and what they say."""
+"""The distributions of the errors of touchdowns, and what touchdowns say all together."""
 
 from __future__ import annotations
 
@@ -6,17 +6,16 @@ from array import array
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
-from math import floor, log10
+from math import floor, hypot, log10
+from statistics import median
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
-from ..mechanics.types import Mode, Twist
-from ..prediction.types import Leftover, Score
 from ..wording import counted, percent, words
 
 if TYPE_CHECKING:
-    from ..bags.run import Settled
-    from .landings import LandingTally
+    from ..mechanics.types import Mode
+    from .touchdowns import TouchdownRow
 
 LEAD_TIME_EDGES: Final = (0.0, 0.01, 0.02, 0.03, 0.04, 0.05, 0.06)
 """Borders in s between which the error is shown against the lead time."""
@@ -36,42 +35,6 @@ WHY: Final = {
     "DRIVEN": "the feet are driven: what follows is not the impact alone",
 }
 """Why a touchdown is not compared with what was measured, by the names of `Leftover`."""
-
-
-class TouchdownRow(NamedTuple):
-    """One settled touchdown as it is shown.
-
-    `body` is the body's frame; `stamp` in ns, the predicted touchdown; `announced` how long before it, in s, the first
-    prediction with its contacts was made; `lead_time` in s, `before` and `predicted` of the last prediction; twists of
-    the mass centre in the impact plane; `half_distance` of the two contacts in m; `out_of_plane` the part of the
-    angular velocity off the plane's axis (0..1); `flags` say what a reader should know and, where it is not `scored`,
-    why; `contacts` the points that stood and that struck, None where a run does not have them; `foot` the one that has
-    landed, and `time_error` in s of when that was predicted last; `cost` of the last prediction in s, None where it is
-    not known.
-    """
-
-    body: str
-    stamp: int
-    announced: float
-    lead_time: float
-    mode: Mode
-    before: Twist
-    predicted: Twist
-    measured: Twist | None
-    half_distance: float
-    relative_error: float | None
-    out_of_plane: float
-    scored: bool
-    flags: tuple[str, ...]
-    contacts: tuple[tuple[int, ...], tuple[int, ...]] | None = None
-    foot: str = ""
-    time_error: float | None = None
-    cost: float | None = None
-
-    @property
-    def error(self) -> float | None:
-        """The relative error of what is scored."""
-        return self.relative_error if self.scored else None
 
 
 class Distribution(NamedTuple):
@@ -96,45 +59,13 @@ class SpanErrors(NamedTuple):
     errors: Distribution
 
 
-def row_of(body: str, score: Score, cost: float | None = None) -> TouchdownRow:
-    """The row of a score; `cost` in s."""
-    touchdown, landing = score.touchdown, score.landing
-    history = score.history if landing is None else landing.history
-    return TouchdownRow(
-        body=body,
-        stamp=score.stamp,
-        announced=history[0][0] if history else touchdown.lead_time,
-        lead_time=touchdown.lead_time,
-        mode=touchdown.mode,
-        before=touchdown.before,
-        predicted=touchdown.after,
-        measured=score.measured,
-        half_distance=touchdown.half_distance,
-        relative_error=score.relative_error,
-        out_of_plane=touchdown.off_axis,
-        scored=score.scored,
-        flags=tuple(
-            flag.name or "" for flags in (score.leftover, touchdown.flags) for flag in type(flags) if flag & flags
-        ),
-        contacts=(tuple(touchdown.old), tuple(touchdown.new)),
-        foot="" if landing is None else landing.foot,
-        time_error=landing.history[-1][1] if landing is not None and landing.history else None,
-        cost=cost,
-    )
-
-
 def errors_of(rows: Iterable[TouchdownRow]) -> Distribution:
     """The relative errors of the scored rows."""
-    return spread_of([row.relative_error for row in rows if row.scored and row.relative_error is not None])
-
-
-def error_by_lead_time(scores: Iterable[Score]) -> tuple[SpanErrors, ...]:
-    """How wrong every prediction of the scored touchdowns was, by how long before the touchdown it was made."""
-    return errors_ahead(prediction for score in scores if score.scored for prediction in score.history)
+    return spread_of([row.error for row in rows if row.error is not None])
 
 
 def errors_ahead(predictions: Iterable[tuple[float, float]]) -> tuple[SpanErrors, ...]:
-    """How wrong predictions were, from the (lead time in s, error) of each."""
+    """How wrong predictions were, from the (lead time in s, error) of each, by how long before they were made."""
     made = list(predictions)
     return tuple(
         SpanErrors(begin, end, spread_of([abs(error) for lead_time, error in made if begin <= lead_time < end]))
@@ -144,7 +75,7 @@ def errors_ahead(predictions: Iterable[tuple[float, float]]) -> tuple[SpanErrors
 
 def reasons(rows: Iterable[TouchdownRow]) -> dict[str, int]:
     """How many rows are not scored for each reason, the commonest first; a row may have several."""
-    counts = Counter(flag for row in rows if not row.scored for flag in row.flags if flag in Leftover.__members__)
+    counts = Counter(flag for row in rows if not row.scored for flag in row.flags if flag in WHY)
     return dict(counts.most_common())
 
 
@@ -205,67 +136,86 @@ def from_json(entry: Mapping[str, Any] | None) -> Distribution:
     return Distribution(entry["count"], p50, p90, p99, most, dict(entry["bins"]))
 
 
-class TouchdownTally:
-    """Rows of touchdowns: how wrong the scored ones are, and why others are not scored."""
+class Tally:
+    """Touchdowns of one bag or of many: how wrong the scored ones are, why others are not, and landings of feet."""
 
     def __init__(self, rows: Iterable[TouchdownRow] = ()) -> None:
         """Count some rows."""
-        self._rows = 0
+        self._touchdowns = self._predicted = 0
         self._errors = array("d")
         self._reasons: Counter[str] = Counter()
+        self._feet: set[tuple[str, str]] = set()
+        self._modes: Counter[Mode] = Counter()
+        self._ahead, self._speeds, self._late = array("d"), array("d"), array("d")
+        self._impulse = self._change = 0.0
+        self.add(rows)
+
+    def add(self, rows: Iterable[TouchdownRow]) -> None:
+        """Count rows."""
         for row in rows:
-            self.add(row)
+            if row.foot:
+                self._add_landing(row)
+                continue
+            self._touchdowns += 1
+            self._reasons.update(reasons([row]))
+            if row.error is not None:
+                self._errors.append(row.error)
 
-    def __bool__(self) -> bool:
-        """Whether there is any row."""
-        return bool(self._rows)
-
-    def add(self, row: TouchdownRow) -> None:
-        """Count a row."""
-        self._rows += 1
-        self._reasons.update(reasons([row]))
-        if row.scored and row.relative_error is not None:
-            self._errors.append(row.relative_error)
-
-    def sentences(self) -> list[str]:
-        """How wrong the scored touchdowns were, and why the others are not scored, one sentence each."""
-        if not self._rows:
-            return ["No touchdown was predicted."]
-        errors = spread_of(self._errors)
-        said = [f"{errors.number:,} of {counted(self._rows, 'touchdown')} scored"]
-        if errors.number:
-            said[0] += f": relative error {percent(errors.p50)} % in the median, 90 % below {percent(errors.p90)} %"
-        said[0] += "."
-        if self._reasons:
-            several = ", for one or several reasons each" if len(self._reasons) > 1 else ""
-            said.append(
-                "A touchdown is scored where the samples after it show the velocities that the impact left; they "
-                f"do not for {self._rows - errors.number:,}{several}:"
-            )
-            said += [f"  {count:,} {words(reason)}: {WHY[reason]}" for reason, count in self._reasons.most_common()]
-        return said
-
-
-class ReplayTally:
-    """Touchdowns that have happened, those of feet told apart from all others."""
-
-    def __init__(self) -> None:
-        """Begin with none."""
-        self._others = TouchdownTally()
-        self._landings: LandingTally | None = None
-
-    def add(self, settled: Iterable[Settled]) -> None:
-        """Count the touchdowns of a bag."""
-        for one in settled:
-            if one.score.landing is None:
-                self._others.add(row_of(*one))
-            else:
-                from .landings import LandingTally, landing_row  # only where feet have landed
-
-                self._landings = self._landings or LandingTally()
-                self._landings.add(landing_row(one.body, one.score))
+    def _add_landing(self, row: TouchdownRow) -> None:
+        self._modes[row.mode] += 1
+        self._feet.add((row.body, row.foot))
+        if row.ahead is not None:
+            self._predicted += 1
+            # What follows of a foot that stands already comes at once after its first part.
+            if not row.is_second:
+                self._ahead.append(row.ahead)
+        if row.landing_speed is not None:
+            self._speeds.append(row.landing_speed)
+        if row.impulse is not None and row.velocity_change is not None:
+            self._impulse = max(self._impulse, hypot(*row.impulse))
+            self._change = max(self._change, hypot(*row.velocity_change[:2]))
+        if row.late is not None:
+            self._late.append(row.late)
 
     def sentences(self) -> list[str]:
         """What they say, one sentence each."""
-        said = [] if self._landings is None else self._landings.sentences()
-        return said + (self._others.sentences() if self._others or not said else [])
+        said = self._of_landings() if self._modes else []
+        return said + (self._of_touchdowns() if self._touchdowns or not said else [])
+
+    def _of_touchdowns(self) -> list[str]:
+        if not self._touchdowns:
+            return ["No touchdown was predicted."]
+        errors = spread_of(self._errors)
+        said = f"{errors.number:,} of {counted(self._touchdowns, 'touchdown')} scored"
+        if errors.number:
+            said += f": relative error {percent(errors.p50)} % in the median, 90 % below {percent(errors.p90)} %"
+        why = [f"  {count:,} {words(reason)}: {WHY[reason]}" for reason, count in self._reasons.most_common()]
+        heading = "The samples after the others do not show what the impact left, for one or several reasons each:"
+        return [f"{said}.", *([heading] if why else []), *why]
+
+    def _of_landings(self) -> list[str]:
+        landings, feet = self._modes.total(), len(self._feet)
+        said = [f"{counted(landings, 'landing')} of {feet} {'foot' if feet == 1 else 'feet'}"]
+        said[0] += f", {self._predicted:,} predicted"
+        if self._ahead:
+            said[0] += f", {1e3 * min(self._ahead):.0f} ms ahead or earlier"
+        if self._predicted < landings:
+            said.append(
+                f"{landings - self._predicted:,} not predicted: a foot came down too suddenly, or the noise of base "
+                "and feet hides how it comes down"
+            )
+        said.append(
+            f"Predicted modes: {', '.join(f'{self._modes[mode]:,} {mode.name}' for mode in sorted(self._modes))}"
+        )
+        if self._speeds:
+            said.append(
+                f"In its last sample in the air a foot has {median(self._speeds):.3f} m/s in the median, at most "
+                f"{max(self._speeds):.3f} m/s; an impact with that speed gives it at most {self._impulse:.2f} N s, and "
+                f"the body at most {self._change:.3f} m/s"
+            )
+        if self._late:
+            said.append(
+                f"Against the plan {counted(len(self._late), 'landing')} came {median(self._late) * 1e3:+.1f} ms late "
+                f"in the median, from {min(self._late) * 1e3:+.1f} to {max(self._late) * 1e3:+.1f} ms"
+            )
+        return [f"{sentence}." for sentence in said]

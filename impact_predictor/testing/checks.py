@@ -8,17 +8,16 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from ..errors import InputError
 from ..mechanics.types import Twist
-from ..report.landings import error_ahead
-from ..report.summary import errors_of, reasons, row_of
+from ..report.summary import errors_of, reasons
 from ..report.table import first_stamp
+from ..report.touchdowns import TouchdownRow, error_ahead, row_of, rows_of
 from ..wording import counted, percent, words
 from .tolerances import Tolerances
 
 if TYPE_CHECKING:
     from ..bags.replay import Result, Settled
     from ..prediction.types import Landing
-    from ..report.earlier import Earlier
-    from ..report.summary import TouchdownRow
+    from ..report.baseline import Earlier
     from ..scenarios.comparison import Truth
 
 AHEAD = 0.02
@@ -51,7 +50,7 @@ def _run_checks(result: Result, tolerances: Tolerances) -> Iterator[Check]:
     number, wanted = len(result.settled), tolerances.touchdowns
     flaw = "" if wanted.has(number) else f"{counted(number, 'touchdown')}, not {wanted} (impact_touchdowns)"
     yield Check("number of touchdowns", flaw, figures={"touchdowns": number})
-    rows = [row_of(*settled) for settled in result.settled if settled.score.landing is None]
+    rows = [row for row in rows_of(result.settled) if not row.foot]
     if rows:
         yield _median_check(rows, tolerances.median_error)
     if result.truth is not None:
@@ -126,11 +125,16 @@ def _impact_check(name: str, row: TouchdownRow, tolerance: float) -> Check:
 
 def _velocities(row: TouchdownRow) -> str:
     """What was predicted and what was measured, line by line."""
+    last, first = 1e3 * row.lead_time, 1e3 * row.announced_lead_time
     lines = [
-        f"{row.mode.name} was predicted {row.lead_time * 1e3:.1f} ms ahead, first {row.announced * 1e3:.1f} ms ahead",
+        f"{row.mode.name} was predicted {last:.1f} ms ahead, first {first:.1f} ms ahead",
         f"{'':12}{'vx m/s':>10}{'vy m/s':>10}{'omega rad/s':>13}",
     ]
-    twists = {"before": row.before, "predicted": row.predicted, "measured": row.measured or Twist(0.0, 0.0, 0.0)}
+    twists = {
+        "before": row.before_twist,
+        "predicted": row.predicted_twist,
+        "measured": row.measured_twist or Twist(0.0, 0.0, 0.0),
+    }
     lines += [f"{name:12}{vx:10.4f}{vy:10.4f}{omega:13.3f}" for name, (vx, vy, omega) in twists.items()]
     if row.flags:
         lines.append(f"flags: {', '.join(map(words, row.flags))}")
@@ -160,10 +164,10 @@ def _landing_check(name: str, settled: Settled, landing: Landing, tolerance: flo
 
 def baseline_check(result: Result, earlier: Earlier, name: str | PathLike[str] = "") -> Check:
     """Whether a run is as an earlier one, which may be of several bags; `name` tells its bag from the others."""
-    from ..report.baseline import compare_runs, concluded, run_of, sentences
+    from ..report.baseline import compare_runs, concluded, sentences
 
     try:
-        compared = compare_runs(earlier.touchdowns_of(result.bag, name), run_of(result))
+        compared = compare_runs(earlier.touchdowns_of(result.bag, name), rows_of(result.settled))
     except InputError as error:
         return Check("baseline", str(error))
     if not compared.changes:

@@ -20,7 +20,7 @@ from .plugin import TOLERANCES, folder_of, path_of, setting
 from .tolerances import read_tolerances
 
 if TYPE_CHECKING:
-    from ..report.earlier import Earlier
+    from ..report.baseline import Earlier
 
 
 _REPLAYS = pytest.StashKey[dict[tuple[Path, Path, tuple[tuple[str, str], ...]], Result]]()
@@ -99,7 +99,7 @@ class BagCollection:
         self._earlier: Earlier | None = None
         baseline = path_of(config, "baseline")
         if baseline is not None:
-            from ..report.earlier import Earlier
+            from ..report.baseline import Earlier
 
             self._earlier = Earlier(baseline)
             self._earlier.check_of_several(len(bags))

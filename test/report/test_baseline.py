@@ -1,47 +1,60 @@
-"""Two runs of one bag compared: only what has changed is told, and it is told rightly."""
+"""Two runs of one bag: the earlier one is read from its bag and its JSON alike, and only what has changed is told."""
 
 from __future__ import annotations
 
 import io
 import json
+from pathlib import Path
 from typing import Any
 
 import pytest
+import touchdowns
 from hypothesis import given
 from hypothesis import strategies as st
 from rich.console import Console
+from touchdowns import SAMPLE
 
+from impact_predictor.bags.body import BodyRecord
+from impact_predictor.bags.replay import Result, Settled
+from impact_predictor.bags.write import BagWriter
+from impact_predictor.errors import InputError
 from impact_predictor.mechanics.types import Mode, Twist
+from impact_predictor.prediction.scene import Scene
+from impact_predictor.prediction.types import Landing, Leftover, Prediction, Score, Status
 from impact_predictor.report.baseline import (
     ChangeKind,
     ChangeLimits,
+    Earlier,
     RunComparison,
+    chosen_run,
     compare_runs,
     comparison_as_json,
     concluded,
     print_changes,
     sentences,
 )
-from impact_predictor.report.summary import TouchdownRow
+from impact_predictor.report.replay_json import as_json
+from impact_predictor.report.touchdowns import TouchdownRow, row_of
+from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY
 
 MS = 1_000_000
 STOP = TouchdownRow(
     body="crate",
     stamp=1000 * MS,
-    announced=0.05,
+    announced_lead_time=0.05,
     lead_time=0.01,
     mode=Mode.STOP,
-    before=Twist(1.0, 0.0, -2.0),
-    predicted=Twist(0.5, 0.0, -1.0),
-    measured=None,
+    before_twist=Twist(1.0, 0.0, -2.0),
+    predicted_twist=Twist(0.5, 0.0, -1.0),
     half_distance=0.5,
     relative_error=0.1,
     out_of_plane=0.0,
     scored=True,
     flags=(),
-    contacts=((0, 1), (2, 3)),
+    old=(0, 1),
+    new=(2, 3),
 )
-LATER = STOP._replace(stamp=2000 * MS, contacts=((2, 3), (0, 1)), mode=Mode.SLIDE, relative_error=0.05)
+LATER = STOP._replace(stamp=2000 * MS, old=(2, 3), new=(0, 1), mode=Mode.SLIDE, relative_error=0.05)
 LANDED = STOP._replace(body="robot", foot="LF", scored=False, relative_error=None, time_error=0.002)
 
 
@@ -55,7 +68,7 @@ RUNS = st.lists(
         body=st.sampled_from(["crate", "drum"]),
         # Often one stamp, or many within the time in which touchdowns may be the same.
         stamp=st.integers(0, 20).map(lambda k: k * 5 * MS),
-        contacts=st.sampled_from([((0, 1), (2, 3)), ((2, 3), (4, 5)), None]),
+        old=st.sampled_from([(0, 1), (2, 3)]),
         mode=st.sampled_from([Mode.STOP, Mode.SLIDE]),
         relative_error=st.floats(0.0, 2.0),
     ),
@@ -85,10 +98,10 @@ def test_two_runs_the_other_way_round_have_changed_too(was: list[TouchdownRow], 
         ({"relative_error": 0.2}, ChangeKind.WORSE, 0.1, 0.2),
         ({"relative_error": 0.02}, ChangeKind.BETTER, 0.1, 0.02),
         ({"scored": False, "relative_error": None}, ChangeKind.SCORED, "scored", "not scored"),
-        ({"contacts": ((0, 1), (4, 5))}, ChangeKind.CONTACTS, "0 1 then 2 3", "0 1 then 4 5"),
-        ({"contacts": ((), (4,))}, ChangeKind.CONTACTS, "0 1 then 2 3", "none then 4"),
+        ({"new": (4, 5)}, ChangeKind.CONTACTS, "0 1 then 2 3", "0 1 then 4 5"),
+        ({"old": (), "new": (4,)}, ChangeKind.CONTACTS, "0 1 then 2 3", "none then 4"),
         # 0.04 rad/s at half a metre, against hypot(1, 2 * 0.5) m/s before it: 1.4 %.
-        ({"predicted": Twist(0.5, 0.0, -1.04)}, ChangeKind.VELOCITIES, (0.5, 0.0, -1.0), (0.5, 0.0, -1.04)),
+        ({"predicted_twist": Twist(0.5, 0.0, -1.04)}, ChangeKind.VELOCITIES, (0.5, 0.0, -1.0), (0.5, 0.0, -1.04)),
     ],
 )
 def test_a_change_is_told_with_what_was_and_what_is(
@@ -101,7 +114,7 @@ def test_a_change_is_told_with_what_was_and_what_is(
 
 @pytest.mark.parametrize(
     "changes",
-    [{"stamp": 1001 * MS}, {"relative_error": 0.109}, {"predicted": Twist(0.5, 0.0, -1.02)}],
+    [{"stamp": 1001 * MS}, {"relative_error": 0.109}, {"predicted_twist": Twist(0.5, 0.0, -1.02)}],
     ids=["1 ms", "0.9 %", "velocities by 0.7 %"],
 )
 def test_what_stays_within_the_limits_has_not_changed(changes: dict[str, Any]) -> None:
@@ -120,13 +133,10 @@ def test_touchdowns_come_and_go() -> None:
 
 
 def test_touchdowns_close_together_are_told_apart_by_their_contacts() -> None:
-    first, second = STOP, STOP._replace(stamp=1006 * MS, contacts=((2, 3), (4, 5)), mode=Mode.SLIDE)
+    first, second = STOP, STOP._replace(stamp=1006 * MS, old=(2, 3), new=(4, 5), mode=Mode.SLIDE)
     # Each has moved by 4 ms, so that the other one is nearer.
     later = [one._replace(stamp=one.stamp + 4 * MS) for one in (first, second)]
     assert kinds([first, second], later) == [ChangeKind.MOVED, ChangeKind.MOVED]
-    # A run from before contacts were told has times alone.
-    untold = [one._replace(contacts=None) for one in (first, second)]
-    assert kinds(untold, [first, second]) == []
 
 
 def test_of_a_landing_the_error_of_its_time_counts_whatever_its_sign() -> None:
@@ -152,9 +162,9 @@ MANY = [
 CHANGED = [
     STOP._replace(mode=Mode.SLIDE, relative_error=0.345),
     LATER._replace(stamp=2004 * MS),
-    STOP._replace(stamp=3000 * MS, predicted=Twist(-10.5, -10.25, -12.25)),
+    STOP._replace(stamp=3000 * MS, predicted_twist=Twist(-10.5, -10.25, -12.25)),
     LANDED._replace(stamp=5000 * MS, time_error=-0.012),
-    STOP._replace(stamp=6000 * MS, contacts=((0, 1, 2, 3), (4, 5, 6, 7))),
+    STOP._replace(stamp=6000 * MS, old=(0, 1, 2, 3), new=(4, 5, 6, 7)),
     STOP._replace(stamp=7000 * MS),
 ]
 
@@ -165,7 +175,7 @@ def test_the_table_says_what_was_and_what_is_in_80_columns() -> None:
     lines = [line.split() for line in text.splitlines()]
     assert ["1.000", "crate", "other", "mode", "STOP", "SLIDE"] in lines
     assert ["1.000", "crate", "worse", "10.0", "%", "34.5", "%"] in lines
-    assert ["2.004", "crate", "moved", "2.000", "2.004", "(+4.0", "ms)"] in lines
+    assert ["2.004", "crate", "moved", "2.0000", "2.0040"] in lines
     changed = [
         "3.000",
         "crate",
@@ -202,7 +212,7 @@ def test_times_of_day_are_counted_from_the_first_touchdown() -> None:
     day = 1_700_000_000_000 * MS
     was = [one._replace(stamp=one.stamp + day) for one in (STOP, LATER)]
     compared = compare_runs(was, [was[0], was[1]._replace(stamp=was[1].stamp + 4 * MS)])
-    assert sentences(compared) == ["1.004 s crate: moved, was 1.000, now 1.004 (+4.0 ms)"]
+    assert sentences(compared) == ["1.004 s crate: moved, was 1.0000, now 1.0040"]
 
 
 def test_the_json_has_every_change_in_plain_units() -> None:
@@ -224,3 +234,124 @@ def test_the_json_has_every_change_in_plain_units() -> None:
     landing = next(one for one in answer["changes"] if one["foot"] == "LF")
     assert (landing["change"], landing["was"], landing["now"]) == ("worse", 0.002, -0.012)
     assert concluded(compare_runs(MANY, MANY), "a").startswith("Nothing has changed")
+
+
+TOUCHDOWN = touchdowns.TOUCHDOWN._replace(after=Twist(0.1 + 0.2, 0.25, -3.0), old=())
+SCORED = Score(1_004_000_000, TOUCHDOWN, Twist(0.5, 0.125, -2.0), 0.25, True, Leftover.NONE, ((0.004, 0.25),))
+UNSCORED = SCORED._replace(stamp=2_000_000_000, scored=False, leftover=Leftover.OUT_OF_PLANE)
+UNMEASURED = SCORED._replace(stamp=3_000_000_000, measured=None, relative_error=None, scored=False, history=())
+STOOD = UNMEASURED._replace(
+    stamp=4_000_000_000,
+    leftover=Leftover.DRIVEN,
+    landing=Landing("LF", 4_000_000_000, None, None, ((0.02, 0.001),), 0.2),
+)
+SCORES = (SCORED, UNSCORED, UNMEASURED, STOOD)
+
+
+def run(body: str, scores: tuple[Score, ...] = SCORES) -> dict[str, Any]:
+    settled = tuple(Settled(body, score, None) for score in scores)
+    return as_json(Result("run.mcap", 4, 0.001, settled, {}, {}, (), "", ""))
+
+
+def write_run(path: Path, body: str = "", scores: tuple[Score, ...] = SCORES, namespace: str = "") -> Path:
+    path.parent.mkdir(exist_ok=True)
+    with BagWriter(path) as writer:
+
+        def write(topic: str, type_name: str, log_time: int, data: bytes) -> None:
+            writer.write(namespace + topic, type_name, log_time, data)
+
+        record = BodyRecord(body, Scene(1.0, ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), 0.5), write)
+        record.answered(Prediction(Status.ACCEPTED, SAMPLE), 1, 0.0)
+        for score in scores:
+            record.answered(Prediction(Status.ACCEPTED, SAMPLE, None, score), 1, 0.0)
+    return path
+
+
+def write_json(path: Path, answer: Any) -> Path:
+    path.write_text(json.dumps(answer))
+    return path
+
+
+@pytest.mark.parametrize("namespace", ["", "/robot"])
+@pytest.mark.parametrize(("body", "name"), [("", "cube"), ("crate", "crate")])
+def test_bag_and_json_of_a_run_tell_the_same_to_the_last_bit(
+    tmp_path: Path, body: str, name: str, namespace: str
+) -> None:
+    told = list(Earlier(write_json(tmp_path / "run.json", run(name))).touchdowns_of("run.mcap"))
+    recorded = write_run(tmp_path / "run.mcap", body, namespace=namespace)
+    assert told == list(Earlier(recorded).touchdowns_of("run.mcap"))
+    assert told == [row_of(name, score)._replace(time_errors=()) for score in SCORES]
+
+
+def test_a_run_without_a_touchdown_is_a_run(tmp_path: Path) -> None:
+    assert not Earlier(write_run(tmp_path / "none.mcap", scores=())).touchdowns_of("run.mcap")
+
+
+@pytest.mark.parametrize(
+    ("bag", "name", "runs", "chosen"),
+    [
+        ("bags/run.mcap", "run", ["bags/run.mcap", "old/run.mcap"], "bags/run.mcap"),
+        ("/new/run.mcap", "run", ["/old/run.mcap", "/old/other.mcap"], "/old/run.mcap"),
+        ("/new/tuesday/run.mcap", "run", ["monday/run.mcap", "tuesday/run.mcap"], "tuesday/run.mcap"),
+        ("/new/wednesday/run.mcap", "run", ["monday/run.mcap", "tuesday/run.mcap"], None),
+        # Another bag of today is called run as well, and the earlier run may be of that one.
+        ("/new/tuesday/run.mcap", "tuesday/run", ["monday/run.mcap"], None),
+        ("/new/monday/run.mcap", "monday/run", ["monday/run", "run"], "monday/run"),
+        ("/new/monday/run.mcap", "monday/run", ["run"], None),
+        ("/new/run.db3", "run.db3", ["/old/run.mcap", "/old/run.db3"], "/old/run.db3"),
+        ("/new/run.db3", "run.db3", ["/old/run.mcap"], None),
+        ("bags/run.bag", "run", ["other", "run"], "run"),
+        ("run.mcap", "run", [], None),
+    ],
+)
+def test_of_several_bags_the_run_of_this_one_is_chosen(
+    bag: str, name: str, runs: list[str], chosen: str | None
+) -> None:
+    assert chosen_run(bag, name, runs) == chosen
+
+
+def test_of_several_bags_the_run_of_this_one_is_read(tmp_path: Path) -> None:
+    folder = tmp_path / "runs"
+    write_run(folder / "monday.mcap", scores=(SCORED,))
+    write_run(folder / "tuesday.mcap", scores=(SCORED, UNSCORED))
+    assert len(Earlier(folder).touchdowns_of("bags/tuesday.bag")) == 2
+    runs = [run("cube", SCORES[:k]) | {"bag": f"bags/{name}"} for k, name in ((1, "monday.mcap"), (2, "tuesday.mcap"))]
+    earlier = Earlier(write_json(tmp_path / "runs.json", runs))
+    assert len(earlier.touchdowns_of("bags/tuesday.mcap")) == 2
+    assert len(earlier.touchdowns_of("elsewhere/monday.mcap")) == 1
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        ("not json", "is not the JSON of a replay"),
+        ("3", "is not the JSON of a replay"),
+        ("[1, 2]", "is not the JSON of a replay"),
+        ('{"touchdowns": [{"stamp": 1}]}', "is not the JSON of a replay"),
+        ("[]", "has no run of bags/run.mcap"),
+        ('[{"bag": "bags/run.mcap", "error": "damaged"}]', "has no run of bags/run.mcap"),
+    ],
+)
+def test_json_that_is_no_run_of_the_bag_is_refused_in_one_sentence(tmp_path: Path, content: str, said: str) -> None:
+    path = tmp_path / "old.json"
+    path.write_text(content)
+    with pytest.raises(InputError, match=said) as caught:
+        Earlier(path).touchdowns_of("bags/run.mcap")
+    assert "\n" not in str(caught.value)
+
+
+def test_what_is_not_there_or_is_no_run_is_refused(tmp_path: Path) -> None:
+    for name in ("none.json", "none.mcap"):
+        with pytest.raises(InputError, match=name):
+            Earlier(tmp_path / name)
+    with pytest.raises(InputError, match=r"has no run of run\.mcap"):
+        Earlier(tmp_path).touchdowns_of("run.mcap")
+    with BagWriter(tmp_path / "other.mcap") as writer:
+        writer.write("/odom", DIAGNOSTIC_ARRAY, 1, b"")
+    with pytest.raises(InputError, match="has no predictions"):
+        Earlier(tmp_path / "other.mcap").touchdowns_of("run.mcap")
+    with BagWriter(tmp_path / "damaged.mcap") as writer:
+        for name in ("prediction", "score"):
+            writer.write(f"/impact_predictor/{name}", DIAGNOSTIC_ARRAY, 1, bytes(8))
+    with pytest.raises(InputError, match="a message on /impact_predictor/score that is no score"):
+        Earlier(tmp_path / "damaged.mcap").touchdowns_of("run.mcap")

@@ -10,28 +10,31 @@ import pytest
 from impact_predictor.errors import InputError
 from impact_predictor.mechanics.types import Mode, Twist
 from impact_predictor.report.figures import write_touchdowns
-from impact_predictor.report.summary import LEAD_TIME_EDGES, Distribution, SpanErrors, TouchdownRow
+from impact_predictor.report.summary import LEAD_TIME_EDGES, Distribution, SpanErrors
+from impact_predictor.report.touchdowns import TouchdownRow
 
 ROWS = [
     TouchdownRow(
-        "cube",
-        k * 10**9,
-        0.06,
-        0.003,
-        Mode(1 + k % 6),
-        Twist(1.0, -0.5, -10.0),
-        Twist(0.05 * k, 0.1, -0.4 * k),
-        Twist(0.05 * k + 0.02, 0.12, -0.39 * k),
-        0.05,
-        0.01 * k,
-        0.01,
-        True,
-        (),
+        body="cube",
+        stamp=k * 10**9,
+        announced_lead_time=0.06,
+        lead_time=0.003,
+        mode=Mode(1 + k % 6),
+        before_twist=Twist(1.0, -0.5, -10.0),
+        predicted_twist=Twist(0.05 * k, 0.1, -0.4 * k),
+        measured_twist=Twist(0.05 * k + 0.02, 0.12, -0.39 * k),
+        half_distance=0.05,
+        relative_error=0.01 * k,
+        out_of_plane=0.01,
+        scored=True,
+        flags=(),
+        old=(0,),
+        new=(1,),
     )
     for k in range(30)
 ]
 OUTLIER = ROWS[0]._replace(relative_error=40.0)
-UNMEASURED = ROWS[0]._replace(measured=None, relative_error=None, scored=False)
+UNMEASURED = ROWS[0]._replace(measured_twist=None, relative_error=None, scored=False)
 ERRORS = [
     SpanErrors(begin, begin + 0.01, Distribution(5, 0.05, 0.1) if begin < 0.035 else Distribution())
     for begin in LEAD_TIME_EDGES[:-1]

@@ -10,28 +10,30 @@ import matplotlib
 import pytest
 
 from impact_predictor.bags.body import Gait
-from impact_predictor.mechanics.types import Mode
+from impact_predictor.mechanics.types import Mode, Twist
 from impact_predictor.prediction.scene import Walking
 from impact_predictor.prediction.types import Foot, Prediction, Sample, Status
 from impact_predictor.report.gait import Machine, write_gait
-from impact_predictor.report.landings import LandingRow
+from impact_predictor.report.touchdowns import TouchdownRow
 
 SECOND = 10**9
 STILL = (0.0, 0.0, 0.0)
-LANDING = LandingRow(
+LANDING = TouchdownRow(
     body="base",
-    foot="left",
     stamp=0,
-    second=False,
-    announced=0.06,
-    time_errors=(None, None),
+    announced_lead_time=0.06,
+    lead_time=0.01,
     mode=Mode.STOP,
-    speed=None,
-    impulse=None,
-    others=None,
-    velocity=None,
-    late=None,
-    confirmed=None,
+    before_twist=Twist(0.0, 0.0, 0.0),
+    predicted_twist=Twist(0.0, 0.0, 0.0),
+    half_distance=0.1,
+    out_of_plane=0.0,
+    scored=False,
+    flags=(),
+    old=(),
+    new=(0,),
+    foot="left",
+    time_errors=(None, None),
 )
 
 
@@ -45,7 +47,7 @@ def machine(
     start: int = 0,
 ) -> Machine:
     """Two feet that stand in turn, 0.5 s each, ten samples a second, announced by an error in s too late."""
-    gait, landings = Gait(Walking(("left", "right"))), list[LandingRow]()
+    gait, landings = Gait(Walking(("left", "right"))), list[TouchdownRow]()
     for k in range(10 * seconds + 1):
         stamp = start + k * SECOND // 10
         half = k // 5 * SECOND // 2 + start
@@ -57,8 +59,8 @@ def machine(
             gait.tell(stamp, stands)
         if k % 5 == 0 and k:
             foot = gait.feet[k // 5 % 2]
-            landings.append(LANDING._replace(foot=foot, stamp=stamp, time_errors=(error, error), speed=speed))
-    return Machine(name, gait, [one._replace(impulse=40.0 * speed) for one in landings])
+            landings.append(LANDING._replace(foot=foot, stamp=stamp, time_errors=(error, error), landing_speed=speed))
+    return Machine(name, gait, [one._replace(impulse=(40.0 * speed, 0.0)) for one in landings])
 
 
 def texts(path: Path, *machines: Machine) -> list[str]:

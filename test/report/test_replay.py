@@ -1,25 +1,37 @@
-"""What a replay says of the truth in its bag."""
+"""What a replay prints: tables whose numbers are whole at any width, and the truth in its bag in few sentences."""
 
 from __future__ import annotations
 
 import io
+import re
 
 import pytest
+import touchdowns
 from rich.console import Console
+from rich.table import Table
 
-from impact_predictor.bags.replay import Result
-from impact_predictor.prediction.types import Status
-from impact_predictor.report.replay import print_replay, truth_sentences
+from impact_predictor.bags.replay import Result, Settled
+from impact_predictor.mechanics.types import Flag, Mode, Twist
+from impact_predictor.prediction.types import Landing, Leftover, Score, Status
+from impact_predictor.report.replay import (
+    feet_table,
+    landings_table,
+    lead_time_table,
+    print_replay,
+    touchdown_table,
+    truth_sentences,
+)
+from impact_predictor.report.summary import Distribution, SpanErrors
+from impact_predictor.report.table import show
+from impact_predictor.report.touchdowns import TouchdownRow, rows_of
 from impact_predictor.scenarios.comparison import BodyTruth, Truth, Warned
 
+SCORE = Score(1_004_000_000, touchdowns.TOUCHDOWN, Twist(0.5, 0.125, -2.0), 0.25, True, Leftover.NONE, ())
 
-def test_the_truth_is_said_in_whole_sentences() -> None:
-    found, missed, right, time, unseen = truth_sentences(Truth(4, 1, 2, 3, 0.75, 0.0123, 1.5e-6))
+
+def test_the_truth_is_said_in_four_sentences() -> None:
+    found, right, time, unseen = truth_sentences(Truth(4, 1, 2, 3, 0.75, 0.0123, 1.5e-6))
     assert found == "Against the truth in the bag: 3 of 4 touchdowns found, 2 false alarms."
-    assert missed == (
-        "A touchdown is found where a prediction before it has its time to 20 ms; the other was predicted too late, "
-        "too far off, or not at all."
-    )
     assert right == (
         "Of those found, 75.0 % have the right mode; the velocities after them are within 1.2 % of the true ones in "
         "the median."
@@ -29,22 +41,10 @@ def test_the_truth_is_said_in_whole_sentences() -> None:
 
 
 def test_of_landings_the_truth_tells_times_alone() -> None:
-    truth = Truth(
-        49, 0, 0, 0, None, None, 1.1e-3, time_error_by_lead_time={"0.02": 1.1e-3, "0.05": 0.0016}, least_lead_time=0.063
-    )
-    assert truth_sentences(truth) == [
-        "Against the truth in the bag: 49 of 49 touchdowns found, 0 false alarms.",
-        "The time predicted 20 ms ahead is 1.1 ms wrong in the median, that predicted 50 ms ahead 1.6 ms.",
-        "The first prediction of each came 63 ms ahead of it or earlier.",
+    assert truth_sentences(Truth(1, 0, 1, 0, None, None, 1.1e-3)) == [
+        "Against the truth in the bag: 1 of 1 touchdown found, 1 false alarm.",
+        "The time predicted 20 ms ahead is 1.1 ms wrong in the median.",
     ]
-
-
-def test_modes_near_a_border_and_wrong_ones_that_no_record_shows_are_told_apart() -> None:
-    _, _, _, clear, unseen = truth_sentences(Truth(4, 1, 2, 3, 0.75, 0.0123, None, 2, 1.0, 1))
-    assert clear == (
-        "2 of them are farther than 2 % of friction or geometry from another mode; of these 100.0 % have the right one."
-    )
-    assert unseen.endswith("from rest; 1 of them was predicted all the same, with another mode.")
 
 
 def printed(result: Result, width: int = 80) -> str:
@@ -81,62 +81,49 @@ CARGO = Result(
 )
 
 
-def rows_of(text: str, body: str) -> list[list[str]]:
-    """The cells of a body in every table, without its name."""
-    lines = [line.split() for line in text.replace("\u00a0", "_").splitlines()]
-    return [cells[1:] for cells in lines if cells[:1] == [body]]
+def row_of_body(text: str, body: str) -> list[str]:
+    """The cells of a body in the table of bodies, without its name."""
+    (cells,) = [line.split() for line in text.replace(" of ", "_of_").splitlines() if line.split()[:1] == [body]]
+    return cells[1:]
 
 
 @pytest.mark.parametrize("width", [80, 120])
-def test_several_bodies_have_tables_of_their_own(width: int) -> None:
+def test_several_bodies_have_a_row_each(width: int) -> None:
     text = printed(CARGO, width)
     assert "…" not in text
     assert "\n\n\n" not in text
     assert "No touchdown was predicted." in text
-    assert rows_of(text, "crate") == [
-        ["1,000", "0", "-", "-"],
-        ["47_of_50", "1", "98.0", "0.5", "11_of_12", "2.0"],
-    ]
-    assert rows_of(text, "drum") == [["250", "1", "-", "-"], ["-", "0", "-", "-", "0_of_1", "not"]]
-    assert rows_of(text, "blind")[1] == ["-", "-", "-", "-", "1_of_1", "0.5"]
-    assert rows_of(text, "still")[1][-2:] == ["-", "-"]
-    assert "2 bodies slid or struck; a warning stood before the first time in 1 of 2." in text
-    assert "14 events in all" in text
-    assert "a warning stood before 12 of 14." in text
+    assert row_of_body(text, "crate") == ["1,000", "47_of_50", "1", "98.0", "0.5", "11_of_12", "2.0"]
+    assert row_of_body(text, "drum") == ["250", "-", "0", "-", "-", "0_of_1", "not"]
+    assert row_of_body(text, "blind") == ["0", "-", "-", "-", "-", "1_of_1", "0.5"]
+    assert row_of_body(text, "still")[-2:] == ["-", "-"]
+    assert "A warning stood before 12 of 14 events, and before the first slide or impact of 1 of 2 bodies." in text
     assert "Refused messages of support/odom: 10 support jumped." in text
 
 
-def test_the_tables_of_a_long_record_fit_a_narrow_terminal() -> None:
+def test_without_a_truth_the_bodies_are_compared_with_the_samples() -> None:
+    settled = (Settled("crate", SCORE, None), Settled("crate", SCORE._replace(scored=False), None))
+    text = printed(CARGO._replace(settled=settled, truth=None, truths={}))
+    assert row_of_body(text, "crate") == ["1,000", "1_of_2", "25.0"]
+
+
+def test_the_table_of_a_long_record_fits_a_narrow_terminal() -> None:
     truth = Truth(1_234, 100, 123, 0, 1.0, 0.0123, None)
     warned = Warned(1, 2, 3, 4, warned_ahead=3599.9, events=120, events_warned=100)
     long = CARGO._replace(
         truths={"container_7": BodyTruth(truth, warned)},
         inputs={"container_7/odom": {Status.ACCEPTED: 3_600_000, Status.OFF_SUPPORT: 36_000}},
     )
-    tables = printed(long).split("No touchdown")[0].splitlines()
-    assert max(map(len, tables)) <= 80
-    assert sum("container_7" in line for line in tables) == 2
+    table = printed(long).split("No touchdown")[0]
+    assert max(map(len, table.splitlines())) <= 80
+    assert {"3,636,000", "1,134", "1,234", "123", "1.2", "3599.9"} <= set(table.split())
 
 
-def test_what_comes_before_the_deck_is_known_is_no_fault_of_the_samples() -> None:
-    text = printed(CARGO)
-    assert "10 samples came before the deck's motion was known." in text
-    assert "Refused samples: 1 off support." in text
-    early = {"crate/odom": {Status.ACCEPTED: 5, Status.NO_SUPPORT: 1}}
-    text = printed(CARGO._replace(statuses=early["crate/odom"], inputs=early))
-    assert "1 sample came before" in text
-    # What no body has takes no column.
-    assert "refused" not in text.lower()
-
-
-def test_a_sample_before_the_first_contact_points_is_not_told_as_an_error() -> None:
+def test_samples_that_came_too_early_are_told_with_what_they_lacked() -> None:
+    assert "Refused samples: 10 before the deck's motion was known, 1 off support." in printed(CARGO)
     first = {"odom": {Status.ACCEPTED: 5, Status.NO_GEOMETRY: 1}}
     text = printed(CARGO._replace(truth=None, truths={}, statuses=first["odom"], inputs=first))
-    assert "1 sample came before the first contact points." in text
-    assert "refused" not in text.lower()
-    none = {"odom": {Status.NO_GEOMETRY: 6}}
-    text = printed(CARGO._replace(truth=None, truths={}, statuses=none["odom"], inputs=none))
-    assert "Refused samples: 6 no geometry." in text
+    assert "Refused samples: 1 before the first contact points." in text
 
 
 def test_what_was_refused_of_every_input_is_said() -> None:
@@ -161,13 +148,162 @@ def test_a_body_alone_has_no_such_table() -> None:
     assert "body" not in printed(alone)
 
 
-def test_of_nothing_found_nothing_more_is_said() -> None:
-    assert truth_sentences(Truth(0, 0, 0, 0, None, None, None)) == [
-        "Against the truth in the bag: no touchdown that this rate of samples can show, 0 false alarms."
-    ]
+def shown(table: Table, width: int) -> str:
+    text = io.StringIO()
+    show(Console(file=text, width=width), table)
+    return text.getvalue()
 
 
-def test_one_of_a_kind_is_said_as_one() -> None:
-    found, _, unseen = truth_sentences(Truth(1, 0, 1, 1, 1.0, 0.0123, None))
-    assert found.endswith("1 of 1 touchdown found, 1 false alarm.")
-    assert unseen.startswith("1 more impact cannot be seen")
+ROW = TouchdownRow(
+    body="cube",
+    stamp=5_690_729_123_456,
+    announced_lead_time=0.058,
+    lead_time=0.0123,
+    mode=Mode.PIVOT_SLIDE,
+    before_twist=Twist(-1.3, -0.9, -15.0),
+    predicted_twist=Twist(-1.234, 0.571, -11.52),
+    measured_twist=Twist(-1.199, 0.512, -10.25),
+    half_distance=0.05,
+    relative_error=0.1234,
+    out_of_plane=0.01,
+    scored=True,
+    flags=("REVERSED_SLIP",),
+    old=(0,),
+    new=(1,),
+    cost=98e-6,
+)
+UNSCORED = ROW._replace(scored=False, flags=("OUT_OF_PLANE", "ONE_CORNER_FIRST"), cost=None)
+UNMEASURED = ROW._replace(measured_twist=None, relative_error=None, scored=False, flags=("TOO_SHORT",))
+NUMBERS = {"-1.234", "0.571", "-11.52", "-1.199", "0.512", "-10.25", "12.3", "98"}
+
+
+@pytest.mark.parametrize("width", [40, 80, 100, 120])
+def test_no_number_is_cut_off_at_any_width_and_from_80_columns_on_the_lines_fit(width: int) -> None:
+    text = shown(touchdown_table([ROW, UNSCORED, UNMEASURED]), width)
+    assert set(text.split()) >= {*NUMBERS, "5690.729", "12.3", "PIVOT_SLIDE"}
+    assert "…" not in text
+    assert max(map(len, text.splitlines())) <= max(width, 80)
+
+
+def test_the_lines_of_several_bodies_fit_too() -> None:
+    rows = [ROW, UNSCORED._replace(body="container")]
+    lines = shown(touchdown_table(rows), 80).splitlines()
+    assert max(map(len, lines)) <= 80
+    named = next(place for place, line in enumerate(lines) if "container" in line)
+    assert lines[named + 1].split()[0] == "5690.729"
+
+
+def test_very_large_numbers_are_whole_too() -> None:
+    row = ROW._replace(predicted_twist=Twist(-123456.789, 0.0, -1234567.89))
+    assert set(shown(touchdown_table([row]), 80).split()) >= {"-123456.789", "-1234567.89"}
+
+
+def test_times_of_day_are_counted_from_the_first_touchdown() -> None:
+    first = ROW._replace(stamp=1_605_971_434_083_000_000)
+    text = shown(touchdown_table([first, first._replace(stamp=first.stamp + 1_500_000_000)]), 120)
+    assert "since" in text
+    assert {"0.000", "1.500"} <= set(text.split())
+
+
+def test_why_a_touchdown_is_not_scored_stands_beside_it() -> None:
+    text = shown(touchdown_table([UNSCORED]), 160)
+    assert "not scored: out of plane, one corner first" in text
+
+
+def test_without_costs_and_notes_and_of_one_body_there_are_no_columns_for_them() -> None:
+    text = shown(touchdown_table([ROW._replace(cost=None, flags=())]), 120)
+    assert not any(word in text for word in ("cost", "notes", "cube"))
+
+
+def test_lead_times_without_predictions_have_no_error() -> None:
+    errors = [SpanErrors(0.0, 0.01, Distribution(3, 0.0625, 0.125)), SpanErrors(0.01, 0.02, Distribution())]
+    lines = [re.split(r"\s{2,}", line.strip()) for line in shown(lead_time_table(errors), 80).splitlines()]
+    assert ["0 to 10", "3", "6.2", "12.5"] in lines
+    assert ["10 to 20", "0", "-", "-"] in lines
+
+
+TOUCHDOWN = touchdowns.TOUCHDOWN._replace(
+    before=Twist(0.5, 0.0, 0.0),
+    after=Twist(0.47, 0.04, 0.1),
+    impulses=((1.0, 0.5), (3.0, -4.0)),
+    flags=Flag.NONE,
+    old=(1,),
+    new=(0,),
+    leftover=Leftover.DRIVEN,
+)
+HISTORY = ((0.1, 0.004), (0.06, -0.0123), (0.05, 0.0034), (0.03, 0.002), (0.01, 0.001))
+
+
+def landed(at: float, foot: str = "LF", body: str = "robot", **changes: object) -> Settled:
+    """A landing at a time in s."""
+    stamp = round(at * 1e9)
+    landing = Landing(foot, stamp, None, None, HISTORY, 0.123, TOUCHDOWN)._replace(**changes)  # type: ignore[arg-type]
+    return Settled(body, Score(stamp, TOUCHDOWN, None, None, False, Leftover.DRIVEN, (), landing), None)
+
+
+KNOWN = {"late": -0.0123, "confirmed": False}
+WALK = Result("walk.bag", 100, 0.1, (), {}, {}, (), "", "")
+
+
+def rows(*settled: Settled) -> list[TouchdownRow]:
+    return rows_of(settled)
+
+
+@pytest.mark.parametrize("width", [80, 120])
+@pytest.mark.parametrize("changes", [{}, KNOWN])
+def test_the_tables_of_landings_fit_the_terminal_and_no_number_is_cut_off(
+    width: int, changes: dict[str, object]
+) -> None:
+    landings = rows(landed(12.5, **changes), landed(123.456, "RF"))
+    text = shown(landings_table(landings), width)
+    assert "…" not in text
+    assert max(map(len, text.splitlines())) <= width
+    assert set(text.split()) >= {"123.456", "LF", "100", "+2.0", "0.123", "PIVOT_SLIDE", "5.00", "0.050"}
+    assert ({"-12.3", "no"} <= set(text.split())) == bool(changes)
+    assert max(map(len, shown(feet_table(landings), width).splitlines())) <= width
+
+
+def test_the_table_of_feet_has_the_worst_of_impacts_and_the_middle_of_times() -> None:
+    first, second = landed(1.0), landed(2.0, history=((0.07, -0.001),), speed=0.5, **KNOWN)
+    lines = shown(feet_table(rows(second, first, landed(1.5, "RH"))), 80).splitlines()
+    (left,) = [line.split() for line in lines if line.startswith("LF")]
+    assert left == ["LF", "2", "70", "1.5", "2.2", "0.500", "5.00", "0.050", "-12.3", "0/1"]
+    (together,) = [line.split() for line in lines if line.startswith("all")]
+    assert together[:3] == ["all", "3", "70"]
+
+
+def test_what_rounds_to_nothing_has_no_sign_and_what_nobody_announced_has_no_time() -> None:
+    still, missed = landed(1.0, history=((0.1, -1e-9),), speed=-1e-9), landed(2.0, history=())
+    first, _, second, _ = shown(landings_table(rows(still, missed)), 80).splitlines()[-4:]
+    assert first.split()[2:6] == ["100", "0.0", "PIVOT_SLIDE", "0.000"]
+    assert second.split()[2:4] == ["-", "-"]
+
+
+def test_what_the_other_feet_get_stands_below_the_impulse_of_the_foot() -> None:
+    """Of two feet that land together one may have braked: the impulse is at the other alone."""
+    impact = TOUCHDOWN._replace(impulses=((3.0, 0.0), (0.0, 0.0)))
+    alone = impact._replace(old=(), impulses=((0.0, 0.0), (4.0, 3.0)))
+    *_, soft, others, hard = shown(
+        landings_table(rows(landed(1.0, impact=impact), landed(2.0, "RF", impact=alone))), 80
+    ).splitlines()
+    assert ("0.00" in soft, others.split(), "5.00" in hard) == (True, ["3.00"], True)
+
+
+def test_feet_are_named_with_their_parts_and_with_their_bodies_where_there_are_several() -> None:
+    landings = rows(landed(1.0, point="heel"), landed(2.0, body="other"))
+    for table in (landings_table(landings), feet_table(landings)):
+        assert {"robot/LF", "heel", "other/LF"} <= set(shown(table, 120).split())
+
+
+def test_a_replay_lists_landings_apart_from_other_touchdowns() -> None:
+    walked = [landed(0.1 * k, "LF" if k % 2 else "RF") for k in range(30)]
+    text = printed(WALK._replace(settled=tuple(walked)))
+    assert "10 more landings: list them with --all, or read them with --json." in text
+    assert "30 landings of 2 feet" in text
+    assert "scored" not in text  # driven feet tell no impact by itself
+    assert "\n\n\n" not in text
+    other = landed(2.0)._replace(score=landed(2.0).score._replace(landing=None))
+    mixed = printed(WALK._replace(settled=(landed(1.0), other)))
+    assert "1 landing of 1 foot" in mixed
+    assert "0 of 1 touchdown scored." in mixed
+    assert "No touchdown was predicted." in printed(WALK)

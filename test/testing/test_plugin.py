@@ -14,7 +14,7 @@ from click.testing import CliRunner
 # Loaded before any run within this process, or each of them would load numpy and rosbags anew.
 import impact_predictor.testing.collection  # noqa: F401
 from impact_predictor.cli import main
-from impact_predictor.report.earlier import Earlier
+from impact_predictor.report.baseline import Earlier
 
 pytest_plugins = "pytester"
 

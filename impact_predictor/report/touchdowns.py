@@ -1,0 +1,234 @@
+"""Touchdowns that have happened, landings of feet among them: their record, and the fields that files have of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+from ..mechanics.types import Mode, Twist, Vector
+from ..prediction.types import Landing, Score
+from ..scenarios.comparison import LEAD_TIMES
+
+if TYPE_CHECKING:
+    from ..bags.body import Settled
+
+
+class TouchdownRow(NamedTuple):
+    """One settled touchdown, which is a landing where it has a `foot`.
+
+    `body` is the body's name or frame; `stamp` in ns, the predicted touchdown, or when the foot came to stand;
+    `announced_lead_time` how long before it, in s, the first prediction with its contacts was made; `lead_time` in s,
+    `before_twist` and `predicted_twist` of the last prediction; twists of the mass centre in the impact plane;
+    `half_distance` of the two contacts in m; `out_of_plane` the part of the angular velocity off the plane's axis
+    (0..1); `flags` say what a reader should know and, where it is not `scored`, why; `old` and `new` the points that
+    stood and that struck.
+
+    Of a landing: `point`, `late` (s) and `confirmed` as in `Landing`; `time_error` in s of the last prediction, None
+    where there was none; `landing_speed` in m/s in the last sample in the air, and what the impact with it makes: its
+    mode, the impulses (normal, tangential) in N s at the foot and at the others, which stand or land together with it,
+    and the change of the twist by both; `time_errors` of the predictions made `LEAD_TIMES` before.
+
+    `cost` of the last prediction in s, None where it is not known.
+    """
+
+    body: str
+    stamp: int
+    announced_lead_time: float
+    lead_time: float
+    mode: Mode
+    before_twist: Twist
+    predicted_twist: Twist
+    half_distance: float
+    out_of_plane: float
+    scored: bool
+    flags: tuple[str, ...]
+    old: tuple[int, ...]
+    new: tuple[int, ...]
+    measured_twist: Twist | None = None
+    relative_error: float | None = None
+    foot: str = ""
+    point: str | None = None
+    time_error: float | None = None
+    late: float | None = None
+    confirmed: bool | None = None
+    landing_speed: float | None = None
+    landing_mode: Mode | None = None
+    impulse: Vector | None = None
+    others_impulse: Vector | None = None
+    velocity_change: Twist | None = None
+    time_errors: tuple[float | None, ...] = ()
+    cost: float | None = None
+
+    @property
+    def error(self) -> float | None:
+        """The relative error of what is scored."""
+        return self.relative_error if self.scored else None
+
+    @property
+    def ahead(self) -> float | None:
+        """How long before it in s the first prediction was made; None of a landing that none announced."""
+        return None if self.foot and self.time_error is None else self.announced_lead_time
+
+    @property
+    def is_second(self) -> bool:
+        """Whether another part of the foot stood already."""
+        return self.point is not None and any(one // 2 == self.new[0] // 2 for one in self.old)
+
+
+class TouchdownField(NamedTuple):
+    """A field of a touchdown in files: its key in the record and in the JSON, its type and its unit.
+
+    Types are those of Arrow, and mode, twist (vx, vy, omega) and impulse (normal, tangential). `message` is its key in
+    `~/score` where that is another one; `of_foot` is for landings alone.
+    """
+
+    key: str
+    type: str
+    unit: str = ""
+    message: str = ""
+    of_foot: bool = False
+
+
+FIELDS: Final = (
+    TouchdownField("body", "string"),
+    TouchdownField("foot", "string", of_foot=True),
+    TouchdownField("point", "string", of_foot=True),
+    TouchdownField("stamp", "int64", "ns"),
+    TouchdownField("announced_lead_time", "float64", "s", "announced"),
+    TouchdownField("lead_time", "float64", "s"),
+    TouchdownField("mode", "mode"),
+    TouchdownField("before_twist", "twist", message="before"),
+    TouchdownField("predicted_twist", "twist", message="predicted"),
+    TouchdownField("measured_twist", "twist", message="measured"),
+    TouchdownField("relative_error", "float64", "1"),
+    TouchdownField("half_distance", "float64", "m"),
+    TouchdownField("out_of_plane", "float64", "1", "off_axis"),
+    TouchdownField("scored", "bool"),
+    TouchdownField("flags", "list<string>"),
+    TouchdownField("old", "list<int32>"),
+    TouchdownField("new", "list<int32>"),
+    TouchdownField("time_error", "float64", "s", of_foot=True),
+    TouchdownField("late", "float64", "s", of_foot=True),
+    TouchdownField("confirmed", "bool", of_foot=True),
+    TouchdownField("landing_speed", "float64", "m/s", "speed", of_foot=True),
+    TouchdownField("landing_mode", "mode", of_foot=True),
+    TouchdownField("impulse", "impulse", "N s", of_foot=True),
+    TouchdownField("others_impulse", "impulse", "N s", of_foot=True),
+    TouchdownField("velocity_change", "twist", of_foot=True),
+)
+
+
+def row_of(body: str, score: Score, cost: float | None = None) -> TouchdownRow:
+    """The row of a score; `cost` in s."""
+    touchdown, landing = score.touchdown, score.landing
+    history = score.history if landing is None else landing.history
+    row = TouchdownRow(
+        body=body,
+        stamp=score.stamp,
+        announced_lead_time=history[0][0] if history else touchdown.lead_time,
+        lead_time=touchdown.lead_time,
+        mode=touchdown.mode,
+        before_twist=touchdown.before,
+        predicted_twist=touchdown.after,
+        measured_twist=score.measured,
+        half_distance=touchdown.half_distance,
+        relative_error=score.relative_error,
+        out_of_plane=touchdown.off_axis,
+        scored=score.scored,
+        flags=tuple(
+            flag.name or "" for flags in (score.leftover, touchdown.flags) for flag in type(flags) if flag & flags
+        ),
+        old=tuple(touchdown.old),
+        new=tuple(touchdown.new),
+        cost=cost,
+    )
+    if landing is None:
+        return row
+    row = row._replace(
+        foot=landing.foot,
+        point=landing.point,
+        time_error=history[-1][1] if history else None,
+        late=landing.late,
+        confirmed=landing.confirmed,
+        landing_speed=landing.speed,
+        time_errors=tuple(error_ahead(landing, lead_time) for lead_time in LEAD_TIMES),
+    )
+    impact = landing.impact
+    if impact is None:
+        return row
+    (vx, vy, omega), before = impact.after, impact.before
+    return row._replace(
+        landing_mode=impact.mode,
+        impulse=impact.impulses[1],
+        others_impulse=impact.impulses[0] if impact.old else None,
+        velocity_change=Twist(vx - before.vx, vy - before.vy, omega - before.omega),
+    )
+
+
+def error_ahead(landing: Landing, lead_time: float) -> float | None:
+    """Error in s of the time predicted a lead time (s) before a landing, or last before that; None if none was."""
+    made = [error for ahead, error in landing.history if ahead >= lead_time]
+    return made[-1] if made else None
+
+
+def rows_of(settled: Iterable[Settled]) -> list[TouchdownRow]:
+    """The rows of touchdowns in the order of their stamps."""
+    return sorted((row_of(*one) for one in settled), key=lambda row: row.stamp)
+
+
+def row_as_json(row: TouchdownRow) -> dict[str, Any]:
+    """A row as the JSON of a replay has it."""
+    values = {field.key: getattr(row, field.key) for field in FIELDS if row.foot or not field.of_foot}
+    return {key: value.name if isinstance(value, Mode) else value for key, value in values.items()}
+
+
+def row_of_json(entry: Mapping[str, Any]) -> TouchdownRow:
+    """The row that `row_as_json` wrote.
+
+    Raises:
+        KeyError, TypeError: it is none.
+    """
+    return TouchdownRow(
+        **{field.key: _from_json(field.type, entry[field.key]) for field in FIELDS if field.key in entry}
+    )
+
+
+def _from_json(kind: str, value: Any) -> Any:
+    if kind == "mode" and value is not None:
+        return Mode[value]
+    if isinstance(value, list):
+        return Twist(*value) if kind == "twist" else tuple(value)
+    return value
+
+
+def row_of_message(body: str, values: Mapping[str, str], cost: float | None = None) -> TouchdownRow:
+    """The row of the values of a message on `~/score`, as `decode_diagnostic_array` reads them; `cost` in s.
+
+    Raises:
+        KeyError, TypeError, ValueError: it is none.
+    """
+    found: dict[str, Any] = {"body": body, "cost": cost}
+    for field in FIELDS:
+        key = field.message or field.key
+        if field.type == "twist" and f"{key}.vx" in values:
+            found[field.key] = Twist(*(float(values[f"{key}.{part}"]) for part in Twist._fields))
+        elif key in values:
+            found[field.key] = _from_text(field.type, values[key])
+    found["flags"] = tuple(flag for key in ("leftover", "flags") for flag in values[key].split("|") if flag != "NONE")
+    return TouchdownRow(**found)
+
+
+def _from_text(kind: str, text: str) -> Any:
+    match kind:
+        case "int64":
+            return int(text)
+        case "float64":
+            return float(text)
+        case "bool":
+            return text == "true"
+        case "mode":
+            return Mode[text]
+        case "list<int32>":
+            return tuple(map(int, text.split()))
+        case _:
+            return text
