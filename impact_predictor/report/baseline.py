@@ -18,9 +18,9 @@ from math import hypot
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
+from ..bags.body import NODE
 from ..bags.find import METADATA, name_of
 from ..bags.read import read_messages, topics
-from ..bags.body import NODE
 from ..errors import InputError
 from ..ros.messages import DIAGNOSTIC_ARRAY, MalformedMessage, decode_diagnostic_array
 from ..scenarios.matching import NEAREST
