@@ -180,7 +180,7 @@ def check_output(file: Path) -> None:
     if not file.parent.is_dir():
         raise InputError(f"the folder of {file} does not exist; make it, or give another name")
     if file.suffix.lower() in PICTURES:
-        need("contourpy", "matplotlib", "scipy")
+        need("contourpy", "matplotlib")
 
 
 def write(file: Path, modes: ModeMap) -> None:

@@ -15,7 +15,7 @@ from rich.table import Table
 from ..errors import InputError
 from ..mechanics.bodies import cylinder, plate, refuse, rod
 from ..mechanics.impact import states_of
-from ..mechanics.impact.batch import Outcomes, solve_impacts
+from ..mechanics.impact.batch import solve_impacts
 from ..mechanics.types import Flag, Mode, Twist, TwoPointBody
 from .files import whole
 from .modes import MODES
@@ -26,17 +26,13 @@ OMEGA: Final = -1.0
 
 
 class MapParameter(NamedTuple):
-    """A parameter: its symbol in the picture, unit and meaning; its value, or what it follows, unless given.
-
-    `together` is its meaning where another parameter follows it.
-    """
+    """A parameter: its symbol in the picture, unit and meaning; its value, or what it follows, unless given."""
 
     symbol: str
     unit: str
     meaning: str
     default: float | None = None
     otherwise: str = ""
-    together: str = ""
 
 
 class Axis(NamedTuple):
@@ -57,15 +53,6 @@ class Subject(NamedTuple):
     title: str
 
 
-CONTACTS: Final = {
-    "friction": MapParameter("f", "", "friction coefficient of both contacts", 0.5),
-    "friction_old": MapParameter("f_A", "", "friction coefficient of the old contact A", None, "friction"),
-    "friction_new": MapParameter("f_B", "", "friction coefficient of the new contact B", None, "friction"),
-    "restitution": MapParameter("e", "", "restitution at the new contact B", 0.0),
-    "slip": MapParameter("v_{tA}", "m/s", "slip of the old contact A before the impact, at ω = −1 rad/s", 0.0),
-}
-
-
 def plate_of(values: Mapping[str, Any]) -> TwoPointBody:
     length = values["length"]
     height = values["height"] if "height" in values else values["delta"] * length
@@ -80,27 +67,22 @@ def rod_of(values: Mapping[str, Any]) -> TwoPointBody:
 
 
 def cylinder_of(values: Mapping[str, Any]) -> TwoPointBody:
-    ahead = values.get("gamma_new", values["gamma"])
-    refuse(
-        {"gamma + gamma-new": values["gamma"] + ahead},
-        lambda value: (value > 0.0) & (value < 180.0),
-        "angles in degrees with a sum between 0 and 180",
-    )
-    return cylinder(
-        values["radius"],
-        values["gamma"] * (pi / 180.0),
-        1.0,
-        values.get("friction", 0.0),
-        ahead * (pi / 180.0),
-        values.get("inertia"),
-        values["restitution"],
-    )
+    gamma, inertia = values["gamma"], values.get("inertia")
+    ahead = values.get("gamma_new", gamma)
+    between = "angles in degrees with a sum between 0 and 180"
+    refuse({"gamma + gamma-new": gamma + ahead}, lambda value: (value > 0.0) & (value < 180.0), between)
+    old, new = gamma * (pi / 180.0), ahead * (pi / 180.0)
+    return cylinder(values["radius"], old, 1.0, values.get("friction", 0.0), new, inertia, values["restitution"])
 
 
-def inertia_of(otherwise: str) -> MapParameter:
-    return MapParameter("J/m", "m²", "inertia about the mass centre by mass", None, otherwise)
-
-
+INERTIA: Final = "inertia about the mass centre by mass"
+CONTACTS: Final = {
+    "friction": MapParameter("f", "", "friction coefficient of both contacts", 0.5),
+    "friction_old": MapParameter("f_A", "", "friction coefficient of the old contact A", None, "friction"),
+    "friction_new": MapParameter("f_B", "", "friction coefficient of the new contact B", None, "friction"),
+    "restitution": MapParameter("e", "", "restitution at the new contact B", 0.0),
+    "slip": MapParameter("v_{tA}", "m/s", "slip of the old contact A before the impact, at ω = −1 rad/s", 0.0),
+}
 SUBJECTS: Final = {
     "plate": Subject(
         {
@@ -109,7 +91,7 @@ SUBJECTS: Final = {
             "height": MapParameter("H", "m", "height, in the place of δ"),
             "a": MapParameter("a", "m", "distance of the old contact A behind the mass centre", None, "L/2"),
             "b": MapParameter("b", "m", "distance of the new contact B ahead of the mass centre", None, "L/2"),
-            "inertia": inertia_of("(L² + H²)/12"),
+            "inertia": MapParameter("J/m", "m²", INERTIA, None, "(L² + H²)/12"),
             **CONTACTS,
         },
         Axis("delta", 0.0, 2.0),
@@ -121,15 +103,9 @@ SUBJECTS: Final = {
         {
             "length": MapParameter("l", "m", "length", 0.4),
             "thickness": MapParameter("h", "m", "thickness", 0.005),
-            "a": MapParameter(
-                "a",
-                "m",
-                "distance of the old support A behind the middle",
-                0.1,
-                together="distance of the supports from the middle",
-            ),
+            "a": MapParameter("a", "m", "distance of the old support A behind the middle", 0.1),
             "b": MapParameter("b", "m", "distance of the new support B ahead of the middle", None, "a"),
-            "inertia": inertia_of("l²/12"),
+            "inertia": MapParameter("J/m", "m²", INERTIA, None, "l²/12"),
             **CONTACTS,
         },
         Axis("a", 0.0, 0.2),
@@ -139,16 +115,10 @@ SUBJECTS: Final = {
     ),
     "cylinder": Subject(
         {
-            "gamma": MapParameter(
-                "γ_1",
-                "°",
-                "central angle of the old edge A behind the vertical",
-                45.0,
-                together="central angle γ of each edge from the vertical",
-            ),
+            "gamma": MapParameter("γ_1", "°", "central angle of the old edge A behind the vertical", 45.0),
             "gamma_new": MapParameter("γ_2", "°", "central angle of the new edge B ahead of it", None, "gamma"),
             "radius": MapParameter("R", "m", "radius", 1.0),
-            "inertia": inertia_of("R²/2"),
+            "inertia": MapParameter("J/m", "m²", INERTIA, None, "R²/2"),
             **CONTACTS,
         },
         Axis("gamma", 0.0, 90.0),
@@ -276,28 +246,23 @@ def map_modes(
     step = max(1, CELLS_AT_ONCE // resolution)
     for start in range(0, resolution, step):
         block = slice(start, min(start + step, resolution))
-        values = {**fixed, x.name: columns, y.name: rows[block, None]}
-        for field, part in zip(fields, solve_block(*problem_at(subject, values), law), strict=True):
+        body, twist = problem_at(subject, {**fixed, x.name: columns, y.name: rows[block, None]})
+        path, total = solve_impacts(body, twist, "path"), solve_impacts(body, twist, "total")
+        outcomes = path if law == "path" else total
+        energy = 0.5 * (body.mass * (twist.vx**2 + twist.vy**2) + body.inertia * twist.omega**2)
+        parts = (
+            outcomes.mode,
+            outcomes.segments,
+            outcomes.twist[..., 2] / OMEGA,
+            outcomes.energy_lost / energy,
+            (path.flags & np.uint16(Flag.JAMMED)) != 0,
+            path.unique,
+            total.unique,
+        )
+        for field, part in zip(fields, parts, strict=True):
             field[block] = part
         tell(block.stop * resolution)
     return ModeMap(name, x, y, fixed, law, *fields)
-
-
-def solve_block(body: TwoPointBody, twist: Twist, law: str) -> tuple[NDArray[Any], ...]:
-    """The arrays of a ModeMap, for some of its rows."""
-    path, total = solve_impacts(body, twist, "path"), solve_impacts(body, twist, "total")
-    outcomes: Outcomes = path if law == "path" else total
-    vx, vy, omega = twist
-    before = 0.5 * (body.mass * (vx * vx + vy * vy) + body.inertia * omega * omega)
-    return (
-        outcomes.mode,
-        outcomes.segments,
-        outcomes.twist[..., 2] / OMEGA,
-        outcomes.energy_lost / before,
-        (path.flags & np.uint16(Flag.JAMMED)) != 0,
-        path.unique,
-        total.unique,
-    )
 
 
 def shares(modes: ModeMap) -> dict[Mode, float]:
@@ -352,8 +317,8 @@ def summary_of(modes: ModeMap) -> dict[str, Any]:
 
 def shares_table(modes: ModeMap) -> Table:
     """The modes of a map, and how much of it each takes."""
-    rows = [(mode.name, share, meaning_of(mode)) for mode, share in shares(modes).items()]
-    rows += [("", float(np.mean(region)), meaning) for region, meaning in ambiguous(modes) if region.any()]
+    rows = [(mode.name, share, MODES[mode].meaning) for mode, share in shares(modes).items()]
+    rows += [("", float(np.mean(region)), meaning) for meaning, region in ambiguous(modes).items()]
     columns = [
         Column("mode", lambda row: row[0], left=True),
         Column("% of the map", lambda row: f"{100.0 * row[1]:.1f}"),
@@ -362,27 +327,14 @@ def shares_table(modes: ModeMap) -> Table:
     return table_of(columns, rows)
 
 
-def meaning_of(mode: Mode) -> str:
-    """The meaning of a mode with the names that the contacts have on maps, A and B."""
-    meaning = MODES[mode].meaning
-    names = {"the old contact": "A", "the old one": "A", "the new contact": "B", "the new one": "B"}
-    for words, name in {**names, "both contacts": "A and B"}.items():
-        meaning = meaning.replace(words, name)
-    return meaning
-
-
-def ambiguous(modes: ModeMap) -> tuple[tuple[NDArray[np.bool_], str], ...]:
-    """Where a law has no single answer, and what to say of it and of the answer that the map shows there."""
-    jam, path, total = (
-        ("what follows the tangential impact at A that resolves the jam", "one of its answers", "the path law")
-        if modes.law == "path"
-        else ("the total law", "the total law", "the answer nearest to that of the path")
-    )
-    return (
-        (modes.jammed, f"the impulse path jams (Painlevé): shown is {jam}"),
-        (~modes.path_unique, f"the impulse path is not unique: shown is {path}"),
-        (~modes.total_unique, f"the total law is not unique: shown is {total}"),
-    )
+def ambiguous(modes: ModeMap) -> dict[str, NDArray[np.bool_]]:
+    """Where a law has no single answer, by what there is to say; the map shows one answer there."""
+    regions = {
+        "the impulse path jams (Painlevé)": modes.jammed,
+        "the path law has more answers": ~modes.path_unique,
+        "the total law has more answers": ~modes.total_unique,
+    }
+    return {meaning: region for meaning, region in regions.items() if region.any()}
 
 
 def given_in(modes: ModeMap) -> set[str]:
@@ -391,27 +343,21 @@ def given_in(modes: ModeMap) -> set[str]:
 
 
 def axis_label(axis: Axis, modes: ModeMap) -> str:
-    """Symbols, meaning and unit of what changes along an axis."""
-    parameters = SUBJECTS[modes.subject].parameters
-    parameter, symbols, meaning = parameters[axis.name], [parameters[axis.name].symbol], parameters[axis.name].meaning
-    for name, other in parameters.items():
-        if parameter.together and other.otherwise == axis.name and name not in given_in(modes):
-            symbols, meaning = [*symbols, other.symbol], parameter.together
+    """Symbol, meaning and unit of what changes along an axis."""
+    parameter = SUBJECTS[modes.subject].parameters[axis.name]
     unit = f" ({parameter.unit})" if parameter.unit else ""
-    return f"{' = '.join(map(italic, symbols))}, {meaning}{unit}"
+    return f"{italic(parameter.symbol)}, {parameter.meaning}{unit}"
 
 
 def conditions(modes: ModeMap) -> str:
-    """What is the same all over the map."""
+    """What is the same all over the map, and which parameters follow others."""
     parameters, said = SUBJECTS[modes.subject].parameters, []
     for name, parameter in parameters.items():
-        leader, symbol = parameter.otherwise, italic(parameter.symbol)
         if name in modes.fixed:
-            if name != "slip" or modes.fixed[name] != 0.0:
-                unit = f" {parameter.unit}" if parameter.unit not in ("", "°") else parameter.unit
-                said.append(f"{symbol} = {modes.fixed[name]:g}{unit}")
-        elif leader not in ("", "friction", modes.x.name, modes.y.name) and name not in given_in(modes):
-            said.append(f"{symbol} = {italic(parameters[leader].symbol if leader in parameters else leader)}")
+            said.append(f"{italic(parameter.symbol)} = {modes.fixed[name]:g} {parameter.unit}".rstrip())
+        elif parameter.otherwise and name not in given_in(modes) and parameter.otherwise != "friction":
+            leader = parameters.get(parameter.otherwise)
+            said.append(f"{italic(parameter.symbol)} = {italic(leader.symbol) if leader else parameter.otherwise}")
     return ", ".join((*said, f"{modes.law} law"))
 
 
