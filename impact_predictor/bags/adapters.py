@@ -107,8 +107,7 @@ class AdapterReader(NamedTuple):
                 "compare it with the definition of the message in the bag"
             ) from error
         if not isinstance(adapted, Adapted):
-            returned = "None" if adapted is None else type(adapted).__name__
-            raise InputError(f"the adapter {self.named} returns {returned}, not an Adapted; look at what it returns")
+            raise InputError(f"the adapter {self.named} returns {adapted!r:.80}, not an Adapted")
         return adapted
 
     def check_stands(self, adapted: Adapted, feet: tuple[str, ...]) -> None:
@@ -136,24 +135,16 @@ def readers(bag: Bag, types: Mapping[str, str]) -> dict[str, AdapterReader]:
         InputError: an adapter cannot be imported, or the bag holds no definition of a type; while reading: an adapter
             fails.
     """
-    adapters = known()
-    decode = bag.decoders(types)
-    return {
-        topic: AdapterReader(f"{adapters[type_name].value} of {type_name}", decode[topic], _load(adapters[type_name]))
-        for topic, type_name in types.items()
-    }
-
-
-def _load(adapter: EntryPoint) -> Adapter:
-    try:
-        loaded: Adapter = adapter.load()
-    # A module that is imported may raise anything.
-    except Exception as error:
-        raise InputError(
-            f"the adapter {adapter.value} of {adapter.name} cannot be imported ({_reason(error)}); "
-            "install its package again, or remove it"
-        ) from error
-    return loaded
+    adapters, found = known(), {}
+    for topic, decode in bag.decoders(types).items():
+        named = f"{adapters[types[topic]].value} of {types[topic]}"
+        try:
+            found[topic] = AdapterReader(named, decode, adapters[types[topic]].load())
+        # A module that is imported may raise anything.
+        except Exception as error:
+            said = f"the adapter {named} cannot be imported ({_reason(error)}); install its package again, or remove it"
+            raise InputError(said) from error
+    return found
 
 
 def _reason(error: Exception) -> str:

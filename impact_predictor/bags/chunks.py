@@ -130,19 +130,18 @@ class ChunkedFile(ABC):
         Raises:
             OSError: it cannot be read.
         """
+        self.path = path
         self._file: BinaryIO = path.open("rb")
         self.size = os.fstat(self._file.fileno()).st_size
         self.flaw: Flaw | None = None
         self._channels: dict[int, BagChannel] = {}
-        self._lists_channels = False
         self._chunks: list[Chunk] = []
         self._counts: dict[int, int] = defaultdict(int)
-        self._counts_are_whole = False
+        known = True
         try:
             self._scan()
-            self._counts_are_whole = True
         except Flaw as flaw:
-            self.flaw = flaw
+            self.flaw, known = flaw, False
             if self._chunks:
                 # What tells of its channels may be cut off.
                 self._chunks[-1] = self._chunks[-1]._replace(channels=None)
@@ -150,12 +149,7 @@ class ChunkedFile(ABC):
             self._look_into_chunks()
         except Flaw as flaw:
             self.flaw = flaw
-
-    @property
-    def channels(self) -> list[BagChannel]:
-        """In the order of their ids."""
-        known = self._counts_are_whole
-        return [
+        self.channels = [
             channel._replace(announced=self._counts.get(id_, 0) if known else UNKNOWN)
             for id_, channel in sorted(self._channels.items())
         ]
@@ -211,8 +205,7 @@ class ChunkedFile(ABC):
             Flaw: a chunk is damaged.
         """
         for number, chunk in enumerate(self._chunks):
-            listed = self._lists_channels if chunk.channels is None else chunk.channels <= self._channels.keys()
-            if listed:
+            if chunk.channels is not None and chunk.channels <= self._channels.keys():
                 continue
             try:
                 self._chunks[number] = self._learn_from(chunk, chunk.unpacked(self._file))
@@ -246,11 +239,8 @@ def ros2_name(type_name: str) -> str:
 def decompressed(data: bytes, name: str, most: int) -> bytes:
     """What there is without a compression of some name ("" and "none" are none), and never more than `most` bytes.
 
-    Of data that were cut off it is the beginning.
-
-    Raises:
-        KeyError: there is no such compression.
-        Exception: the data are damaged; each library raises errors of its own.
+    Of data that were cut off it is the beginning. Raises KeyError where there is no such compression, and of damaged
+    data the errors of the libraries.
     """
     if name in ("", "none"):
         return data
@@ -272,11 +262,7 @@ def decompressed(data: bytes, name: str, most: int) -> bytes:
 
 
 def decompressed_message(data: bytes) -> bytes:
-    """A message that is compressed by itself.
-
-    Raises:
-        Exception: it is damaged, or larger than `LARGEST`.
-    """
+    """A message that is compressed by itself; of a damaged or too large one the errors of the libraries are raised."""
     message = decompressed(data, "zstd", LARGEST + 1)
     if len(message) > LARGEST:
         raise ValueError(f"a message has more than {LARGEST:,} bytes")
@@ -289,17 +275,11 @@ def decompress_file(source: Path, target: Path) -> bool:
     Raises:
         OSError: a file cannot be read or written.
     """
-    with target.open("wb") as file:
+    with zstd.open(source, "rb") as packed, target.open("wb") as file:
         try:
-            for piece in _pieces(source):
+            # Not `read`: it keeps back what comes right before the damage.
+            while piece := packed.read1(_PIECE):
                 file.write(piece)
         except (EOFError, zstd.ZstdError):
             return False
     return True
-
-
-def _pieces(path: Path) -> Iterator[bytes]:
-    with zstd.open(path, "rb") as source:
-        # Not `read`: it keeps back what comes right before the damage.
-        while piece := source.read1(_PIECE):
-            yield piece

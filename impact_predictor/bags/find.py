@@ -45,31 +45,43 @@ def bags_of(arguments: Sequence[str]) -> list[str]:
         InputError: a name is empty, there is no bag in a folder, or none that a pattern matches, or a folder cannot be
             read.
     """
-    try:
-        return _bags_of(arguments)
-    except OSError as error:
-        raise InputError(f"{error.filename} cannot be read: {error.strerror}") from error
-
-
-def _bags_of(arguments: Sequence[str]) -> list[str]:
     bags: list[str] = []
     for argument in arguments:
         if not argument:
             raise InputError(f"the name of a bag is empty; give {KINDS}")
-        if Path(argument).is_dir() and not _is_bag(Path(argument)):
-            found = list(_below(Path(argument)))
-            flaw = f"{argument} holds no bag, and no folder below it does; give {KINDS}"
-        elif has_magic(argument) and not os.path.lexists(argument):
-            found = list(_matching(argument))
-            flaw = f"no bag matches {argument}; give {KINDS}, or a pattern that matches some"
-        else:
-            bags.append(argument)
-            continue
+        try:
+            if Path(argument).is_dir() and not _is_bag(Path(argument)):
+                found = list(_bags_among(Path(argument).iterdir()))
+                flaw = f"{argument} holds no bag, and no folder below it does; give {KINDS}"
+            elif has_magic(argument) and not os.path.lexists(argument):
+                matched = map(Path, glob(argument, recursive=True))  # noqa: PTH207 (a pattern may be absolute)
+                whole = [path for path in matched if not any(part.endswith(_UNFINISHED) for part in path.parts)]
+                found = list(_bags_among(whole))
+                flaw = f"no bag matches {argument}; give {KINDS}, or a pattern that matches some"
+            else:
+                bags.append(argument)
+                continue
+        except OSError as error:
+            raise InputError(f"{error.filename} cannot be read: {error.strerror}") from error
         if not found:
             raise InputError(flaw)
         known = set(bags)
         bags += [bag for bag in dict.fromkeys(map(str, found)) if bag not in known]
     return bags
+
+
+def _bags_among(paths: Iterable[Path]) -> Iterator[Path]:
+    """The bags among some paths, and those below the folders among them."""
+    ordered = [path for path in natural(paths) if not (path.name.startswith(".") or path.name.endswith(_UNFINISHED))]
+    bags = {path for path in ordered if path.is_dir() and _is_bag(path)}
+    for path in ordered:
+        if path in bags:
+            yield path
+        elif path.is_dir():
+            # Not through a link, which may lead back.
+            yield from () if path.is_symlink() else _bags_among(path.iterdir())
+        elif storage_of(path) and path.parent not in bags:
+            yield path
 
 
 def parts_of(folder: Path) -> list[Path]:
@@ -103,8 +115,8 @@ def files_of(path: Path) -> tuple[list[Path], dict[tuple[str, str], int], str]:
     if (path / METADATA).exists():
         try:
             names, counts = _metadata(path / METADATA)
-        except ValueError as error:
-            flaw = f"its {METADATA} is damaged ({error})"
+        except ValueError:
+            flaw = f"its {METADATA} is damaged"
         else:
             # Only names: a bag does not decide which folder is read.
             files = [path / PurePath(name).name for name in names]
@@ -116,84 +128,48 @@ def files_of(path: Path) -> tuple[list[Path], dict[tuple[str, str], int], str]:
     files = parts_of(path)
     if files:
         return files, {}, flaw
-    several = [file for file in path.iterdir() if storage_of(file) in STORAGES]
+    several = sum(storage_of(file) in STORAGES for file in path.iterdir())
     if several:
         raise InputError(
-            f"{path} has {len(several)} recordings but no {METADATA} that orders them; "
+            f"{path} has {several} recordings but no {METADATA} that orders them; "
             "make it with `ros2 bag reindex`, or give one of the files"
         )
     raise InputError(f"{path} is not a bag: it has neither {METADATA} nor a recording; give {KINDS}")
 
 
 def _metadata(path: Path) -> tuple[list[str], dict[tuple[str, str], int]]:
-    """The names of the files, and how many messages each topic has.
-
-    Raises:
-        ValueError: they do not say so.
-    """
+    """The names of the files, and how many messages each topic has; raises ValueError where they do not say so."""
     from ruamel.yaml import YAML
     from ruamel.yaml.error import YAMLError
 
     try:
         about: Any = YAML(typ="safe").load(path.read_text())["rosbag2_bagfile_information"]
         names = list(about["relative_file_paths"])
-        if not all(isinstance(name, str) for name in names):
-            raise ValueError("a file without a name")
-        counts: dict[tuple[str, str], int] = {}
-        for one in about["topics_with_message_count"]:
-            topic, count = one["topic_metadata"], one["message_count"]
-            if not (isinstance(topic["name"], str) and isinstance(topic["type"], str) and isinstance(count, int)):
-                raise ValueError("a topic without a name, a type or a count")
-            counts[topic["name"], topic["type"]] = count
-    except KeyError as error:
-        raise ValueError(f"no {error.args[0]}") from error
-    except (OSError, UnicodeDecodeError, YAMLError, TypeError, AttributeError) as error:
-        raise ValueError("it is not what a recorder writes") from error
+        topics = [(one["topic_metadata"], one["message_count"]) for one in about["topics_with_message_count"]]
+        counts = {(topic["name"], topic["type"]): count for topic, count in topics}
+    except (OSError, YAMLError, LookupError, TypeError, AttributeError) as error:
+        raise ValueError from error
+    words = [*names, *[word for topic in counts for word in topic]]
+    if not all(isinstance(word, str) for word in words) or not all(isinstance(one, int) for one in counts.values()):
+        raise ValueError
     if not all(storage_of(Path(name)) in STORAGES for name in names):
-        raise ValueError("it names a file that is no recording")
+        raise ValueError
     return names, counts
 
 
 def natural(paths: Iterable[Path]) -> list[Path]:
     """Paths in the order in which a person would list them."""
 
-    def key(path: Path) -> tuple[list[list[tuple[int, str]]], str]:
-        split = [re.split(r"(\d+)", part) for part in path.parts]
+    def key(path: Path) -> list[str | int]:
         # At odd places there are always digits, so that like is compared with like.
-        return [
-            [(int(text), "") if k % 2 else (0, text) for k, text in enumerate(pieces)] for pieces in split
-        ], os.fspath(path)
+        pieces = re.split(r"(\d+)", "\0".join(path.parts))
+        return [int(text) if k % 2 else text for k, text in enumerate(pieces)]
 
-    return sorted(paths, key=key)
+    return sorted(sorted(paths), key=key)
 
 
 def _is_bag(folder: Path) -> bool:
     return (folder / METADATA).exists() or len(parts_of(folder)) > 1
-
-
-def _below(folder: Path) -> Iterator[Path]:
-    """The bags in a folder and below it."""
-    for child in natural(folder.iterdir()):
-        if child.name.startswith(".") or child.name.endswith(_UNFINISHED):
-            continue
-        if child.is_dir() and not child.is_symlink():
-            yield from [child] if _is_bag(child) else _below(child)
-        elif child.is_file() and storage_of(child):
-            yield child
-
-
-def _matching(pattern: str) -> Iterator[Path]:
-    """The bags that a pattern matches, and those below the folders that it matches."""
-    found = map(Path, glob(pattern, recursive=True))  # noqa: PTH207 (a pattern may be absolute)
-    matched = natural(path for path in found if not any(part.endswith(_UNFINISHED) for part in path.parts))
-    bags = {path for path in matched if path.is_dir() and _is_bag(path)}
-    for path in matched:
-        if path in bags:
-            yield path
-        elif path.is_dir():
-            yield from _below(path)
-        elif storage_of(path) and path.parent not in bags:
-            yield path
 
 
 def name_of(bag: str | os.PathLike[str]) -> str:

@@ -29,6 +29,7 @@ _OPCODES: Final = frozenset(range(0x01, 0x10)) | frozenset(range(0x80, 0x100))
 _MESSAGE: Final = int(Opcode.MESSAGE)
 _RECORD: Final = struct.Struct("<BQ")
 _MESSAGE_HEAD: Final = struct.Struct("<BQHIQQ")
+_LOOSE_HEAD: Final = struct.Struct("<HIQQ")
 _CHUNK_HEAD: Final = struct.Struct("<QQQII")
 _LONGEST: Final = 1 << 24
 """More bytes than any record has that tells something about others."""
@@ -65,8 +66,6 @@ class McapFile(ChunkedFile):
             raise Flaw(0, "it does not begin as an MCAP file does")
         place = len(MAGIC)
         while True:
-            while (end := self._take_loose(place)) > place:
-                place = end
             self._file.seek(place)
             head = self._file.read(_RECORD.size)
             if len(head) < _RECORD.size:
@@ -80,30 +79,8 @@ class McapFile(ChunkedFile):
                 return
             place += _RECORD.size + length
 
-    def _take_loose(self, place: int) -> int:
-        """Take messages that lie outside of chunks as a chunk; where they end."""
-        begin, found = place, list[tuple[int, int]]()
-        file, most = self._file, place + _GROUP
-        while place < most:
-            file.seek(place)
-            head = file.read(_MESSAGE_HEAD.size)
-            if len(head) < _MESSAGE_HEAD.size:
-                break
-            opcode, length, channel, _, log_time, _ = _MESSAGE_HEAD.unpack(head)
-            end = place + _RECORD.size + length
-            if opcode != _MESSAGE or length < _MESSAGE_HEAD.size - _RECORD.size or end > self.size:
-                break
-            found.append((log_time, channel))
-            place = end
-        if found:
-            size, channels = place - begin, frozenset(channel for _, channel in found)
-            self._chunks.append(Chunk(begin, min(found)[0], begin, size, size, whole=False, channels=channels))
-            for _, channel in found:
-                self._counts[channel] += 1
-        return place
-
     def _take(self, opcode: int, place: int, length: int) -> None:
-        """Take a record of the data that is no message."""
+        """Take a record of the data."""
         end = place + _RECORD.size + length
         if opcode not in _OPCODES:
             raise ValueError("unknown")
@@ -111,7 +88,9 @@ class McapFile(ChunkedFile):
             self._chunks.append(self._chunk(place, length))
         if end > self.size:
             raise Flaw(place, "it is cut off")
-        if opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
+        if opcode == Opcode.MESSAGE:
+            self._take_loose(place, end - place)
+        elif opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
             self._learn(opcode, self._body(place, length))
         elif opcode == Opcode.MESSAGE_INDEX and self._chunks:
             channel, entries = struct.unpack("<HI", self._body(place, 6))
@@ -124,6 +103,18 @@ class McapFile(ChunkedFile):
             self._take_summary(end)
         elif opcode == Opcode.FOOTER:
             self._take_summary(place)
+
+    def _take_loose(self, place: int, size: int) -> None:
+        """Take a message outside of chunks: those that follow each other are read as a chunk."""
+        channel, _, log_time, _ = _LOOSE_HEAD.unpack(self._body(place, _LOOSE_HEAD.size))
+        last = self._chunks[-1] if self._chunks else None
+        if last is None or last.whole or last.begin + last.size != place or last.size > _GROUP:
+            last = Chunk(place, log_time, place, 0, 0, whole=False, channels=frozenset())
+            self._chunks.append(last)
+        channels = (last.channels or frozenset()) | {channel}
+        start, size = min(last.start, log_time), last.size + size
+        self._chunks[-1] = last._replace(start=start, length=size, size=size, channels=channels)
+        self._counts[channel] += 1
 
     def _chunk(self, place: int, length: int) -> Chunk:
         head = self._body(place, min(length, _CHUNK_HEAD.size + 255 + 8))
@@ -162,7 +153,6 @@ class McapFile(ChunkedFile):
             for record in records:
                 if isinstance(record, Schema | Channel):
                     self._know(record)
-                    self._lists_channels |= isinstance(record, Channel)
                 elif isinstance(record, Statistics):
                     self._counts = dict(record.channel_message_counts)
         except (McapError, ValueError, struct.error) as error:

@@ -40,14 +40,6 @@ class BagMessage(NamedTuple):
     data: bytes
 
 
-class OpenFile(NamedTuple):
-    """An open file of a recording; `flaw` is what is known to be wrong with it as a file."""
-
-    path: Path
-    file: MessageFile
-    flaw: Flaw | None
-
-
 class Bag:
     """A bag that is open; a context manager. However much is asked of it, it is looked through, and decompressed, once.
 
@@ -55,11 +47,7 @@ class Bag:
     """
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
-        """Open it.
-
-        Raises:
-            InputError: it is not there, is no bag, or cannot be read.
-        """
+        """Open it; raises InputError where it is not there, is no bag, or cannot be read."""
         self.path = Path(path)
         files, self._counts, self._flaw = files_of(self.path)
         with ExitStack() as stack:
@@ -68,14 +56,12 @@ class Bag:
             except OSError as error:
                 raise InputError(f"{path} cannot be read: {error.strerror or error}") from error
             self._stack = stack.pop_all()
-        self._channels = [channel for one in self._files for channel in one.file.channels]
+        self._channels = [channel for one in self._files for channel in one.channels]
 
     def __enter__(self) -> Bag:
-        """Nothing more is to be done."""
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Close its files."""
         self._stack.close()
 
     def topics(self) -> dict[str, str]:
@@ -85,7 +71,7 @@ class Bag:
             InputError: the bag is so damaged that none can be read.
         """
         if not self._channels:
-            self._check_whole()
+            self._refuse_damaged()
         types: dict[str, set[str]] = {}
         for one in self._channels:
             name = one.type_name if one.encoding in _ENCODINGS else f"{one.type_name} as {one.encoding}"
@@ -125,9 +111,9 @@ class Bag:
     def _select(self, wanted: Mapping[str, str]) -> list[BagChannel]:
         """The channels of the wanted topics."""
         selected = [one for one in self._channels if _is_wanted(one, wanted)]
-        lacking = wanted.keys() - {one.topic for one in selected}
+        there = {one.topic for one in selected}
         for topic, type_name in wanted.items():
-            if topic in lacking:
+            if topic not in there:
                 raise InputError(self._why_lacking(topic, type_name))
         return selected
 
@@ -146,7 +132,7 @@ class Bag:
                 )
         types = self.topics()
         if not of_topic:
-            self._check_whole()
+            self._refuse_damaged()
             return f"{self.path} has no topic {topic} of type {type_name}; it has {listing(types, type_name)}"
         has = f"has the type {types[topic]}" if types[topic] else "tells no type"
         return (
@@ -160,27 +146,23 @@ class Bag:
         announced = self._announced(wanted)
         read = first = last = 0
         for one in self._files:
-            chosen = {channel.id: channel for channel in one.file.channels if _is_wanted(channel, wanted)}
-            names = {id_: channel.topic for id_, channel in chosen.items()}
-            ros1 = {id_ for id_, channel in chosen.items() if channel.encoding == "ros1"}
+            chosen = {channel.id: channel for channel in one.channels if _is_wanted(channel, wanted)}
             try:
-                for log_time, _, channel, data in one.file.messages(chosen):
+                for log_time, _, id_, data in one.messages(chosen):
+                    channel = chosen[id_]
                     if data[:4] == ZSTD_MAGIC:
                         data = decompressed_message(data)
-                    if to_cdr is not None and channel in ros1:
-                        data = bytes(to_cdr(data, chosen[channel].type_name))
-                    yield BagMessage(names[channel], log_time, data)
-                    first = first if read else log_time
-                    last = log_time
+                    if to_cdr is not None and channel.encoding == "ros1":
+                        data = bytes(to_cdr(data, channel.type_name))
+                    yield BagMessage(channel.topic, log_time, data)
+                    first, last = first if read else log_time, log_time
                     read += 1
-                if one.flaw is not None:
-                    raise one.flaw
             # Damaged messages may raise anything from the depths of a converter, not only its own errors.
             except Exception as error:
                 where = f" after {counted(read, 'message')}"
                 if read:
                     where += f", {(last - first) / 1e9:.3f} s after the first"
-                reason = self._reason(one, one.flaw or error, max(0, announced - read))
+                reason = self._reason(one, error, max(0, announced - read))
                 raise InputError(self._damaged(reason, where)) from error
         if self._flaw:
             raise InputError(self._damaged(self._flaw, f" after {counted(read, 'message')}"))
@@ -194,20 +176,19 @@ class Bag:
         counts = [one.announced for one in self._channels if wanted.get(one.topic) == one.type_name]
         return 0 if UNKNOWN in counts else sum(counts)
 
-    def _check_whole(self) -> None:
+    def _refuse_damaged(self) -> None:
         """Refuse a bag so damaged that what is asked for may be in what is lost."""
         if self._flaw:
             raise InputError(self._damaged(self._flaw))
         for one in self._files:
-            flaw = one.flaw or one.file.flaw
-            if flaw is not None:
-                raise InputError(self._damaged(self._reason(one, flaw, 0)))
+            if one.flaw is not None:
+                raise InputError(self._damaged(self._reason(one, one.flaw, 0)))
 
-    def _reason(self, one: OpenFile, error: Exception, lost: int) -> str:
+    def _reason(self, one: MessageFile, error: Exception, lost: int) -> str:
         """What is wrong, where, and what is lost by it."""
         said = [" ".join(str(error).split()).rstrip(".") or type(error).__name__]
         if isinstance(error, Flaw) and error.place > 0:
-            said[0] += f", at byte {error.place:,} of {one.file.size:,}"
+            said[0] += f", at byte {error.place:,} of {one.size:,}"
         if len(self._files) > 1:
             said[0] += f" of {one.path.name}"
             unread = len(self._files) - self._files.index(one) - 1
@@ -223,21 +204,13 @@ class Bag:
 
 
 def topics(path: str | os.PathLike[str]) -> dict[str, str]:
-    """The topics of a bag with the types of their messages: `Bag.topics`.
-
-    Raises:
-        InputError: the bag is not there or cannot be read.
-    """
+    """The topics of a bag with the types of their messages: `Bag.topics`."""
     with Bag(path) as bag:
         return bag.topics()
 
 
 def read_messages(path: str | os.PathLike[str], wanted: Mapping[str, str]) -> Iterator[BagMessage]:
-    """The messages of some topics of a bag: `Bag.messages`.
-
-    Raises:
-        InputError: the bag is not there or cannot be read, and what `Bag.messages` raises.
-    """
+    """The messages of some topics of a bag: `Bag.messages`."""
     with ExitStack() as stack:
         messages = stack.enter_context(Bag(path)).messages(wanted)
         return _read_and_close(messages, stack.pop_all())
@@ -260,7 +233,7 @@ def _is_wanted(channel: BagChannel, wanted: Mapping[str, str]) -> bool:
     return wanted.get(channel.topic) == channel.type_name and channel.encoding in _ENCODINGS
 
 
-def _opened(path: Path, stack: ExitStack) -> OpenFile:
+def _opened(path: Path, stack: ExitStack) -> MessageFile:
     """Open a file, decompressed as a whole where it is compressed as a whole."""
     storage, flaw = path, None
     if path.name.endswith(COMPRESSED):
@@ -270,4 +243,5 @@ def _opened(path: Path, stack: ExitStack) -> OpenFile:
             flaw = Flaw(storage.stat().st_size, "its compressed bytes are damaged or cut off")
     file = _FORMATS[storage_of(path)](storage)
     stack.callback(file.close)
-    return OpenFile(path, file, flaw)
+    file.path, file.flaw = path, flaw or file.flaw
+    return file

@@ -2,8 +2,8 @@
 
 The database reads them itself. Where it finds them damaged or cut off, it loses what the tree that leads to the
 messages does not reach any more (of a file cut in the middle often all of them), though the leaves of the tree are
-there: then the messages are taken from the pages of the file. Source: https://www.sqlite.org/fileformat.html, sections
-1.6 and 2.1.
+there: then the messages are taken from the pages of the file, up to the first that a page does not hold. Source:
+https://www.sqlite.org/fileformat.html, sections 1.3, 1.6 and 2.1.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from __future__ import annotations
 import sqlite3
 import struct
 from collections.abc import Collection, Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import BinaryIO, Final, NamedTuple
 
@@ -31,14 +32,19 @@ class SqliteFile:
         Raises:
             OSError: it cannot be read.
         """
-        self._path = path
-        with path.open("rb") as file:
-            self._layout = _Layout(file.read(100))
+        self.path, self._storage = path, path
         self.size = path.stat().st_size
+        with path.open("rb") as file:
+            head = file.read(100)
+        page, reserved, changes, pages, counted = struct.unpack(">16xHxxB3xII60xI4x", head.ljust(100, b"\0"))
+        self._page: int = 65536 if page == 1 else page
+        self._usable: int = self._page - reserved
         self.flaw: Flaw | None = None
         self.channels: list[BagChannel] = []
-        # The database itself would fill up a page that was cut off with zeros.
-        self._cut = self._layout.cuts(self.size)
+        # The database itself would fill up a page that was cut off with zeros. Only a version that counts the pages
+        # says how many there are.
+        self._cut = len(head) < 100 or self.size % max(self._page, 1) > 0
+        self._cut |= changes == counted and pages * self._page > self.size
         if self._cut:
             self.flaw = Flaw(self.size, "it is cut off")
         elif path.with_name(f"{path.name}-wal").exists() and path.with_name(f"{path.name}-wal").stat().st_size:
@@ -77,13 +83,13 @@ class SqliteFile:
                 last = log_time, row
         except sqlite3.Error as error:
             flaw = flaw or Flaw(0, f"{_DAMAGED}: {error}")
-            with self._path.open("rb") as file:
+            with self._storage.open("rb") as file:
                 for row in self._whole_rows(file):
                     if row.topic in wanted and (last is None or (row.log_time, row.id) > last):
-                        data = self._layout.record(file, row)
-                        if data is None:
+                        if not row.size:
                             break
-                        yield RawMessage(row.log_time, 0, row.topic, data)
+                        file.seek(row.place)
+                        yield RawMessage(row.log_time, 0, row.topic, file.read(row.size))
         if flaw is not None:
             raise flaw
 
@@ -108,44 +114,16 @@ class SqliteFile:
     def _whole_rows(self, file: BinaryIO) -> list[_MessageRow]:
         """The messages by their log times, as their pages have them: all up to the first that is missing."""
         topics = {channel.id for channel in self.channels}
-        rows = {row.id: row for row in self._layout.rows(file) if row.topic in topics}
+        rows = {row.id: row for row in self._rows(file) if row.topic in topics}
         # The recorder numbers them from 1 on.
         number = 1
         while number in rows:
             number += 1
         return sorted(row for id_, row in rows.items() if id_ < number)
 
-
-class _MessageRow(NamedTuple):
-    """A message: where its record begins, how long it is, how much of that lies in its page, and of that its head."""
-
-    log_time: int
-    id: int
-    topic: int
-    place: int
-    size: int
-    local: int
-    head: int
-
-
-class _Layout:
-    """The pages of a file by its first 100 bytes; of a file that has none of them nothing is read."""
-
-    def __init__(self, head: bytes) -> None:
-        page, reserved, changes, pages, counted = struct.unpack(">16xHxxB3xII60xI4x", head.ljust(100, b"\0"))
-        self._page: int = 65536 if page == 1 else page
-        self._usable: int = self._page - reserved
-        # Only a version that counts the pages says how many there are.
-        self._pages = pages if len(head) == 100 and changes == counted else 0
-        self._whole = len(head) == 100
-
-    def cuts(self, size: int) -> bool:
-        """Whether a file of so many bytes is cut off."""
-        return not self._whole or self._pages * self._page > size or size % max(self._page, 1) > 0
-
-    def rows(self, file: BinaryIO) -> Iterator[_MessageRow]:
+    def _rows(self, file: BinaryIO) -> Iterator[_MessageRow]:
         """The messages whose cells are in any page, as far as it is there."""
-        if not self._whole or self._page < 512 or self._page & (self._page - 1) or self._usable < 480:
+        if self._page < 512 or self._usable < 480:
             return
         # The first page is that of the schema.
         place = self._page
@@ -154,55 +132,40 @@ class _Layout:
             if page[0] == _LEAF:
                 (count,) = struct.unpack_from(">H", page, 3)
                 for at in range(8, min(8 + 2 * count, len(page) - 1), 2):
-                    row = self._row(page, struct.unpack_from(">H", page, at)[0], place)
-                    if row is not None:
-                        yield row
+                    with suppress(LookupError, ValueError):
+                        yield self._row(page, struct.unpack_from(">H", page, at)[0], place)
             place += self._page
 
-    def _row(self, page: bytes, at: int, place: int) -> _MessageRow | None:
-        """The message of a cell; None where it is none, or not all there."""
-        try:
-            size, at = _varint(page, at)
-            id_, begin = _varint(page, at)
-            columns, at = _varint(page, begin)
-            types = []
-            while at < begin + columns:
-                kind, at = _varint(page, at)
-                types.append(kind)
-            null, topic_kind, time_kind, data_kind = types
-            if null or data_kind < 12 or data_kind % 2:
-                return None
-            topic, at = _integer(page, at, topic_kind)
-            log_time, at = _integer(page, at, time_kind)
-        except (LookupError, ValueError):
-            return None
-        local = self._local(size)
-        if at - begin + (data_kind - 12) // 2 != size or begin + local > len(page):
-            return None
-        return _MessageRow(log_time, id_, topic, place + begin, size, local, at - begin)
+    def _row(self, page: bytes, at: int, place: int) -> _MessageRow:
+        """The message of a cell; raises LookupError or ValueError where it is none, or not all there."""
+        size, at = _varint(page, at)
+        id_, begin = _varint(page, at)
+        columns, at = _varint(page, begin)
+        types = []
+        while at < begin + columns:
+            kind, at = _varint(page, at)
+            types.append(kind)
+        null, topic_kind, time_kind, data_kind = types
+        topic, at = _integer(page, at, topic_kind)
+        log_time, at = _integer(page, at, time_kind)
+        length = (data_kind - 12) // 2
+        if null or data_kind < 12 or data_kind % 2 or at - begin + length != size:
+            raise ValueError("no message")
+        if size > self._usable - 35:
+            return _MessageRow(log_time, id_, topic, 0, 0)
+        if begin + size > len(page):
+            raise ValueError("cut off")
+        return _MessageRow(log_time, id_, topic, place + at, length)
 
-    def _local(self, size: int) -> int:
-        """How many bytes of a record are in the page of its cell."""
-        most, least = self._usable - 35, (self._usable - 12) * 32 // 255 - 23
-        if size <= most:
-            return size
-        fitting = least + (size - least) % (self._usable - 4)
-        return fitting if fitting <= most else least
 
-    def record(self, file: BinaryIO, row: _MessageRow) -> bytes | None:
-        """The data of a message, or None where they are not all there."""
-        file.seek(row.place)
-        data = bytearray(file.read(row.local))
-        following = file.read(4)
-        while len(data) < row.size:
-            page = int.from_bytes(following, "big")
-            file.seek(max(0, page - 1) * self._page)
-            following = file.read(4)
-            more = file.read(min(self._usable - 4, row.size - len(data)))
-            if page < 2 or not more:
-                return None
-            data += more
-        return bytes(data[row.head :])
+class _MessageRow(NamedTuple):
+    """A message: where its data begin, and how long they are; 0 where they go on in another page."""
+
+    log_time: int
+    id: int
+    topic: int
+    place: int
+    size: int
 
 
 def _varint(data: bytes, at: int) -> tuple[int, int]:
