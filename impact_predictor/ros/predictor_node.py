@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import sys
+from array import array
+from collections.abc import Mapping, Sequence
+from difflib import get_close_matches
 from itertools import chain
-from typing import Any
+from typing import Any, Final
 
-from rcl_interfaces.msg import SetParametersResult
+from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor, SetParametersResult
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 from rclpy.exceptions import ParameterException
@@ -13,14 +17,15 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter as NodeParameter
 
 from ..errors import InputError
-from ..parameters.validation import is_of_every_node
+from ..parameters.validation import Parameter, Value, check_change, is_of_every_node, parameter_of, validate
 from ..prediction.monitor import Monitor
-from ..prediction.scene import Scene, inputs_of, scenes_of
+from ..prediction.scene import ODOM, Scene, inputs_of, scenes_of
 from .endpoints import Misfits
-from .node_parameters import NodeParameters, check_qos_overrides
 from .process import sentence
 from .reporter import Reporter
-from .topics import BodyTopics, listen_to_support
+from .topics import BodyTopics, InputTopic
+
+_QOS_OVERRIDES: Final = "qos_overrides."
 
 
 class PredictorNode(Node):
@@ -33,7 +38,7 @@ class PredictorNode(Node):
             InputError: a parameter is wrong.
         """
         try:
-            self._join()
+            super().__init__("impact_predictor", automatically_declare_parameters_from_overrides=True)
             self._settings = NodeParameters(self)
             self.executor_kind = str(self._settings.values["executor"])
             self._connect(scenes_of(self._settings.values))
@@ -41,15 +46,9 @@ class PredictorNode(Node):
             raise
         # What rclpy raises for a name, a parameter or a QoS override that it cannot take.
         except (RuntimeError, ValueError, TypeError, AssertionError, ParameterException) as error:
-            raise InputError(f"ROS refuses to make the node: {sentence(error)}") from error
-
-    def _join(self) -> None:
-        try:
-            super().__init__("impact_predictor", automatically_declare_parameters_from_overrides=True)
-        except ValueError as error:
             if "PARAMETER_NOT_SET" in str(error):
                 raise InputError("a parameter is given as [], which ROS reads as no value; leave it out") from error
-            raise
+            raise InputError(f"ROS refuses to make the node: {sentence(error)}") from error
 
     def _connect(self, scenes: dict[str, Scene]) -> None:
         if any(scene.samples for scene in scenes.values()):
@@ -58,22 +57,25 @@ class PredictorNode(Node):
         # Each subscription that tells what was lost costs the single-threaded executor as much as another topic.
         counts_losses = self.executor_kind == "events" or len(scenes) == 1
         self._reporter = reporter = Reporter(self, self._monitor, counts_losses)
-        of_support: list[Any] = []
-        self._bodies = {body: BodyTopics(self, reporter, self._monitor, body, of_support) for body in scenes}
+        self._told: list[InputTopic] = []
+        self._bodies: dict[str, BodyTopics] = {}
         self._inputs: dict[str, Any] = {}
         # What is subscribed to first is served first when messages wait on several; the samples come last.
-        for topic, kind, body in inputs_of(scenes):
-            if body is None:
-                self._inputs[topic] = listen_to_support(self, reporter, self._monitor, topic, kind)
-                of_support.append(self._inputs[topic])
-            elif (expected := self._bodies[body].listen(topic, kind)) is not None:
-                self._inputs[topic] = expected
+        for one in inputs_of(scenes):
+            if one.kind == ODOM and one.body is not None:
+                told = [other for other in self._told if other.body in (None, one.body)]
+                self._bodies[one.body] = BodyTopics(self, reporter, self._monitor, one, told)
+                self._inputs[one.name] = self._bodies[one.body].subscription
+            else:
+                self._told.append(InputTopic(self, reporter, self._monitor, one))
+                if self._told[-1].subscription is not None:
+                    self._inputs[one.name] = self._told[-1].subscription
         reporter.listen(list(self._inputs))
         outputs = chain.from_iterable(body.outputs.values() for body in self._bodies.values())
         self._misfits = Misfits(self, self._inputs.values(), outputs)
         # By a steady clock, so that the node reports while simulated time stands still.
         self.create_timer(1.0, self._on_second, clock=Clock(clock_type=ClockType.STEADY_TIME))
-        check_qos_overrides(self)
+        _check_qos_overrides(self)
 
     def set_parameters_atomically(self, parameter_list: list[NodeParameter]) -> SetParametersResult:
         """Set parameters while the node runs: all of them, for the next sample, or none, with the reason.
@@ -100,8 +102,8 @@ class PredictorNode(Node):
         return super().set_parameters_atomically(ours)
 
     def _on_second(self) -> None:
-        for body in self._bodies.values():
-            body.look_for_history()
+        for one in self._told:
+            one.look_for_history()
         diagnostics = self._reporter.diagnostics
         diagnostics.publishers = {name: self.count_publishers(one.topic_name) for name, one in self._inputs.items()}
         diagnostics.misfits = self._misfits.look()
@@ -115,3 +117,107 @@ class PredictorNode(Node):
         """End the record: publish the scores that it still settles, and see them received."""
         for body, scores in self._monitor.finish().items():
             self._bodies[body].publish_scores(scores)
+
+
+class NodeParameters:
+    """The parameters of the program as those of a node, under the same rules as offline: those that it began with, and
+    what is set while it runs. `values` are those that hold now.
+    """
+
+    def __init__(self, node: Node) -> None:
+        """Declare every parameter on a node that was made with those which the user gave.
+
+        Raises:
+            InputError: the user gave an unknown parameter or a bad value, or left out one that has no default.
+        """
+        parameters: Mapping[str, Any] = node.get_parameters_by_prefix("")
+        self._node = node
+        self._given = {name: _plain(parameter.value) for name, parameter in parameters.items()}
+        self.values = validate(self._given)
+        for name, depth in self._given.items():
+            if name.startswith(_QOS_OVERRIDES) and name.endswith(".depth") and not (type(depth) is int and depth > 0):
+                raise InputError(
+                    f"the parameter {name} is {depth!r}, but it must be a whole number of messages above 0"
+                )
+        for name, value in self.values.items():
+            if name in self._given:
+                node.set_descriptor(name, _descriptor(parameter_of(name)))
+            else:
+                self._declare(name, value)
+
+    def _declare(self, name: str, value: Value) -> None:
+        parameter = parameter_of(name)
+        plain: Any = value
+        if isinstance(value, tuple):
+            # An empty list does not say of what; declared by its type alone, the parameter is not set.
+            plain = list(value) or NodeParameter.Type[parameter.kind.upper()]
+        self._node.declare_parameter(name, plain, _descriptor(parameter))
+
+    def changed(self, parameters: Sequence[NodeParameter]) -> dict[str, Value]:
+        """The values that would hold with others for some parameters; nothing is changed.
+
+        Raises:
+            InputError: one is refused as at the start, or cannot change while the node runs.
+        """
+        others = _ours(parameters)
+        for name, value in others.items():
+            if value is None:
+                raise InputError(f"the parameter {name} cannot be deleted while the node runs; give it another value")
+        values = validate({**self._given, **others})
+        check_change(self.values, values)
+        return values
+
+    def take(self, parameters: Sequence[NodeParameter], values: dict[str, Value]) -> list[NodeParameter]:
+        """Take values that `changed` has made; the parameters that the node itself has still to set."""
+        others = _ours(parameters)
+        for name in others:
+            if not self._node.has_parameter(name):
+                self._declare(name, values[name])
+        was, self.values = self.values, values
+        self._given |= others
+        return [one for one in parameters if one.name not in others or was.get(one.name) != values[one.name]]
+
+
+def _ours(parameters: Sequence[NodeParameter]) -> dict[str, Any]:
+    """The values of parameters that are not of every node."""
+    return {one.name: _plain(one.value) for one in parameters if not is_of_every_node(one.name)}
+
+
+def _plain(value: Any) -> Any:
+    return list(value) if isinstance(value, array) else value
+
+
+def _descriptor(parameter: Parameter) -> ParameterDescriptor:
+    largest = sys.float_info.max
+    is_bounded = parameter.low > -largest or parameter.high < largest
+    ranges: dict[str, Any] = {}
+    if parameter.kind == "double" and is_bounded:
+        low, high = max(parameter.low, -largest), min(parameter.high, largest)
+        ranges = {"floating_point_range": [FloatingPointRange(from_value=low, to_value=high)]}
+    elif parameter.kind == "integer":
+        ranges = {"integer_range": [IntegerRange(from_value=int(parameter.low), to_value=int(parameter.high))]}
+    unit = f" [{parameter.unit}]" if parameter.unit else ""
+    return ParameterDescriptor(
+        type=NodeParameter.Type[parameter.kind.upper()].value,
+        description=f"{parameter.description}{unit}",
+        additional_constraints=" or ".join(parameter.choices),
+        read_only=bool(parameter.fixed),
+        **ranges,
+    )
+
+
+def _check_qos_overrides(node: Node) -> None:
+    """Find overrides of QoS that fit no topic of a node that has all its topics.
+
+    Raises:
+        InputError: there is one.
+    """
+    known = [f"{one.topic_name}.subscription" for one in node.subscriptions]
+    known += [f"{one.topic_name}.publisher" for one in node.publishers if one.topic_name != "/parameter_events"]
+    for name in node.get_parameters_by_prefix("qos_overrides"):
+        endpoint = name.rpartition(".")[0]
+        if endpoint not in known:
+            near = get_close_matches(endpoint, known, 5, 0.0)
+            raise InputError(
+                f"the parameter {_QOS_OVERRIDES}{name} is of no topic of this node; near it there are {', '.join(near)}"
+            )

@@ -1,14 +1,14 @@
-"""What goes to /diagnostics: the units whenever their reports are due, and the node itself every second."""
+"""What goes to /diagnostics and ~/markers: the units whenever their reports are due, the node itself every second."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 from rclpy.node import Node
 
-from ..prediction.scene import Scene
+from ..prediction.monitor import Monitor
+from ..prediction.scene import CONTACT_GEOMETRY, IMU, Input
 from ..prediction.types import Geometry, Prediction, Status
 from ..stamps import NANOSECONDS
 from .cdr import diagnostic_array
@@ -17,7 +17,6 @@ from .endpoints import Outlet, publisher
 from .messages.outputs import DIAGNOSTIC_ARRAY, MARKER_ARRAY, encode_reports, unit_status
 
 if TYPE_CHECKING:
-    from ..prediction.monitor import Monitor
     from ..prediction.watch.watch import Report
     from .markers.scene import MarkerScene
 
@@ -25,17 +24,28 @@ if TYPE_CHECKING:
 class MarkerTopic:
     """Publishes what a drawing of the scenes shows; `drawing` is there while somebody looks."""
 
-    def __init__(self, node: Node, scenes: Mapping[str, Scene]) -> None:
+    def __init__(self, node: Node, monitor: Monitor) -> None:
         self.publisher = publisher(node, "~/markers", MARKER_ARRAY)
         self.drawing: MarkerScene | None = None
-        self._scenes = scenes
+        self._monitor = monitor
         self._geometries: dict[str, Geometry] = {}
 
-    def set_geometry(self, body: str, geometry: Geometry) -> None:
-        """Take the contact points of a body that are no parameters, for now or later."""
-        self._geometries[body] = geometry
-        if self.drawing is not None:
-            self.drawing.set_geometry(body, geometry)
+    def take(self, one: Input, message: Any) -> None:
+        """Take an accepted message on an input: contact points also for later."""
+        drawing, monitor, body = self.drawing, self._monitor, one.body or ""
+        if one.kind == CONTACT_GEOMETRY:
+            self._geometries[body] = message
+            if drawing is not None:
+                drawing.set_geometry(body, message)
+        elif drawing is None:
+            return
+        elif one.body is None:
+            if monitor.deck is not None and monitor.deck.last is not None:
+                drawing.take_support(monitor.deck.last)
+                self.show(message.stamp)
+        elif one.kind == IMU:
+            drawing.take_tilt(body, message.stamp, monitor.tilts[body])
+            self.show(message.stamp)
 
     def begin_anew(self) -> None:
         """Draw from now on what the scenes have become."""
@@ -49,16 +59,15 @@ class MarkerTopic:
         elif self.drawing is None:
             from .markers.scene import MarkerScene
 
-            self.drawing = MarkerScene(self._scenes)
+            self.drawing = MarkerScene(self._monitor.scenes)
             for body, geometry in self._geometries.items():
                 self.drawing.set_geometry(body, geometry)
 
     def show(self, stamp: int) -> None:
         """Publish the drawing if the time for it has come."""
-        if self.drawing is not None:
-            data = self.drawing.due(stamp)
-            if data is not None:
-                self.publisher.publish(data)
+        data = None if self.drawing is None else self.drawing.due(stamp)
+        if data is not None:
+            self.publisher.publish(data)
 
 
 class Reporter:
@@ -72,22 +81,19 @@ class Reporter:
         self._node = node
         self._name = node.get_fully_qualified_name().lstrip("/")
         self._monitor = monitor
-        self._units = monitor.watch is not None
         # The stamp that counts, and when it came: that of the support where it has one.
         self._time: tuple[int, float] | None = None
-        self._support = ""
 
     def listen(self, inputs: list[str]) -> None:
         """Expect messages on these inputs; the first is of the support where that moves."""
         # Last, because what is drawn takes the longest to load, and nobody waits for it.
-        self.markers = MarkerTopic(self._node, self._monitor.scenes)
+        self.markers = MarkerTopic(self._node, self._monitor)
         self._support = inputs[0] if self._monitor.deck is not None else ""
         self.diagnostics = Diagnostics(self._name, perf_counter(), inputs)
         self.diagnostics.lost = None if self.on_lost is None else 0
-        feet = [body for body, scene in self._monitor.scenes.items() if scene.walking is not None]
-        if feet:
-            predictors = self._monitor.predictors
-            self.diagnostics.feet = {body: FeetReport(body, predictors[body].contacts) for body in feet}
+        for body, scene in self._monitor.scenes.items():
+            if scene.walking is not None:
+                self.diagnostics.feet[body] = FeetReport(body, self._monitor.predictors[body].contacts)
 
     def _on_lost(self, event: Any) -> None:
         self.diagnostics.lost = (self.diagnostics.lost or 0) + event.total_count_change
@@ -104,59 +110,46 @@ class Reporter:
             self.markers.show(sample.stamp)
         if not self._support or self._time is None:
             self._time = sample.stamp, now
-        if self.diagnostics.accepted(now, name, sample.stamp, latency, update, now - began):
-            self.report()
-        if self._units:
-            self.report_units()
+        self._publish(self.diagnostics.accepted(now, name, sample.stamp, latency, update, now - began))
 
-    def took(self, name: str, status: Status, stamp: int) -> None:
-        """The monitor has taken another message, or refused it."""
-        if status is not Status.ACCEPTED:
-            self.refuse(name, status)
-            return
-        now = perf_counter()
+    def took(self, one: Input, message: Any) -> None:
+        """The monitor has accepted another message."""
+        self.markers.take(one, message)
+        now, name = perf_counter(), one.name
         if name in self.diagnostics.publishers and (name == self._support or not self._support or self._time is None):
-            self._time = stamp, now
-        if self.diagnostics.taken(now, name):
-            self.report()
-        if self._units:
-            self.report_units()
+            self._time = message.stamp, now
+        self._publish(self.diagnostics.taken(now, name))
 
     def refuse(self, name: str, status: Status) -> None:
         """A message on an input was refused."""
         reason = Refusal(name, status)
-        if self.diagnostics.refused(perf_counter(), reason):
-            self.report()
+        changed = self.diagnostics.refused(perf_counter(), reason)
         if self.diagnostics.is_news(reason):
             self._node.get_logger().warning(f"refused a message on {reason}")
-        if self._units:
-            self.report_units()
-
-    def report_units(self) -> None:
-        """Publish the reports on the units that are due."""
-        reports = self._due()
-        if reports:
-            stamp = max(report.stamp for report in reports)
-            self._outlet.send(encode_reports(reports, stamp, self._name))
+        self._publish(changed)
 
     def second_over(self) -> None:
         """Sum up a second of the steady clock, in which time goes on for the units too."""
         now = perf_counter()
         self.diagnostics.second_over(now)
-        if self._units and self._time is not None:
+        if self._monitor.watch is not None and self._time is not None:
             stamp, heard = self._time
             self._monitor.silent(stamp + round((now - heard) * NANOSECONDS))
         self.markers.look_for_viewers()
-        self.report()
+        self._publish(True)
 
-    def report(self) -> None:
-        """Publish what the node says about itself, with the reports on the units that are due."""
-        if self._outlet.listeners():
+    def _publish(self, changed: bool) -> None:
+        """Publish the reports on the units that are due, after that of the node if it has changed."""
+        if not changed and self._monitor.watch is None:
+            return
+        reports = self._due()
+        if changed and self._outlet.listeners():
             statuses = [self.diagnostics.report(perf_counter())]
-            if self._units:
-                statuses += [unit_status(report, self._name) for report in self._due()]
-            stamp = self._node.get_clock().now().nanoseconds
-            self._outlet.send(diagnostic_array(stamp, "", statuses))
+            statuses += [unit_status(report, self._name) for report in reports]
+            self._outlet.send(diagnostic_array(self._node.get_clock().now().nanoseconds, "", statuses))
+        elif reports:
+            stamp = max(report.stamp for report in reports)
+            self._outlet.send(encode_reports(reports, stamp, self._name))
 
     def _due(self) -> tuple[Report, ...]:
         """The reports on the units that are due, if anybody listens."""

@@ -16,6 +16,7 @@ from impact_predictor.ros.processes import Child
 
 # A process starts within a second or two, on a busy machine within ten; a test that waits longer has failed.
 PATIENCE = 60.0
+PAUSE = 0.02
 
 
 class Peer:
@@ -33,12 +34,16 @@ class Peer:
     def hear(self, topic, type_name, heard):
         self.node.create_subscription(message_class(type_name), topic, heard.append, QoSProfile(depth=1000), raw=True)
 
-    def until(self, condition):
-        """Serve the topics until something is so."""
-        patience = time.monotonic() + PATIENCE
+    def until(self, condition, act=bool):
+        """Serve the topics until something is so, and act again and again, but not as often as answers come."""
+        now = time.monotonic()
+        patience, due = now + PATIENCE, now
         while not condition():
-            assert time.monotonic() < patience, f"not within {PATIENCE:.0f} s; reported: {self.report()}"
-            self.executor.spin_once(timeout_sec=0.02)
+            if (now := time.monotonic()) >= due:
+                act()
+                due = now + PAUSE
+            assert now < patience, f"not within {PATIENCE:.0f} s; reported: {self.report()}"
+            self.executor.spin_once(timeout_sec=PAUSE)
 
     def publisher(self, message_type, topic, qos):
         return self.node.create_publisher(message_type, topic, qos)
@@ -57,16 +62,11 @@ class Peer:
         return self.connected(publisher)
 
     def until_reported(self, condition, act=bool):
-        """Serve the topics, and act again and again, until the node's latest report on itself is so; that report.
+        """As `until`, for the node's latest report on itself; that report.
 
         Each report that comes is looked at, so that one that holds for a second alone is not missed.
         """
-
-        def reported():
-            act()
-            return self.heard["diagnostics"] and condition(self.report())
-
-        self.until(reported)
+        self.until(lambda: self.heard["diagnostics"] and condition(self.report()), act)
         return self.report()
 
     def report(self):

@@ -130,19 +130,25 @@ def test_contact_points_that_change_in_mid_flight_count_from_the_next_sample_on(
         )
         stamps = iter(range(10**9, 10**12, 10**7))
 
+        def fall():
+            samples.publish(encode_odometry(falling._replace(stamp=next(stamps))))
+
         def strikes_with():
             """The points with which the body is announced to strike."""
-            samples.publish(encode_odometry(falling._replace(stamp=next(stamps))))
             heard = peer.heard["prediction"]
             return decode_diagnostic_array(heard[-1])[0].values.get("new") if heard else None
 
+        def tell_and_fall():
+            shapes.publish(encode_polygon(Geometry(0, "", POINTS)))
+            fall()
+
         # The lower edge of the cube; a message of best effort may come before the node has found its publisher.
-        peer.until(lambda: shapes.publish(encode_polygon(Geometry(0, "", POINTS))) or strikes_with() == "4 6")
+        peer.until(lambda: strikes_with() == "4 6", tell_and_fall)
         # Then that of its hind side, drawn out, and then the only lower point that is left.
         for count, size, striking in ((4, 2.0, "0 2"), (0, 1.0, "0 2"), (2, 1.0, "0")):
             points = tuple((x, size * y, z) for x, y, z in POINTS[:count])
             shapes.publish(encode_polygon(Geometry(0, "", points)))
-            peer.until(lambda striking=striking: strikes_with() == striking)
+            peer.until(lambda striking=striking: strikes_with() == striking, fall)
         peer.until(lambda: peer.reported("refused.contact_geometry.TOO_FEW_POINTS") == "1")
         assert "Traceback" not in node.complained()
 

@@ -90,7 +90,7 @@ def test_samples_before_the_geometry_are_refused_by_name_and_those_after_it_answ
         samples.publish(odometry(0))
         peer.until(lambda: peer.reported("refused.odom.NO_GEOMETRY") == "1")
         geometry = peer.connected(peer.publisher(PolygonStamped, "contact_geometry", RELIABLE))
-        peer.until(answers_to(peer, samples, lambda: geometry.publish(polygon())))
+        until_answered(peer, samples, lambda: geometry.publish(polygon()))
 
 
 @pytest.mark.slow
@@ -98,19 +98,13 @@ def test_samples_before_the_geometry_are_refused_by_name_and_those_after_it_answ
 def test_geometry_that_was_latched_before_the_node_started_is_found(peer, executor):
     peer.publisher(PolygonStamped, "contact_geometry", LATCHED).publish(polygon())
     with running("-p", f"executor:={executor}"):
-        peer.until(answers_to(peer, peer.connected(peer.publisher(Odometry, "odom", RELIABLE))))
+        until_answered(peer, peer.connected(peer.publisher(Odometry, "odom", RELIABLE)))
 
 
-def answers_to(peer, samples, before=bool):
-    """A condition: the node answers to one of the samples that are published until it does."""
+def until_answered(peer, samples, before=bool):
+    """Publish samples until the node answers to one of them."""
     stamps = iter(range(1, 10_000))
-
-    def answered():
-        before()
-        samples.publish(odometry(next(stamps)))
-        return peer.heard["mode"]
-
-    return answered
+    peer.until(lambda: peer.heard["mode"], lambda: (before(), samples.publish(odometry(next(stamps)))))
 
 
 @pytest.mark.slow
@@ -118,17 +112,12 @@ def answers_to(peer, samples, before=bool):
 def test_geometry_that_changes_while_the_node_runs_is_taken_from_every_kind_of_publisher(peer, qos):
     with running():
         geometry = peer.connected(peer.publisher(PolygonStamped, "contact_geometry", qos))
-
         # One point is refused, and two are taken. Best effort may lose a message, so each is told until it is known.
-        def told(points, known):
-            geometry.publish(polygon(points))
-            peer.executor.spin_once(timeout_sec=0.05)
-            return known()
-
-        peer.until(lambda: told(POINTS[:1], lambda: peer.reported("refused.contact_geometry.TOO_FEW_POINTS")))
+        few = "refused.contact_geometry.TOO_FEW_POINTS"
+        peer.until_reported(lambda report: few in report.values, lambda: geometry.publish(polygon(POINTS[:1])))
         for points in (POINTS, POINTS[:2]):
-            told(points, bool)
-        peer.until(answers_to(peer, peer.connected(peer.publisher(Odometry, "odom", RELIABLE))))
+            geometry.publish(polygon(points))
+        until_answered(peer, peer.connected(peer.publisher(Odometry, "odom", RELIABLE)))
 
 
 @pytest.mark.slow

@@ -153,7 +153,7 @@ def test_diagnostics_say_which_feet_stand_how_late_they_land_and_which_sensor_di
         machine = Machine(peer, types, steps())
         schedule = machine.publishers["schedule"]
         # What is published before the node has found the publisher is lost; a message that is none tells when it has.
-        peer.until(lambda: schedule.publish(b"\0") or peer.reported("refused.schedule.MALFORMED"))
+        peer.until(lambda: peer.reported("refused.schedule.MALFORMED"), lambda: schedule.publish(b"\0"))
         schedule.publish(encode_schedule(plan(100.0, earlier=0.01)))
         walk_until(peer, machine, lambda: int(peer.reported("feet.landings") or 0) >= 8)
         walk_until(peer, machine, lambda: "force sensor of RF does not agree" in peer.report().message)
