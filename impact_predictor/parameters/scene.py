@@ -121,30 +121,20 @@ def _check_feet(one: _Given) -> None:
         raise InputError(
             f"{one.named(points)} and {one.named(feet)} are both given: feet move, so their points come with messages"
         )
-    _check_robot(one)
-
-
-def _check_robot(one: _Given) -> None:
-    """Whether a machine that walks has a model with a frame for each point of its feet, or none."""
-    values = one.values
-    frames = values["robot.frames"]
-    if not values["robot.urdf"]:
-        if frames and one.is_own("robot.frames"):
-            raise InputError(f"{one.named('robot.frames')} are frames of a model: give its file as robot.urdf")
-        return
-    feet, points = len(values["feet.names"]), values["feet.points"]
-    if len(frames) != feet * points:
+    frames, named = len(values["robot.frames"]), one.named("robot.frames")
+    if frames and not values["robot.urdf"] and one.is_own("robot.frames"):
+        raise InputError(f"{named} are frames of a model: give its file as robot.urdf")
+    if values["robot.urdf"] and frames != len(values[feet]) * values["feet.points"]:
         raise InputError(
-            f"{one.named('robot.frames')} has {len(frames)} names{one.of}, but feet.names has {feet} and feet.points "
-            f"is {points}: give one frame for each point of each foot"
+            f"{named} has {frames} names{one.of}, but feet.names has {len(values[feet])} and feet.points "
+            f"is {values['feet.points']}: give one frame for each point of each foot"
         )
 
 
 def _check_gravity(one: _Given) -> None:
     values = one.values
-    if values["support.motion"] == "fixed" and not values["onset.watch"]:
-        return
-    if sum(g * n for g, n in zip(values["gravity"], values["support.normal"], strict=True)) > 0.0:
+    is_felt = values["support.motion"] != "fixed" or values["onset.watch"]
+    if is_felt and sum(g * n for g, n in zip(values["gravity"], values["support.normal"], strict=True)) > 0.0:
         raise InputError(
             f"gravity points out of the support{one.of}, so everything falls off it: it is the acceleration of a free "
             "body, [0.0, 0.0, -9.81] where z points up"

@@ -5,7 +5,6 @@ from __future__ import annotations
 from math import tau
 from typing import Final
 
-from .flaws import edges_flaw, extent_flaw, feet_flaw, inertia_flaw, names_flaw, normal_flaw, points_flaw
 from .types import (
     BEGINNING,
     COMPUTED,
@@ -17,8 +16,15 @@ from .types import (
     boolean,
     double,
     doubles,
+    edges_flaw,
+    extent_flaw,
+    feet_flaw,
+    inertia_flaw,
     integer,
     metres,
+    names_flaw,
+    normal_flaw,
+    points_flaw,
     ratio,
     seconds,
     text,

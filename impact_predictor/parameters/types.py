@@ -1,8 +1,9 @@
-"""Parameters, and which values they may have."""
+"""Parameters, which values they may have, and what is wrong with a value: a part of a sentence, or ""."""
 
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any, Final, NamedTuple
@@ -64,57 +65,44 @@ def values_of(values: Mapping[str, Any], body: str) -> dict[str, Any]:
     return {**values, **own}
 
 
+_TYPES: Final[dict[str, type]] = {"bool": bool, "integer": int, "double": float, "string": str}
+
+
 def check(parameter: Parameter, value: object) -> Value:
     """The value of a parameter, a list as a tuple.
 
     Raises:
         InputError: it has the wrong type, is out of range, or has a flaw.
     """
-    if parameter.kind == "bool":
-        if not isinstance(value, bool):
-            raise _refusal(parameter, value)
-        return value
-    if parameter.kind == "integer":
-        if not isinstance(value, int) or isinstance(value, bool) or not parameter.low <= value <= parameter.high:
-            raise _refusal(parameter, value)
-        return value
-    if parameter.kind == "string":
-        if not isinstance(value, str) or (parameter.choices and value not in parameter.choices):
-            raise _refusal(parameter, value)
-        return value
-    if parameter.kind == "double":
-        return _numbers(parameter, value, [value])[0]
-    if isinstance(value, str | bytes) or not isinstance(value, Sequence):
-        raise _refusal(parameter, value)
-    items: Any = tuple(value)
-    if parameter.kind == "double_array":
-        items = _numbers(parameter, value, value)
-    elif not all(isinstance(item, str) for item in items):
-        raise _refusal(parameter, value)
-    if parameter.lengths and len(items) not in parameter.lengths:
-        raise _refusal(parameter, value)
-    flaw = parameter.flaw(items) if parameter.flaw else ""
+    kind, is_list = parameter.kind.removesuffix("_array"), parameter.kind.endswith("_array")
+    is_sequence = isinstance(value, Sequence) and not isinstance(value, str | bytes)
+    items: Any = tuple(value) if is_list and is_sequence else (value,)  # type: ignore[arg-type]
+    flaw = "" if is_list <= is_sequence else f"it must be {allowed(parameter)}"
+    for item in items:
+        flaw = flaw or _flaw(parameter, kind, item)
+    if not flaw and parameter.lengths and len(items) not in parameter.lengths:
+        flaw = f"it must be {allowed(parameter)}"
+    if not flaw and parameter.flaw:
+        flaw = parameter.flaw(items)
     if flaw:
-        raise _refusal(parameter, value, flaw)
-    return items  # type: ignore[no-any-return]
+        shown = list(value) if is_sequence else value  # type: ignore[call-overload]
+        raise InputError(f"the parameter {parameter.name} is {shown!r}, but {flaw}")
+    if kind == "double":
+        items = tuple(map(float, items))
+    return items if is_list else items[0]  # type: ignore[no-any-return]
 
 
-def _numbers(parameter: Parameter, value: object, numbers: Sequence[object]) -> tuple[float, ...]:
-    checked = []
-    for number in numbers:
-        if isinstance(number, int) and not isinstance(number, bool):
-            raise _refusal(
-                parameter, value, f"ROS takes no integer for a double, so write {float(number)} for {number}"
-            )
-        if not isinstance(number, float) or not (math.isfinite(number) and parameter.low <= number <= parameter.high):
-            raise _refusal(parameter, value)
-        checked.append(float(number))
-    return tuple(checked)
-
-
-def _refusal(parameter: Parameter, value: object, flaw: str = "") -> InputError:
-    shown = list(value) if isinstance(value, Sequence) and not isinstance(value, str | bytes) else value
-    return InputError(f"the parameter {parameter.name} is {shown!r}, but {flaw or f'it must be {allowed(parameter)}'}")
+def _flaw(parameter: Parameter, kind: str, item: Any) -> str:
+    """What is wrong with one value, or one of a list, or ""."""
+    is_whole = isinstance(item, int) and not isinstance(item, bool)
+    if kind == "double" and is_whole:
+        return f"ROS takes no integer for a double, so write {float(item)} for {item}"
+    fits = is_whole if kind == "integer" else isinstance(item, _TYPES[kind])
+    if fits and kind in ("integer", "double"):
+        fits = math.isfinite(item) and parameter.low <= item <= parameter.high
+    elif fits and parameter.choices:
+        fits = item in parameter.choices
+    return "" if fits else f"it must be {allowed(parameter)}"
 
 
 def allowed(parameter: Parameter) -> str:
@@ -122,22 +110,92 @@ def allowed(parameter: Parameter) -> str:
     if parameter.choices:
         *others, last = map(repr, parameter.choices)
         return f"{', '.join(others)} or {last}"
-    if parameter.kind == "bool":
-        return "true or false"
-    if parameter.kind == "string":
-        return "a text"
-    if parameter.kind == "string_array":
-        return "a list of texts"
-    unit = "" if parameter.unit == "1" else f" {parameter.unit}"
-    bounds = []
-    if math.isfinite(parameter.low):
-        bounds.append(f"from {parameter.low:g}")
-    if math.isfinite(parameter.high):
-        bounds.append(f"to {parameter.high:g}")
-    limits = " ".join(["", *bounds])
-    if parameter.kind == "integer":
-        return f"a whole number{limits}"
-    if parameter.kind == "double":
-        return f"a finite double{limits}{unit}"
     count = f"{' or '.join(map(str, parameter.lengths))} " if parameter.lengths else ""
-    return f"a list of {count}finite doubles{limits}{unit}"
+    words = {
+        "bool": "true or false",
+        "string": "a text",
+        "string_array": "a list of texts",
+        "integer": "a whole number",
+        "double": "a finite double",
+        "double_array": f"a list of {count}finite doubles",
+    }[parameter.kind]
+    low = f" from {parameter.low:g}" if math.isfinite(parameter.low) else ""
+    high = f" to {parameter.high:g}" if math.isfinite(parameter.high) else ""
+    return f"{words}{low}{high}" + (f" {parameter.unit}" if parameter.unit not in ("", "1") else "")
+
+
+ROUNDED: Final = 0.01
+"""By this part of its trace an inertia may miss the triangle inequality: thin plates are given with few digits."""
+
+_PART_OF_A_NAME: Final = re.compile(r"[A-Za-z](_?[A-Za-z0-9])*")
+"""No two underscores in a row: ROS keeps those for itself."""
+
+SIZES_OF_INERTIA: Final = (1e-30, 1e30)
+"""kg m^2: of a grain of dust and of a moon; products of three still are numbers."""
+
+
+def inertia_flaw(inertia: tuple[float, ...]) -> str:
+    """Of one number, or of ixx, iyy, izz, ixy, ixz, iyz (kg m^2)."""
+    least, greatest = SIZES_OF_INERTIA
+    if max(inertia) > greatest:
+        return f"it must be at most {greatest:g} kg m^2"
+    moments = [inertia[0]] * 3
+    if len(inertia) > 1:
+        from numpy.linalg import eigvalsh
+
+        xx, yy, zz, xy, xz, yz = inertia
+        moments = [float(moment) for moment in eigvalsh([(xx, xy, xz), (xy, yy, yz), (xz, yz, zz)])]
+    if not moments[0] > 0.0:
+        return "its matrix must be positive definite" if len(inertia) > 1 else "it must be positive"
+    if moments[2] > (0.5 + ROUNDED) * (moments[0] + moments[1] + moments[2]):
+        return "no body has it: about each axis, inertia is at most the sum of that about the two axes across it"
+    return "" if moments[0] >= least else f"it must be at least {least:g} kg m^2"
+
+
+def points_flaw(numbers: tuple[float, ...]) -> str:
+    """Of contact points, x y z of each (m)."""
+    if len(numbers) % 3:
+        return f"it must have three numbers for each point, not {len(numbers)} in all"
+    points = [numbers[k : k + 3] for k in range(0, len(numbers), 3)]
+    if len(points) == 1:
+        return "a body needs at least two contact points"
+    for k, point in enumerate(points):
+        if point in points[:k]:
+            return f"the points {points.index(point)} and {k} coincide"
+    return ""
+
+
+def normal_flaw(normal: tuple[float, ...]) -> str:
+    """Of a direction."""
+    return "" if 0.0 < math.hypot(*normal) < math.inf else "it must have a direction"
+
+
+def edges_flaw(numbers: tuple[float, ...]) -> str:
+    """Of two edges, x y z of a point of each (m)."""
+    return "the two edges coincide" if numbers[:3] == numbers[3:] else ""
+
+
+def extent_flaw(extent: tuple[float, ...]) -> str:
+    """Of a rectangle: least x, greatest x, least y, greatest y (m)."""
+    least_x, greatest_x, least_y, greatest_y = extent
+    return "" if least_x < greatest_x and least_y < greatest_y else "each least must be below its greatest"
+
+
+def names_flaw(names: tuple[str, ...]) -> str:
+    """Of the names of bodies, which become parts of the names of topics."""
+    for name in names:
+        if not _PART_OF_A_NAME.fullmatch(name):
+            return (
+                f"{name!r} is no part of a ROS name: take letters, digits and single underscores, and begin and end "
+                "with a letter or a digit, the first one a letter"
+            )
+    return _twice(names)
+
+
+def feet_flaw(names: tuple[str, ...]) -> str:
+    """Of the names of feet or of frames, by which messages and models call them."""
+    return "a name is empty" if "" in names else _twice(names)
+
+
+def _twice(names: tuple[str, ...]) -> str:
+    return next((f"{name!r} is there twice" for k, name in enumerate(names) if name in names[:k]), "")

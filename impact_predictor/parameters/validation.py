@@ -45,19 +45,16 @@ def validate(values: Mapping[str, object]) -> dict[str, Value]:
         (checked if name in PARAMETERS else own)[name] = check(parameter._replace(name=name), value)
     defaults = {one.name: one.default for one in PARAMETERS.values() if one.default is not None}
     checked = defaults | checked
-    of_each = [values_of(checked | own, body) for body in bodies or ("",)]
-    for parameter in PARAMETERS.values():
-        # The model of a machine may tell it.
-        lacking = [
-            body
-            for body, its in zip(bodies or ("",), of_each, strict=True)
-            if not (parameter.name in its or (parameter.of_model and its["robot.urdf"]))
-        ]
-        if lacking:
-            raise _missing(parameter, lacking if bodies else [])
+    of_each = {body: values_of(checked | own, body) for body in bodies or ("",)}
+    for name, parameter in PARAMETERS.items():
+        for body, its in of_each.items():
+            # The model of a machine may tell it.
+            if not (name in its or (parameter.of_model and its["robot.urdf"])):
+                meaning, of = parameter.description.rstrip("."), f", or {body}.{name} for {body} alone" if body else ""
+                raise InputError(f"the parameter {name} is missing: give {allowed(parameter)} ({meaning}){of}")
     # In one order, whatever that of the file.
     checked = {name: checked[name] for name in PARAMETERS if name in checked} | own
-    for body in bodies or ("",):
+    for body in of_each:
         check_body(body, values_of(checked, body), set(given))
     return checked
 
@@ -119,9 +116,3 @@ def _hint(name: str, bodies: Sequence[str]) -> str:
     of_bodies = [f"{body}.{one.name}" for body in bodies for one in PARAMETERS.values() if not one.shared]
     close = difflib.get_close_matches(name, [*PARAMETERS, *of_bodies], n=1, cutoff=0.5)
     return f", did you mean {close[0]}?" if close else f"; there are {', '.join(PARAMETERS)}"
-
-
-def _missing(parameter: Parameter, lacking: Sequence[str]) -> InputError:
-    of = f", or {lacking[0]}.{parameter.name} for {lacking[0]} alone" if lacking else ""
-    meaning = parameter.description.rstrip(".")
-    return InputError(f"the parameter {parameter.name} is missing: give {allowed(parameter)} ({meaning}){of}")

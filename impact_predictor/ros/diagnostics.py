@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter, deque
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from ..prediction.checks import REMEDIES
@@ -33,15 +33,9 @@ class Refusal(NamedTuple):
         return f"{self.input} {self.status.name}: {REMEDIES[self.status]}"
 
 
-class _Second(NamedTuple):
-    """Figures of a second that is over: Hz, then s."""
-
-    rate: float = 0.0
-    largest_gap: float = 0.0
-    latency: float | None = None
-    update_median: float | None = None
-    update_max: float | None = None
-    total_median: float | None = None
+def shown(figures: Iterable[tuple[str, str, object]]) -> dict[str, str]:
+    """Texts by their keys, of figures each with its format; those that nobody knows are left out."""
+    return {key: format(value, form) for key, form, value in figures if value is not None}
 
 
 class Diagnostics:
@@ -74,7 +68,8 @@ class Diagnostics:
         self._touchdowns = 0
         self._scored = 0
         self._errors: deque[float] = deque(maxlen=1000)
-        self._second = _Second()
+        self._second: tuple[float, float, float | None] = 0.0, 0.0, None
+        self._costs: list[float] | None = None
         self._refused_now: Counter[Refusal] = Counter()
         self._begin_second(now)
 
@@ -150,14 +145,11 @@ class Diagnostics:
             feet.second_over()
         changed = self._judge(now, at_its_end=True)
         updates = self._updates
-        self._second = _Second(
-            rate=len(updates) / max(now - self._began, 1e-9),
-            largest_gap=self._largest_gap / NANOSECONDS,
-            latency=None if self._latency is None else self._latency / NANOSECONDS,
-            update_median=median(updates) if updates else None,
-            update_max=max(updates) if updates else None,
-            total_median=median(self._totals) if updates else None,
-        )
+        latency = None if self._latency is None else self._latency / NANOSECONDS
+        if latency is not None and abs(latency) >= COMPARABLE:
+            latency = None
+        self._second = len(updates) / max(now - self._began, 1e-9), self._largest_gap / NANOSECONDS, latency
+        self._costs = [median(updates), max(updates), median(self._totals)] if updates else None
         self._begin_second(now)
         return changed
 
@@ -168,44 +160,33 @@ class Diagnostics:
         )
 
     def _values(self, now: float) -> dict[str, str]:
-        second = self._second
-        values = {
-            "samples.accepted": str(self._accepted),
-            "samples.rate": f"{second.rate:.1f}",
-            "samples.largest_gap": f"{second.largest_gap:.4f}",
-            "samples.publishers": str(sum(self.publishers.values())),
-            "samples.dropped": str(self._dropped),
-            "samples.lost": str(self.lost),
-            "incompatible_qos": str(len(self.misfits)),
-        }
-        if self.lost is None:
-            del values["samples.lost"]
-        if self._last:
-            values["samples.seconds_since_last"] = f"{now - max(self._last.values()):.3f}"
-        if second.latency is not None and abs(second.latency) < COMPARABLE:
-            values["samples.latency"] = f"{second.latency:.6f}"
-        for reason in sorted(self._refused):
-            values[f"refused.{reason.input}.{reason.status.name}"] = str(self._refused[reason])
-        for name, cost in (
-            ("update.median", second.update_median),
-            ("update.max", second.update_max),
-            ("total.median", second.total_median),
-        ):
-            if cost is not None:
-                values[f"cost_us.{name}"] = f"{cost * 1e6:.1f}"
-        values["touchdowns"] = str(self._touchdowns)
-        values["touchdowns.scored"] = str(self._scored)
-        if self._errors:
-            values["touchdowns.median_relative_error"] = f"{median(self._errors):.4f}"
+        rate, largest_gap, latency = self._second
+        since = now - max(self._last.values()) if self._last else None
+        update, longest, total = [1e6 * cost for cost in self._costs] if self._costs else (None, None, None)
+        figures: list[tuple[str, str, object]] = [
+            ("samples.accepted", "d", self._accepted),
+            ("samples.rate", ".1f", rate),
+            ("samples.largest_gap", ".4f", largest_gap),
+            ("samples.publishers", "d", sum(self.publishers.values())),
+            ("samples.dropped", "d", self._dropped),
+            ("samples.lost", "d", self.lost),
+            ("incompatible_qos", "d", len(self.misfits)),
+            ("samples.seconds_since_last", ".3f", since),
+            ("samples.latency", ".6f", latency),
+            *[(f"refused.{one.input}.{one.status.name}", "d", self._refused[one]) for one in sorted(self._refused)],
+            ("cost_us.update.median", ".1f", update),
+            ("cost_us.update.max", ".1f", longest),
+            ("cost_us.total.median", ".1f", total),
+            ("touchdowns", "d", self._touchdowns),
+            ("touchdowns.scored", "d", self._scored),
+            ("touchdowns.median_relative_error", ".4f", median(self._errors) if self._errors else None),
+        ]
         for feet in self.feet.values():
-            values |= feet.values()
-        return values
+            figures += feet.figures()
+        return shown(figures)
 
     def _judge(self, now: float, *, at_its_end: bool = False) -> bool:
-        """Find the level anew; whether it has changed.
-
-        That nothing but refused messages came is known only at the end of a second.
-        """
+        """Find the level anew; whether it has changed. Only at the end of a second it is known what did not come."""
         before = self.level
         self.level, self.message = self._verdict(now, at_its_end)
         return self.level != before
@@ -300,21 +281,19 @@ class FeetReport:
         self.flaw = f"{self._prefix}: the force sensor of {' and '.join(disagree)} does not agree" if disagree else ""
         self._begin_second()
 
-    def values(self) -> dict[str, str]:
-        """Keys and values of /diagnostics; times in s, and what nobody knows is left out."""
-        values = {
-            "standing": " ".join([foot.name for foot in self._feet if foot.stands]) or "none",
-            "landings": str(self._landings.total()),
-        }
-        values |= {f"landings.{name}": str(count) for name, count in sorted(self._landings.items())}
-        if self._contacts is not None and self._contacts.unknown_joints:
-            values["joints_left_out"] = " ".join(self._contacts.unknown_joints)
-        if self._unannounced:
-            values["landings.unannounced"] = str(self._unannounced)
-        if self._time_errors:
-            values["landings.median_time_error"] = f"{median(self._time_errors):.4f}"
-        if self._late:
-            values["landings.early"] = str(sum([late < 0.0 for late in self._late]))
-            values["landings.late"] = str(sum([late > 0.0 for late in self._late]))
-            values["landings.median_late"] = f"{median(self._late):.4f}"
-        return {f"{self._prefix}.{key}": value for key, value in values.items()}
+    def figures(self) -> list[tuple[str, str, object]]:
+        """Key, format and value of each figure for /diagnostics; times in s."""
+        late, errors = self._late, self._time_errors
+        joints = () if self._contacts is None else self._contacts.unknown_joints
+        found: list[tuple[str, str, object]] = [
+            ("standing", "", " ".join([foot.name for foot in self._feet if foot.stands]) or "none"),
+            ("landings", "d", self._landings.total()),
+            *[(f"landings.{name}", "d", count) for name, count in sorted(self._landings.items())],
+            ("joints_left_out", "", " ".join(joints) if joints else None),
+            ("landings.unannounced", "d", self._unannounced or None),
+            ("landings.median_time_error", ".4f", median(errors) if errors else None),
+            ("landings.early", "d", sum([one < 0.0 for one in late]) if late else None),
+            ("landings.late", "d", sum([one > 0.0 for one in late]) if late else None),
+            ("landings.median_late", ".4f", median(late) if late else None),
+        ]
+        return [(f"{self._prefix}.{key}", form, value) for key, form, value in found]

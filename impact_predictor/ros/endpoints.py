@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
+from functools import partial
 from heapq import merge
 from itertools import chain, cycle, islice
 from math import inf
@@ -23,13 +24,13 @@ QUEUE: Final = 1000
 middleware does not tell what it drops beyond them; what the node drops itself, it counts (`backlog`)."""
 
 
-def publisher(node: Node, topic: str, type_name: str) -> Any:
+def publisher(node: Node, topic: str, type_name: str, durability: Any = DurabilityPolicy.VOLATILE) -> Any:
     """A publisher whose QoS the user can override."""
     # Every event handler costs the executor about 25 us a round; QoS is looked at once a second instead.
     return node.create_publisher(
         message_class(type_name),
         topic,
-        QoSProfile(depth=QUEUE),
+        QoSProfile(depth=QUEUE, durability=durability),
         event_callbacks=PublisherEventCallbacks(use_default_callbacks=False),
         qos_overriding_options=QoSOverridingOptions.with_default_policies(),
     )
@@ -125,37 +126,8 @@ def _waiting_on(subscription: Any, take: Callable[[bytes], None]) -> list[_Messa
     return found
 
 
-LIVE: Final = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
-
-# History is kept for reliable subscriptions only.
-LATCHED: Final = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-
 REMEMBERED: Final = 16
-"""Messages that may have come on one subscription before they come on the other."""
-
-
-class Once:
-    """Passes on each message of two subscriptions to one topic once, whichever has it first."""
-
-    def __init__(self, take: Callable[[bytes], None]) -> None:
-        self._take = take
-        self._only_live: deque[bytes] = deque(maxlen=REMEMBERED)
-        self._only_latched: deque[bytes] = deque(maxlen=REMEMBERED)
-
-    def live(self, data: bytes) -> None:
-        """A message of the volatile subscription."""
-        self._pass_on(data, self._only_live, self._only_latched)
-
-    def latched(self, data: bytes) -> None:
-        """A message of the transient-local subscription."""
-        self._pass_on(data, self._only_latched, self._only_live)
-
-    def _pass_on(self, data: bytes, here: deque[bytes], there: deque[bytes]) -> None:
-        if data in there:
-            there.remove(data)
-        else:
-            here.append(data)
-            self._take(data)
+"""Messages that may have come on one subscription to a topic before they come on the other."""
 
 
 class LatchedTopic:
@@ -163,23 +135,22 @@ class LatchedTopic:
 
     A volatile subscription matches every publisher, but gets nothing that was published before it was there; a
     transient-local one gets that, but does not match volatile publishers, and both sides are warned of the misfit. So
-    the transient-local one is added once there is a publisher for it, and what comes twice is taken once.
+    the transient-local one is added once there is a publisher for it, and what comes on both is taken once.
     """
 
     def __init__(self, node: Node, take: Callable[[bytes], None], topic: str, type_name: str) -> None:
-        self._node = node
-        self._topic = topic
-        self._once = Once(take)
-        self._type = message_class(type_name)
-        self._events = SubscriptionEventCallbacks(use_default_callbacks=False)
+        self._node, self._topic, self._take = node, topic, take
         self._has_latched = False
-        self.live = node.create_subscription(
-            self._type,
-            topic,
-            self._once.live,
-            LIVE,
-            raw=True,
-            event_callbacks=self._events,
+        # What came on the one subscription alone so far.
+        only_live, only_latched = deque[bytes](maxlen=REMEMBERED), deque[bytes](maxlen=REMEMBERED)
+        events = SubscriptionEventCallbacks(use_default_callbacks=False)
+        self._listen = partial(
+            node.create_subscription, message_class(type_name), topic, raw=True, event_callbacks=events
+        )
+        self._take_latched = partial(self._pass_on, only_latched, only_live)
+        self.live = self._listen(
+            partial(self._pass_on, only_live, only_latched),
+            QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT),
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
         )
 
@@ -187,15 +158,20 @@ class LatchedTopic:
         """Ask for what was published before, if there is a publisher that keeps it."""
         if self._has_latched:
             return
-        topic = self.live.topic_name
-        for publisher in self._node.get_publishers_info_by_topic(topic):
-            qos = publisher.qos_profile
-            if (qos.durability, qos.reliability) == (DurabilityPolicy.TRANSIENT_LOCAL, ReliabilityPolicy.RELIABLE):
-                self._has_latched = True
-                self._node.create_subscription(
-                    self._type, self._topic, self._once.latched, LATCHED, raw=True, event_callbacks=self._events
-                )
-                return
+        # History is kept for reliable subscriptions only.
+        latched = DurabilityPolicy.TRANSIENT_LOCAL, ReliabilityPolicy.RELIABLE
+        found = [one.qos_profile for one in self._node.get_publishers_info_by_topic(self.live.topic_name)]
+        if latched in [(one.durability, one.reliability) for one in found]:
+            self._has_latched = True
+            self._listen(self._take_latched, QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL))
+
+    def _pass_on(self, here: deque[bytes], there: deque[bytes], data: bytes) -> None:
+        """Take a message that has come on one subscription, unless it was taken from the other."""
+        if data in there:
+            there.remove(data)
+        else:
+            here.append(data)
+            self._take(data)
 
 
 AT_ONCE: Final = 25
@@ -215,19 +191,19 @@ class Misfits:
     def look(self) -> list[str]:
         """A text for each that is known, with topic, node and reason; looks at some of many topics in their turn."""
         for ours, is_subscription in islice(self._turns, self._at_once):
-            find = self._publishers if is_subscription else self._subscriptions
-            self._found[ours.topic_name] = list(find(ours))
+            self._found[ours.topic_name] = list(self._of(ours, is_subscription))
         return list(chain.from_iterable(self._found.values()))
 
-    def _publishers(self, ours: Any) -> Iterator[str]:
-        for theirs in self._node.get_publishers_info_by_topic(ours.topic_name):
-            if reason := _reason(theirs.qos_profile, ours.qos_profile):
-                yield f"the publisher on {ours.topic_name} from {theirs.node_name} {reason}"
-
-    def _subscriptions(self, ours: Any) -> Iterator[str]:
-        for theirs in self._node.get_subscriptions_info_by_topic(ours.topic_name):
-            if reason := _reason(ours.qos_profile, theirs.qos_profile):
-                yield f"this node's publisher on {ours.topic_name} for {theirs.node_name} {reason}"
+    def _of(self, ours: Any, is_subscription: bool) -> Iterator[str]:
+        topic, node = ours.topic_name, self._node
+        find = node.get_publishers_info_by_topic if is_subscription else node.get_subscriptions_info_by_topic
+        for theirs in find(topic):
+            offered, requested = ours.qos_profile, theirs.qos_profile
+            whose = f"this node's publisher on {topic} for"
+            if is_subscription:
+                offered, requested, whose = requested, offered, f"the publisher on {topic} from"
+            if reason := _reason(offered, requested):
+                yield f"{whose} {theirs.node_name} {reason}"
 
 
 def _reason(offered: QoSProfile, requested: QoSProfile) -> str:

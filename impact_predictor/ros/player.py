@@ -106,35 +106,27 @@ def _play(options: argparse.Namespace, stop: Stop) -> int:
     messages = timed(read_messages(options.bag, types), options.runs)
     from rclpy.duration import Duration
     from rclpy.node import Node
+    from rclpy.qos import DurabilityPolicy
 
+    from .endpoints import publisher
+
+    kept = {kind: DurabilityPolicy.TRANSIENT_LOCAL if kind in LATCHED else DurabilityPolicy.VOLATILE for kind in INPUTS}
     node = Node("player")
     try:
-        publishers = {topic: _publisher(node, topic, kind) for topic, kind in types.items()}
+        publishers = {topic: publisher(node, topic, kind, kept[kind]) for topic, kind in types.items()}
         awaited = [publishers[topic] for topic, kind in types.items() if kind in AWAITED]
         with _recording(node, options.record, stop) if options.record else nullcontext():
             if _await_others(node, awaited, RECORDED if options.record else (), stop):
                 print(PLAYING, flush=True)
                 _publish_all(messages, types, publishers, options.rate, stop)
-                for publisher in publishers.values():
-                    publisher.wait_for_all_acked(Duration(seconds=2))
+                for one in publishers.values():
+                    one.wait_for_all_acked(Duration(seconds=2))
                 print(PLAYED, flush=True)
             while options.record and not stop.wait(1.0):
                 pass
     finally:
         node.destroy_node()
     return 0
-
-
-def _publisher(node: Any, topic: str, kind: str) -> Any:
-    from rclpy.qos import DurabilityPolicy, QoSProfile
-    from rclpy.qos_overriding_options import QoSOverridingOptions, QoSPolicyKind
-
-    overridable = (QoSPolicyKind.DEPTH, QoSPolicyKind.DURABILITY, QoSPolicyKind.HISTORY, QoSPolicyKind.RELIABILITY)
-    durability = DurabilityPolicy.TRANSIENT_LOCAL if kind in LATCHED else DurabilityPolicy.VOLATILE
-    qos = QoSProfile(depth=QUEUE, durability=durability)
-    return node.create_publisher(
-        message_class(kind), topic, qos, qos_overriding_options=QoSOverridingOptions(overridable)
-    )
 
 
 @contextmanager

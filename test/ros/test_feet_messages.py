@@ -18,7 +18,7 @@ from impact_predictor.prediction.types import (
     Touchdown,
 )
 from impact_predictor.ros.cdr import OK, WARN, Diagnostic
-from impact_predictor.ros.diagnostics import FeetReport
+from impact_predictor.ros.diagnostics import FeetReport, shown
 from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY, decode_diagnostic_array, encode_prediction, encode_score
 
 NOTHING, LEVEL, UNKNOWN = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), (0.0,) * 36
@@ -124,10 +124,10 @@ def answer(*feet: Foot, landing: Landing | None = None) -> Prediction:
 def test_diagnostics_count_the_landings_of_each_foot_and_how_late_they_were() -> None:
     report = FeetReport("")
     report.take(answer(STANDING, SWINGING))
-    assert report.values() == {"feet.standing": "LF", "feet.landings": "0"}
+    assert shown(report.figures()) == {"feet.standing": "LF", "feet.landings": "0"}
     for late, foot in ((-0.003, "RF"), (0.001, "RF"), (0.007, "LF")):
         report.take(answer(STANDING, STANDING._replace(name="RF"), landing=LANDING._replace(late=late, foot=foot)))
-    assert report.values() == {
+    assert shown(report.figures()) == {
         "feet.standing": "LF RF",
         "feet.landings": "3",
         "feet.landings.LF": "1",
@@ -142,7 +142,7 @@ def test_diagnostics_count_the_landings_of_each_foot_and_how_late_they_were() ->
 def test_a_machine_with_a_name_has_it_before_its_feet_and_one_in_the_air_stands_on_none() -> None:
     report = FeetReport("dog")
     report.take(answer(SWINGING))
-    assert report.values() == {"dog/feet.standing": "none", "dog/feet.landings": "0"}
+    assert shown(report.figures()) == {"dog/feet.standing": "none", "dog/feet.landings": "0"}
 
 
 def test_a_force_sensor_disagrees_when_it_does_for_most_of_a_second_not_while_its_foot_lands() -> None:

@@ -1,7 +1,8 @@
 """The inputs of the predictor as bytes of ROS 2 Jazzy, both ways.
 
 nav_msgs/Odometry, geometry_msgs/PolygonStamped and WrenchStamped, sensor_msgs/Imu and JointState,
-trajectory_msgs/JointTrajectory.
+trajectory_msgs/JointTrajectory. Each decoder takes either byte order, takes numbers as they are, and raises
+MalformedMessage where the bytes are no such message.
 """
 
 from __future__ import annotations
@@ -38,23 +39,16 @@ JOINT_TRAJECTORY: Final = "trajectory_msgs/msg/JointTrajectory"
 
 _ODOMETRY_NUMBERS_SIZE: Final = LITTLE_ENDIAN.odometry_numbers.size
 _POINT_SIZE: Final = LITTLE_ENDIAN.point32.size
-_IMU_NUMBERS_SIZE: Final = LITTLE_ENDIAN.imu_numbers.size
 _UNKNOWN: Final = (0.0,) * 9
 _ABSENT: Final = (-1.0, *_UNKNOWN[1:])
 """The covariance of what a sensor does not measure, by the definition of the message."""
 STANDS: Final = 0.5
 """The position above which a foot of a plan stands: 1 stands, 0 swings."""
 
-_WRENCH_SIZE: Final = LITTLE_ENDIAN.wrench_numbers.size
-
 
 @decoder(ODOMETRY)
 def decode_odometry(data: bytes) -> Sample:
-    """The sample in the bytes of a nav_msgs/Odometry, of either byte order; its numbers are taken as they are.
-
-    Raises:
-        MalformedMessage: the bytes are no such message.
-    """
+    """The sample in the bytes of a nav_msgs/Odometry."""
     order, nanoseconds, frame_id, end = read_header(data)
     child_frame_id, end = read_string(data, align4(end), order)
     start = align8(end)
@@ -75,11 +69,7 @@ def decode_odometry(data: bytes) -> Sample:
 
 @decoder(POLYGON)
 def decode_polygon(data: bytes) -> Geometry:
-    """The contact points in the bytes of a geometry_msgs/PolygonStamped, of either byte order, as float32 gives them.
-
-    Raises:
-        MalformedMessage: the bytes are no such message.
-    """
+    """The contact points in the bytes of a geometry_msgs/PolygonStamped, as float32 gives them."""
     order, nanoseconds, frame_id, end = read_header(data)
     (count,) = order.length.unpack_from(data, align4(end))
     start = align4(end) + 4
@@ -121,50 +111,33 @@ def encode_odometry(sample: Sample) -> bytes:
 
 def encode_polygon(geometry: Geometry) -> bytes:
     """A geometry_msgs/PolygonStamped of contact points, which float32 rounds."""
-    points = geometry.points
-    return b"".join(
-        (
-            LITTLE_ENDIAN_HEADER,
-            stamp(geometry.stamp),
-            string(geometry.frame_id),
-            LITTLE_ENDIAN.length.pack(len(points)),
-            *[LITTLE_ENDIAN.point32.pack(*point) for point in points],
-        )
-    )
+    data = _headed(geometry.stamp, geometry.frame_id) + LITTLE_ENDIAN.length.pack(len(geometry.points))
+    for point in geometry.points:
+        data += LITTLE_ENDIAN.point32.pack(*point)
+    return bytes(data)
 
 
 @decoder(IMU)
 def decode_imu(data: bytes) -> Imu:
-    """The measurement in the bytes of a sensor_msgs/Imu, of either byte order; its numbers are taken as they are.
-
-    Raises:
-        MalformedMessage: the bytes are no such message.
-    """
+    """The measurement in the bytes of a sensor_msgs/Imu."""
     order, nanoseconds, frame_id, end = read_header(data)
     start = align8(end)
     n = order.imu_numbers.unpack_from(data, start)
-    check_end(data, start + _IMU_NUMBERS_SIZE)
+    check_end(data, start + order.imu_numbers.size)
     orientation = None if n[4] == -1.0 else n[0:4]
     return Imu(stamp=nanoseconds, frame_id=frame_id, orientation=orientation, angular=n[13:16], specific_force=n[25:28])
 
 
 def encode_imu(imu: Imu) -> bytes:
     """A sensor_msgs/Imu of a measurement, with unknown covariances; without an orientation it says so."""
-    head = LITTLE_ENDIAN_HEADER + stamp(imu.stamp) + string(imu.frame_id)
-    orientation, covariance = (
-        ((0.0, 0.0, 0.0, 1.0), _ABSENT) if imu.orientation is None else (imu.orientation, _UNKNOWN)
-    )
-    numbers = (*orientation, *covariance, *imu.angular, *_UNKNOWN, *imu.specific_force, *_UNKNOWN)
-    return head + bytes(align8(len(head)) - len(head)) + LITTLE_ENDIAN.imu_numbers.pack(*numbers)
+    turned = (0.0, 0.0, 0.0, 1.0, *_ABSENT) if imu.orientation is None else (*imu.orientation, *_UNKNOWN)
+    numbers = LITTLE_ENDIAN.imu_numbers.pack(*turned, *imu.angular, *_UNKNOWN, *imu.specific_force, *_UNKNOWN)
+    return bytes(_headed(imu.stamp, imu.frame_id, aligned=True) + numbers)
 
 
 @decoder(JOINT_STATE)
 def decode_joints(data: bytes) -> Joints:
-    """The joints in the bytes of a sensor_msgs/JointState, of either byte order; its numbers are taken as they are.
-
-    Raises:
-        MalformedMessage: the bytes are no such message.
-    """
+    """The joints in the bytes of a sensor_msgs/JointState."""
     order, nanoseconds, _, end = read_header(data)
     names, end = read_strings(data, end, order)
     positions, end = read_doubles(data, end, order)
@@ -176,26 +149,19 @@ def decode_joints(data: bytes) -> Joints:
 
 @decoder(WRENCH)
 def decode_wrench(data: bytes) -> Wrench:
-    """The force in the bytes of a geometry_msgs/WrenchStamped, of either byte order; its numbers are taken as they are.
-
-    Raises:
-        MalformedMessage: the bytes are no such message.
-    """
+    """The force in the bytes of a geometry_msgs/WrenchStamped."""
     order, nanoseconds, frame_id, end = read_header(data)
     start = align8(end)
     x, y, z, *_ = order.wrench_numbers.unpack_from(data, start)
-    check_end(data, start + _WRENCH_SIZE)
+    check_end(data, start + order.wrench_numbers.size)
     return Wrench(nanoseconds, frame_id, (x, y, z))
 
 
 @decoder(JOINT_TRAJECTORY)
 def decode_schedule(data: bytes) -> Schedule:
-    """The plan in the bytes of a trajectory_msgs/JointTrajectory, of either byte order: its joints are feet.
+    """The plan in the bytes of a trajectory_msgs/JointTrajectory: its joints are feet.
 
     A foot stands from the time of a point on where its position there is above `STANDS`.
-
-    Raises:
-        MalformedMessage: the bytes are no such message.
     """
     order, nanoseconds, _, end = read_header(data)
     feet, end = read_strings(data, end, order)
@@ -225,9 +191,8 @@ def encode_joints(joints: Joints) -> bytes:
 
 def encode_wrench(wrench: Wrench) -> bytes:
     """A geometry_msgs/WrenchStamped without a torque."""
-    data = _headed(wrench.stamp, wrench.frame_id)
-    data += bytes(align8(len(data)) - len(data))
-    return bytes(data + LITTLE_ENDIAN.wrench_numbers.pack(*wrench.force, 0.0, 0.0, 0.0))
+    numbers = LITTLE_ENDIAN.wrench_numbers.pack(*wrench.force, 0.0, 0.0, 0.0)
+    return bytes(_headed(wrench.stamp, wrench.frame_id, aligned=True) + numbers)
 
 
 def encode_schedule(schedule: Schedule) -> bytes:
@@ -242,8 +207,10 @@ def encode_schedule(schedule: Schedule) -> bytes:
     return bytes(data)
 
 
-def _headed(nanoseconds: int, frame_id: str) -> bytearray:
-    return bytearray(LITTLE_ENDIAN_HEADER + stamp(nanoseconds) + string(frame_id))
+def _headed(nanoseconds: int, frame_id: str, *, aligned: bool = False) -> bytearray:
+    """What begins a message with a std_msgs/Header; `aligned` for the doubles that follow."""
+    head = bytearray(LITTLE_ENDIAN_HEADER + stamp(nanoseconds) + string(frame_id))
+    return head + bytes(align8(len(head)) - len(head)) if aligned else head
 
 
 class InputType(NamedTuple):
