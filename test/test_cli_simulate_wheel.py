@@ -64,8 +64,10 @@ def test_where_no_friction_is_enough_for_steady_rolling_its_rates_are_not_told()
 
 def test_a_wheel_that_slips_is_told_what_it_needs() -> None:
     text = run("--friction", "0.35").stdout
-    assert "Without slip it would come to steady rolling, closed form: 1.605412029 rad/s" in text
-    assert "This needs a friction coefficient of 0.370775 in the impacts, between them 0.375327; it has 0.35." in text
+    assert "Steady rolling without slip, closed form: 1.605412029 rad/s" in text
+    assert (
+        "It needs a friction coefficient of 0.370775 in the impacts, between them 0.375327; the wheel has 0.35." in text
+    )
 
 
 def test_the_table_tells_the_impacts_and_the_closed_form() -> None:
@@ -73,8 +75,10 @@ def test_the_table_tells_the_impacts_and_the_closed_form() -> None:
     assert "wheel, 8 spokes 1 m long, slope 5 degrees" in text
     assert "8 more impacts: read them with --json." in text
     assert "it is over its last spoke (--steps), 20 steps and 15." in text
-    assert "Steady rolling, closed form: 1.605412029 rad/s before each impact, 1.177944487 after it" in text
-    assert "friction coefficient of 0.370775 in the impacts, between them 0.375327; it has 100." in text
+    assert (
+        "Steady rolling without slip, closed form: 1.605412029 rad/s before each impact, 1.177944487 after it" in text
+    )
+    assert "friction coefficient of 0.370775 in the impacts, between them 0.375327; the wheel has 100." in text
     assert all(len(line) <= 80 for line in text.splitlines()[:15])
 
 

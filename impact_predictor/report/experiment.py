@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from math import degrees, inf, radians
 from typing import Any, Final, NamedTuple
 
 from rich.console import Console
-from rich.table import Table
 
 from ..errors import InputError
 from ..mechanics.bodies import rod
@@ -17,36 +16,25 @@ from ..mechanics.motion import next_touchdown, standing
 from ..mechanics.types import Flag, Mode, Outcome, Twist, TwoPointBody
 from .table import Column, say, show, table_of
 
-MILLIMETRES: Final = 1e3
 SYMMETRIC: Final = tuple((a, a) for a in (*range(10, 111, 20), 115, 116, *range(130, 191, 20), 200))
 """mm from the middle to both supports; nearer than 10 mm the paper says nothing."""
-
 VERY_CLOSE: Final = ((10, 200), (10, 100), (20, 200), (50, 200))
 """mm from the middle to the old and to the new support."""
-
-STANDS: Final = 1e-9
-"""A ratio of angular velocities below this is rounding."""
-
 LENGTH: Final = 0.4
-"""m, of every rod."""
-
+"""m, of every rod; its ends are the farthest supports."""
 THICKNESSES: Final = (0.020, 0.010, 0.005, 0.002)
 """m, of wood, metal and plastic."""
-
-FARTHEST: Final = 0.2
-"""m from the middle: the ends of the rod, where the farthest supports stood."""
-
 REBOUNDED: Final = 0.002
 """m, the thickness of the rod that rebounded from both supports wherever they were."""
-
 VERY_SMALL: Final = 0.01
 """m: with the old support about this near to the middle, and the new one farther, the rod turned back."""
 
 
 class RodTrial(NamedTuple):
-    """One rod over two supports at `a` and `b` from its middle (m).
+    """One rod over two supports at `a` and `b` from its middle (m), and what the paper `observed`.
 
-    `gravity_share` is the impulse of gravity while the contact lasts, as a part of the impulse at the new support.
+    `ratio` is the angular velocity after the impact over that before, and `gravity_share` the impulse of gravity while
+    the contact lasts, as a part of the impulse at the new support.
     """
 
     thickness: float
@@ -66,6 +54,13 @@ class RodTrial(NamedTuple):
         """Whether the prediction itself says that rigid theory is too simple here."""
         return bool(self.outcome.flags & (Flag.THIN_BODY | Flag.SLOW_IMPACT))
 
+    @property
+    def said(self) -> str:
+        """The predicted mode, how much of the rate is left, and whether that is doubted or not what was seen."""
+        marks = [mark for mark, flag in (("t", Flag.THIN_BODY), ("s", Flag.SLOW_IMPACT)) if flag & self.outcome.flags]
+        left = f" {self.ratio:.2f}" if abs(self.ratio) > 1e-9 else ""  # less is rounding
+        return f"{self.outcome.mode.name}{left} {'' if self.agrees else '*'}{''.join(marks)}".rstrip()
+
 
 def trial(thickness: float, a: float, b: float, friction: float, angle: float) -> RodTrial:
     """Release a rod at rest, its new support `angle` degrees below it, and let it strike. Lengths in m.
@@ -75,16 +70,19 @@ def trial(thickness: float, a: float, b: float, friction: float, angle: float) -
     body = rod(length=LENGTH, thickness=thickness, a=a, b=b, mass=1.0, friction=friction)
     before = falling(body, radians(angle))
     outcome = solve_impact(body, before)
-    (_, _), (normal, _) = outcome.impulses
-    weight = body.mass * VALIDITY.gravity * VALIDITY.contact_time
+    observed = Mode.STOP if 12.0 * a * b > LENGTH * LENGTH else Mode.PIVOT
+    if thickness == REBOUNDED:
+        observed = Mode.FLIGHT
+    elif a <= VERY_SMALL and b > a:
+        observed = Mode.BACK_PIVOT
     return RodTrial(
-        thickness,
-        a,
-        b,
-        outcome,
-        outcome.twist.omega / before.omega,
-        weight / normal,
-        observed(thickness, a, b),
+        thickness=thickness,
+        a=a,
+        b=b,
+        outcome=outcome,
+        ratio=outcome.twist.omega / before.omega,
+        gravity_share=body.mass * VALIDITY.gravity * VALIDITY.contact_time / outcome.impulses[1][0],
+        observed=observed,
     )
 
 
@@ -99,22 +97,12 @@ def falling(body: TwoPointBody, angle: float) -> Twist:
     fall = next_touchdown(standing(body, angle), feet, 0, body.inertia / body.mass, friction=inf)
     if fall.point != 1 or not fall.state.omega < 0.0:
         raise InputError(f"a body raised by {degrees(angle):g} degrees does not fall back; give a smaller angle")
-    state = fall.state
-    return Twist(state.vx, state.vy, state.omega)
-
-
-def observed(thickness: float, a: float, b: float) -> Mode:
-    """What the paper says it saw of rods such as this one; it has words for all of them, and no table."""
-    if thickness == REBOUNDED:
-        return Mode.FLIGHT
-    if a <= VERY_SMALL and b > a:
-        return Mode.BACK_PIVOT
-    return Mode.STOP if 12.0 * a * b > LENGTH * LENGTH else Mode.PIVOT
+    return Twist(fall.state.vx, fall.state.vy, fall.state.omega)
 
 
 def border(thickness: float, friction: float) -> float:
     """The distance in m of two supports as far from the middle as each other from which on the rod stops."""
-    low, high = 0.0, FARTHEST
+    low, high = 0.0, 0.5 * LENGTH
     while high - low > 1e-9:
         middle = 0.5 * (low + high)
         body = rod(length=LENGTH, thickness=thickness, a=middle, b=middle, mass=1.0, friction=friction)
@@ -127,10 +115,7 @@ def border(thickness: float, friction: float) -> float:
 
 def trials(places: Sequence[tuple[int, int]], friction: float, angle: float) -> list[list[RodTrial]]:
     """A row of trials for each place of the supports (mm), one for each thickness."""
-    return [
-        [trial(thickness, a / MILLIMETRES, b / MILLIMETRES, friction, angle) for thickness in THICKNESSES]
-        for a, b in places
-    ]
+    return [[trial(one, a / 1e3, b / 1e3, friction, angle) for one in THICKNESSES] for a, b in places]
 
 
 def experiment_json(friction: float, angle: float) -> dict[str, Any]:
@@ -157,50 +142,23 @@ def experiment_json(friction: float, angle: float) -> dict[str, Any]:
 
 def print_experiment(console: Console, friction: float, angle: float) -> None:
     """Print what is predicted, beside what was seen."""
-    even, close = (trials(places, friction, angle) for places in (SYMMETRIC, VERY_CLOSE))
-    for heading, rows in (
-        ("Supports at the same distance from the middle of the rod", even),
-        ("The old support close to the middle, the new one farther", close),
-    ):
-        say(console, f"{heading}\n")
-        show(console, trial_table(rows))
-        console.print()
-    at = ", ".join(f"{border(h, friction) * MILLIMETRES:.1f} mm ({h * MILLIMETRES:g} mm thick)" for h in THICKNESSES)
-    every = [one for row in (*even, *close) for one in row]
+    rows = trials((*SYMMETRIC, *VERY_CLOSE), friction, angle)
+    columns = [Column("a\nmm", lambda row: f"{1e3 * row[0].a:g}"), Column("b\nmm", lambda row: f"{1e3 * row[0].b:g}")]
+    for k, thickness in enumerate(THICKNESSES):
+        columns.append(Column(f"predicted\n{1e3 * thickness:g} mm thick", lambda row, k=k: row[k].said, left=True))
+    # Of all but the thinnest, which was seen to rebound everywhere.
+    columns.append(Column("seen", lambda row: row[0].observed.name, left=True))
+    show(console, table_of(columns, rows))
+    every = [one for row in rows for one in row]
     others = [one for one in every if not one.agrees]
-    flagged = sum(one.doubted for one in others)
+    doubted = sum(one.doubted for one in others)
+    at = ", ".join(f"{1e3 * border(one, friction):.1f} mm ({1e3 * one:g} mm thick)" for one in THICKNESSES)
     say(
         console,
-        "Numbers: omega after over omega before.  *: seen otherwise.",
+        "\nNumbers: omega after over omega before.  *: seen otherwise.",
         "t, s: the prediction itself warns that rigid theory is too simple (flags THIN_BODY, SLOW_IMPACT).",
         "Seen: what the paper says of all its rods in words; it has no table of them.\n",
         f"Predicted: with a = b the rod stops from a = {at}.",
         "Seen: sticking from a = 115.5 mm and no sliding; rods of 2 mm rebound at both supports everywhere (FLIGHT).",
-        f"As seen: {len(every) - len(others)} of {len(every)}; of the {len(others)} others {flagged} are flagged.",
+        f"As seen: {len(every) - len(others)} of {len(every)}; of the {len(others)} others {doubted} are flagged.",
     )
-
-
-def trial_table(rows: Sequence[Sequence[RodTrial]]) -> Table:
-    """One row for each place of the supports, one column for each thickness.
-
-    The last column is what was seen of all but the thinnest, which was seen to rebound everywhere.
-    """
-    columns = [
-        Column("a\nmm", lambda row: f"{row[0].a * MILLIMETRES:g}"),
-        Column("b\nmm", lambda row: f"{row[0].b * MILLIMETRES:g}"),
-    ]
-    for k, thickness in enumerate(THICKNESSES):
-        columns.append(Column(f"predicted\n{thickness * MILLIMETRES:g} mm thick", _cell(k), left=True))
-    columns.append(Column("seen", lambda row: row[0].observed.name, left=True))
-    return table_of(columns, rows)
-
-
-def _cell(place: int) -> Callable[[Sequence[RodTrial]], str]:
-    return lambda row: cell(row[place])
-
-
-def cell(one: RodTrial) -> str:
-    """The predicted mode, how much of the rate is left, and whether that is doubted or not what was seen."""
-    marks = [mark for mark, flag in (("t", Flag.THIN_BODY), ("s", Flag.SLOW_IMPACT)) if flag & one.outcome.flags]
-    left = f" {one.ratio:.2f}" if abs(one.ratio) > STANDS else ""
-    return f"{one.outcome.mode.name}{left} {'' if one.agrees else '*'}{''.join(marks)}".rstrip()

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Final
 
 from rich.console import Console
 
 from ..mechanics.impact import approach
-from ..mechanics.types import Contact, Flag, Mode, Outcome, Twist, TwoPointBody
-from ..wording import NONE
+from ..mechanics.types import Flag, Mode, Outcome, Twist, TwoPointBody
+from ..wording import fixed
 from .modes import MODES
 from .table import Column, show, table_of
 
@@ -41,7 +41,6 @@ MARGINS: Final = {
 """What is changed by a margin, with two contacts and with one, and its unit."""
 _BORDER: Final = 1e-9
 """A margin below this is rounding: the impact lies on the border."""
-_ROUNDING: Final = 1e-12
 _STATES: Final = {"O": "is open", "S": "sticks", "+": "slides forwards", "-": "slides backwards"}
 
 
@@ -49,14 +48,10 @@ def print_outcomes(console: Console, body: TwoPointBody, before: Twist, outcomes
     """Print what one or several laws say about an impact."""
     columns = [Column("", lambda row: row[0], left=True)]
     for k, header in enumerate(["before", *(f"after, {outcome.law} law" for outcome in outcomes)], 1):
-        columns.append(Column(header, _cell(k)))
+        columns.append(Column(header, lambda row, k=k: row[k] if k < len(row) else ""))
     show(console, table_of(columns, _rows(body, before, outcomes)))
     for outcome in outcomes:
-        console.print("", *_sentences(body, outcome), sep="\n", markup=False, highlight=False)
-
-
-def _cell(place: int) -> Callable[[tuple[str, ...]], str]:
-    return lambda row: row[place] if place < len(row) else ""
+        console.print("", *_sentences(outcome, alone=body.old is None), sep="\n", markup=False, highlight=False)
 
 
 def _rows(body: TwoPointBody, before: Twist, outcomes: Sequence[Outcome]) -> Iterator[tuple[str, ...]]:
@@ -73,25 +68,34 @@ def _rows(body: TwoPointBody, before: Twist, outcomes: Sequence[Outcome]) -> Ite
     for which, contact, index in contacts:
         motions = [approach(contact, twist) for twist in twists]
         impulses = [outcome.impulses[index] for outcome in outcomes]
-        scale = body.mass * speed
+        limits = [contact.friction * normal for normal, _ in impulses]
+        used = [
+            abs(impulse[1]) / limit if limit > 0.0 else None for impulse, limit in zip(impulses, limits, strict=True)
+        ]
         yield (which,)
         yield "  normal velocity, m/s", *(_number(normal, speed) for normal, _ in motions)
         yield "  slip, m/s", *(_number(slip, speed) for _, slip in motions)
-        yield "  normal impulse N, N s", "", *(_number(normal, scale) for normal, _ in impulses)
-        yield "  tangential impulse T, N s", "", *(_number(tangent, scale) for _, tangent in impulses)
-        yield "  friction used, |T| / (f N)", "", *(_friction_used(contact, impulse) for impulse in impulses)
-    energy, lost = _energy(body, before), [outcome.energy_lost for outcome in outcomes]
-    if energy is not None:
+        yield "  normal impulse N, N s", "", *(_number(normal, body.mass * speed) for normal, _ in impulses)
+        yield "  tangential impulse T, N s", "", *(_number(tangent, body.mass * speed) for _, tangent in impulses)
+        yield "  friction used, |T| / (f N)", "", *(fixed(part, 3) for part in used)
+    lost = [outcome.energy_lost for outcome in outcomes]
+    # Relative to the supports, unless these move each in its own way.
+    together = body.old is None or body.old.velocity == body.new.velocity
+    vx, vy = before.vx - body.new.velocity[0], before.vy - body.new.velocity[1]
+    energy = 0.5 * (body.mass * (vx * vx + vy * vy) + body.inertia * before.omega * before.omega) if together else 0.0
+    if together:
         yield "energy, J", _number(energy), *(_number(energy - one, energy) for one in lost)
     yield "energy lost, J", "", *map(_number, lost)
     if energy:
         yield "energy lost, %", "", *(f"{100.0 * one / energy:.1f}" for one in lost)
 
 
-def _sentences(body: TwoPointBody, outcome: Outcome) -> Iterator[str]:
-    alone = body.old is None
+def _sentences(outcome: Outcome, *, alone: bool) -> Iterator[str]:
+    def meaning(mode: Mode) -> str:
+        return MODES[mode].one_point if alone else MODES[mode].meaning
+
     yield f"{outcome.mode.name} by the {outcome.law} law ({LAWS[outcome.law]}):"
-    yield f"  {_meaning(outcome.mode, alone)}."
+    yield f"  {meaning(outcome.mode)}."
     if outcome.segments:
         yield "  While the impulse grows:" if outcome.law == "path" else "  In all:"
     for segment in outcome.segments:
@@ -100,9 +104,9 @@ def _sentences(body: TwoPointBody, outcome: Outcome) -> Iterator[str]:
         yield f"  {segment}  " + (f"the contact {new}" if alone else f"the old contact {old}, the new one {new}")
     if not outcome.unique:
         yield "  Not unique: the law allows as well"
-        for other in outcome.alternatives:
-            twist = ", ".join(_number(part) for part in other.twist)
-            yield f"    {other.mode.name} with (vx, vy, omega) = ({twist}): {_meaning(other.mode, alone)}"
+    for other in () if outcome.unique else outcome.alternatives:
+        twist = ", ".join(map(_number, other.twist))
+        yield f"    {other.mode.name} with (vx, vy, omega) = ({twist}): {meaning(other.mode)}"
     margins = [(name, change, mode) for name, (change, mode) in outcome.margins._asdict().items() if mode is not None]
     if margins:
         yield "  The nearest other modes, by one change at a time:"
@@ -116,23 +120,6 @@ def _sentences(body: TwoPointBody, outcome: Outcome) -> Iterator[str]:
             yield f"    {FLAGS[flag]}."
 
 
-def _meaning(mode: Mode, alone: bool) -> str:
-    return MODES[mode].one_point if alone else MODES[mode].meaning
-
-
-def _friction_used(contact: Contact, impulse: tuple[float, float]) -> str:
-    limit = contact.friction * impulse[0]
-    return f"{abs(impulse[1]) / limit:.3f}" if limit > 0.0 else NONE
-
-
-def _energy(body: TwoPointBody, twist: Twist) -> float | None:
-    """The kinetic energy relative to the supports; None where they move each in its own way."""
-    if body.old is not None and body.old.velocity != body.new.velocity:
-        return None
-    vx, vy = twist.vx - body.new.velocity[0], twist.vy - body.new.velocity[1]
-    return 0.5 * (body.mass * (vx * vx + vy * vy) + body.inertia * twist.omega * twist.omega)
-
-
 def _number(value: float, scale: float = 0.0) -> str:
     """Five digits; what is rounding against a scale, is 0."""
-    return "0" if abs(value) <= _ROUNDING * scale else f"{value:.5g}"
+    return "0" if abs(value) <= 1e-12 * scale else f"{value:.5g}"

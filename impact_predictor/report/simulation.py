@@ -3,25 +3,25 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
-from itertools import islice
+from collections.abc import Iterable, Sequence
 from math import degrees, hypot, inf
 from typing import Any, Final
 
 from rich.console import Console
 from rich.table import Table
 
-from ..mechanics.motion import Accumulation, End, RockingImpact, Trajectory
+from ..mechanics.motion import End, RockingImpact, Trajectory
+from ..mechanics.types import Mode
 from ..scenarios.deck.voyage import Followed, Voyage
 from ..scenarios.rocking import Rocking
 from ..scenarios.truth import TrueImpact, TrueOnset
 from ..scenarios.wheel import RollEnd, Rolling
 from ..scenarios.wheel_closed_forms import downhill, impact_friction, least_friction, steady
 from ..stamps import NANOSECONDS
-from ..wording import NONE, counted, fixed
-from .table import Column, say, show, table_of
+from ..wording import NONE, counted, fixed, words
+from .table import Column, more, say, show, table_of
 
-MOST_ROWS: Final = 12
+MOST_IMPACTS: Final = 12
 """Impacts that are listed; the others of an accumulation say no more."""
 RESOLVED: Final = 0.05
 """Approach in m/s above which an impact is told from the last small ones of a unit that comes to rest."""
@@ -42,52 +42,48 @@ ROLL_ENDS: Final = {
     RollEnd.TAKES_OFF: "leaves the ground: it turns too fast to roll",
     RollEnd.LOST: "cannot go on: the impact law has no answer, or there are too many events",
 }
-UNIT_ENDS: Final = {
-    End.OVERTURNED: "toppled",
-    End.RESTS: "rests",
-    End.BALANCED: "is balanced",
-    End.TIME_UP: "stands",
-}
-
+_UNIT_ENDS: Final = {End.OVERTURNED: "toppled", End.TIME_UP: "stands"}
 _REST: Final = 1e-12
 """An angular velocity (rad/s) this small is none."""
 
 
-def strike_as_json(strike: RockingImpact) -> dict[str, Any]:
-    """An impact of a motion in its plane, angular velocities as magnitudes in rad/s."""
-    return {
-        "time": strike.time,
-        "mode": strike.outcome.mode.name,
-        "omega_before": abs(strike.before.omega),
-        "omega_after": abs(strike.after.omega),
-    }
+def impact_as_json(time: float, mode: Mode, before: float, after: float) -> dict[str, Any]:
+    """An impact: time in s, angular velocities as magnitudes in rad/s."""
+    return {"time": time, "mode": mode.name, "omega_before": abs(before), "omega_after": abs(after)}
 
 
-def strikes_table(header: str, strikes: Iterable[tuple[str, RockingImpact]], sign: float, rounding: float) -> Table:
-    """The first impacts of a motion: where they were, and the angular velocities times a sign.
+def _planar(strike: RockingImpact) -> dict[str, Any]:
+    return impact_as_json(strike.time, strike.outcome.mode, strike.before.omega, strike.after.omega)
 
-    Those below a `rounding` are none.
-    """
+
+def _spatial(impact: TrueImpact) -> dict[str, Any]:
+    before, after = hypot(*impact.angular_before), hypot(*impact.angular_after)
+    return impact_as_json(impact.stamp / NANOSECONDS, impact.mode, before, after)
+
+
+def impacts_table(header: str, strikes: Sequence[tuple[str, RockingImpact]], sign: float) -> Table:
+    """The first impacts of a motion: the place of each, and the angular velocities times a sign."""
     columns = [
-        Column("impact\n", lambda row: str(row[0])),
-        Column("time\ns", lambda row: f"{row[1].time:.6f}"),
-        Column(header, lambda row: row[2], left=True),
-        Column("mode\n", lambda row: row[1].outcome.mode.name, left=True),
+        Column("impact\n", lambda row: f"{row[0]}"),
+        Column("time\ns", lambda row: f"{row[2].time:.6f}"),
+        Column(header, lambda row: row[1], left=True),
+        Column("mode\n", lambda row: row[2].outcome.mode.name, left=True),
         Column("before\nrad/s", lambda row: f"{row[3]:.6g}"),
         Column("after\nrad/s", lambda row: f"{row[4]:.6g}"),
         Column("ratio\n", lambda row: f"{row[4] / row[3]:.4f}" if row[3] and row[4] else NONE),
-        Column("energy\nlost, J", lambda row: f"{row[1].outcome.energy_lost:.3g}"),
+        Column("energy\nlost, J", lambda row: f"{row[2].outcome.energy_lost:.3g}"),
     ]
     rows = []
-    for number, (place, strike) in enumerate(islice(strikes, MOST_ROWS), 1):
-        rates = [sign * rate for rate in (strike.before.omega, strike.after.omega)]
-        rows.append((number, strike, place, *(rate if abs(rate) > rounding else 0.0 for rate in rates)))
+    for number, (place, strike) in enumerate(strikes[:MOST_IMPACTS], 1):
+        rates = [sign * one.omega if abs(one.omega) > _REST else 0.0 for one in (strike.before, strike.after)]
+        rows.append((number, place, strike, *rates))
     return table_of(columns, rows)
 
 
-def _more(impacts: int) -> list[str]:
-    more = impacts - MOST_ROWS
-    return [f"{counted(more, 'more impact')}: read them with --json"] if more > 0 else []
+def _print_impacts(console: Console, header: str, strikes: Sequence[tuple[str, RockingImpact]], sign: float) -> None:
+    if strikes:
+        show(console, impacts_table(header, strikes, sign))
+    say(console, *more(len(strikes) - MOST_IMPACTS, "impact", "read them with --json"))
 
 
 def rocking_as_json(run: Trajectory) -> dict[str, Any]:
@@ -95,39 +91,25 @@ def rocking_as_json(run: Trajectory) -> dict[str, Any]:
 
     `accumulation_time` is when impacts last accumulated so that both contacts stayed closed; null if they never did.
     """
+    times = [one.time for one in run.accumulations if len(one.contacts) == 2]
     return {
-        "impacts": [strike_as_json(strike) for strike in run.impacts],
-        "accumulation_time": next((one.time for one in reversed(run.accumulations) if _closes_both(one)), None),
+        "impacts": [_planar(strike) for strike in run.impacts],
+        "accumulation_time": times[-1] if times else None,
         "end": run.end.name,
     }
-
-
-def _closes_both(passed: Accumulation) -> bool:
-    """Whether impacts accumulated so that both contacts stayed closed; else it was one that had stopped bouncing."""
-    return len(passed.contacts) == 2
 
 
 def print_rocking(console: Console, rocking: Rocking) -> None:
     """Print the impacts of a motion and how it ended."""
     run = rocking.run
     say(console, f"{rocking.rocker.name}, {rocking.rocker.label}")
-    if run.impacts:
-        strikes = [("AB"[one.new], one) for one in run.impacts]
-        show(console, strikes_table("at\n", strikes, 1.0, _REST))
-    say(console, *rocking_sentences(run))
-
-
-def rocking_sentences(run: Trajectory) -> list[str]:
-    """What came after the impacts that are listed, and how the motion ended."""
-    said = _more(len(run.impacts))
-    both = [passed for passed in run.accumulations if _closes_both(passed)]
-    if bounces := len(run.accumulations) - len(both):
-        said.append(f"{bounces} times the bounces of one contact accumulate, and it stays closed")
-    for passed in both:
-        goes_on = "slides on" if passed.slides else "stays on"
-        said.append(f"Impacts accumulate at {passed.time:.6f} s; then the body {goes_on} both contacts")
-    said.append(f"At {run.time:.6f} s it {ENDS[run.end]}")
-    return [f"{sentence}." for sentence in said]
+    _print_impacts(console, "at\n", [("AB"[one.new], one) for one in run.impacts], 1.0)
+    for one in run.accumulations:
+        then = f"the body {'slides' if one.slides else 'stays'} on both contacts"
+        if len(one.contacts) == 1:
+            then = f"contact {'AB'[one.contacts[0]]} stays closed"
+        say(console, f"Impacts accumulate at {one.time:.6f} s; then {then}.")
+    say(console, f"At {run.time:.6f} s it {ENDS[run.end]}.")
 
 
 def rolling_as_json(rolling: Rolling) -> dict[str, Any]:
@@ -148,7 +130,7 @@ def rolling_as_json(rolling: Rolling) -> dict[str, Any]:
             "friction": needed,
         }
     return {
-        "impacts": [{**strike_as_json(strike), "old": old, "new": new} for old, new, strike in rolling.impacts],
+        "impacts": [{**_planar(strike), "old": old, "new": new} for old, new, strike in rolling.impacts],
         "steps": rolling.steps,
         "speed": rolling.distance / rolling.time if rolling.time > 0.0 else 0.0,
         "steady": known,
@@ -163,42 +145,34 @@ def print_rolling(console: Console, rolling: Rolling) -> None:
     wheel = rolling.wheel
     slope = f"{degrees(wheel.hub.slope):.4g} degrees"
     say(console, f"wheel, {wheel.spokes} spokes {wheel.hub.leg:g} m long, slope {slope}")
-    if rolling.impacts:
-        strikes = [(f"{NONE if old is None else old} > {new}", strike) for old, new, strike in rolling.impacts]
-        show(console, strikes_table("from, to\nspoke", strikes, -1.0, _REST))
+    strikes = [(f"{NONE if old is None else old} > {new}", strike) for old, new, strike in rolling.impacts]
+    _print_impacts(console, "from, to\nspoke", strikes, -1.0)
     say(console, *rolling_sentences(rolling))
 
 
 def rolling_sentences(rolling: Rolling) -> list[str]:
-    """What came after the impacts that are listed, how the motion ended, and what steady rolling would be."""
+    """How the motion ended, and what steady rolling down the slope would be."""
     way = f"{counted(rolling.steps, 'step')} and {rolling.distance:.3f} m ahead"
-    ended = f"At {rolling.time:.6f} s it {ROLL_ENDS[rolling.end]}, {way}"
-    return [f"{said}." for said in (*_more(len(rolling.impacts)), ended, *_steadily(rolling))]
-
-
-def _steadily(rolling: Rolling) -> list[str]:
-    """What steady rolling down the slope would be, and what this wheel does instead where it cannot roll so."""
+    said = [f"At {rolling.time:.6f} s it {ROLL_ENDS[rolling.end]}, {way}."]
     wheel, down = rolling.wheel, downhill(rolling.wheel)
     rolls = steady(down)
     if rolls is None:
-        return ["On this slope it does not keep rolling: each impact takes more than a step gives (closed form)"]
-    struck, needed = impact_friction(wheel.hub, wheel.alpha), least_friction(down)
+        return [
+            *said,
+            "On this slope it does not keep rolling: each impact takes more than a step gives (closed form).",
+        ]
+    needed = least_friction(down)
     if needed == inf:
         none = "no friction is enough, the ground would have to hold its spokes down (closed form)"
-        return [f"Without slip it cannot roll steadily: {none}"]
-    rates = (
-        f"{rolls.before:.9f} rad/s before each impact, {rolls.after:.9f} after it, "
-        f"a step in {rolls.time:.6f} s, {rolls.speed:.4f} m/s"
-    )
-    friction = (
-        f"needs a friction coefficient of {struck:.6f} in the impacts, between them {needed:.6f}; "
-        f"it has {wheel.hub.friction:g}"
-    )
-    if wheel.hub.friction >= needed:
-        backwards = " backwards" if wheel.hub.slope < 0.0 else ""
-        return [f"Steady rolling{backwards}, closed form: {rates}", f"It {friction}"]
-    without = f"Without slip it would come to steady rolling, closed form: {rates}"
-    return [without, f"This {friction}"]
+        return [*said, f"Without slip it cannot roll steadily: {none}."]
+    struck = impact_friction(wheel.hub, wheel.alpha)
+    rates = f"{rolls.before:.9f} rad/s before each impact, {rolls.after:.9f} after it"
+    friction = f"a friction coefficient of {struck:.6f} in the impacts, between them {needed:.6f}"
+    return [
+        *said,
+        f"Steady rolling without slip, closed form: {rates}, a step in {rolls.time:.6f} s, {rolls.speed:.4f} m/s.",
+        f"It needs {friction}; the wheel has {wheel.hub.friction:g}.",
+    ]
 
 
 def voyage_as_json(voyage: Voyage) -> dict[str, Any]:
@@ -214,7 +188,7 @@ def voyage_as_json(voyage: Voyage) -> dict[str, Any]:
     end = max(ends) if len(ends) == 1 or voyage.broke_off else End.TIME_UP
     return {
         "duration": voyage.duration,
-        "impacts": [{"unit": one.unit.name, **_impact(impact)} for impact, one in impacts],
+        "impacts": [{"unit": one.unit.name, **_spatial(impact)} for impact, one in impacts],
         "accumulation_time": max((one.sums[-1] for one in voyage.units if one.sums), default=None),
         "end": end.name,
         "deck": {"most_rolled": voyage.most_rolled, "most_lateral": voyage.most_lateral},
@@ -222,18 +196,9 @@ def voyage_as_json(voyage: Voyage) -> dict[str, Any]:
     }
 
 
-def _impact(impact: TrueImpact) -> dict[str, Any]:
-    return {
-        "time": impact.stamp / NANOSECONDS,
-        "mode": impact.mode.name,
-        "omega_before": hypot(*impact.angular_before),
-        "omega_after": hypot(*impact.angular_after),
-    }
-
-
 def _unit(one: Followed) -> dict[str, Any]:
     return {
-        "impacts": [_impact(impact) for impact in one.impacts],
+        "impacts": [_spatial(impact) for impact in one.impacts],
         "accumulation_time": one.sums[-1] if one.sums else None,
         "end": one.end.name,
         "time": one.time,
@@ -251,48 +216,33 @@ def _resolved(impacts: Iterable[TrueImpact]) -> list[TrueImpact]:
 
 
 def print_voyage(console: Console, voyage: Voyage) -> None:
-    """Print what happened to each unit and to all."""
+    """Print what happened to each unit and to all: what they did first, how often they struck, and where they are."""
     say(
         console,
         f"{voyage.duration / 60.0:.4g} min on a deck that rolls up to {degrees(voyage.most_rolled):.1f} degrees and "
         f"pushes to the side with up to {voyage.most_lateral:.2f} of the weight.",
     )
-    show(console, units_table(voyage))
-    say(console, *voyage_sentences(voyage))
-
-
-def units_table(voyage: Voyage) -> Table:
-    """The units: what they did first, how often they struck, and where they are."""
     columns = [
         Column("unit", lambda one: one.unit.name, left=True),
         Column("first\nslide\ns", lambda one: _first(onset for onset in one.onsets if onset.slides)),
         Column("first\nlift\ns", lambda one: _first(onset for onset in one.onsets if onset.lifts)),
-        Column("impacts", lambda one: str(len(one.impacts))),
-        Column(f"above\n{RESOLVED:g}\nm/s", lambda one: str(len(_resolved(one.impacts)))),
+        Column("impacts", lambda one: f"{len(one.impacts)}"),
+        Column(f"above\n{RESOLVED:g}\nm/s", lambda one: f"{len(_resolved(one.impacts))}"),
         Column("fastest\nm/s", lambda one: fixed(max((hit.approach for hit in one.impacts), default=None), 2)),
         Column("turned\nup to\ndegrees", lambda one: f"{degrees(one.most_turned):.1f}"),
         Column("moved\nto port\nm", lambda one: f"{one.moved:+.2f}"),
-        Column("at the\nend", lambda one: UNIT_ENDS.get(one.end, "lost"), left=True),
+        Column("at the\nend", lambda one: _UNIT_ENDS.get(one.end, words(one.end.name)), left=True),
     ]
-    return table_of(columns, voyage.units)
+    show(console, table_of(columns, voyage.units))
+    impacts = [impact for one in voyage.units for impact in one.impacts]
+    modes = Counter(impact.mode.name for impact in _resolved(impacts))
+    counts = "".join(f", {count} {mode}" for mode, count in modes.most_common())
+    every = f"{counted(len(impacts), 'impact')}, {60.0 * len(impacts) / voyage.duration:.3g} a minute"
+    say(console, f"{every}, {modes.total()} with more than {RESOLVED:g} m/s{counts}.")
+    toppled = [f"{one.unit.name} at {one.time:.1f} s" for one in voyage.units if one.end is End.OVERTURNED]
+    if toppled:
+        say(console, f"Toppled, and not recorded after that: {', '.join(toppled)}.")
 
 
 def _first(onsets: Iterable[TrueOnset]) -> str:
     return fixed(min((onset.stamp / NANOSECONDS for onset in onsets), default=None), 2)
-
-
-def voyage_sentences(voyage: Voyage) -> list[str]:
-    """What the table comes to."""
-    impacts = [impact for one in voyage.units for impact in one.impacts]
-    said = ["No contact ever struck."]
-    if impacts:
-        modes = Counter(impact.mode.name for impact in _resolved(impacts))
-        counts = ": " + ", ".join(f"{count} {mode}" for mode, count in modes.most_common()) if modes else ""
-        said = [
-            f"{counted(len(impacts), 'impact')}, {60.0 * len(impacts) / voyage.duration:.3g} a minute.",
-            f"{modes.total()} of them came with more than {RESOLVED:g} m/s{counts}.",
-        ]
-    toppled = [f"{one.unit.name} at {one.time:.1f} s" for one in voyage.units if one.end is End.OVERTURNED]
-    if toppled:
-        said.append(f"Toppled, and not recorded after that: {', '.join(toppled)}.")
-    return said
