@@ -258,5 +258,4 @@ ONE_POINT, OUT_OF_PLANE, ONE_CORNER_FIRST, TOO_SLOW = (
     int(flag) for flag in (Leftover.ONE_POINT, Leftover.OUT_OF_PLANE, Leftover.ONE_CORNER_FIRST, Leftover.TOO_SLOW)
 )
 
-LEFTOVERS = tuple(map(Leftover, range(1 + sum(Leftover))))
-"""By their bits, because making a flag is slow."""
+LEFTOVERS = tuple(map(Leftover, range(1 + sum(Leftover))))  # by their bits, because making a flag is slow

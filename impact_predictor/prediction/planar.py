@@ -22,14 +22,9 @@ point: the stance of a body that turns about it, told from a body that only graz
 ROUNDING = 1e-12
 """The square of a direction this small, relative to the vector it is a part of, is none: points may be float32."""
 
-ORIGIN = (0.0, 0.0, 0.0)
-"""Of the body frame, where the mass centre often lies."""
-
-TINY = 1e-100
-"""Below it the square of a length or of a speed has lost its digits."""
-
-GRAZES = 1e-9
-"""m/s: what reaches the support slower only grazes it."""
+ORIGIN = (0.0, 0.0, 0.0)  # of the body frame, where the mass centre often lies
+TINY = 1e-100  # below it the square of a length or of a speed has lost its digits
+GRAZES = 1e-9  # m/s: what reaches the support slower only grazes it
 
 
 class Posture(NamedTuple):

@@ -26,9 +26,7 @@ from .score import Pending, Track
 from .types import Geometry, Joints, Moment, Sample, Schedule, Status, Touchdown, Vector3, Wrench
 from .vectors import total
 
-ACCURACY = 1e-6
-"""Of the motion before the touchdown, relative: a thousandth of what poses and twists are measured to."""
-
+ACCURACY = 1e-6  # of the motion before the touchdown, relative: a thousandth of what poses and twists are measured to
 SETTLED = 0.5
 """A touchdown has happened when less than this part of the approach is left, within the contact tolerance, that the
 predicting sample measured: the approach predicted for the touchdown has gravity's gain on the way added to it."""

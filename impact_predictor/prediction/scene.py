@@ -20,8 +20,7 @@ JOINTS: Final = "joint_states"
 WRENCH: Final = "contact_wrench"
 SCHEDULE: Final = "schedule"
 
-STATES: Final = (ODOM, IMU)
-"""What tells how a body moves; everything else is told about it."""
+STATES: Final = (ODOM, IMU)  # what tells how a body moves; everything else is told about it
 
 
 class MovingDeck(NamedTuple):

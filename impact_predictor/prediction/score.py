@@ -16,8 +16,7 @@ from .vectors import cross, dot, to_world, total
 MEASURED = slice(1, 4)
 """Samples 2 to 4 after a touchdown: the first may average the impact itself, later ones see friction and bounces."""
 
-LONGEST = 1000
-"""How many predictions of one touchdown are remembered."""
+LONGEST = 1000  # how many predictions of one touchdown are remembered
 
 
 class Track:

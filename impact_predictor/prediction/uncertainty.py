@@ -28,11 +28,8 @@ from .scene import Scene
 from .types import Covariance, Quaternion, Sample, Uncertainty, Vector3
 from .vectors import axes_of, cross, times, to_body, to_world
 
-ROUNDING = 1e-9
-"""A covariance may miss symmetry and positive semidefiniteness by this part of its variances."""
-
-LARGEST = 1e24
-"""Variances beyond which products overflow; nothing is known of such a motion."""
+ROUNDING = 1e-9  # a covariance may miss symmetry and positive semidefiniteness by this part of its variances
+LARGEST = 1e24  # variances beyond which products overflow; nothing is known of such a motion
 
 
 class Sampler:

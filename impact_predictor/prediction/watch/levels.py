@@ -51,7 +51,7 @@ class Levels:
     """
 
     def __init__(self, watchings: Sequence[Watching]) -> None:
-        self._warn = np.array([one.warn for one in watchings])
+        self.warn = np.array([one.warn for one in watchings])
         self._error = np.array([one.error for one in watchings])
         self._hysteresis = np.array([one.hysteresis for one in watchings])
         self._hold = np.array([one.hold * NANOSECONDS for one in watchings])
@@ -88,14 +88,14 @@ class Levels:
             self._justified[:, number] = _NEVER
             self.changed = True
 
+    def _asked(self, used: NDArray[np.float64]) -> NDArray[np.int64]:
+        """The ranks that used parts ask for."""
+        ranks: NDArray[np.int64] = np.where(used >= self._error, ERROR, np.where(used >= self.warn, WARN, OK))
+        return ranks
+
     def begin_anew(self) -> None:
         """Hold nothing that was before."""
         self._justified[:] = _NEVER
-
-    def _asked(self, used: NDArray[np.float64]) -> NDArray[np.int64]:
-        """The ranks that used parts ask for."""
-        asked: NDArray[np.int64] = np.where(used >= self._error, ERROR, np.where(used >= self._warn, WARN, OK))
-        return asked
 
 
 class MarginsUsed(NamedTuple):
@@ -104,6 +104,13 @@ class MarginsUsed(NamedTuple):
     tip: float
     edge: str
     slide: float
+
+    @property
+    def most(self) -> float:
+        return max(self.tip, self.slide)
+
+
+NOTHING: Final = MarginsUsed(0.0, "", 0.0)
 
 
 class BodyOutlook(NamedTuple):
@@ -118,8 +125,8 @@ class BodyOutlook(NamedTuple):
     time_to_tip: float
     time_to_slide: float
     strikes: tuple[float, Mode] | None
-    barrier: float = inf
-    barrier_edge: str = ""
+    barrier: float
+    barrier_edge: str
 
 
 class WatchedBody:
@@ -129,11 +136,9 @@ class WatchedBody:
         self.name, self.scene = name, scene
         self.watching = scene.watching or Watching()
         self.standing = Standing(scene)
-        self.status = Status.BODY_STALE if scene.source != "none" else Status.ACCEPTED
-        if scene.needs_geometry:
-            self.status = Status.NO_GEOMETRY
+        self.status = Status.NO_GEOMETRY if scene.needs_geometry else self._unheard
         self._heard: int | None = None  # when its source was, in ns
-        self.top = MarginsUsed(0.0, "", 0.0)
+        self.top = NOTHING
         """Where the margins were used up most since the level rose."""
         self.why = ""
         """What else raised it."""
@@ -144,18 +149,22 @@ class WatchedBody:
         self._verbs = ("rolls", "rolling", "spins", "spinning") if rolls else ("tips", "tipping", "slides", "sliding")
 
     @property
+    def _unheard(self) -> Status:
+        """Its status before its source is heard."""
+        return Status.BODY_STALE if self.scene.source != "none" else Status.ACCEPTED
+
+    @property
     def known(self) -> bool:
         """Whether its margins mean something: a body that has fallen silent is taken to stand as it stood."""
         return self.status in (Status.ACCEPTED, Status.BODY_STALE)
 
     def rank(self) -> int:
         """The rank of the level that it asks for, its margins left aside."""
-        standing, asked = self.standing, rank_of(self.status)
-        if standing.toppled or standing.slid or standing.motion in OFF_ITS_FEET:
-            return max(asked, ERROR)
-        if not standing.solid and self.status is not Status.NO_GEOMETRY:
-            return max(asked, ERROR)
-        return asked
+        standing = self.standing
+        wavers = not standing.solid and self.status is not Status.NO_GEOMETRY
+        if wavers or standing.toppled or standing.slid or standing.motion in OFF_ITS_FEET:
+            return ERROR
+        return rank_of(self.status)
 
     def struck(self, stamp: int, touchdown: Touchdown | None) -> bool:
         """Take the touchdown that a sample announces, or that it announces none; whether the last one has happened.
@@ -181,7 +190,7 @@ class WatchedBody:
         self.scene = self.scene._replace(points=points)
         self.standing = Standing(self.scene)
         if self.status is Status.NO_GEOMETRY:
-            self.status = Status.BODY_STALE if self.scene.source != "none" else Status.ACCEPTED
+            self.status = self._unheard
         return True
 
     def hear(self, stamp: int) -> bool:
@@ -189,18 +198,16 @@ class WatchedBody:
         first, self._heard, self.status = self._heard is None, stamp, Status.ACCEPTED
         return first
 
-    def falls_silent(self, stamp: int, timeout: int) -> bool:
-        """Whether its source is not heard any more, of which nothing came for so many ns."""
-        if self._heard is None or self.status is not Status.ACCEPTED or stamp - self._heard <= timeout:
-            return False
-        self.status = Status.BODY_STALE
-        return True
+    def check_silence(self, stamp: int, timeout: int) -> None:
+        """Know at a stamp whether its source is not heard any more, of which nothing came for so many ns."""
+        if self._heard is not None and self.status is Status.ACCEPTED and stamp - self._heard > timeout:
+            self.status = Status.BODY_STALE
 
     def begin_anew(self) -> None:
         """Forget all stamps: its source was not heard yet."""
         self._strike = self._heard = None
-        if self.scene.source != "none" and self.status is Status.ACCEPTED:
-            self.status = Status.BODY_STALE
+        if self.status is Status.ACCEPTED:
+            self.status = self._unheard
 
     def reasons(self, outlook: BodyOutlook) -> list[str]:
         """What raises the level besides the margins, the gravest first."""
@@ -211,16 +218,16 @@ class WatchedBody:
             found.append("stands on a single point: look at its contact points and at how it is placed")
         if standing.toppled:
             found.append("has toppled: it lies on another side")
-        if standing.motion is BodyMotion.ROCKS:
-            tilt = "" if standing.tilt is None else f", tilted by {degrees(standing.tilt):.1f} degrees"
-            left, edge, short = outlook.barrier - standing.kinetic, outlook.barrier_edge, ""
-            if used is not None and edge and left > 0.0:
-                short = f", {left:.3g} J short of toppling over its {edge} edge"
-            elif used is not None and edge:
-                short = f", would topple over its {edge} edge if the deck stayed so"
-            found.append(standing.motion.value + tilt + short)
-        elif standing.motion is BodyMotion.LIFTS:
+        if standing.motion in OFF_ITS_FEET:
             found.append(standing.motion.value)
+        if standing.motion is BodyMotion.ROCKS:
+            left, edge = outlook.barrier - standing.kinetic, outlook.barrier_edge
+            if standing.tilt is not None:
+                found[-1] += f", tilted by {degrees(standing.tilt):.1f} degrees"
+            if used is not None and edge and left > 0.0:
+                found[-1] += f", {left:.3g} J short of toppling over its {edge} edge"
+            elif used is not None and edge:
+                found[-1] += f", would topple over its {edge} edge if the deck stayed so"
         if standing.slid:
             found.append(standing.slid)
         if outlook.strikes is not None:
@@ -236,8 +243,7 @@ class WatchedBody:
     def message(self, outlook: BodyOutlook, held: float | None) -> str:
         """The message of a report; `held` is how long ago (s) the level was raised, where nothing justifies it now."""
         words, used, motion = self.reasons(outlook), outlook.used, self.standing.motion
-        held_fast = used is None or max(used.tip, used.slide) < 1.0
-        if not words and motion is not BodyMotion.UNKNOWN and held_fast:
+        if not words and motion is not BodyMotion.UNKNOWN and (used is None or used.most < 1.0):
             words.append(motion.value)
         if outlook.lifted:
             words.append("weighs nothing on the deck: it lifts off")
@@ -246,29 +252,24 @@ class WatchedBody:
         past = ""
         if held is not None:
             rose = [self.why] if self.why else []
-            if max(self.top.tip, self.top.slide) >= self.watching.warn:
+            if self.top.most >= self.watching.warn:
                 rose.append(self._margins(self.top))
             past = f" ({held:.1f} s ago: {'; '.join(rose)})"
         return "; ".join(words) + past
 
     def values(self, outlook: BodyOutlook, per_hour: tuple[float, float, float]) -> dict[str, str]:
         """The values of a report, always the same in the same order; `per_hour` are tips, slides and impacts."""
-        used, tilt, (tips, slides, impacts) = outlook.used, self.standing.tilt, per_hour
-        energy = max(0.0, outlook.barrier - self.standing.kinetic)
-        margins = dict.fromkeys(
-            ("slide_ratio", "tip_ratio", "edge", "time_to_tip", "time_to_slide", "energy_to_topple"), UNKNOWN
-        )
-        if used is not None:
-            margins = {
-                "slide_ratio": f"{used.slide:.3f}",
-                "tip_ratio": f"{used.tip:.3f}",
-                "edge": used.edge or "none",
-                "time_to_tip": f"{outlook.time_to_tip:.2f}",
-                "time_to_slide": f"{outlook.time_to_slide:.2f}",
-                "energy_to_topple": f"{energy:.3f}",
-            }
+        used, tilt, (tips, slides, impacts) = outlook.used or NOTHING, self.standing.tilt, per_hour
+        margins = {
+            "slide_ratio": f"{used.slide:.3f}",
+            "tip_ratio": f"{used.tip:.3f}",
+            "edge": used.edge or "none",
+            "time_to_tip": f"{outlook.time_to_tip:.2f}",
+            "time_to_slide": f"{outlook.time_to_slide:.2f}",
+            "energy_to_topple": f"{max(0.0, outlook.barrier - self.standing.kinetic):.3f}",
+        }
         return {
-            **margins,
+            **(dict.fromkeys(margins, UNKNOWN) if outlook.used is None else margins),
             "tilt": UNKNOWN if tilt is None else f"{tilt:.4f}",
             "slides_per_hour": f"{slides:.1f}",
             "tips_per_hour": f"{tips:.1f}",
@@ -279,9 +280,7 @@ class WatchedBody:
     def _margins(self, used: MarginsUsed) -> str:
         """The parts of the margins that are used up, in words, the larger one first."""
         tips, tipping, slides, sliding = self._verbs
-        about = ""
-        if used.edge:
-            about = f" {'over' if self.scene.radius else 'about'} its {used.edge} edge"
+        about = f" {'over' if self.scene.radius else 'about'} its {used.edge} edge" if used.edge else ""
         found = []
         for part, does, doing, where in ((used.tip, tips, tipping, about), (used.slide, slides, sliding, "")):
             near = "near " if part >= self.watching.warn else ""

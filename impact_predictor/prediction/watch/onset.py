@@ -71,13 +71,12 @@ class Onset:
 
     def __init__(self, stances: Sequence[StandingBody]) -> None:
         self._stances = list(stances)
-        self._width = 0
-        self._changed = set(range(len(stances)))
+        self._collect()
 
     def replace(self, number: int, stance: StandingBody) -> None:
         """Let a body stand otherwise from now on."""
         self._stances[number] = stance
-        self._changed.add(number)
+        self._changed = True
 
     def margins(self, motion: NDArray[np.float64]) -> OnsetMargins:
         """The margins at a support's `motions` (12, times), or (12,) at one time."""
@@ -90,7 +89,7 @@ class Onset:
         limits = self._limits * weight
         ratios: NDArray[np.float64] = np.full(used.shape, FULL)
         np.divide(used, limits, out=ratios, where=limits > 0.0)
-        if self._smooth:
+        if self._smooth.size:
             ratios[self._smooth, 0] = np.where(used[self._smooth, 0] > 0.0, FULL, 0.0)
         if rolling is not None:
             ratios[self._drums, 0] = rolling
@@ -126,8 +125,8 @@ class Onset:
         m/s^2 and m^2/s^2, as (n, 3 + edges, times).
         """
         if self._changed:
-            self._renew()
-        return (self._rows @ motion).reshape(len(self._stances), 3 + self._width, -1)
+            self._collect()
+        return (self._rows @ motion).reshape(len(self._stances), -1, *motion.shape[1:] or (1,))
 
     def _drum_slide(self, numbers: NDArray[np.float64]) -> NDArray[np.float64]:
         """The part of the friction on their edges that cylinders use against spinning, and against slip along the axis.
@@ -151,61 +150,42 @@ class Onset:
         np.divide(wanted, held, out=ratios, where=held > 0.0)
         return ratios
 
-    def _renew(self) -> None:
-        """Take the stances that have changed into the arrays."""
-        widest = max(2, *(len(self._stances[number].edges) for number in self._changed))
-        if widest > self._width:
-            self._allot(widest)
-        changed = sorted(self._changed)
-        self._changed.clear()
-        stances, width = [self._stances[number] for number in changed], self._width
+    def _collect(self) -> None:
+        """Take the stances into the arrays."""
+        self._changed = False
+        stances = self._stances
+        width = max(2, *(len(stance.edges) for stance in stances))
         spare = [((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))] * width
         edges = np.array([([edge[:2] for edge in stance.edges] + spare)[:width] for stance in stances])
         point, outward = edges[:, :, 0], edges[:, :, 1]
         absent = np.array([[k >= len(stance.edges) for k in range(width)] for stance in stances])
         center, normal = np.array([s.center for s in stances]), np.array([s.normal for s in stances])
         mass, inertia = np.array([s.mass for s in stances]), np.array([s.inertia for s in stances])
+        friction = np.array([[s.friction] for s in stances])
         arm = center[:, None] - point
         height = np.where(absent, 0.0, (normal[:, None] * arm).sum(axis=2))
+        lever = np.where(absent, 1.0, -(outward * arm).sum(axis=2))
         # Any two directions along the support; of a cylinder's across its axis and along it.
         ahead = np.array([s.edges[0].outward if s.edges else unit_across(s.normal) for s in stances])
         axes = np.stack((-normal, ahead, np.cross(normal, ahead)), axis=1)
         felt = _felt_rows(center)
-        rows = self._rows.reshape(-1, 3 + width, _MOTIONS)
-        rows[changed, :3] = axes @ felt
         spin = _spin_rows(np.cross(normal[:, None], outward), inertia / mass[:, None, None])
-        rows[changed, 3:] = height[:, :, None] * (outward @ felt) - spin
-        self._limits[changed, 0, 0] = [stance.friction for stance in stances]
-        self._limits[changed, 1:, 0] = np.where(absent, 1.0, -(outward * arm).sum(axis=2))
-        self._axes[changed], self._outward[changed], self._height[changed] = axes, outward, height
-        self._mass[changed], self._absent[changed] = mass, absent
-        self._smooth = [number for number, stance in enumerate(self._stances) if stance.friction == 0.0]
-        self._drums = [number for number, stance in enumerate(self._stances) if stance.radius > 0.0 and stance.edges]
+        rows = np.concatenate((axes @ felt, height[:, :, None] * (outward @ felt) - spin), axis=1)
+        self._rows = rows.reshape(-1, _MOTIONS)
+        self._limits = np.concatenate((friction, lever), axis=1)[:, :, None]
+        self._axes, self._outward, self._height, self._mass, self._absent = axes, outward, height, mass, absent
+        self._smooth = np.flatnonzero(friction == 0.0)
+        self._drums = [number for number, stance in enumerate(stances) if stance.radius > 0.0 and stance.edges]
         if self._drums:
-            self._roll([self._stances[number] for number in self._drums])
-
-    def _allot(self, width: int) -> None:
-        """Make place for so many edges of a body."""
-        count = len(self._stances)
-        self._width, self._changed = width, set(range(count))
-        self._rows = np.zeros((count * (3 + width), _MOTIONS))
-        self._limits = np.zeros((count, 1 + width, 1))
-        self._axes, self._outward = np.zeros((count, 3, 3)), np.zeros((count, width, 3))
-        self._height, self._mass = np.zeros((count, width)), np.zeros(count)
-        self._absent = np.ones((count, width), dtype=bool)
-
-    def _roll(self, stances: Sequence[StandingBody]) -> None:
-        """Collect what counts for cylinders alone: the directions from their edges to their axes along (ahead, normal),
-        whether they lie on both, and their radii.
-        """
-        radius = np.array([[stance.radius] for stance in stances])
-        ahead, normal = self._axes[self._drums, 1], -self._axes[self._drums, 0]
-        arms = []
-        for k in (0, -1):
-            arm = np.array([add(stance.center, stance.edges[k].point, -1.0) for stance in stances]) / radius
-            arms.append(((ahead * arm).sum(axis=1)[:, None], (normal * arm).sum(axis=1)[:, None]))
-        both = np.array([[len(stance.edges) == 2] for stance in stances])
-        self._rolling = arms, both, radius, self._limits[self._drums, 0], self._height[self._drums, :1]
+            # The directions from the edges of cylinders to their axes along (ahead, normal), whether they lie on both.
+            drums = [stances[number] for number in self._drums]
+            radius = np.array([[stance.radius] for stance in drums])
+            arms = []
+            for k in (0, -1):
+                arm = np.array([add(stance.center, stance.edges[k].point, -1.0) for stance in drums]) / radius
+                arms.append([(way[self._drums] * arm).sum(axis=1)[:, None] for way in (ahead, normal)])
+            both = np.array([[len(stance.edges) == 2] for stance in drums])
+            self._rolling = arms, both, radius, friction[self._drums], height[self._drums, :1]
 
 
 class OnsetCounts:

@@ -10,7 +10,7 @@ from ..planar import edge_of
 from ..scene import Scene
 from ..types import Quaternion, Sample, Vector3
 from ..vectors import add, axes_of, cross, dot, times, to_body, to_world, total
-from .stance import BodyPose, Edge, StandingBody, edges_of, inertia_in_support, outline, placed, side
+from .stance import BodyPose, StandingBody, edges_of, inertia_in_support, outline, placed, side
 
 COARSE: Final = 5e-4
 """Part of a body's size below which no gap counts, however fine the contact tolerance: neither cargo nor decks are so
@@ -57,8 +57,8 @@ class Standing:
         self.slid = ""
         self.kinetic = 0.0
         self._seen = False
-        corners = scene.points or ((0.0, 0.0, 0.0), (2.0 * scene.radius, 0.0, 0.0))
-        self._touch = max(scene.tolerance, COARSE * hypot(*edge_of(list(corners))))
+        size = 2.0 * scene.radius or hypot(*edge_of(list(scene.points)))
+        self._touch = max(scene.tolerance, COARSE * size)
         self._clear = CLEAR * self._touch
         self._axis = (0.0, 0.0, 0.0)
         self._feet: list[Vector3] = []
@@ -73,6 +73,10 @@ class Standing:
         """Whether it has points enough to stand on."""
         return len(self._feet) > 1
 
+    def edge_name(self, number: int) -> str:
+        """The name of an edge about which it can tip, by its number; "" where there is none."""
+        return self.stance.edges[number].name if 0 <= number < len(self.stance.edges) else ""
+
     def update(self, sample: Sample) -> bool:
         """Take a sample relative to the support; whether the stance has changed."""
         pose = BodyPose(sample.position, axes_of(sample.orientation))
@@ -85,15 +89,16 @@ class Standing:
         self.tilt = self._tilt_of(pose)
         self.slid = ""
         self.kinetic = 0.0
-        motion = BodyMotion.STANDS
-        if highest - lowest > self._clear:
-            motion = BodyMotion.ROCKS
-        if lowest > self._clear:
-            motion = BodyMotion.LIFTS
-        self._off = 0 if motion is BodyMotion.STANDS else self._off + 1
-        self.motion = motion if self._off >= CONFIRMED else BodyMotion.STANDS
+        self._off = self._off + 1 if highest - lowest > self._clear or lowest > self._clear else 0
+        self.motion = BodyMotion.STANDS
+        if self._off >= CONFIRMED:
+            self.motion = BodyMotion.LIFTS if lowest > self._clear else BodyMotion.ROCKS
         if self.motion is BodyMotion.ROCKS:
-            self.kinetic = self._kinetic_energy(sample)
+            scene, spin = self._scene, sample.angular
+            velocity = add(sample.linear, cross(spin, scene.center_of_mass))
+            momentum = [dot(row, spin) for row in scene.inertia]
+            turning = total([p * w for p, w in zip(momentum, spin, strict=True)])
+            self.kinetic = 0.5 * (scene.mass * dot(velocity, velocity) + turning)
         if self.motion is not BodyMotion.STANDS:
             self._anchor = []
         elif self._off == 0:
@@ -131,9 +136,7 @@ class Standing:
         scene = self._scene
         up = to_body(pose.axes, scene.normal)
         needed, low = min(3, max(2, len(self._feet))), self._standing_points(pose)
-        if len(low) < needed:
-            return False
-        feet = outline(low, up)
+        feet = outline(low, up) if len(low) >= needed else []
         if len(feet) < needed or set(feet) <= set(self._feet):
             return False
         if min(dot(scene.normal, pose.place(foot)) for foot in feet) > scene.height + self._clear:
@@ -164,12 +167,6 @@ class Standing:
         cosine = dot(self._up, to_body(pose.axes, self._scene.normal))
         return acos(max(-1.0, min(1.0, cosine)))
 
-    def _kinetic_energy(self, sample: Sample) -> float:
-        scene, spin = self._scene, sample.angular
-        velocity = add(sample.linear, cross(spin, scene.center_of_mass))
-        momentum = [dot(row, spin) for row in scene.inertia]
-        return 0.5 * (scene.mass * dot(velocity, velocity) + total(p * w for p, w in zip(momentum, spin, strict=True)))
-
     def _slide(self, stamp: int, pose: BodyPose, feet: list[Vector3]) -> None:
         """Compare where the feet are with where they stood; a cylinder's are where it then lay on its edges."""
         scene, since = self._scene, stamp - self._last
@@ -190,14 +187,14 @@ class Standing:
             return
         moves = [add(foot, stood, -1.0) for foot, stood in zip(feet, self._anchor, strict=True)]
         rises = [dot(scene.normal, move) for move in moves]
-        if not scene.radius:
-            moves = [add(move, scene.normal, -rise) for move, rise in zip(moves, rises, strict=True)]
-        farthest = max(moves, key=lambda move: dot(move, move))
+        along = [add(move, scene.normal, -rise) for move, rise in zip(moves, rises, strict=True)]
+        farthest = max(moves if scene.radius else along, key=lambda move: dot(move, move))
         distance, rise = hypot(*farthest), max(rises, key=abs)
-        verb = "spins on its edges"
-        if not scene.radius and abs(rise) > distance:
+        if scene.radius:
+            verb = "spins on its edges"
+        elif abs(rise) > distance:
             verb, distance = "rises from where it stood" if rise > 0.0 else "sinks into the deck", abs(rise)
-        elif not scene.radius:
+        else:
             verb = f"slides to {side(times(farthest, 1.0 / distance), scene.normal)}"
         self.slid = f"{verb}, by {distance:.3f} m"
         self._settle(pose, feet)
@@ -218,24 +215,18 @@ class Standing:
         if self._drawn and rocks is self._drawn_rocking and _within(feet, self._drawn, self._touch):
             return False
         self._drawn, self._drawn_rocking = feet, rocks
-        edges: list[Edge] = []
-        if scene.radius:
-            line = [self._at_center(edge, pose) for edge in scene.edges]
-            edges = [edge for edge, _ in edges_of(line, normal)]
-            if edges and rocks:
-                edges = [edges[gaps.index(min(gaps))]]
-        elif self.solid:
-            found = edges_of(feet, normal)
-            if found and rocks:
-                found = [min(found, key=lambda pair: dot(normal, pair[0].point) + dot(normal, pair[1]))]
-            edges = [edge for edge, _ in found]
+        found = edges_of([self._at_center(edge, pose) for edge in scene.edges] if scene.radius else feet, normal)
+        if found and rocks and scene.radius:
+            found = [found[gaps.index(min(gaps))]]
+        elif found and rocks:
+            found = [min(found, key=lambda pair: dot(normal, pair[0].point) + dot(normal, pair[1]))]
         self.stance = StandingBody(
             mass=scene.mass,
             friction=scene.friction,
             normal=normal,
             center=center,
             inertia=inertia_in_support(scene.inertia, pose.axes),
-            edges=tuple(edges),
+            edges=tuple([edge for edge, _ in found]),
             radius=scene.radius,
         )
         return True

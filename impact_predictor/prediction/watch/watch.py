@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from ...stamps import NANOSECONDS
 from ..scene import MovingDeck, Scene
 from ..types import Moment, Quaternion, Sample, Status, Touchdown, Vector3
-from .levels import GRAVITY, OK, WARN, BodyOutlook, Level, Levels, MarginsUsed, WatchedBody, rank_of
-from .onset import Onset, OnsetCounts, OnsetMargins, first_times, motion_of, motions
+from .levels import GRAVITY, NOTHING, OK, WARN, BodyOutlook, Level, Levels, MarginsUsed, WatchedBody, rank_of
+from .onset import Onset, OnsetCounts, first_times, motion_of, motions
 
 __all__ = ["Level", "Report", "Watch"]
 
@@ -56,32 +56,23 @@ class Watch:
         self._bodies = bodies = [WatchedBody(name, scene) for name, scene in scenes.items()]
         self._numbers = {name: number for number, name in enumerate(scenes)}
         self._forecast = forecast
-        count, watchings = len(bodies), [body.watching for body in bodies]
+        watchings = [body.watching for body in bodies]
         self._onset = Onset([body.standing.stance for body in bodies])
         self._levels = Levels(watchings)
         self._counts = OnsetCounts(np.array([one.hysteresis for one in watchings]))
         self._timeout = int((bodies[0].scene.deck or MovingDeck()).timeout * NANOSECONDS)
-        self._warn = np.array([one.warn for one in watchings])
         self._horizons = np.array([one.horizon for one in watchings])
         self._times = np.linspace(0.0, float(self._horizons.max()), FORECAST_TIMES + 1)
-        self._others = np.array([body.rank() for body in bodies])
-        self._support = Status.NO_SUPPORT
         self._motion = np.zeros(12)
-        self._margins = OnsetMargins(
-            slide=np.zeros(count),
-            tip=np.zeros(count),
-            edge=np.zeros(count, dtype=np.intp),
-            lifted=np.zeros(count, dtype=bool),
-        )
-        self._used = np.zeros(count)
-        self._time_to_tip, self._time_to_slide = np.full(count, inf), np.full(count, inf)
-        self._due = np.zeros(count, dtype=np.int64)
-        self._looked: int | None = None
-        self._judged: int | None = None
+        self._margins = self._onset.margins(self._motion)
         self._now: int | None = None
         self._reported: int | None = None
+        self._judged: int | None
+        self._looked: int | None
+        self._support: Status
         self._judged_at = 0
         self._begun = False
+        self._lose(Status.NO_SUPPORT)
 
     def update_support(self, moment: Moment) -> None:
         """Take the support's motion now."""
@@ -99,14 +90,12 @@ class Watch:
         self._motion = motion_of(moment.felt)
         self._margins = margins = self._onset.margins(self._motion)
         self._used = np.maximum(margins.slide, margins.tip)
-        self._counts.update(
-            margins.tip, margins.slide, since / NANOSECONDS if since and since <= self._timeout else 0.0
-        )
+        seconds = since / NANOSECONDS if since and since <= self._timeout else 0.0
+        self._counts.update(margins.tip, margins.slide, seconds)
         if self._looked is None or not 0 <= moment.stamp - self._looked < FORECAST_EVERY:
             self._look_ahead(moment.stamp)
-        for number, watched in enumerate(self._bodies):
-            if watched.falls_silent(moment.stamp, self._timeout):
-                self._others[number] = watched.rank()
+        for watched in self._bodies:
+            watched.check_silence(moment.stamp, self._timeout)
         self._judge()
 
     def update_body(self, body: str, relative: Sample, touchdown: Touchdown | None) -> None:
@@ -122,9 +111,8 @@ class Watch:
     def update_tilt(self, body: str, stamp: int, orientation: Quaternion) -> None:
         """Take a body's orientation relative to the support."""
         number = self._numbers[body]
-        watched = self._bodies[number]
         self._hear(number, stamp)
-        self._changed(number, watched.standing.lean(orientation))
+        self._changed(number, self._bodies[number].standing.lean(orientation))
 
     def set_points(self, body: str, points: tuple[Vector3, ...]) -> None:
         """Take the contact points of a body, in its frame."""
@@ -135,10 +123,7 @@ class Watch:
     def support_lost(self, status: Status, stamp: int) -> None:
         """Know that nothing is known of the support at a stamp in ns, and why."""
         self._go_on(stamp)
-        self._support = status
-        self._used = np.zeros(len(self._bodies))
-        self._time_to_tip[:] = self._time_to_slide[:] = inf
-        self._judged = self._looked = None
+        self._lose(status)
         self._judge()
 
     def body_lost(self, body: str, status: Status, stamp: int) -> None:
@@ -156,29 +141,35 @@ class Watch:
         self._reported = now
         work, edges = self._onset.barriers(self._motion)
         return tuple(
-            self._report(number, now, float(work[number]), int(edges[number])) for number in range(len(self._bodies))
+            [self._report(number, now, float(work[number]), int(edges[number])) for number in range(len(self._bodies))]
         )
 
     def _go_on(self, stamp: int) -> None:
         """Let time go on; where it has begun anew so does all that waits for a stamp."""
         if self._now is not None and stamp < self._now - SECOND:
             self._levels.begin_anew()
-            self._judged = self._looked = self._reported = None
+            self._lose(self._support)
+            self._reported = None
             self._begun = False
-            for number, watched in enumerate(self._bodies):
+            for watched in self._bodies:
                 watched.begin_anew()
-                self._others[number] = watched.rank()
             self._now = stamp
         self._now = stamp if self._now is None else max(stamp, self._now)
+
+    def _lose(self, status: Status) -> None:
+        """Know nothing of the support."""
+        self._support = status
+        count = len(self._bodies)
+        self._used, self._time_to_tip, self._time_to_slide = np.zeros(count), np.full(count, inf), np.full(count, inf)
+        self._due = np.full(count, rank_of(status))
+        self._judged = self._looked = None
 
     def _look_ahead(self, stamp: int) -> None:
         self._looked = stamp
         ahead = self._onset.margins(motions(*self._forecast(self._times)))
         found = [first_times(ratios, self._times) for ratios in (ahead.tip, ahead.slide)]
-        for times in found:
-            times[times > self._horizons] = inf
-        self._time_to_tip, self._time_to_slide = found
-        self._due = np.where(np.minimum(*found) < inf, WARN, OK)
+        self._time_to_tip, self._time_to_slide = [np.where(times > self._horizons, inf, times) for times in found]
+        self._due = np.where(np.minimum(self._time_to_tip, self._time_to_slide) < inf, WARN, OK)
 
     def _hear(self, number: int, stamp: int) -> None:
         """A body's source is heard, at the time that the support's stamps tell."""
@@ -190,10 +181,9 @@ class Watch:
         watched = self._bodies[number]
         if stance:
             self._onset.replace(number, watched.standing.stance)
-        self._others[number] = rank = watched.rank()
         if self._now is None:
             return
-        if rank > self._levels.ranks[number]:
+        if watched.rank() > self._levels.ranks[number]:
             self._judge()
         elif watched.standing.slid:
             self._remember(number)
@@ -201,17 +191,16 @@ class Watch:
     def _judge(self) -> None:
         assert self._now is not None
         self._judged_at = self._now
-        known = self._support is Status.ACCEPTED
-        others = np.maximum(self._others, self._due if known else rank_of(self._support))
+        others = np.array([body.rank() for body in self._bodies])
         before = self._levels.ranks
-        self._levels.update(self._now, self._used, others)
+        self._levels.update(self._now, self._used, np.maximum(others, self._due))
         ranks = self._levels.ranks
         for number in np.flatnonzero((ranks > before) | ((ranks == OK) & (ranks != before))).tolist():
-            self._bodies[number].top = MarginsUsed(0.0, "", 0.0)
+            self._bodies[number].top = NOTHING
             self._remember(number)
-        for number in np.flatnonzero(self._used >= self._warn).tolist():
+        for number in np.flatnonzero(self._used >= self._levels.warn).tolist():
             watched, used = self._bodies[number], self._used_of(number)
-            if max(used.tip, used.slide) > max(watched.top.tip, watched.top.slide):
+            if used.most > watched.top.most:
                 watched.top, watched.raised = used, self._now
 
     def _remember(self, number: int) -> None:
@@ -221,34 +210,27 @@ class Watch:
         body.why, body.raised = "; ".join(body.reasons(self._outlook(number, inf, -1))), self._now
 
     def _used_of(self, number: int) -> MarginsUsed:
-        margins, edges = self._margins, self._bodies[number].standing.stance.edges
-        edge = edges[margins.edge[number]].name if margins.edge[number] < len(edges) else ""
+        margins = self._margins
+        edge = self._bodies[number].standing.edge_name(int(margins.edge[number]))
         return MarginsUsed(float(margins.tip[number]), edge, float(margins.slide[number]))
 
     def _outlook(self, number: int, work: float, edge: int) -> BodyOutlook:
         """What is found for a body now; `work` in J topples it over its edge of that number."""
         assert self._now is not None
         body = self._bodies[number]
-        edges, status = body.standing.stance.edges, body.status
-        if body.known and self._support is not Status.ACCEPTED:
-            status = self._support  # a body that is refused for the support's sake is not silent
-        felt = self._support is Status.ACCEPTED and body.known and self._judged is not None
+        # A body that is refused for the support's sake is not silent.
+        felt = body.known and self._support is Status.ACCEPTED and self._judged is not None
+        passed = 0.0 if self._looked is None else (self._now - self._looked) / NANOSECONDS
         return BodyOutlook(
-            status=status,
+            status=self._support if body.known and self._support is not Status.ACCEPTED else body.status,
             used=self._used_of(number) if felt else None,
             lifted=felt and bool(self._margins.lifted[number]),
-            time_to_tip=self._until(self._time_to_tip[number]),
-            time_to_slide=self._until(self._time_to_slide[number]),
+            time_to_tip=max(0.0, float(self._time_to_tip[number]) - passed),
+            time_to_slide=max(0.0, float(self._time_to_slide[number]) - passed),
             strikes=body.strikes(self._now),
             barrier=work,
-            barrier_edge=edges[edge].name if 0 <= edge < len(edges) else "",
+            barrier_edge=body.standing.edge_name(edge),
         )
-
-    def _until(self, time: float) -> float:
-        """What is left in s of a time found when it was last looked ahead."""
-        if self._looked is None or self._now is None:
-            return inf
-        return max(0.0, float(time) - (self._now - self._looked) / NANOSECONDS)
 
     def _report(self, number: int, now: int, work: float, edge: int) -> Report:
         body, outlook = self._bodies[number], self._outlook(number, work, edge)
