@@ -20,24 +20,6 @@ from .types import Contact, Flag, Twist, TwoPointBody
 Violations = NDArray[np.float64]
 Solve = Callable[[TwoPointBody, Twist, str], Outcomes]
 
-LIMITS = {
-    "finite": 0.0,
-    "cone": 1e-12,
-    "momentum": 1e-9,
-    "approach": 1e-9,
-    "work": 1e-12,
-    "energy": 1e-9,
-    "units": 0.0,
-    "mirror": 1e-12,
-    "continuity": 1e-5,
-}
-"""The invariants, and how large a violation rounding explains where the problem is not stiff (`random_problems`).
-
-Most are below 1e-15; of 1e8 random impacts a few have a condition number of 1e5."""
-
-EXACT = ("finite", "units")
-"""The invariants that no condition number excuses."""
-
 UNITS = 2.0**20, 2.0**-13, 2.0**7
 """Units of mass, length and time: powers of two, which change no digit."""
 
@@ -47,32 +29,39 @@ STEP = 2.0**-40
 UNANSWERED = int(Flag.NO_SOLUTION | Flag.INVALID_INPUT)
 
 
-def violations(
-    body: TwoPointBody, twist: Twist, law: str, solve: Solve = solve_impacts
-) -> tuple[Outcomes, dict[str, Violations]]:
-    """The outcomes of problems and, for each of the `LIMITS`, how much they violate it.
+class SolvedProblems(NamedTuple):
+    """Problems, whose fields may be arrays (...) as for `solve_impacts`, and their outcomes by a law."""
 
-    The fields of `body` and `twist` may be arrays (...), as for `solve_impacts`; so are the violations.
-    """
-    outcomes = solve(body, twist, law)
-    answered = (outcomes.flags & UNANSWERED) == 0
-    found = {
-        "finite": not_finite(outcomes),
-        "cone": outside_cones(body, outcomes),
-        "momentum": momentum_gained(body, twist, outcomes),
-        "approach": approach_left(body, twist, outcomes),
-        "work": work_gained(body, twist, outcomes, law),
-        "energy": energy_unexplained(body, twist, outcomes),
-        "units": changed_by_units(body, twist, outcomes, law, solve),
-        "mirror": changed_by_mirror(body, twist, outcomes, law, solve),
-        "continuity": jump(body, twist, outcomes, law, solve),
-    }
-    return outcomes, {name: np.where(answered | (name == "finite"), value, 0.0) for name, value in found.items()}
+    body: TwoPointBody
+    twist: Twist
+    law: str
+    solve: Solve
+    outcomes: Outcomes
 
+    @property
+    def contacts(self) -> list[tuple[Contact, Violations, Violations]]:
+        """The contacts, with their normal and tangential impulses (N s)."""
+        impulses = self.outcomes.impulses
+        both = enumerate((self.body.old, self.body.new))
+        return [(contact, impulses[..., i, 0], impulses[..., i, 1]) for i, contact in both if contact is not None]
 
-def contacts_of(body: TwoPointBody) -> list[tuple[int, Contact]]:
-    """The contacts, with their place in the impulses of an outcome."""
-    return [(i, contact) for i, contact in enumerate((body.old, body.new)) if contact is not None]
+    @property
+    def supports_move(self) -> NDArray[np.bool_]:
+        """Whether the support of a contact moves."""
+        speeds = [abs(part) for contact, _, _ in self.contacts for part in contact.velocity]
+        return np.asarray(largest(speeds) > 0.0)
+
+    def terms(self, *twists: Any) -> Violations:
+        """The largest size of the terms of the contact velocities (m/s) in several twists."""
+        return largest([sum(velocity(contact, twist)[2] for twist in twists) for contact, _, _ in self.contacts])
+
+    def apart(self, one: Any, other: Any) -> Violations:
+        """How far two twists after are apart at the contacts: a part of the terms of the contact velocities."""
+        found = []
+        for contact, _, _ in self.contacts:
+            (n, t, _), (other_n, other_t, _) = velocity(contact, one), velocity(contact, other)
+            found += [abs(n - other_n), abs(t - other_t)]
+        return relative(largest(found), self.terms(self.twist, one, other))
 
 
 def parts(twist: Any) -> tuple[Any, Any, Any]:
@@ -100,29 +89,27 @@ def largest(values: list[Any]) -> Violations:
     return np.asarray(np.maximum.reduce(np.broadcast_arrays(*values)))
 
 
-def not_finite(outcomes: Outcomes) -> Violations:
+def not_finite(solved: SolvedProblems) -> Violations:
     """1 where a number of an outcome is not finite."""
-    numbers = (*parts(outcomes.twist), *np.moveaxis(outcomes.impulses.reshape(*outcomes.mode.shape, 4), -1, 0))
-    return np.asarray(~np.isfinite(sum(numbers, start=outcomes.energy_lost)), np.float64)
+    outcomes = solved.outcomes
+    total = outcomes.energy_lost + outcomes.twist.sum(-1) + outcomes.impulses.sum((-1, -2))
+    return np.asarray(~np.isfinite(total), np.float64)
 
 
-def outside_cones(body: TwoPointBody, outcomes: Outcomes) -> Violations:
+def outside_cones(solved: SolvedProblems) -> Violations:
     """How far impulses lie outside of their friction cones (Coulomb): a part of all impulses."""
-    size = np.abs(outcomes.impulses).sum((-1, -2))
-    found = []
-    for i, contact in contacts_of(body):
-        n, t = outcomes.impulses[..., i, 0], outcomes.impulses[..., i, 1]
-        found.append(relative(np.maximum(-n, (abs(t) - contact.friction * n) / (1.0 + contact.friction)), size))
-    return np.maximum(largest(found), 0.0)
+    outside = [np.maximum(-n, (abs(t) - one.friction * n) / (1.0 + one.friction)) for one, n, t in solved.contacts]
+    return relative(np.maximum(largest(outside), 0.0), np.abs(solved.outcomes.impulses).sum((-1, -2)))
 
 
-def momentum_gained(body: TwoPointBody, twist: Twist, outcomes: Outcomes) -> Violations:
+def momentum_gained(solved: SolvedProblems) -> Violations:
     """Change of linear and angular momentum that the impulses do not explain: a part of the terms of the balance."""
-    (vx, vy, omega), (wx, wy, after) = twist, parts(outcomes.twist)
-    gains = [body.mass * (wx - vx), body.mass * (wy - vy), body.inertia * (after - omega)]
-    sizes = [body.mass * (abs(vx) + abs(wx)), body.mass * (abs(vy) + abs(wy)), body.inertia * (abs(omega) + abs(after))]
-    for i, contact in contacts_of(body):
-        (nx, ny), n, t = contact.normal, outcomes.impulses[..., i, 0], outcomes.impulses[..., i, 1]
+    mass, inertia, _, _ = solved.body
+    (vx, vy, omega), (wx, wy, after) = solved.twist, parts(solved.outcomes.twist)
+    gains = [mass * (wx - vx), mass * (wy - vy), inertia * (after - omega)]
+    sizes = [mass * (abs(vx) + abs(wx)), mass * (abs(vy) + abs(wy)), inertia * (abs(omega) + abs(after))]
+    for contact, n, t in solved.contacts:
+        nx, ny = contact.normal
         px, py, push = nx * n + ny * t, ny * n - nx * t, abs(n) + abs(t)
         turn, turn_size = contact.x * py - contact.y * px, (abs(contact.x) + abs(contact.y)) * push
         gains = [gain - part for gain, part in zip(gains, (px, py, turn), strict=True)]
@@ -131,65 +118,46 @@ def momentum_gained(body: TwoPointBody, twist: Twist, outcomes: Outcomes) -> Vio
     return np.maximum(linear, relative(abs(gains[2]), sizes[2]))
 
 
-def terms_of(body: TwoPointBody, *twists: Any) -> Violations:
-    """The size of the terms of the contact velocities (m/s) in several twists, at the contact where it is largest."""
-    return largest([sum(velocity(contact, twist)[2] for twist in twists) for _, contact in contacts_of(body)])
-
-
-def approach_left(body: TwoPointBody, twist: Twist, outcomes: Outcomes) -> Violations:
+def approach_left(solved: SolvedProblems) -> Violations:
     """Approach that an impact leaves at a contact: a part of the terms of the contact velocities."""
-    approach = largest([-velocity(contact, outcomes.twist)[0] for _, contact in contacts_of(body)])
-    return np.maximum(relative(approach, terms_of(body, twist, outcomes.twist)), 0.0)
+    after = solved.outcomes.twist
+    approach = largest([-velocity(contact, after)[0] for contact, _, _ in solved.contacts])
+    return np.maximum(relative(approach, solved.terms(solved.twist, after)), 0.0)
 
 
-def work_gained(body: TwoPointBody, twist: Twist, outcomes: Outcomes, law: str) -> Violations:
+def work_gained(solved: SolvedProblems) -> Violations:
     """Work of the impulses on the body relative to its supports, P . (c + c') / 2: a part of the terms of the sum.
 
     It is never positive on the impulse path; in the total law where there is no restitution (Newton's can gain energy).
     """
-    work = size = np.zeros(outcomes.mode.shape)
-    plastic = (outcomes.flags & int(Flag.LAST_RESORT)) > 0
-    bounces = np.zeros(outcomes.mode.shape, np.bool_)
-    for i, contact in contacts_of(body):
-        before, after = velocity(contact, twist), velocity(contact, outcomes.twist)
-        for k in (0, 1):
-            impulse = outcomes.impulses[..., i, k]
-            work = work + impulse * (before[k] + after[k])
-            size = size + abs(impulse) * (before[2] + after[2])
+    flags, work, size = solved.outcomes.flags, 0.0, 0.0
+    bounces: Any = False
+    for contact, n, t in solved.contacts:
+        (cn, ct, terms), (vn, vt, terms_after) = (
+            velocity(contact, twist) for twist in (solved.twist, solved.outcomes.twist)
+        )
+        work = work + n * (cn + vn) + t * (ct + vt)
+        size = size + (abs(n) + abs(t)) * (terms + terms_after)
         bounces = bounces | (np.asarray(contact.restitution) > 0.0)
-    total = (outcomes.flags & int(Flag.BOTH_STRUCK)) > 0 if law == "path" else True
-    return np.where(bounces & total & ~plastic, 0.0, np.maximum(relative(work, size), 0.0))
+    total = (flags & int(Flag.BOTH_STRUCK)) > 0 if solved.law == "path" else True
+    may_gain = bounces & total & ((flags & int(Flag.LAST_RESORT)) == 0)
+    return np.where(may_gain, 0.0, np.maximum(relative(work, size), 0.0))
 
 
-def energy_unexplained(body: TwoPointBody, twist: Twist, outcomes: Outcomes) -> Violations:
+def energy_unexplained(solved: SolvedProblems) -> Violations:
     """Difference between the energy lost and the loss of kinetic energy, where supports rest: a part of their terms."""
+    body, twists = solved.body, (solved.twist, solved.outcomes.twist)
     before, after = (
-        0.5 * (body.mass * (vx * vx + vy * vy) + body.inertia * omega * omega)
-        for vx, vy, omega in (twist, parts(outcomes.twist))
+        0.5 * (body.mass * (vx * vx + vy * vy) + body.inertia * omega * omega) for vx, vy, omega in map(parts, twists)
     )
     size = before + after
-    for i, contact in contacts_of(body):
-        speeds = velocity(contact, twist)[2] + velocity(contact, outcomes.twist)[2]
-        size = size + speeds * np.abs(outcomes.impulses[..., i, :]).sum(-1)
-    return np.where(supports_move(body), 0.0, relative(abs(before - after - outcomes.energy_lost), size))
+    for contact, n, t in solved.contacts:
+        size = size + sum(velocity(contact, twist)[2] for twist in twists) * (abs(n) + abs(t))
+    unexplained = relative(abs(before - after - solved.outcomes.energy_lost), size)
+    return np.where(solved.supports_move, 0.0, unexplained)
 
 
-def supports_move(body: TwoPointBody) -> NDArray[np.bool_]:
-    """Whether a contact's support moves."""
-    speeds = [abs(part) for _, contact in contacts_of(body) for part in contact.velocity]
-    return np.asarray(largest(speeds) > 0.0)
-
-
-def apart(body: TwoPointBody, twist: Twist, one: Any, other: Any) -> Violations:
-    """How far two twists after the impact are apart at the contacts: a part of the terms of the contact velocities."""
-    found = []
-    for _, contact in contacts_of(body):
-        first, second = velocity(contact, one), velocity(contact, other)
-        found += [abs(first[k] - second[k]) for k in (0, 1)]
-    return relative(largest(found), terms_of(body, twist, one, other))
-
-
-def changed_by_units(body: TwoPointBody, twist: Twist, outcomes: Outcomes, law: str, solve: Solve) -> Violations:
+def changed_by_units(solved: SolvedProblems) -> Violations:
     """What other units of mass, length and time change in the outcome."""
     mass, length, time = UNITS
     speed = length / time
@@ -198,29 +166,29 @@ def changed_by_units(body: TwoPointBody, twist: Twist, outcomes: Outcomes, law: 
         (ux, uy), x, y = contact.velocity, contact.x * length, contact.y * length
         return contact._replace(x=x, y=y, velocity=(ux * speed, uy * speed))
 
-    vx, vy, omega = twist
+    body, (vx, vy, omega) = solved.body, solved.twist
     old = body.old and scaled(body.old)
     other = TwoPointBody(body.mass * mass, body.inertia * mass * length * length, old, scaled(body.new))
-    vx, vy, omega = parts(solve(other, Twist(vx * speed, vy * speed, omega / time), law).twist)
-    return apart(body, twist, outcomes.twist, (vx / speed, vy / speed, omega * time))
+    after = solved.solve(other, Twist(vx * speed, vy * speed, omega / time), solved.law).twist
+    vx, vy, omega = parts(after)
+    return solved.apart(solved.outcomes.twist, (vx / speed, vy / speed, omega * time))
 
 
-def changed_by_mirror(body: TwoPointBody, twist: Twist, outcomes: Outcomes, law: str, solve: Solve) -> Violations:
+def changed_by_mirror(solved: SolvedProblems) -> Violations:
     """What a mirror (x to -x) changes in the outcome, where it is unique: of several the laws take + before -."""
 
     def mirrored(contact: Contact) -> Contact:
         (nx, ny), (ux, uy) = contact.normal, contact.velocity
         return contact._replace(x=-contact.x, normal=(-nx, ny), velocity=(-ux, uy))
 
-    vx, vy, omega = twist
+    body, (vx, vy, omega), outcomes = solved.body, solved.twist, solved.outcomes
     image = body._replace(old=body.old and mirrored(body.old), new=mirrored(body.new))
-    reflected = solve(image, Twist(-vx, vy, -omega), law)
+    reflected = solved.solve(image, Twist(-vx, vy, -omega), solved.law)
     vx, vy, omega = parts(reflected.twist)
-    unique = outcomes.unique & reflected.unique
-    return np.where(unique, apart(body, twist, outcomes.twist, (-vx, vy, -omega)), 0.0)
+    return np.where(outcomes.unique & reflected.unique, solved.apart(outcomes.twist, (-vx, vy, -omega)), 0.0)
 
 
-def jump(body: TwoPointBody, twist: Twist, outcomes: Outcomes, law: str, solve: Solve) -> Violations:
+def jump(solved: SolvedProblems) -> Violations:
     """How far the outcome moves when friction, inertia and, where the supports rest, the place of B change by a `STEP`.
 
     It may jump where it is not unique or a law has no answer, and where the path jams, which sets in suddenly.
@@ -229,15 +197,51 @@ def jump(body: TwoPointBody, twist: Twist, outcomes: Outcomes, law: str, solve: 
     def rougher(contact: Contact) -> Contact:
         return contact._replace(friction=contact.friction * (1.0 + STEP) + STEP)
 
+    body, outcomes = solved.body, solved.outcomes
     x, y = body.new.x, body.new.y
     dx, dy = (x - body.old.x, y - body.old.y) if body.old else (x, y)
-    step: Any = STEP * ~supports_move(body)
+    step: Any = STEP * ~solved.supports_move
     new = rougher(body.new)._replace(x=x + step * (dx - dy), y=y + step * (dy + dx))
     near = TwoPointBody(body.mass, body.inertia * (1.0 + STEP), body.old and rougher(body.old), new)
-    others = solve(near, twist, law)
-    sudden = int(Flag.JAMMED | Flag.LAST_RESORT | Flag.NO_SOLUTION | Flag.INVALID_INPUT)
+    others = solved.solve(near, solved.twist, solved.law)
+    sudden = int(Flag.JAMMED | Flag.LAST_RESORT) | UNANSWERED
     steady = outcomes.unique & others.unique & (((outcomes.flags | others.flags) & sudden) == 0)
-    return np.where(steady, apart(body, twist, outcomes.twist, others.twist), 0.0)
+    return np.where(steady, solved.apart(outcomes.twist, others.twist), 0.0)
+
+
+INVARIANTS: dict[str, Callable[[SolvedProblems], Violations]] = {
+    "finite": not_finite,
+    "cone": outside_cones,
+    "momentum": momentum_gained,
+    "approach": approach_left,
+    "work": work_gained,
+    "energy": energy_unexplained,
+    "units": changed_by_units,
+    "mirror": changed_by_mirror,
+    "continuity": jump,
+}
+
+LIMITS = dict(zip(INVARIANTS, (0.0, 1e-12, 1e-9, 1e-9, 1e-12, 1e-9, 0.0, 1e-12, 1e-5), strict=True))
+"""How large a violation rounding explains where the problem is not stiff (`random_problems`).
+
+Most are below 1e-15; of 1e8 random impacts a few have a condition number of 1e5."""
+
+EXACT = ("finite", "units")
+"""The invariants that no condition number excuses."""
+
+
+def violations(
+    body: TwoPointBody, twist: Twist, law: str, solve: Solve = solve_impacts
+) -> tuple[Outcomes, dict[str, Violations]]:
+    """The outcomes of problems and, for each of the `INVARIANTS`, how much they violate it.
+
+    The fields of `body` and `twist` may be arrays (...), as for `solve_impacts`; so are the violations.
+    """
+    outcomes = solve(body, twist, law)
+    answered = (outcomes.flags & UNANSWERED) == 0
+    solved = SolvedProblems(body=body, twist=twist, law=law, solve=solve, outcomes=outcomes)
+    found = {name: violation(solved) for name, violation in INVARIANTS.items()}
+    return outcomes, {name: np.where(answered | (name == "finite"), value, 0.0) for name, value in found.items()}
 
 
 class WorstViolation(NamedTuple):
@@ -270,15 +274,9 @@ class Soak:
     """Random problems of all kinds through `laws`: the `worst` violations so far, and how many problems are `done`."""
 
     def __init__(self, count: int, seed: int, laws: Sequence[str]) -> None:
-        self.count, self.seed = count, seed
-        self.done = 0
-        self.worst = {
-            (law, stiff, name): WorstViolation(name, law, stiff)
-            for law in laws
-            for stiff in (False, True)
-            for name in LIMITS
-        }
-        self.laws = tuple(laws)
+        self.count, self.seed, self.laws, self.done = count, seed, tuple(laws), 0
+        cases = [(law, stiff, name) for law in laws for stiff in (False, True) for name in INVARIANTS]
+        self.worst = {(law, stiff, name): WorstViolation(name, law, stiff) for law, stiff, name in cases}
 
     def run(self, tell: Callable[[int], object] = lambda done: None) -> None:
         """Solve the problems; `tell` is told now and then how many are done. What was found stays if it is stopped."""
@@ -290,25 +288,27 @@ class Soak:
                 with np.errstate(all="ignore"):
                     _, found = violations(body, twist, law)
                 for name, values in found.items():
-                    self._take(self.worst[law, kind in STIFF, name], kind, values, body, twist)
+                    case = law, kind in STIFF, name
+                    self.worst[case] = worse(self.worst[case], kind, values, body, twist)
             self.done += np.size(body.mass)
             tell(self.done)
-
-    def _take(self, worst: WorstViolation, kind: str, values: Any, body: TwoPointBody, twist: Twist) -> None:
-        values = np.where(np.isnan(values), inf, values)
-        i = int(np.argmax(values))
-        violation = float(values[i])
-        if violation > worst.limit and kind not in worst.broken_by:
-            worst = worst._replace(broken_by=(*worst.broken_by, kind))
-        if violation > worst.violation:
-            one = {"body": problem_at(body, i), "twist": problem_at(twist, i)}
-            worst = worst._replace(violation=violation, kind=kind, **one)
-        self.worst[worst.law, worst.stiff, worst.invariant] = worst
 
     @property
     def broken(self) -> list[WorstViolation]:
         """The invariants that are violated by more than rounding explains."""
         return [worst for worst in self.worst.values() if worst.broken_by]
+
+
+def worse(worst: WorstViolation, kind: str, values: Any, body: TwoPointBody, twist: Twist) -> WorstViolation:
+    """The worst violation so far, or that of the problems of a kind if it is greater."""
+    values = np.where(np.isnan(values), inf, values)
+    i = int(np.argmax(values))
+    violation = float(values[i])
+    if violation > worst.limit and kind not in worst.broken_by:
+        worst = worst._replace(broken_by=(*worst.broken_by, kind))
+    if violation <= worst.violation:
+        return worst
+    return worst._replace(violation=violation, kind=kind, body=problem_at(body, i), twist=problem_at(twist, i))
 
 
 def problem_at(many: Any, i: int) -> Any:

@@ -2,8 +2,7 @@
 
 Along each way the nearest border is looked for outwards on both sides at the STEPS, and between two of them where the
 contact states differ. So a mode is found that holds over a thirty-second of the way's unit and over half of its
-distance; a narrower one if the contact states beyond it differ too. What comes to zero at the border (a slip, the
-speed of a contact that lifts) is followed to zero, which gives it to 1e-9 of the unit or better.
+distance; a narrower one if the contact states beyond it differ too. A border is then halved down to its place.
 """
 
 from __future__ import annotations
@@ -13,7 +12,7 @@ from math import copysign, hypot, inf
 from typing import NamedTuple
 
 from .impact import MODES, NOWHERE, number_of, see
-from .impact.answer import answer
+from .impact.answer import NO_IMPACT, answer
 from .types import Contact, Flag, Mode, Outcome, Twist, TwoPointBody, Vector
 
 STEPS = tuple([k / 32.0 for k in (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64)])
@@ -22,27 +21,13 @@ STEPS = tuple([k / 32.0 for k in (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64)])
 PROBES = 5
 """How often an interval is halved in which the contact states change but the mode does not."""
 
-ACCURACY = 1e-12
-"""Where velocities jump, a border is halved down to this, in the unit of its way."""
-
-NEARLY = 0.95
-"""How far a velocity is followed to the place where it seems to vanish."""
-
-CLOSE = 1e-7
-"""From here the secant gives a border up to rounding, in the unit of its way; nearer the velocity counts as zero."""
+ACCURACY = 1e-10
+"""A border is halved down to this, in the unit of its way: a contact velocity below 1e-10 is zero for the mode."""
 
 BEYOND = 1e-6
-"""How far from a border the modes on its sides are asked for, in the unit of its way."""
-
-ATTEMPTS = 100
-"""More than halving to rounding takes."""
+"""How far behind a border the mode is asked for, in the unit of its way."""
 
 UNSOLVED = int(Flag.INVALID_INPUT | Flag.NO_SOLUTION)
-
-NO_IMPACT = int(Mode.NO_IMPACT)
-OLD_LIFTS = frozenset(map(int, (Mode.PIVOT_SLIDE, Mode.PIVOT, Mode.FLIGHT)))
-NEW_LIFTS = frozenset(map(int, (Mode.BACK_PIVOT, Mode.FLIGHT)))
-SLIPS = frozenset(map(int, (Mode.SLIDE, Mode.PIVOT_SLIDE)))
 
 
 class Margin(NamedTuple):
@@ -81,14 +66,12 @@ Case = tuple[Contact, Contact, Twist]
 
 
 class ChangedImpact(NamedTuple):
-    """An impact after a change: its mode, contact states and flags, what it started from and the twist after."""
+    """An impact after a change: its mode, contact states and flags."""
 
     change: float
     mode: int
     states: int
     flags: int
-    case: Case
-    after: Twist
 
 
 class Change(NamedTuple):
@@ -109,8 +92,8 @@ def margins(body: TwoPointBody, twist: Twist, law: str = "path") -> Margins:
     old, new = body.old or NOWHERE, body.new
 
     def at(change: float, case: Case) -> ChangedImpact:
-        mode, after, _, _, _, _, states, flags, _, _, _ = answer(mass, inertia, stands, *case, number)
-        return ChangedImpact(change=change, mode=mode, states=states, flags=flags, case=case, after=Twist(*after))
+        mode, _, _, _, _, _, states, flags, _, _, _ = answer(mass, inertia, stands, *case, number)
+        return ChangedImpact(change=change, mode=mode, states=states, flags=flags)
 
     here = at(0.0, (old, new, twist))
     if here.mode == NO_IMPACT or here.flags & UNSOLVED:
@@ -236,65 +219,13 @@ def border_between(way: Change, near: ChangedImpact, far: ChangedImpact) -> Marg
 
 
 def border_in(way: Change, near: ChangedImpact, far: ChangedImpact) -> Margin | None:
-    """The border between two changes with different modes; None where the other mode is that of a single point.
-
-    On one side of it a contact moves that does not move on the other. Where the secant through two changes on that side
-    says that its velocity vanishes, there is the border; halving finds it where the velocities jump.
-    """
+    """The border between two changes with different modes; None where the other mode is that of a single point."""
     outwards = copysign(BEYOND * way.unit, far.change - near.change)
-    second: ChangedImpact | None = None  # on the side that moves, further from the border
-    estimate = inf
-    for _ in range(ATTEMPTS):
-        near_moves = moves(near.mode, far.mode)
-        moving, still = (near, far) if near_moves else (far, near)
-        guess = inf if second is None or second.mode != moving.mode else zero_by_secant(second, moving, still.mode)
-        span = still.change - moving.change + (outwards if near_moves else -outwards)
-        if not 0.0 < (guess - moving.change) / span <= 1.0:
-            trial = way.at(0.5 * (near.change + far.change))
-        elif max(abs(guess - estimate), abs(guess - moving.change)) > CLOSE * way.unit:
-            trial = way.at(moving.change + NEARLY * (guess - moving.change))
-        else:
-            inside, outside = way.at(guess - outwards), way.at(guess + outwards)
-            if abs(guess - near.change) <= abs(outwards):
-                inside = near
-            if inside.mode == near.mode != outside.mode:
-                return Margin(guess, MODES[outside.mode])
-            trial = outside if near_moves else inside
-        second, estimate = (moving, guess) if trial.mode == moving.mode else (None, inf)
+    while abs(far.change - near.change) > ACCURACY * max(way.unit, abs(near.change)):
+        trial = way.at(0.5 * (near.change + far.change))
         if trial.mode == near.mode:
             near = trial
         else:
             far = trial
-        if abs(far.change - near.change) <= ACCURACY * way.unit or (far.change > near.change) != (outwards > 0.0):
-            break
     beyond = way.at(far.change + outwards).mode
     return None if beyond == near.mode else Margin(far.change, MODES[beyond])
-
-
-def moves(mode: int, other: int) -> bool:
-    """Whether at the border of two modes it is in the first one that a contact moves."""
-    if other == NO_IMPACT:
-        return True
-    for moving in (OLD_LIFTS, NEW_LIFTS):
-        if (mode in moving) != (other in moving):
-            return mode in moving
-    return mode in SLIPS
-
-
-def velocity(trial: ChangedImpact, still: int) -> float:
-    """The velocity (m/s) that vanishes at the border to the mode `still`, in which it is zero."""
-    old, new, twist = trial.case
-    if still == NO_IMPACT:
-        _, normal, *_ = see(new, twist)
-        return -normal
-    _, lifts_old, slips_old, *_ = see(old, trial.after)
-    _, lifts_new, slips_new, *_ = see(new, trial.after)
-    if trial.mode in OLD_LIFTS:
-        return abs(slips_new) if still in OLD_LIFTS else lifts_old
-    return lifts_new if trial.mode in NEW_LIFTS else abs(slips_old) + abs(slips_new)
-
-
-def zero_by_secant(second: ChangedImpact, first: ChangedImpact, still: int) -> float:
-    """The change at which the velocity of two trials with the same mode vanishes; inf where it does not fall."""
-    speed, fall = velocity(first, still), velocity(second, still) - velocity(first, still)
-    return first.change + (first.change - second.change) * speed / fall if fall > 0.0 else inf

@@ -30,8 +30,8 @@ class ContactPair(NamedTuple):
     square: Drawn
     old: tuple[Drawn, Drawn]
     new: tuple[Drawn, Drawn]
-    old_angle: Drawn
-    new_angle: Drawn
+    old_angle: Drawn = 0.0
+    new_angle: Drawn = 0.0
 
 
 class Draw:
@@ -51,58 +51,53 @@ class Draw:
         """1 in this part of the cases, else 0."""
         return np.asarray(self.source.random(self.count) < part, np.float64)
 
-    def sign(self) -> Drawn:
-        return 2.0 * self.chance(0.5) - 1.0
-
     def pick(self, *values: float) -> Drawn:
         return self.source.choice(values, self.count)
 
-    def speed(self) -> Drawn:
-        return self.uniform(-2.0, 2.0)
-
     def wild(self) -> Drawn:
         """Drawn of both signs over twelve decades, and zeros."""
-        return self.decades(-6.0, 6.0) * self.sign() * self.chance(0.9)
+        return self.decades(-6.0, 6.0) * (2.0 * self.chance(0.5) - 1.0) * self.chance(0.9)
 
 
 def plate(draw: Draw) -> ContactPair:
     """A rectangle on a floor."""
     a = draw.decades(-1.0, 1.0)
     height = a * draw.decades(-2.0, 1.0)
-    return ContactPair((a * a + height * height) / 3.0, (-a, -height), (a, -height), 0.0 * a, 0.0 * a)
+    return ContactPair((a * a + height * height) / 3.0, (-a, -height), (a, -height))
 
 
 def rod(draw: Draw) -> ContactPair:
     """A rod on two supports."""
     length = draw.decades(-1.0, 1.0)
     a, b, height = (0.5 * length * draw.decades(low, 0.0) for low in (-2.0, -2.0, -4.0))
-    return ContactPair(length * length / 12.0, (-a, -height), (b, -height), 0.0 * a, 0.0 * a)
+    return ContactPair(length * length / 12.0, (-a, -height), (b, -height))
 
 
 def cylinder(draw: Draw) -> ContactPair:
     """A cylinder between two edges."""
     radius, old, new = draw.decades(-1.0, 1.0), -draw.uniform(0.01, 1.56), draw.uniform(0.01, 1.56)
     old_at, new_at = ((radius * np.sin(angle), -radius * np.cos(angle)) for angle in (old, new))
-    return ContactPair(radius * radius * draw.uniform(0.1, 1.0), old_at, new_at, old, new)
+    return ContactPair(radius * radius * draw.uniform(0.1, 1.0), old_at, new_at, old_angle=old, new_angle=new)
 
 
 def floor(draw: Draw) -> ContactPair:
     """Any body on a floor."""
     a, b, height = (draw.uniform(0.02, 2.0) for _ in range(3))
-    return ContactPair(draw.uniform(0.01, 2.0), (-a, -height), (b, -height), 0.0 * a, 0.0 * a)
+    return ContactPair(draw.uniform(0.01, 2.0), (-a, -height), (b, -height))
 
 
 def step(draw: Draw) -> ContactPair:
     """B higher or lower than A, its tangent through A."""
-    square, old, (b, height), angle, _ = floor(draw)
-    rise = draw.uniform(-1.0, 1.0)
-    return ContactPair(square, old, (b, height + rise), angle, np.arctan2(rise, b - old[0]))
+    flat, rise = floor(draw), draw.uniform(-1.0, 1.0)
+    (a, _), (b, height) = flat.old, flat.new
+    return flat._replace(new=(b, height + rise), new_angle=np.arctan2(rise, b - a))
 
 
 def wedge(draw: Draw) -> ContactPair:
     """A on a floor, B anywhere ahead on a slope."""
-    square, old, (b, _), angle, _ = floor(draw)
-    return ContactPair(square, old, (b, draw.uniform(-2.0, 0.5)), angle, draw.uniform(-1.5, 1.5))
+    flat = floor(draw)
+    b, _ = flat.new
+    return flat._replace(new=(b, draw.uniform(-2.0, 0.5)), new_angle=draw.uniform(-1.5, 1.5))
 
 
 def tilted(draw: Draw) -> ContactPair:
@@ -115,7 +110,7 @@ def slender(draw: Draw) -> ContactPair:
     square, a, b, height, drop = (draw.decades(-4.0, 4.0) for _ in range(5))
     sloped = draw.chance(0.5)
     drop = np.where(sloped > 0.0, drop, height)
-    return ContactPair(square, (-a, -height), (b, -drop), 0.0 * a, sloped * draw.uniform(-1.5, 1.5))
+    return ContactPair(square, (-a, -height), (b, -drop), new_angle=sloped * draw.uniform(-1.5, 1.5))
 
 
 def close(draw: Draw) -> ContactPair:
@@ -128,7 +123,7 @@ def close(draw: Draw) -> ContactPair:
 def parallel(draw: Draw) -> ContactPair:
     """Normals nearly parallel, or nearly opposed."""
     tilt = tilted(draw)
-    turn = draw.decades(-12.0, -1.0) * draw.sign() * draw.chance(0.8)
+    turn = draw.decades(-12.0, -1.0) * (2.0 * draw.chance(0.5) - 1.0) * draw.chance(0.8)
     return tilt._replace(new_angle=tilt.old_angle + turn + np.pi * draw.chance(0.5))
 
 
@@ -136,7 +131,7 @@ def extreme(draw: Draw) -> ContactPair:
     """Every length over twelve decades."""
     ax, ay, bx, by = (draw.wild() for _ in range(4))
     old, new = (draw.pick(0.0, 0.0, 1e-9, 0.5, -1.2, np.pi / 2, np.pi) for _ in range(2))
-    return ContactPair(draw.decades(-12.0, 12.0), (ax, ay), (bx, by), old, new)
+    return ContactPair(draw.decades(-12.0, 12.0), (ax, ay), (bx, by), old_angle=old, new_angle=new)
 
 
 KINDS: dict[str, tuple[Callable[[Draw], ContactPair], str]] = {
@@ -176,39 +171,44 @@ def problems_of(kind: str, source: np.random.Generator, count: int) -> Problems:
     """`count` problems of one of the `KINDS`: B is approached in nearly all, restitution is zero in half of them."""
     draw = Draw(source, count)
     shape, motion = KINDS[kind]
-    geometry = shape(draw)
-    (ax, ay), (bx, by) = geometry.old, geometry.new
-    old_normal, new_normal = ((-np.sin(angle), np.cos(angle)) for angle in (geometry.old_angle, geometry.new_angle))
     wide = shape is extreme
-    mass, number = (draw.decades(-6.0, 6.0), draw.wild) if wide else (draw.decades(-1.0, 1.0), draw.speed)
+    pair = shape(draw)
+    (ax, ay), (bx, by) = pair.old, pair.new
+    old_normal, new_normal = (
+        (-np.sin(turn + 0.0 * ax), np.cos(turn + 0.0 * ax)) for turn in (pair.old_angle, pair.new_angle)
+    )
+    mass = draw.decades(-6.0, 6.0) if wide else draw.decades(-1.0, 1.0)
+
+    def speed() -> Drawn:
+        return draw.wild() if wide else draw.uniform(-2.0, 2.0)
 
     # It turns about A and slips on it, in the sense in which it approaches B.
-    omega, slip = number(), number() * draw.chance(0.0 if motion == "turns" else 0.6)
+    turns = motion == "turns"
+    omega, slip = speed(), speed() * draw.chance(0.0 if turns else 0.6)
     vx, vy = omega * ay + slip * old_normal[1], -omega * ax - slip * old_normal[0]
     approach = new_normal[0] * (vx - omega * by) + new_normal[1] * (vy + omega * bx)
     sense = np.where(approach > 0.0, -1.0, 1.0)
-    lift = -np.abs(number()) if motion == "falls" else np.abs(number()) * draw.chance(0.0 if motion == "turns" else 0.1)
+    lift = -np.abs(speed()) if motion == "falls" else np.abs(speed()) * draw.chance(0.0 if turns else 0.1)
     vx, vy, omega = sense * vx + lift * old_normal[0], sense * vy + lift * old_normal[1], sense * omega
 
     old_support = new_support = (0.0 * vx, 0.0 * vx)
-    ux, uy, turning = number(), number(), number()
+    ux, uy, turning = speed(), speed(), speed()
     if motion == "apart":
-        old_support, new_support = (ux, uy), (turning, number())
+        old_support, new_support = (ux, uy), (turning, speed())
         vx, vy = vx + ux, vy + uy
     elif motion == "deck":
         old_support, new_support = ((ux - turning * y, uy + turning * x) for x, y in ((ax, ay), (bx, by)))
         vx, vy, omega = vx + ux, vy + uy, omega + turning
-    friction_old, friction_new = frictions(draw, shape)
-    old = Contact(ax, ay, friction_old, old_normal, draw.chance(0.1) * 0.5, old_support)
-    new = Contact(bx, by, friction_new, new_normal, draw.chance(0.5) * draw.pick(0.125, 0.5, 1.0), new_support)
-    body = TwoPointBody(mass, mass * geometry.square, None if motion == "alone" else old, new)
-    return Problems(kind, body, Twist(vx, vy, omega))
-
-
-def frictions(draw: Draw, shape: Callable[[Draw], ContactPair]) -> tuple[Drawn, Drawn]:
-    """Friction at A and B, none in some cases and often the same at both: up to 4, or over decades."""
+    # Friction at A and B, none in some cases and often the same at both: up to 4, or over decades.
     if shape in (slender, extreme):
-        old, new = (draw.decades(-4.0, 4.0) * draw.chance(0.9) for _ in range(2))
+        old_friction, new_friction = (draw.decades(-4.0, 4.0) * draw.chance(0.9) for _ in range(2))
     else:
-        old, new = (draw.uniform(0.0, 1.0) * draw.pick(0.0, 0.5, 1.0, 1.0, 2.0, 4.0) for _ in range(2))
-    return old, np.where(draw.chance(0.5), old, new)
+        old_friction, new_friction = (
+            draw.uniform(0.0, 1.0) * draw.pick(0.0, 0.5, 1.0, 1.0, 2.0, 4.0) for _ in range(2)
+        )
+    new_friction = np.where(draw.chance(0.5), old_friction, new_friction)
+    old = Contact(ax, ay, old_friction, old_normal, draw.chance(0.1) * 0.5, old_support)
+    new = Contact(bx, by, new_friction, new_normal, draw.chance(0.5) * draw.pick(0.125, 0.5, 1.0), new_support)
+    return Problems(
+        kind, TwoPointBody(mass, mass * pair.square, None if motion == "alone" else old, new), Twist(vx, vy, omega)
+    )

@@ -7,7 +7,10 @@ from collections.abc import Callable
 from functools import cache
 from importlib.util import find_spec, module_from_spec
 from types import ModuleType
-from typing import Any, NamedTuple, Union
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
 
 from .impact import NOWHERE, number_of, see
 from .impact.answer import answer
@@ -20,6 +23,10 @@ STEP = 1e-9
 """Part of an input, or of the contact speeds, within which a change of the contact states counts as a border."""
 
 INPUTS = ("friction_old", "friction_new", "restitution", "vx", "vy", "omega")
+
+Parts = NDArray[np.float64]
+
+NONE: Parts = np.zeros(len(INPUTS))
 
 Inputs = tuple[Any, ...]
 """Values of the INPUTS, or Duals of them."""
@@ -150,17 +157,15 @@ def derivatives(
     body: TwoPointBody, inputs: Inputs, directions: tuple[tuple[float, ...], ...], law: int
 ) -> list[Triple]:
     """Derivatives of the twist after the impact along each of the directions."""
-    duals = [Dual(value, parts) for value, parts in zip(inputs, zip(*directions, strict=True), strict=True)]
-    _, after, *_ = dual_answer()(*problem_at(body, tuple(duals), law))
-    vx, vy, omega = (part.parts for part in after)
+    duals = tuple(map(Dual, inputs, np.transpose(directions)))
+    with np.errstate(all="ignore"):
+        _, after, *_ = dual_answer()(*problem_at(body, duals, law))
+    vx, vy, omega = (part.parts.tolist() for part in after)
     return list(zip(vx, vy, omega, strict=True))
 
 
-RealOrDual = Union[float, "Dual"]
-
-
 class Dual:
-    """A value and its derivatives (`parts`) by the inputs.
+    """A value and its derivatives (`parts`, an array) by the inputs.
 
     The law code (see `impact.contacts`) takes it for any other number and compares its value; so one impact of Duals
     gives the exact derivatives of its outcome, on the branch that it takes.
@@ -169,48 +174,39 @@ class Dual:
     __slots__ = ("parts", "value")
     __hash__ = None  # type: ignore[assignment]
 
-    def __init__(self, value: float, parts: tuple[float, ...]) -> None:
-        self.value = value
-        self.parts = parts
+    def __init__(self, value: float, parts: Parts) -> None:
+        self.value, self.parts = value, parts
 
-    def __add__(self, other: RealOrDual) -> Dual:
-        if isinstance(other, Dual):
-            return Dual(self.value + other.value, tuple([p + q for p, q in zip(self.parts, other.parts, strict=True)]))
-        return Dual(self.value + other, self.parts)
+    def __neg__(self) -> Dual:
+        return Dual(-self.value, -self.parts)
+
+    def __add__(self, other: Dual | float) -> Dual:
+        value, parts = parted(other)
+        return Dual(self.value + value, self.parts + parts)
 
     __radd__ = __add__
 
-    def __neg__(self) -> Dual:
-        return Dual(-self.value, tuple([-p for p in self.parts]))
-
-    def __sub__(self, other: RealOrDual) -> Dual:
-        if isinstance(other, Dual):
-            return Dual(self.value - other.value, tuple([p - q for p, q in zip(self.parts, other.parts, strict=True)]))
-        return Dual(self.value - other, self.parts)
+    def __sub__(self, other: Dual | float) -> Dual:
+        value, parts = parted(other)
+        return Dual(self.value - value, self.parts - parts)
 
     def __rsub__(self, other: float) -> Dual:
-        return Dual(other - self.value, tuple([-p for p in self.parts]))
+        return Dual(other - self.value, -self.parts)
 
-    def __mul__(self, other: RealOrDual) -> Dual:
-        u = self.value
-        if isinstance(other, Dual):
-            v = other.value
-            return Dual(u * v, tuple([p * v + u * q for p, q in zip(self.parts, other.parts, strict=True)]))
-        return Dual(u * other, tuple([p * other for p in self.parts]))
+    def __mul__(self, other: Dual | float) -> Dual:
+        value, parts = parted(other)
+        return Dual(self.value * value, self.parts * value + self.value * parts)
 
     __rmul__ = __mul__
 
-    def __truediv__(self, other: RealOrDual) -> Dual:
-        if isinstance(other, Dual):
-            v = other.value
-            ratio = self.value / v
-            return Dual(ratio, tuple([(p - ratio * q) / v for p, q in zip(self.parts, other.parts, strict=True)]))
-        return Dual(self.value / other, tuple([p / other for p in self.parts]))
+    def __truediv__(self, other: Dual | float) -> Dual:
+        value, parts = parted(other)
+        ratio = self.value / value
+        return Dual(ratio, (self.parts - ratio * parts) / value)
 
     def __rtruediv__(self, other: float) -> Dual:
-        v = self.value
-        ratio = other / v
-        return Dual(ratio, tuple([-ratio * q / v for q in self.parts]))
+        ratio = other / self.value
+        return Dual(ratio, -ratio * self.parts / self.value)
 
     def __abs__(self) -> Dual:
         return -self if self.value < 0.0 else self
@@ -218,30 +214,30 @@ class Dual:
     def __eq__(self, other: object) -> bool:
         return self.value == (other.value if isinstance(other, Dual) else other)
 
-    def __lt__(self, other: RealOrDual) -> bool:
-        return self.value < value_of(other)
+    def __lt__(self, other: Dual | float) -> bool:
+        return self.value < parted(other)[0]
 
-    def __le__(self, other: RealOrDual) -> bool:
-        return self.value <= value_of(other)
+    def __le__(self, other: Dual | float) -> bool:
+        return self.value <= parted(other)[0]
 
-    def __gt__(self, other: RealOrDual) -> bool:
-        return self.value > value_of(other)
+    def __gt__(self, other: Dual | float) -> bool:
+        return self.value > parted(other)[0]
 
-    def __ge__(self, other: RealOrDual) -> bool:
-        return self.value >= value_of(other)
-
-
-def value_of(number: RealOrDual) -> float:
-    return number.value if isinstance(number, Dual) else number
+    def __ge__(self, other: Dual | float) -> bool:
+        return self.value >= parted(other)[0]
 
 
-def sqrt(number: RealOrDual) -> RealOrDual:
+def parted(number: Dual | float) -> tuple[float, Parts]:
+    """The value of a number and its derivatives: none of a float."""
+    return (number.value, number.parts) if isinstance(number, Dual) else (number, NONE)
+
+
+def sqrt(number: Dual | float) -> Dual | float:
     """The square root; that of zero, which has no derivative, counts as constant."""
     if not isinstance(number, Dual):
         return math.sqrt(number)
     root = math.sqrt(number.value)
-    slope = 0.5 / root if root > 0.0 else 0.0
-    return Dual(root, tuple([slope * part for part in number.parts]))
+    return Dual(root, number.parts * (0.5 / root if root > 0.0 else 0.0))
 
 
 @cache

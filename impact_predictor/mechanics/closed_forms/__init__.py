@@ -10,7 +10,6 @@ tangent of a contact, so that the paper's S_F is -T on a floor and T at the edge
 """
 
 from .cylindrical import cylinder
-from .flat import plate, rod
-from .values import ClosedForm, UnitImpact
+from .flat import ClosedForm, UnitImpact, plate, rod
 
 __all__ = ["ClosedForm", "UnitImpact", "cylinder", "plate", "rod"]

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from .. import bodies
 from ..bodies import Number
-from .values import ClosedForm, Truths, UnitImpact, closed_form, select, speed
+from .flat import ClosedForm, Truths, UnitImpact, closed_form, select, speed
 
 HOMOGENEOUS = 0.5
 
@@ -123,11 +123,6 @@ def lift_friction(t: Number, k: Number = HOMOGENEOUS) -> NDArray[np.float64]:
 def pivot_friction(t: Number, k: Number = HOMOGENEOUS) -> NDArray[np.float64]:
     """Friction between PIVOT_SLIDE below and PIVOT above; nan where they have no border (Fig. 7: t / 3)."""
     return np.where(t <= stop_tangent(k), k * t / (1.0 + k), np.nan)
-
-
-def lock_friction(t: Number) -> Number:
-    """Friction f = 1 / t from which on the total law allows STOP everywhere (see `locks`)."""
-    return 1.0 / t
 
 
 def cylinder(
