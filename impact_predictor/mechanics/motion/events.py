@@ -6,8 +6,8 @@ A condition is positive until its event.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from enum import IntEnum
+from typing import Any
 
 Condition = tuple[float, float]
 """A value, not negative until its event, and its rate (NaN where it is not known)."""
@@ -18,8 +18,6 @@ _ROUNDING = 8.0 * 2.0**-52
 """A few units in the last place of a value that is a sum of a few terms."""
 _MAX_ADVANCES = 1000
 """Several times what the worst grazing needs."""
-_CLOSE = 1e-7
-"""After a Newton step this small, relative to the root, what is left is its square."""
 _NEWTON_STEPS = 4
 """On a cubic, from its secant."""
 _BEYOND = 2.0
@@ -91,19 +89,19 @@ def first_descent(
         top_speed, top_bend = abs(slope) + abs(curvature) * s + speed, abs(curvature) + bend
         rounding = _ROUNDING * (abs(level) + amplitude + top_speed * s)
         if value > rounding:
-            step = _safe_step(value, change, fall)
+            step = safe_step(value, change, fall)
             if base > amplitude:
-                step = max(step, _safe_step(base - amplitude, base_rate, max(0.0, -curvature)))
+                step = max(step, safe_step(base - amplitude, base_rate, max(0.0, -curvature)))
         elif abs(change) > _ROUNDING * (top_speed + top_bend * s):
             if change < 0.0:
                 return s
-            step = _safe_step(change, bow, jolt)
+            step = safe_step(change, bow, jolt)
         elif abs(bow) > _ROUNDING * (top_bend + jolt * s):
             if bow < 0.0:
                 return s
-            step = _safe_step(bow, jerk, snap)
+            step = safe_step(bow, jerk, snap)
         elif jerk > _ROUNDING * jolt:
-            step = _safe_step(0.0, jerk, snap)
+            step = safe_step(0.0, jerk, snap)
         else:
             return s if jolt > 0.0 else math.inf
         if s + step == s:
@@ -112,9 +110,9 @@ def first_descent(
     return math.inf
 
 
-def _safe_step(value: float, rate: float, fall: float) -> float:
+def safe_step(value: float, rate: float, fall: float) -> float:
     """The longest step in which value + rate s - fall s^2/2 stays positive."""
-    root = math.sqrt(rate * rate + 2.0 * fall * value)
+    root = math.sqrt(max(0.0, rate * rate + 2.0 * fall * value))
     if rate > 0.0:
         return (rate + root) / fall if fall > 0.0 else math.inf
     return 2.0 * value / (root - rate) if root > rate else math.inf
@@ -157,42 +155,12 @@ def fall(value: float, slope: float, end_value: float, end_slope: float, noise: 
     return at
 
 
-def newton_root(condition: Callable[[float], Condition], high: float, guess: float) -> float:
-    """Where in 0..high a condition falls to zero: Newton's method, kept in its bracket by bisection."""
-    low = 0.0
-    for _ in range(60):
-        value, slope = condition(guess)
-        if value >= 0.0:
-            low = guess
-        else:
-            high = guess
-        better = guess - value / slope if slope < 0.0 else math.inf
-        if not low <= better <= high:
-            better = 0.5 * (low + high)
-        if abs(better - guess) <= _CLOSE * better:
-            return better
-        guess = better
-    return guess
+def may_fall(first: Any, half: Any, last: Any) -> Any:
+    """Whether a value may fall below zero between three samples, numbers or arrays, at equal distances.
 
-
-def bracketed_root(condition: Callable[[float], Condition], high: float, value: float, high_value: float) -> float:
-    """Where in 0..high a condition without a rate falls to zero: the false position with Illinois' weights."""
-    low, start = 0.0, value
-    side = 0
-    at = high
-    for _ in range(80):
-        at = (low * high_value - high * value) / (high_value - value) if value > 0.0 else 0.5 * (low + high)
-        here, _ = condition(at)
-        if abs(here) <= 1e-14 * (abs(start) + abs(high_value)) or high - low <= 1e-15 * high:
-            break
-        if here > 0.0:
-            low, value = at, here
-            if side == 1:
-                high_value *= 0.5
-            side = 1
-        else:
-            high, high_value = at, here
-            if side == -1:
-                value *= 0.5
-            side = -1
-    return at
+    Their parabola does, with what it may be wrong by.
+    """
+    bend, slope = first - 2.0 * half + last, last - first
+    bends = abs(bend) + (bend == 0.0)  # no division by zero
+    dips = (bend > 0.0) & (abs(slope) < 2.0 * bend) & (half - 0.125 * slope * slope / bends - 0.1 * bend < 0.0)
+    return dips | (first < 0.0) | (half < 0.0) | (last < 0.0)

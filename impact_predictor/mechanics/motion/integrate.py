@@ -8,11 +8,14 @@ any instant of a step is had by stepping there again.
 from __future__ import annotations
 
 import math
-from bisect import bisect_right
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..types import Vector
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 _SUBSTEPS = (2, 4, 6, 8, 10, 12)
 _GAINS = tuple(
@@ -26,8 +29,10 @@ NEAR = 1e-6
 """Way of a nudge, relative to the step that it is within: its third power is rounding."""
 _ROUNDING = 1e-13
 """Part of the accelerations that is rounding: they may be small differences of large ones."""
-_DENSE = 1e-12
+_DENSE = 1e-10
 """Error of the rates of dense output, relative to the rates."""
+_DEEPEST = 12
+"""Halvings of a step, or of a phase known in closed form, for its dense output."""
 
 Rate = Callable[[float, float, float, float, float], tuple[float, float]]
 """Accelerations (turning, slip) from time, turned angle, its rate, slipped way and its rate."""
@@ -104,76 +109,76 @@ def nudged(rate: Rate, now: Instant, h: float) -> Instant:
     return Instant(time + h, u, w, z, s, *rate(time + h, u, w, z, s))
 
 
-class DensePiece(NamedTuple):
-    """Dense output between two instants: polynomials in -1..1 through the rates and accelerations at both ends and in
-    the middle, the highest power first, integrated from the start.
+def middle_of(now: Instant, then: Instant) -> Instant:
+    """The instant in the middle of a step, on polynomials of degree 5 through both ends; without accelerations."""
+    h = then.time - now.time
+    return Instant(
+        time=now.time + 0.5 * h,
+        u=0.5 * (now.u + then.u) + h * (5.0 * (now.w - then.w) + 0.5 * h * (now.alpha + then.alpha)) / 32.0,
+        w=1.875 * (then.u - now.u) / h - 0.4375 * (now.w + then.w) + h * (then.alpha - now.alpha) / 32.0,
+        z=0.5 * (now.z + then.z) + h * (5.0 * (now.s - then.s) + 0.5 * h * (now.beta + then.beta)) / 32.0,
+        s=1.875 * (then.z - now.z) / h - 0.4375 * (now.s + then.s) + h * (then.beta - now.beta) / 32.0,
+        alpha=math.nan,
+        beta=math.nan,
+    )
+
+
+def add_dense(
+    found: list[Instant], rate: Rate, now: Instant, end: Instant, scale: Vector, tolerance: float, depth: int = 0
+) -> None:
+    """Add instants after `now` up to `end`, so close that polynomials of degree 5 between them are exact.
+
+    Of the end only the time need be known.
     """
-
-    start: float
-    end: float
-    u: tuple[float, ...]
-    z: tuple[float, ...]
-
-    def at(self, time: Any) -> tuple[Any, Any, Any, Any]:
-        """u, w, z and s at a time or an array of times."""
-        half = 0.5 * (self.end - self.start)
-        x = (time - self.start) / half - 1.0 if half else 0.0 * time
-        u, w = _value_and_slope(self.u, x)
-        z, s = _value_and_slope(self.z, x)
-        return u, (w / half if half else w), z, (s / half if half else s)
-
-
-def values_at(found: list[DensePiece], time: Any) -> tuple[Any, Any, Any, Any]:
-    """u, w, z and s at a time, or at an array of times, within pieces that follow each other."""
-    if isinstance(time, (float, int)):
-        return found[max(0, bisect_right(found, time, key=lambda piece: piece.start) - 1)].at(time)
-    import numpy as np
-
-    place = np.clip(np.searchsorted([piece.start for piece in found], time, side="right") - 1, 0, None)
-    values = np.empty((4, len(time)))
-    for k in np.unique(place):
-        values[:, place == k] = found[k].at(time[place == k])
-    return values[0], values[1], values[2], values[3]
-
-
-def pieces(rate: Rate, now: Instant, end: Instant, scale: Vector, tolerance: float, depth: int = 6) -> list[DensePiece]:
-    """Polynomials from one instant of a step to another, halved until they agree with the step itself."""
     h, length = end.time - now.time, scale[0]
-    middle, _ = step(rate, now, 0.5 * h, scale, tolerance)
-    u = _through(0.5 * h, now.u, (now.w, middle.w, end.w), (now.alpha, middle.alpha, end.alpha))
-    z = _through(0.5 * h, now.z, (now.s, middle.s, end.s), (now.beta, middle.beta, end.beta))
-    piece = DensePiece(start=now.time, end=end.time, u=u, z=z)
-    if depth:
-        quarter, rows = step(rate, now, 0.25 * h, scale, tolerance)
-        _, w, _, s = piece.at(quarter.time)
+    middle, rows = step(rate, now, 0.5 * h, scale, tolerance)
+    if not rows:
+        middle = now._replace(time=now.time + 0.5 * h, u=math.nan)
+    elif math.isnan(end.u):
+        then, rows = step(rate, middle, 0.5 * h, scale, tolerance)
+        end = then._replace(time=end.time) if rows else end
+    if rows:
+        guess = middle_of(now, end)
         size = length * (abs(now.w) + abs(end.w)) + abs(now.s) + abs(end.s) + h * length * abs(middle.alpha)
         noise = (length * math.ulp(now.u) + math.ulp(now.z)) / h
-        if not rows or length * abs(w - quarter.w) + abs(s - quarter.s) > _DENSE * size + 50.0 * noise:
-            return [
-                *pieces(rate, now, middle, scale, tolerance, depth - 1),
-                *pieces(rate, middle, end, scale, tolerance, depth - 1),
-            ]
-    return [piece]
+        # In the middle the error of the rates is nearly zero; a quarter of the step away it is what that of the way says.
+        error = length * (4.0 * abs(guess.u - middle.u) / h + abs(guess.w - middle.w))
+        error += 4.0 * abs(guess.z - middle.z) / h + abs(guess.s - middle.s)
+        rows = error <= _DENSE * size + 50.0 * noise
+    if rows or depth == _DEEPEST:
+        found.append(end)
+        return
+    add_dense(found, rate, now, middle, scale, tolerance, depth + 1)
+    add_dense(found, rate, found[-1], end, scale, tolerance, depth + 1)
 
 
-def _through(
-    half: float, start: float, rates: tuple[float, float, float], accelerations: tuple[float, float, float]
-) -> tuple[float, ...]:
-    """Coefficients of the polynomial from a first value with these rates and accelerations at both ends and between."""
-    square = half * half
-    c0, c1 = half * rates[1], square * accelerations[1]
-    even, odd = 0.5 * half * (rates[2] + rates[0]) - c0, 0.5 * half * (rates[2] - rates[0]) - c1
-    even_rate = 0.5 * square * (accelerations[2] - accelerations[0])
-    odd_rate = 0.5 * square * (accelerations[2] + accelerations[0]) - c1
-    c4, c5 = 0.5 * even_rate - even, 0.5 * (odd_rate - 3.0 * odd)
-    c2, c3 = even - c4, odd - c5
-    rising = c5 / 6.0, c4 / 5.0, c3 / 4.0, c2 / 3.0, c1 / 2.0, c0
-    return (*rising, start - (c5 / 6.0 - c4 / 5.0 + c3 / 4.0 - c2 / 3.0 + c1 / 2.0 - c0))
+def values_at(instants: list[Instant], times: NDArray[np.float64]) -> tuple[Any, Any, Any, Any]:
+    """u, w, z and s at some times, from polynomials of degree 5 between instants."""
+    import numpy as np
+
+    known, u, w, z, s, alpha, beta = np.array(instants).T
+    k = np.clip(np.searchsorted(known, times, side="right") - 1, 0, max(0, len(known) - 2))
+    then = np.minimum(k + 1, len(known) - 1)
+    h = np.where(known[then] > known[k], known[then] - known[k], 1.0)
+    x = (times - known[k]) / h
+    return (
+        *_between(x, h, (u[k], w[k], alpha[k]), (u[then], w[then], alpha[then])),
+        *_between(x, h, (z[k], s[k], beta[k]), (z[then], s[then], beta[then])),
+    )
 
 
-def _value_and_slope(coefficients: tuple[float, ...], x: Any) -> tuple[Any, Any]:
-    value = slope = 0.0 * x
-    for coefficient in coefficients:
-        slope = slope * x + value
-        value = value * x + coefficient
-    return value, slope
+def _between(x: Any, h: Any, start: tuple[Any, Any, Any], end: tuple[Any, Any, Any]) -> tuple[Any, Any]:
+    """Value and rate at x in 0..1 of steps h, from values, rates and accelerations at both ends."""
+    (u, w, a), (end_u, end_w, end_a) = start, end
+    c1, c2 = h * w, 0.5 * h * h * a
+    rise, slope, bend = end_u - u, h * end_w - c1 - 2.0 * c2, h * h * (end_a - a)
+    # Where a rise is rounding of the value, the rates tell it better.
+    by_rates = c1 + c2 + 0.5 * slope - bend / 12.0
+    rise = by_rates + (rise - by_rates) * (abs(rise - by_rates) > 1e-15 * abs(u)) - c1 - c2
+    c3, c4, c5 = (
+        10.0 * rise - 4.0 * slope + 0.5 * bend,
+        7.0 * slope - 15.0 * rise - bend,
+        6.0 * rise - 3.0 * slope + 0.5 * bend,
+    )
+    value = u + x * (c1 + x * (c2 + x * (c3 + x * (c4 + x * c5))))
+    return value, (c1 + x * (2.0 * c2 + x * (3.0 * c3 + x * (4.0 * c4 + x * 5.0 * c5)))) / h

@@ -1,6 +1,7 @@
 """Phases: smooth motion between two events, stepped or in closed form, with dense output of each.
 
-`ContactPhase` is motion over contacts that stick or slip, `FlightPhase` (in `flight`) that without.
+`MotionPhase` is motion over contacts that stick or slip, `FlightPhase` that without: the mass centre is thrown and the
+body turns at a constant rate in the world.
 """
 
 from __future__ import annotations
@@ -11,28 +12,44 @@ from typing import Any, NamedTuple
 from ..impact.contacts import OPEN, PLUS, STICK
 from ..types import Vector
 from .equations import RockingBody, turned
-from .events import Condition, Event, bracketed_root, dip, fall, newton_root
-from .integrate import GROWTH, NEAR, DensePiece, Instant, nudged, pieces, step, values_at
+from .events import Condition, Event, dip, fall, may_fall, safe_step
+from .integrate import GROWTH, NEAR, Instant, add_dense, middle_of, nudged, step, values_at
 from .pivot import Pivot, roll, turn
-from .support import FeltSupport, FixedSupport, PlanarState
+from .support import FeltSupport, FixedSupport, FrameAcceleration, MovingSupport, PlanarState
 
-_FIRST_STEP = 0.9
-"""Length of a first step, in times that the motion needs to change."""
-_FIRST_STEP_OF_BOTH = 1.2
+_FIRST_STEP = 0.9, 1.2
+"""Length of a first step over one contact and over both, in times that the motion needs to change."""
+_STEP_OF_FLIGHT = 0.25
+"""Longest step of a flight, in times that a gap needs to change."""
 _BEYOND = 1.05
 """A step goes as much farther than where its parabola ends the phase."""
+_BEYOND_FLIGHT = 1.1
 _LEAST = 0.1
 """But it is not shorter than this part of what it could be."""
 _SMALLEST = 1e-10
 """Relative to the first step. Where smaller steps are refused, no smooth motion goes on."""
-_PART_OF_PERIOD = 0.125
+_PART_OF_PERIOD, _PART_OF_PERIOD_IN_FLIGHT = 0.125, 0.0625
 """The longest step, in shortest periods of the support: none of its swings is stepped over."""
 _BORDER = 1e-12
 """A condition that starts below this part of the weight starts at its border."""
-_SHORTEST = 1e-6
-"""What begins at its border and ends sooner than this, in times of the body's swing, ends then."""
+_SHORTEST, _SHORTEST_FLIGHT = 1e-6, 1e-9
+"""What begins at its border and ends sooner than this ends then: times of the body's swing, longest steps."""
 _FINER = 0.01
 """Tolerance of dense output, relative to that of steps: it must meet an end that is known exactly."""
+_CLOSE, _CLOSE_BY_SECANT = 1e-7, 1e-12
+"""After an iteration this small, relative to the root, what is left is its square (or has no rate to tell it)."""
+_ROUNDING = 1e-14
+"""A gap below this part of what the body moved is rounding."""
+_SPEED_ROUNDING = 1e-15
+"""Part of a body's speeds that is rounding in the rate of a gap."""
+_GAUSS = (
+    (0.0469100770306680, 0.1184634425280946),
+    (0.2307653449471584, 0.2393143352496833),
+    (0.5, 0.28444444444444444),
+    (0.7692346550528415, 0.2393143352496833),
+    (0.9530899229693320, 0.1184634425280946),
+)
+"""Gauss' quadrature of order 10 on 0..1: nodes and weights."""
 
 
 class PhaseEnd(NamedTuple):
@@ -44,74 +61,92 @@ class PhaseEnd(NamedTuple):
 
 
 class MotionPhase:
-    """A phase from `start` s on; the times of its instants count from there, so that short hops keep their digits."""
+    """Motion over closed contacts, of `states`, from (u, w, z, s) at `start` s on; it overturns at `limit` rad.
 
-    a = b = OPEN
-    """The states of contacts 0 and 1."""
-    contact = 0
-    """The contact to which what is not a contact's own happens."""
-    moves = True
-    events: tuple[tuple[Event, int], ...] = ()
-    """What happens where a condition falls to zero, and to which contact."""
+    The times of its instants count from its start, so that short hops keep their digits.
+    """
+
     border = 0.0
     longest = math.inf
     """The longest step in s."""
     shortest = 0.0
     """What begins at its border and fails within less than this (s) ends then."""
 
-    def __init__(self, body: RockingBody, support: FeltSupport, start: float, length: float, tolerance: float) -> None:
-        self.body, self.support, self.start, self.tolerance = body, support, start, tolerance
+    def __init__(
+        self,
+        body: RockingBody,
+        support: FeltSupport,
+        states: tuple[int, int],
+        start: float,
+        place: tuple[float, float, float, float],
+        limit: float,
+        tolerance: float,
+    ) -> None:
+        self.body, self.support, self.states, self.start = body, support, states, start
+        self.limit, self.tolerance = limit, tolerance
         self.fixed = isinstance(support, FixedSupport)
-        self.felt = support.felt(start)
-        self.scale = length, max(abs(support.gravity), abs(self.felt[0]) + abs(self.felt[1]))
-        self.instants: list[Instant] = []
+        self.felt = felt = support.felt(start)
+        self.both = OPEN not in states
+        self.contact = i = 1 if states[0] == OPEN else 0
+        self.state = states[i]
+        self.side = 1.0 if i == 0 else -1.0
+        self.slip = 1.0 if self.state == PLUS else -1.0
+        self.moves = not (self.both and self.state == STICK)
+        """Whether it moves at all."""
+        self.pivots = self.fixed and not self.both and self.state == STICK
+        """Whether it turns about one point at rest: that is known in closed form."""
+        touches = (Event.TOUCHES, 1 - i), (Event.OVERTURNS, i)
+        self.events: tuple[tuple[Event, int], ...]
+        """What happens where a condition falls to zero, and to which contact."""
+        if self.both:
+            self.events = (Event.STOPS, i), (Event.LIFTS, 0), (Event.LIFTS, 1)
+        elif self.state == STICK:
+            self.events = *touches, (Event.SLIPS, i), (Event.SLIPS_BACK, i)
+        else:
+            self.events = *touches, (Event.STOPS, i), (Event.LIFTS, i)
+        self.scale = body.length, max(abs(support.gravity), abs(felt[0]) + abs(felt[1]))
+        self.instants = [Instant(0.0, *place, 0.0, 0.0)]
         """The ends of the steps."""
-        self._pieces: list[DensePiece] = []
+        if self.moves and not self.pivots:
+            self.instants = [self._accelerated(self.instants[0])]
+        self._dense: list[Instant] = []
 
     @property
     def end(self) -> float:
         """When it ends, in s."""
         return self.start + self.instants[-1].time
 
-    def rate(self, time: float, u: float, w: float, z: float, s: float) -> Vector:
-        """Accelerations of the two coordinates."""
-        raise NotImplementedError
+    def at(self, times: Any) -> PlanarState:
+        """States at an array of times within the phase."""
+        return self.body.state(self.contact, *values_at(self.dense(), times - self.start))
 
-    def conditions(self, now: Instant) -> list[Condition]:
-        """What stays positive until one of `events`."""
-        raise NotImplementedError
+    def close(self, end: Instant) -> None:
+        """End the phase at an instant that the summed impacts lead to, uniformly."""
+        now = self.instants[0]
+        w, s = ((end.u - now.u) / end.time, (end.z - now.z) / end.time) if end.time > 0.0 else (0.0, 0.0)
+        self.instants = self._dense = [one._replace(w=w, s=s, alpha=0.0, beta=0.0) for one in (now, end)]
 
-    def at(self, time: Any) -> PlanarState:
-        """State at a time or an array of times within the phase."""
-        raise NotImplementedError
-
-    def _first_step(self, now: Instant, last: float) -> float:
-        """Length of the first step; sets the longest and the shortest one, too."""
-        raise NotImplementedError
-
-    def _reach(self, now: Instant, conditions: list[Condition]) -> float:
-        """A little more than the time after which the phase might end."""
-        raise NotImplementedError
-
-    def _starting(self, conditions: list[Condition]) -> list[Condition]:
-        return conditions
-
-    def _pass(self, then: Instant) -> None:
-        self.instants.append(then)
-
-    def _ended(self, k: int, at: Instant) -> PhaseEnd:
-        event, contact = self.events[k]
-        self.instants.append(at)
-        return PhaseEnd(event, contact, at)
+    def dense(self) -> list[Instant]:
+        """Instants of the phase between which polynomials tell where it is, made when they are first asked for."""
+        if not self._dense:
+            now, *ends = self.instants
+            self._dense = [self._accelerated(now) if self.moves else now]
+            for end in ends if self.moves else ():
+                if end.time > self._dense[-1].time:
+                    end = self._accelerated(end) if self.pivots else end
+                    add_dense(self._dense, self.rate, self._dense[-1], end, self.scale, _FINER * self.tolerance)
+        return self._dense
 
     def follow(self, last: float, most: int) -> PhaseEnd:
-        """Step to the first event, or for `last` s, in at most `most` steps."""
+        """Go on to the first event, or for `last` s, in at most `most` steps."""
+        if self.pivots:
+            return self._turn(last)
         now = self.instants[-1]
         if math.isnan(now.alpha + now.beta):
             return PhaseEnd(Event.JAMS, self.contact, now)
-        h = self._first_step(now, last)
+        before = self.conditions(now)
+        h = min(self._first_step(now, last), self._reach(now, before), self.longest)
         smallest = _SMALLEST * h
-        before = self._starting(self.conditions(now))
         while now.time < last:
             if len(self.instants) > most:
                 return PhaseEnd(Event.TAKES_TOO_LONG, self.contact, now)
@@ -135,147 +170,30 @@ class MotionPhase:
                 if late and h > self.shortest:
                     h *= 0.25
                     continue
-                if late:
-                    return self._ended(late[0], then)
-                found = [(_Crossing(self, now, then, k).find(before[k], after[k]), k) for k in crossed]
-                at, k = min(found, key=_time_of)
-                return self._ended(k, at)
+                at, k = then, (late or crossed)[0]
+                if not late:
+                    found = [(self._crossing(now, then, k, before[k], after[k]), k) for k in crossed]
+                    at, k = min(found, key=_time_of)
+                self.instants.append(at)
+                return PhaseEnd(*self.events[k], at)
             self._pass(then)
             now, before = then, after
             h *= GROWTH[rows]
             h = min(h, max(self._reach(now, before), _LEAST * h))
         return PhaseEnd(Event.TIME_IS_UP, self.contact, now)
 
-    def _may_dip(self, now: Instant, then: Instant, before: list[Condition], after: list[Condition]) -> bool:
-        """Whether a condition that holds at both ends of a step may fail between them."""
-        middle: list[Condition] | None = None
-        h = then.time - now.time
-        for k, ((value, rate), (end_value, end_rate)) in enumerate(zip(before, after, strict=True)):
-            if value <= 0.0 or end_value <= 0.0:
-                continue
-            if not math.isnan(rate):
-                if rate < 0.0 < end_rate and dip(value, h * rate, end_value, h * end_rate) <= 1.0:
-                    return True
-                continue
-            if middle is None:
-                middle = self.conditions(_middle(now, then))
-            # The parabola through both ends and the middle, and what it may be wrong by.
-            bend = value - 2.0 * middle[k][0] + end_value
-            slope = end_value - value
-            if bend > 0.0 and abs(slope) < 2.0 * bend:
-                if middle[k][0] - 0.125 * slope * slope / bend <= 0.1 * bend:
-                    return True
-            elif middle[k][0] <= 0.0:
-                return True
-        return False
-
-    def dense(self) -> list[DensePiece]:
-        """The polynomials of the phase, made when they are first asked for."""
-        if not self._pieces:
-            if self.moves:
-                for now, end in zip(self.instants, self.instants[1:], strict=False):
-                    for then in self.steps(now, end.time):
-                        # The last step ends where the phase does, to the last bit.
-                        then = end if then.time == end.time else then
-                        self._pieces += pieces(self.rate, now, then, self.scale, self.tolerance)
-                        now = then
-            if not self._pieces:
-                now = self.instants[0]
-                self._pieces = [DensePiece(start=0.0, end=self.instants[-1].time, u=(now.u,), z=(now.z,))]
-        return self._pieces
-
-    def steps(self, now: Instant, until: float) -> list[Instant]:
-        """Ends of steps from an instant to a time, which may be far, without a look at events."""
-        found = []
-        h = until - now.time
-        smallest = _SMALLEST * h
-        while now.time < until:
-            left = until - now.time
-            h = min(h, left)
-            then, rows = step(self.rate, now, h, self.scale, _FINER * self.tolerance)
-            if not rows and h > smallest:
-                h *= GROWTH[0]
-                continue
-            now = then._replace(time=until) if h == left else then
-            found.append(now)
-            h *= 2.0
-        return found
-
-
-class _Crossing:
-    """One condition of a phase within a step, found by stepping from the last place that was asked for."""
-
-    def __init__(self, phase: MotionPhase, now: Instant, then: Instant, k: int) -> None:
-        self.phase, self.k, self.start, self.h = phase, k, now.time, then.time - now.time
-        self.here, self.place = then, self.h
-
-    def find(self, before: Condition, after: Condition) -> Instant:
-        """The instant at which the condition, which fails at the end of the step, falls to zero."""
-        h = self.h
-        if math.isnan(after[1]):
-            place = bracketed_root(self.exact, h, before[0], after[0])
-        else:
-            near = h * min(1.0, fall(before[0], h * before[1], after[0], h * after[1]))
-            place = newton_root(self.exact, h, near)
-        self.exact(place)
-        return self.here
-
-    def exact(self, place: float) -> Condition:
-        """The condition at a place of the step: the nearer it is to the last one, the less it costs."""
-        phase, span = self.phase, place - self.place
-        if abs(span) <= NEAR * self.h:
-            here = nudged(phase.rate, self.here, span)
-        else:
-            here, _ = step(phase.rate, self.here, span, phase.scale, phase.tolerance)
-        self.here, self.place = here._replace(time=self.start + place), place
-        return phase.conditions(self.here)[self.k]
-
-
-class ContactPhase(MotionPhase):
-    """Motion over closed contacts, of states `a` and `b`, from (u, w, z, s) on; it overturns at `limit` rad."""
-
-    def __init__(
-        self,
-        body: RockingBody,
-        support: FeltSupport,
-        states: tuple[int, int],
-        start: float,
-        place: tuple[float, float, float, float],
-        limit: float,
-        tolerance: float,
-    ) -> None:
-        super().__init__(body, support, start, body.length, tolerance)
-        self.a, self.b = states
-        self.limit = limit
-        self.both = OPEN not in states
-        self.contact = i = 0 if self.a != OPEN else 1
-        self.state = states[i]
-        self.side = 1.0 if i == 0 else -1.0
-        self.slip = 1.0 if self.state == PLUS else -1.0
-        self.moves = not (self.both and self.state == STICK)
-        """Whether it moves at all."""
-        self.pivots = self.fixed and not self.both and self.state == STICK
-        """Whether it turns about one point at rest: that is known in closed form."""
-        touches = (Event.TOUCHES, 1 - i), (Event.OVERTURNS, i)
-        if self.both:
-            self.events = (Event.STOPS, i), (Event.LIFTS, 0), (Event.LIFTS, 1)
-        elif self.state == STICK:
-            self.events = *touches, (Event.SLIPS, i), (Event.SLIPS_BACK, i)
-        else:
-            self.events = *touches, (Event.STOPS, i), (Event.LIFTS, i)
-        alpha, beta = self.rate(0.0, *place) if self.moves else (0.0, 0.0)
-        self.instants.append(Instant(0.0, *place, alpha, beta))
-
     def rate(self, time: float, u: float, w: float, z: float, s: float) -> Vector:
-        felt = self.felt if self.fixed else self.support.felt(self.start + time)
+        """Accelerations of the two coordinates."""
+        felt = self._felt(time)
         if self.both:
             return 0.0, self.body.forces_of_both(self.state, felt, z, s)[0]
         forces = self.body.forces(self.contact, self.state, felt, u, w, z, s)
         return forces.alpha, forces.beta
 
     def conditions(self, now: Instant) -> list[Condition]:
+        """What stays positive until one of `events`."""
         time, u, w, z, s, _, beta = now
-        felt = self.felt if self.fixed else self.support.felt(self.start + time)
+        felt = self._felt(time)
         stops = self.slip * s, self.slip * beta
         if self.both:
             _, normal, normal_b = self.body.forces_of_both(self.state, felt, z, s)
@@ -288,79 +206,110 @@ class ContactPhase(MotionPhase):
         hold = self.body.friction[self.contact] * forces.normal
         return [touches, overturns, (hold + forces.tangential, math.nan), (hold - forces.tangential, math.nan)]
 
+    def _felt(self, time: float) -> FrameAcceleration:
+        return self.felt if self.fixed else self.support.felt(self.start + time)
+
+    def _accelerated(self, now: Instant) -> Instant:
+        alpha, beta = self.rate(*now[:5])
+        return now._replace(alpha=alpha, beta=beta)
+
     def _first_step(self, now: Instant, last: float) -> float:
+        """Length of the first step; sets the longest and the shortest one, too."""
         felt, length = self.felt, self.body.length
         weight = math.hypot(felt[0], felt[1]) + length * (abs(felt[3]) + felt[2] * felt[2])
         swing = math.sqrt(length / weight) if weight > 0.0 else math.inf
         self.border = _BORDER * length / (swing * swing)
         self.longest = _PART_OF_PERIOD * self.support.period
         self.shortest = _SHORTEST * min(swing, self.support.period)
-        pace = abs(now.w) + math.sqrt(abs(now.alpha)) + 1.0 / swing
-        first = (_FIRST_STEP_OF_BOTH if self.both else _FIRST_STEP) / pace
-        return min(first, self._reach(now, []), self.longest)
+        return _FIRST_STEP[self.both] / (abs(now.w) + math.sqrt(abs(now.alpha)) + 1.0 / swing)
 
     def _reach(self, now: Instant, conditions: list[Condition]) -> float:
-        # By the parabola of the instant, which ends a slip or closes the other contact.
+        """A little more than the time after which the phase might end, by the parabola of the instant."""
         stops = -now.s / now.beta if now.s * now.beta < 0.0 else math.inf
         if self.both:
             return _BEYOND * stops
-        gap, speed, pull = self.side * now.u, self.side * now.w, -self.side * now.alpha
-        square = max(0.0, speed * speed + 2.0 * pull * gap)
-        touches = math.inf
-        if pull > 0.0 and speed > 0.0:
-            touches = (speed + math.sqrt(square)) / pull
-        elif square > 0.0 and gap > 0.0 and speed < 0.0:
-            touches = 2.0 * gap / (math.sqrt(square) - speed)
-        return _BEYOND * min(stops, touches)
+        gap, speed, pull = max(0.0, self.side * now.u), self.side * now.w, -self.side * now.alpha
+        return _BEYOND * min(stops, safe_step(gap, speed, pull))
 
-    def _ended(self, k: int, at: Instant) -> PhaseEnd:
-        event, _ = self.events[k]
-        if event is Event.TOUCHES:
-            at = at._replace(u=0.0)
-        elif event is Event.STOPS:
-            at = at._replace(s=0.0)
-        return super()._ended(k, at)
+    def _pass(self, then: Instant) -> None:
+        self.instants.append(then)
 
-    def at(self, time: Any) -> PlanarState:
-        return self.body.state(self.contact, *values_at(self.dense(), time - self.start))
+    def _may_dip(self, now: Instant, then: Instant, before: list[Condition], after: list[Condition]) -> bool:
+        """Whether a condition that holds at both ends of a step may fail between them."""
+        middle: list[Condition] = []
+        h = then.time - now.time
+        for k, ((value, rate), (end_value, end_rate)) in enumerate(zip(before, after, strict=True)):
+            if value <= 0.0 or end_value <= 0.0:
+                continue
+            if math.isnan(rate):
+                middle = middle or self.conditions(middle_of(now, then))
+                if may_fall(value, middle[k][0], end_value):
+                    return True
+            elif rate < 0.0 < end_rate and dip(value, h * rate, end_value, h * end_rate) <= 1.0:
+                return True
+        return False
 
-    def close(self, end: Instant) -> None:
-        """End the phase at an instant that the summed impacts lead to, uniformly."""
-        now = self.instants[0]
-        self.instants.append(end)
-        u, z = (0.5 * (end.u - now.u), 0.5 * (end.u + now.u)), (0.5 * (end.z - now.z), 0.5 * (end.z + now.z))
-        self._pieces = [DensePiece(start=now.time, end=end.time, u=u, z=z)]
+    def _crossing(self, now: Instant, then: Instant, k: int, before: Condition, after: Condition) -> Instant:
+        """The instant in a step at which a condition, which fails at its end, falls to zero.
 
-    def follow(self, last: float, most: int) -> PhaseEnd:
-        if not self.pivots:
-            return super().follow(last, most)
-        i, side = self.contact, self.side
+        By Newton's method, or by the secant's where no rate is known, kept in its bracket by bisection. Every place is
+        had by stepping from the last one: the nearer it is, the less it costs.
+        """
+        h, (value, rate), (end_value, end_rate) = then.time - now.time, before, after
+        by_secant = math.isnan(rate)
+        if by_secant:
+            at = h * value / (value - end_value) if value > 0.0 else 0.5 * h
+        else:
+            at = h * min(1.0, fall(value, h * rate, end_value, h * end_rate))
+        low, high, here, place, value = 0.0, h, then, h, end_value
+        for _ in range(60):
+            here = self._moved(here, at - place, h)._replace(time=now.time + at)
+            last_place, last_value, place = place, value, at
+            value, slope = self.conditions(here)[k]
+            if by_secant:
+                slope = (value - last_value) / (at - last_place) if at != last_place else 0.0
+            if value >= 0.0:
+                low = at
+            else:
+                high = at
+            at = at - value / slope if slope < 0.0 else math.inf
+            if not low <= at <= high:
+                at = 0.5 * (low + high)
+            if abs(at - place) <= (_CLOSE_BY_SECANT if by_secant else _CLOSE) * at:
+                break
+        return self._moved(here, at - place, h)._replace(time=now.time + at)
+
+    def _moved(self, now: Instant, span: float, h: float) -> Instant:
+        """The instant some time later or earlier, within a step of `h` s."""
+        if abs(span) <= NEAR * h:
+            return nudged(self.rate, now, span)
+        return step(self.rate, now, span, self.scale, self.tolerance)[0]
+
+    def _turn(self, last: float) -> PhaseEnd:
+        """Turn about one point at rest to the first event, in closed form."""
+        contact, side = self.contact, self.side
         time, u, w, _, _, _, _ = self.instants[0]
         pivot = self._pivot(u, w)
-        if pivot.event is Event.TURNS_BACK and u == 0.0:
+        event = pivot.event
+        if event is Event.TURNS_BACK and u == 0.0:
             # What rises from both contacts comes back as it went, with the same reactions at every angle.
-            return self._turned(last, Event.TOUCHES, 1 - i, time + 2.0 * pivot.time, 0.0, -w)
-        if pivot.event is Event.TURNS_BACK:
-            time, u, w = time + pivot.time, u + pivot.turned, 0.0
-            pivot = self._pivot(u, w)
-        time += pivot.time
-        if pivot.event is Event.NEVER or pivot.event is Event.TURNS_BACK:
-            return self._turned(last, Event.BALANCES, i, math.inf if w else time, u, w)
-        u, w = u + pivot.turned, pivot.omega
-        if pivot.event is not Event.TOUCHES:
-            return self._turned(last, pivot.event, i, time, u, w)
-        if pivot.direction * side < 0.0:
-            return self._turned(last, Event.TOUCHES, 1 - i, time, 0.0, w)
-        return self._turned(last, Event.OVERTURNS, i, time, side * self.limit, w)
-
-    def _turned(self, last: float, event: Event, contact: int, time: float, u: float, w: float) -> PhaseEnd:
-        if time <= last:
-            z = self.instants[0].z
-            alpha, _ = self.rate(time, u, w, z, 0.0)
-            self.instants.append(Instant(time=time, u=u, w=w, z=z, s=0.0, alpha=alpha, beta=0.0))
-            return PhaseEnd(event, contact, self.instants[-1])
-        self.instants += self.steps(self.instants[0], last)
-        return PhaseEnd(Event.TIME_IS_UP, self.contact, self.instants[-1])
+            event, contact, time, w = Event.TOUCHES, 1 - contact, 2.0 * pivot.time, -w
+        else:
+            if event is Event.TURNS_BACK:
+                time, u = pivot.time, u + pivot.turned
+                pivot = self._pivot(u, 0.0)
+                event = pivot.event
+            time, u, w = time + pivot.time, u + pivot.turned, pivot.omega
+            if event is Event.NEVER or event is Event.TURNS_BACK:
+                event, time = Event.BALANCES, math.inf if w else time
+            elif event is Event.TOUCHES and pivot.direction * side < 0.0:
+                contact, u = 1 - contact, 0.0
+            elif event is Event.TOUCHES:
+                event, u = Event.OVERTURNS, side * self.limit
+        if not time <= last:  # where it is then, its dense output finds
+            event, contact, time, u = Event.TIME_IS_UP, self.contact, last, math.nan
+        self.instants.append(self.instants[0]._replace(time=time, u=u, w=w))
+        return PhaseEnd(event, contact, self.instants[-1])
 
     def _pivot(self, u: float, w: float) -> Pivot:
         """The first event of a contact that sticks; a disc's normal turns with it."""
@@ -371,6 +320,95 @@ class ContactPhase(MotionPhase):
         return closed_form(turned(body.arms[i], u), w, travel, body.rho_squared, body.friction[i], self.felt[:2])
 
 
+class FlightPhase(MotionPhase):
+    """Flight from `state` with known gaps of the contacts; coordinates are the displacements of the mass centre.
+
+    These count from the start, so that the gap of a contact that has just left keeps its digits, too.
+    """
+
+    def __init__(
+        self, body: RockingBody, support: FeltSupport, start: float, state: PlanarState, gaps: Vector, tolerance: float
+    ) -> None:
+        self.begin, self.gaps = state, gaps
+        self._mark = 0.0, 0.0
+        """A time and the angle turned until then."""
+        super().__init__(body, support, (OPEN, OPEN), start, (0.0, state.vx, 0.0, state.vy), math.inf, tolerance)
+        self.contact = 0
+        self.events = (Event.TOUCHES, 0), (Event.TOUCHES, 1)
+        if body.rolls:
+            self.events = *self.events, (Event.OVERTURNS, 0)
+        self.scale = 1.0, self.scale[1]
+        self.weight = math.hypot(self.felt[0], self.felt[1])
+
+    def at(self, times: Any) -> PlanarState:
+        begin, t = self.begin, times - self.start
+        x, vx, y, vy = values_at(self.dense(), t)
+        assert isinstance(self.support, (FixedSupport, MovingSupport))
+        first, now = self.support.motion(self.start), self.support.motion(times)
+        spin = begin.omega + first.rate
+        angle = begin.angle + spin * t - (now.angle - first.angle)
+        return PlanarState(x=begin.x + x, y=begin.y + y, angle=angle, vx=vx, vy=vy, omega=spin - now.rate)
+
+    def rate(self, time: float, u: float, w: float, z: float, s: float) -> Vector:
+        return self.body.felt_at(self._felt(time), self.begin.x + u, self.begin.y + z, w, s)
+
+    def conditions(self, now: Instant) -> list[Condition]:
+        body, (turned, state) = self.body, self._state(now)
+        found = []
+        for i in (0, 1):
+            gap = self.gaps[i] + body.gap_change(i, self.begin, now.u, now.z, turned)
+            rate = body.gap_rate(i, state)
+            if now.time == 0.0 and gap <= 0.0:
+                # A contact that is leaving just now does not begin with a fall, whatever rounding says.
+                speeds = abs(state.vx) + abs(state.vy) + abs(state.omega) * body.length
+                rate = rate if rate > _SPEED_ROUNDING * speeds else 0.0
+            found.append((gap, rate))
+        if body.rolls:  # the height above the edges
+            ex, ey = body.edges[1]
+            size = math.hypot(ex, ey)
+            found.append(((ex * state.y - ey * state.x) / size, (ex * state.vy - ey * state.vx) / size))
+        return found
+
+    def landing(self, end: Instant, contact: int) -> tuple[PlanarState, float, bool]:
+        """The state at an instant at which a contact touches; the gap of the other one, and whether it touches, too."""
+        turned, state = self._state(end)
+        gap = max(0.0, self.conditions(end)[1 - contact][0])
+        moved = self.gaps[1 - contact] + abs(end.u) + abs(end.z) + self.body.length * abs(turned)
+        return state, gap, gap <= _ROUNDING * moved
+
+    def _state(self, now: Instant) -> tuple[float, PlanarState]:
+        """How far the body has turned since the start, and its state."""
+        turned, omega = self._angle(now.time)
+        x, y, angle, _, _, _ = self.begin
+        return turned, PlanarState(x=x + now.u, y=y + now.z, angle=angle + turned, vx=now.w, vy=now.s, omega=omega)
+
+    def _angle(self, time: float) -> Vector:
+        """The angle turned since the start until a time, and the rate then."""
+        omega, (since, turned) = self.begin.omega, self._mark
+        span = time - since
+        if self.fixed:
+            return turned + omega * span, omega
+        felt, rate = self.support.felt, self.felt[2]
+        for node, weight in _GAUSS:
+            turned += weight * span * (omega + rate - felt(self.start + since + node * span)[2])
+        return turned, omega + rate - felt(self.start + time)[2]
+
+    def _pass(self, then: Instant) -> None:
+        self._mark = then.time, self._angle(then.time)[0]
+        super()._pass(then)
+
+    def _first_step(self, now: Instant, last: float) -> float:
+        pace = abs(self.begin.omega) + math.sqrt(self.weight / self.body.length)
+        first = _STEP_OF_FLIGHT / pace if pace > 0.0 else math.inf
+        self.longest = min(first, _PART_OF_PERIOD_IN_FLIGHT * self.support.period, last)
+        self.shortest = _SHORTEST_FLIGHT * self.longest
+        return self.longest
+
+    def _reach(self, now: Instant, conditions: list[Condition]) -> float:
+        # Under the weight at the start.
+        return _BEYOND_FLIGHT * min(safe_step(max(0.0, gap), rate, self.weight) for gap, rate in conditions)
+
+
 def _time_of(found: tuple[Instant, int]) -> float:
     return found[0].time
 
@@ -379,17 +417,3 @@ def _began(start: Condition, border: float) -> bool:
     """Whether a condition held at the start of a step, or began to: then it fails within the step."""
     value, rate = start
     return value > border if math.isnan(rate) else value > 0.0 or rate > 0.0
-
-
-def _middle(now: Instant, then: Instant) -> Instant:
-    """The instant in the middle of a step, on polynomials of degree 5."""
-    h = then.time - now.time
-    return Instant(
-        time=now.time + 0.5 * h,
-        u=0.5 * (now.u + then.u) + h * (5.0 * (now.w - then.w) + 0.5 * h * (now.alpha + then.alpha)) / 32.0,
-        w=1.875 * (then.u - now.u) / h - 0.4375 * (now.w + then.w) + h * (then.alpha - now.alpha) / 32.0,
-        z=0.5 * (now.z + then.z) + h * (5.0 * (now.s - then.s) + 0.5 * h * (now.beta + then.beta)) / 32.0,
-        s=1.875 * (then.z - now.z) / h - 0.4375 * (now.s + then.s) + h * (then.beta - now.beta) / 32.0,
-        alpha=math.nan,
-        beta=math.nan,
-    )

@@ -6,16 +6,15 @@ import math
 
 from ..impact import number_of, solve_impact
 from ..impact.answer import STAYS
-from ..impact.contacts import OPEN
 from ..types import Flag, Twist, TwoPointBody, Validity
 from .accumulation import FollowedImpact, ImpactSequence, Limit
-from .engine import MotionEngine
+from .engine import MotionEngine, Strike
 from .equations import rocking_body
 from .integrate import Instant
-from .phases import ContactPhase, MotionPhase, PhaseEnd
-from .states import rest
+from .phases import MotionPhase
 from .support import FixedSupport, PlanarState, Support
-from .trajectory import STATES, Accumulation, End, RockingImpact, Trajectory
+from .touchdown import MotionKind
+from .trajectory import Accumulation, End, RockingImpact, Trajectory, letters
 
 _SPEED_ROUNDING = 1e-15
 """Part of a body's speeds that is rounding in the normal velocity at a contact."""
@@ -23,8 +22,6 @@ _BOUNCE = 1e-12
 """A body thrown up more slowly than this part of its natural speed has stopped bouncing."""
 _QUIET = 1e-9
 """So has one whose contacts both move more slowly than this part of it, as bouncing within bouncing does."""
-_STUCK = 1000
-"""Events without any time between them; more come only from rounding."""
 _NOTHING = 1e-100
 """Smaller numbers of a state are none: their products would be no numbers."""
 _ACCUMULATION = 1e-12, 1e-11
@@ -85,8 +82,18 @@ def rock(
     number_of(law)
     if not _is_valid(body, start, duration, start_time, overturned, tolerance):
         return Trajectory(body=body, support=support, law=law, start=start, time=start_time, end=End.INVALID_INPUT)
-    until = start_time + duration
-    return RockingEngine(body, support, law, start_time, until, overturned, max_events, tolerance).run(start)
+    engine = MotionEngine(
+        body=rocking_body(body),
+        support=support,
+        time=start_time,
+        until=start_time + duration,
+        limit=overturned,
+        most_events=max_events,
+        most_steps=max_events,
+        tolerance=tolerance,
+        waits=True,
+    )
+    return _RockingMotion(engine, body, support, law).follow(start)
 
 
 def _is_valid(body: TwoPointBody, start: PlanarState, *numbers: float) -> bool:
@@ -99,47 +106,34 @@ def _is_valid(body: TwoPointBody, start: PlanarState, *numbers: float) -> bool:
     return all(map(math.isfinite, values)) and body.mass > 0.0 and body.inertia > 0.0 and numbers[0] >= 0.0
 
 
-class RockingEngine(MotionEngine):
+class _RockingMotion:
     """One motion, while it is followed from impact to impact."""
 
-    support: Support
-
-    def __init__(
-        self,
-        body: TwoPointBody,
-        support: Support,
-        law: str,
-        time: float,
-        until: float,
-        limit: float,
-        max_events: int,
-        tolerance: float,
-    ) -> None:
-        super().__init__(rocking_body(body), support, time, until, limit, max_events, tolerance)
-        self.two_point, self.law, self.max_events = body, law, max_events
-        allowed = _ACCUMULATION[0 if self.fixed else 1]
-        self.sequence = ImpactSequence(self.swing, self.speed, self.body.length, allowed)
+    def __init__(self, engine: MotionEngine, body: TwoPointBody, support: Support, law: str) -> None:
+        self.engine, self.body, self.two_point, self.support, self.law = engine, engine.body, body, support, law
+        self.sequence = ImpactSequence(engine.swing, engine.speed, self.body.length, _ACCUMULATION[not engine.fixed])
         self.validity = Validity(gravity=abs(support.gravity))
-        self.phases: list[MotionPhase] = []
         self.impacts: list[RockingImpact] = []
         self.accumulations: list[Accumulation] = []
-        contact = self.body.contact
-        self.pairs = tuple(
-            TwoPointBody(body.mass, body.inertia, contact(old, 0.0), contact(1 - old, 0.0)) for old in _BOTH
-        )
+        self.counted = 0
+        """Phases up to the last impact."""
+        contacts = self.body.contact(0, 0.0), self.body.contact(1, 0.0)
+        self.pairs = tuple(TwoPointBody(body.mass, body.inertia, contacts[old], contacts[1 - old]) for old in _BOTH)
         """The body as an impact law sees it when it stands on one contact and the other strikes."""
 
-    def run(self, start: PlanarState) -> Trajectory:
+    def follow(self, start: PlanarState) -> Trajectory:
         """Follow the motion to its end."""
+        engine = self.engine
         start = PlanarState(*[part if abs(part) >= _NOTHING else 0.0 for part in start])
         angle = math.remainder(start.angle + self.body.lean, 2.0 * math.pi)
         shift = start.angle - angle
         try:
             self._begin(start._replace(angle=angle))
-            self._follow_all()
+            while strike := engine.next_strike():
+                self._impact(strike)
         except ArithmeticError:  # numbers so large or so small that their products are none
-            self.end = End.NO_SOLUTION
-        assert self.end is not None
+            engine.end = End.NO_SOLUTION
+        assert engine.end is not None
         impacts = [
             one._replace(before=_ahead(one.before, shift), after=_ahead(one.after, shift)) for one in self.impacts
         ]
@@ -148,131 +142,127 @@ class RockingEngine(MotionEngine):
             support=self.support,
             law=self.law,
             start=start,
-            time=self.time,
-            end=self.end,
+            time=engine.time,
+            end=engine.end,
             shift=shift,
-            phases=self.phases,
+            phases=engine.phases,
             impacts=impacts,
             accumulations=self.accumulations,
-            jams=self.jams,
+            jams=engine.jams,
         )
 
     def _begin(self, state: PlanarState) -> None:
         """Put contacts that are near the support on it, and find out what the body does."""
-        rocking = self.body
-        near = _TOUCHES * rocking.length
-        gaps = [rocking.gap(i, state.x, state.y, state.angle) for i in _BOTH]
-        closed = sorted((i for i in _BOTH if gaps[i] <= near), key=lambda i: gaps[i])
-        if len(closed) == 2 and gaps[closed[1]] - gaps[closed[0]] > near:
-            del closed[1]
-        if not closed:
-            self._fly(state, (gaps[0], gaps[0] if abs(gaps[1] - gaps[0]) <= _FLAT * rocking.length else gaps[1]))
+        body, engine = self.body, self.engine
+        near = _TOUCHES * body.length
+        gaps = [body.gap(i, state.x, state.y, state.angle) for i in _BOTH]
+        first = 0 if gaps[0] <= gaps[1] else 1
+        apart = abs(gaps[1] - gaps[0])
+        if gaps[first] > near:
+            engine.fly(state, (gaps[0], gaps[0] if apart <= _FLAT * body.length else gaps[1]))
             return
-        flat = len(closed) == 2
-        u = 0.0 if flat else rocking.seen_from(closed[0], state)[0]
-        if abs(u) >= self.limit:
-            self._fly(state, (gaps[0], gaps[1]))
-            self.end = End.OVERTURNED
+        closed = [first] if max(gaps) > near or apart > near else [first, 1 - first]
+        u, _, z, _ = body.seen_from(first, state)
+        if len(closed) == 2:
+            u = 0.0
+        if abs(u) >= engine.limit:
+            engine.end = End.OVERTURNED
             return
-        z = rocking.seen_from(closed[0], state)[2]
-        place = rocking.state(closed[0], u, 0.0, z, 0.0)
+        place = body.state(first, u, 0.0, z, 0.0)
         state = state._replace(x=place.x, y=place.y, angle=place.angle)
-        small = _SPEED * (abs(state.vx) + abs(state.vy) + abs(state.omega) * rocking.length)
-        speeds = {i: rocking.gap_rate(i, state) for i in closed}
-        held = [i for i in closed if speeds[i] <= small]
-        held.sort(key=lambda i: -speeds[i])
+        small = _SPEED * (abs(state.vx) + abs(state.vy) + abs(state.omega) * body.length)
+        rates = {i: body.gap_rate(i, state) for i in closed}
+        held = sorted((i for i in closed if rates[i] <= small), key=lambda i: -rates[i])
         if not held:
-            self._fly(state, self._gaps(closed[0], u))
-        elif speeds[held[-1]] < -small:
-            self._strike(held, state, u)
+            engine.fly(state, engine.gaps(first, u))
+        elif rates[held[-1]] < -small:
+            old = held[0] if len(held) == 2 else None
+            engine.strike = Strike(old=old, new=held[-1], state=state, u=u, motion=MotionKind.FLIGHT)
         else:
-            _, w, z, s = rocking.seen_from(held[0], state)
+            _, w, z, s = body.seen_from(held[0], state)
             s = 0.0 if abs(s) <= small else s
-            if len(held) == 2:
-                self._hold(z, s)
-            else:
-                self._stand(held[0], u, w, z, s)
+            engine.settle(held[0], u, 0.0 if len(held) == 2 else w, z, s)
 
-    def _follow_all(self) -> None:
-        """One phase after the other, to the end."""
-        still, last, events = 0, self.time, 0
-        while self.end is None:
-            if events >= self.max_events:
-                self.end = End.TOO_MANY_EVENTS
-                return
-            assert self.next is not None
-            self.phases.append(self.next)
-            self._go_on()
-            still = still + 1 if self.time <= last else 0
-            if still > _STUCK:
-                self.end = End.NO_SOLUTION
-            events, last = events + 1, self.time
-
-    def _rest(self, phase: ContactPhase, last: float) -> PhaseEnd | None:
-        return None if self.fixed else rest(phase, self.rests_from, last, self.most)
-
-    def _begin_contact(self, states: tuple[int, int], u: float, w: float, z: float, s: float) -> None:
-        if OPEN not in states:
-            self.sequence.forget()
-        super()._begin_contact(states, u, w, z, s)
-
-    def _strike(self, touching: list[int], state: PlanarState, u: float) -> None:
-        """The last of the contacts that touch strikes, and perhaps the other one with it."""
-        new = touching[-1]
-        z = self.body.seen_from(new, state)[2]
-        if len(touching) == 2:
-            self._impact(self.pairs[1 - new], 1 - new, new, state, 0.0, z)
-        else:
-            alone = TwoPointBody(self.two_point.mass, self.two_point.inertia, None, self.body.contact(new, u))
-            self._impact(alone, None, new, state, u, z)
-
-    def _strike_other(self, old: int, w: float, z: float, s: float) -> None:
-        """The body stands on one contact, with both closed, and the other one strikes."""
-        self._impact(self.pairs[old], old, 1 - old, self.body.state(old, 0.0, w, z, s), 0.0, z)
-
-    def _impact(self, body: TwoPointBody, old: int | None, new: int, before: PlanarState, u: float, z: float) -> None:
-        outcome = solve_impact(body, Twist(before.vx, before.vy, before.omega), self.law, self.validity)
+    def _impact(self, strike: Strike) -> None:
+        """Solve an impact, and find out what the body does after it."""
+        body, engine, (old, new, before, u, _) = self.body, self.engine, strike
+        struck = (
+            self.pairs[old]
+            if old is not None
+            else TwoPointBody(self.two_point.mass, self.two_point.inertia, None, body.contact(new, u))
+        )
+        outcome = solve_impact(struck, Twist(before.vx, before.vy, before.omega), self.law, self.validity)
         if outcome.flags & (Flag.NO_SOLUTION | Flag.INVALID_INPUT):
-            self.end = End.NO_SOLUTION
+            engine.end = End.NO_SOLUTION
             return
         vx, vy, omega = outcome.twist
         after = before._replace(vx=vx, vy=vy, omega=omega)
-        impact = RockingImpact(time=self.time, old=old, new=new, before=before, after=after, outcome=outcome)
-        self.impacts.append(impact)
-        since, self.since = self.since, 0.0
+        self.impacts.append(
+            RockingImpact(time=engine.time, old=old, new=new, before=before, after=after, outcome=outcome)
+        )
+        since = self._since_last()
         # Normal velocities against the approach alone: beside a fast slip the mode counts slow hops as none.
-        rocking = self.body
         touching = (new,) if old is None else (old, new)
-        approach = max(-rocking.gap_rate(i, before) for i in touching)
-        size = abs(before.vx) + abs(before.vy) + abs(before.omega) * rocking.length
-        least = STAYS * approach + (_SPEED_ROUNDING * size if rocking.rolls else 0.0)
-        rates = {i: rocking.gap_rate(i, after) for i in touching}
+        approach = max(-body.gap_rate(i, before) for i in touching)
+        size = abs(before.vx) + abs(before.vy) + abs(before.omega) * body.length
+        least = STAYS * approach + (_SPEED_ROUNDING * size if body.rolls else 0.0)
+        rates = {i: body.gap_rate(i, after) for i in touching}
         leaving = [i for i in touching if rates[i] > least]
         closed = [i for i in touching if i not in leaving]
-        _, w, _, s = rocking.seen_from(new, after)
+        i = closed[-1] if closed else new
+        _, w, _, s = body.seen_from(i, after)
+        z = body.seen_from(new, before)[2]
         if self._is_quiet(after, new, u):
             self._quieten(_BOTH, _QUIET, u, w, z, s)
-            return
-        if not closed and max(rates.values()) <= _BOUNCE * self.speed:
+        elif not closed and max(rates.values()) <= _BOUNCE * engine.speed:
             self._quieten(touching, _BOUNCE, u, w, z, s)
+        elif leaving and self._is_summed(leaving, since, (u, w, z, s)):
             return
-        if leaving:
-            i = closed[0] if closed else new
-            _, w, _, s = rocking.seen_from(i, after)
-            kind = -1 if old is None else old, new, sum(1 << i for i in leaving)
-            limit = self.sequence.add(FollowedImpact(kind, since, (u, w, z, s)))
-            if limit is not None and self._stays_open(limit, since, after, new, u):
-                self._accumulate(limit, new)
-                return
-        if not closed:
-            self._fly(after, self._gaps(new, u))
-            return
-        _, w, _, s = rocking.seen_from(closed[-1], after)
-        s = 0.0 if abs(s) <= STAYS * (size + approach) else s
-        if len(closed) == 2:
-            self._hold(z, s)
+        elif not closed:
+            engine.fly(after, engine.gaps(new, u))
         else:
-            self._stand(closed[0], u, w, z, s)
+            s = 0.0 if abs(s) <= STAYS * (size + approach) else s
+            engine.settle(i, u, 0.0 if len(closed) == 2 else w, z, s)
+
+    def _since_last(self) -> float:
+        """Time since the last impact, which between accumulating impacts is too short for the digits of the clock."""
+        since, phases = 0.0, self.engine.phases
+        for phase in phases[self.counted :]:
+            since += phase.instants[-1].time
+            if phase.both:
+                self.sequence.forget()
+        self.counted = len(phases)
+        return since
+
+    def _is_summed(self, leaving: list[int], since: float, place: tuple[float, float, float, float]) -> bool:
+        """Count an impact that contacts leave; pass to the end of all that follow it where they can be summed."""
+        last, engine = self.impacts[-1], self.engine
+        kind = -1 if last.old is None else last.old, last.new, sum(1 << i for i in leaving)
+        limit = self.sequence.add(FollowedImpact(kind, since, place))
+        if limit is None or not self._stays_open(limit, since, last.after, last.new, place[0]):
+            return False
+        u, w, z, s = limit.place
+        start, begin = engine.time, self.body.seen_from(last.new, last.after)
+        engine.time = min(engine.time + limit.after, engine.until)
+        if len(limit.contacts) == 2:
+            u = w = 0.0
+            begin = 0.0, 0.0, begin[2], begin[3]
+        engine.settle(last.new, u, w, z, s)
+        assert engine.next is not None
+        summed = MotionPhase(
+            body=self.body,
+            support=self.support,
+            states=engine.next.states,
+            start=start,
+            place=begin,
+            limit=engine.limit,
+            tolerance=engine.tolerance,
+        )
+        summed.close(Instant(time=engine.time - start, u=u, w=w, z=z, s=s, alpha=0.0, beta=0.0))
+        engine.phases.append(summed)
+        self.counted = len(engine.phases)
+        self._add_accumulation(limit.error, limit.contacts, limit.impacts)
+        return True
 
     def _stays_open(self, limit: Limit, since: float, after: PlanarState, new: int, u: float) -> bool:
         """Whether nothing but the impacts that are summed can happen before their end.
@@ -283,63 +273,33 @@ class RockingEngine(MotionEngine):
             return True
         gap, slope = self.body.gap_of_other(new, u)
         rate = min(0.0, self.body.gap_rate(1 - new, after), slope * limit.place[1])
-        span, felt = limit.after + since, self.support.felt(self.time)
+        span, felt = limit.after + since, self.support.felt(self.engine.time)
         weight = abs(felt[0]) + abs(felt[1]) + self.body.length * (after.omega**2 + abs(felt[3]))
         return gap + (rate - 4.0 * weight * span) * span > 0.0
 
     def _is_quiet(self, after: PlanarState, new: int, u: float) -> bool:
         """Whether both contacts bounce less than can matter: their hops may have no pattern that could be summed."""
-        rocking = self.body
-        if not any(rocking.restitution) or abs(rocking.gap_of_other(new, u)[0]) > _QUIET * _QUIET * rocking.length:
+        body = self.body
+        if not any(body.restitution) or abs(body.gap_of_other(new, u)[0]) > _QUIET * _QUIET * body.length:
             return False
-        return max(abs(rocking.gap_rate(i, after)) for i in _BOTH) <= _QUIET * self.speed
+        return max(abs(body.gap_rate(i, after)) for i in _BOTH) <= _QUIET * self.engine.speed
 
     def _quieten(self, contacts: tuple[int, ...], part: float, u: float, w: float, z: float, s: float) -> None:
         """Contacts that hardly bounce any more are closed from now on."""
-        s = 0.0 if abs(s) <= part * self.speed else s
-        impacts, self.since = self.sequence.impacts + 1, 0.0
+        engine, impacts = self.engine, self.sequence.impacts + 1
         if len(contacts) == 2:
-            self._hold(z, s)
-        else:
-            self._stand(contacts[0], u, w, z, s)
-        error = 2.0 * part * self.swing / max(0.01, 1.0 - max(self.body.restitution))
-        self._add_accumulation(error, tuple(sorted(contacts)), impacts)
-
-    def _accumulate(self, limit: Limit, new: int) -> None:
-        """Pass from an impact to the end of all that follow it."""
-        u, w, z, s = limit.place
-        start, place = self.time, self.body.seen_from(new, self.impacts[-1].after)
-        self.time = min(self.time + limit.after, self.until)
-        if len(limit.contacts) == 2:
             u = w = 0.0
-            place = 0.0, 0.0, place[2], place[3]
-            self._hold(z, s)
-        else:
-            self._stand(new, u, w, z, s)
-        phase = self.next
-        assert phase is not None
-        summed = ContactPhase(
-            body=self.body,
-            support=self.support,
-            states=(phase.a, phase.b),
-            start=start,
-            place=place,
-            limit=self.limit,
-            tolerance=self.tolerance,
-        )
-        end = Instant(time=self.time - start, u=u, w=w, z=z, s=s, alpha=0.0, beta=0.0)
-        summed.close(end)
-        self.phases.append(summed)
-        self.since = 0.0
-        self._add_accumulation(limit.error, limit.contacts, limit.impacts)
+        engine.settle(contacts[0], u, w, z, 0.0 if abs(s) <= part * engine.speed else s)
+        error = 2.0 * part * engine.swing / max(0.01, 1.0 - max(self.body.restitution))
+        self._add_accumulation(error, tuple(sorted(contacts)), impacts)
 
     def _add_accumulation(self, error: float, contacts: tuple[int, ...], impacts: int) -> None:
         """Infinitely many impacts end now; the next phase is what follows them."""
-        phase = self.next
-        assert phase is not None
-        states = STATES[phase.a] + STATES[phase.b]
+        engine = self.engine
+        assert engine.next is not None
+        states = letters(engine.next.states)
         self.accumulations.append(
-            Accumulation(time=self.time, error=error, contacts=contacts, states=states, impacts=impacts)
+            Accumulation(time=engine.time, error=error, contacts=contacts, states=states, impacts=impacts)
         )
         self.sequence.forget()
 

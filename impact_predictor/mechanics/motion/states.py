@@ -7,13 +7,17 @@ opening: what rests stays at rest while it can.
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..impact.contacts import MINUS, OPEN, PLUS, STICK
 from .equations import RockingBody
-from .events import Event
-from .phases import ContactPhase, PhaseEnd
+from .events import Event, may_fall
+from .phases import MotionPhase, PhaseEnd
 from .support import FrameAcceleration, MovingSupport
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 JAM = -1
 """No state is allowed: slip that no finite reaction can go with (Painleve)."""
@@ -23,8 +27,10 @@ _SAMPLES = 16
 """Samples of the conditions of a rest in a shortest period of the support."""
 _FIRST_BLOCK, _LAST_BLOCK = 4, 128
 """Pairs of samples that are taken at once."""
-_DEPTH = 40
-"""Halvings down to which a graze is told from a crossing."""
+_FINER = 17
+"""Samples that an interval is divided by in which a margin may fall."""
+_FINEST = 1e-13
+"""Intervals, in shortest periods, down to which a graze is told from a crossing."""
 
 
 def state_of_one(body: RockingBody, i: int, felt: FrameAcceleration, u: float, w: float, z: float, s: float) -> int:
@@ -78,64 +84,44 @@ def states_of_both(body: RockingBody, felt: FrameAcceleration, z: float, s: floa
     return (JAM, JAM) if s != 0.0 else (STICK, STICK)
 
 
-def rest(phase: ContactPhase, after: float, last: float, most: int) -> PhaseEnd:
+def rest(phase: MotionPhase, after: float, last: float, most: int) -> PhaseEnd:
     """Rest on both contacts of a moving support until the reactions leave their cones of friction.
 
     They are looked at from `after` s on and for `last` s, but for at most `most` swings of the support.
     """
     import numpy as np
 
-    body, support, start, here = phase.body, phase.support, phase.start, phase.instants[0]
+    support, here = phase.support, phase.instants[0]
     assert isinstance(support, MovingSupport)
-    if not body.facets:  # friction locks the body between its contacts
+    if not phase.body.facets:  # friction locks the body between its contacts
         after = max(after, last)
     spacing, patient = support.period / _SAMPLES, min(last, most * support.period)
     time, block = after, _FIRST_BLOCK
     while time < patient:
         times = np.minimum(time + spacing * np.arange(2 * block + 1), last)
-        felt = support.felt_at(start + times)
-        values: Any = np.array(body.hold_margins((felt[:, 0], felt[:, 1], felt[:, 2], felt[:, 3]), here.z))
-        low, middle, high = values[:, :-2:2], values[:, 1:-1:2], values[:, 2::2]
-        for k in np.flatnonzero(_may_fall(low, middle, high).any(axis=0)).tolist():
-            sides = low[:, k].tolist(), middle[:, k].tolist(), high[:, k].tolist()
-            at = _first_fall(phase, float(times[2 * k]), float(times[2 * k + 2]), *sides, _DEPTH)
-            if at is not None:
-                phase.instants.append(here._replace(time=at))
-                return PhaseEnd(Event.YIELDS, phase.contact, phase.instants[-1])
+        at = _first_fall(phase, support, times)
+        if at is not None:
+            phase.instants.append(here._replace(time=at))
+            return PhaseEnd(Event.YIELDS, phase.contact, phase.instants[-1])
         time, block = float(times[-1]), min(2 * block, _LAST_BLOCK)
     phase.instants.append(here._replace(time=max(time, here.time)))
     event = Event.TIME_IS_UP if time >= last else Event.TAKES_TOO_LONG
     return PhaseEnd(event, phase.contact, phase.instants[-1])
 
 
-def _may_fall(first: Any, half: Any, last: Any) -> Any:
-    """Where a margin may fall below zero between three samples: their parabola does, with what it may be wrong by."""
-    bend, slope = first - 2.0 * half + last, last - first
-    bends = abs(bend) + (bend == 0.0)  # no division by zero
-    dips = (bend > 0.0) & (abs(slope) < 2.0 * bend) & (half - 0.125 * slope * slope / bends - 0.1 * bend < 0.0)
-    return dips | (first < 0.0) | (half < 0.0) | (last < 0.0)
+def _first_fall(phase: MotionPhase, support: MovingSupport, times: NDArray[np.float64]) -> float | None:
+    """First time at which a margin of a rest falls below zero, looked for between three samples each; or None."""
+    import numpy as np
 
-
-def _first_fall(
-    phase: ContactPhase,
-    start: float,
-    end: float,
-    low: list[float],
-    middle: list[float],
-    high: list[float],
-    depth: int,
-) -> float | None:
-    """First time in an interval at which a margin of a rest falls below zero; None where none does."""
-    if not any(_may_fall(*samples) for samples in zip(low, middle, high, strict=True)):
-        return None
-    centre = 0.5 * (start + end)
-    if depth == 0 or not start < centre < end:
-        return end if min(high) < 0.0 else None
-    support, z = phase.support, phase.instants[0].z
-    assert isinstance(support, MovingSupport)
-    early, late = (
-        phase.body.hold_margins(support.felt_exactly(phase.start + time), z)
-        for time in (0.5 * (start + centre), 0.5 * (centre + end))
-    )
-    found = _first_fall(phase, start, centre, low, early, middle, depth - 1)
-    return _first_fall(phase, centre, end, middle, late, high, depth - 1) if found is None else found
+    felt = support.felt_at(phase.start + times).T
+    values: Any = np.array(phase.body.hold_margins((felt[0], felt[1], felt[2], felt[3]), phase.instants[0].z))
+    falls = may_fall(values[:, :-2:2], values[:, 1:-1:2], values[:, 2::2]).any(axis=0)
+    for k in np.flatnonzero(falls).tolist():
+        finer = np.linspace(times[2 * k], times[2 * k + 2], _FINER)
+        if finer[-1] - finer[0] <= _FINEST * support.period or not finer[0] < finer[1]:
+            found = float(finer[-1]) if values[:, 2 * k + 2].min() < 0.0 else None
+        else:
+            found = _first_fall(phase, support, finer)
+        if found is not None:
+            return found
+    return None

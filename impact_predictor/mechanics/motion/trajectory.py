@@ -11,7 +11,7 @@ from ..types import Outcome, TwoPointBody
 from .phases import MotionPhase
 from .support import PlanarState, Support, in_world
 
-STATES = "OS+-"
+_STATES = "OS+-"
 """Letters of the contact states: open, sticks, slips along +t and along -t."""
 
 
@@ -108,46 +108,40 @@ class Trajectory:
     @property
     def phases(self) -> tuple[Phase, ...]:
         """The phases between events."""
-        return tuple(Phase(one.start, one.end, STATES[one.a] + STATES[one.b]) for one in self._phases)
+        return tuple(Phase(one.start, one.end, letters(one.states)) for one in self._phases)
 
     def states(self, time: float) -> str:
         """Contact states at a time, as those of `Phase`."""
         if not self._phases:
             return "OO"
-        one = self._phases[max(0, bisect_right(self._starts, time) - 1)]
-        return STATES[one.a] + STATES[one.b]
+        return letters(self._phases[max(0, bisect_right(self._starts, time) - 1)].states)
 
     def state(self, time: Any) -> PlanarState:
         """State in the support's frame at a time in s (numbers) or at an array of times (arrays).
 
         At an impact it is the state after it; before the start and after the end it is the state there.
         """
-        if isinstance(time, (float, int)):
-            if not self._phases:
-                return self._start
-            one = self._phases[max(0, bisect_right(self._starts, time) - 1)]
-            state = one.at(min(max(float(time), one.start), one.end))
-            return state._replace(angle=state.angle + self._shift)
         import numpy as np
 
-        times = np.atleast_1d(np.asarray(time, dtype=float))
+        times = np.asarray(time, dtype=float)
         flat = times.ravel()
         values = np.empty((6, flat.size))
         if not self._phases:
             values[:] = np.array(self._start)[:, None]
         else:
-            place = np.clip(np.searchsorted(self._starts, flat, side="right") - 1, 0, None)
-            order = np.argsort(place, kind="stable")
-            borders = np.flatnonzero(np.diff(place[order])) + 1
-            for chosen in np.split(order, borders):
+            order = np.argsort(flat, kind="stable")
+            borders = np.searchsorted(flat[order], self._starts[1:])
+            for phase, chosen in zip(self._phases, np.split(order, borders), strict=True):
                 if chosen.size:
-                    one = self._phases[place[chosen[0]]]
-                    values[:, chosen] = np.array(
-                        np.broadcast_arrays(*one.at(np.clip(flat[chosen], one.start, one.end)))
-                    )
+                    values[:, chosen] = phase.at(np.clip(flat[chosen], phase.start, phase.end))
             values[2] += self._shift
-        return PlanarState(*values.reshape(6, *np.shape(time)))
+        return PlanarState(*(values.reshape(6, *times.shape) if times.ndim else values[:, 0].tolist()))
 
     def world(self, time: Any) -> PlanarState:
         """As `state`, in the world's axes."""
         return in_world(self.support.motion(time), self.state(time))
+
+
+def letters(states: tuple[int, int]) -> str:
+    """The letters of the states of contacts 0 and 1, as those of `Phase`."""
+    return _STATES[states[0]] + _STATES[states[1]]
