@@ -60,7 +60,7 @@ from .impact.contacts import (
 from .impact.path_law import ROOM
 from .impact.rates import Rates, choose, open_rates, state_alone
 from .impact.restitution import poisson
-from .motion.events import bracketed_root
+from .motion.events import falling_root
 from .transverse_step import SLACK, Across, Arc, SlipPhase, Slips, State, advance, margin, rates, way_of
 from .types import Contact, Flag, Outcome, Twist, TwoPointBody, Validity
 
@@ -444,7 +444,8 @@ def set_off(across: Across, contact: int, way: Slips) -> SlipPhase | None:
 
 def descent(value: Callable[[float], float], first: float, last: float) -> float:
     """Where in 0..1 a value falls to zero, on the far side, from its values at both ends."""
-    return min(bracketed_root(lambda part: (value(part), nan), 1.0, first, last) + SLACK, 1.0)
+    guess = first / (first - last) if first > 0.0 else 0.5
+    return min(falling_root(lambda part: (value(part), nan), 1.0, last, guess) + SLACK, 1.0)
 
 
 def from_plane(rate: Rates) -> State:

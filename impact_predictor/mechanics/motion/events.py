@@ -6,6 +6,7 @@ A condition is positive until its event.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from enum import IntEnum
 from typing import Any
 
@@ -18,6 +19,8 @@ _ROUNDING = 8.0 * 2.0**-52
 """A few units in the last place of a value that is a sum of a few terms."""
 _MAX_ADVANCES = 1000
 """Several times what the worst grazing needs."""
+_CLOSE, _CLOSE_BY_SECANT = 1e-7, 1e-14
+"""After an iteration this small, relative to the root, what is left is its square (by the secant: less of it)."""
 _NEWTON_STEPS = 4
 """On a cubic, from its secant."""
 _BEYOND = 2.0
@@ -164,3 +167,27 @@ def may_fall(first: Any, half: Any, last: Any) -> Any:
     bends = abs(bend) + (bend == 0.0)  # no division by zero
     dips = (bend > 0.0) & (abs(slope) < 2.0 * bend) & (half - 0.125 * slope * slope / bends - 0.1 * bend < 0.0)
     return dips | (first < 0.0) | (half < 0.0) | (last < 0.0)
+
+
+def falling_root(condition: Callable[[float], Condition], high: float, high_value: float, guess: float) -> float:
+    """Where in 0..high a condition falls to zero, from a guess and its value at the end.
+
+    By Newton's method, or by the secant's where its rate is not known, kept in the bracket by bisection.
+    """
+    low, at, value = 0.0, high, high_value
+    for _ in range(80):
+        last, last_value, at = at, value, guess
+        value, slope = condition(at)
+        close = _CLOSE
+        if math.isnan(slope):
+            slope, close = (value - last_value) / (at - last) if at != last else 0.0, _CLOSE_BY_SECANT
+        if value >= 0.0:
+            low = at
+        else:
+            high = at
+        guess = at - value / slope if slope < 0.0 else math.inf
+        if not low <= guess <= high:
+            guess = 0.5 * (low + high)
+        if abs(guess - at) <= close * guess:
+            break
+    return guess

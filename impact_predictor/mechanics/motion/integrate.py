@@ -141,7 +141,7 @@ def add_dense(
         guess = middle_of(now, end)
         size = length * (abs(now.w) + abs(end.w)) + abs(now.s) + abs(end.s) + h * length * abs(middle.alpha)
         noise = (length * math.ulp(now.u) + math.ulp(now.z)) / h
-        # In the middle the error of the rates is nearly zero; a quarter of the step away it is what that of the way says.
+        # The error of the rates is nearly zero in the middle; a quarter of a step away it is what that of the way says.
         error = length * (4.0 * abs(guess.u - middle.u) / h + abs(guess.w - middle.w))
         error += 4.0 * abs(guess.z - middle.z) / h + abs(guess.s - middle.s)
         rows = error <= _DENSE * size + 50.0 * noise

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from ..impact.contacts import OPEN, PLUS, STICK
 from ..types import Vector
 from .equations import RockingBody, turned
-from .events import Condition, Event, dip, fall, may_fall, safe_step
+from .events import Condition, Event, dip, fall, falling_root, may_fall, safe_step
 from .integrate import GROWTH, NEAR, Instant, add_dense, middle_of, nudged, step, values_at
 from .pivot import Pivot, roll, turn
 from .support import FeltSupport, FixedSupport, FrameAcceleration, MovingSupport, PlanarState
@@ -36,8 +36,6 @@ _SHORTEST, _SHORTEST_FLIGHT = 1e-6, 1e-9
 """What begins at its border and ends sooner than this ends then: times of the body's swing, longest steps."""
 _FINER = 0.01
 """Tolerance of dense output, relative to that of steps: it must meet an end that is known exactly."""
-_CLOSE, _CLOSE_BY_SECANT = 1e-7, 1e-12
-"""After an iteration this small, relative to the root, what is left is its square (or has no rate to tell it)."""
 _ROUNDING = 1e-14
 """A gap below this part of what the body moved is rounding."""
 _SPEED_ROUNDING = 1e-15
@@ -172,7 +170,7 @@ class MotionPhase:
                     continue
                 at, k = then, (late or crossed)[0]
                 if not late:
-                    found = [(self._crossing(now, then, k, before[k], after[k]), k) for k in crossed]
+                    found = [(_Crossing(self, now, then, k).find(before[k], after[k]), k) for k in crossed]
                     at, k = min(found, key=_time_of)
                 self.instants.append(at)
                 return PhaseEnd(*self.events[k], at)
@@ -248,42 +246,6 @@ class MotionPhase:
             elif rate < 0.0 < end_rate and dip(value, h * rate, end_value, h * end_rate) <= 1.0:
                 return True
         return False
-
-    def _crossing(self, now: Instant, then: Instant, k: int, before: Condition, after: Condition) -> Instant:
-        """The instant in a step at which a condition, which fails at its end, falls to zero.
-
-        By Newton's method, or by the secant's where no rate is known, kept in its bracket by bisection. Every place is
-        had by stepping from the last one: the nearer it is, the less it costs.
-        """
-        h, (value, rate), (end_value, end_rate) = then.time - now.time, before, after
-        by_secant = math.isnan(rate)
-        if by_secant:
-            at = h * value / (value - end_value) if value > 0.0 else 0.5 * h
-        else:
-            at = h * min(1.0, fall(value, h * rate, end_value, h * end_rate))
-        low, high, here, place, value = 0.0, h, then, h, end_value
-        for _ in range(60):
-            here = self._moved(here, at - place, h)._replace(time=now.time + at)
-            last_place, last_value, place = place, value, at
-            value, slope = self.conditions(here)[k]
-            if by_secant:
-                slope = (value - last_value) / (at - last_place) if at != last_place else 0.0
-            if value >= 0.0:
-                low = at
-            else:
-                high = at
-            at = at - value / slope if slope < 0.0 else math.inf
-            if not low <= at <= high:
-                at = 0.5 * (low + high)
-            if abs(at - place) <= (_CLOSE_BY_SECANT if by_secant else _CLOSE) * at:
-                break
-        return self._moved(here, at - place, h)._replace(time=now.time + at)
-
-    def _moved(self, now: Instant, span: float, h: float) -> Instant:
-        """The instant some time later or earlier, within a step of `h` s."""
-        if abs(span) <= NEAR * h:
-            return nudged(self.rate, now, span)
-        return step(self.rate, now, span, self.scale, self.tolerance)[0]
 
     def _turn(self, last: float) -> PhaseEnd:
         """Turn about one point at rest to the first event, in closed form."""
@@ -407,6 +369,33 @@ class FlightPhase(MotionPhase):
     def _reach(self, now: Instant, conditions: list[Condition]) -> float:
         # Under the weight at the start.
         return _BEYOND_FLIGHT * min(safe_step(max(0.0, gap), rate, self.weight) for gap, rate in conditions)
+
+
+class _Crossing:
+    """One condition of a phase within a step, found by stepping from the last place that was asked for."""
+
+    def __init__(self, phase: MotionPhase, now: Instant, then: Instant, k: int) -> None:
+        self.phase, self.k, self.start, self.h = phase, k, now.time, then.time - now.time
+        self.here, self.place = then, self.h
+
+    def find(self, before: Condition, after: Condition) -> Instant:
+        """The instant at which the condition, which fails at the end of the step, falls to zero."""
+        h, (value, rate), (end_value, end_rate) = self.h, before, after
+        guess = value / (value - end_value) if value > 0.0 else 0.5
+        if not math.isnan(rate):
+            guess = min(1.0, fall(value, h * rate, end_value, h * end_rate))
+        self.exact(falling_root(self.exact, h, end_value, h * guess))
+        return self.here
+
+    def exact(self, place: float) -> Condition:
+        """The condition at a place of the step: the nearer it is to the last one, the less it costs."""
+        phase, span = self.phase, place - self.place
+        if abs(span) <= NEAR * self.h:
+            here = nudged(phase.rate, self.here, span)
+        else:
+            here, _ = step(phase.rate, self.here, span, phase.scale, phase.tolerance)
+        self.here, self.place = here._replace(time=self.start + place), place
+        return phase.conditions(self.here)[self.k]
 
 
 def _time_of(found: tuple[Instant, int]) -> float:
