@@ -67,14 +67,6 @@ class Calibration(NamedTuple):
         """The relative errors with coefficients that were fitted to others, (n,)."""
         return np.hypot(self.held_out_misses[:, 0], self.held_out_misses[:, 1])
 
-    @property
-    def given(self) -> Coefficients:
-        return Coefficients(self.friction.given, self.restitution.given, self.inertia.given)
-
-    @property
-    def fitted(self) -> Coefficients:
-        return Coefficients(self.friction.value, self.restitution.value, self.inertia.value)
-
 
 def calibrate(
     records: Sequence[Sequence[ScoredTouchdown]], seed: int = 0, tell: Callable[[int], None] = lambda done: None
@@ -92,8 +84,10 @@ def calibrate(
     number = sum(map(len, records))
     records = straight(records)
     touchdowns = tuple(one for record in records for one in record)
-    if len(touchdowns) < NEEDED:
-        raise InputError(_too_few(len(touchdowns), number))
+    if (fit := len(touchdowns)) < NEEDED:
+        there = "1 touchdown" if fit == 1 else f"{fit or 'no'} touchdowns"
+        more = f" ({number} are scored, some too slow for the rate of the samples)" if number > fit else ""
+        raise InputError(f"{there} can be fitted to{more}, but {NEEDED} are needed; give more bags")
     scenes = [one.scene for one in touchdowns]
     if len({(scene.friction, scene.restitution) for scene in scenes}) > 1:
         bodies = " and ".join(sorted({one.body for one in touchdowns}))
@@ -121,16 +115,16 @@ def calibrate(
     if not restitution.known:
         table = search.table(table.nodes.friction, np.array([restitution.value]), inertia.value)
     return Calibration(
-        touchdowns,
-        blocks,
-        friction,
-        restitution,
-        inertia,
-        Solver(touchdowns).misses(given),
-        search.held_out(table),
-        (coarse.grid, coarse.losses().reshape(coarse.grid.shape)),
-        inertias,
-        number - len(touchdowns),
+        touchdowns=touchdowns,
+        blocks=blocks,
+        friction=friction,
+        restitution=restitution,
+        inertia=inertia,
+        given_misses=Solver(touchdowns).misses(given),
+        held_out_misses=search.held_out(table),
+        map=(coarse.grid, coarse.losses().reshape(coarse.grid.shape)),
+        inertias=inertias,
+        left_out=number - len(touchdowns),
     )
 
 
@@ -142,12 +136,6 @@ def straight(records: Sequence[Sequence[ScoredTouchdown]]) -> list[list[ScoredTo
     bends = [one.bend for record in records for one in record if one.bend < inf]
     limit = max(BENT, 3.0 * float(np.median(bends))) if bends else BENT
     return [[one for one in record if one.bend <= limit] for record in records]
-
-
-def _too_few(number: int, scored: int) -> str:
-    there = "1 touchdown" if number == 1 else f"{number or 'no'} touchdowns"
-    more = f" ({scored} are scored, some too slow for the rate of the samples)" if scored > number else ""
-    return f"{there} can be fitted to{more}, but {NEEDED} are needed; give more bags"
 
 
 class _Fit(NamedTuple):
@@ -190,12 +178,9 @@ class Profile:
                 edges += pairwise(self._fits[place - 1 : place + 2])
             for factor in sorted({(one.factor * other.factor) ** 0.5 for one, other in edges}):
                 self._add(factor)
-        below = above = None
-        for one, other in self._edges():
-            if self._alike(other):
-                below = one.factor
-            else:
-                above = other.factor
+        ends = self._edges()
+        below = next((one.factor for one, other in ends if self._alike(other)), None)
+        above = next((other.factor for one, other in ends if self._alike(one)), None)
         known = below is not None and above is not None and above <= KNOWN * below
         value = 1.0
         if known and not (below or 0.0) <= 1.0 <= (above or 0.0):
@@ -208,10 +193,11 @@ class Profile:
 
     def _edges(self) -> list[tuple[_Fit, _Fit]]:
         """The neighbours of which one predicts as well as the best and the other worse: the outermost of each side."""
-        edges = [(a, b) for a, b in pairwise(self._fits) if self._alike(a) != self._alike(b)]
-        rising, falling = [e for e in edges if self._alike(e[1])], [e for e in edges if self._alike(e[0])]
-        outermost = [] if not rising or self._alike(self._fits[0]) else rising[:1]
-        return outermost + ([] if not falling or self._alike(self._fits[-1]) else falling[-1:])
+        alike = [self._alike(fit) for fit in self._fits]
+        pairs = list(zip(pairwise(self._fits), pairwise(alike), strict=True))
+        rising = [] if alike[0] else [pair for pair, same in pairs if same == (False, True)]
+        falling = [] if alike[-1] else [pair for pair, same in pairs if same == (True, False)]
+        return rising[:1] + falling[-1:]
 
     def _alike(self, fit: _Fit) -> bool:
         return not self._search.surely_more(fit.errors - self._best.errors, ALIKE)
@@ -224,19 +210,16 @@ class Profile:
         def loss(point: NDArray[np.float64]) -> float:
             return float(self._search.block_errors(Coefficients(float(point[0]), float(point[1]), factor)).sum())
 
-        friction, restitution = start[:2]
+        friction, restitution, _ = start
         step = 0.05 if restitution < 0.5 else -0.05
+        simplex = (friction, restitution), (1.1 * friction + 0.02, restitution), (friction, restitution + step)
         found = minimize(
             loss,
             (friction, restitution),
             method="Nelder-Mead",
             bounds=[(axis[0], axis[-1]) for axis in COARSE],
             options={
-                "initial_simplex": [
-                    (friction, restitution),
-                    (1.1 * friction + 0.02, restitution),
-                    (friction, restitution + step),
-                ],
+                "initial_simplex": simplex,
                 "xatol": 5e-3,
                 "fatol": 0.1 * ALIKE * self._search.number,
                 "maxfev": 60,

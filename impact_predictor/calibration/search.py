@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from math import atan
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import bootstrap
 
 from .solver import Solver
 from .table import Blocks, ErrorTable, Grid
@@ -68,18 +67,14 @@ class Search:
         self._solved: dict[Coefficients, NDArray[np.float64]] = {}
         self.number = len(touchdowns)
         number = int(blocks.max()) + 1
-        drawn = np.random.default_rng(seed).multinomial(number, np.full(number, 1.0 / number), RESAMPLES)
-        self._weights = drawn.astype(np.float64)
+        drawn = np.random.default_rng(seed).integers(0, number, (RESAMPLES, number))
+        self._weights = np.apply_along_axis(np.bincount, 1, drawn, minlength=number).astype(np.float64)
 
     def approached(self, coefficients: Coefficients) -> Search:
         """A search with the motions before the touchdowns, too, as the coefficients make them."""
         touchdowns = [one.approached(coefficients) for one in self._touchdowns]
         before = len(self._solved) * self.number
-
-        def tell(done: int) -> None:
-            self._tell(before + done)
-
-        return Search(touchdowns, self._blocks, self._given, self._seed, tell)
+        return Search(touchdowns, self._blocks, self._given, self._seed, lambda done: self._tell(before + done))
 
     def table(
         self,
@@ -114,13 +109,15 @@ class Search:
     def zoomed(self, table: ErrorTable) -> ErrorTable:
         """A table that is as narrow as the resampled fits allow."""
         for _ in range(_LEVELS):
-            spread = self._bootstrap(table).bootstrap_distribution
+            spread = self._bootstrap(table)
             axes: list[NDArray[np.float64]] = []
             shrinks = False
             for i, nodes in enumerate((table.nodes.friction, table.nodes.restitution)):
                 low, high = spread[i].min(), spread[2 + i].max()
                 low, high = max(nodes[0], low - _gap(nodes, low)), min(nodes[-1], high + _gap(nodes, high))
-                axes.append(_spaced(low, high, min(len(nodes), _NODES[i])))
+                # Of small ones evenly spaced, of large ones in the angle of friction.
+                angles = np.linspace(atan(low), atan(high), min(len(nodes), _NODES[i]))
+                axes.append(np.tan(angles).clip(low, high))
                 shrinks |= high - low < _SHRINKS * (nodes[-1] - nodes[0]) and high - low > _RESOLUTION * _NODES[i]
             if not shrinks:
                 break
@@ -136,8 +133,8 @@ class Search:
         value = table.grid.at(best)[axis]
         if len(nodes) == 1:
             return Estimate(given, value, None, None, known=False)
-        interval = self._bootstrap(table).confidence_interval
-        lowest, highest = float(interval.low[axis]), float(interval.high[2 + axis])
+        spread, outside = self._bootstrap(table), 0.5 * (1.0 - LEVEL)
+        lowest, highest = float(np.quantile(spread[axis], outside)), float(np.quantile(spread[2 + axis], 1.0 - outside))
         # No finer than the table, nor than it was zoomed in to.
         low = max(float(ends[0]), lowest - max(_RESOLUTION, float(grid[1] - grid[0])))
         high = min(float(ends[-1]), highest + max(_RESOLUTION, float(grid[-1] - grid[-2])))
@@ -169,29 +166,14 @@ class Search:
         tied = np.flatnonzero(losses <= losses.min() + TIED).tolist()
         return int(min(tied, key=lambda k: sum(abs(a - b) for a, b in zip(table.grid.at(k), self._given, strict=True))))
 
-    def _bootstrap(self, table: ErrorTable) -> Any:
+    def _bootstrap(self, table: ErrorTable) -> NDArray[np.float64]:
         """The fits to resampled blocks: the least of the best values of each coefficient, then the greatest of each."""
         # What is tied cannot be known better than the table knows the errors.
         best = self.best(table)
         exact = self.block_errors(table.grid.at(best)).sum() / self.number
         tied = TIED + abs(exact - table.losses()[0, best])
-
-        def extremes(resampled: NDArray[np.int64], axis: int = -1) -> NDArray[np.float64]:
-            rows = np.atleast_2d(resampled)
-            weights = np.apply_along_axis(np.bincount, 1, rows, minlength=len(table.counts)).astype(float)
-            found = _extremes(table, weights, tied)
-            return found if resampled.ndim > 1 else found[:, 0]
-
-        return bootstrap(
-            (np.arange(len(table.counts)),),
-            extremes,
-            n_resamples=RESAMPLES,
-            batch=_BATCH,
-            vectorized=True,
-            confidence_level=LEVEL,
-            method="percentile",
-            random_state=np.random.default_rng(self._seed),
-        )
+        parts = [_extremes(table, weights, tied) for weights in np.split(self._weights, RESAMPLES // _BATCH)]
+        return np.concatenate(parts, axis=1)
 
 
 def _extremes(table: ErrorTable, weights: NDArray[np.float64], tied: float) -> NDArray[np.float64]:
@@ -212,9 +194,3 @@ def _gap(nodes: NDArray[np.float64], value: float) -> float:
         return 0.0
     place = int(np.clip(np.searchsorted(nodes, value), 1, len(nodes) - 1))
     return float(nodes[place] - nodes[place - 1])
-
-
-def _spaced(low: float, high: float, number: int) -> NDArray[np.float64]:
-    """Nodes between two values: of small ones evenly spaced, of large ones in the angle of friction."""
-    nodes: NDArray[np.float64] = np.tan(np.linspace(atan(low), atan(high), number)).clip(low, high)
-    return nodes

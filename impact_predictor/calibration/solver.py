@@ -28,7 +28,7 @@ class _Batch(NamedTuple):
 
 
 class Solver:
-    """What `ScoredTouchdown.after` gives of some touchdowns, to the last bit, and by what that misses the measured."""
+    """The twists after some touchdowns with other coefficients, and by what they miss the measured."""
 
     def __init__(self, touchdowns: Sequence[ScoredTouchdown]) -> None:
         """Sort the touchdowns by the ways in which they are solved."""

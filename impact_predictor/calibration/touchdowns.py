@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from ..mechanics.impact import solve_impact
 from ..mechanics.types import Twist, TwoPointBody
 from ..prediction.impact import Collision, impact_across
 from ..prediction.monitor import Monitor
@@ -80,21 +79,8 @@ class ScoredTouchdown(NamedTuple):
         body = self.impact.body
         if approach is None or (approach.body.old is None) != (body.old is None):
             return self
-        # The inertia is that of the scene as it was given: `solve` scales it.
+        # The inertia is that of the scene as it was given: `Solver` scales it.
         return self._replace(impact=approach._replace(body=approach.body._replace(inertia=body.inertia)))
-
-    def after(self, coefficients: Coefficients) -> Twist:
-        """The twist after the impact with other coefficients, by the law of the scene."""
-        return solve(self.scene, self.impact, coefficients)
-
-
-def solve(scene: Scene, impact: Collision, coefficients: Coefficients) -> Twist:
-    """The twist after an impact with other coefficients, by the law and with the transverse slip of the scene."""
-    slipped = solve_across(scene, impact, coefficients)
-    if slipped is not None:
-        return slipped
-    body = with_coefficients(impact.body, coefficients)
-    return solve_impact(body, impact.before, scene.law, scene.validity).twist
 
 
 def solve_across(scene: Scene, impact: Collision, coefficients: Coefficients) -> Twist | None:
@@ -121,12 +107,8 @@ def with_coefficients(body: TwoPointBody, coefficients: Coefficients) -> TwoPoin
 
 
 def scaled(inertia: InertiaTensor, factor: float) -> InertiaTensor:
-    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = inertia
-    return (
-        (factor * xx, factor * xy, factor * xz),
-        (factor * yx, factor * yy, factor * yz),
-        (factor * zx, factor * zy, factor * zz),
-    )
+    x, y, z = [(factor * row[0], factor * row[1], factor * row[2]) for row in inertia]
+    return x, y, z
 
 
 class Observer(Predictor):

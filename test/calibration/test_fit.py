@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from impact_predictor.calibration.fit import KNOWN, NEEDED, Calibration, calibrate
+from impact_predictor.calibration.solver import Solver
 from impact_predictor.calibration.touchdowns import Coefficients, ScoredTouchdown
 from impact_predictor.errors import InputError
 from impact_predictor.mechanics.bodies import plate
@@ -58,7 +59,7 @@ def touchdowns(
             1.0,
         )
         one = ScoredTouchdown("", k * 10**10, scene, impact, before, 0.5 * LENGTH)
-        after = one.after(truth)
+        after = Twist(*Solver([one]).after(truth)[0])
         error = rng.normal(0.0, noise * one.speed, 2) if noise else (0.0, 0.0)
         made.append(
             one._replace(measured=Twist(after.vx + error[0], after.vy, after.omega + error[1] / (0.5 * LENGTH)))

@@ -47,10 +47,11 @@ def test_a_touchdown_solved_with_the_coefficients_of_the_scene_is_the_predicted_
     predicted = {score.stamp: score for score in scores if score.scored}
     given = Coefficients(scene.friction, scene.restitution)
     assert len(monitor.touchdowns) == len(predicted) > 100
-    errors = np.hypot(*Solver(monitor.touchdowns).misses(given).T)
-    for one, error in zip(monitor.touchdowns, errors, strict=True):
+    solver = Solver(monitor.touchdowns)
+    errors = np.hypot(*solver.misses(given).T)
+    for one, error, after in zip(monitor.touchdowns, errors, solver.after(given).tolist(), strict=True):
         score = predicted[one.stamp]
-        assert one.after(given) == score.touchdown.after
+        assert after == list(score.touchdown.after)
         assert one.measured == score.measured
         assert error == pytest.approx(score.relative_error)
         # The approach, begun anew from the sample, is the same to the last bit.
