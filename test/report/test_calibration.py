@@ -52,10 +52,10 @@ def test_an_interval_in_words(low: float | None, high: float | None, said: str) 
     assert interval(Estimate(1.0, 1.0, low, high, known=False)) == said
 
 
-def test_a_lower_bound_is_told_with_its_reason() -> None:
+def test_a_lower_bound_is_told() -> None:
     bound = Estimate(0.4, 0.4, 0.32, None, known=False)
     assert sentences(calibration(bound), [])[-2] == (
-        "Of the friction only a lower bound is told, 0.32, because nothing slips beyond: it stays 0.4."
+        "The friction cannot be told: at least 0.32 predicts as well; it stays as given."
     )
 
 
@@ -68,7 +68,7 @@ def test_a_contradicted_inertia_is_not_hidden() -> None:
     one = Estimate(1.0, 1.0, 1.17, None, known=False)
     assert sentences(calibration(inertia=one), [])[-1] == (
         "The inertia cannot be told: at least 1.17 times the given one predicts as well; the given one predicts "
-        "worse, but stays."
+        "worse, but it stays as given."
     )
 
 
