@@ -83,9 +83,9 @@ class ReplayReport:
             named(wanted.report, "page", (".html",) if Path(wanted.report).suffix else ("",))
             self._answers = Kept()
         if wanted.table is not None:
-            from ..report.parquet import TouchdownTable
+            from ..report.parquet import touchdown_table
 
-            self._table = stack.enter_context(TouchdownTable(wanted.table))
+            self._table = stack.enter_context(touchdown_table(wanted.table))
         if not wanted.as_json:
             from ..report.summary import Tally
 
@@ -221,7 +221,7 @@ class Baseline:
 
         A bag that the earlier run does not have is a change: nothing vouches for it.
         """
-        from ..report.baseline import ChangeLimits, compare_runs, comparison_as_json, print_changes
+        from ..report.baseline import compare_runs, comparison_as_json, print_changes
         from ..report.touchdowns import rows_of
 
         if result.bag in self._missing:
@@ -229,8 +229,8 @@ class Baseline:
             flaw = str(self._missing[result.bag])
             click.echo(f"note: {flaw}", err=True)
             return {"baseline": {"file": self._path, "error": flaw}} if self._wanted.as_json else {}
-        limits = ChangeLimits(self._wanted.baseline_time, self._wanted.baseline_error)
-        compared = compare_runs(self._runs[result.bag], rows_of(result.settled), limits)
+        limits = self._wanted.baseline_time, self._wanted.baseline_error
+        compared = compare_runs(self._runs[result.bag], rows_of(result.settled), *limits)
         self.has_changed |= bool(compared.changes)
         if self._wanted.as_json:
             return {"baseline": comparison_as_json(compared, self._path)}

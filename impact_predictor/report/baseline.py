@@ -11,7 +11,7 @@ import json
 import os
 from bisect import bisect_left
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from enum import Enum
 from itertools import takewhile
 from math import hypot
@@ -49,7 +49,15 @@ class Earlier:
             InputError: it does not exist, or is JSON that cannot be read, or none of a replay.
         """
         self.path = Path(path)
-        self._runs = _runs_of(self.path)
+        # By the path of each bag, or by "" that of the only one: its touchdowns, or the file that has them.
+        self._runs: Mapping[str, Path | Sequence[TouchdownRow]] = {"": self.path}
+        if not self.path.exists():
+            raise InputError(f"the baseline {path} does not exist; {_HINT}")
+        if self.path.suffix == ".json":
+            self._runs = _runs_of_json(self.path)
+        elif self.path.is_dir() and not (self.path / METADATA).exists():
+            files = self.path.rglob("*.mcap")
+            self._runs = {os.fspath(file.relative_to(path).with_suffix("")): file for file in files}
 
     def check_of_several(self, bags: int) -> None:
         """Whether it can be of so many bags.
@@ -67,7 +75,7 @@ class Earlier:
         """The touchdowns of a bag; its `name` (`names_of`) tells it from the others that are replayed with it.
 
         Raises:
-            InputError: nothing is there, it is no run, or none of this bag.
+            InputError: it is no run, or none of this bag.
         """
         chosen = "" if "" in self._runs else chosen_run(bag, name or name_of(bag), self._runs)
         if chosen is None:
@@ -76,71 +84,54 @@ class Earlier:
         return _read_bag(run) if isinstance(run, Path) else run
 
 
-def _runs_of(path: Path) -> dict[str, Path | Sequence[TouchdownRow]]:
-    """The touchdowns of each bag, or the file that has them, by the bag's path; of a run of one bag by ""."""
-    if not path.exists():
-        raise InputError(f"the baseline {path} does not exist; {_HINT}")
-    if path.suffix == ".json":
-        try:
-            answer = json.loads(path.read_bytes())
-            runs = answer if isinstance(answer, list) else [answer | {"bag": ""}]
-            return {run["bag"]: [*map(row_of_json, run["touchdowns"])] for run in runs if "error" not in run}
-        except OSError as error:
-            raise InputError(f"the baseline {path} cannot be read: {error.strerror}") from error
-        except (AttributeError, KeyError, TypeError, ValueError) as error:
-            raise InputError(f"the baseline {path} is not the JSON of a replay; {_HINT}") from error
-    if path.is_dir() and not (path / METADATA).exists():
-        return {os.fspath(file.relative_to(path).with_suffix("")): file for file in path.rglob("*.mcap")}
-    return {"": path}
-
-
 def chosen_run(bag: str | os.PathLike[str], name: str | os.PathLike[str], runs: Iterable[str]) -> str | None:
     """Which of the runs of several bags, by their paths, is that of a bag with a `name` that tells it from others.
 
     That is the run with the same path; else the one whose path agrees with the bag's farthest from its end on, and at
     least as far as the name does. None where there is none, or several.
     """
-    runs, own, name = list(runs), Path(bag).resolve(), PurePath(name)
-    if os.fspath(bag) in runs:
-        return os.fspath(bag)
+    own, name = Path(bag).resolve(), PurePath(name)
     agreeing: dict[tuple[int, bool], list[str]] = defaultdict(list)
     for run in runs:
+        if run == os.fspath(bag):
+            return run
         path = PurePath(run)
         backwards = zip((name_of(own), *own.parts[-2::-1]), (name_of(path), *path.parts[-2::-1]), strict=False)
         agreed = len([*takewhile(lambda parts: parts[0] == parts[1], backwards)])
-        same_suffix = own.name == path.name
         # A name keeps its suffix only where another bag has none but another suffix.
-        if agreed >= len(name.parts) and (same_suffix or name.name == name_of(own)):
-            agreeing[agreed, same_suffix].append(run)
+        if agreed >= len(name.parts) and name.name in (name_of(own), path.name):
+            agreeing[agreed, own.name == path.name].append(run)
     best = agreeing[max(agreeing)] if agreeing else []
     return best[0] if len(best) == 1 else None
 
 
-def _read_bag(path: Path) -> tuple[TouchdownRow, ...]:
+def _runs_of_json(path: Path) -> dict[str, Sequence[TouchdownRow]]:
+    try:
+        answer = json.loads(path.read_bytes())
+        runs = answer if isinstance(answer, list) else [answer | {"bag": ""}]
+        return {run["bag"]: [*map(row_of_json, run["touchdowns"])] for run in runs if "error" not in run}
+    except OSError as error:
+        raise InputError(f"the baseline {path} cannot be read: {error.strerror}") from error
+    except (AttributeError, KeyError, TypeError, ValueError) as error:
+        raise InputError(f"the baseline {path} is not the JSON of a replay; {_HINT}") from error
+
+
+def _read_bag(path: Path) -> list[TouchdownRow]:
     recorded = topics(path)
     predictions = [topic for topic in recorded if f"{NODE}/" in topic and topic.endswith("/prediction")]
     if not predictions:
         raise InputError(f"the baseline {path} has no predictions: no topic {NODE}/prediction; {_HINT}")
+    scores = [topic.removesuffix("prediction") + "score" for topic in predictions]
+    wanted = {topic: DIAGNOSTIC_ARRAY for topic in scores if topic in recorded}
+    found: list[TouchdownRow] = []
     # A run without any touchdown has no scores.
-    topics_of_scores = [topic.removesuffix("prediction") + "score" for topic in predictions]
-    wanted = {topic: DIAGNOSTIC_ARRAY for topic in topics_of_scores if topic in recorded}
-    if not wanted:
-        return ()
-    found = []
-    for topic, _, data in read_messages(path, wanted):
+    for topic, _, data in read_messages(path, wanted) if wanted else ():
         body = topic.rpartition(f"{NODE}/")[2].removesuffix("score").strip("/")
         try:
             found += [row_of_message(body or one.hardware_id, one.values) for one in decode_diagnostic_array(data)]
         except (MalformedMessage, KeyError, TypeError, ValueError) as error:
             raise InputError(f"the baseline {path} has a message on {topic} that is no score; {_HINT}") from error
-    return tuple(found)
-
-
-class ChangeLimits(NamedTuple):
-    """What counts as a change: times that differ by more than `time` in s, relative errors by more than `error`."""
-
-    time: float = 1e-3
-    error: float = 0.01
+    return found
 
 
 class ChangeKind(Enum):
@@ -159,23 +150,16 @@ class ChangeKind(Enum):
 
 
 class TouchdownChange(NamedTuple):
-    """A change of a touchdown at a `stamp` in ns: what `was`, and what `now` is; None where there is none.
+    """A change of a touchdown: what `was`, and what `now` is; None where there is none.
 
     Modes and contacts are texts, times of what moved in ns, errors relative or, of landings, in s, velocities a planar
-    twist.
+    twist. `row` is the touchdown now, or that which vanished.
     """
 
-    stamp: int
-    body: str
-    foot: str
+    row: TouchdownRow
     kind: ChangeKind
-    was: Any
-    now: Any
-
-    @property
-    def who(self) -> str:
-        """The body, and its foot where it is a landing."""
-        return f"{self.body} {self.foot}".rstrip()
+    was: Any = None
+    now: Any = None
 
 
 class RunComparison(NamedTuple):
@@ -192,18 +176,18 @@ class RunComparison(NamedTuple):
 
 
 def compare_runs(
-    was: Sequence[TouchdownRow], now: Sequence[TouchdownRow], limits: ChangeLimits | None = None
+    was: Sequence[TouchdownRow], now: Sequence[TouchdownRow], time: float = 1e-3, error: float = 0.01
 ) -> RunComparison:
-    """What has changed from one run of a bag to another."""
+    """What has changed from one run of a bag to another: times by more than `time` s, relative errors by `error`."""
     was, now = (sorted(rows, key=lambda row: row.stamp) for rows in (was, now))
     pairs = _paired(was, now)
-    found = [_changes(was[i], now[k], limits or ChangeLimits()) for i, k in pairs.items()]
+    found = [[*_changes(was[i], now[k], time, error)] for i, k in pairs.items()]
     changes = [change for one in found for change in one]
     gone, new = {*range(len(was))} - pairs.keys(), {*range(len(now))} - {*pairs.values()}
-    changes += [_change(was[i], ChangeKind.VANISHED, was[i].mode.name, None) for i in gone]
-    changes += [_change(now[k], ChangeKind.APPEARED, None, now[k].mode.name) for k in new]
+    changes += [TouchdownChange(was[i], ChangeKind.VANISHED, was=was[i].mode.name) for i in gone]
+    changes += [TouchdownChange(now[k], ChangeKind.APPEARED, now=now[k].mode.name) for k in new]
     order = list(ChangeKind)
-    changes.sort(key=lambda change: (change.stamp, change.body, change.foot, order.index(change.kind)))
+    changes.sort(key=lambda one: (one.row.stamp, one.row.body, one.row.foot, order.index(one.kind)))
     return RunComparison(
         changes=tuple(changes),
         were=len(was),
@@ -218,8 +202,6 @@ def _paired(was: Sequence[TouchdownRow], now: Sequence[TouchdownRow]) -> dict[in
     places: dict[tuple[str, str], list[tuple[int, int]]] = defaultdict(list)
     for k, one in enumerate(now):
         places[one.body, one.foot].append((one.stamp, k))
-    for found in places.values():
-        found.sort()
     near: list[tuple[bool, int, int, int, int]] = []
     for i, one in enumerate(was):
         others = places[one.body, one.foot]
@@ -237,30 +219,23 @@ def _paired(was: Sequence[TouchdownRow], now: Sequence[TouchdownRow]) -> dict[in
     return pairs
 
 
-def _change(one: TouchdownRow, kind: ChangeKind, was: Any, now: Any) -> TouchdownChange:
-    return TouchdownChange(stamp=one.stamp, body=one.body, foot=one.foot, kind=kind, was=was, now=now)
-
-
-def _changes(was: TouchdownRow, now: TouchdownRow, limits: ChangeLimits) -> list[TouchdownChange]:
+def _changes(was: TouchdownRow, now: TouchdownRow, time: float, error: float) -> Iterator[TouchdownChange]:
     """What has changed of one touchdown."""
-    found: dict[ChangeKind, tuple[Any, Any]] = {}
     if _points(was) != _points(now):
-        found[ChangeKind.CONTACTS] = _points(was), _points(now)
+        yield TouchdownChange(now, ChangeKind.CONTACTS, _points(was), _points(now))
     if was.mode != now.mode:
-        found[ChangeKind.MODE] = was.mode.name, now.mode.name
-    if abs(now.stamp - was.stamp) > limits.time * NANOSECONDS:
-        found[ChangeKind.MOVED] = was.stamp, now.stamp
+        yield TouchdownChange(now, ChangeKind.MODE, was.mode.name, now.mode.name)
+    if abs(now.stamp - was.stamp) > time * NANOSECONDS:
+        yield TouchdownChange(now, ChangeKind.MOVED, was.stamp, now.stamp)
     if was.scored != now.scored:
-        before, after = ("scored" if one.scored else "not scored" for one in (was, now))
-        found[ChangeKind.SCORED] = before, after
+        yield TouchdownChange(now, ChangeKind.SCORED, *("scored" if one.scored else "not scored" for one in (was, now)))
     # Of a landing the error is that of its time.
     old, new = (one.time_error if one.foot else one.error for one in (was, now))
-    limit = limits.time if now.foot else limits.error
+    limit = time if now.foot else error
     if old is not None and new is not None and abs(abs(new) - abs(old)) > limit:
-        found[ChangeKind.WORSE if abs(new) > abs(old) else ChangeKind.BETTER] = old, new
-    elif was.mode == now.mode and _turned(was, now, limits.error):
-        found[ChangeKind.VELOCITIES] = tuple(was.predicted_twist), tuple(now.predicted_twist)
-    return [_change(now, kind, *values) for kind, values in found.items()]
+        yield TouchdownChange(now, ChangeKind.WORSE if abs(new) > abs(old) else ChangeKind.BETTER, old, new)
+    elif was.mode == now.mode and _turned(was, now, error):
+        yield TouchdownChange(now, ChangeKind.VELOCITIES, tuple(was.predicted_twist), tuple(now.predicted_twist))
 
 
 def _turned(was: TouchdownRow, now: TouchdownRow, limit: float) -> bool:
@@ -281,8 +256,8 @@ def print_changes(
     changes, start = compared.changes, compared.start
     if changes:
         columns = [
-            Column("since first\ns" if start else "time\ns", lambda change: _seconds(change.stamp - start)),
-            Column("body", lambda change: change.who, left=True),
+            Column("since first\ns" if start else "time\ns", lambda change: _seconds(change.row.stamp - start)),
+            Column("body", _who, left=True),
             Column("change", lambda change: change.kind.value, left=True),
             Column("was", lambda change: _text(change, change.was, start), fold=8),
             Column("now", lambda change: _text(change, change.now, start), fold=8),
@@ -296,19 +271,19 @@ def print_changes(
 
 def concluded(compared: RunComparison, baseline: str | os.PathLike[str]) -> str:
     """What a comparison says in one sentence."""
-    name = os.fspath(baseline)
     if not compared.changes:
-        return f"Nothing has changed against {name}: {counted(compared.are, 'touchdown')}."
+        return f"Nothing has changed against {os.fspath(baseline)}: {counted(compared.are, 'touchdown')}."
     counts = Counter(change.kind.value for change in compared.changes)
     said = ", ".join(f"{count:,} {label}" for label, count in counts.most_common())
-    return f"Against {name} {compared.alike:,} of {counted(compared.were, 'touchdown')} are as they were: {said}."
+    were = counted(compared.were, "touchdown")
+    return f"Against {os.fspath(baseline)} {compared.alike:,} of {were} are as they were: {said}."
 
 
 def sentences(compared: RunComparison) -> list[str]:
     """The changes, one line each."""
     start = compared.start
     return [
-        f"{_seconds(one.stamp - start)} s {one.who}: {one.kind.value}, was {_text(one, one.was, start)}, "
+        f"{_seconds(one.row.stamp - start)} s {_who(one)}: {one.kind.value}, was {_text(one, one.was, start)}, "
         f"now {_text(one, one.now, start)}"
         for one in compared.changes
     ]
@@ -323,16 +298,20 @@ def comparison_as_json(compared: RunComparison, baseline: str | os.PathLike[str]
         "unchanged": compared.alike,
         "changes": [
             {
-                "stamp": change.stamp,
-                "body": change.body,
-                "foot": change.foot or None,
-                "change": change.kind.name.lower(),
-                "was": change.was,
-                "now": change.now,
+                "stamp": row.stamp,
+                "body": row.body,
+                "foot": row.foot or None,
+                "change": kind.name.lower(),
+                "was": was,
+                "now": now,
             }
-            for change in compared.changes
+            for row, kind, was, now in compared.changes
         ],
     }
+
+
+def _who(change: TouchdownChange) -> str:
+    return f"{change.row.body} {change.row.foot}".rstrip()
 
 
 def _seconds(nanoseconds: int) -> str:
@@ -348,5 +327,5 @@ def _text(change: TouchdownChange, value: Any, start: int) -> str:
     if change.kind is ChangeKind.VELOCITIES:
         return f"{value[0]:.3f} {value[1]:.3f} {value[2]:.2f}"
     if change.kind in (ChangeKind.BETTER, ChangeKind.WORSE):
-        return f"{value * 1e3:+.1f} ms" if change.foot else f"{percent(value)} %"
+        return f"{value * 1e3:+.1f} ms" if change.row.foot else f"{percent(value)} %"
     return str(value)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from math import degrees, inf, radians
 from typing import Any, Final, NamedTuple
 
@@ -140,12 +141,16 @@ def experiment_json(friction: float, angle: float) -> dict[str, Any]:
     }
 
 
+def _said(place: int, row: Sequence[RodTrial]) -> str:
+    return row[place].said
+
+
 def print_experiment(console: Console, friction: float, angle: float) -> None:
     """Print what is predicted, beside what was seen."""
     rows = trials((*SYMMETRIC, *VERY_CLOSE), friction, angle)
     columns = [Column("a\nmm", lambda row: f"{1e3 * row[0].a:g}"), Column("b\nmm", lambda row: f"{1e3 * row[0].b:g}")]
     for k, thickness in enumerate(THICKNESSES):
-        columns.append(Column(f"predicted\n{1e3 * thickness:g} mm thick", lambda row, k=k: row[k].said, left=True))
+        columns.append(Column(f"predicted\n{1e3 * thickness:g} mm thick", partial(_said, k), left=True))
     # Of all but the thinnest, which was seen to rebound everywhere.
     columns.append(Column("seen", lambda row: row[0].observed.name, left=True))
     show(console, table_of(columns, rows))

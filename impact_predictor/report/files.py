@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 
 from ..errors import InputError
@@ -40,23 +40,19 @@ def make_folder(folder: Path) -> None:
 
 @contextmanager
 def whole(path: Path) -> Iterator[Path]:
-    """Where to write a file: `X.partial`, which becomes X at the end, in the place of an older one.
-
-    After an exception it is gone, and an older file stays as it was.
+    """Where to write a file: `X.partial`, which becomes X at the end; after an exception an older X stays as it was.
 
     Raises:
         InputError: the file cannot be written.
     """
     partial = Path(f"{path}.partial")
     try:
-        try:
-            yield partial
-            partial.replace(path)
-        except BrokenPipeError:
-            # A new file is no pipe: it is standard output whose reader has gone.
-            raise
-        except OSError as error:
-            raise InputError(f"{path} cannot be written: {error.strerror or error}") from error
+        yield partial
+        partial.replace(path)
+    except BrokenPipeError:
+        # A new file is no pipe: it is standard output whose reader has gone.
+        raise
+    except OSError as error:
+        raise InputError(f"{path} cannot be written: {error.strerror or error}") from error
     finally:
-        with suppress(OSError):
-            partial.unlink()
+        partial.unlink(missing_ok=True)

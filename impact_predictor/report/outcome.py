@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from operator import itemgetter
 from typing import Final
 
 from rich.console import Console
@@ -46,10 +47,11 @@ _STATES: Final = {"O": "is open", "S": "sticks", "+": "slides forwards", "-": "s
 
 def print_outcomes(console: Console, body: TwoPointBody, before: Twist, outcomes: Sequence[Outcome]) -> None:
     """Print what one or several laws say about an impact."""
-    columns = [Column("", lambda row: row[0], left=True)]
-    for k, header in enumerate(["before", *(f"after, {outcome.law} law" for outcome in outcomes)], 1):
-        columns.append(Column(header, lambda row, k=k: row[k] if k < len(row) else ""))
-    show(console, table_of(columns, _rows(body, before, outcomes)))
+    columns = [Column("", itemgetter(0), left=True), Column("before", itemgetter(1))]
+    columns += [Column(f"after, {outcome.law} law", itemgetter(k)) for k, outcome in enumerate(outcomes, 2)]
+    # Headings and numbers without a value before or after have empty cells.
+    rows = [(*row, *[""] * (len(columns) - len(row))) for row in _rows(body, before, outcomes)]
+    show(console, table_of(columns, rows))
     for outcome in outcomes:
         console.print("", *_sentences(outcome, alone=body.old is None), sep="\n", markup=False, highlight=False)
 

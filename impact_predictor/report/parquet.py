@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from contextlib import ExitStack
+from contextlib import contextmanager
 from pathlib import Path
-from types import TracebackType
-from typing import Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from ..errors import need
-from ..mechanics.types import Twist
 from .files import named, whole
 from .touchdowns import FIELDS, TouchdownField
 
+if TYPE_CHECKING:
+    from pyarrow.parquet import ParquetWriter
+
 _GROUP: Final = 10_000
 """Rows that are written at a time: few enough for any memory, many enough to be read fast."""
-
-
-_PARTS: Final = {"twist": Twist._fields, "impulse": ("normal", "tangential")}
-"""What a column of numbers is split into."""
+_PARTS: Final = {
+    "twist": {"vx": "m/s", "vy": "m/s", "omega": "rad/s"},
+    "impulse": {"normal": "N s", "tangential": "N s"},
+}
+"""What the JSON has as a list of numbers: the ends of the names of its columns, and their units."""
 
 
 class ParquetColumn(NamedTuple):
@@ -30,13 +32,10 @@ class ParquetColumn(NamedTuple):
 
 
 def _columns_of(field: TouchdownField) -> list[ParquetColumn]:
-    if field.type == "mode":
-        return [ParquetColumn(field.key, "string")]
-    if field.type not in _PARTS:
-        return [ParquetColumn(field.key, field.type, field.unit)]
-    units = {"omega": "rad/s", "vx": "m/s", "vy": "m/s"}
-    stem = field.key.removesuffix("_twist")
-    return [ParquetColumn(f"{stem}_{part}", "float64", units.get(part, field.unit)) for part in _PARTS[field.type]]
+    stem, parts = field.key.removesuffix("_twist"), _PARTS.get(field.type)
+    if parts is None:
+        return [ParquetColumn(field.key, "string" if field.type == "mode" else field.type, field.unit)]
+    return [ParquetColumn(f"{stem}_{part}", "float64", unit) for part, unit in parts.items()]
 
 
 COLUMNS: Final = (
@@ -49,96 +48,70 @@ COLUMNS: Final = (
 """What is known of a touchdown, in SI units; docs/fleets.md tells what each column is."""
 
 
-def _rows(answer: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
-    """The rows of the JSON of a replay: one for each touchdown, and of a bag without any one that tells of the bag."""
-    problem = answer.get("error") or answer.get("unpredictable") or answer.get("damaged")
-    failed = answer.get("error") or answer.get("unpredictable")
-    bag = {
-        "bag": answer["bag"],
-        "bag_status": "failed" if failed else "damaged" if problem else "ok",
-        "bag_problem": problem,
-        "bag_samples": answer.get("samples"),
-    }
-    for touchdown in answer.get("touchdowns") or [{}]:
-        row = dict(bag)
-        for field in FIELDS:
-            columns, value = _columns_of(field), touchdown.get(field.key)
-            values = (value or [None] * len(columns)) if field.type in _PARTS else [value]
-            row |= {column.name: one for column, one in zip(columns, values, strict=True)}
-        yield row
-
-
 class TouchdownTable:
-    """Writes the touchdowns of bags into one Parquet file; a context manager.
+    """Writes the touchdowns of bags in the order in which these are added; the bytes depend on the answers alone."""
 
-    The rows come in the order in which the bags are added, and the bytes depend on the answers alone. It has its name
-    when it is whole; after an exception it is gone, and an older one stays as it was.
-    """
-
-    def __init__(self, path: str | Path) -> None:
-        """Write to `path`; nothing happens before the context is entered.
-
-        Raises:
-            InputError: pyarrow is missing, the name does not end in .parquet, or its folder does not exist.
-        """
-        self.path = named(path, "Parquet table", (".parquet",))
-        need("pyarrow")
-        import pyarrow
-        import pyarrow.parquet
-
-        self._arrow = pyarrow
-        self._schema = pyarrow.schema(
-            [
-                pyarrow.field(one.name, self._type(one.type), metadata={"unit": one.unit} if one.unit else {})
-                for one in COLUMNS
-            ]
-        )
+    def __init__(self, writer: ParquetWriter) -> None:
+        """Write with a writer of pyarrow."""
+        self._writer = writer
         self._rows: list[dict[str, Any]] = []
-        self._stack = ExitStack()
-
-    def __enter__(self) -> TouchdownTable:
-        """Begin the file.
-
-        Raises:
-            InputError: it cannot be written.
-        """
-        with ExitStack() as stack:
-            partial = stack.enter_context(whole(self.path))
-            self._writer = stack.enter_context(
-                self._arrow.parquet.ParquetWriter(partial, self._schema, compression="zstd")
-            )
-            self._stack = stack.pop_all()
-        return self
 
     def add(self, answer: Mapping[str, Any]) -> None:
-        """Add the touchdowns of a bag, from the JSON of its replay (`summary.as_json`, or its `bag` and `error`)."""
-        self._rows += _rows(answer)
+        """Add the touchdowns of a bag, from the JSON of its replay (`as_json`, or its `bag` and `error`).
+
+        A bag without any has one row that tells of the bag.
+        """
+        failure = answer.get("error") or answer.get("unpredictable")
+        damage = answer.get("damaged")
+        bag = {
+            "bag": answer["bag"],
+            "bag_status": "failed" if failure else "damaged" if damage else "ok",
+            "bag_problem": failure or damage,
+            "bag_samples": answer.get("samples"),
+        }
+        for touchdown in answer.get("touchdowns") or [{}]:
+            row = dict(bag)
+            for field in FIELDS:
+                value = touchdown.get(field.key)
+                values = (value,) if field.type not in _PARTS or value is None else value
+                row |= zip((column.name for column in _columns_of(field)), values, strict=False)
+            self._rows.append(row)
         if len(self._rows) >= _GROUP:
-            self._flush()
+            self.flush()
 
-    def _type(self, name: str) -> Any:
-        """A type of Arrow by its name; `list<string>` is one of strings."""
-        if name.startswith("list<"):
-            return self._arrow.list_(self._type(name[5:-1]))
-        return self._arrow.type_for_alias(name)
+    def flush(self) -> None:
+        """Write the rows as one group, wherever the borders of the bags are."""
+        import pyarrow
 
-    def _flush(self) -> None:
-        # One group of rows, wherever the borders of the bags are.
-        table = self._arrow.Table.from_pylist(self._rows, schema=self._schema)
-        self._writer.write_table(table, row_group_size=max(len(self._rows), 1))
+        if self._rows:
+            table = pyarrow.Table.from_pylist(self._rows, schema=self._writer.schema)
+            self._writer.write_table(table, row_group_size=len(self._rows))
         self._rows = []
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
-    ) -> None:
-        """End the file and, unless an exception passes, give it its name.
 
-        Raises:
-            InputError: it cannot be written.
-        """
-        if kind is not None:
-            self._stack.__exit__(kind, error, traceback)
-            return
-        with self._stack:
-            if self._rows:
-                self._flush()
+@contextmanager
+def touchdown_table(path: str | Path) -> Iterator[TouchdownTable]:
+    """A table in a Parquet file; it has its name when it is whole, and after an exception an older one stays.
+
+    Raises:
+        InputError: pyarrow is missing, the name does not end in .parquet, or its folder does not exist; or it cannot be
+            written.
+    """
+    path = named(path, "Parquet table", (".parquet",))
+    need("pyarrow")
+    import pyarrow
+    from pyarrow.parquet import ParquetWriter
+
+    def arrow_type(name: str) -> Any:
+        if name.startswith("list<"):
+            return pyarrow.list_(arrow_type(name[5:-1]))
+        return pyarrow.type_for_alias(name)
+
+    units = [{"unit": column.unit} if column.unit else {} for column in COLUMNS]
+    fields = [
+        pyarrow.field(one.name, arrow_type(one.type), metadata=unit) for one, unit in zip(COLUMNS, units, strict=True)
+    ]
+    with whole(path) as partial, ParquetWriter(partial, pyarrow.schema(fields), compression="zstd") as writer:
+        table = TouchdownTable(writer)
+        yield table
+        table.flush()

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from functools import partial
 from math import hypot
-from statistics import median
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from rich.console import Console
 from rich.table import Table
 
-from ..mechanics.types import Twist
 from ..prediction.scene import CONTACT_GEOMETRY, STATES
 from ..prediction.types import Status
 from ..scenarios.comparison import LEAD_TIMES
+from ..stamps import NANOSECONDS
 from ..wording import NONE, counted, duration, fixed, percent, words
 from .summary import Distribution, SpanErrors, Tally, errors_ahead, errors_of
 from .table import MOST_ROWS, Column, first_stamp, more, say, show, table_of
@@ -41,7 +41,6 @@ def print_replay(console: Console, result: Result, every: bool = False) -> None:
     if landings:
         listed = landings if every else landings[:MOST_ROWS]
         _show(console, landings_table(listed), *more(len(landings) - len(listed), "landing"))
-        _show(console, feet_table(landings))
     if listed := others if every else [row for row in others if row.scored][:MOST_ROWS]:
         _show(console, touchdown_table(listed), *more(len(others) - len(listed), "touchdown"))
     if any(one.errors.number for one in errors):
@@ -60,21 +59,15 @@ def _show(console: Console, table: Table, *remarks: str) -> None:
 
 def touchdown_table(rows: Sequence[TouchdownRow]) -> Table:
     """The touchdowns with the velocities right after them: what was predicted, and below it what was measured."""
-    start = first_stamp(row.stamp for row in rows)
-    several = len({row.body for row in rows}) > 1
-
-    def time(row: TouchdownRow) -> str:
-        seconds = fixed((row.stamp - start) / 1e9, 3)
-        return f"{row.body}\n{seconds}" if several else seconds
-
-    columns = [
-        Column(("body\n" if several else "") + _time_header(start), time),
+    columns = _whens(rows)
+    columns += [
         Column("ahead\nfirst\nlast ms", lambda row: f"{_ms(row.ahead)}\n{_ms(row.lead_time)}"),
         Column("predicted\nmode, below\nmeasured", lambda row: row.mode.name, left=True),
+        Column("vx\nm/s", partial(_velocity, "vx", 3)),
+        Column("vy\nm/s", partial(_velocity, "vy", 3)),
+        Column("omega\nrad/s", partial(_velocity, "omega", 2)),
+        Column("error\n%", lambda row: percent(row.relative_error)),
     ]
-    for part, unit, decimals in (("vx", "m/s", 3), ("vy", "m/s", 3), ("omega", "rad/s", 2)):
-        columns.append(Column(f"{part}\n{unit}", _velocity(part, decimals)))
-    columns.append(Column("error\n%", lambda row: percent(row.relative_error)))
     if any(row.cost is not None for row in rows):
         columns.append(Column("cost\nus", lambda row: fixed(None if row.cost is None else 1e6 * row.cost, 0)))
     if any(map(_notes, rows)):
@@ -82,20 +75,23 @@ def touchdown_table(rows: Sequence[TouchdownRow]) -> Table:
     return table_of(columns, rows, lambda row: "" if row.scored else "dim")
 
 
-def _time_header(start: int) -> str:
-    return "since\nfirst\ns" if start else "time\ns"
+def _whens(rows: Sequence[TouchdownRow]) -> list[Column]:
+    """The column of times, with bodies where there are several."""
+    start = first_stamp(row.stamp for row in rows)
+    several = len({row.body for row in rows}) > 1
+    header = ("body\n" if several else "") + ("since\nfirst\ns" if start else "time\ns")
+    return [
+        Column(header, lambda row: (f"{row.body}\n" if several else "") + fixed((row.stamp - start) / NANOSECONDS, 3))
+    ]
 
 
 def _ms(seconds: float | None, decimals: int = 1, sign: str = "") -> str:
     return fixed(None if seconds is None else 1e3 * seconds, decimals, sign)
 
 
-def _velocity(part: str, decimals: int) -> Callable[[TouchdownRow], str]:
-    def cell(row: TouchdownRow) -> str:
-        twists: tuple[Twist | None, ...] = (row.predicted_twist, row.measured_twist)
-        return "\n".join(NONE if twist is None else fixed(getattr(twist, part), decimals) for twist in twists)
-
-    return cell
+def _velocity(part: str, decimals: int, row: TouchdownRow) -> str:
+    twists = (row.predicted_twist, row.measured_twist)
+    return "\n".join(NONE if twist is None else fixed(getattr(twist, part), decimals) for twist in twists)
 
 
 def _notes(row: TouchdownRow) -> str:
@@ -116,20 +112,14 @@ def lead_time_table(errors: Sequence[SpanErrors]) -> Table:
 
 def landings_table(landings: Sequence[TouchdownRow]) -> Table:
     """One row for each landing; below the impulse of the foot that of the others, if they get any."""
-    start, names = first_stamp(one.stamp for one in landings), _feet(landings)
-
-    def impulses(row: TouchdownRow) -> str:
-        shown = [_size(row.impulse)] + ([_size(row.others_impulse)] if any(row.others_impulse or ()) else [])
-        return "\n".join(fixed(one, 2) for one in shown)
-
-    columns = [
-        Column(_time_header(start), lambda row: fixed((row.stamp - start) / 1e9, 3)),
-        Column("foot", lambda row: names[row.body, _part(row)], left=True),
+    columns = _whens(landings)
+    columns += [
+        Column("foot", lambda row: f"{row.foot} {row.point or ''}".rstrip(), left=True),
         Column("first\nms\nahead", lambda row: _ms(row.ahead, 0)),
         Column(f"error\nms, at\n{1e3 * LEAD_TIMES[0]:.0f} ms", lambda row: _ms(row.time_errors[0], 1, "+")),
         Column("predicted\nmode", lambda row: row.mode.name, left=True),
         Column("foot's\nspeed\nm/s", lambda row: fixed(row.landing_speed, 3)),
-        Column("N s at\nfoot,\nothers", impulses),
+        Column("N s at\nfoot,\nothers", _impulses),
         Column("body's\nchange\nm/s", lambda row: fixed(_size(row.velocity_change), 3)),
     ]
     if any(row.late is not None for row in landings):
@@ -139,68 +129,14 @@ def landings_table(landings: Sequence[TouchdownRow]) -> Table:
     return table_of(columns, landings)
 
 
-def feet_table(landings: Sequence[TouchdownRow]) -> Table:
-    """One row for each foot, and one for all: the least time ahead of a first prediction, medians of times, and the
-    greatest of what an impact does.
-    """
-    rows = [
-        (name, [row for row in landings if (row.body, _part(row)) == foot]) for foot, name in _feet(landings).items()
-    ]
-    rows += [("all", list(landings))] if len(rows) > 1 else []
-    columns = [
-        Column("foot", lambda foot: foot[0], left=True),
-        Column("landings", lambda foot: f"{len(foot[1]):,}"),
-        Column("first\nms\nahead", lambda foot: _ms(_known(min, [row.ahead for row in foot[1]]), 0)),
-    ]
-    for k, lead_time in enumerate(LEAD_TIMES):
-        columns.append(Column(f"error\nms, at\n{1e3 * lead_time:.0f} ms", _median_error(k)))
-    columns += [
-        Column("most\nspeed\nm/s", lambda foot: fixed(_known(max, [row.landing_speed for row in foot[1]]), 3)),
-        Column("most\nimpulse\nN s", lambda foot: fixed(_known(max, [_size(row.impulse) for row in foot[1]]), 2)),
-        Column(
-            "most\nchange\nm/s", lambda foot: fixed(_known(max, [_size(row.velocity_change) for row in foot[1]]), 3)
-        ),
-    ]
-    if any(row.late is not None for row in landings):
-        columns.append(Column("late\nms", lambda foot: _ms(_known(median, [row.late for row in foot[1]]), 1, "+")))
-    if any(row.confirmed is not None for row in landings):
-        columns.append(Column("force\nagrees", _agreeing))
-    return table_of(columns, rows, style=lambda foot: "bold" if foot[0] == "all" else "")
-
-
-def _part(row: TouchdownRow) -> str:
-    """The foot, and the part of it that has landed."""
-    return f"{row.foot} {row.point or ''}".rstrip()
-
-
-def _feet(landings: Sequence[TouchdownRow]) -> dict[tuple[str, str], str]:
-    """What the feet are called, in the order in which they landed first: with their bodies where there are several."""
-    feet = dict.fromkeys((row.body, _part(row)) for row in landings)
-    several = len({body for body, _ in feet}) > 1
-    return {(body, foot): f"{body}/{foot}" if several else foot for body, foot in feet}
+def _impulses(row: TouchdownRow) -> str:
+    others = [row.others_impulse] if any(row.others_impulse or ()) else []
+    return "\n".join(fixed(_size(impulse), 2) for impulse in (row.impulse, *others))
 
 
 def _size(vector: Sequence[float] | None) -> float | None:
     """The magnitude of an impulse, or of the velocity of a twist."""
     return None if vector is None else hypot(*vector[:2])
-
-
-def _known(take: Callable[[list[float]], float], values: Sequence[float | None]) -> float | None:
-    known = [value for value in values if value is not None]
-    return take(known) if known else None
-
-
-def _median_error(k: int) -> Callable[[tuple[str, list[TouchdownRow]]], str]:
-    def cell(foot: tuple[str, list[TouchdownRow]]) -> str:
-        errors = [row.time_errors[k] for row in foot[1]]
-        return _ms(_known(median, [None if error is None else abs(error) for error in errors]))
-
-    return cell
-
-
-def _agreeing(foot: tuple[str, list[TouchdownRow]]) -> str:
-    felt = [row.confirmed for row in foot[1] if row.confirmed is not None]
-    return f"{sum(felt):,}/{len(felt):,}" if felt else NONE
 
 
 class BodySummary(NamedTuple):

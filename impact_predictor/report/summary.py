@@ -146,7 +146,8 @@ class Tally:
         self._reasons: Counter[str] = Counter()
         self._feet: set[tuple[str, str]] = set()
         self._modes: Counter[Mode] = Counter()
-        self._ahead, self._speeds, self._late = array("d"), array("d"), array("d")
+        self._ahead, self._time_errors = array("d"), array("d")
+        self._speeds, self._late = array("d"), array("d")
         self._impulse = self._change = 0.0
         self.add(rows)
 
@@ -169,6 +170,8 @@ class Tally:
             # What follows of a foot that stands already comes at once after its first part.
             if not row.is_second:
                 self._ahead.append(row.ahead)
+        if row.time_errors and (error := row.time_errors[0]) is not None:
+            self._time_errors.append(abs(error))
         if row.landing_speed is not None:
             self._speeds.append(row.landing_speed)
         if row.impulse is not None and row.velocity_change is not None:
@@ -194,11 +197,17 @@ class Tally:
         return [f"{said}.", *([heading] if why else []), *why]
 
     def _of_landings(self) -> list[str]:
+        from ..scenarios.comparison import LEAD_TIMES  # only where feet have landed
+
         landings, feet = self._modes.total(), len(self._feet)
         said = [f"{counted(landings, 'landing')} of {feet} {'foot' if feet == 1 else 'feet'}"]
         said[0] += f", {self._predicted:,} predicted"
         if self._ahead:
             said[0] += f", {1e3 * min(self._ahead):.0f} ms ahead or earlier"
+        if self._time_errors:
+            ahead, error = 1e3 * LEAD_TIMES[0], 1e3 * median(self._time_errors)
+            wrong = f"{error:.1f} ms wrong in the median, by when the foot's motion ends"
+            said.append(f"The time predicted {ahead:.0f} ms ahead is {wrong}")
         if self._predicted < landings:
             said.append(
                 f"{landings - self._predicted:,} not predicted: a foot came down too suddenly, or the noise of base "

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
@@ -188,17 +189,15 @@ def row_of_json(entry: Mapping[str, Any]) -> TouchdownRow:
     Raises:
         KeyError, TypeError: it is none.
     """
-    return TouchdownRow(
-        **{field.key: _from_json(field.type, entry[field.key]) for field in FIELDS if field.key in entry}
-    )
-
-
-def _from_json(kind: str, value: Any) -> Any:
-    if kind == "mode" and value is not None:
-        return Mode[value]
-    if isinstance(value, list):
-        return Twist(*value) if kind == "twist" else tuple(value)
-    return value
+    values: dict[str, Any] = {}
+    for field in FIELDS:
+        if (value := entry.get(field.key)) is not None:
+            if field.type == "mode":
+                value = Mode[value]
+            elif isinstance(value, list):
+                value = Twist(*value) if field.type == "twist" else tuple(value)
+            values[field.key] = value
+    return TouchdownRow(**values)
 
 
 def row_of_message(body: str, values: Mapping[str, str], cost: float | None = None) -> TouchdownRow:
@@ -207,28 +206,15 @@ def row_of_message(body: str, values: Mapping[str, str], cost: float | None = No
     Raises:
         KeyError, TypeError, ValueError: it is none.
     """
-    found: dict[str, Any] = {"body": body, "cost": cost}
+    entry: dict[str, Any] = {"body": body}
     for field in FIELDS:
         key = field.message or field.key
         if field.type == "twist" and f"{key}.vx" in values:
-            found[field.key] = Twist(*(float(values[f"{key}.{part}"]) for part in Twist._fields))
+            entry[field.key] = [float(values[f"{key}.{part}"]) for part in Twist._fields]
         elif key in values:
-            found[field.key] = _from_text(field.type, values[key])
-    found["flags"] = tuple(flag for key in ("leftover", "flags") for flag in values[key].split("|") if flag != "NONE")
-    return TouchdownRow(**found)
-
-
-def _from_text(kind: str, text: str) -> Any:
-    match kind:
-        case "int64":
-            return int(text)
-        case "float64":
-            return float(text)
-        case "bool":
-            return text == "true"
-        case "mode":
-            return Mode[text]
-        case "list<int32>":
-            return tuple(map(int, text.split()))
-        case _:
-            return text
+            is_number = field.type in ("int64", "float64", "bool")
+            entry[field.key] = json.loads(values[key]) if is_number else values[key]
+    for key in ("old", "new"):
+        entry[key] = [*map(int, values[key].split())]
+    entry["flags"] = [flag for key in ("leftover", "flags") for flag in values[key].split("|") if flag != "NONE"]
+    return row_of_json(entry)._replace(cost=cost)

@@ -14,7 +14,6 @@ from impact_predictor.bags.replay import Result, Settled
 from impact_predictor.mechanics.types import Flag, Mode, Twist
 from impact_predictor.prediction.types import Landing, Leftover, Score, Status
 from impact_predictor.report.replay import (
-    feet_table,
     landings_table,
     lead_time_table,
     print_replay,
@@ -251,7 +250,7 @@ def rows(*settled: Settled) -> list[TouchdownRow]:
 
 @pytest.mark.parametrize("width", [80, 120])
 @pytest.mark.parametrize("changes", [{}, KNOWN])
-def test_the_tables_of_landings_fit_the_terminal_and_no_number_is_cut_off(
+def test_the_table_of_landings_fits_the_terminal_and_no_number_is_cut_off(
     width: int, changes: dict[str, object]
 ) -> None:
     landings = rows(landed(12.5, **changes), landed(123.456, "RF"))
@@ -260,16 +259,6 @@ def test_the_tables_of_landings_fit_the_terminal_and_no_number_is_cut_off(
     assert max(map(len, text.splitlines())) <= width
     assert set(text.split()) >= {"123.456", "LF", "100", "+2.0", "0.123", "PIVOT_SLIDE", "5.00", "0.050"}
     assert ({"-12.3", "no"} <= set(text.split())) == bool(changes)
-    assert max(map(len, shown(feet_table(landings), width).splitlines())) <= width
-
-
-def test_the_table_of_feet_has_the_worst_of_impacts_and_the_middle_of_times() -> None:
-    first, second = landed(1.0), landed(2.0, history=((0.07, -0.001),), speed=0.5, **KNOWN)
-    lines = shown(feet_table(rows(second, first, landed(1.5, "RH"))), 80).splitlines()
-    (left,) = [line.split() for line in lines if line.startswith("LF")]
-    assert left == ["LF", "2", "70", "1.5", "2.2", "0.500", "5.00", "0.050", "-12.3", "0/1"]
-    (together,) = [line.split() for line in lines if line.startswith("all")]
-    assert together[:3] == ["all", "3", "70"]
 
 
 def test_what_rounds_to_nothing_has_no_sign_and_what_nobody_announced_has_no_time() -> None:
@@ -290,9 +279,8 @@ def test_what_the_other_feet_get_stands_below_the_impulse_of_the_foot() -> None:
 
 
 def test_feet_are_named_with_their_parts_and_with_their_bodies_where_there_are_several() -> None:
-    landings = rows(landed(1.0, point="heel"), landed(2.0, body="other"))
-    for table in (landings_table(landings), feet_table(landings)):
-        assert {"robot/LF", "heel", "other/LF"} <= set(shown(table, 120).split())
+    text = shown(landings_table(rows(landed(1.0, point="heel"), landed(2.0, body="other"))), 120)
+    assert {"robot", "LF", "heel", "other"} <= set(text.split())
 
 
 def test_a_replay_lists_landings_apart_from_other_touchdowns() -> None:

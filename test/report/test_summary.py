@@ -51,6 +51,7 @@ LANDED = SCORED._replace(
     scored=False,
     relative_error=None,
     flags=("DRIVEN",),
+    time_errors=(-0.002, None),
     landing_speed=0.123,
     impulse=(3.0, -4.0),
     velocity_change=Twist(-0.03, 0.04, 0.1),
@@ -100,8 +101,9 @@ def test_touchdowns_together_count_the_scored_and_explain_the_others() -> None:
 
 
 def test_landings_together_say_how_early_they_were_predicted_and_what_their_impacts_do() -> None:
-    predicted, modes, impacts = Tally([LANDED]).sentences()
+    predicted, times, modes, impacts = Tally([LANDED]).sentences()
     assert predicted == "1 landing of 1 foot, 1 predicted, 100 ms ahead or earlier."
+    assert times == "The time predicted 20 ms ahead is 2.0 ms wrong in the median, by when the foot's motion ends."
     assert modes == "Predicted modes: 1 PIVOT_SLIDE."
     assert impacts.startswith("In its last sample in the air a foot has 0.123 m/s in the median, at most 0.123 m/s; ")
     assert impacts.endswith("gives it at most 5.00 N s, and the body at most 0.050 m/s.")
@@ -118,11 +120,11 @@ def test_landings_together_say_how_early_they_were_predicted_and_what_their_impa
 
 
 def test_landings_that_nobody_announced_are_said_and_never_silent() -> None:
-    missed = LANDED._replace(time_error=None)
+    missed = LANDED._replace(time_error=None, time_errors=(None, None))
     assert Tally([missed]).sentences()[0] == "1 landing of 1 foot, 0 predicted."
     said = Tally([missed, LANDED, LANDED._replace(foot="RF")]).sentences()
     assert said[0] == "3 landings of 2 feet, 2 predicted, 100 ms ahead or earlier."
-    assert said[1].startswith("1 not predicted: a foot came down too suddenly")
+    assert said[2].startswith("1 not predicted: a foot came down too suddenly")
 
 
 def test_a_second_contact_hides_no_lead_time_of_the_first() -> None:
