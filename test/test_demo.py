@@ -5,7 +5,7 @@ import pytest
 
 from impact_predictor.bags.read import topics
 from impact_predictor.bags.write import BagWriter
-from impact_predictor.demo import play, read_recording, run_demo
+from impact_predictor.commands.demo import demo, play, read_recording
 from impact_predictor.errors import InputError
 from impact_predictor.resources import find
 from impact_predictor.ros.cdr import OK, diagnostic_array, diagnostic_status, pairs_of
@@ -103,7 +103,7 @@ def test_the_errors_of_earlier_predictions_are_those_with_the_contacts_of_the_la
 @needs_ros
 @pytest.mark.slow
 def test_the_demonstration_writes_predictions_and_a_picture_and_prints_what_was_scored(tmp_path, capsys):
-    assert run_demo(tmp_path / "demo", tosses=3) == 0
+    demo(["-o", str(tmp_path / "demo"), "--tosses", "3"], standalone_mode=False)
     printed = capsys.readouterr().out
     assert "touchdowns scored" in printed
     assert "BACK_PIVOT" in printed
@@ -126,4 +126,4 @@ def test_a_process_that_dies_ends_the_demonstration_with_its_own_sentence(tmp_pa
 def test_an_output_folder_that_cannot_be_made_is_one_sentence(tmp_path):
     Path(tmp_path / "file").write_text("")
     with pytest.raises(InputError, match="cannot be made"):
-        run_demo(tmp_path / "file" / "demo")
+        demo(["-o", str(tmp_path / "file" / "demo")], standalone_mode=False)
