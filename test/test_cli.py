@@ -157,7 +157,7 @@ def test_any_twist_may_be_given() -> None:
     answer = json.loads(run(*PLATE, "--twist", "0.2", "-0.5", "-1", "--json").stdout)
     assert answer == json.loads(run(*PLATE, "--omega", "-1", "--json").stdout)
     result = run(*PLATE, "--twist", "0.2", "0.5", "0", "--json")
-    assert "an impact needs a negative one" in result.stderr
+    assert "the new contact is not approached: its normal velocity, 0.5 m/s" in result.stderr
 
 
 def test_degrees_of_a_cylinder_are_those_of_its_edges() -> None:
@@ -293,18 +293,15 @@ def test_a_bag_that_fails_leaves_no_folder_and_others_keep_theirs(tmp_path: Path
 
 
 @pytest.mark.parametrize(
-    ("option", "value", "wanted"),
+    ("option", "value", "said"),
     [
-        ("--workers", "x", "a whole number of 1 or more"),
-        ("--workers", "0", "a whole number of 1 or more"),
-        ("--workers", "1.5", "a whole number of 1 or more"),
-        ("--baseline-time", "1ms", "a number of 0 or more"),
-        ("--baseline-error", "nan", "a number of 0 or more"),
+        ("--workers", "x", "'x' is not a valid integer"),
+        ("--workers", "0", "0 is not in the range x>=1"),
+        ("--baseline-error", "nan", "are numbers of 0 or more"),
     ],
 )
-def test_an_option_says_which_numbers_it_takes(bag: str, option: str, value: str, wanted: str) -> None:
-    said = refused("replay", bag, "--params", SCENE, option, value)
-    assert f"'{option}': '{value}' is not {wanted}; see" in said
+def test_an_option_says_which_numbers_it_takes(bag: str, option: str, value: str, said: str) -> None:
+    assert said in refused("replay", bag, "--params", SCENE, option, value)
 
 
 def test_several_bags_are_summed_up(tmp_path: Path, bag: str, messages: list[BagMessage]) -> None:

@@ -121,7 +121,7 @@ def test_json_is_all_that_is_printed_and_the_options_reach_the_law(folder: Path)
             "map.pdf is neither picture nor data; give a name that ends in .png, .svg or .csv",
         ),
         (["plate", "-o", "no/map.png"], "the folder of no/map.png does not exist"),
-        (["plate", "--resolution", "1"], "'--resolution': '1' is not a whole number from 2 to 5000"),
+        (["plate", "--resolution", "1"], "1 is not in the range 2<=x<=5000"),
         (["plate", "--x", "delta", "0"], "'--x' requires 3 arguments"),
         (["plate", "--gamma", "3"], "No such option"),
     ],

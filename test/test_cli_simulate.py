@@ -246,7 +246,7 @@ def test_a_turning_that_is_rounding_is_none() -> None:
     ("arguments", "sentence"),
     [
         (["rod", "--length", "-1"], "length is -1.0; give a finite number above 0"),
-        (["rod", "--angle", "90"], "'90' is not a number between -90 and 90"),
+        (["rod", "--angle", "90"], "90.0 is not in the range -90.0<x<90.0"),
         (["rod", "--restitution", "2"], "restitution is 2.0; give a number from 0 to 1"),
         (["rod", "--a", "0.1", "--b", "0.1", "--b", "0.2"], "--a is given 1 times but --b 2 times"),
         (["rod", "--duration", "0"], "duration is 0.0; give a number between 0 and 1e9"),
@@ -261,7 +261,7 @@ def test_a_turning_that_is_rounding_is_none() -> None:
         (["plate", "-o", "taken"], "taken is there and is not an output of impact_predictor"),
         (
             ["cylinder", "--gamma", "95"],
-            "the angle between the edges is 190.0; give angles in degrees with a sum between 0 and 180",
+            "--gamma and --gamma-new have the sum 190; give degrees between 0 and 180",
         ),
     ],
 )

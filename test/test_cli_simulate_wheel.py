@@ -136,7 +136,7 @@ def test_its_pictures_are_written(folder: Path) -> None:
         ),
         (["--inertia", "0"], "inertia is 0.0; give a finite number above 0"),
         (["--friction", "-1"], "friction is -1.0; give a finite number, 0 or above"),
-        (["--slope", "nan"], "'nan' is not a number between -90 and 90"),
+        (["--slope", "nan"], "slope is nan degrees"),
         (["--leg", "nan"], "leg is nan; give a finite number above 0"),
         (["--duration", "0"], "duration is 0.0; give a number of seconds"),
         (["--omega", "inf"], "rate is inf; give a finite number"),

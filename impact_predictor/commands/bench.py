@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from ..mechanics.impact import LAWS
-from .options import Real, Whole, examples
+from .options import choice, examples, json_flag, number, seed_option
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -22,11 +22,11 @@ BROKEN: Final = 1
 INTERRUPTED: Final = 130
 
 
-def whole(context: click.Context, option: click.Parameter, number: float) -> int:
+def whole(context: click.Context, option: click.Parameter, count: float) -> int:
     """A number that may be written as 1e8, as a whole one."""
-    if not (number >= 1.0 and number.is_integer()):
-        raise click.BadParameter(f"{number:g} is not a whole number above 0, such as 1000000 or 1e6")
-    return int(number)
+    if not (count >= 1.0 and count.is_integer()):
+        raise click.BadParameter(f"{count:g} is not a whole number above 0, such as 1000000 or 1e6")
+    return int(count)
 
 
 @click.group(
@@ -42,16 +42,15 @@ def bench() -> None:
     short_help="Predict the paper's falling rods, beside what it observed.",
     epilog=examples("impact-predictor bench experiment", "impact-predictor bench experiment --angle 30 --json"),
 )
-@click.option("--friction", type=Real(0.0, 100.0), default=0.4, show_default=True, help="Of rod and supports.")
-@click.option(
+@number("--friction", "Of rod and supports.", 0.4, type=click.FloatRange(0.0, 100.0))
+@number(
     "--angle",
-    type=Real(0.0, 90.0, min_open=True, max_open=True),
-    default=15.0,
-    show_default=True,
+    "From which the rods are released; in the experiment 15 to 30.",
+    15.0,
+    type=click.FloatRange(0.0, 90.0, min_open=True, max_open=True),
     metavar="DEGREES",
-    help="From which the rods are released; in the experiment 15 to 30.",
 )
-@click.option("--json", "as_json", is_flag=True, help="Print JSON only.")
+@json_flag()
 def experiment(friction: float, angle: float, as_json: bool) -> None:
     """Predict the paper's falling rods, beside what it observed.
 
@@ -78,11 +77,9 @@ def experiment(friction: float, angle: float, as_json: bool) -> None:
 @click.option(
     "--count", type=float, callback=whole, default=1e6, show_default="1e6", metavar="N", help="Problems to solve."
 )
-@click.option("--seed", type=Whole(min=0), default=0, show_default=True, help="Which random problems.")
-@click.option(
-    "--law", type=click.Choice([*LAWS, "both"]), default="both", show_default=True, help="Impact law to be checked."
-)
-@click.option("--json", "as_json", is_flag=True, help="Print JSON only.")
+@seed_option("Which random problems.")
+@choice("--law", "Impact law to be checked.", *LAWS, "both", default="both")
+@json_flag()
 def invariants(count: int, seed: int, law: str, as_json: bool) -> int:
     """Solve random impacts of every kind and tell the worst violation of each invariant.
 

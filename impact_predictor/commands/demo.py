@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import click
 
 from ..errors import InputError
-from .options import Whole, examples
+from .options import examples
 
 if TYPE_CHECKING:
     from ..report.summary import SpanErrors
@@ -57,7 +57,7 @@ class Recording(NamedTuple):
 )
 @click.option(
     "--tosses",
-    type=Whole(min=1, max=285),
+    type=click.IntRange(min=1, max=285),
     help="Tosses to play of the 285 recorded, as many as take about half a minute unless given.",
 )
 def demo(output: Path, tosses: int | None) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from .options import examples
+from .options import examples, json_flag
 
 
 @click.command(
@@ -18,7 +18,7 @@ from .options import examples
     ),
 )
 @click.argument("params", metavar="PARAMS.yaml")
-@click.option("--json", "as_json", is_flag=True, help="Print JSON only.")
+@json_flag()
 def explain(params: str, as_json: bool) -> None:
     """Tell which features of the predictor and of its node a scene has, which it leaves out and why.
 

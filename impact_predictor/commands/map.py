@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from ..errors import InputError, need
-from .options import LAW, Whole, examples, json_flag, number, together
+from .options import LAW, examples, json_flag, number, together
 
 if TYPE_CHECKING:
     from ..report.map import Axis, MapParameter, ModeMap
@@ -99,7 +99,7 @@ def command_of(name: str) -> click.Command:
         axis("--x", subject.x, "along"),
         axis("--y", subject.y, "upwards"),
         LAW,
-        number("--resolution", "Cells along each axis.", 1000, type=Whole(2, MOST_CELLS), metavar="N"),
+        number("--resolution", "Cells along each axis.", 1000, type=click.IntRange(2, MOST_CELLS), metavar="N"),
         click.option(
             "-o",
             "--output",

@@ -3,65 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Final, TypeVar
+from math import radians
+from typing import Any, Final, TypeVar
 
 import click
 
+from ..errors import InputError
 from ..mechanics.impact import LAWS
-
-if TYPE_CHECKING:
-    ParamType = click.ParamType[Any]
-else:
-    ParamType = click.ParamType
 
 F = TypeVar("F", bound=Callable[..., Any])
 
 
-class _InWords(ParamType):
-    """Numbers within limits; what is none is refused in words."""
-
-    what: str
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """The number that is meant.
-
-        Raises:
-            click.BadParameter: it is none, or beyond the limits.
-        """
-        try:
-            number = super().convert(value, param, ctx)
-        except click.BadParameter:
-            number = None
-        # Limits do not keep out what is not a number.
-        if number is None or number != number:
-            self.fail(f"{value!r} is not {self.what} {_limits(self)}", param, ctx)
-        return number
-
-
-class Whole(_InWords, click.IntRange):
-    """A whole number within limits."""
-
-    name = "integer"
-    what = "a whole number"
-
-
-class Real(_InWords, click.FloatRange):
-    """A number within limits."""
-
-    name = "float"
-    what = "a number"
-
-
-def _limits(kind: Any) -> str:
-    """The limits of a number, in words."""
-    if kind.max is None:
-        return f"of {kind.min:g} or more"
-    if kind.min_open and kind.max_open:
-        return f"between {kind.min:g} and {kind.max:g}"
-    return f"from {kind.min:g} to {kind.max:g}"
-
-
-ACUTE: Final[dict[str, Any]] = {"type": Real(-90.0, 90.0, min_open=True, max_open=True), "metavar": "DEGREES"}
+ACUTE: Final[dict[str, Any]] = {
+    "type": click.FloatRange(-90.0, 90.0, min_open=True, max_open=True),
+    "metavar": "DEGREES",
+}
 """An angle of less than a right one."""
 
 
@@ -90,7 +46,7 @@ def json_flag(help_text: str = "Print JSON only.") -> Callable[[F], F]:
 
 def seed_option(help_text: str, default: int = 0) -> Callable[[F], F]:
     """The option that tells one run by random numbers from another."""
-    return click.option("--seed", type=Whole(min=0), default=default, show_default=True, help=help_text)
+    return click.option("--seed", type=click.IntRange(min=0), default=default, show_default=True, help=help_text)
 
 
 def together(*options: Callable[[Any], Any]) -> Callable[[F], F]:
@@ -112,6 +68,25 @@ PARAMS: Final = text("--params", "FILE", "ROS 2 parameter file of the scene.", r
 def remap_option(help_text: str) -> Callable[[F], F]:
     """The option that gives topics to inputs."""
     return text("-r", "--remap", "FROM:=TO", help_text, multiple=True)
+
+
+def edge_options(default: float | None) -> Callable[[F], F]:
+    """The options that tell on which edges a cylinder lies."""
+    says = "Central angle of the old edge, A, behind the vertical, degrees."
+    ahead = "Central angle of the new edge, B, ahead of the vertical, degrees (--gamma unless given)."
+    return together(number("--gamma", says, default, required=default is None), number("--gamma-new", ahead))
+
+
+def edges_of(gamma: float, gamma_new: float | None) -> tuple[float, float]:
+    """The central angles of both edges in rad.
+
+    Raises:
+        InputError: no cylinder lies on such edges.
+    """
+    ahead = gamma if gamma_new is None else gamma_new
+    if not 0.0 < gamma + ahead < 180.0:
+        raise InputError(f"--gamma and --gamma-new have the sum {gamma + ahead:g}; give degrees between 0 and 180")
+    return radians(gamma), radians(ahead)
 
 
 def examples(*lines: str) -> str:

@@ -1,17 +1,21 @@
-"""`impact-predictor replay`: recorded bags through the predictor."""
+"""`impact-predictor replay`: recorded bags through the predictor, one after the other or on workers."""
 
 from __future__ import annotations
 
-from contextlib import ExitStack, closing
+import os
+from collections.abc import Generator, Iterator, Sequence
+from contextlib import ExitStack, closing, contextmanager, nullcontext, suppress
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from ..errors import InputError
-from .options import BAGS, PARAMS, Real, Whole, examples, json_flag, number, remap_option, text
-from .progress import say_unfinished
+from .options import BAGS, PARAMS, examples, json_flag, number, remap_option, text
+from .progress import compiling_is_said, progress, say_unfinished
 
 if TYPE_CHECKING:
+    from ..fleet.job import BagOutcome, Job
     from ..prediction.scene import Scene
 
 
@@ -59,7 +63,7 @@ if TYPE_CHECKING:
     "--workers",
     "Replay so many bags at a time, each in a process of its own.",
     1,
-    type=Whole(min=1),
+    type=click.IntRange(min=1),
     metavar="N",
 )
 @text(
@@ -72,13 +76,8 @@ if TYPE_CHECKING:
     "RUN",
     "Tell what has changed against an earlier run: what it wrote with -o, or printed with --json.",
 )
-@number("--baseline-time", "Times that differ by up to so many s have not changed.", 1e-3, type=Real(min=0.0))
-@number(
-    "--baseline-error",
-    "Errors and velocities that differ by up to this part of 1 have not changed.",
-    0.01,
-    type=Real(min=0.0),
-)
+@number("--baseline-time", "Times that differ by up to so many s have not changed.", 1e-3)
+@number("--baseline-error", "Errors and velocities that differ by up to this part of 1 have not changed.", 0.01)
 def replay(
     bags: tuple[str, ...],
     params: str,
@@ -100,13 +99,14 @@ def replay(
     from ..bags.find import bags_of
     from ..bags.replay import remapping
     from ..fleet.job import Job
-    from .fleet import folders_of, on_workers, one_by_one, outputs_of
     from .outcomes import ReplayReport, Wanted
 
     if markers and output is None:
         raise InputError("--markers are written into an output: give its name with -o")
-    bags = tuple(bags_of(bags))
     asked = Wanted(**wanted)
+    if not (asked.baseline_time >= 0.0 and asked.baseline_error >= 0.0):
+        raise InputError("--baseline-time and --baseline-error are numbers of 0 or more")
+    bags = tuple(bags_of(bags))
     job = Job(read_scenes(params), remapping(remap), markers, asked.answers)
     stopped: BaseException | None = None
     with ExitStack() as stack:
@@ -149,3 +149,82 @@ def read_scenes(params: str) -> dict[str, Scene]:
     from ..prediction.scene import scenes_of
 
     return scenes_of(read_values(params))
+
+
+def outputs_of(bags: Sequence[str], output: str | None) -> list[Path | None]:
+    """Where the predictions of each bag go: one output, or a file for each of several bags in a folder.
+
+    Raises:
+        InputError: a bag is there twice, or there is no place for the folder.
+    """
+    if output is None:
+        return [None for _ in bags]
+    if len(bags) == 1:
+        return [Path(output)]
+    folder = Path(output)
+    if folder.suffix == ".mcap":
+        raise InputError(f"{output} is one file, but {len(bags)} bags are given; give the name of a folder")
+    from ..bags.find import names_of
+
+    files = [folder / f"{name}.mcap" for name in names_of(bags)]
+    if not folder.absolute().parent.exists():
+        raise InputError(f"the folder of {output} does not exist; make it, or give another name")
+    return list(files)
+
+
+@contextmanager
+def folders_of(outputs: Sequence[Path | None]) -> Iterator[None]:
+    """The folders of several outputs; those that were made for them and are empty at the end are removed.
+
+    Raises:
+        InputError: a folder cannot be made.
+    """
+    # That of a single output must be there.
+    files = [file for file in outputs if file is not None] if len(outputs) > 1 else []
+    made: list[Path] = []
+    try:
+        try:
+            for folder in dict.fromkeys(folder for file in files for folder in reversed(file.parents)):
+                if not folder.is_dir():
+                    folder.mkdir()
+                    made.append(folder)
+        except OSError as error:
+            raise InputError(f"the folder {error.filename} cannot be made: {error.strerror}") from error
+        yield
+    finally:
+        for folder in reversed(made):
+            with suppress(OSError):
+                folder.rmdir()
+
+
+def one_by_one(job: Job, bags: Sequence[str], outputs: Sequence[Path | None]) -> Generator[BagOutcome]:
+    """What became of each bag, replayed here."""
+    from ..fleet.job import replay_bag
+
+    samples = any(scene.samples for scene in job.scenes.values())
+    for place, (bag, output) in enumerate(zip(bags, outputs, strict=True), 1):
+        label = f"{Path(bag).name} ({place:,} of {len(bags):,})" if len(bags) > 1 else Path(bag).name
+        with progress(label) as tell, compiling_is_said() if samples else nullcontext():
+            outcome = replay_bag(job, bag, output, tell)
+        yield outcome
+
+
+def on_workers(
+    job: Job, bags: Sequence[str], outputs: Sequence[Path | None], workers: int, scheduler: str | None
+) -> Generator[BagOutcome]:
+    """What became of each bag, in their order, replayed by so many processes here or by the workers of a scheduler.
+
+    Raises:
+        InputError: Dask is missing, or the scheduler does not answer, has no workers, or is lost.
+    """
+    from ..fleet.cluster import Fleet, connected
+    from ..fleet.job import renamed
+
+    # The folder in which a worker of a scheduler runs may be another one; what is told has the names that were given.
+    far = scheduler is not None
+    sent = [os.fspath(Path(bag).absolute()) if far else bag for bag in bags]
+    into = [output.absolute() if far and output is not None else output for output in outputs]
+    with connected(min(workers, len(bags)), scheduler) as client, progress("bags", "bags", len(bags)) as bar:
+        for place, outcome in enumerate(Fleet(client, job, sent, into).outcomes(bar)):
+            bar.hide()
+            yield renamed(outcome, {sent[place]: bags[place], str(into[place]): str(outputs[place])})

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
-from ..mechanics.bodies import refuse
-from .options import ACUTE, LAW, F, Whole, examples, json_flag, number, together
+from .options import ACUTE, LAW, F, edge_options, edges_of, examples, json_flag, number, together
 from .simulate_deck import EXAMPLES as DECK_EXAMPLES
 from .simulate_deck import simulate_deck
 from .simulated import RATES_AS_MAGNITUDES, Products, as_json_option, picture_options, record_options
@@ -18,7 +17,7 @@ from .simulated import RATES_AS_MAGNITUDES, Products, as_json_option, picture_op
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from ..scenarios.rocking import Rocker, Rocking
+    from ..scenarios.rocking import Rocker
 
 STEPS: Final = 20
 STICKS: Final = 100.0
@@ -96,13 +95,7 @@ simulate.add_command(simulate_deck)
 @number("--b", "Support B ahead of the middle, m, once for each rod (as --a unless given).", multiple=True)
 @motion_options(angle=30.0)
 @record_options
-def simulate_rod(
-    length: float,
-    thickness: float,
-    a: tuple[float, ...],
-    b: tuple[float, ...],
-    **options: Any,
-) -> int:
+def simulate_rod(length: float, thickness: float, a: tuple[float, ...], b: tuple[float, ...], **options: Any) -> int:
     """A rod over two supports, the paper's Fig. 2; one for each --a."""
     from ..scenarios.rocking import rocking_rod
 
@@ -122,13 +115,7 @@ def simulate_rod(
 @number("--b", "Contact B ahead of the mass centre, m (half the length unless given).")
 @motion_options(angle=10.0)
 @record_options
-def simulate_plate(
-    length: float,
-    height: float,
-    a: float | None,
-    b: float | None,
-    **options: Any,
-) -> int:
+def simulate_plate(length: float, height: float, a: float | None, b: float | None, **options: Any) -> int:
     """A plate, crate or block on a flat floor."""
     from ..scenarios.rocking import rocking_plate
 
@@ -137,48 +124,35 @@ def simulate_plate(
 
 @simulate.command("cylinder", epilog=examples(*EXAMPLES["cylinder"]))
 @number("--radius", "Radius, m.", 0.3)
-@number("--gamma", "Central angle of the edge A behind the vertical, degrees.", 40.0)
-@number("--gamma-new", "Central angle of the edge B ahead of the vertical, degrees (--gamma unless given).")
+@edge_options(default=40.0)
 @motion_options(angle=15.0)
-def simulate_cylinder(
-    radius: float,
-    gamma: float,
-    gamma_new: float | None,
-    **options: Any,
-) -> int:
+def simulate_cylinder(radius: float, gamma: float, gamma_new: float | None, **options: Any) -> int:
     """A cylinder that rolls from edge to edge.
 
     The predictor knows straight supports only, so no bag is written of it.
     """
     from ..scenarios.rocking import rocking_cylinder
 
-    ahead = gamma if gamma_new is None else gamma_new
-    between = "angles in degrees with a sum between 0 and 180"
-    refuse({"the angle between the edges": gamma + ahead}, lambda value: 0.0 < value < 180.0, between)
-    return answer([partial(rocking_cylinder, radius, radians(gamma), radians(ahead))], **options)
+    return answer([partial(rocking_cylinder, radius, *edges_of(gamma, gamma_new))], **options)
 
 
 def answer(
     bodies: Sequence[Callable[..., Rocker]],
-    mass: float,
-    friction: float | None,
-    inertia: float | None,
-    restitution: float,
     angle: float,
     slope: float,
     gravity: float,
     law: str,
     duration: float,
-    **asked: Any,
+    **options: Any,
 ) -> int:
     """Simulate the bodies, write what is asked for and say what happened; the exit status, 1 where it broke off."""
-    products = Products(**asked)
+    material = [options.pop(name) for name in ("mass", "friction", "inertia", "restitution")]
+    products = Products(**options)
     products.check()
-    from ..report.simulation import rocking_as_json
+    from ..report.simulation import print_rocking, rocking_as_json
     from ..scenarios.rocking import release
 
-    rockers = [body(mass, friction, inertia, restitution) for body in bodies]
-    rockings = [release(rocker, radians(angle), radians(slope), gravity, law, duration) for rocker in rockers]
+    rockings = [release(body(*material), radians(angle), radians(slope), gravity, law, duration) for body in bodies]
     if products.output is not None:
         from ..scenarios.record import rocking_actor
 
@@ -190,18 +164,15 @@ def answer(
 
         products.draw(lambda path: write_rocking_figure(path, rockings), partial(rocking_film, rockings))
     answers = [rocking_as_json(rocking.run) for rocking in rockings]
-    products.say(lambda: answers if len(answers) > 1 else answers[0], partial(show, rockings))
+
+    def show(console: Console) -> None:
+        for k, rocking in enumerate(rockings):
+            if k:
+                console.print()
+            print_rocking(console, rocking)
+
+    products.say(lambda: answers if len(answers) > 1 else answers[0], show)
     return 1 if any(rocking.broke_off for rocking in rockings) else 0
-
-
-def show(rockings: Sequence[Rocking], console: Console) -> None:
-    """Print what happened to each body."""
-    from ..report.simulation import print_rocking
-
-    for k, rocking in enumerate(rockings):
-        if k:
-            click.echo()
-        print_rocking(console, rocking)
 
 
 @simulate.command("wheel", short_help="A rimless wheel down a slope.", epilog=examples(*EXAMPLES["wheel"]))
@@ -214,8 +185,10 @@ def show(rockings: Sequence[Rocking], console: Console) -> None:
 @number("--gravity", "Gravity, m/s^2.", 9.81)
 @number("--friction", "Coulomb friction coefficient (it sticks unless given).")
 @LAW
-@click.option(
-    "--steps", type=Whole(min=1), help=f"Steps to make, ahead or backwards. [default: {STEPS}, or those of --duration]"
+@number(
+    "--steps",
+    f"Steps to make, ahead or backwards. [default: {STEPS}, or those of --duration]",
+    type=click.IntRange(min=1),
 )
 @number("--duration", "Longest time that is simulated, s. [default: 60]")
 @picture_options("the wheel, its rate and its stance", "a moving picture")

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from math import hypot, isfinite, radians
+from collections.abc import Callable
+from math import hypot, isfinite
 from typing import Any
 
 import click
@@ -12,7 +13,7 @@ from ..errors import InputError
 from ..mechanics.bodies import cylinder, fraction, not_negative, plate, positive, rod
 from ..mechanics.impact import LAWS, approach, solve_impact
 from ..mechanics.types import Contact, Flag, Mode, Outcome, Twist, TwoPointBody
-from .options import choice, examples, json_flag, number, together
+from .options import F, choice, edge_options, edges_of, examples, json_flag, number, together
 
 impact_options = together(
     number("--restitution", "Restitution at the new contact, 0 (plastic) to 1.", 0.0),
@@ -47,6 +48,13 @@ def solve() -> None:
     """
 
 
+matter_options = together(
+    number("--mass", "Mass, kg.", required=True),
+    number("--friction", "Coulomb friction coefficient.", required=True),
+    number("--inertia", "Inertia about the mass centre, kg m^2 (a homogeneous body's unless given)."),
+)
+
+
 @solve.command(
     "plate",
     epilog=examples(
@@ -57,9 +65,7 @@ def solve() -> None:
 )
 @number("--length", "Length, m.", required=True)
 @number("--height", "Height, m.", required=True)
-@number("--mass", "Mass, kg.", required=True)
-@number("--friction", "Coulomb friction coefficient.", required=True)
-@number("--inertia", "Inertia about the mass centre, kg m^2 (a homogeneous rectangle's unless given).")
+@matter_options
 @number("--a", "Distance of the old contact behind the mass centre, m (half the length unless given).")
 @number("--b", "Distance of the new contact ahead of the mass centre, m (half the length unless given).")
 @impact_options
@@ -79,9 +85,7 @@ def solve_plate(omega: float | None, twist: Twist | None, law: str, as_json: boo
 @number("--thickness", "Thickness, m.", 0.0)
 @number("--a", "Distance of the old support behind the middle, m.", required=True)
 @number("--b", "Distance of the new support ahead of the middle, m.", required=True)
-@number("--mass", "Mass, kg.", required=True)
-@number("--friction", "Coulomb friction coefficient.", required=True)
-@number("--inertia", "Inertia about the mass centre, kg m^2 (a slender homogeneous rod's unless given).")
+@matter_options
 @impact_options
 def solve_rod(omega: float | None, twist: Twist | None, law: str, as_json: bool, **shape: Any) -> int:
     """A rod over two supports."""
@@ -96,31 +100,22 @@ def solve_rod(omega: float | None, twist: Twist | None, law: str, as_json: bool,
     ),
 )
 @number("--radius", "Radius, m.", required=True)
-@number("--gamma", "Central angle of the old edge behind the vertical, degrees.", required=True)
-@number("--gamma-new", "Central angle of the new edge ahead of the vertical, degrees (--gamma unless given).")
-@number("--mass", "Mass, kg.", required=True)
-@number("--friction", "Coulomb friction coefficient.", required=True)
-@number("--inertia", "Inertia about the axis, kg m^2 (a homogeneous cylinder's unless given).")
+@edge_options(default=None)
+@matter_options
 @impact_options
-def solve_cylinder(
-    omega: float | None,
-    twist: Twist | None,
-    law: str,
-    as_json: bool,
-    gamma: float,
-    gamma_new: float | None,
-    **shape: Any,
-) -> int:
+def solve_cylinder(omega: float | None, twist: Twist | None, law: str, as_json: bool, **shape: Any) -> int:
     """A cylinder that rolls from one edge onto another."""
-    ahead = gamma if gamma_new is None else gamma_new
-    if not 0.0 < gamma + ahead < 180.0:
-        raise InputError(f"--gamma and --gamma-new have the sum {gamma + ahead:g}; give degrees between 0 and 180")
-    return answer(cylinder(gamma=radians(gamma), gamma_new=radians(ahead), **shape), omega, twist, law, as_json)
+    gamma, ahead = edges_of(shape.pop("gamma"), shape.pop("gamma_new"))
+    return answer(cylinder(gamma=gamma, gamma_new=ahead, **shape), omega, twist, law, as_json)
 
 
 PLACE: dict[str, Any] = {"type": (float, float, float), "metavar": "X Y FRICTION"}
-NORMAL: dict[str, Any] = {"type": (float, float), "metavar": "X Y", "default": (0.0, 1.0)}
-VELOCITY: dict[str, Any] = {"type": (float, float), "metavar": "X Y", "default": (0.0, 0.0)}
+
+
+def side(name: str, help_text: str, x: float, y: float) -> Callable[[F], F]:
+    """An option that takes a vector."""
+    says = f"{help_text} [default: {x:g} {y:g}]"
+    return click.option(name, type=(float, float), metavar="X Y", default=(x, y), help=says)
 
 
 @solve.command(
@@ -136,10 +131,10 @@ VELOCITY: dict[str, Any] = {"type": (float, float), "metavar": "X Y", "default":
 @click.option("--old", **PLACE, help="Old contact, seen from the mass centre, m.")
 @click.option("--no-old", is_flag=True, help="No old contact: a one-point impact, with --twist.")
 @click.option("--new", **PLACE, required=True, help="New contact, seen from the mass centre, m.")
-@click.option("--old-normal", **NORMAL, help="Direction out of the support, of any length. [default: 0 1]")
-@click.option("--new-normal", **NORMAL, help="Direction out of the support, of any length. [default: 0 1]")
-@click.option("--old-velocity", **VELOCITY, help="Velocity of the support, m/s. [default: 0 0]")
-@click.option("--new-velocity", **VELOCITY, help="Velocity of the support, m/s. [default: 0 0]")
+@side("--old-normal", "Direction out of the support, of any length.", 0.0, 1.0)
+@side("--new-normal", "Direction out of the support, of any length.", 0.0, 1.0)
+@side("--old-velocity", "Velocity of the support, m/s.", 0.0, 0.0)
+@side("--new-velocity", "Velocity of the support, m/s.", 0.0, 0.0)
 @impact_options
 def solve_body(
     mass: float,
@@ -159,12 +154,12 @@ def solve_body(
         raise click.UsageError("Give either --old X Y FRICTION or --no-old")
     positive(mass=mass, inertia=inertia)
     fraction(restitution=restitution)
-    struck = contact("new", new, **sides)._replace(restitution=restitution)
-    standing = None if old is None else contact("old", old, **sides)
+    struck = contact("new", new, sides)._replace(restitution=restitution)
+    standing = None if old is None else contact("old", old, sides)
     return answer(TwoPointBody(mass, inertia, standing, struck), omega, twist, law, as_json)
 
 
-def contact(which: str, place: tuple[float, float, float], **sides: tuple[float, float]) -> Contact:
+def contact(which: str, place: tuple[float, float, float], sides: dict[str, tuple[float, float]]) -> Contact:
     """A contact of checked numbers, with its normal and velocity of both sides; a normal has any length but zero."""
     normal, velocity = sides[f"{which}_normal"], sides[f"{which}_velocity"]
     x, y, friction = place
@@ -178,8 +173,12 @@ def contact(which: str, place: tuple[float, float, float], **sides: tuple[float,
 
 
 def answer(body: TwoPointBody, omega: float | None, twist: Twist | None, law: str, as_json: bool) -> int:
-    """Solve the impact and print the answer; the exit status."""
-    before = twist_before(body, omega, twist)
+    """Solve the impact of a twist, or of turning about the old contact, and print the answer; the exit status."""
+    if (omega is None) is (twist is None):
+        raise click.UsageError("Give either --omega OMEGA or --twist VX VY OMEGA")
+    if twist is None and body.old is None:
+        raise click.UsageError("A body without an old contact turns about nothing: give --twist VX VY OMEGA")
+    before = body.turning(omega or 0.0) if twist is None else twist
     outcomes = [solve_impact(body, before, one) for one in (LAWS if law == "both" else [law])]
     flags = Flag.NONE
     for outcome in outcomes:
@@ -196,7 +195,12 @@ def answer(body: TwoPointBody, omega: float | None, twist: Twist | None, law: st
 
         print_outcomes(Console(), body, before, outcomes)
     if outcomes[0].mode is Mode.NO_IMPACT and not flags & Flag.NO_SOLUTION:
-        click.echo(f"hint: {why_no_impact(body, before)}", err=True)
+        rate = approach(body.new, before)[0]
+        hint = f"the new contact is not approached: its normal velocity, {rate:.4g} m/s, is not negative"
+        if omega and approach(body.new, body.turning(-omega))[0] < 0.0:
+            sense = "clockwise, negative" if omega > 0.0 else "counter-clockwise, positive"
+            hint += f"; towards it the body turns {sense}: --omega {-omega:g}"
+        click.echo(f"hint: {hint}", err=True)
     return 1 if flags & Flag.NO_SOLUTION else 0
 
 
@@ -220,30 +224,3 @@ def fields_of(outcome: Outcome, before: Twist) -> dict[str, Any]:
             for name, (change, mode) in outcome.margins._asdict().items()
         },
     }
-
-
-def twist_before(body: TwoPointBody, omega: float | None, twist: Twist | None) -> Twist:
-    """The twist that the options tell: as given, or that of turning about the old contact.
-
-    Raises:
-        UsageError: the options tell none, or two.
-    """
-    if (omega is None) is (twist is None):
-        raise click.UsageError("Give either --omega OMEGA or --twist VX VY OMEGA")
-    if twist is not None:
-        return twist
-    assert omega is not None
-    if body.old is None:
-        raise click.UsageError("A body without an old contact turns about nothing: give --twist VX VY OMEGA")
-    return body.turning(omega)
-
-
-def why_no_impact(body: TwoPointBody, before: Twist) -> str:
-    """Why there is no impact, and which motion would make one."""
-    away = f"the new contact is not approached: its normal velocity is {approach(body.new, before)[0]:.4g} m/s"
-    if body.old is None or before.omega == 0.0 or before != body.turning(before.omega):
-        return f"{away}, and an impact needs a negative one"
-    if approach(body.new, body.turning(-before.omega))[0] >= 0.0:
-        return away
-    sense = "clockwise, negative" if before.omega > 0.0 else "counter-clockwise, positive"
-    return f"{away}; towards it the body turns {sense}: --omega {-before.omega:g}"

@@ -13,7 +13,8 @@ import pytest
 from click.testing import CliRunner, Result
 
 from impact_predictor.cli import main
-from impact_predictor.commands import fleet, outcomes
+from impact_predictor.commands import outcomes
+from impact_predictor.commands import replay as command
 from impact_predictor.commands.replay import read_scenes
 from impact_predictor.fleet import cluster
 from impact_predictor.fleet.job import BagOutcome, Job, failed, replay_bag
@@ -37,7 +38,7 @@ def many(monkeypatch: pytest.MonkeyPatch, bags: list[str]) -> list[str]:
             same = outcome._replace(bag=bag, result=result._replace(bag=bag), answer=outcome.answer | {"bag": bag})
             yield failed(bag, f"{bag} is no bag") if number == 1 else same
 
-    monkeypatch.setattr(fleet, "one_by_one", told)
+    monkeypatch.setattr(command, "one_by_one", told)
     monkeypatch.setattr(outcomes, "MANY", 4)
     return [f"run_{number}.mcap" for number in range(5)]
 
@@ -65,14 +66,14 @@ def test_the_json_of_many_bags_is_one_list_although_it_is_printed_bag_by_bag(man
 def test_after_ctrl_c_what_is_done_is_told_as_if_it_had_been_all(
     monkeypatch: pytest.MonkeyPatch, many: list[str]
 ) -> None:
-    told = fleet.one_by_one
+    told = command.one_by_one
 
     def interrupted(*asked: object) -> Iterator[BagOutcome]:
         outcomes = told(*asked)  # type: ignore[arg-type]
         yield from (next(outcomes) for _ in range(3))
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(fleet, "one_by_one", interrupted)
+    monkeypatch.setattr(command, "one_by_one", interrupted)
     result = run(*many, "--json")
     assert result.exit_code == 130
     assert [answer["bag"] for answer in json.loads(result.stdout)] == many[:3]
