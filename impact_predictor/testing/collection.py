@@ -15,9 +15,8 @@ from ..bags.replay import Result, remapping, replay
 from ..errors import InputError
 from ..parameters.file import read_values
 from ..prediction.scene import scenes_of
-from .checks import Check, baseline_check, checks_of
+from .checks import Check, baseline_check, checks_of, read_tolerances
 from .plugin import TOLERANCES, folder_of, path_of, setting
-from .tolerances import read_tolerances
 
 if TYPE_CHECKING:
     from ..report.baseline import Earlier
@@ -63,11 +62,13 @@ class CheckItem(pytest.Item):
 class _Bag(pytest.Collector):
     """A bag, whose tests are known once it is replayed."""
 
+    def __init__(self, *, bags: BagCollection, **others: Any) -> None:
+        super().__init__(**others)
+        self._bags = bags
+
     def collect(self) -> Iterator[CheckItem]:
         """Replay the bag."""
-        plugin = self.config.pluginmanager.get_plugin(BagCollection.NAME)
-        assert isinstance(plugin, BagCollection)
-        for check in plugin.checks(self.path):
+        for check in self._bags.checks(self.path):
             yield CheckItem.from_parent(self, name=check.name, check=check)
 
 
@@ -81,8 +82,6 @@ class BagFolderTests(_Bag, pytest.Directory):
 
 class BagCollection:
     """The plugin that knows the bags that are tests, and what they are tested against."""
-
-    NAME = "impact_predictor.bags"
 
     def __init__(self, config: pytest.Config, bags: list[Path]) -> None:
         """Take the settings.
@@ -114,14 +113,12 @@ class BagCollection:
             result = replayed(self._config, bag, self._params, self._remap)
         except InputError as error:
             return [Check("samples", str(error))]
-        checks = checks_of(result, self._tolerances)
-        if self._earlier is None:
-            return checks
-        return [*checks, baseline_check(result, self._earlier, self._names[bag])]
+        against = [] if self._earlier is None else [baseline_check(result, self._earlier, self._names[bag])]
+        return [*checks_of(result, self._tolerances), *against]
 
     def pytest_collect_file(self, file_path: Path, parent: pytest.Collector) -> BagFileTests | None:
         """A bag, where the file is one of them."""
-        return BagFileTests.from_parent(parent, path=file_path) if file_path in self._bags else None
+        return BagFileTests.from_parent(parent, path=file_path, bags=self) if file_path in self._bags else None
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_collect_directory(self, path: Path, parent: pytest.Collector) -> BagFolderTests | None:
@@ -130,7 +127,7 @@ class BagCollection:
             return None
         # pytest itself has no id for a folder outside of the project.
         nodeid = Path(os.path.relpath(path, parent.config.rootpath)).as_posix()
-        return BagFolderTests.from_parent(parent, path=path, nodeid=nodeid)
+        return BagFolderTests.from_parent(parent, path=path, nodeid=nodeid, bags=self)
 
 
 def collect_bags(config: pytest.Config) -> None:
@@ -142,12 +139,12 @@ def collect_bags(config: pytest.Config) -> None:
     Raises:
         UsageError: a setting is wrong, or a pattern fits no bag.
     """
-    by_option = config.getoption("impact_bag") is not None
     try:
         bags = _bags(setting(config, "bag"), folder_of(config, "bag"))
-        config.pluginmanager.register(BagCollection(config, bags), BagCollection.NAME)
+        config.pluginmanager.register(BagCollection(config, bags), "impact_predictor.bags")
     except InputError as error:
         raise pytest.UsageError(str(error)) from error
+    by_option = config.getoption("impact_bag") is not None
     paths_named = config.args_source is config.ArgsSource.ARGS
     if paths_named and not by_option:
         return

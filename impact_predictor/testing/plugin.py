@@ -17,11 +17,9 @@ if TYPE_CHECKING:
     from ..bags.replay import Result
 
 StrPath = str | os.PathLike[str]
-SEVERAL: Final = {
+PLACES: Final = {
     "bag": ("BAG", "test a recorded bag, or all that fit a pattern; may be repeated"),
     "remap": ("FROM:=TO", "topic of an input in the bags, as in odom:=/cube/odom; may be repeated"),
-}
-SINGLE: Final = {
     "params": ("FILE", "ROS 2 parameter file of the scene"),
     "baseline": ("RUN", "what an earlier replay of the bags wrote; a test fails if anything has changed"),
 }
@@ -52,12 +50,10 @@ class ImpactReplay(Protocol):
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Add the options, and for each a setting of the ini-file: `impact_bag` is that of `--impact-bag`."""
     group = parser.getgroup("impact_predictor", "recorded runs as tests (impact_predictor)")
-    for name, (metavar, text) in SEVERAL.items():
-        group.addoption(f"--impact-{name}", action="append", metavar=metavar, help=text)
-        parser.addini(f"impact_{name}", text, type="args", default=[])
-    for name, (metavar, text) in SINGLE.items():
-        group.addoption(f"--impact-{name}", metavar=metavar, help=text)
-        parser.addini(f"impact_{name}", text, default="")
+    for name, (metavar, text) in PLACES.items():
+        several = name in ("bag", "remap")
+        group.addoption(f"--impact-{name}", action="append" if several else "store", metavar=metavar, help=text)
+        parser.addini(f"impact_{name}", text, type="args" if several else "string", default=[] if several else "")
     for name, (default, text) in TOLERANCES.items():
         option = f"--impact-{name.replace('_', '-')}"
         group.addoption(option, metavar="LIMIT", help=f"{text} (default: {default})")

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from impact_predictor.testing.plugin import SEVERAL, SINGLE, TOLERANCES
+from impact_predictor.testing.plugin import PLACES, TOLERANCES
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs/testing.md").read_text(encoding="utf-8")
@@ -60,7 +60,7 @@ def test_the_commands_of_the_page_print_what_stands_there(tmp_path: Path) -> Non
 
 
 def test_every_option_stands_on_the_page_with_its_default() -> None:
-    for name in [*SEVERAL, *SINGLE]:
+    for name in PLACES:
         assert f"--impact-{name}" in PAGE
     for name, (default, _) in TOLERANCES.items():
         assert f"`--impact-{name.replace('_', '-')} {default}`" in PAGE
