@@ -22,15 +22,16 @@ EXTRAS = {
     "ros": ["ros-jazzy-common-interfaces", "ros-jazzy-rclpy[fastrtps]"],
     # Pictures: figures, maps, moving ones.
     "plot": ["contourpy>=1.0", "matplotlib>=3.6", "pillow>=9.2"],
-    "page": ["plotly>=6.0"],
+    "page": ["jinja2>=3.0", "plotly>=6.0"],
     "calibrate": ["scipy>=1.11"],
     # `impact-predictor report`.
-    "report": ["plotly>=6.0", "scipy>=1.11"],
+    "report": ["jinja2>=3.0", "plotly>=6.0", "scipy>=1.11"],
     "fast": ["numba"],
     # Many bags at a time, and their touchdowns as Parquet.
     "fleet": ["dask>=2024.1", "distributed>=2024.1", "pyarrow>=16"],
     # Pinocchio, for machines with joints.
     "articulated": ["pin>=3.0"],
+    # What the laws are only compared with: benchmarks/bench_peers.py.
     "peers": ["mujoco>=3.2"],
     # Spectra of waves to compare with.
     "spectra": ["wavespectra>=4.4"],
@@ -39,7 +40,7 @@ EXTRAS = {
     "robots": ["example-robot-data>=4.0"],
     "test": ["hypothesis", "mpmath>=1.3", "pytest", "pytest-xdist"],
 }
-ALL = ("plot", "page", "calibrate", "fast", "fleet", "articulated", "peers")
+ALL = ("plot", "page", "calibrate", "fast", "fleet", "articulated")
 """What brings a command or an option; ROS from PyPI is never mixed with a sourced one, so it is asked for by name."""
 
 setup(
@@ -59,7 +60,7 @@ setup(
     ],
     python_requires=">=3.10",
     packages=find_packages(include=[NAME, f"{NAME}.*"]),
-    package_data={NAME: ["py.typed"], f"{NAME}.report.page": ["page.css", "page.js"]},
+    package_data={NAME: ["py.typed"], f"{NAME}.report.page": ["page.css", "page.html"]},
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
         (SHARE, ["package.xml"]),

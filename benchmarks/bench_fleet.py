@@ -27,7 +27,6 @@ from impact_predictor.bags.write import BagWriter
 from impact_predictor.commands.replay import read_scenes
 from impact_predictor.fleet.cluster import Fleet, connected
 from impact_predictor.fleet.job import Job
-from impact_predictor.report.page.found import Kept
 from impact_predictor.report.parquet import touchdown_table
 from impact_predictor.resources import find
 from impact_predictor.ros.messages import ODOMETRY, POLYGON
@@ -90,7 +89,7 @@ class Measured(NamedTuple):
 
 def measure(job: Job, bags: Sequence[str], workers: int, folder: Path) -> Measured:
     """Replay some bags."""
-    answers = Kept()
+    answers = []
     with connected(workers) as client, touchdown_table(folder / "table.parquet") as table:
         # What is loaded and compiled once is no part of the rate.
         for _ in Fleet(client, job, bags[: 2 * workers], [None] * 2 * workers).outcomes(lambda _: None):

@@ -15,7 +15,6 @@ from typing import Any
 from impact_predictor.bags.replay import replay
 from impact_predictor.parameters.file import read_values
 from impact_predictor.prediction.scene import scenes_of
-from impact_predictor.report.page.found import Kept
 from impact_predictor.report.page.replay import write_replay_page
 from impact_predictor.report.replay_json import as_json
 
@@ -49,10 +48,7 @@ def main() -> None:
     random = Random(1)
     with TemporaryDirectory() as folder:
         for count in (1, bags):
-            # In a file, as the command keeps them.
-            answers = Kept()
-            for number in range(count):
-                answers.append(source if count == 1 else made(source, number, random))
+            answers = [source if count == 1 else made(source, number, random) for number in range(count)]
             touchdowns = sum(len(answer["touchdowns"]) for answer in answers)
             file, began = Path(folder) / "replay.html", process_time()
             write_replay_page(file, answers, values)

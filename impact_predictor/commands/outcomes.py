@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from ..bags.replay import Result
     from ..fleet.job import BagOutcome
     from ..report.figures import ReplayPicture
-    from ..report.page.found import Kept
     from ..report.parquet import TouchdownTable
     from ..report.touchdowns import TouchdownRow
 
@@ -68,7 +67,7 @@ class ReplayReport:
         # What is said of many bags is said once.
         self._notes: Counter[str] = Counter()
         self._picture: ReplayPicture | None = None
-        self._answers: Kept | None = None
+        self._answers: list[dict[str, Any]] | None = None
         self._table: TouchdownTable | None = None
         self._baseline = None if wanted.baseline is None else Baseline(wanted.baseline, bags, wanted)
         if wanted.figure is not None:
@@ -77,11 +76,10 @@ class ReplayReport:
             self._picture = ReplayPicture(wanted.figure)
         if wanted.report is not None:
             from ..report.files import named
-            from ..report.page.found import Kept
 
-            need("plotly")
+            need("plotly", "jinja2")
             named(wanted.report, "page", (".html",) if Path(wanted.report).suffix else ("",))
-            self._answers = Kept()
+            self._answers = []
         if wanted.table is not None:
             from ..report.parquet import touchdown_table
 

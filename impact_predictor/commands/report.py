@@ -42,15 +42,14 @@ def report(output: Path | None, quick: bool, as_json: bool) -> None:
     """Compare error and run time of many methods for touchdowns and impacts.
 
     Every method meets the same problems: extrapolation, integration by scipy, the laws of this program one at a time
-    and over arrays, compliant contacts, and MuJoCo where it is installed. The recorded tosses of a cube are scored by
-    what was measured. One page shows error over run time, and which method to choose for a wanted accuracy; the same
-    stands in a JSON and a CSV file.
+    and over arrays. The recorded tosses of a cube are scored by what was measured. One page shows error over run time,
+    and which method to choose for a wanted accuracy; the same stands in a JSON and a CSV file.
     """
     folder = output or (None if as_json else Path("report"))
     if folder is not None:
         # Before the long work, so that a wrong name is told at once.
         make_folder(folder)
-    need(*(["plotly"] if folder else []), "scipy")
+    need(*(["plotly", "jinja2"] if folder else []), "scipy")
     from ..report.accuracy import study
     from .progress import compiling_is_said, progress
 
@@ -72,8 +71,6 @@ def report(output: Path | None, quick: bool, as_json: bool) -> None:
     for question, used in fields["node"].items():
         click.echo(f"The node answers the {question} by {', '.join(filter(None, (used['method'], used['setting'])))}:")
         click.echo(used["why"])
-    for note in fields["notes"]:
-        click.echo(f"note: {note}", err=True)
     assert folder is not None
     click.echo(f"Page: {folder / PAGE}")
 
@@ -97,7 +94,6 @@ def write(folder: Path, fields: dict[str, Any]) -> None:
 
 def table_of(fields: dict[str, Any]) -> Table:
     """The cheapest method for each wanted accuracy that holds on every computed scene of a question."""
-    from ..report.accuracy.measure import ALL_SCENES
     from ..report.table import Column, table_of
 
     columns = [
@@ -110,4 +106,4 @@ def table_of(fields: dict[str, Any]) -> Table:
         ),
         Column("us", lambda one: "-" if one["us"] is None else f"{one['us']:.3g}"),
     ]
-    return table_of(columns, [one for one in fields["choices"] if one["scene"] == ALL_SCENES])
+    return table_of(columns, fields["choices"])

@@ -8,10 +8,12 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from math import inf, isfinite
+from functools import partial
+from math import inf
 from random import Random
 from statistics import mean, median
 from time import process_time
+from timeit import Timer
 from typing import Any, Final, NamedTuple
 
 AccuracyRow = dict[str, Any]
@@ -19,25 +21,18 @@ AccuracyRow = dict[str, Any]
 ACCURACIES: Final = (1e-2, 1e-4, 1e-6, 1e-9)
 """Relative errors that a user may want, for which the report chooses a method."""
 
-ALL_SCENES: Final = "all"
-"""Stands in the place of a scene where a choice holds for every computed scene of a question."""
+PREDICTOR: Final = "predictor"
+"""The family of the whole predictor on recorded samples, whose truth is measured: no choice is made on them."""
 
 TOUCHDOWN: Final = "touchdown"
 IMPACT: Final = "impact"
 STABILITY: Final = "stability"
 
-ERRORS: Final = {
-    TOUCHDOWN: ("time_error_90", "twist_error_90"),
-    IMPACT: ("twist_error_90",),
-    STABILITY: ("violation_worst",),
-}
-"""What of a row counts as its error, by the question."""
+ERRORS: Final = {TOUCHDOWN: ("time_error", "twist_error"), IMPACT: ("twist_error",), STABILITY: ("violation",)}
+"""What of a row is an error, by the question."""
 
 SPAN: Final = 2e-4
 """s of calls that are timed together, far above the resolution of the clock."""
-
-ROUNDS: Final = 3
-"""How often the calls of a problem are timed; the quickest counts."""
 
 
 class AccuracyScene(NamedTuple):
@@ -55,102 +50,67 @@ class AccuracyScene(NamedTuple):
 
 
 class Method(NamedTuple):
-    """A method with one setting; it answers a problem, or None where it has no answer.
+    """A method with one setting, "" where it has none; it answers a problem, or None where it has no answer."""
 
-    Where it `prepares`, `solve` gives the function that is timed: what a user would do once, such as building a model,
-    is left out of the time.
-    """
-
-    family: str
     name: str
     setting: str
     solve: Callable[[Any], Any]
-    applies: Callable[[Any], bool] = lambda problem: True
-    prepares: bool = False
 
 
-class MethodRun(NamedTuple):
-    """A method on the first problems of a scene: its answers, and us per prediction for each."""
-
-    method: Method
-    answers: list[Any]
-    us: list[float]
-
-
-def problems(scenes: Mapping[str, tuple[Any, ...]], name: str, count: int) -> list[Any]:
-    """`count` problems of a scene, always the same; the last of what a scene has draws them."""
+def problems(draw: Callable[[Random], Any], name: str, count: int) -> list[Any]:
+    """`count` problems of a scene, always the same."""
     source = Random(f"4 {name}")
-    return [scenes[name][-1](source) for _ in range(count)]
+    return [draw(source) for _ in range(count)]
 
 
-def run(method: Method, problems: Sequence[Any], seconds: float) -> MethodRun:
-    """Answers and times; a slow method gets as many of the problems as there is time for, and at least one."""
-    answers, us, began = list[Any](), list[float](), process_time()
-    with warnings.catch_warnings():
-        # Methods that lose their way say so.
-        warnings.simplefilter("ignore")
-        for problem in problems:
-            call = _call(method, problem)
-            answers.append(call())
-            us.append(1e6 * seconds_of(call))
-            if process_time() - began > seconds:
-                break
-    return MethodRun(method, answers, us)
+def rows_of(question: Any, methods: Sequence[Method], count: int, seconds: float) -> Iterator[AccuracyRow]:
+    """Methods on `count` problems of each scene of a question; a slow one gets as many as it answers in `seconds`.
 
-
-def _call(method: Method, problem: Any) -> Callable[[], Any]:
-    """What is timed; whatever a method raises, it has no answer, which must not break the report."""
-    try:
-        solve = method.solve(problem) if method.prepares else lambda: method.solve(problem)
-    except Exception:
-        return lambda: None
-
-    def call() -> Any:
-        try:
-            return solve()
-        except Exception:
-            return None
-
-    return call
+    `touchdowns` and `impacts` are the questions: their `SCENES` draw problems, `reference_of` answers one rightly, and
+    `errors_of` gives the errors of an answer by their names in `ERRORS`, and whether the mode is wrong.
+    """
+    for scene, draw in question.SCENES.items():
+        drawn = problems(draw, scene.name, count)
+        references = list(map(question.reference_of, drawn))
+        none = dict.fromkeys(ERRORS[scene.question], inf)
+        for method in methods:
+            found, us, began = list[Mapping[str, float]](), list[float](), process_time()
+            with warnings.catch_warnings():
+                # Methods that lose their way say so.
+                warnings.simplefilter("ignore")
+                for problem, right in zip(drawn, references, strict=True):
+                    answer = method.solve(problem)
+                    found.append(none if answer is None else question.errors_of(problem, answer, right))
+                    us.append(1e6 * seconds_of(partial(method.solve, problem)))
+                    if process_time() - began > seconds:
+                        break
+            yield row_of(scene, (method.name, method.name, method.setting), us, found)
 
 
 def seconds_of(call: Callable[[], Any]) -> float:
-    """CPU time of a call."""
-    times, repeats = list[float](), 1
-    while len(times) < ROUNDS:
-        began = process_time()
-        for _ in range(repeats):
-            call()
-        taken = process_time() - began
-        if taken < SPAN:
-            repeats *= 4
-        else:
-            times.append(taken / repeats)
-            if taken > 100.0 * SPAN:
-                break
-    return min(times)
+    """CPU time of a call, of three runs the quickest."""
+    timer = Timer(call, timer=process_time)
+    repeats = 1 + int(SPAN / max(timer.timeit(1), 1e-6))
+    return min(timer.repeat(3, repeats)) / repeats
 
 
 def row_of(
-    scene: AccuracyScene,
-    names: Sequence[str],
-    us: Sequence[float],
-    times: Sequence[float] | None = None,
-    twists: Sequence[float] | None = None,
-    violations: Sequence[float] | None = None,
-    wrong_modes: float | None = None,
+    scene: AccuracyScene, names: Sequence[str], us: Sequence[float], errors: Sequence[Mapping[str, float]]
 ) -> AccuracyRow:
-    """A row from the family, name and setting of a method, its costs and its errors; those that failed are inf."""
-    errors = {"time_error": times, "twist_error": twists, "violation": violations}
+    """A row from the family, name and setting of a method, its costs, and its errors by their names.
+
+    What was not answered has no errors, or infinite ones.
+    """
     row: AccuracyRow = dict(zip(("family", "method", "setting"), names, strict=True))
     row |= {"question": scene.question, "scene": scene.name, "us": median(us), "us_90": sorted(us)[len(us) * 9 // 10]}
-    for name, values in errors.items():
-        ordered = sorted(values) if values else [inf]
-        last = len(ordered) - 1
-        parts = {"": ordered[last // 2], "_90": ordered[-(-9 * last // 10)], "_worst": ordered[-1]}
-        row |= {f"{name}{end}": error if isfinite(error) else None for end, error in parts.items()}
-    known = next(values for values in (twists, times, violations) if values is not None)
-    return row | {"wrong_modes": wrong_modes, "count": len(known), "failed": sum(one == inf for one in known)}
+    for name in ("time_error", "twist_error", "violation"):
+        values = sorted(one[name] for one in errors if name in one) or [inf]
+        last = len(values) - 1
+        for end, value in (("", values[last // 2]), ("_90", values[-(-9 * last // 10)]), ("_worst", values[-1])):
+            row[f"{name}{end}"] = value if value < inf else None
+    wrong = [one["wrong_modes"] for one in errors if "wrong_modes" in one]
+    failed = sum(not one or inf in one.values() for one in errors)
+    return row | {"wrong_modes": mean(wrong) if wrong else None, "count": len(errors), "failed": failed}
 
 
 def error_of(row: Mapping[str, Any]) -> float:
@@ -158,59 +118,34 @@ def error_of(row: Mapping[str, Any]) -> float:
 
     Of the stability it is the worst violation.
     """
-    return max(inf if row[name] is None else row[name] for name in ERRORS[row["question"]])
+    end = "worst" if row["question"] == STABILITY else "90"
+    errors = [row[f"{name}_{end}"] for name in ERRORS[row["question"]]]
+    return max(inf if error is None else error for error in errors)
 
 
-def on_all(rows: Iterable[AccuracyRow], scenes: Sequence[str]) -> Iterator[AccuracyRow]:
-    """The methods that answer on every scene, each with its mean cost and its largest errors."""
+def on_all(rows: Iterable[AccuracyRow], question: str) -> list[AccuracyRow]:
+    """The methods on all computed scenes of a question together, each with its mean cost and its largest errors."""
     groups: dict[tuple[str, str], list[AccuracyRow]] = {}
     for row in rows:
-        if row["scene"] in scenes:
+        if row["question"] == question and row["family"] != PREDICTOR:
             groups.setdefault((row["method"], row["setting"]), []).append(row)
-    for group in groups.values():
-        if len(group) == len(scenes):
-            yield max(group, key=error_of) | {"us": mean(row["us"] for row in group)}
+    return [max(group, key=error_of) | {"us": mean(row["us"] for row in group)} for group in groups.values()]
 
 
-def computed(scenes: Iterable[AccuracyScene], question: str) -> list[str]:
-    """The names of the scenes of a question whose truth is computed."""
-    return [scene.name for scene in scenes if scene.question == question and not scene.measured]
+def choices_of(rows: Iterable[AccuracyRow], question: str) -> Iterator[dict[str, Any]]:
+    """The cheapest method for each wanted accuracy on all computed scenes of a question together."""
+    everywhere = on_all(rows, question)
+    for accuracy in ACCURACIES:
+        good = [row for row in everywhere if error_of(row) <= accuracy]
+        best = min(good, key=lambda row: float(row["us"]), default=None)
+        choice = {"question": question, "scene": "all", "accuracy": accuracy, "error": best and error_of(best)}
+        yield choice | {key: best and best[key] for key in ("family", "method", "setting", "us")}
 
 
-def choices_of(rows: Sequence[AccuracyRow], scenes: Sequence[AccuracyScene]) -> list[dict[str, Any]]:
-    """The cheapest method for each wanted accuracy: on each computed scene, and on all of a question together."""
-    found = []
-    for question in (TOUCHDOWN, IMPACT):
-        mine = [row for row in rows if row["question"] == question]
-        names = computed(scenes, question)
-        groups = {name: [row for row in mine if row["scene"] == name] for name in names}
-        for scene, group in (groups | {ALL_SCENES: list(on_all(mine, names))}).items():
-            for accuracy in ACCURACIES:
-                good = (row for row in group if error_of(row) <= accuracy)
-                best = min(good, key=lambda row: float(row["us"]), default=None)
-                choice: dict[str, Any] = {"question": question, "scene": scene, "accuracy": accuracy}
-                choice |= {key: best and best[key] for key in ("family", "method", "setting", "us")}
-                choice["error"] = best and error_of(best)
-                found.append(choice)
-    return found
-
-
-def default_of(used: tuple[str, str], rows: Sequence[AccuracyRow], names: Sequence[str]) -> dict[str, str]:
-    """What the node uses and why, in a sentence, from the rows of a question and the names of its computed scenes.
-
-    Empty where that was not measured on all of them.
-    """
-    everywhere = list(on_all(rows, names))
-    mine = next((row for row in everywhere if (row["method"], row["setting"]) == used), None)
-    if mine is None:
+def used_of(method: Method, rows: Iterable[AccuracyRow], question: str) -> dict[str, str]:
+    """What the node uses, with its error and cost in a sentence; empty where it was not measured."""
+    row = next((one for one in on_all(rows, question) if (one["method"], one["setting"]) == method[:2]), None)
+    if row is None:
         return {}
-    why = f"Of every scene 90 % are within {error_of(mine):.1g}, for {mine['us']:.0f} us in the mean of the scenes"
-    others = [row for row in everywhere if row["us"] < mine["us"] and row["method"] != mine["method"]]
-    best = min(others, key=error_of, default=None)
-    if best is None:
-        why += "; no other method that answers on all scenes is cheaper."
-    else:
-        name = ", ".join(filter(None, (best["method"], best["setting"])))
-        error = f"is {error_of(best):.2g} off" if error_of(best) < inf else "has no answer on some"
-        why += f"; the most accurate of the other methods that are cheaper and apply to all, {name}, {error}."
-    return {"method": used[0], "setting": used[1], "why": why}
+    why = f"90 % of the predictions of every scene are within {error_of(row):.1g}; one takes {row['us']:.0f} us."
+    return {"method": method.name, "setting": method.setting, "why": why}

@@ -3,282 +3,239 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
-from math import hypot
-from statistics import median
-from typing import TYPE_CHECKING, Any, Final
+from collections.abc import Mapping, Sequence
+from typing import Any, Final
 
-from ...mechanics.types import Mode
 from ...prediction.checks import REMEDIES
 from ...prediction.features import features_of
 from ...prediction.types import Status
 from ...stamps import NANOSECONDS
 from ...wording import counted, words
 from ..modes import MODES, PALETTE
-from ..summary import PER_DECADE, WHY, SpanErrors, without_bag
-from . import found
-from .document import (
-    Cell,
-    Chart,
-    PageTable,
-    Section,
-    bars,
-    marks,
-    part_words,
-    plot,
-    signed_ms,
-    time_words,
-    titled,
-)
-from .found import BagAnswer
-from .timeline import in_order, lanes_of, timeline
-
-if TYPE_CHECKING:
-    from plotly.graph_objects import Figure as PlotlyFigure
-
-LISTED: Final = 30
-"""Bags that are listed; of more the worst."""
+from ..summary import PER_DECADE, WHY, SpanErrors, quantile, without_bag
+from . import answers as taken
+from .answers import NOTHING, BagAnswer
+from .document import GREY, Cell, Chart, PageTable, Section, marks, part_words, plot, time_words, titled
+from .timeline import FALSE, MANY, MISSED, in_order, look_of, timeline
 
 DRAWN: Final = 8
 """Bags of which a timeline is drawn; of more the worst."""
 
-ROWS: Final = 100
-"""Landings or remarks in a table."""
 
-
-def bags(answers: Sequence[BagAnswer], links: Mapping[int, str]) -> Section | None:
-    """A row for each of several bags, and how their errors are spread; None where there is only one."""
+def bags(answers: Sequence[BagAnswer], order: Sequence[int], links: Mapping[int, str]) -> Section | None:
+    """A row for each of several bags, the worst first; None where there is only one."""
     if len(answers) < 2:
         return None
-    names, said = found.names_of(answers), []
-    if len(answers) > LISTED:
-        worst = "first those that could not be used, then by what was missed or announced in vain, then by the error"
-        said = [f"The worst {LISTED} of {len(answers):,} bags: {worst}."]
-    rows = []
-    for place in found.worst_of(answers, range(len(answers)), LISTED):
-        answer = answers[place]
-        remark = (
-            "could not be read" if "error" in answer else "nothing predicted" if answer.get("unpredictable") else ""
-        )
-        name = Cell(names[place], remark or ("damaged" if "damaged" in answer else ""), to=links.get(place, ""))
-        rows.append([name, *(_of_bag(answer) if "error" not in answer else [""] * 6)])
-    head = ["bag", "touchdowns", "found", "velocity error", "time error", "first ahead", "a sample"]
-    kept = [k for k in range(len(head)) if any(row[k] not in ("", "–") for row in rows)]
-    table = PageTable([head[k] for k in kept], [[row[k] for k in kept] for row in rows])
-    return Section("bags", "The bags", said, [table])
+    names, rows = taken.names_of(answers), list[list[Cell | str]]()
+    for place in order:
+        answer, facts = answers[place], taken.facts_of([answers[place]])
+        remark = next((kind for key, kind in REMARKS.items() if key != "notes" and answer.get(key)), "")
+        cells = [Cell(fact.answer, fact.more if fact.question == "found" else "") for fact in facts]
+        rows.append([Cell(names[place], remark, to=links.get(place, "")), *(cells if "error" not in answer else [])])
+    said = "First those that could not be used, then by what was missed or announced in vain, then by the error."
+    return Section("bags", "The bags", [said], [PageTable(["bag", *(fact.question for fact in facts)], rows)])
 
 
-def _of_bag(answer: BagAnswer) -> list[Cell | str]:
-    there, errors, times = found.found_of([answer]), found.velocity_errors([answer]), found.announced([answer])
-    cost = found.costs([answer]).p50
-    compared = f"90 % below {part_words(errors.p90)}, {errors.number:,} compared" if errors.number else ""
-    alarms = counted(there.false, "false alarm") if there is not None and there.false else ""
-    return [
-        f"{len(answer['touchdowns']):,}",
-        "–" if there is None else Cell(f"{there.found:,} of {there.there:,}", alarms),
-        Cell(part_words(errors.p50), compared) if compared else "–",
-        time_words(found.time_error(answer)),
-        time_words(median(times) if times else None),
-        time_words(None if cost is None else 1e-6 * cost),
-    ]
-
-
-MEASURED: Final = (
-    "The record does not tell when contacts closed, so a touchdown stands where it was predicted last; a line before "
-    "it leads back to when it was first announced. Below it is how wrong its velocities were against those that the "
-    "samples after it show. In the last lane are those that cannot be compared: point at one for the reason."
-)
-TRUE: Final = (
-    "The predicted touchdowns stand above the true ones, which the record tells; a line before a mark leads back to "
-    "when it was first announced. A red star is a touchdown that was missed, a red cross one that never came. Faint is "
-    "what such a record cannot show: too slow to be told from rest, or too soon after another. Below them is how wrong "
-    "the velocities were that were predicted last, against the true ones."
-)
-FEET: Final = (
-    "A mark is the landing of a foot where it was predicted last, and the line before it leads back to when it was "
-    "first announced; its mode is that of an impact with the foot's speed in its last sample in the air. A red star is "
-    "a landing that nothing announced. Below them is when the foot stands, as its motion shows and, where it does, as "
-    "the record tells."
+READING: Final = (
+    "A mark is a touchdown where it was predicted last; the line before it leads back to when it was first announced. "
+    "Below it stand the true touchdowns, where the record tells them, or the stances of a foot. A red star is a "
+    "touchdown that was missed, a red cross a false alarm. What such a record cannot show or compare is faint. Drag "
+    "over a part of the time to magnify it, with shift to move on, and double-click to see all of it again; point at a "
+    "mark for more."
 )
 
 
 def when(answers: Sequence[BagAnswer], places: Sequence[int]) -> Section | None:
-    """The timelines of some bags, with the numbers of each; None where nothing was predicted."""
-    if not places:
+    """The timelines of some bags; None where nothing was predicted."""
+    names = taken.names_of(answers)
+    charts = [Chart(names[one], timeline(answers[one]), anchor=f"bag-{one + 1}") for one in places]
+    said = [READING, f"Of more than {DRAWN} bags those of the worst are drawn."]
+    said = said if len(answers) > DRAWN else said[:1]
+    return Section("when", "When the touchdowns came", said, charts) if charts else None
+
+
+AGAINST: Final = (
+    "Each point is a touchdown: to the right the velocity that the samples 2 to 4 after it show, upwards the one that "
+    "was predicted last before it. On the line both are the same. The relative error of a touchdown is the distance of "
+    "both its points from the line, over its velocities before the impact. By the time of those samples gravity, "
+    "further impacts and a moving support have changed what the impact left: errors against true velocities, where a "
+    "record tells them, are smaller."
+)
+
+
+def velocities(answers: Sequence[BagAnswer]) -> Section | None:
+    """Predicted against measured velocities right after the touchdowns; None where none were measured."""
+    compared = [
+        (f"{name}, {(one['stamp'] - taken.begin_of(answer)) / NANOSECONDS:.3f} s, {one['body']}", one)
+        for name, answer in zip(taken.names_of(answers), answers, strict=True)
+        for one in taken.scored_of([answer])
+    ]
+    if not compared:
         return None
-    names, said = found.names_of(answers), list[str]()
-    parts: list[PageTable | Chart] = []
-    drawn: set[str] = set()
-    for place in places:
-        answer = answers[place]
-        feet, true = "gaits" in answer, "true_touchdowns" in answer
-        said.append(FEET if feet else TRUE if true else MEASURED)
-        figure, notes = timeline(answer)
-        drawn |= {mark.mark for lane in lanes_of(answer) for mark in lane.marks}
-        parts += [Chart(names[place], figure, " ".join(notes), anchor=f"bag-{place + 1}"), *_numbers(answer)]
-    if len(places) == DRAWN < len(answers):
-        said.insert(0, f"The timelines of the worst {DRAWN} of {len(answers):,} bags.")
-    zoom = "Drag over a part of the time to magnify it, double-click to see all of it again; point at a mark for more."
-    return Section("when", "When the touchdowns came", [*dict.fromkeys(said), zoom, meanings(drawn)], parts)
-
-
-def meanings(marks: Iterable[str]) -> str:
-    """What follows in each mode."""
-    known = [name for name in in_order(marks) if name in Mode.__members__]
-    return "Modes: " + "; ".join(f"{name}, {MODES[Mode[name]].meaning}" for name in known) + "."
-
-
-def _numbers(answer: BagAnswer) -> list[PageTable]:
-    """The landings of feet, or what was missed and announced in vain, as a table."""
-    start = found.begin_of(answer)
-    if landings := list(found.landings_of([answer])):
-        rows = [_landing_cells(one, start) for one in landings[:ROWS]]
-        head = ["time", "foot", "first ahead", "last predicted time", "speed", "impulse", "mode", "after the plan"]
-        more = f"The first {ROWS} of {len(landings):,} landings." if len(landings) > ROWS else ""
-        return [PageTable(head, rows, more, 2, "Landing by landing")]
-    wrong = [
-        one
-        for one in found.true_touchdowns_of([answer])
-        if one["stamp"] is None or (one["shown"] and one["predicted_stamp"] is None)
+    charts = [
+        _against("Along the support: vx", compared, 0),
+        _against("From turning: ω times half the contacts' distance", compared, 2),
     ]
-    rows = [
-        [
-            f"{((one['stamp'] or one['predicted_stamp']) - start) / NANOSECONDS:.3f} s",
-            one["body"],
-            "missed" if one["stamp"] else "false alarm",
-            one["mode"] or one["predicted_mode"] or "",
-        ]
-        for one in wrong[:ROWS]
-    ]
-    return [PageTable(["time", "body", "", "mode"], rows, "", 4, "What was missed, and false alarms")] if rows else []
+    return Section("velocities", "Predicted against measured velocities", [AGAINST], charts)
 
 
-def _landing_cells(one: BagAnswer, start: int) -> list[Cell | str]:
-    impulse, others = one["impulse"], one.get("others_impulse")
-    below = f"{hypot(*others):.2f} N s at other feet" if others else ""
-    return [
-        Cell(f"{(one['stamp'] - start) / NANOSECONDS:.3f} s", one["point"] or ""),
-        one["foot"],
-        time_words(one["announced_lead_time"]) if one["time_error"] is not None else "not announced",
-        signed_ms(one["time_error"]),
-        "–" if one["landing_speed"] is None else f"{one['landing_speed']:.3f} m/s",
-        "–" if impulse is None else Cell(f"{hypot(*impulse):.2f} N s", below),
-        one["landing_mode"] or "–",
-        signed_ms(one["late"]),
-    ]
+def _against(title: str, compared: Sequence[tuple[str, BagAnswer]], part: int) -> Chart:
+    """The measured and the predicted velocity (m/s) of each touchdown, of one part of the twist."""
+    points: dict[str, list[tuple[float, float, str]]] = {}
+    for name, one in compared:
+        arm = one["half_distance"] if part == 2 else 1.0
+        measured, predicted = (round(arm * one[key][part], 6) for key in ("measured_twist", "predicted_twist"))
+        said = f"{name}\nrelative error {part_words(one['relative_error'])}"
+        points.setdefault(one["mode"], []).append((measured, predicted, said))
+    every = [point for of_mode in points.values() for point in of_mode]
+    values = [value for point in every for value in point[:2]]
+    ends = [min(values), max(values) + 1e-9]
+    line = {"type": "scatter", "mode": "lines", "x": ends, "y": ends, "line": {"color": GREY}}
+    traces: list[dict[str, Any]] = [line | {"hoverinfo": "skip", "showlegend": False}]
+    kind = "scattergl" if len(every) > MANY else "scatter"
+    hover = "measured %{x:.3f}, predicted %{y:.3f} m/s<br>%{hovertext}<extra></extra>"
+    for mode in in_order(points):
+        look = {"type": kind, "marker": look_of(mode) | {"size": 8}, "opacity": 0.75, "hovertemplate": hover}
+        traces.append(marks(f"{mode} ({len(points[mode]):,})", points[mode], **look))
+    axes = {"xaxis": titled("measured, m/s"), "yaxis": titled("predicted, m/s", scaleanchor="x")}
+    return Chart(title, plot(traces, 460, **axes), wide=False)
+
+
+UNTOLD: Final = (
+    "The record does not tell in which modes the bodies truly went on, and its velocities do not either: whether a "
+    "contact lifts shows in the vertical velocity, in which an impact is lost among what gravity and other contacts "
+    "do before the next samples. What can be checked is how well the velocities agree that each mode comes with."
+)
+
+
+def modes(answers: Sequence[BagAnswer]) -> Section | None:
+    """The modes that were predicted against the true ones, or what can be told of them without a truth."""
+    # Of a landing it is the mode of an impact with the speed of the foot in its last sample in the air.
+    found = Counter(one.get("landing_mode") or one["mode"] for one in taken.touchdowns_of(answers))
+    if not found:
+        return None
+    looks = {mode.name: Cell(mode.name, look.meaning) for mode, look in MODES.items()}
+    if counts := taken.confusion(answers):
+        true, predicted = ([one for one in (*looks, NOTHING) if one in kinds] for kinds in zip(*counts, strict=True))
+        looks[NOTHING] = Cell(FALSE)
+        rows: list[list[Cell | str]] = []
+        for row in true:
+            cells = [Cell(f"{counts[row, one]:,}", css="best" if row == one else "") for one in predicted]
+            rows.append([looks[row], *cells])
+        caption = "How many touchdowns of each true mode (a row) were predicted in which mode (a column)."
+        table = PageTable(["true mode", *(MISSED if one == NOTHING else one for one in predicted)], rows, caption)
+        return Section("modes", "Predicted against true modes", [taken.right_modes(counts)], [table])
+    rows = []
+    for mode in in_order(found):
+        errors = [one["relative_error"] for one in taken.scored_of(answers) if one["mode"] == mode]
+        parts = [part_words(quantile(errors, part) if errors else None) for part in (0.5, 0.9)]
+        rows.append([looks[mode], f"{found[mode]:,}", f"{len(errors):,}", *parts])
+    head = ["predicted mode", "touchdowns", "compared", "median error", "90 % below"]
+    return Section("modes", "Predicted modes", [UNTOLD], [PageTable(head, rows)])
 
 
 def lead_times(answers: Sequence[BagAnswer]) -> Section | None:
     """Errors over the time ahead at which a prediction is made; None where there are none."""
     charts = []
-    said = ["Every sample before a touchdown makes a prediction of it. Does one that is made earlier do as well?"]
     for key, title, axis, factor in (
-        ("relative_errors_ahead", "Velocities after the impact", "relative error, %", 100.0),
+        ("relative_errors_ahead", "Velocities after the impact, against measured ones", "relative error, %", 100.0),
         ("time_errors_ahead", "Time of the touchdown", "error of the time, ms", 1e3),
     ):
-        spans = [one for one in found.errors_ahead(answers, key) if one.errors.number]
-        if spans:
+        if spans := taken.errors_ahead(answers, key):
             number = sum(one.errors.number for one in spans)
             caption = f"All {counted(number, 'prediction')}, by how long before the touchdown they were made."
             charts.append(Chart(title, _over_lead_time(spans, axis, factor), caption, wide=False))
-            if factor == 100.0 and found.measured_and_true(answers) is not None:
-                said.append("The errors of the velocities are against the measured ones, which are not the true ones.")
-    return Section("ahead", "Error against the time ahead", said, charts) if charts else None
+    said = "Every sample before a touchdown makes a prediction of it. Does one that is made earlier do as well?"
+    return Section("ahead", "Error against the time ahead", [said], charts) if charts else None
 
 
-def _over_lead_time(spans: Sequence[SpanErrors], axis: str, factor: float) -> PlotlyFigure:
+def _over_lead_time(spans: Sequence[SpanErrors], axis: str, factor: float) -> dict[str, Any]:
     traces = []
-    for number, (name, part) in enumerate((("median", "p50"), ("90 % below", "p90"))):
+    for name, part, symbol, colour in (
+        ("median", "p50", "circle", PALETTE[0]),
+        ("90 % below", "p90", "square", PALETTE[1]),
+    ):
         points = []
         for one in spans:
             error = factor * getattr(one.errors, part)
             made = f"{1e3 * one.begin:.0f} to {1e3 * one.end:.0f} ms ahead, {counted(one.errors.number, 'prediction')}"
             points.append((500.0 * (one.begin + one.end), error, f"{made}\n{name} {error:.3g} ({axis})"))
-        look = {"color": PALETTE[number], "symbol": ("circle", "square")[number], "size": 8}
-        traces.append(marks(name, points, mode="lines+markers", marker=look, line={"color": PALETTE[number]}))
+        look = {"color": colour, "symbol": symbol, "size": 8}
+        traces.append(marks(name, points, mode="lines+markers", marker=look, line={"color": colour}))
     across = titled("made before the touchdown, ms", range=[0.0, 1e3 * spans[-1].end])
-    return plot(traces, 320, xaxis=across, yaxis=titled(axis, rangemode="tozero"))
+    return plot(traces, 320, across, titled(axis, rangemode="tozero"))
 
 
 def cost(answers: Sequence[BagAnswer]) -> Section | None:
     """What the answer to a sample costs; None where nothing is known of it."""
-    spread = found.costs(answers)
-    if spread.p50 is None:
+    spread = taken.costs(answers)
+    if not spread.number:
         return None
     said = (
         "The time from a sample to its prediction, as this machine took it: without reading the bag and writing "
         "messages, which a node does besides. A sample that shows no touchdown ahead takes the least."
     )
-    known = {"median": spread.p50, "90 % below": spread.p90, "99 % below": spread.p99, "longest": spread.most}
-    cells = [time_words(None if one is None else 1e-6 * one) for one in known.values()]
-    table = PageTable(["", *known], [[counted(spread.number, "sample"), *cells]])
-    # Ten bars for each factor of ten.
+    # Ten steps for each factor of ten.
     counts: Counter[int] = Counter()
     for place, count in spread.bins.items():
         counts[10 * place // PER_DECADE] += count
-    spans = [(10.0 ** (0.1 * place), 10.0 ** (0.1 * (place + 1)), count) for place, count in sorted(counts.items())]
-    points = [
-        (0.5 * (begin + end), n, f"{time_words(1e-6 * begin)} to {time_words(1e-6 * end)}: {counted(n, 'sample')}")
-        for begin, end, n in spans
-    ]
-    look = {"width": [0.9 * (end - begin) for begin, end, _ in spans], "marker": {"color": PALETTE[0]}}
-    across = titled("time for a sample, us", type="log", dtick=1)
-    figure = plot([bars(points, **look)], 300, xaxis=across, yaxis=titled("samples"))
-    chart = Chart("Time for a sample", figure, "How many samples took how long.")
-    return Section("cost", "What a sample costs", [said], [table, chart])
+    points = []
+    for place in range(min(counts) - 1, max(counts) + 2):
+        begin, middle, end = (10.0 ** (0.1 * (place + part)) for part in (0.0, 0.5, 1.0))
+        between = f"{time_words(1e-6 * begin)} to {time_words(1e-6 * end)}"
+        points.append((middle, counts[place], f"{between}: {counted(counts[place], 'sample')}"))
+    steps = marks("samples", points, mode="lines", line={"shape": "hvh", "color": PALETTE[0]}, fill="tozeroy")
+    figure = plot([steps], 300, titled("time for a sample, us", type="log", dtick=1), titled("samples"))
+    known = (time_words(1e-6 * (one or 0.0)) for one in (spread.p50, spread.p90, spread.p99, spread.most))
+    caption = "The median of {} is {}, 90 % are below {}, 99 % below {}, the longest is {}."
+    chart = Chart("Time for a sample", figure, caption.format(counted(spread.number, "sample"), *known))
+    return Section("cost", "What a sample costs", [said], [chart])
 
 
-KINDS: Final = {"error": "unreadable", "unpredictable": "nothing predicted", "damaged": "damaged", "notes": "note"}
-"""The kinds of remarks, by their keys in the answers; the gravest first."""
+REMARKS: Final = {
+    "error": "could not be read",
+    "unpredictable": "nothing predicted",
+    "damaged": "damaged",
+    "notes": "note",
+}
+"""What is said of a bag, by its key in the answers; the gravest first."""
 
 
 def unused(answers: Sequence[BagAnswer]) -> Section:
     """What could not be used: refused messages, touchdowns that are not compared, damage, failures and notes."""
-    lost, reasons = found.refused(answers), found.uncompared(answers)
-    samples = sum(answer["samples"] for answer in found.used(answers))
-    said = f"Of {counted(samples, 'sample')} none was refused, nor any other message."
-    if lost:
-        said = f"{counted(sum(one.number for one in lost), 'message')} could not be used."
-    if damaged := sum("damaged" in answer for answer in answers):
-        said += f" {counted(damaged, 'bag')} could be read in part only: what was lost stands below."
-    else:
-        said += " No bag was damaged." if len(answers) > 1 else " The bag was not damaged."
-    tables = []
-    if lost:
-        rows: list[list[Cell | str]] = [
-            [
-                Cell(one.input, words(one.status)),
-                REMEDIES[Status[one.status]] if one.status in Status.__members__ else "",
-                Cell(f"{one.number:,}", f"of {one.all:,}, {part_words(one.number / one.all)}"),
-            ]
-            for one in lost
-        ]
-        caption = "Messages that were refused, by input and reason."
-        tables.append(PageTable(["input", "what is wrong", "messages"], rows, caption, 2))
-    if reasons:
-        several = "; some have several reasons" if len(reasons) > 1 else ""
-        caption = f"Why touchdowns are not compared with what was measured{several}."
-        rows = [[WHY[flag], f"{number:,}"] for flag, number in reasons.most_common()]
-        tables.append(PageTable(["reason", "touchdowns"], rows, caption))
-    return Section("unused", "What could not be used", [said], [*tables, *_remarks(answers)])
-
-
-def _remarks(answers: Sequence[BagAnswer]) -> list[PageTable]:
-    """Damage, failures and notes, each with the bags that it was said of."""
-    of: dict[tuple[str, str], list[str]] = {}
-    for name, answer in zip(found.names_of(answers), answers, strict=True):
-        for kind in ("error", "unpredictable", "damaged"):
-            if answer.get(kind):
-                of.setdefault((kind, answer[kind]), []).append(name)
-        for note in answer.get("notes", ()):
-            of.setdefault(("notes", without_bag(note, answer["bag"])), []).append(name)
-    ordered = sorted(of.items(), key=lambda one: (list(KINDS).index(one[0][0]), -len(one[1])))
-    rows: list[list[Cell | str]] = []
-    for (kind, said), names in ordered[:ROWS]:
-        more = f" and {counted(len(names) - 1, 'more bag')}" if len(names) > 1 else ""
-        rows.append([Cell(names[0] + more, KINDS[kind]), said])
-    caption = f"What was said of the bags, the first {ROWS} of {len(ordered):,}." if len(ordered) > ROWS else ""
-    return [PageTable(["bag", "remark"], rows, caption or "What was said of the bags.", 2)] if rows else []
+    inputs: dict[str, Counter[str]] = {}
+    for answer in taken.used(answers):
+        known = answer.get("inputs") or {"odom": answer["statuses"], "contact_geometry": answer["geometry_statuses"]}
+        for name, counts in known.items():
+            inputs.setdefault(name, Counter()).update(counts)
+    refused: list[list[Cell | str]] = []
+    for name, all_of in inputs.items():
+        every = sum(all_of.values())
+        for status, number in all_of.most_common():
+            if status != Status.ACCEPTED.name:
+                remedy = REMEDIES[Status[status]] if status in Status.__members__ else ""
+                of = Cell(f"{number:,}", f"of {every:,}, {part_words(number / every)}")
+                refused.append([Cell(name, words(status)), remedy, of])
+    reasons = [[WHY[flag], f"{number:,}"] for flag, number in taken.uncompared(answers).most_common()]
+    names, said = taken.names_of(answers), dict[tuple[str, str], list[str]]()
+    for key, kind in REMARKS.items():
+        for name, answer in zip(names, answers, strict=True):
+            of_bag = answer.get(key) or []
+            for one in [of_bag] if isinstance(of_bag, str) else of_bag:
+                said.setdefault((kind, without_bag(one, answer["bag"])), []).append(name)
+    remarks: list[list[Cell | str]] = []
+    for (kind, one), bags in said.items():
+        more = f" and {counted(len(bags) - 1, 'more bag')}" if len(bags) > 1 else ""
+        remarks.append([Cell(bags[0] + more, kind), one])
+    tables = (
+        PageTable(
+            ["input", "what is wrong", "messages"], refused, "Messages that were refused, by input and reason.", 2
+        ),
+        PageTable(["touchdowns that are not compared, for one or several reasons", "touchdowns"], reasons),
+        PageTable(["bag", "remark"], remarks, "What was said of the bags.", 2),
+    )
+    there = [table for table in tables if table.rows]
+    return Section("unused", "What could not be used", [] if there else ["Everything could be used."], there)
 
 
 def scene(values: Mapping[str, Any] | None) -> Section | None:

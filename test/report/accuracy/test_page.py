@@ -30,7 +30,7 @@ def test_the_picture_of_a_question_has_a_point_for_each_method_on_each_scene(que
     drawn = {
         (family, text.rpartition("<br>")[0]): (x, y)
         for family, trace in traces(figure).items()
-        for text, x, y in zip(trace["text"], trace["x"], trace["y"], strict=True)
+        for text, x, y in zip(trace["hovertext"], trace["x"], trace["y"], strict=True)
     }
     expected = {}
     for row in report["rows"]:
@@ -41,15 +41,18 @@ def test_the_picture_of_a_question_has_a_point_for_each_method_on_each_scene(que
     assert figure["layout"]["yaxis"]["type"] == figure["layout"]["xaxis"]["type"] == "log"
 
 
-def test_the_tables_have_the_choices_for_each_wanted_accuracy() -> None:
+def test_the_tables_have_the_choices_for_each_wanted_accuracy_and_the_errors_of_what_has_no_choice() -> None:
     page = read(REPORT)
     (choices,) = page.tables["touchdown"]
-    assert choices[0] == ["scene", *(f"error below {accuracy}" for accuracy in ("0.01", "0.0001", "1e-06", "1e-09"))]
-    assert choices[-1][0] == "on all scenes"
-    assert all(cell.startswith("next_touchdown tolerance = 1e-06") for cell in choices[-1][1:])
-    across = next(row for row in page.tables["impact"][0] if row[0] == "Slip across the plane")
-    assert across[-1] == "none"
-    assert page.tables["measured"][0][1][0] == "path law, slip across"
+    assert [row[0] for row in choices] == ["error below", "0.01", "0.0001", "1e-06", "1e-09"]
+    assert {row[1] for row in choices[1:]} == {"next_touchdown, tolerance = 1e-06"}
+    assert page.tables["impact"][0][-1][1] == "none"
+    (stability,), (tosses,) = page.tables["stability"], page.tables["measured"]
+    for table, error, rows in ((stability, "violation", "stability"), (tosses, "twist_error", "impact")):
+        for cells in table[1:]:
+            of = [row for row in REPORT["rows"] if (row["question"], row["method"]) == (rows, cells[1])]
+            assert cells[2:5] in [[f"{row[error + end]:.2g}" for end in ("", "_90", "_worst")] for row in of]
+    assert tosses[1][1] == "path law, slip across"
 
 
 def test_the_headlines_say_what_the_node_uses_and_why() -> None:

@@ -1,0 +1,128 @@
+"""Impacts by compliant contacts and by MuJoCo, beside the laws of this program: python benchmarks/bench_peers.py
+
+The problems and what is held to be right are those of `impact-predictor report`. MuJoCo is compared where it is
+installed (the extra `peers`), on bodies that move in the plane alone and have a size at which a time step means
+something. It has no restitution, and the contacts that serve an impact best: elliptic cones, and dampers as hard as the
+step allows. Compliant contacts are Kelvin-Voigt springs with regularised friction, integrated by scipy.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Iterator
+from functools import lru_cache, partial
+from importlib.util import find_spec
+from math import hypot
+from random import Random
+from types import SimpleNamespace
+from typing import Any
+
+from impact_predictor.mechanics import bodies, closed_forms
+from impact_predictor.mechanics.compliant import compliant_impact
+from impact_predictor.mechanics.types import Contact, Mode, Twist
+from impact_predictor.report.accuracy import impacts
+from impact_predictor.report.accuracy.impacts import Aftermath, Struck
+from impact_predictor.report.accuracy.measure import IMPACT, AccuracyScene, Method, error_of, rows_of
+
+STEPS = 5
+"""Steps of MuJoCo through an impact."""
+
+MODEL = """<mujoco>
+<option timestep="{step:.17g}" gravity="0 0 0" cone="elliptic" solver="Newton" tolerance="1e-12" iterations="200"/>
+<default><geom condim="3" solref="-1e-9 {damping:.17g}" solimp="0.9999 0.9999 0.001" margin="{margin:.17g}"/></default>
+<worldbody>{planes}<body>
+<joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 0 1"/><joint type="hinge" axis="0 -1 0"/>
+<inertial pos="0 0 0" mass="{mass:.17g}" diaginertia="{inertia:.17g} {inertia:.17g} {inertia:.17g}"/>{spheres}
+</body></worldbody></mujoco>"""
+"""A body with planar joints over one plane per contact."""
+
+
+def ordinary(source: Random, shape: str) -> Struck:
+    """A rod, plate or cylinder of the paper of an ordinary size, which turns about A at rest, friction to 1.5."""
+    given = {"mass": 10.0 ** source.uniform(-1.0, 1.0), "friction": source.uniform(0.0, 1.5)}
+    size = 10.0 ** source.uniform(-1.0, 0.5)
+    if shape == "rod":
+        a, b = (0.5 * size * 10.0 ** source.uniform(-1.0, 0.0) for _ in range(2))
+        given |= {"length": size, "thickness": size * 10.0 ** source.uniform(-2.0, -1.0), "a": a, "b": b}
+    elif shape == "plate":
+        given |= {"length": size, "height": size * 10.0 ** source.uniform(-0.7, 0.7)}
+    else:
+        given |= {"radius": size, "gamma": 1.4 * 10.0 ** source.uniform(-1.4, 0.0)}
+    body = getattr(bodies, shape)(**given)
+    omega = -(10.0 ** source.uniform(-1.0, 1.0))
+    right = getattr(closed_forms, shape)(**given, omega=omega)
+    return Struck(body, body.turning(omega), known=Aftermath(Twist(*right.twist.tolist()), Mode(int(right.mode))))
+
+
+def compliant(strike: Struck, stiffness: float) -> Aftermath | None:
+    """One impact on springs; None where the integration does not come to its end."""
+    found = compliant_impact(strike.body, strike.twist, stiffness)
+    return None if found is None else Aftermath(found[1], found[0])
+
+
+def mujoco(strike: Struck, step: float) -> Aftermath:
+    """Some steps; the model of a body is built once, which is not timed."""
+    engine, model, data = model_of(strike, step)
+    engine.mj_resetData(model, data)
+    data.qvel[:] = strike.twist
+    engine.mj_step(model, data, STEPS)
+    return Aftermath(Twist(*data.qvel.tolist()))
+
+
+@lru_cache(maxsize=1)
+def model_of(strike: Struck, step: float) -> tuple[Any, Any, Any]:
+    """MuJoCo, the model of a body, and its data."""
+    import mujoco as engine
+
+    mass, inertia, old, new = strike.body
+    contacts = [contact for contact in (old, new) if contact is not None]
+    size = max(hypot(contact.x, contact.y) for contact in contacts)
+    parts = [geoms(contact, 1e-3 * size, 1 << index) for index, contact in enumerate(contacts)]
+    planes, spheres = ("".join(column) for column in zip(*parts, strict=True))
+    # With the margin both contacts are in the constraints from the start; without stiffness it pushes nothing.
+    margin = 50.0 * step * size * abs(strike.twist.omega)
+    sizes = {"step": step, "damping": -1.0 / step, "margin": margin, "mass": mass, "inertia": inertia}
+    model = engine.MjModel.from_xml_string(MODEL.format(**sizes, planes=planes, spheres=spheres))
+    return engine, model, engine.MjData(model)
+
+
+def geoms(contact: Contact, pad: float, bit: int) -> tuple[str, str]:
+    """The plane of a contact, and the sphere of the body that touches it alone."""
+    (nx, ny), x, y = contact.normal, contact.x, contact.y
+    shared = f'friction="{contact.friction:.17g} 0 0" contype="{bit}" conaffinity="{bit}"'
+    plane = f'<geom type="plane" size="0 0 1" pos="{x:.17g} 0 {y:.17g}" zaxis="{nx:.17g} 0 {ny:.17g}" {shared}/>'
+    centre = f"{x + pad * nx:.17g} 0 {y + pad * ny:.17g}"
+    return plane, f'<geom type="sphere" size="{pad:.17g}" pos="{centre}" {shared}/>'
+
+
+def peers(step: float = 1e-4) -> Iterator[Method]:
+    """The methods that this machine has, after the path law."""
+    yield Method("path law", "", partial(impacts.law, name="path"))
+    yield Method("compliant contacts", "k = 1e+08 N/m", partial(compliant, stiffness=1e8))
+    if find_spec("mujoco"):
+        yield Method("MuJoCo", f"dt = {step:g} s", partial(mujoco, step=step))
+
+
+def question() -> SimpleNamespace:
+    """The question of the impact with ordinary bodies of the paper and tall blocks."""
+    draws: dict[str, Callable[[Random], Struck]] = {"tall block": impacts.tall}
+    draws |= {shape: partial(ordinary, shape=shape) for shape in ("rod", "plate", "cylinder")}
+    scenes = {AccuracyScene(name, IMPACT, name, "", ""): draw for name, draw in draws.items()}
+    return SimpleNamespace(SCENES=scenes, reference_of=impacts.reference_of, errors_of=impacts.errors_of)
+
+
+def main() -> None:
+    """Print a row for each method on each scene."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--count", type=int, default=100, help="problems of each scene")
+    parser.add_argument("--seconds", type=float, default=0.6, help="for a method on a scene")
+    arguments = parser.parse_args()
+    print(f"{'scene':12}{'method':36}{'median error':>14}{'90 % below':>12}{'us':>11}{'problems':>10}")
+    for row in rows_of(question(), list(peers()), arguments.count, arguments.seconds):
+        median = float("inf") if row["twist_error"] is None else row["twist_error"]
+        method = f"{row['method']} {row['setting']}"
+        print(f"{row['scene']:12}{method:36}{median:14.2g}{error_of(row):12.2g}{row['us']:11.1f}{row['count']:10,}")
+
+
+if __name__ == "__main__":
+    main()

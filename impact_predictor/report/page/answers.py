@@ -1,0 +1,159 @@
+"""What a page takes from the JSON answers of replays, any number of them, each and all together."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from math import inf
+from pathlib import Path
+from statistics import median
+from typing import Any, Final
+
+from ...bags.find import told_apart
+from ...prediction.types import Leftover
+from ...wording import counted
+from ..summary import WHY, Distribution, SpanErrors, from_json, quantile, spread_of, together
+from .document import Headline, part_words, time_words
+
+BagAnswer = Mapping[str, Any]
+"""What `as_json` says of the replay of one bag; of one that could not be read its `bag` and `error`."""
+
+NOTHING: Final = "nothing"
+"""What is predicted of a true touchdown that is missed, and true of a false alarm."""
+
+LEAST_LEAD_TIME: Final = 0.02
+"""Seconds before a touchdown, from which on the errors of the times are given."""
+
+
+def used(answers: Iterable[BagAnswer]) -> list[BagAnswer]:
+    """The answers of bags that could be read."""
+    return [answer for answer in answers if "error" not in answer]
+
+
+def names_of(answers: Iterable[BagAnswer]) -> list[str]:
+    """A name for each bag: the last part of its path, or as much of it as no other bag has."""
+    return [str(name) for name in told_apart([Path(answer["bag"]) for answer in answers])]
+
+
+def touchdowns_of(answers: Iterable[BagAnswer]) -> Iterator[BagAnswer]:
+    """The touchdowns of all bags that could be read."""
+    return (touchdown for answer in used(answers) for touchdown in answer["touchdowns"])
+
+
+def scored_of(answers: Iterable[BagAnswer]) -> list[BagAnswer]:
+    """The touchdowns whose velocities are compared with what was measured."""
+    return [one for one in touchdowns_of(answers) if one["scored"] and one["relative_error"] is not None]
+
+
+def true_touchdowns_of(answers: Iterable[BagAnswer]) -> Iterator[BagAnswer]:
+    """The true touchdowns and the false alarms of the bags that carry the truth."""
+    return (one for answer in used(answers) for one in answer.get("true_touchdowns", ()))
+
+
+def begin_of(answer: BagAnswer) -> int:
+    """The stamp (ns) from which the times of a record are counted: that of its first sample."""
+    begin = answer.get("begin")
+    return int(min((one["stamp"] for one in answer["touchdowns"]), default=0) if begin is None else begin)
+
+
+def uncompared(answers: Iterable[BagAnswer]) -> Counter[str]:
+    """How many touchdowns are not compared for each reason, the name of a `Leftover`; feet, which are driven, aside."""
+    others = (one for one in touchdowns_of(answers) if not one["scored"] and "foot" not in one)
+    return Counter(flag for one in others for flag in one["flags"] if flag in Leftover.__members__)
+
+
+def velocity_errors(answers: Iterable[BagAnswer]) -> Distribution:
+    """Relative errors of the velocities: against the truth where a bag tells it, else against what was measured."""
+    errors: list[float] = []
+    for answer in answers:
+        true = [one["velocity_error"] for one in true_touchdowns_of([answer]) if one["velocity_error"] is not None]
+        errors += true or [one["relative_error"] for one in scored_of([answer])]
+    return spread_of(errors)
+
+
+def truth_of(answers: Iterable[BagAnswer]) -> Counter[str]:
+    """How many true touchdowns there are, were missed, false alarms or cannot be seen; empty where no bag tells it."""
+    counts: Counter[str] = Counter()
+    for truth in (answer["truth"] for answer in used(answers) if "truth" in answer):
+        counts.update({key: truth[key] for key in ("touchdowns", "missed", "false", "unresolved")})
+    return counts
+
+
+def confusion(answers: Iterable[BagAnswer]) -> Counter[tuple[str, str]]:
+    """How often which true mode (first) was predicted as which (second), of all touchdowns that their record can show.
+
+    `NOTHING` was predicted where one was missed, and true where an alarm was false; empty where no truth knows modes.
+    """
+    counts: Counter[tuple[str, str]] = Counter()
+    for one in true_touchdowns_of(answers):
+        if one["stamp"] is None or (one["shown"] and one["mode"] is not None):
+            counts[one["mode"] or NOTHING, one["predicted_mode"] or NOTHING] += 1
+    return counts if any(true != NOTHING for true, _ in counts) else Counter()
+
+
+def right_modes(counts: Mapping[tuple[str, str], int]) -> str:
+    """In how many of the true touchdowns that were found the mode is right; "" where none was found."""
+    right = sum(count for (true, predicted), count in counts.items() if true == predicted)
+    both = sum(count for pair, count in counts.items() if NOTHING not in pair)
+    return f"The mode is right in {right:,} of {both:,}." if both else ""
+
+
+def errors_ahead(answers: Iterable[BagAnswer], key: str) -> list[SpanErrors]:
+    """The errors by lead time under a key of the answers, all together; the spans that have any."""
+    spans: dict[tuple[float, float], list[Distribution]] = {}
+    for entry in (entry for answer in used(answers) for entry in answer.get(key, ())):
+        spans.setdefault((entry["from"], entry["to"]), []).append(from_json(entry))
+    found = [SpanErrors(*span, together(spreads)) for span, spreads in sorted(spans.items())]
+    return [one for one in found if one.errors.number]
+
+
+def costs(answers: Iterable[BagAnswer]) -> Distribution:
+    """What the answers to samples took, in microseconds."""
+    return together(from_json(answer.get("cost_us")) for answer in used(answers))
+
+
+def badness(answer: BagAnswer) -> tuple[float, ...]:
+    """How bad a bag is: one that is unusable most, then what was missed or false counts, then the errors."""
+    if "error" in answer or answer.get("unpredictable"):
+        return (inf,)
+    truth = truth_of([answer])
+    wrong = (truth["missed"] + truth["false"]) / max(1, truth["touchdowns"])
+    return (wrong, velocity_errors([answer]).p50 or 0.0)
+
+
+def facts_of(answers: Sequence[BagAnswer]) -> list[Headline]:
+    """How many, how right, how early and at what cost, of one bag or of all together; "–" where nothing tells it."""
+    number, scored, reasons = sum(1 for _ in touchdowns_of(answers)), scored_of(answers), uncompared(answers)
+    compared = f"{len(scored):,} compared with measured velocities" if scored or reasons else ""
+    compared += "".join(f"; most of the others not, as {WHY[reason]}" for reason, _ in reasons.most_common(1))
+    found, missed = "–", ""
+    if truth := truth_of(answers):
+        found = f"{truth['touchdowns'] - truth['missed']:,} of {truth['touchdowns']:,}"
+        missed = f"{truth['missed']:,} missed, {counted(truth['false'], 'false alarm')}"
+        missed += f", {truth['unresolved']:,} more too slow or too close to be seen" if truth["unresolved"] else ""
+    elif landings := [one["time_error"] is not None for one in touchdowns_of(answers) if "foot" in one]:
+        found, missed = f"{sum(landings):,} of {len(landings):,}", "landings, as the feet's motion shows them"
+    errors, cost = velocity_errors(answers), costs(answers)
+    counted_ones = (one for one in touchdowns_of(answers) if one["scored"] or one.get("time_error") is not None)
+    times = [one["announced_lead_time"] for one in counted_ones]
+    wrong = f"median, against the {'true' if truth else 'measured'} ones; 90 % below {part_words(errors.p90)}."
+    wrong = f"{wrong} {right_modes(confusion(answers))}" if errors.number else ""
+    spans = (one for one in errors_ahead(answers, "time_errors_ahead") if one.begin >= LEAST_LEAD_TIME)
+    time, of_time = next(spans, SpanErrors(0.0, 0.0, Distribution())), ""
+    if time.errors.number:
+        of_time = f"median, {1e3 * time.begin:.0f} to {1e3 * time.end:.0f} ms ahead; "
+        of_time += f"90 % below {time_words(time.errors.p90)}"
+    early = (
+        f"median; 90 % at least {time_words(quantile(times, 0.1))}, the latest {time_words(min(times))}"
+        if times
+        else ""
+    )
+    per_sample = f"median; 99 % below {time_words(1e-6 * (cost.p99 or 0.0))}" if cost.number else ""
+    return [
+        Headline("touchdowns", f"{number:,}", compared),
+        Headline("found", found, missed),
+        Headline("velocity error", part_words(errors.p50), wrong),
+        Headline("time error", time_words(time.errors.p50), of_time),
+        Headline("first ahead", time_words(median(times) if times else None), early),
+        Headline("cost of a sample", time_words(None if cost.p50 is None else 1e-6 * cost.p50), per_sample),
+    ]
