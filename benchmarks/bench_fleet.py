@@ -27,7 +27,7 @@ from impact_predictor.bags.write import BagWriter
 from impact_predictor.commands.replay import read_scenes
 from impact_predictor.fleet.cluster import Fleet, connected
 from impact_predictor.fleet.job import Job
-from impact_predictor.report.parquet import touchdown_table
+from impact_predictor.report.answers import touchdown_table
 from impact_predictor.resources import find
 from impact_predictor.ros.messages import ODOMETRY, POLYGON
 

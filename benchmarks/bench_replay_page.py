@@ -15,8 +15,8 @@ from typing import Any
 from impact_predictor.bags.replay import replay
 from impact_predictor.parameters.file import read_values
 from impact_predictor.prediction.scene import scenes_of
+from impact_predictor.report.answers import as_json
 from impact_predictor.report.page.replay import write_replay_page
-from impact_predictor.report.replay_json import as_json
 
 ROOT = Path(__file__).parent.parent
 SCORED, OTHERS = 10, 40

@@ -19,7 +19,7 @@ from impact_predictor.bags.replay import replay
 from impact_predictor.errors import InputError
 from impact_predictor.parameters.file import read_values
 from impact_predictor.prediction.scene import scenes_of
-from impact_predictor.report.replay_json import as_json
+from impact_predictor.report.answers import as_json
 
 MESSAGES: Final = 120
 SOURCE: Final = ROOT / "examples/cube_tosses"

@@ -18,8 +18,8 @@ from ..wording import counted
 if TYPE_CHECKING:
     from ..bags.replay import Result
     from ..fleet.job import BagOutcome
+    from ..report.answers import TouchdownTable
     from ..report.figures import ReplayPicture
-    from ..report.parquet import TouchdownTable
     from ..report.touchdowns import TouchdownRow
 
 CHANGED: Final = 1
@@ -81,7 +81,7 @@ class ReplayReport:
             named(wanted.report, "page", (".html",) if Path(wanted.report).suffix else ("",))
             self._answers = []
         if wanted.table is not None:
-            from ..report.parquet import touchdown_table
+            from ..report.answers import touchdown_table
 
             self._table = stack.enter_context(touchdown_table(wanted.table))
         if not wanted.as_json:

@@ -47,7 +47,7 @@ def replay_bag(job: Job, bag: str, output: Path | None, progress: Callable[[int]
         return failed(bag, f"{bag} needs more memory than there is; use fewer workers, or a machine with more of it")
     answer: dict[str, Any] = {}
     if job.answers:
-        from ..report.replay_json import as_json
+        from ..report.answers import as_json
 
         answer = as_json(result)
     return BagOutcome(bag, result._replace(costs=(), matches=()), answer)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter, defaultdict
 from collections.abc import Sequence
 from functools import partial
 from math import hypot
@@ -10,18 +11,17 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 from rich.console import Console
 from rich.table import Table
 
-from ..prediction.scene import CONTACT_GEOMETRY, STATES
+from ..prediction.scene import STATES
 from ..prediction.types import Status
-from ..scenarios.comparison import LEAD_TIMES
+from ..scenarios.comparison import LEAD_TIMES, Truth, Warned
 from ..stamps import NANOSECONDS
 from ..wording import NONE, counted, duration, fixed, percent, words
-from .summary import Distribution, SpanErrors, Tally, errors_ahead, errors_of
+from .summary import SpanErrors, Tally, errors_ahead, errors_of
 from .table import MOST_ROWS, Column, first_stamp, more, say, show, table_of
 from .touchdowns import TouchdownRow, rows_of
 
 if TYPE_CHECKING:
     from ..bags.replay import Result
-    from ..scenarios.comparison import Truth, Warned
 
 TOO_EARLY: Final = {
     Status.NO_SUPPORT: "before the deck's motion was known",
@@ -37,7 +37,7 @@ def print_replay(console: Console, result: Result, every: bool = False) -> None:
     errors = errors_ahead(one for _, score, _ in result.settled if score.scored for one in score.history)
     say(console, result.bag)
     if bodies := bodies_of(result, rows):
-        _show(console, bodies_table(bodies))
+        _show(console, bodies_table(bodies, has_truth=result.truth is not None))
     if landings:
         listed = landings if every else landings[:MOST_ROWS]
         _show(console, landings_table(listed), *more(len(landings) - len(listed), "landing"))
@@ -59,8 +59,8 @@ def _show(console: Console, table: Table, *remarks: str) -> None:
 
 def touchdown_table(rows: Sequence[TouchdownRow]) -> Table:
     """The touchdowns with the velocities right after them: what was predicted, and below it what was measured."""
-    columns = _whens(rows)
-    columns += [
+    columns = [
+        _when(rows),
         Column("ahead\nfirst\nlast ms", lambda row: f"{_ms(row.ahead)}\n{_ms(row.lead_time)}"),
         Column("predicted\nmode, below\nmeasured", lambda row: row.mode.name, left=True),
         Column("vx\nm/s", partial(_velocity, "vx", 3)),
@@ -75,14 +75,14 @@ def touchdown_table(rows: Sequence[TouchdownRow]) -> Table:
     return table_of(columns, rows, lambda row: "" if row.scored else "dim")
 
 
-def _whens(rows: Sequence[TouchdownRow]) -> list[Column]:
+def _when(rows: Sequence[TouchdownRow]) -> Column:
     """The column of times, with bodies where there are several."""
     start = first_stamp(row.stamp for row in rows)
     several = len({row.body for row in rows}) > 1
     header = ("body\n" if several else "") + ("since\nfirst\ns" if start else "time\ns")
-    return [
-        Column(header, lambda row: (f"{row.body}\n" if several else "") + fixed((row.stamp - start) / NANOSECONDS, 3))
-    ]
+    return Column(
+        header, lambda row: (f"{row.body}\n" if several else "") + fixed((row.stamp - start) / NANOSECONDS, 3)
+    )
 
 
 def _ms(seconds: float | None, decimals: int = 1, sign: str = "") -> str:
@@ -112,8 +112,8 @@ def lead_time_table(errors: Sequence[SpanErrors]) -> Table:
 
 def landings_table(landings: Sequence[TouchdownRow]) -> Table:
     """One row for each landing; below the impulse of the foot that of the others, if they get any."""
-    columns = _whens(landings)
-    columns += [
+    columns = [
+        _when(landings),
         Column("foot", lambda row: f"{row.foot} {row.point or ''}".rstrip(), left=True),
         Column("first\nms\nahead", lambda row: _ms(row.ahead, 0)),
         Column(f"error\nms, at\n{1e3 * LEAD_TIMES[0]:.0f} ms", lambda row: _ms(row.time_errors[0], 1, "+")),
@@ -140,79 +140,69 @@ def _size(vector: Sequence[float] | None) -> float | None:
 
 
 class BodySummary(NamedTuple):
-    """A body of a replay: its samples, its touchdowns, their errors, and how the truth in the bag compares."""
+    """A body of a replay: its samples and touchdowns, and how the truth compares, empty where the bag has none."""
 
     name: str
     samples: int
-    touchdowns: int
-    errors: Distribution
-    truth: Truth | None
-    warned: Warned | None
+    rows: Sequence[TouchdownRow]
+    truth: Truth
+    warned: Warned
 
 
 def bodies_of(result: Result, rows: Sequence[TouchdownRow]) -> list[BodySummary]:
     """The bodies of a replay, in the order of its inputs; nothing where the only one has no name."""
-    named = [name.rpartition("/")[0] for name in result.inputs]
-    names = [body for body in dict.fromkeys([*named, *result.truths]) if body != "support"]
-    found = []
-    for body in () if "" in names else names:
-        known, mine = result.truths.get(body), [row for row in rows if row.body == body]
+    inputs, found = result.inputs, []
+    names = dict.fromkeys([*(name.rpartition("/")[0] for name in inputs), *result.truths])
+    for body in () if "" in names else [name for name in names if name != "support"]:
+        truth, warned = result.truths.get(body, (None, None))
         found.append(
             BodySummary(
                 name=body,
-                samples=sum(sum(result.inputs.get(f"{body}/{kind}", {}).values()) for kind in STATES),
-                touchdowns=len(mine),
-                errors=errors_of(mine),
-                truth=None if known is None else known.truth,
-                warned=None if known is None else known.warned,
+                samples=sum(sum(inputs.get(f"{body}/{kind}", {}).values()) for kind in STATES),
+                rows=[row for row in rows if row.body == body],
+                truth=truth or Truth(0, 0, 0, 0, None, None, None),
+                warned=warned or Warned(None, None, None, None),
             )
         )
     return found
 
 
-def bodies_table(bodies: Sequence[BodySummary]) -> Table:
+def bodies_table(bodies: Sequence[BodySummary], *, has_truth: bool) -> Table:
     """One row for each body: its samples, and how its predictions compare with the truth, or else with the samples."""
     columns = [
         Column("body", lambda body: body.name, left=True),
         Column("samples", lambda body: f"{body.samples:,}"),
     ]
-    if any(body.truth for body in bodies):
+    if has_truth:
         columns += [
-            Column("touchdowns\nfound", lambda body: _found(body.truth), fold=10),
-            Column("false\nalarms", lambda body: NONE if body.truth is None else f"{body.truth.false:,}"),
-            Column("right\nmode %", lambda body: percent(body.truth and body.truth.mode_accuracy)),
-            Column("speed\nerror %", lambda body: percent(body.truth and body.truth.median_velocity_error)),
+            Column("touchdowns\nfound", lambda body: _of(body.truth.touchdowns, body.truth.missed), fold=10),
+            Column("false\nalarms", lambda body: f"{body.truth.false:,}"),
+            Column("right\nmode %", lambda body: percent(body.truth.mode_accuracy)),
+            Column("speed\nerror %", lambda body: percent(body.truth.median_velocity_error)),
         ]
     else:
         columns += [
-            Column("touchdowns\nscored", lambda body: _of(body.errors.number, body.touchdowns), fold=10),
-            Column("median\nerror %", lambda body: percent(body.errors.p50)),
+            Column(
+                "touchdowns\nscored",
+                lambda body: _of(len(body.rows), sum(not row.scored for row in body.rows)),
+                fold=10,
+            ),
+            Column("median\nerror %", lambda body: percent(errors_of(body.rows).p50)),
         ]
-    if any(body.warned for body in bodies):
+    if any(body.warned.events for body in bodies):
         columns += [
-            Column("events\nwarned of", lambda body: _events(body.warned), fold=9),
-            Column("first\ns ahead", lambda body: _warned_ahead(body.warned)),
+            Column(
+                "events\nwarned of",
+                lambda body: _of(body.warned.events, body.warned.events - body.warned.events_warned),
+                fold=9,
+            ),
+            Column("first\ns ahead", lambda body: fixed(body.warned.warned_ahead, 1)),
         ]
     return table_of(columns, bodies)
 
 
-def _of(part: int, whole: int) -> str:
-    return f"{part:,} of {whole:,}" if whole else NONE
-
-
-def _found(truth: Truth | None) -> str:
-    return NONE if truth is None else _of(truth.touchdowns - truth.missed, truth.touchdowns)
-
-
-def _events(warned: Warned | None) -> str:
-    return NONE if warned is None else _of(warned.events_warned, warned.events)
-
-
-def _warned_ahead(warned: Warned | None) -> str:
-    """Since how many seconds a warning stood at the first event."""
-    if warned is None or warned.first_event is None:
-        return NONE
-    return "not" if warned.warned_ahead is None else f"{warned.warned_ahead:.1f}"
+def _of(whole: int, missing: int) -> str:
+    return f"{whole - missing:,} of {whole:,}" if whole else NONE
 
 
 def truth_sentences(truth: Truth) -> list[str]:
@@ -237,31 +227,25 @@ def truth_sentences(truth: Truth) -> list[str]:
 
 
 def _warnings(warned: Sequence[Warned]) -> list[str]:
-    events = sum(one.events for one in warned)
-    if not events:
-        return []
-    stood = sum(one.events_warned for one in warned)
+    events, stood = sum(one.events for one in warned), sum(one.events_warned for one in warned)
     answers = [one.before_first_impact for one in warned if one.before_first_impact is not None]
-    first = f", and before the first slide or impact of {_of(sum(answers), len(answers))} bodies" if answers else ""
-    return [f"A warning stood before {stood:,} of {counted(events, 'event')}{first}."]
+    of = f"{sum(answers):,} of {len(answers):,} bodies"
+    first = f", and before the first slide or impact of {of}" if answers else ""
+    return [f"A warning stood before {stood:,} of {counted(events, 'event')}{first}."] if events else []
 
 
 def _costs(result: Result) -> list[str]:
+    """What a sample costs, and what was refused."""
     said = []
     if result.samples:
         cost, rate = result.seconds / result.samples * 1e6, result.samples / result.seconds
         samples = counted(result.samples, "sample")
         said = [f"{samples} at {cost:.0f} us each, {rate:,.0f} per second, with reading and writing."]
-    inputs = {"samples": result.statuses, "messages of contact_geometry": result.geometry_statuses}
+    refused: dict[str, Counter[Status]] = defaultdict(Counter)
     for name, counts in result.inputs.items():
-        if name.startswith("support/") or name.rpartition("/")[2] not in (*STATES, CONTACT_GEOMETRY):
-            inputs[f"messages of {name}"] = counts
-    for name, counts in inputs.items():
-        faults = [
-            f"{count:,} {TOO_EARLY.get(one, words(one.name))}"
-            for one, count in counts.items()
-            if one != Status.ACCEPTED
-        ]
-        if faults:
-            said.append(f"Refused {name}: {', '.join(faults)}.")
+        refused[name if name.startswith("support/") else name.rpartition("/")[2]].update(counts)
+    for name, all_counts in refused.items():
+        del all_counts[Status.ACCEPTED]
+        faults = [f"{count:,} {TOO_EARLY.get(one, words(one.name))}" for one, count in all_counts.items()]
+        said += [f"Refused messages of {name}: {', '.join(faults)}."] if faults else []
     return said

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from array import array
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
 from math import floor, hypot, log10
@@ -141,14 +141,13 @@ class Tally:
 
     def __init__(self, rows: Iterable[TouchdownRow] = ()) -> None:
         """Count some rows."""
-        self._touchdowns = self._predicted = 0
+        self._touchdowns = 0
         self._errors = array("d")
         self._reasons: Counter[str] = Counter()
         self._feet: set[tuple[str, str]] = set()
         self._modes: Counter[Mode] = Counter()
-        self._ahead, self._time_errors = array("d"), array("d")
-        self._speeds, self._late = array("d"), array("d")
-        self._impulse = self._change = 0.0
+        self._missed = 0
+        self._landings: dict[str, array[float]] = defaultdict(lambda: array("d"))
         self.add(rows)
 
     def add(self, rows: Iterable[TouchdownRow]) -> None:
@@ -165,20 +164,19 @@ class Tally:
     def _add_landing(self, row: TouchdownRow) -> None:
         self._modes[row.mode] += 1
         self._feet.add((row.body, row.foot))
-        if row.ahead is not None:
-            self._predicted += 1
+        self._missed += row.ahead is None
+        numbers = {
             # What follows of a foot that stands already comes at once after its first part.
-            if not row.is_second:
-                self._ahead.append(row.ahead)
-        if row.time_errors and (error := row.time_errors[0]) is not None:
-            self._time_errors.append(abs(error))
-        if row.landing_speed is not None:
-            self._speeds.append(row.landing_speed)
-        if row.impulse is not None and row.velocity_change is not None:
-            self._impulse = max(self._impulse, hypot(*row.impulse))
-            self._change = max(self._change, hypot(*row.velocity_change[:2]))
-        if row.late is not None:
-            self._late.append(row.late)
+            "ahead": None if row.is_second else row.ahead,
+            "error": row.time_errors[0] if row.time_errors else None,
+            "speed": row.landing_speed,
+            "impulse": row.impulse and hypot(*row.impulse),
+            "change": row.velocity_change and hypot(*row.velocity_change[:2]),
+            "late": row.late,
+        }
+        for name, number in numbers.items():
+            if number is not None:
+                self._landings[name].append(number)
 
     def sentences(self) -> list[str]:
         """What they say, one sentence each."""
@@ -199,32 +197,26 @@ class Tally:
     def _of_landings(self) -> list[str]:
         from ..scenarios.comparison import LEAD_TIMES  # only where feet have landed
 
-        landings, feet = self._modes.total(), len(self._feet)
-        said = [f"{counted(landings, 'landing')} of {feet} {'foot' if feet == 1 else 'feet'}"]
-        said[0] += f", {self._predicted:,} predicted"
-        if self._ahead:
-            said[0] += f", {1e3 * min(self._ahead):.0f} ms ahead or earlier"
-        if self._time_errors:
-            ahead, error = 1e3 * LEAD_TIMES[0], 1e3 * median(self._time_errors)
-            wrong = f"{error:.1f} ms wrong in the median, by when the foot's motion ends"
-            said.append(f"The time predicted {ahead:.0f} ms ahead is {wrong}")
-        if self._predicted < landings:
-            said.append(
-                f"{landings - self._predicted:,} not predicted: a foot came down too suddenly, or the noise of base "
-                "and feet hides how it comes down"
+        number, feet, known = self._modes.total(), len(self._feet), self._landings
+        of = f"{feet} {'foot' if feet == 1 else 'feet'}"
+        said = f"{counted(number, 'landing')} of {of}, {number - self._missed:,} predicted"
+        said += f", {1e3 * min(known['ahead']):.0f} ms ahead or earlier." if known["ahead"] else "."
+        if self._missed:
+            said += " The others came too suddenly, or the noise of base and feet hides how they come down."
+        modes = ", ".join(f"{self._modes[mode]:,} {mode.name}" for mode in sorted(self._modes))
+        told = [said, f"Predicted modes: {modes}."]
+        if errors := [abs(error) for error in known["error"]]:
+            wrong = f"{1e3 * median(errors):.1f} ms wrong in the median, by when the foot's motion ends"
+            told.append(f"The time predicted {1e3 * LEAD_TIMES[0]:.0f} ms ahead is {wrong}.")
+        if known["impulse"]:
+            speeds = f"{median(known['speed']):.3f} m/s in the median, at most {max(known['speed']):.3f} m/s"
+            told.append(
+                f"In its last sample in the air a foot has {speeds}; an impact with that speed gives it at most "
+                f"{max(known['impulse']):.2f} N s, and the body at most {max(known['change']):.3f} m/s."
             )
-        said.append(
-            f"Predicted modes: {', '.join(f'{self._modes[mode]:,} {mode.name}' for mode in sorted(self._modes))}"
-        )
-        if self._speeds:
-            said.append(
-                f"In its last sample in the air a foot has {median(self._speeds):.3f} m/s in the median, at most "
-                f"{max(self._speeds):.3f} m/s; an impact with that speed gives it at most {self._impulse:.2f} N s, and "
-                f"the body at most {self._change:.3f} m/s"
+        if late := [1e3 * one for one in known["late"]]:
+            told.append(
+                f"Against the plan {counted(len(late), 'landing')} came {median(late):+.1f} ms late in the median, "
+                f"from {min(late):+.1f} to {max(late):+.1f} ms."
             )
-        if self._late:
-            said.append(
-                f"Against the plan {counted(len(self._late), 'landing')} came {median(self._late) * 1e3:+.1f} ms late "
-                f"in the median, from {min(self._late) * 1e3:+.1f} to {max(self._late) * 1e3:+.1f} ms"
-            )
-        return [f"{sentence}." for sentence in said]
+        return told

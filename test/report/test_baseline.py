@@ -21,6 +21,7 @@ from impact_predictor.errors import InputError
 from impact_predictor.mechanics.types import Mode, Twist
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.prediction.types import Landing, Leftover, Prediction, Score, Status
+from impact_predictor.report.answers import as_json
 from impact_predictor.report.baseline import (
     ChangeKind,
     Earlier,
@@ -32,7 +33,6 @@ from impact_predictor.report.baseline import (
     print_changes,
     sentences,
 )
-from impact_predictor.report.replay_json import as_json
 from impact_predictor.report.touchdowns import TouchdownRow, row_of
 from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY
 

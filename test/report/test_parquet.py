@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from impact_predictor.errors import InputError
-from impact_predictor.report.parquet import COLUMNS, touchdown_table
+from impact_predictor.report.answers import COLUMNS, touchdown_table
 
 parquet = pytest.importorskip("pyarrow.parquet", reason="needs the extra fleet (make test-extras)")
 

@@ -101,7 +101,7 @@ def test_touchdowns_together_count_the_scored_and_explain_the_others() -> None:
 
 
 def test_landings_together_say_how_early_they_were_predicted_and_what_their_impacts_do() -> None:
-    predicted, times, modes, impacts = Tally([LANDED]).sentences()
+    predicted, modes, times, impacts = Tally([LANDED]).sentences()
     assert predicted == "1 landing of 1 foot, 1 predicted, 100 ms ahead or earlier."
     assert times == "The time predicted 20 ms ahead is 2.0 ms wrong in the median, by when the foot's motion ends."
     assert modes == "Predicted modes: 1 PIVOT_SLIDE."
@@ -110,9 +110,9 @@ def test_landings_together_say_how_early_they_were_predicted_and_what_their_impa
     weak = LANDED._replace(impulse=(0.0, 0.0), velocity_change=Twist(0.0, 0.0, 0.0), landing_speed=0.023)
     largest = Tally([weak, LANDED]).sentences()[-1]
     assert all(said in largest for said in ("0.073 m/s in", "most 0.123 m/s", "most 5.00 N s", "most 0.050 m/s"))
-    late = [LANDED._replace(late=-0.0123), LANDED._replace(foot="RF", late=0.02), LANDED]
+    late = [LANDED._replace(late=-0.012), LANDED._replace(foot="RF", late=0.02), LANDED]
     assert Tally(late).sentences()[-1] == (
-        "Against the plan 2 landings came +3.9 ms late in the median, from -12.3 to +20.0 ms."
+        "Against the plan 2 landings came +4.0 ms late in the median, from -12.0 to +20.0 ms."
     )
     mixed = Tally([LANDED, SCORED]).sentences()
     assert any(one.startswith("1 landing") for one in mixed)
@@ -121,10 +121,9 @@ def test_landings_together_say_how_early_they_were_predicted_and_what_their_impa
 
 def test_landings_that_nobody_announced_are_said_and_never_silent() -> None:
     missed = LANDED._replace(time_error=None, time_errors=(None, None))
-    assert Tally([missed]).sentences()[0] == "1 landing of 1 foot, 0 predicted."
-    said = Tally([missed, LANDED, LANDED._replace(foot="RF")]).sentences()
-    assert said[0] == "3 landings of 2 feet, 2 predicted, 100 ms ahead or earlier."
-    assert said[2].startswith("1 not predicted: a foot came down too suddenly")
+    assert Tally([missed]).sentences()[0].startswith("1 landing of 1 foot, 0 predicted. The others came too suddenly, ")
+    said = Tally([missed, LANDED, LANDED._replace(foot="RF")]).sentences()[0]
+    assert said.startswith("3 landings of 2 feet, 2 predicted, 100 ms ahead or earlier. The others came too suddenly, ")
 
 
 def test_a_second_contact_hides_no_lead_time_of_the_first() -> None:

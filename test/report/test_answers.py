@@ -10,7 +10,7 @@ from touchdowns import TOUCHDOWN
 from impact_predictor.bags.replay import Result, Settled
 from impact_predictor.mechanics.types import Mode, Twist
 from impact_predictor.prediction.types import Leftover, Score, Status
-from impact_predictor.report.replay_json import as_json
+from impact_predictor.report.answers import as_json
 from impact_predictor.scenarios.comparison import BodyTruth, Truth, Warned
 from impact_predictor.scenarios.matching import Announcement, Match
 
