@@ -160,13 +160,6 @@ def test_any_twist_may_be_given() -> None:
     assert "the new contact is not approached: its normal velocity, 0.5 m/s" in result.stderr
 
 
-def test_degrees_of_a_cylinder_are_those_of_its_edges() -> None:
-    cylinder = ["solve", "cylinder", "--radius", "0.3", "--mass", "2", "--friction", "0.5", "--omega", "-1", "--json"]
-    # Below 60 degrees a cylinder rolls on where it does not slip, above it stops (the paper, section 4).
-    assert json.loads(run(*cylinder, "--gamma", "50").stdout)["mode"] == "PIVOT"
-    assert json.loads(run(*cylinder, "--gamma", "80", "--gamma-new", "80").stdout)["mode"] == "STOP"
-
-
 def test_any_body_is_the_plate_of_the_same_numbers() -> None:
     contacts = ["--old", "-0.5", "-0.2", "0.2", "--new", "0.5", "-0.2", "0.2", "--old-normal", "0", "2"]
     body = run("solve", "body", "--mass", "12", "--inertia", "1.16", *contacts, "--omega", "-1", "--json")
@@ -214,13 +207,6 @@ def test_replay_prints_tables_and_notes(bag: str) -> None:
     assert result.stderr.startswith("note: ")
 
 
-def test_replay_lists_every_touchdown_when_asked(bag: str) -> None:
-    few, every = run("replay", bag, "--params", SCENE), run("replay", bag, "--params", SCENE, "--all")
-    assert "not scored:" in every.stdout
-    assert "list them with --all" in few.stdout
-    assert len(every.stdout.splitlines()) > len(few.stdout.splitlines())
-
-
 def test_replay_prints_only_json_when_asked(bag: str) -> None:
     result = run("replay", bag, "--params", SCENE, "--remap", "odom:=/cube/odom", "--json")
     answer = json.loads(result.stdout)
@@ -238,12 +224,6 @@ def test_replay_writes_predictions_and_a_picture(tmp_path: Path, bag: str) -> No
     assert "/impact_predictor/mode" in topics(output)
     assert figure.stat().st_size > 10_000
     assert f"Predictions: {output}" in result.stdout
-
-
-def test_replay_writes_markers_where_they_are_asked_for(tmp_path: Path, bag: str) -> None:
-    output = tmp_path / "out.mcap"
-    assert run("replay", bag, "--params", SCENE, "-o", str(output), "--markers").exit_code == 0
-    assert topics(output)["/impact_predictor/markers"] == "visualization_msgs/msg/MarkerArray"
 
 
 def test_replay_tells_bodies_with_names_apart(tmp_path: Path, bag: str) -> None:
@@ -302,13 +282,6 @@ def test_a_bag_that_fails_leaves_no_folder_and_others_keep_theirs(tmp_path: Path
 )
 def test_an_option_says_which_numbers_it_takes(bag: str, option: str, value: str, said: str) -> None:
     assert said in refused("replay", bag, "--params", SCENE, option, value)
-
-
-def test_several_bags_are_summed_up(tmp_path: Path, bag: str, messages: list[BagMessage]) -> None:
-    other = write_bag(tmp_path / "other.mcap", messages)
-    result = run("replay", bag, other, "--params", SCENE, "--figure", str(tmp_path / "both.png"))
-    assert result.exit_code == 0
-    assert "2 bags together" in result.stdout
 
 
 def test_without_geometry_the_sentence_and_the_empty_answer_are_given(

@@ -12,7 +12,7 @@ from click.testing import CliRunner, Result
 from impact_predictor import Contact, Outcomes, Twist, TwoPointBody, solve_impacts
 from impact_predictor.cli import main
 from impact_predictor.mechanics import invariants
-from impact_predictor.mechanics.invariants import LIMITS, Soak, problem_at, violations
+from impact_predictor.mechanics.invariants import LIMITS, violations
 from impact_predictor.mechanics.random_problems import KINDS, STIFF, random_problems
 
 BROKEN = 1
@@ -116,17 +116,6 @@ def test_ctrl_c_tells_what_was_found_so_far(loose: None, monkeypatch: pytest.Mon
     assert "\nInterrupted: 100 problems in " in result.stdout
 
 
-def test_a_short_soak_has_problems_of_every_kind(monkeypatch: pytest.MonkeyPatch) -> None:
-    seen = []
-    monkeypatch.setattr(invariants, "violations", lambda body, twist, law: (None, {}))
-    monkeypatch.setattr(
-        invariants, "random_problems", lambda *how: (seen.append(one.kind) or one for one in random_problems(*how))
-    )
-    short = Soak(len(KINDS), 0, ["path"])
-    short.run()
-    assert (seen, short.done) == (list(KINDS), len(KINDS))
-
-
 def test_a_violation_that_is_no_number_counts_as_endless(monkeypatch: pytest.MonkeyPatch) -> None:
     def all_nan(body: TwoPointBody, twist: Twist, law: str) -> tuple[None, dict[str, Any]]:
         return None, {"work": np.full(np.shape(body.mass), np.nan)}
@@ -136,14 +125,6 @@ def test_a_violation_that_is_no_number_counts_as_endless(monkeypatch: pytest.Mon
     assert result.exit_code == BROKEN
     work = next(one for one in json.loads(result.stdout)["invariants"] if one["invariant"] == "work")
     assert (work["worst"], work["broken_by"]) == (None, [kind for kind in KINDS if kind not in STIFF])
-
-
-def test_one_of_many_problems_is_solved_as_it_was_among_them() -> None:
-    for _, body, twist in random_problems(3, 17 * 20, 20):
-        outcomes = solve_impacts(body, twist)
-        one_body, one_twist = problem_at(body, 7), problem_at(twist, 7)
-        assert np.array_equal(solve_impacts(one_body, one_twist).twist, outcomes.twist[7])
-        assert type(one_body.new.normal[0]) is float
 
 
 @pytest.mark.parametrize("count", ["0", "-1", "1.5", "nan", "inf"])

@@ -128,12 +128,6 @@ def test_where_nothing_slips_a_lower_bound_is_given(tmp_path: Path, scene: str) 
     assert 0.2 < one["low"] <= 0.4
 
 
-def test_a_picture_is_drawn(written: Written) -> None:
-    picture = written.folder / "fit.png"
-    assert written.lines[-1] == f"Picture: {picture}"
-    assert picture.read_bytes().startswith(b"\x89PNG")
-
-
 def test_a_bag_that_cannot_be_read_is_told_and_the_others_are_used(plates: list[str], scene: str) -> None:
     result = run(*plates, "nowhere.mcap", "--params", scene, "--json")
     assert result.exit_code == 2
@@ -159,14 +153,6 @@ def test_what_cannot_be_used_is_told_in_one_sentence(
     assert sentence in result.stderr
     assert len(result.stderr.strip().splitlines()) == 1
     assert result.stderr.startswith("error: ")
-
-
-def test_why_touchdowns_are_not_scored_is_told_where_none_is(tmp_path: Path) -> None:
-    high = tmp_path / "high.yaml"
-    high.write_text(SCENE + "    support:\n      height: -1.0\n")
-    result = run(record(tmp_path, [10])[0], "--params", str(high))
-    assert result.exit_code == 2
-    assert "error: no touchdowns can be fitted to, but 10 are needed" in result.stderr
 
 
 @pytest.mark.slow

@@ -45,7 +45,3 @@ def test_a_file_that_is_no_scene_is_refused_in_one_sentence(tmp_path: Path) -> N
         assert result.stdout == ""
         assert said in result.stderr
         assert len(result.stderr.splitlines()) == 1
-
-
-def test_the_help_shows_how_it_is_called() -> None:
-    assert "impact-predictor explain config/cube_tosses.yaml" in run("--help").stdout

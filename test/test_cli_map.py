@@ -35,11 +35,6 @@ def examples() -> list[str]:
     ]
 
 
-@pytest.mark.parametrize("command", [[], *([body] for body in BODIES)], ids=" ".join)
-def test_every_map_has_help_with_examples(command: list[str]) -> None:
-    assert "Examples:\n    impact-predictor map " in run(*command, "--help").stdout
-
-
 @pytest.mark.parametrize("example", sorted(set(examples())))
 def test_every_example_draws_a_map(folder: Path, example: str) -> None:
     arguments = shlex.split(example)[2:]
@@ -69,15 +64,6 @@ def test_the_impacts_of_the_documentation_end_as_it_says() -> None:
     assert (slips["mode"], slips["segments"]) == ("STOP", ["--", "SS"])
     assert jams["mode"] == "BACK_PIVOT"
     assert "JAMMED" in jams["flags"]
-
-
-@pytest.mark.parametrize("body", BODIES)
-def test_without_a_name_the_picture_is_named_after_the_body(folder: Path, body: str) -> None:
-    result = run(body, "--resolution", "30")
-    assert result.stdout.splitlines()[-1] == f"Picture: map_{body}.png"
-    assert [file.name for file in folder.iterdir()] == [f"map_{body}.png"]
-    for mode in ("STOP", "SLIDE", "PIVOT_SLIDE", "PIVOT"):
-        assert mode in result.stdout
 
 
 def test_several_files_are_written_in_the_formats_of_their_names(folder: Path) -> None:

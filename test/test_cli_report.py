@@ -63,11 +63,6 @@ def test_with_json_nothing_else_is_printed_and_no_file_written(folder: Path) -> 
     assert list(folder.iterdir()) == []
 
 
-def test_without_a_name_the_folder_is_called_report(folder: Path) -> None:
-    assert run().exit_code == 0
-    assert (folder / "report/report.html").is_file()
-
-
 def test_a_file_in_the_place_of_the_folder_is_refused_in_one_sentence(folder: Path) -> None:
     (folder / "taken").write_text("")
     result = run("-o", "taken")

@@ -57,21 +57,6 @@ def test_a_shipped_scene_stands_on_its_deck(name: str) -> None:
     assert len(found) == (7 if name == "deck_many.yaml" else 1)
 
 
-def test_several_units_stand_beside_each_other() -> None:
-    boxes = [
-        (min(x) + place[0], max(x) + place[0], min(y) + place[1], max(y) + place[1])
-        for scene in scenes("deck_many.yaml").values()
-        for place, points in [(scene.place, scene.points)]
-        if points
-        for x, y in [([p[0] for p in points], [p[1] for p in points])]
-    ]
-    assert len(boxes) == 6
-    for k, (a, b, c, d) in enumerate(boxes):
-        for e, f, g, h in boxes[:k]:
-            assert b < e or f < a or d < g or h < c
-    assert {scene.source for scene in scenes("deck_many.yaml").values()} == {"odom", "imu", "none"}
-
-
 def test_the_json_has_the_impacts_of_all_and_of_each_unit() -> None:
     answer = simulated("--params", "config/deck_many.yaml", "--duration", "60", "--hs", "1.8")
     assert set(answer) == {"duration", "impacts", "accumulation_time", "end", "deck", "units"}
@@ -93,12 +78,6 @@ def test_people_read_what_each_unit_did() -> None:
     for name in scenes("deck_many.yaml"):
         assert any(line.startswith(f"{name} ") and line.rstrip().endswith("stands") for line in lines)
     assert any("impacts, " in line and "a minute" in line for line in lines)
-
-
-def test_what_topples_is_said() -> None:
-    said = run("--duration", "300", "--hs", "3").stdout
-    assert "Toppled, and not recorded after that: unit at" in said
-    assert simulated("--duration", "300", "--hs", "3")["end"] == "OVERTURNED"
 
 
 def test_the_bag_is_that_of_the_default_scene_and_its_truth() -> None:

@@ -62,14 +62,6 @@ def test_where_no_friction_is_enough_for_steady_rolling_its_rates_are_not_told()
     assert said in run("--slope", "20").stdout
 
 
-def test_a_wheel_that_slips_is_told_what_it_needs() -> None:
-    text = run("--friction", "0.35").stdout
-    assert "Steady rolling without slip, closed form: 1.605412029 rad/s" in text
-    assert (
-        "It needs a friction coefficient of 0.370775 in the impacts, between them 0.375327; the wheel has 0.35." in text
-    )
-
-
 def test_the_table_tells_the_impacts_and_the_closed_form() -> None:
     text = run().stdout
     assert "wheel, 8 spokes 1 m long, slope 5 degrees" in text
@@ -80,20 +72,6 @@ def test_the_table_tells_the_impacts_and_the_closed_form() -> None:
     )
     assert "friction coefficient of 0.370775 in the impacts, between them 0.375327; the wheel has 100." in text
     assert all(len(line) <= 80 for line in text.splitlines()[:15])
-
-
-def test_the_table_of_a_wheel_that_stops_says_so() -> None:
-    text = run("--slope", "3", "--omega", "1.5").stdout
-    assert "5 > 4" in text
-    assert "it rests on two spokes, 4 steps and 3." in text
-    assert "On this slope it does not keep rolling" in text
-
-
-def test_a_duration_alone_lets_it_make_as_many_steps_as_it_gives() -> None:
-    answer = simulated("--duration", "25")
-    assert (answer["end"], answer["time"]) == ("TIME_UP", 25.0)
-    assert answer["steps"] > 20
-    assert simulated("--duration", "25", "--steps", "3")["steps"] == 3
 
 
 def test_the_replay_of_its_bag_with_the_shipped_scene_finds_every_impact(folder: Path) -> None:

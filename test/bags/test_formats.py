@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shutil
-import sqlite3
 from pathlib import Path
 from typing import BinaryIO
 
@@ -185,22 +184,6 @@ def test_a_wrong_encoding_is_named_with_topic_type_and_file(tmp_path: Path) -> N
     other = write_mcap(tmp_path / "b.mcap", MESSAGES, encoding="protobuf", types=dict.fromkeys(WANTED, "foxglove.Pose"))
     assert "/cube/odom (foxglove.Pose)" in refusal(other)
     assert "is recorded as 'protobuf', but CDR is needed" in refusal(other)
-
-
-def test_a_wrong_encoding_in_sqlite_is_named_too(tmp_path: Path) -> None:
-    bag = write_ros2(tmp_path / "bag", MESSAGES, StoragePlugin.SQLITE3)
-    with sqlite3.connect(bag / "bag.db3") as database:
-        database.execute("UPDATE topics SET serialization_format = 'protobuf'")
-    database.close()
-    assert f"/cube/odom ({ODOMETRY}) of {bag} is recorded as 'protobuf', but CDR is needed" in refusal(bag)
-
-
-def test_a_topic_without_a_type_is_named_with_what_to_do(tmp_path: Path) -> None:
-    bag = write_mcap(tmp_path / "a.mcap", MESSAGES, types=dict.fromkeys(WANTED, ""))
-    assert refusal(bag, {"/cube/odom": ODOMETRY}) == (
-        f"the topic /cube/odom of {bag} tells no type, but {ODOMETRY} is needed; "
-        f"give another topic by --remap, or record it as {ODOMETRY}"
-    )
 
 
 def test_messages_that_a_recorder_left_beside_the_database_are_told(tmp_path: Path) -> None:

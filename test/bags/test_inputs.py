@@ -83,29 +83,6 @@ def test_a_body_with_a_name_takes_no_topic_of_another_name() -> None:
     assert refusal(recorded, CARGO).startswith("nothing in bag is told to be the deck (support/odom); it has")
 
 
-def test_without_any_unit_it_is_said_what_there_is() -> None:
-    assert refusal({"/drums/odom": ODOMETRY, "/support/odom": ODOMETRY}, CARGO) == (
-        "nothing in bag is told to be a unit (crate/odom, drum/odom or leaning/imu); it has "
-        "/drums/odom (nav_msgs/msg/Odometry), /support/odom (nav_msgs/msg/Odometry); if a unit is among them, "
-        "tell which: --remap crate/odom:=TOPIC"
-    )
-    assert refusal({"/support/odom": ODOMETRY}, ABOARD).startswith("nothing in bag is told to be a unit (odom); it has")
-    # Of units that are not measured the deck is enough.
-    assert found({"/support/odom": ODOMETRY}, {"blind": CARGO["blind"]})[0] == {"support/odom": "/support/odom"}
-
-
-def test_over_a_floor_the_reader_shall_say_what_there_is() -> None:
-    assert found({}, FLOOR)[0] == {"odom": "/odom"}
-
-
-def test_every_input_may_be_remapped() -> None:
-    recorded = {"/a": ODOMETRY, "/b": ODOMETRY, "/deck": ODOMETRY, "/i": IMU}
-    remap = {"crate/odom": "/a", "/drum/odom": "b", "support/odom": "/deck", "leaning/imu": "/i"}
-    topics, notes = found(recorded, CARGO, remap)
-    assert topics == {"support/odom": "/deck", "crate/odom": "/a", "drum/odom": "/b", "leaning/imu": "/i"}
-    assert notes == ""
-
-
 def test_a_remapping_of_no_input_is_refused_with_those_there_are() -> None:
     assert refusal({}, CARGO, {"blind/odom": "/x"}) == (
         "the remapping blind/odom:=/x is of no input; the inputs are support/odom, crate/odom, drum/odom, leaning/imu, "

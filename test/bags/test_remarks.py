@@ -13,7 +13,6 @@ from made_motions import made
 from impact_predictor.bags.replay import Result, replay
 from impact_predictor.bags.write import BagWriter
 from impact_predictor.parameters.validation import validate
-from impact_predictor.prediction.monitor import Monitor
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.prediction.types import Geometry, Joints, Sample, Status
 from impact_predictor.ros.messages import JOINT_STATE, ODOMETRY, POLYGON, encode_joints, encode_odometry, encode_polygon
@@ -53,12 +52,6 @@ def replayed(
                 topic, kind, encode = TYPES[type(told)]
                 writer.write(topic, kind, one.stamp, encode(told))  # type: ignore[operator]
     return replay(folder / "walk.mcap", scene)
-
-
-def test_a_sound_bag_needs_no_remark(tmp_path: Path) -> None:
-    result = replayed(tmp_path)
-    assert len(result.settled) > 0
-    assert (result.notes, result.unpredictable) == ((), "")
 
 
 @pytest.mark.parametrize(
@@ -218,13 +211,6 @@ def steps_of_joints() -> list[Told]:
 
 
 @pytest.mark.extras
-def test_the_mass_is_that_of_the_model(modelled: Scene) -> None:
-    # A trunk of 20 kg and four links of 1 kg.
-    assert Monitor({"": modelled}).scenes[""].mass == pytest.approx(24.0)
-    assert Monitor({"": modelled._replace(mass=3.0)}).predictors[""].scene.mass == pytest.approx(24.0)
-
-
-@pytest.mark.extras
 def test_joints_that_the_model_does_not_know_are_left_out_and_named(tmp_path: Path, modelled: Scene) -> None:
     def with_arm(_: int, one: Any) -> Any:
         if isinstance(one, Joints):
@@ -252,11 +238,3 @@ def test_joints_that_are_missing_are_named(tmp_path: Path, modelled: Scene) -> N
         "400 of 400 messages on /joint_states are WRONG_JOINTS: it lacks left_knee, right_knee of robot.urdf, while "
         "robot.urdf does not know its left_elbow, right_elbow: tell every joint of the model by its name there"
     ) in replayed(tmp_path, modelled, renamed, steps_of_joints()).unpredictable
-
-
-@pytest.mark.extras
-def test_feet_of_joints_below_the_ground_are_told_with_their_depth(tmp_path: Path, modelled: Scene) -> None:
-    low = modelled._replace(height=0.4)
-    assert "BELOW_GROUND: the lowest foot lies 0.4 m below the ground" in (
-        replayed(tmp_path, low, steps=steps_of_joints()).unpredictable
-    )

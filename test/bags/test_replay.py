@@ -9,7 +9,7 @@ import pytest
 from recordings import RECORDED, WANTED, write_bag
 
 from impact_predictor.bags.read import BagMessage, read_messages, topics
-from impact_predictor.bags.replay import Result, remapping, replay
+from impact_predictor.bags.replay import replay
 from impact_predictor.errors import InputError
 from impact_predictor.mechanics.types import Mode
 from impact_predictor.parameters.file import read_parameters
@@ -64,10 +64,6 @@ def samples_of(messages: list[BagMessage]) -> list[BagMessage]:
     return [message for message in messages if message.topic == "/cube/odom"]
 
 
-def scores_of(result: Result) -> list[tuple[int, float | None]]:
-    return [(settled.score.stamp, settled.score.relative_error) for settled in result.settled]
-
-
 def predicted_directly(scene: Scene, messages: list[BagMessage]) -> list[Output]:
     """What the node would publish, from the predictor and the encoders alone."""
     predictor = Predictor(scene)
@@ -99,16 +95,6 @@ def test_a_bag_gives_what_the_predictor_gives(
         "/impact_predictor/prediction": DIAGNOSTIC_ARRAY,
         "/impact_predictor/score": DIAGNOSTIC_ARRAY,
     }
-
-
-def test_recorded_tosses_give_scored_touchdowns(bag: Path, scene: Scene, messages: list[BagMessage]) -> None:
-    result = replay(bag, scene)
-    assert result.samples == len(samples_of(messages))
-    assert result.statuses == {Status.ACCEPTED: result.samples}
-    assert result.geometry_statuses == {Status.ACCEPTED: 4}
-    assert any(settled.score.scored for settled in result.settled)
-    assert {settled.body for settled in result.settled} == {"cube"}
-    assert (result.unpredictable, result.damaged) == ("", "")
 
 
 def test_what_the_end_of_the_record_settles_is_written_with_the_time_of_the_last_sample(
@@ -153,16 +139,6 @@ def test_odd_messages_are_counted_and_leave_the_others_as_they_are(
     assert sorted(read_outputs(tmp_path / "out.mcap")) == sorted(predicted_directly(scene, messages))
 
 
-def test_points_of_the_scene_need_no_geometry_in_the_bag(
-    tmp_path: Path, bag: Path, scene: Scene, messages: list[BagMessage]
-) -> None:
-    alone = write_bag(tmp_path / "alone.mcap", samples_of(messages))
-    points = decode_polygon(messages[0].data).points
-    result = replay(alone, scene._replace(points=points))
-    assert result.geometry_statuses == {}
-    assert scores_of(result) == scores_of(replay(bag, scene))
-
-
 def test_without_any_geometry_there_is_no_touchdown_and_a_sentence_says_why(
     tmp_path: Path, scene: Scene, messages: list[BagMessage]
 ) -> None:
@@ -171,27 +147,6 @@ def test_without_any_geometry_there_is_no_touchdown_and_a_sentence_says_why(
     assert result.settled == ()
     assert result.statuses == {Status.NO_GEOMETRY: result.samples}
     assert "give body.contact_points in the parameter file" in result.unpredictable
-
-
-def test_a_topic_without_messages_is_told_from_one_without_touchdowns(
-    tmp_path: Path, scene: Scene, messages: list[BagMessage]
-) -> None:
-    malformed = write_bag(tmp_path / "malformed.mcap", [messages[0], messages[1]._replace(data=b"x")])
-    assert "MALFORMED" in replay(malformed, scene).unpredictable
-
-
-@pytest.mark.parametrize(
-    ("remap", "sentence"),
-    [
-        ({"odom": "/nowhere"}, "has no topic /nowhere of type nav_msgs/msg/Odometry"),
-        ({"contact_geometry": "/nowhere"}, "has no topic /nowhere of type geometry_msgs/msg/PolygonStamped"),
-    ],
-)
-def test_a_remapping_that_fits_nothing_is_refused(
-    bag: Path, scene: Scene, remap: dict[str, str], sentence: str
-) -> None:
-    with pytest.raises(InputError, match=sentence):
-        replay(bag, scene, remap)
 
 
 def test_the_bag_itself_is_no_output(tmp_path: Path, scene: Scene, messages: list[BagMessage]) -> None:
@@ -209,12 +164,6 @@ def test_progress_is_told(bag: Path, scene: Scene) -> None:
     assert told
     assert told == sorted(told)
     assert told[-1] <= result.samples
-
-
-@pytest.mark.parametrize("rule", ["odom", "odom:=", ":=/odom", "odom=/a"])
-def test_a_rule_that_is_none_is_refused(rule: str) -> None:
-    with pytest.raises(InputError, match="is not of the form from:=to"):
-        remapping((rule,))
 
 
 def test_a_bag_of_which_every_sample_is_refused_says_why(bag: Path, scene: Scene) -> None:

@@ -10,23 +10,17 @@ from typing import Any
 import pytest
 from made_motions import made
 
-from impact_predictor.bags.read import BagMessage, read_messages, topics
+from impact_predictor.bags.read import BagMessage
 from impact_predictor.bags.replay import replay
 from impact_predictor.bags.write import BagWriter
 from impact_predictor.parameters.validation import validate
-from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene
-from impact_predictor.prediction.types import Geometry, Prediction, Sample, Schedule, Status, Wrench
+from impact_predictor.prediction.types import Geometry, Sample, Schedule, Status, Wrench
 from impact_predictor.ros.messages import (
     JOINT_TRAJECTORY,
     ODOMETRY,
-    OUTPUTS,
     POLYGON,
     WRENCH,
-    decode_odometry,
-    decode_polygon,
-    decode_schedule,
-    decode_wrench,
     encode_odometry,
     encode_polygon,
     encode_schedule,
@@ -69,41 +63,6 @@ def write_bag(path: Path, messages: list[BagMessage], prefix: str = "") -> Path:
     return path
 
 
-def predicted_directly(messages: list[BagMessage]) -> list[tuple[str, int, bytes]]:
-    walker, answers = Predictor(SCENE), []
-    for topic, log_time, data in messages:
-        if topic == "/odom":
-            answers.append((log_time, walker.update(decode_odometry(data))))
-        elif topic == "/contact_geometry":
-            walker.tell(decode_polygon(data))
-        elif topic == "/contact_wrench":
-            walker.tell(decode_wrench(data))
-        else:
-            walker.tell(decode_schedule(data))
-    log_time, last = answers[-1]
-    told = [
-        (f"/impact_predictor/{name}", time, encoded)
-        for time, answer in answers
-        for name, output in OUTPUTS.items()
-        if answer.status is Status.ACCEPTED and (encoded := output.encode(answer)) is not None
-    ]
-    ends = [Prediction(Status.ACCEPTED, last.sample, None, score) for score in walker.finish()]
-    return told + [("/impact_predictor/score", log_time, OUTPUTS["score"].encode(end) or b"") for end in ends]
-
-
-def test_a_bag_gives_what_the_predictor_gives(tmp_path: Path, messages: list[BagMessage]) -> None:
-    output = tmp_path / "out.mcap"
-    result = replay(write_bag(tmp_path / "walk.mcap", messages), SCENE, output=output)
-    read = [tuple(message) for message in read_messages(output, topics(output))]
-    assert sorted(read) == sorted(predicted_directly(messages))
-    landings = [settled.score.landing for settled in result.settled if settled.score.landing is not None]
-    # Each foot swings for 0.3 s and stands for 0.3 s, 2 s long.
-    assert {landing.foot for landing in landings} == {"left", "right"}
-    assert all(landing.confirmed for landing in landings)
-    assert all(landing.late is not None and abs(landing.late) < 0.02 for landing in landings)
-    assert result.notes == ()
-
-
 def test_every_input_tells_what_became_of_its_messages(tmp_path: Path, messages: list[BagMessage]) -> None:
     bad = [
         BagMessage("/contact_wrench", 0, encode_wrench(Wrench(10**9, "hand", (0.0, 0.0, 30.0)))),
@@ -127,15 +86,6 @@ def test_feet_of_a_named_body_are_told_under_its_name(tmp_path: Path, messages: 
         f"robot{topic}" for topic in ("/contact_wrench", "/schedule", "/odom", "/contact_geometry")
     ]
     assert {settled.body for settled in result.settled} == {"robot"}
-
-
-def test_what_the_scene_does_not_ask_for_is_not_read(tmp_path: Path, messages: list[BagMessage]) -> None:
-    plain = Scene.from_parameters(validate({**GIVEN, "feet.force": 0.0, "feet.has_schedule": False}))
-    result = replay(write_bag(tmp_path / "walk.mcap", messages), plain)
-    assert set(result.inputs) == {"odom", "contact_geometry"}
-    assert {(one.score.landing.late, one.score.landing.confirmed) for one in result.settled if one.score.landing} == {
-        (None, None)
-    }
 
 
 def test_without_points_of_its_feet_it_is_said_which_topic_to_give(tmp_path: Path, messages: list[BagMessage]) -> None:

@@ -53,13 +53,6 @@ def test_what_was_written_is_read(
     assert [entry.name for entry in tmp_path.iterdir()] == [name]
 
 
-def test_a_folder_that_is_not_there_is_not_made(tmp_path: Path) -> None:
-    for name in ("a/b/out.mcap", "a/out"):
-        said = refused(tmp_path / name)
-        assert said == f"the folder of {tmp_path / name} does not exist; make it, or give another name"
-    assert not list(tmp_path.iterdir())
-
-
 def test_the_same_messages_make_the_same_bytes_under_any_name(tmp_path: Path) -> None:
     for name in ("first.mcap", "second.mcap", "first", "second"):
         write(tmp_path / name)
@@ -67,14 +60,6 @@ def test_the_same_messages_make_the_same_bytes_under_any_name(tmp_path: Path) ->
     assert (tmp_path / "second.mcap").read_bytes() == file
     assert everything_in(tmp_path / "first") == everything_in(tmp_path / "second")
     assert everything_in(tmp_path / "first")["bag.mcap"] == file
-
-
-@NAMES
-def test_an_older_output_is_replaced(tmp_path: Path, name: str) -> None:
-    write(tmp_path / name)
-    write(tmp_path / name, MESSAGES[:10])
-    assert read(tmp_path / name) == MESSAGES[:10]
-    assert [entry.name for entry in tmp_path.iterdir()] == [name]
 
 
 @NAMES
@@ -149,19 +134,6 @@ def test_a_partial_output_with_a_file_of_the_user_in_it_stays(tmp_path: Path) ->
     (tmp_path / "out.mcap.partial/notes.txt").write_text("my notes")
     assert "move it away" in refused(tmp_path / "out.mcap")
     assert (tmp_path / "out.mcap.partial/notes.txt").read_text() == "my notes"
-
-
-def test_an_empty_file_and_an_empty_folder_are_filled(tmp_path: Path) -> None:
-    (tmp_path / "out.mcap").touch()
-    (tmp_path / "out").mkdir()
-    for name in ("out.mcap", "out"):
-        write(tmp_path / name)
-        assert read(tmp_path / name) == MESSAGES
-
-
-def test_a_place_that_cannot_be_written_is_named(tmp_path: Path) -> None:
-    (tmp_path / "file").touch()
-    assert "cannot be written: Not a directory" in refused(tmp_path / "file/out.mcap")
 
 
 def test_a_full_disk_is_one_sentence_and_keeps_the_older_output(

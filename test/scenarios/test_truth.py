@@ -55,15 +55,6 @@ def test_an_impact_reads_back_as_it_was() -> None:
         assert decode_true_impacts(encode_true_impact(impact, "world")) == [impact]
 
 
-def test_it_is_a_diagnostic_array_stamped_with_the_impact() -> None:
-    impact = an_impact(1)
-    message = get_typestore(Stores.ROS2_JAZZY).deserialize_cdr(encode_true_impact(impact, "world"), DIAGNOSTIC_ARRAY)
-    assert message.header.frame_id == "world"
-    assert message.header.stamp.sec * 10**9 + message.header.stamp.nanosec == impact.stamp
-    (status,) = message.status
-    assert (status.hardware_id, status.message) == (impact.body, impact.mode.name)
-
-
 def test_what_tells_no_impact_is_malformed() -> None:
     good = encode_true_impact(an_impact(1), "world")
     for data in (b"", good[:-4], encode_mode(Prediction(Status.ACCEPTED, SAMPLE)), good.replace(b"stamp", b"stomp")):

@@ -76,12 +76,6 @@ def test_the_first_event_is_a_slide_or_an_impact_and_a_lift_where_there_is_neith
     assert [(one.first_event, one.before_first_impact) for one in events] == [(6, True), (3, None)]
 
 
-@pytest.mark.parametrize(("happened", "answer"), [(2, False), (3, True)])
-def test_a_warning_comes_before_what_it_warns_of(happened: int, answer: bool) -> None:
-    assert warned_of((OK, OK, WARN), [happened], []).before_first_impact is answer
-    assert warned_of((OK, OK, WARN), [], [slide(happened)]).before_first_impact is answer
-
-
 def test_what_follows_soon_is_the_same_event() -> None:
     assert events_of([]) == []
     # Each is less than that after the one before, though the last is more than that after the first.
@@ -92,7 +86,3 @@ def test_what_follows_soon_is_the_same_event() -> None:
 def test_each_event_is_looked_at_for_a_warning_of_its_own() -> None:
     warned = warned_of((OK, WARN, OK), [2, 2 * APART], [lift(4 * APART)])
     assert (warned.events, warned.events_warned) == (3, 1)
-
-
-def test_of_a_body_without_reports_nothing_is_known() -> None:
-    assert warned_of((OK, WARN), [], [], body="drum") == Warned(None, None, None, None)

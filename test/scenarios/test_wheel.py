@@ -21,7 +21,6 @@ from impact_predictor.scenarios.wheel_closed_forms import (
     passes,
     stance_friction,
     steady,
-    step_time,
 )
 
 ALPHA = pi / 8.0
@@ -142,11 +141,6 @@ def test_a_wheel_for_which_no_friction_is_enough_slips_or_takes_off(slope: float
     assert any(state in ("+", "-") for stand in rolling.stands for _, state in stand.tips)
 
 
-def test_a_wheel_that_turns_too_fast_for_its_weight_takes_off() -> None:
-    rolling = roll(Wheel(HUB, ALPHA), 3.2)
-    assert (rolling.end, rolling.time, rolling.impacts) == (RollEnd.TAKES_OFF, 0.0, ())
-
-
 def test_on_the_level_it_stands_balanced_on_a_spoke_for_ever() -> None:
     rolling = roll(Wheel(HUB._replace(slope=0.0), ALPHA), 0.0)
     assert (rolling.end, rolling.steps, rolling.distance) == (RollEnd.BALANCED, 0, 0.0)
@@ -156,12 +150,6 @@ def test_on_the_level_it_stands_balanced_on_a_spoke_for_ever() -> None:
 def test_angles_that_do_not_go_around_are_refused_in_one_sentence(alpha: float) -> None:
     with pytest.raises(InputError, match=r"alpha is .* degrees, .*; give 180 degrees divided by a whole number"):
         roll(Wheel(HUB, alpha))
-
-
-def test_angles_in_degrees_go_around_whatever_their_rounding() -> None:
-    for spokes in (3, 7, 13, 360, 1000):
-        assert Wheel(HUB, radians(180.0 / spokes)).spokes == spokes
-        roll(Wheel(HUB, radians(180.0 / spokes)), 0.5, steps=2, duration=0.1)
 
 
 def sloping(slope: float, inertia: float = 0.0) -> Wheel:
@@ -225,12 +213,6 @@ def test_the_least_friction_of_an_impact_divides_a_foot_that_sticks_from_one_tha
             assert outcome.mode in (Mode.PIVOT_SLIDE, Mode.SLIDE)
 
 
-@pytest.mark.parametrize("rate", [0.3, 1.0, 2.5])
-def test_the_standing_foot_of_a_point_mass_needs_the_tangent_of_its_angle_at_any_rate(rate: float) -> None:
-    for angle in (-ALPHA, -0.1, 0.2, ALPHA):
-        assert stance_friction(POINT_MASS.hub, angle, rate) == pytest.approx(tan(abs(angle)), rel=1e-12)
-
-
 @pytest.mark.parametrize("inertia", [0.1, 1.0, 5.0])
 def test_with_inertia_the_stance_needs_more_than_the_impact_while_it_turns_slowly(inertia: float) -> None:
     hub = sloping(0.08, inertia).hub
@@ -266,9 +248,7 @@ def test_the_time_and_the_gain_of_a_step_are_those_of_the_motion(inertia: float)
     assert rolling.speed == pytest.approx(2.0 * sin(ALPHA) / rolling.time, rel=1e-15)
 
 
-def test_a_rate_too_small_does_not_bring_a_wheel_over_its_spoke() -> None:
-    hub = sloping(0.05).hub
-    least = sqrt(-gained(hub, -ALPHA, -hub.slope))
-    assert passes(hub, -ALPHA, least * (1.0 + 1e-12))
-    assert not passes(hub, -ALPHA, least * (1.0 - 1e-12))
-    assert step_time(hub, -ALPHA, ALPHA, least * (1.0 - 1e-12)) == inf
+@pytest.mark.parametrize("rate", [0.3, 1.0, 2.5])
+def test_the_standing_foot_of_a_point_mass_needs_the_tangent_of_its_angle_at_any_rate(rate: float) -> None:
+    for angle in (-ALPHA, -0.1, 0.2, ALPHA):
+        assert stance_friction(POINT_MASS.hub, angle, rate) == pytest.approx(tan(abs(angle)), rel=1e-12)

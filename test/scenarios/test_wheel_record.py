@@ -10,15 +10,13 @@ import numpy as np
 import pytest
 from records import impacts_of, samples_of
 
-from impact_predictor.bags.read import read_messages, topics
 from impact_predictor.mechanics.types import Mode
 from impact_predictor.parameters.file import read_values
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene, inertia_matrix
 from impact_predictor.prediction.types import Prediction
-from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY, ODOMETRY, POLYGON, decode_polygon
 from impact_predictor.scenarios.record import REST, wheel_actor, write_record
-from impact_predictor.scenarios.truth import TRUTH_TOPIC, TrueImpact
+from impact_predictor.scenarios.truth import TrueImpact
 from impact_predictor.scenarios.wheel import Hub, RollEnd, Rolling, Wheel, roll
 
 CONFIG = Path(__file__).parents[2] / "config/wheel.yaml"
@@ -74,23 +72,6 @@ def test_the_shipped_scene_is_that_of_the_simulated_wheel() -> None:
     assert shipped.normal == pytest.approx(made.normal, abs=1e-15)
     assert shipped._replace(points=made.points, normal=made.normal) == made
     assert shipped.walking is None
-
-
-def test_the_topics_are_those_of_one_body_whose_tips_are_its_contact_points(tmp_path: Path) -> None:
-    rolling = roll(SHIPPED, 0.5, steps=3)
-    path = tmp_path / "wheel.mcap"
-    write_record(path, [wheel_actor(rolling)], 200.0)
-    assert topics(path) == {"/contact_geometry": POLYGON, "/odom": ODOMETRY, TRUTH_TOPIC: DIAGNOSTIC_ARRAY}
-    geometry = [decode_polygon(message.data) for message in read_messages(path, {"/contact_geometry": POLYGON})]
-    # Points are float32 in that message.
-    assert np.array(geometry[0].points) == pytest.approx(np.array(scene_of(SHIPPED).points), abs=1e-7)
-    samples = samples_of(path)
-    assert len(samples) == wheel_actor(rolling).samples(200.0)
-    for sample in samples[::20]:
-        state = rolling.world(sample.stamp * 1e-9)
-        assert sample.position == pytest.approx((state.x, 0.0, state.y), abs=1e-12)
-        # Counter-clockwise in the plane of x and z is negative about y.
-        assert sample.angular == pytest.approx((0.0, -state.omega, 0.0), abs=1e-12)
 
 
 @pytest.mark.parametrize("inertia", [1e-12, 1e-3, 0.1])

@@ -18,14 +18,14 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from rosbags.typesys.store import Typestore
 
 from impact_predictor.bags import adapters as known
-from impact_predictor.bags.adapters import Adapted, of_world
+from impact_predictor.bags.adapters import Adapted
 from impact_predictor.bags.inputs import adapted_topics, find_topics
 from impact_predictor.bags.read import Bag, UnusableMessage, read_messages
 from impact_predictor.bags.replay import replay
 from impact_predictor.errors import InputError
 from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction.scene import CONTACT_GEOMETRY, ODOM, Input, Scene, Walking
-from impact_predictor.ros.messages import ODOMETRY, POLYGON, MalformedMessage
+from impact_predictor.ros.messages import MalformedMessage
 
 DOCUMENT = (Path(__file__).parents[3] / "docs/adapters.md").read_text()
 TYPE = "my_robot_msgs/msg/State"
@@ -141,21 +141,6 @@ def test_of_two_topics_with_adapters_one_must_be_chosen() -> None:
     assert found == {ODOM_INPUT: "/plan", FEET_INPUT: "/plan"}
 
 
-def test_a_recorded_odom_goes_before_any_adapter(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(known, "known", lambda: pytest.fail("looked for adapters"))
-    recorded = {"/anything/odom": ODOMETRY, "/state": XPP}
-    found, _ = find_topics("robot.bag", recorded, INPUTS, {})
-    assert found == {ODOM_INPUT: "/anything/odom"}
-    assert adapted_topics(recorded, found) == {}
-
-
-def test_a_type_without_an_adapter_is_no_input() -> None:
-    recorded = {"/state": "my_robot_msgs/msg/Unheard"}
-    found, notes = find_topics("robot.bag", recorded, INPUTS, {"odom": "/state"})
-    assert (found, notes) == ({ODOM_INPUT: "/state"}, ())
-    assert adapted_topics(recorded, found) == {}
-
-
 def test_an_installed_adapter_goes_before_the_one_that_is_built_in(monkeypatch: pytest.MonkeyPatch) -> None:
     mine = EntryPoint(XPP, "mine:adapt", known.GROUP)
     assert known.known()[XPP] in known.BUILT_IN
@@ -250,34 +235,6 @@ def test_feet_that_the_scene_does_not_name_are_told_where_nothing_was_predicted(
     )
 
 
-@pytest.mark.usefixtures("documented")
-def test_one_topic_of_several_with_adapters_may_be_chosen_by_any_input() -> None:
-    recorded = {"/state": TYPE, "/state_des": TYPE}
-    everything = {ODOM_INPUT: "/state_des", FEET_INPUT: "/state_des"}
-    for name in ("odom", "contact_geometry"):
-        found, notes = find_topics("robot.bag", recorded, INPUTS, {name: "/state_des"})
-        assert found == everything
-        assert "its messages have an adapter" in notes[0]
-    # Points with a type of their own say nothing of the other one.
-    recorded = {"/state": TYPE, "/feet": POLYGON}
-    assert find_topics("robot.bag", recorded, INPUTS, {"contact_geometry": "/feet"})[0][ODOM_INPUT] == "/state"
-
-
-def test_a_zero_quaternion_and_velocities_of_other_points_are_refused() -> None:
-    still = (0.0, 0.0, 0.0)
-    with pytest.raises(ValueError, match="zero quaternion"):
-        of_world(1, still, (0.0, 0.0, 0.0, 0.0), still, still, [still])
-    with pytest.raises(ValueError, match="shorter"):
-        of_world(1, still, (0.0, 0.0, 0.0, 1.0), still, still, [still, still], [still])
-
-
-def test_points_without_velocities_have_none() -> None:
-    still = (0.0, 0.0, 0.0)
-    _, geometry = of_world(1, still, (0.0, 0.0, 0.0, 1.0), still, still, [(1.0, 2.0, 3.0)])
-    assert geometry.points == ((1.0, 2.0, 3.0),)
-    assert geometry.velocities == ()
-
-
 def test_a_bag_without_definitions_is_told_apart(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     install(monkeypatch)
     store = typestore()
@@ -311,8 +268,3 @@ def test_definitions_may_be_in_idl(tmp_path: Path, monkeypatch: pytest.MonkeyPat
         writer.write(connection, 0, data)
     reader = reader_of(tmp_path / "places", "/place", "places_msgs/msg/Place")
     assert reader(data) == Adapted(stands=(True,))
-
-
-def test_the_document_names_every_adapter_that_is_built_in() -> None:
-    for one in known.BUILT_IN:
-        assert f"| {one.name} |" in DOCUMENT

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from math import asin, pi, sqrt
+from math import asin, sqrt
 from typing import Any
 
 import numpy as np
@@ -17,8 +17,7 @@ from impact_predictor.mechanics.motion import rock
 from impact_predictor.mechanics.motion.support import FixedSupport
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.scenarios.deck import cargo as deck_module
-from impact_predictor.scenarios.deck.cargo import CargoUnit, Span, follow, remembered_border, unit_of, units_of
-from impact_predictor.scenarios.truth import border_of
+from impact_predictor.scenarios.deck.cargo import CargoUnit, Span, follow, remembered_border, unit_of
 
 B, H, MASS, FRICTION = 0.4, 1.0, 500.0, 0.6
 
@@ -41,14 +40,6 @@ def test_a_box_stands_on_the_lower_edges_that_lie_along_the_deck() -> None:
     assert unit.start[:3] == pytest.approx((5.0, H, 0.0), abs=1e-15)
 
 
-def test_a_turned_box_stands_on_its_other_edges() -> None:
-    unit = unit_of("box", box(yaw=0.5 * pi))
-    # Its own x axis points to port: the points with x > 0 are to port.
-    assert unit.contacts == ((0, 1), (2, 3))
-    assert unit.body.new.x == pytest.approx(0.7)
-    assert unit.body.inertia == pytest.approx(300.0)
-
-
 def test_the_mass_centre_stands_where_the_frame_and_its_offset_say() -> None:
     unit = unit_of("box", box(center_of_mass=(0.1, 0.2, -0.3)))
     assert unit.start[:2] == pytest.approx((5.2, H - 0.3))
@@ -64,13 +55,6 @@ def test_two_points_without_edges_are_a_free_body_s_contacts() -> None:
     )
     # 1 / (axis . I^-1 . axis): the body is free to turn off the axis.
     assert unit_of("box", scene).body.inertia == pytest.approx(200.0 - 30.0**2 / 300.0)
-
-
-def test_restitution_is_that_of_both_contacts() -> None:
-    for scene in (box(restitution=0.3), a_drum(restitution=0.3)):
-        body = unit_of("one", scene).body
-        assert body.old is not None
-        assert (body.old.restitution, body.new.restitution) == (0.3, 0.3)
 
 
 def test_a_drum_lies_between_its_edges_from_starboard_to_port() -> None:
@@ -111,11 +95,6 @@ def test_what_cannot_be_simulated_in_the_plane_is_said_in_one_sentence(scene: Sc
         unit_of("box", scene)
 
 
-def test_units_have_the_names_of_their_bodies() -> None:
-    assert [unit.name for unit in units_of({"a": box(), "b": a_drum()})] == ["a", "b"]
-    assert [unit.name for unit in units_of({"": box()})] == ["unit"]
-
-
 @pytest.mark.parametrize("scene", [box(), a_drum(edges=((0.0, 4.13, 0.1), (0.0, 3.87, 0.1)))], ids=["box", "drum"])
 def test_the_truth_is_that_of_the_motion_in_one_piece(monkeypatch: pytest.MonkeyPatch, scene: Scene) -> None:
     # The spans cut through rest and motion alike.
@@ -142,19 +121,6 @@ def test_the_truth_is_that_of_the_motion_in_one_piece(monkeypatch: pytest.Monkey
         assert impact.energy_lost == pytest.approx(strike.outcome.energy_lost, rel=1e-3, abs=1e-6)
 
 
-@pytest.mark.parametrize("friction", [0.1, 0.6])
-def test_onsets_are_where_a_unit_at_rest_begins_to_move(friction: float) -> None:
-    unit = unit_of("box", box(friction=friction))
-    whole = rock(unit.body, unit.start, a_deck().at(*unit.foot), duration=20.0)
-    onsets = [onset for span in motion_of(unit, 20.0) for onset in span.onsets]
-    left = [then for now, then in itertools.pairwise(whole.phases) if now.states == "SS" != then.states]
-    assert len(onsets) == len(left) > 0
-    for onset, phase in zip(onsets, left, strict=True):
-        assert onset.stamp / 1e9 == pytest.approx(phase.start, abs=1e-6)
-        assert onset.lifts == ("O" in phase.states)
-        assert onset.slides == ("+" in phase.states or "-" in phase.states)
-
-
 def test_a_border_is_the_smallest_relative_change_to_another_mode() -> None:
     # A plate that turns about a resting contact slips at the new one below f = 3 d / (4 d^2 + 1), d = height / length.
     delta = H / B
@@ -168,10 +134,3 @@ def test_a_border_is_the_smallest_relative_change_to_another_mode() -> None:
         found = next(remembered_border(one, {}) for one in strike if one.old is not None)
         # The change against friction is the smallest: no shift of a hundredth of the half distance does as much.
         assert found == pytest.approx(0.01, rel=0.3)
-
-
-def test_borders_that_are_remembered_are_those_that_are_computed() -> None:
-    strikes = rock(unit_of("box", box()).body, unit_of("box", box()).start, a_deck(), duration=20.0).impacts
-    known: dict[tuple[float, ...], float] = {}
-    for strike in strikes[:40]:
-        assert remembered_border(strike, known) == pytest.approx(border_of(strike.outcome), rel=1e-6)

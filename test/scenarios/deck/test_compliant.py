@@ -9,7 +9,6 @@ import pytest
 from cargo_scenes import a_deck as rolling_deck
 from cargo_scenes import box
 
-from impact_predictor.errors import InputError
 from impact_predictor.mechanics.motion import End, standing
 from impact_predictor.mechanics.motion.support import MovingSupport, Wave, harmonic_support
 from impact_predictor.scenarios.deck import compliant as compliant_deck
@@ -80,9 +79,3 @@ def test_a_toppled_unit_ends_there() -> None:
     *_, last = follow_compliant(unit_of("tall", tall), a_deck(), 20.0)
     assert last.end is End.OVERTURNED
     assert last.time < 20.0
-
-
-def test_a_drum_is_refused_in_one_sentence() -> None:
-    drum = box(points=(), radius=0.6, edges=((0.0, -0.2, 0.0), (0.0, 0.2, 0.0)))
-    with pytest.raises(InputError, match="drum is a drum; compliant contacts are of points"):
-        next(follow_compliant(unit_of("drum", drum), a_deck(), 1.0))

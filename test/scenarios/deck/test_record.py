@@ -92,22 +92,6 @@ def test_twists_are_the_derivatives_of_poses(tmp_path: Path, scene: Scene, topic
     assert np.median(np.abs(linear[1:-1] - moved)) < 2e-4
 
 
-def test_a_unit_that_stands_is_where_the_deck_carries_it(tmp_path: Path) -> None:
-    # So gently that nothing moves on the deck.
-    path = recorded(tmp_path / "deck", {"a": box(), "b": a_drum()}, a_deck(0.0))
-    deck = samples_of(path, "/support/odom")
-    for under in deck[:20]:
-        # It turns about x and raises port.
-        angle = a_deck(0.0).motion(under.stamp / 1e9).angle
-        assert under.orientation == pytest.approx((np.sin(angle / 2), 0.0, 0.0, np.cos(angle / 2)), abs=1e-12)
-    for name, place in (("a", (3.0, 5.0, H)), ("b", (0.0, 4.0, 0.1 + 0.6 * np.sqrt(0.75)))):
-        for sample, under in zip(samples_of(path, f"/{name}/odom"), deck, strict=True):
-            expected = np.array(under.position) + np.array(axes_of(under.orientation)).T @ np.array(place)
-            assert sample.position == pytest.approx(expected, abs=1e-9)
-            assert (sample.frame_id, sample.child_frame_id) == ("world", name)
-            assert (under.frame_id, under.child_frame_id) == ("world", "deck")
-
-
 @pytest.mark.parametrize("topic", ["/imu", "/support/imu"])
 def test_an_imu_feels_the_second_derivative_of_its_place_less_gravity(tmp_path: Path, topic: str) -> None:
     position = (0.0, 1.5, 0.5)
@@ -223,16 +207,6 @@ def test_noise_has_its_deviations_and_says_so_in_the_covariances(tmp_path: Path)
     assert np.diag(np.reshape(sample.twist_covariance, (6, 6))) == pytest.approx([9e-4] * 3 + [16e-4] * 3)
     # SensorNoise is of the sensors: what happened stays.
     assert impacts_of(clean) == impacts_of(noisy)
-
-
-def test_the_same_seed_makes_the_same_bytes_and_another_one_others(tmp_path: Path) -> None:
-    noise = SensorNoise(position=0.01, gyro=0.01)
-    scenes = {"a": box(), "b": box(source="imu")}
-    one, same, other = (
-        recorded(tmp_path / f"{k}.mcap", scenes, noise=noise, seed=seed).read_bytes()
-        for k, seed in enumerate((1, 1, 2))
-    )
-    assert one == same != other
 
 
 def test_a_toppled_unit_tells_nothing_more_and_the_others_go_on(tmp_path: Path) -> None:

@@ -78,15 +78,6 @@ def test_the_deck_is_the_sum_of_its_waves_above_the_axis_of_the_roll() -> None:
     assert deck.felt(7.0) == pytest.approx(expected.felt_exactly(7.0), abs=1e-9)
 
 
-def test_a_file_of_tables_is_a_vessel(tmp_path: Path) -> None:
-    file = tmp_path / "rao.csv"
-    file.write_text(f"{COLUMNS}\n0.3,0.01,-1.57,1,0,1,-1.57\n1,0.05,-1.6,0.5,-0.3,0.4,-2\n")
-    vessel = read_vessel(str(file), 7.0)
-    assert vessel.height == 7.0
-    assert vessel.roll == ResponseTable((0.3, 1.0), (0.01, 0.05), (-1.57, -1.6))
-    assert vessel.sway == ResponseTable((0.3, 1.0), (1.0, 0.4), (-1.57, -2.0))
-
-
 @pytest.mark.parametrize(
     "numbers", ["1,1,1,1,1,1,1", "1,1,1,1,1,1,1;0.5,1,1,1,1,1,1", "1,1,1,1,1,1,1;2,nan,1,1,1,1,1", "1,x,1,1,1,1,1"]
 )
@@ -129,13 +120,6 @@ def test_roll_sway_and_heave_come_back(tmp_path: Path, heading: float) -> None:
     # A spline of degree 5 over samples every 0.1 s.
     assert np.array((motion.angle, motion.x, motion.y)) == pytest.approx(np.array(moved(times)), abs=1e-8)
     assert motion.ax == pytest.approx(-0.5 * FREQUENCY**2 * np.cos(FREQUENCY * times), abs=1e-6)
-
-
-def test_one_of_several_topics_is_named(tmp_path: Path) -> None:
-    path = recorded(tmp_path / "deck", 0.0, ("/deck/odom", "/bridge/odom"))
-    with pytest.raises(InputError, match="2 topics with nav_msgs/msg/Odometry; name the deck's: --record-topic"):
-        read_deck(path)
-    assert read_deck(path, "/bridge/odom").topic == "/bridge/odom"
 
 
 def test_a_bag_without_samples_enough_is_said_in_one_sentence(tmp_path: Path) -> None:
