@@ -21,7 +21,7 @@ def test_a_program_gets_every_feature_with_its_reason_and_the_topics() -> None:
     parts = {part["name"]: part for part in answer["parts"]}
     assert answer["scene"] == "deck_many"
     assert parts["moving support"]["on"]
-    assert parts["tilt"]["why"].endswith("nothing its place (for 1 of 7 bodies)")
+    assert parts["tilt"]["why"] == "source is imu (for 1 of 7 bodies)"
     assert not parts["feet"]["on"]
     assert "feet.names" in parts["feet"]["why"]
     assert answer["topics"][0] == "support/odom"

@@ -11,67 +11,30 @@ from typing import Any, Final, NamedTuple
 
 from ..parameters.types import values_of
 
-RULES: Final = (
-    ("friction", "contact.friction", "a stance may stick, and moves in closed form then", "every stance slips"),
-    ("restitution", "contact.restitution", "the new contact also pushes back", "impacts end with the compression"),
-    ("twist window", "odom.twist_window", "a twist is older than its stamp", "a twist is that of the very instant"),
-    ("moving support", "support.motion", "bodies are seen from there", "a floor, and no topic of its motion"),
-    (
-        "harmonic extrapolation",
-        "support.motion support.extrapolation",
-        "waves are fitted to the last seconds of the support's motion",
-        "no waves are fitted",
-    ),
-    (
-        "onset watch",
-        "onset.watch",
-        "how near to sliding and tipping, now and in the forecast, with levels",
-        "nobody asks how near a body is to sliding and tipping",
-    ),
-    ("cylinder", "body.radius", "the body lies on two edges of the support", "the body has contact points"),
-    ("tilt", "source", "an inertial sensor tells the tilt of the body, and nothing its place", "no sensor of the tilt"),
-    (
-        "feet",
-        "feet.names",
-        "the motion of each foot over the ground tells its stance and landings",
-        "the contact points are fixed to the body",
-    ),
-    (
-        "articulated inertia",
-        "feet.names robot.urdf",
-        "joint_states tell feet and inertia, through Pinocchio",
-        "one rigid body, and no topic joint_states",
-    ),
-    (
-        "force sensors",
-        "feet.names feet.force",
-        "the topic contact_wrench confirms which feet stand",
-        "no force sensors, and no subscription to contact_wrench",
-    ),
-    (
-        "schedule",
-        "feet.names feet.has_schedule",
-        "the topic schedule tells when feet are to stand, so landings may be late",
-        "no planner tells when feet are to stand, and no such subscription",
-    ),
-    (
-        "margins",
-        "margins",
-        "how far each impact is from another mode, computed while somebody reads ~/prediction",
-        "nobody asks how far an impact is from another mode",
-    ),
-    (
-        "uncertainty",
-        "uncertainty.samples",
-        "so many points carry the uncertainty through each impact",
-        "no probabilities are asked for, which would need numpy and numba",
-    ),
-    ("several bodies", "bodies", "each has its topics and its predictor", "one body, without a name"),
-    ("events executor", "executor", "rclpy's experimental one, which costs less for each message", "rclpy's default"),
-)
-"""For each feature the parameters that must all switch it on, what a scene has with it and what one has without."""
+SWITCHES: Final = {
+    "friction": "contact.friction",
+    "restitution": "contact.restitution",
+    "twist window": "odom.twist_window",
+    "transverse slip": "transverse_slip law contact.friction !body.radius !feet.names",
+    "geometry topic": "!body.contact_points !body.radius !robot.urdf",
+    "moving support": "support.motion",
+    "harmonic extrapolation": "support.motion support.extrapolation",
+    "onset watch": "onset.watch",
+    "cylinder": "body.radius",
+    "tilt": "source",
+    "feet": "feet.names",
+    "articulated inertia": "feet.names robot.urdf",
+    "force sensors": "feet.names feet.force",
+    "schedule": "feet.names feet.has_schedule",
+    "margins": "margins",
+    "uncertainty": "uncertainty.samples",
+    "several bodies": "bodies",
+    "events executor": "executor",
+}
+"""For each feature the parameters that must all switch it on; those with a ! switch it off where they are given."""
 
 ON: Final = {
+    "law": {"path"},
     "support.motion": {"odom", "imu"},
     "support.extrapolation": {"harmonic"},
     "source": {"imu"},
@@ -93,9 +56,10 @@ def features_of(values: Mapping[str, Any]) -> tuple[Feature, ...]:
 
     A feature is on if any body of the scene has it.
     """
-    bodies = [_features(values_of(values, body)) for body in values["bodies"] or ("",)]
+    bodies = [values_of(values, body) for body in values["bodies"] or ("",)]
     found = []
-    for each in zip(*bodies, strict=True):
+    for name, switches in SWITCHES.items():
+        each = [_feature(name, switches.split(), body) for body in bodies]
         having = [feature for feature in each if feature.on]
         few = f" (for {len(having)} of {len(each)} bodies)" if 0 < len(having) < len(each) else ""
         first = (having or each)[0]
@@ -103,51 +67,16 @@ def features_of(values: Mapping[str, Any]) -> tuple[Feature, ...]:
     return tuple(found)
 
 
-def _features(values: Mapping[str, Any]) -> list[Feature]:
-    """What one body has and lacks."""
-    found = [_geometry_topic(values), _transverse_slip(values)]
-    for feature, parameters, has, lacks in RULES:
-        names = parameters.split()
-        off = [name for name in names if not _switches_on(name, values[name])]
-        name = off[0] if off else names[-1]
-        found.append(Feature(feature, not off, f"{name} is {_said(values[name])}: {lacks if off else has}"))
-    return found
+def _feature(name: str, switches: list[str], values: Mapping[str, Any]) -> Feature:
+    """Whether a body has a feature, by the first parameter that leaves it out, or else by the first of all."""
+    off = [one for one in switches if _is_on(one.lstrip("!"), values) == one.startswith("!")]
+    parameter = (off or switches)[0].lstrip("!")
+    value = values[parameter]
+    said = str(value).lower() if isinstance(value, bool) else f"{value:g}" if isinstance(value, int | float) else value
+    if isinstance(value, tuple | list):
+        said = "given"
+    return Feature(name, not off, f"{parameter} is {said if value or said in ('0', 'false') else 'not given'}")
 
 
-def _switches_on(name: str, value: Any) -> bool:
-    return value in ON[name] if name in ON else bool(value)
-
-
-def _said(value: Any) -> str:
-    if isinstance(value, tuple | list | str):
-        words = value if isinstance(value, str) else ", ".join(map(str, value))
-        return words or "not given"
-    return str(value).lower() if isinstance(value, bool) else f"{value:g}"
-
-
-def _transverse_slip(values: Mapping[str, Any]) -> Feature:
-    name, alone = "transverse slip", "friction acts in the impact plane alone"
-    if values["body.radius"]:
-        return Feature(name, False, f"body.radius makes the body a cylinder: {alone}")
-    if values["feet.names"]:
-        return Feature(name, False, f"feet.names makes it a walking machine: {alone}")
-    if not values["transverse_slip"]:
-        return Feature(name, False, f"transverse_slip is false: {alone}")
-    if values["law"] != "path":
-        return Feature(name, False, f"the law is {values['law']}, which knows no slip across the impact plane")
-    if not values["contact.friction"]:
-        return Feature(name, False, "contact.friction is 0: nothing opposes slip across the impact plane either")
-    return Feature(name, True, "transverse_slip is true: friction also opposes slip across the impact plane")
-
-
-def _geometry_topic(values: Mapping[str, Any]) -> Feature:
-    name, no_topic = "geometry topic", "no subscription to contact_geometry"
-    if values["robot.urdf"]:
-        return Feature(name, False, f"robot.urdf is given, so the feet are where joint_states says: {no_topic}")
-    if values["feet.names"]:
-        return Feature(name, True, "feet.names makes it a walking machine, whose points keep coming on a topic")
-    if values["body.radius"]:
-        return Feature(name, False, f"body.radius makes the body a cylinder: {no_topic}")
-    if values["body.contact_points"]:
-        return Feature(name, False, f"the contact points are parameters (body.contact_points): {no_topic}")
-    return Feature(name, True, "body.contact_points is not given, so the points come from the topic contact_geometry")
+def _is_on(parameter: str, values: Mapping[str, Any]) -> bool:
+    return values[parameter] in ON[parameter] if parameter in ON else bool(values[parameter])

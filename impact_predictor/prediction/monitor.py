@@ -20,7 +20,6 @@ from .types import (
     Schedule,
     Score,
     Status,
-    Vector3,
     Wrench,
 )
 
@@ -55,7 +54,6 @@ class Monitor:
         self.watch: Watch | None = None
         self._resting: Moment | None = None
         self._watched: dict[str, Scene] = {}
-        self._points: dict[str, tuple[Vector3, ...]] = {}  # of bodies under watch, as messages told them
         self._tilts: dict[str, Tilt] = {}
         self.tilts: dict[str, Quaternion] = {}
         """The orientations, relative to the support, of bodies of which no more is measured."""
@@ -78,11 +76,10 @@ class Monitor:
 
                 self._resting = resting(shared.gravity)
             self.watch = self._begin_to_watch(scenes)
-        of_imu = {body: scene for body, scene in scenes.items() if scene.source == "imu"}
-        if of_imu:
+        if any(scene.source == "imu" for scene in scenes.values()):
             from .deck.imu import Tilt
 
-            self._tilts = {body: Tilt(scene) for body, scene in of_imu.items()}
+            self._tilts = {body: Tilt(scene) for body, scene in scenes.items() if scene.source == "imu"}
 
     def _begin_to_watch(self, scenes: Mapping[str, Scene]) -> Watch:
         from .deck.motion import forecast
@@ -114,8 +111,10 @@ class Monitor:
                 self.scenes[body] = other.scene
             if any(body in self._watched for body in others):
                 self.watch = self._begin_to_watch({body: self.scenes[body] for body in self._watched})
-                for body, points in self._points.items():
-                    self.watch.set_points(body, points)
+                for body, predictor in self.predictors.items():
+                    geometry = predictor.contacts.geometry
+                    if geometry is not None and body in self._watched:
+                        self.watch.set_points(body, geometry.points)
 
         return change
 
@@ -137,22 +136,20 @@ class Monitor:
         """Take the tilt of a body; what became of the message."""
         watch, tilt = self.watch, self._tilts[body]
         status = tilt.check(imu)
-        moment: Moment | None = None
+        moment = None
         if status is Status.ACCEPTED and self.deck is not None:
-            known = self.deck.at(imu.stamp)
-            if isinstance(known, Status):
-                status = known
-            else:
-                moment = known
-        if status is Status.ACCEPTED and imu.orientation is not None:
-            orientation = self.tilts[body] = tilt.on(moment, imu.orientation)
+            moment = self.deck.at(imu.stamp)
+            status = moment if isinstance(moment, Status) else status
+        if imu.orientation is None or isinstance(moment, Status) or status is not Status.ACCEPTED:
             if watch is not None:
-                self._rest(watch, imu.stamp)
-                if body in self._watched:
-                    self._known[body] = imu.stamp
-                    watch.update_tilt(body, imu.stamp, orientation)
-        elif watch is not None:
-            self._refused(watch, body, status, imu.stamp)
+                self._refused(watch, body, status, imu.stamp)
+            return status
+        orientation = self.tilts[body] = tilt.on(moment, imu.orientation)
+        if watch is not None:
+            self._rest(watch, imu.stamp)
+            if body in self._watched:
+                self._known[body] = imu.stamp
+                watch.update_tilt(body, imu.stamp, orientation)
         return status
 
     def update_support(self, sample: Sample) -> Status:
@@ -170,7 +167,6 @@ class Monitor:
         status = self.predictors[body].tell(message)
         if status is Status.ACCEPTED and isinstance(message, Geometry) and body in self._watched:
             assert self.watch is not None
-            self._points[body] = message.points
             self.watch.set_points(body, message.points)
         return status
 

@@ -111,7 +111,7 @@ class PointContacts(Contacts):
         return touchdown
 
     def forget(self) -> None:
-        self.settled.extend([pending.unmeasured() for pending in self._pending])
+        self.settled.extend([pending.score(self.scene) for pending in self._pending])
         self._pending.clear()
         self._recent.clear()
         self._track = self._landed = None

@@ -72,11 +72,22 @@ class Pending:
         return len(self._measured) >= MEASURED.stop
 
     def score(self, scene: Scene) -> Score:
-        """The score, once complete."""
+        """The score; where the record ended before it was complete, without what was measured."""
         last = self.track.last
+        score = Score(
+            stamp=self.stamp,
+            touchdown=last,
+            measured=None,
+            relative_error=None,
+            scored=False,
+            leftover=last.leftover | Leftover.TOO_SHORT,
+            history=(),
+        )
+        if not self.complete:
+            return score
         measured = self._twist(scene, last)
+        score = score._replace(measured=measured, leftover=last.leftover)
         scale = hypot(last.before.vx, last.before.omega * last.half_distance)
-        score = self._unscored(measured, last.leftover)
         if not last.old or scale == 0.0:
             return score
         errors = []
@@ -88,21 +99,6 @@ class Pending:
         error = _distance(last.after, measured, last.half_distance) / scale
         return score._replace(relative_error=error, scored=not last.leftover, history=tuple(errors))
 
-    def unmeasured(self) -> Score:
-        """The score where the record ends before it is complete."""
-        return self._unscored(None, self.track.last.leftover | Leftover.TOO_SHORT)
-
-    def _unscored(self, measured: Twist | None, leftover: Leftover) -> Score:
-        return Score(
-            stamp=self.stamp,
-            touchdown=self.track.last,
-            measured=measured,
-            relative_error=None,
-            scored=False,
-            leftover=leftover,
-            history=(),
-        )
-
     def _twist(self, scene: Scene, touchdown: Touchdown) -> Twist:
         """The measured twist in the plane of a prediction."""
         ahead = cross(touchdown.axis, scene.normal)
@@ -110,10 +106,12 @@ class Pending:
         up = [dot(scene.normal, velocity) for _, velocity, _ in self._measured]
         spin = [-dot(touchdown.axis, spin) for _, _, spin in self._measured]
         if scene.deck is None or scene.twist_window:
-            return Twist(median(along[MEASURED]), median(up[MEASURED]), median(spin[MEASURED]))
-        # What rocks on a deck comes slowly and has turned on by then: its twists are followed back to the touchdown.
-        times = [(stamp - self.stamp) / NANOSECONDS for stamp, _, _ in self._measured]
-        return Twist(_at_zero(times, along), _at_zero(times, up), _at_zero(times, spin))
+            vx, vy, omega = [median(values[MEASURED]) for values in (along, up, spin)]
+        else:
+            # What rocks on a deck comes slowly and has turned on by then: it is followed back to the touchdown.
+            times = [(stamp - self.stamp) / NANOSECONDS for stamp, _, _ in self._measured]
+            vx, vy, omega = [_at_zero(times, values) for values in (along, up, spin)]
+        return Twist(vx, vy, omega)
 
 
 def _distance(one: Twist, other: Twist, half_distance: float) -> float:

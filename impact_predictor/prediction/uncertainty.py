@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from ..mechanics.impact.batch import Outcomes, solve_impacts
 from ..mechanics.sensitivity import allowed_changes
 from ..mechanics.types import Contact, Mode, Twist, TwoPointBody
-from .planar import ImpactPlane, Posture
+from .planar import ORIGIN, ImpactPlane, Posture
 from .scene import Scene
 from .types import Covariance, Quaternion, Sample, Uncertainty, Vector3
 from .vectors import axes_of, cross, times, to_body, to_world
@@ -132,17 +132,13 @@ def impacts(
     changes = product(np.array(allowed_changes(body, twist)), changes)
     old, new = body.old, body.new
     if old is not None:
-        old = old._replace(friction=at_least_zero(old.friction + friction))
-    new = new._replace(
-        friction=at_least_zero(new.friction + friction),
-        restitution=np.minimum(1.0, at_least_zero(new.restitution + restitution)),
-    )
+        held: Any = np.maximum(0.0, old.friction + friction)
+        old = old._replace(friction=held)
+    grips: Any = np.maximum(0.0, new.friction + friction)
+    bounces: Any = np.minimum(1.0, np.maximum(0.0, new.restitution + restitution))
     changed: Any = [part + change for part, change in zip(twist, changes, strict=True)]
-    return solve_impacts(body._replace(old=old, new=new), Twist(*changed), law)
-
-
-def at_least_zero(numbers: NDArray[np.float64]) -> Any:
-    return np.maximum(0.0, numbers)
+    changed_body = body._replace(old=old, new=new._replace(friction=grips, restitution=bounces))
+    return solve_impacts(changed_body, Twist(*changed), law)
 
 
 def product(matrix: NDArray[np.float64], columns: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -168,31 +164,13 @@ def into_plane(frame: Sequence[Vector3], center: Vector3) -> NDArray[np.float64]
     is left over: its velocity along the axis, roll and yaw. `frame` is (ahead, normal, axis).
     """
     ahead, normal, axis = frame
-    nothing = (0.0, 0.0, 0.0)
     # a . (v + w x c) = a . v + (c x a) . w
-    return np.array(
-        [
-            (*ahead, *cross(center, ahead)),
-            (*normal, *cross(center, normal)),
-            (*nothing, *times(axis, -1.0)),
-            (*axis, *cross(center, axis)),
-            (*nothing, *ahead),
-            (*nothing, *normal),
-        ]
-    )
+    a, n, x = [(*way, *cross(center, way)) for way in frame]
+    return np.array([a, n, (*ORIGIN, *times(axis, -1.0)), x, (*ORIGIN, *ahead), (*ORIGIN, *normal)])
 
 
 def into_space(frame: Sequence[Vector3], center: Vector3) -> NDArray[np.float64]:
     """The way back of `into_plane`."""
     ahead, normal, axis = frame
-    nothing = (0.0, 0.0, 0.0)
-    back = times(axis, -1.0)
-    columns = [
-        (*ahead, *nothing),
-        (*normal, *nothing),
-        (*cross(center, back), *back),
-        (*axis, *nothing),
-        (*cross(center, ahead), *ahead),
-        (*cross(center, normal), *normal),
-    ]
-    return np.array(columns).T
+    back, roll, yaw = [(*cross(center, way), *way) for way in (times(axis, -1.0), ahead, normal)]
+    return np.array([(*ahead, *ORIGIN), (*normal, *ORIGIN), back, (*axis, *ORIGIN), roll, yaw]).T

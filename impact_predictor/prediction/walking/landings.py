@@ -215,7 +215,7 @@ class LandingTracker:
         if not isinstance(touchdown, Touchdown):
             return None
         after.track.add(landing.stamp, touchdown, 0.0)
-        return (after.score(self._scene) if after.complete else after.unmeasured())._replace(landing=landing)
+        return after.score(self._scene)._replace(landing=landing)
 
     def _seen(self, i: int, new: tuple[int, ...]) -> FootCollision | None:
         """The landing of the `new` points of a foot, of which `i` has come to stand, as the last frame before shows it.
