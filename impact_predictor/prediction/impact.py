@@ -251,11 +251,9 @@ def leftover_of(scene: Scene, collision: Collision, half_distance: float, spread
         leftover |= ONE_CORNER_FIRST
     if collision.speed < SLOWEST * hardly(scene):
         leftover |= TOO_SLOW
-    return LEFTOVERS[leftover]
+    return Leftover(leftover)
 
 
 ONE_POINT, OUT_OF_PLANE, ONE_CORNER_FIRST, TOO_SLOW = (
     int(flag) for flag in (Leftover.ONE_POINT, Leftover.OUT_OF_PLANE, Leftover.ONE_CORNER_FIRST, Leftover.TOO_SLOW)
 )
-
-LEFTOVERS = tuple(map(Leftover, range(1 + sum(Leftover))))  # by their bits, because making a flag is slow

@@ -206,7 +206,6 @@ class Monitor:
         return status
 
     def _rest(self, watch: Watch, stamp: int) -> None:
-        """Know that a fixed support is at rest still."""
         if self._resting is not None:
             watch.update_support(self._resting._replace(stamp=stamp))
 

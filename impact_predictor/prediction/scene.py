@@ -214,13 +214,12 @@ def inputs_of(scenes: Mapping[str, Scene]) -> tuple[Input, ...]:
 
 
 def _told_about(scene: Scene) -> list[str]:
-    """What is told about a body besides its states."""
-    walking = scene.walking
+    walking = scene.walking or Walking(())
     told = {
         CONTACT_GEOMETRY: scene.needs_geometry,
-        JOINTS: walking is not None and walking.robot is not None,
-        WRENCH: walking is not None and walking.force > 0.0,
-        SCHEDULE: walking is not None and walking.has_schedule,
+        JOINTS: walking.robot is not None,
+        WRENCH: walking.force > 0.0,
+        SCHEDULE: walking.has_schedule,
     }
     return [kind for kind, is_told in told.items() if is_told]
 

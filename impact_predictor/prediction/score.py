@@ -100,7 +100,6 @@ class Pending:
         return score._replace(relative_error=error, scored=not last.leftover, history=tuple(errors))
 
     def _twist(self, scene: Scene, touchdown: Touchdown) -> Twist:
-        """The measured twist in the plane of a prediction."""
         ahead = cross(touchdown.axis, scene.normal)
         along = [dot(ahead, velocity) for _, velocity, _ in self._measured]
         up = [dot(scene.normal, velocity) for _, velocity, _ in self._measured]

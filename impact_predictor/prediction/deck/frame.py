@@ -32,7 +32,6 @@ from ..vectors import add, axes_of, composed, cross, dot, times, to_body, to_wor
 APART = 1e-6
 """Contacts nearer to each other in the plane than this part of their distance from the mass centre are one."""
 
-
 PART = 0.25  # length in s of one polynomial
 NODES = 7
 """Values that a polynomial goes through. Of what swings at w rad/s it misses (w / 8 s)^7 / 322560: 2e-10 at 2 rad/s."""
@@ -76,22 +75,11 @@ def post_impact(prediction: Prediction) -> tuple[Vector3, Quaternion, Vector3, V
     touchdown, moment = prediction.touchdown, prediction.support
     if touchdown is None:
         raise ValueError("a prediction without a touchdown has no state after it")
-    state = touchdown.position, touchdown.orientation, touchdown.linear, touchdown.angular
+    position, orientation = touchdown.position, touchdown.orientation
+    linear, angular = touchdown.linear, touchdown.angular
     if moment is None or prediction.sample.frame_id != moment.frame_id:
-        return state
-    return in_world(moment, touchdown.lead_time, *state)
-
-
-def in_world(
-    moment: Moment,
-    time: float,
-    position: Vector3,
-    orientation: Quaternion,
-    linear: Vector3,
-    angular: Vector3,
-) -> tuple[Vector3, Quaternion, Vector3, Vector3]:
-    """A pose and twist in the support's frame, `time` s after the moment, in the world; see `post_impact`."""
-    felt, start = moment.felt, axes_of(moment.orientation)
+        return position, orientation, linear, angular
+    felt, start, time = moment.felt, axes_of(moment.orientation), touchdown.lead_time
     acceleration = add(moment.gravity, to_world(start, felt.gravity), -1.0)
     velocity = add(to_world(start, moment.linear), acceleration, time)
     origin = add(add(moment.position, to_world(start, moment.linear), time), acceleration, 0.5 * time * time)

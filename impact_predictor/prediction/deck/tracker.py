@@ -138,9 +138,11 @@ class Deck:
             return Status.CLOCKS_APART
         if self._state:
             return self._state
+        if gap == 0:
+            return self.last or self._state
         second = self._history[-1]
-        if gap >= 0:
-            return self._moment(later(second, stamp)) if gap else self.last or self._state
+        if gap > 0:
+            return self._moment(later(second, stamp))
         for first in reversed(self._history):
             if first.stamp <= stamp:
                 return self._moment(between(first, second, stamp))
@@ -218,7 +220,6 @@ class Deck:
         return heard is not None and stamp - heard <= self._timeout and heard - last > self._timeout // 2
 
     def _moment(self, known: SupportState) -> Moment:
-        """The support as its users see it."""
         felt = Felt(to_body(known.axes, known.felt), known.angular, known.turning)
         return Moment(
             stamp=known.stamp,

@@ -26,7 +26,7 @@ class MotionWindow:
     def __init__(self, span: float, channels: int) -> None:
         self._span = round(span * NANOSECONDS)
         self._stamps: deque[int] = deque()
-        self._channels: tuple[deque[float], ...] = tuple(deque() for _ in range(channels))
+        self._channels: tuple[deque[float], ...] = tuple([deque() for _ in range(channels)])
 
     def clear(self) -> None:
         """Forget all samples."""
@@ -73,10 +73,9 @@ class MotionWindow:
 
     def _places(self) -> tuple[float, list[float]]:
         """The stamps on -1 .. 1, and how much of that a nanosecond is."""
-        stamps = self._stamps
-        last = stamps[-1]
-        scale = 2.0 / (last - stamps[0])
-        return scale, [1.0 + scale * (stamp - last) for stamp in stamps]
+        first, last = self._stamps[0], self._stamps[-1]
+        scale = 2.0 / (last - first)
+        return scale, [1.0 + scale * (stamp - last) for stamp in self._stamps]
 
 
 def slope_weights(x: list[float]) -> list[float]:

@@ -157,7 +157,6 @@ class FeetContacts(Contacts):
         return frames
 
     def _foot(self, number: int, stamp: int) -> Foot:
-        """A foot as the sample of a stamp in ns shows it."""
         name, each = self._walking.feet[number], self._walking.points
         own = slice(number * each, (number + 1) * each)
         points, dues = self._points[own], [due for due in self._dues[own] if due is not None]

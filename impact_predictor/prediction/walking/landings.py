@@ -178,7 +178,6 @@ class LandingTracker:
         return [score for pending in self._landed if (score := self._score(pending)) is not None]
 
     def _impact(self, collision: FootCollision) -> Touchdown | Status:
-        """The touchdown that a landing makes, with its impact."""
         base = extrapolated(collision.sample, collision.line, collision.time)
         axes, position = axes_of(base.orientation), base.position
         return touchdown_of(
@@ -201,7 +200,6 @@ class LandingTracker:
                 after.add(sample, posture_of(self._scene, (), sample))
 
     def _strike(self, pending: PendingLanding) -> None:
-        """Compute the impact that was seen of a landing."""
         seen, pending.seen = pending.seen, None
         impact = None if seen is None else self._impact(seen)
         if seen is not None and pending.landing is not None and isinstance(impact, Touchdown):

@@ -240,7 +240,6 @@ class ArrivalFit:
         self._catch_up(SHARE)
 
     def _catch_up(self, most: int) -> None:
-        """Look at up to so many of the frames that were not looked at yet."""
         done = self._sums.count
         for k in range(done, min(done + most, len(self._frames))):
             frame = self._frames[k]

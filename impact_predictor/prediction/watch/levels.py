@@ -89,7 +89,6 @@ class Levels:
             self.changed = True
 
     def _asked(self, used: NDArray[np.float64]) -> NDArray[np.int64]:
-        """The ranks that used parts ask for."""
         ranks: NDArray[np.int64] = np.where(used >= self._error, ERROR, np.where(used >= self.warn, WARN, OK))
         return ranks
 

@@ -151,7 +151,6 @@ class Onset:
         return ratios
 
     def _collect(self) -> None:
-        """Take the stances into the arrays."""
         self._changed = False
         stances = self._stances
         width = max(2, *(len(stance.edges) for stance in stances))

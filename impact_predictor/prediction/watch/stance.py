@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import hypot
+from operator import itemgetter
 from typing import NamedTuple
 
 from ..scene import InertiaTensor, Scene
@@ -78,15 +79,12 @@ def outline(points: list[Vector3], up: Vector3) -> list[Vector3]:
             chain.append(corner)
         chain.pop()
     corners = chain or flat[:1]
-    ends = max(
-        ((p, q) for p in corners for q in corners),
-        key=lambda pair: hypot(pair[0][0] - pair[1][0], pair[0][1] - pair[1][1]),
-    )
-    length = hypot(ends[0][0] - ends[1][0], ends[0][1] - ends[1][1])
+    lengths = [(hypot(p[0] - q[0], p[1] - q[1]), p, q) for p in corners for q in corners]
+    length, one, other = max(lengths, key=itemgetter(0))
     if length == 0.0:
-        return [corners[0][2]]
-    if max(abs(_area(*ends, corner)) for corner in corners) <= NARROW * length * length:
-        return [ends[0][2], ends[1][2]]
+        return [one[2]]
+    if max([abs(_area(one, other, corner)) for corner in corners]) <= NARROW * length * length:
+        return [one[2], other[2]]
     return [corner[2] for corner in corners]
 
 

@@ -64,8 +64,7 @@ class Standing:
         self._feet: list[Vector3] = []
         self._anchor: list[Vector3] = []
         self._last = self._off = self._moved = self._seen_standing = 0
-        self._drawn: list[Vector3] = []
-        self._drawn_rocking = False
+        self._drawn: tuple[bool, list[Vector3]] = False, []
         self._rest(placed(scene))
 
     @property
@@ -87,8 +86,7 @@ class Standing:
         lowest, highest = min(gaps), max(gaps)
         self._seen = True
         self.tilt = self._tilt_of(pose)
-        self.slid = ""
-        self.kinetic = 0.0
+        self.slid, self.kinetic = "", 0.0
         self._off = self._off + 1 if highest - lowest > self._clear or lowest > self._clear else 0
         self.motion = BodyMotion.STANDS
         if self._off >= CONFIRMED:
@@ -142,7 +140,7 @@ class Standing:
         if min(dot(scene.normal, pose.place(foot)) for foot in feet) > scene.height + self._clear:
             return False
         self._feet = feet
-        self._anchor, self._drawn = [], []
+        self._anchor, self._drawn = [], (False, [])
         if not self._seen:
             self._own, self._up = feet, up
         self.toppled = not set(feet) <= set(self._own)
@@ -211,10 +209,10 @@ class Standing:
         center = pose.place(scene.center_of_mass)
         if scene.radius:
             feet = [center]
-        rocks = self.motion is BodyMotion.ROCKS
-        if self._drawn and rocks is self._drawn_rocking and _within(feet, self._drawn, self._touch):
+        rocks, (rocked, drawn) = self.motion is BodyMotion.ROCKS, self._drawn
+        if drawn and rocks is rocked and _within(feet, drawn, self._touch):
             return False
-        self._drawn, self._drawn_rocking = feet, rocks
+        self._drawn = rocks, feet
         found = edges_of([self._at_center(edge, pose) for edge in scene.edges] if scene.radius else feet, normal)
         if found and rocks and scene.radius:
             found = [found[gaps.index(min(gaps))]]
@@ -252,5 +250,4 @@ class Standing:
 
 
 def _within(points: list[Vector3], others: list[Vector3], distance: float) -> bool:
-    """Whether each point is within a distance in m from its counterpart."""
     return all(dist(point, other) <= distance for point, other in zip(points, others, strict=True))

@@ -157,7 +157,6 @@ class Watch:
         self._now = stamp if self._now is None else max(stamp, self._now)
 
     def _lose(self, status: Status) -> None:
-        """Know nothing of the support."""
         self._support = status
         count = len(self._bodies)
         self._used, self._time_to_tip, self._time_to_slide = np.zeros(count), np.full(count, inf), np.full(count, inf)
