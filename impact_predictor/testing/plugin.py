@@ -53,7 +53,10 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     for name, (metavar, text) in PLACES.items():
         several = name in ("bag", "remap")
         group.addoption(f"--impact-{name}", action="append" if several else "store", metavar=metavar, help=text)
-        parser.addini(f"impact_{name}", text, type="args" if several else "string", default=[] if several else "")
+        if several:
+            parser.addini(f"impact_{name}", text, type="args", default=[])
+        else:
+            parser.addini(f"impact_{name}", text, default="")
     for name, (default, text) in TOLERANCES.items():
         option = f"--impact-{name.replace('_', '-')}"
         group.addoption(option, metavar="LIMIT", help=f"{text} (default: {default})")

@@ -74,6 +74,11 @@ class Peer:
         heard = self.heard["diagnostics"]
         return decode_diagnostic_array(heard[-1])[0] if heard else Diagnostic("", STALE, "", {}, "")
 
+    def statuses(self):
+        """The latest status of each name."""
+        heard = self.heard["diagnostics"]
+        return {one.name: one for data in heard for one in decode_diagnostic_array(data)}.values()
+
     def reported(self, key):
         """A value of the latest report; None where it has none, or none has come yet."""
         return self.report().values.get(key)

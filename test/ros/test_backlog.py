@@ -8,7 +8,6 @@ import pytest
 
 pytest.importorskip("rclpy", reason="the node needs ROS 2: source it, or install the extra `ros`")
 
-from graph import peer_of_node
 from nav_msgs.msg import Odometry
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from test_node import FIXED_POINTS, SCENE, odometry
@@ -145,9 +144,3 @@ def test_a_node_that_cannot_keep_up_answers_the_newest_sample_and_tells_what_it_
 
 def counts(peer):
     return sum(int(peer.reported(key) or 0) for key in ("samples.accepted", "samples.dropped"))
-
-
-@pytest.fixture
-def peer():
-    with peer_of_node() as one:
-        yield one

@@ -5,7 +5,6 @@ import pickle
 import struct
 import subprocess
 import sys
-import time
 from itertools import islice
 from pathlib import Path
 
@@ -33,9 +32,7 @@ from impact_predictor.scenarios.record import Sensors
 
 pytest.importorskip("rclpy", reason="the node needs ROS 2: source it, or install the extra `ros`")
 
-import rclpy
 from graph import arguments_of
-from rclpy.executors import SingleThreadedExecutor
 
 from impact_predictor.ros.process import message_class
 
@@ -203,50 +200,25 @@ def test_a_sensor_that_feels_gravity_the_wrong_way_round_is_named_and_nothing_is
 def test_a_deck_and_its_cargo_that_fall_silent_are_stale_though_no_message_comes(peer):
     values = one_crate(executor="events")
     with Child("node", dict(os.environ), "-m", "impact_predictor.ros.node", *arguments_of(values)) as node:
-        publishers = {
-            topic: peer.create_publisher(message_class(ODOMETRY), topic, 100)
-            for topic in ("support/odom", "crate/odom")
-        }
-        heard = []
-        peer.create_subscription(message_class(DIAGNOSTIC_ARRAY), "/diagnostics", heard.append, 100, raw=True)
-        executor = SingleThreadedExecutor(context=peer.context)
-        executor.add_node(peer)
+        kind = message_class(ODOMETRY)
+        support, body = (peer.publisher(kind, topic, 100) for topic in ("support/odom", "crate/odom"))
         stamps = iter(range(100 * SECOND, 200 * SECOND, SECOND // 20))
 
-        def until(levels, speaking):
-            patience = time.monotonic() + 60.0
-            while {one.name: one.level for one in statuses_of(heard)} != levels:
-                assert time.monotonic() < patience, statuses_of(heard)
-                node.check()
-                executor.spin_once(timeout_sec=0.02)
-                if speaking:
-                    stamp = next(stamps)
-                    publishers["support/odom"].publish(encode_odometry(deck(stamp)))
-                    publishers["crate/odom"].publish(encode_odometry(crate(stamp)))
+        def speak():
+            stamp = next(stamps)
+            support.publish(encode_odometry(deck(stamp)))
+            body.publish(encode_odometry(crate(stamp)))
 
-        own = "impact_predictor: predictions"
-        until({own: OK, UNIT + "crate": OK}, True)
-        until({own: WARN, UNIT + "crate": STALE}, False)
-        assert any("SUPPORT_STALE" in one.message for one in statuses_of(heard))
-        until({own: OK, UNIT + "crate": OK}, True)
+        def until(of_node, of_unit, act):
+            levels = {"impact_predictor: predictions": of_node, UNIT + "crate": of_unit}
+            peer.until(lambda: {one.name: one.level for one in peer.statuses()} == levels, act)
+
+        until(OK, OK, speak)
+        until(WARN, STALE, node.check)
+        assert any("SUPPORT_STALE" in one.message for one in peer.statuses())
+        until(OK, OK, speak)
         # Messages wait while the node is asked to end.
         for stamp in islice(stamps, 20):
-            publishers["crate/odom"].publish(encode_odometry(crate(stamp)))
+            body.publish(encode_odometry(crate(stamp)))
         node.end()
         assert node.complained().count("\n") <= 2
-        executor.shutdown()
-
-
-def statuses_of(arrays):
-    """The latest status of each name."""
-    return {one.name: one for data in arrays for one in decode_diagnostic_array(data)}.values()
-
-
-@pytest.fixture
-def peer():
-    context = rclpy.Context()
-    context.init()
-    node = rclpy.create_node("peer", context=context)
-    yield node
-    node.destroy_node()
-    context.shutdown()

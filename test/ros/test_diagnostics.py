@@ -43,27 +43,42 @@ def test_before_the_first_sample_it_warns_and_says_whether_anybody_publishes(dia
     assert report(diagnostics).message == "no sample yet"
 
 
-def test_the_first_sample_makes_it_ok_at_once_and_later_ones_are_no_change(diagnostics):
-    assert accept(diagnostics, 0.1)
-    assert report(diagnostics).level == OK
-    assert not accept(diagnostics, 0.2)
+ACCEPT, REFUSE, OVER = "accept", "refuse", "second over"
+FIRST = (ACCEPT, 0.1, OK, True)
 
 
-def test_the_first_refused_message_is_a_warning_at_once_and_the_next_is_no_change(diagnostics):
-    accept(diagnostics, 0.1)
-    assert diagnostics.refused(0.2, BAD)
-    assert diagnostics.level == WARN
-    assert not diagnostics.refused(0.3, BAD)
+@pytest.mark.parametrize(
+    "events",
+    [
+        # The first sample makes it ok at once, and later ones are no change.
+        [FIRST, (ACCEPT, 0.2, OK, False)],
+        # The first refused message is a warning at once, and the next is no change.
+        [FIRST, (REFUSE, 0.2, WARN, True), (REFUSE, 0.3, WARN, False)],
+        # A warning stays until a whole second went without a refused message.
+        [FIRST, (REFUSE, 0.9, WARN, True), (OVER, 1.0, WARN, False), (ACCEPT, 1.1, WARN, False), (OVER, 2.0, OK, True)],
+        # A second of nothing but refused messages is an error until a sample is accepted.
+        [FIRST, (OVER, 1.0, OK, False), (REFUSE, 1.5, WARN, True), (OVER, 2.0, ERROR, True), (ACCEPT, 2.1, WARN, True)],
+        # An input that stops is a warning.
+        [FIRST, (OVER, 0.1 + STALE_AFTER, OK, False), (OVER, 2.0, WARN, True), (ACCEPT, 2.1, OK, True)],
+    ],
+    ids=["first sample", "first refusal", "lasting warning", "nothing but refusals", "silence"],
+)
+def test_the_level_follows_what_happens_and_a_change_is_told_at_once(diagnostics, events):
+    for what, now, level, changed in events:
+        if what == REFUSE:
+            assert diagnostics.refused(now, BAD) == changed
+        else:
+            assert (accept(diagnostics, now) if what == ACCEPT else diagnostics.second_over(now)) == changed
+        assert diagnostics.level == level
 
 
-def test_a_warning_stays_until_a_whole_second_went_without_a_refused_message(diagnostics):
-    accept(diagnostics, 0.1)
-    diagnostics.refused(0.9, BAD)
-    assert not diagnostics.second_over(1.0)
-    assert not accept(diagnostics, 1.1)
-    assert diagnostics.level == WARN
-    assert diagnostics.second_over(2.0)
-    assert diagnostics.level == OK
+def test_an_error_names_the_reason_and_a_silence_its_length(diagnostics):
+    accept(diagnostics, 0.5)
+    diagnostics.second_over(2.0)
+    assert report(diagnostics).message == "no sample for 1.5 s"
+    diagnostics.refused(2.5, BAD)
+    diagnostics.second_over(3.0)
+    assert "nothing but refused messages (1); odom NOT_FINITE: a field is NaN" in report(diagnostics).message
 
 
 def test_a_second_in_which_samples_were_dropped_is_a_warning_that_says_how_many_and_what_an_answer_takes(diagnostics):
@@ -79,33 +94,12 @@ def test_a_second_in_which_samples_were_dropped_is_a_warning_that_says_how_many_
     assert diagnostics.level == OK
 
 
-def test_a_second_of_nothing_but_refused_messages_is_an_error_until_a_sample_is_accepted(diagnostics):
-    accept(diagnostics, 0.1)
-    diagnostics.second_over(1.0)
-    diagnostics.refused(1.5, BAD)
-    assert diagnostics.level == WARN
-    assert diagnostics.second_over(2.0)
-    assert diagnostics.level == ERROR
-    assert "NOT_FINITE: a field is NaN" in report(diagnostics).message
-    assert accept(diagnostics, 2.1)
-    assert diagnostics.level == WARN
-
-
 def test_samples_that_wait_for_the_geometry_are_a_warning_however_long_it_takes(diagnostics):
     for second in range(3):
         diagnostics.refused(second + 0.5, Refusal("odom", Status.NO_GEOMETRY))
         diagnostics.second_over(second + 1.0)
         assert diagnostics.level == WARN
     assert "publish them on contact_geometry or give body.contact_points" in report(diagnostics).message
-
-
-def test_an_input_that_stops_is_a_warning_that_says_since_when(diagnostics):
-    accept(diagnostics, 0.5)
-    assert not diagnostics.second_over(0.5 + STALE_AFTER)
-    assert diagnostics.second_over(2.0)
-    assert report(diagnostics).message == "no sample for 1.5 s"
-    assert accept(diagnostics, 2.1)
-    assert diagnostics.level == OK
 
 
 def test_an_endpoint_that_qos_keeps_away_is_a_warning_that_names_it(diagnostics):

@@ -1,13 +1,7 @@
 """What the node goes through in a long life, over real DDS: clocks, bursts, restarts, new shapes, and its end."""
 
 import math
-import os
 import random
-import re
-import signal
-import subprocess
-import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -15,7 +9,7 @@ import pytest
 pytest.importorskip("rclpy", reason="the node needs ROS 2: source it, or install the extra `ros`")
 
 from geometry_msgs.msg import PolygonStamped
-from graph import PATIENCE, peer_of_node, running_node
+from graph import PATIENCE, running_node
 from nav_msgs.msg import Odometry
 from rclpy.duration import Duration
 from rclpy.qos import QoSProfile
@@ -34,7 +28,6 @@ from impact_predictor.ros.messages import (
     encode_odometry,
     encode_polygon,
 )
-from impact_predictor.ros.processes import ros_environment
 
 ROOT = Path(__file__).parents[2]
 SCENE = ROOT / "config/cube_tosses.yaml"
@@ -44,7 +37,6 @@ FIXED_POINTS = ("-p", f"body.contact_points:={[number for point in POINTS for nu
 EVERY_SAMPLE = ("-p", "qos_overrides./odom.subscription.reliability:=reliable")
 RELIABLE = QoSProfile(depth=1000)
 HOUR = 3600 * 10**9
-SHARED_MEMORY = re.compile(r"/dev/shm/fastrtps_[0-9a-f]{16}\S*")
 
 
 @pytest.fixture(scope="module")
@@ -82,7 +74,7 @@ def troubled(toss):
     ("executor", "simulated"), [("single", "false"), ("events", "true")], ids=["single", "events_with_simulated_time"]
 )
 def test_whatever_happens_to_clocks_and_order_the_node_answers_like_the_library_byte_for_byte(
-    toss, executor, simulated
+    peer, toss, executor, simulated
 ):
     sent = troubled(toss)
     given = {**read_parameters(SCENE), "body.contact_points": [number for point in POINTS for number in point]}
@@ -96,7 +88,7 @@ def test_whatever_happens_to_clocks_and_order_the_node_answers_like_the_library_
         name: [data for data in map(output.encode, accepted) if data is not None] for name, output in OUTPUTS.items()
     }
     options = (*FIXED_POINTS, *EVERY_SAMPLE, "-p", f"executor:={executor}", "-p", f"use_sim_time:={simulated}")
-    with peer_of_node() as peer, running_node(SCENE, *options) as node:
+    with running_node(SCENE, *options) as node:
         samples = peer.connected(peer.publisher(Odometry, "odom", RELIABLE))
         half, whole = len(sent) // 2, len(sent)
         for begin, end in ((0, half), (half, whole)):
@@ -120,8 +112,8 @@ def test_whatever_happens_to_clocks_and_order_the_node_answers_like_the_library_
 
 @pytest.mark.slow
 @pytest.mark.parametrize("executor", ["single", "events"])
-def test_contact_points_that_change_in_mid_flight_count_from_the_next_sample_on(toss, executor):
-    with peer_of_node() as peer, running_node(SCENE, *EVERY_SAMPLE, "-p", f"executor:={executor}") as node:
+def test_contact_points_that_change_in_mid_flight_count_from_the_next_sample_on(peer, toss, executor):
+    with running_node(SCENE, *EVERY_SAMPLE, "-p", f"executor:={executor}") as node:
         shapes = peer.connected(peer.publisher(PolygonStamped, "contact_geometry", RELIABLE))
         samples = peer.connected(peer.publisher(Odometry, "odom", RELIABLE))
         tilted = (0.0, math.sin(0.05), 0.0, math.cos(0.05))
@@ -153,57 +145,16 @@ def test_contact_points_that_change_in_mid_flight_count_from_the_next_sample_on(
         assert "Traceback" not in node.complained()
 
 
-def begun(executor, environment=None, *more):
-    """A node whose program has begun: from then on it blocks SIGINT until it can end in order."""
-    arguments = ("--ros-args", "--params-file", str(SCENE), *FIXED_POINTS, "-p", f"executor:={executor}", *more)
-    process = subprocess.Popen(
-        [sys.executable, "-m", "impact_predictor.ros.node", *arguments],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        cwd=ROOT,
-        env=environment,
-        start_new_session=True,
-    )
-    patience = time.monotonic() + PATIENCE
-    while not _blocked(process.pid) >> (signal.SIGINT - 1) & 1:
-        assert time.monotonic() < patience
-        time.sleep(0.002)
-    return process
-
-
-def _blocked(process):
-    status = Path(f"/proc/{process}/status").read_text(encoding="ascii")
-    return int(re.search(r"^SigBlk:\s*([0-9a-f]+)$", status, re.MULTILINE)[1], 16)
-
-
-@pytest.mark.slow
-@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="reads /proc to know when the program has begun")
-def test_sigint_at_any_moment_of_its_start_ends_the_node_in_order_and_leaves_nothing_behind():
-    source, alone = random.Random(2), ros_environment()
-    for number in range(4):
-        process = begun(("single", "events")[number % 2], alone)
-        # Python, rclpy, the node, its topics and the first rounds lie within a second and a half.
-        time.sleep(source.uniform(0.0, 1.5))
-        shared = set(SHARED_MEMORY.findall(Path(f"/proc/{process.pid}/maps").read_text(encoding="utf-8")))
-        process.send_signal(signal.SIGINT)
-        said, complained = process.communicate(timeout=PATIENCE)
-        assert (process.returncode, said, complained) == (0, "", "")
-        assert not [name for name in shared if Path(name).exists()]
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("executor", ["single", "events"])
-def test_sigint_in_the_midst_of_samples_ends_the_node_in_order_after_the_last_of_them(toss, executor):
-    with peer_of_node() as peer:
-        process = begun(executor, None, *EVERY_SAMPLE)
+def test_sigint_in_the_midst_of_samples_ends_the_node_in_order_after_the_last_of_them(peer, toss, executor):
+    with running_node(SCENE, *FIXED_POINTS, *EVERY_SAMPLE, "-p", f"executor:={executor}") as node:
         samples = peer.connected(peer.publisher(Odometry, "odom", RELIABLE))
         peer.until(lambda: peer.node.count_publishers("/impact_predictor/mode"))
         for sample in toss:
             samples.publish(encode_odometry(sample))
         # What is acknowledged has arrived, and so is answered before the end.
         assert samples.wait_for_all_acked(Duration(seconds=PATIENCE))
-        os.kill(process.pid, signal.SIGINT)
+        node.end()
         peer.until(lambda: len(peer.heard["mode"]) == len(toss))
-        _, complained = process.communicate(timeout=PATIENCE)
-        assert (process.returncode, complained) == (0, "")
+        assert node.complained() == ""

@@ -14,7 +14,7 @@ pytest.importorskip("rclpy", reason="the node needs ROS 2: source it, or install
 
 import rclpy
 from geometry_msgs.msg import Point32, PolygonStamped
-from graph import PATIENCE, peer_of_node, running_node
+from graph import PATIENCE, running_node
 from nav_msgs.msg import Odometry
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
@@ -33,12 +33,6 @@ POINTS = [[x, y, z] for x in (-HALF, HALF) for y in (-HALF, HALF) for z in (-HAL
 FIXED_POINTS = ("-p", f"body.contact_points:={[number for point in POINTS for number in point]}")
 # Nothing is lost or dropped then, however busy the machine is.
 EVERY_SAMPLE = ("-p", "qos_overrides./odom.subscription.reliability:=reliable")
-
-
-@pytest.fixture
-def peer():
-    with peer_of_node() as one:
-        yield one
 
 
 def running(*arguments):

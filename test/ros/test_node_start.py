@@ -1,15 +1,18 @@
 """How the node starts, refuses to start, and ends."""
 
 import importlib.util
+import re
 import signal
 import subprocess
 import sys
 import time
 from pathlib import Path
+from subprocess import PIPE
 
 import pytest
 
 from impact_predictor.ros.node import USAGE, main
+from impact_predictor.ros.processes import ros_environment
 
 needs_ros = pytest.mark.skipif(
     importlib.util.find_spec("rclpy") is None,
@@ -23,6 +26,7 @@ PATIENCE = 60.0
 
 @needs_ros
 @pytest.mark.slow
+@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="reads /proc to know when the program has begun")
 @pytest.mark.parametrize(
     ("number", "executor", "scene"),
     [
@@ -31,23 +35,30 @@ PATIENCE = 60.0
         (signal.SIGINT, "events", "deck_crate"),
     ],
 )
-def test_a_signal_ends_the_node_with_status_0_whenever_it_comes(number, executor, scene):
+def test_a_signal_ends_the_node_with_status_0_whenever_it_comes_and_leaves_nothing_behind(number, executor, scene):
+    # Alone, so that what it shares with the processes of its ROS domain ends with it.
+    alone = ros_environment()
     for moment in (0.0, 0.1, 0.2, 0.3, 0.5, 1.2):
         arguments = ("--ros-args", "--params-file", CONFIG / f"{scene}.yaml", "-p", f"executor:={executor}")
-        node = subprocess.Popen([*NODE, *arguments], stderr=subprocess.PIPE, text=True)
-        send(node, number, moment)
-        _, complaint = node.communicate(timeout=PATIENCE)
-        assert (node.returncode, complaint) == (0, "")
+        node = subprocess.Popen([*NODE, *arguments], stdout=PIPE, stderr=PIPE, text=True, env=alone)
+        shared = send(node, number, moment)
+        said, complaint = node.communicate(timeout=PATIENCE)
+        assert (node.returncode, said, complaint) == (0, "", "")
+        assert not [name for name in shared if Path(name).exists()]
 
 
 def send(node, number, moment):
-    """Send a signal some time after the program has begun: before its first line, a signal is for the interpreter."""
+    """Send a signal some time after the program has begun, before its first line a signal is for the interpreter; the
+    files in which it shared memory until then.
+    """
     patience = time.monotonic() + PATIENCE
     while not blocks(node.pid, number):
         assert time.monotonic() < patience
         time.sleep(0.005)
     time.sleep(moment)
+    shared = set(re.findall(r"/dev/shm/fastrtps_[0-9a-f]{16}\S*", Path(f"/proc/{node.pid}/maps").read_text()))
     node.send_signal(number)
+    return shared
 
 
 def blocks(process, number):

@@ -11,7 +11,7 @@ import pytest
 pytest.importorskip("rclpy", reason="the node needs ROS 2: source it, or install the extra `ros`")
 
 import rclpy
-from graph import arguments_of, peer_of_node, running_node
+from graph import arguments_of, running_node
 from trot import FEET, plan, trot
 
 from impact_predictor.bags.read import read_messages, topics
@@ -66,12 +66,6 @@ ENCODERS = {Joints: encode_joints, Wrench: encode_wrench, Schedule: encode_sched
 
 def trotting():
     return ((("contact_geometry", geometry), ("odom", sample)) for geometry, sample in trot(RATE, 1000.0))
-
-
-@pytest.fixture
-def peer():
-    with peer_of_node() as one:
-        yield one
 
 
 def walk_until(peer, machine, condition, spoil=lambda message: message):

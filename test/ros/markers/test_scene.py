@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from rosbags.typesys import Stores, get_typestore
+from messages_of_rosbags import TYPESTORE, padded, serialize
 
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import MovingDeck, Scene, Watching
@@ -33,7 +33,6 @@ from impact_predictor.ros.markers.message import (
 from impact_predictor.ros.markers.scene import PERIOD, MarkerScene
 from impact_predictor.ros.messages import MARKER_ARRAY
 
-TYPESTORE = get_typestore(Stores.ROS2_JAZZY)
 SECOND = 1_000_000_000
 NO_COVARIANCE = (0.0,) * 36
 
@@ -92,6 +91,13 @@ def triple(point: Any) -> tuple[float, float, float]:
     return point.x, point.y, point.z
 
 
+def scene_of(prediction: Prediction, scene: Scene = BOX) -> MarkerScene:
+    """The drawing of a body alone that has taken an answer."""
+    found = MarkerScene({"": scene})
+    found.take("", prediction)
+    return found
+
+
 def drawn(scene: MarkerScene, stamp: int) -> list[Any]:
     data = scene.due(stamp)
     assert data is not None
@@ -133,8 +139,7 @@ def test_the_bytes_are_those_of_rosbags_and_rclpy_at_every_alignment() -> None:
         ]
         data = encode_markers(markers, 12 * SECOND + 5, "f" * length)
         message = TYPESTORE.deserialize_cdr(data, MARKER_ARRAY)
-        again = bytes(TYPESTORE.serialize_cdr(message, MARKER_ARRAY))
-        assert data == again + bytes(-len(again) % 4)
+        assert data == padded(serialize(message, MARKER_ARRAY))
         of_rclpy = serialization.deserialize_message(data, MarkerArray)
         for marker, of_rosbags, one in zip(markers, message.markers, of_rclpy.markers, strict=True):  # type: ignore[attr-defined]
             assert (one.ns, one.id, (one.type, (one.color.r, one.color.g, one.color.b, one.color.a))) == (
@@ -149,19 +154,23 @@ def test_the_bytes_are_those_of_rosbags_and_rclpy_at_every_alignment() -> None:
             assert one.frame_locked
 
 
-def test_a_box_is_as_high_above_its_mass_centre_as_its_points_lie_below() -> None:
-    shape = shape_of(BOX, BOTTOM)
+@pytest.mark.parametrize(
+    ("center", "points", "position", "scale"),
+    [
+        # As high above its mass centre as its points lie below.
+        ((0.0, 0.0, 0.0), BOTTOM, (0.0, 0.0, 0.0), (0.8, WIDTH, HEIGHT)),
+        # All its corners are known.
+        ((0.4, 0.5, 0.6), tuple(itertools.product((0.0, 1.0), repeat=3)), (0.5, 0.5, 0.5), (1.0, 1.0, 1.0)),
+    ],
+)
+def test_points_that_are_corners_of_a_box_are_drawn_as_one(
+    center: Vector3, points: tuple[Vector3, ...], position: Vector3, scale: Vector3
+) -> None:
+    shape = shape_of(BOX._replace(center_of_mass=center), points)
     assert shape is not None
-    assert (shape.shape, shape.position) == (CUBE, (0.0, 0.0, 0.0))
-    assert shape.scale == pytest.approx((0.8, WIDTH, HEIGHT))
+    assert (shape.shape, shape.position) == (CUBE, position)
+    assert shape.scale == pytest.approx(scale)
     assert len(shape.outline) == 24  # twelve edges
-
-
-def test_a_cube_that_knows_all_its_corners_is_drawn_as_it_is() -> None:
-    corners = tuple((x, y, z) for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0))
-    shape = shape_of(BOX._replace(center_of_mass=(0.4, 0.5, 0.6)), corners)
-    assert shape is not None
-    assert (shape.shape, shape.position, shape.scale) == (CUBE, (0.5, 0.5, 0.5), (1.0, 1.0, 1.0))
 
 
 def test_points_that_are_no_corners_of_a_box_are_drawn_as_lines_from_the_mass_centre() -> None:
@@ -180,8 +189,7 @@ def test_z_is_turned_to_any_direction(direction: Vector3) -> None:
 
 
 def test_the_ghost_stands_where_the_body_is_predicted_to_touch_down(predicted: Prediction) -> None:
-    scene = MarkerScene({"": BOX})
-    scene.take("", predicted)
+    scene = scene_of(predicted)
     ghost = find(drawn(scene, SECOND), "touchdown/body")
     touchdown = predicted.touchdown
     assert touchdown is not None
@@ -194,10 +202,8 @@ def test_the_ghost_stands_where_the_body_is_predicted_to_touch_down(predicted: P
 def test_the_arrows_are_the_impulses_that_change_the_momentum_of_the_mass_centre() -> None:
     # Of so little inertia that both contacts push.
     compact = BOX._replace(inertia=((0.1, 0.0, 0.0), (0.0, 0.1, 0.0), (0.0, 0.0, 0.1)))
-    scene = MarkerScene({"": compact})
     predicted = Predictor(compact).update(tilted(SECOND))
-    scene.take("", predicted)
-    markers = drawn(scene, SECOND)
+    markers = drawn(scene_of(predicted, compact), SECOND)
     touchdown = predicted.touchdown
     assert touchdown is not None
     arrows = [find(markers, "touchdown/impulse", k) for k in range(2)]
@@ -217,9 +223,7 @@ def test_the_arrows_are_the_impulses_that_change_the_momentum_of_the_mass_centre
 
 def test_contacts_that_stand_that_strike_and_that_are_open_differ_in_form(predicted: Prediction) -> None:
     corners = BOTTOM + tuple((x, y, -z) for x, y, z in BOTTOM)
-    scene = MarkerScene({"": BOX._replace(points=corners)})
-    scene.take("", predicted)
-    markers = drawn(scene, SECOND)
+    markers = drawn(scene_of(predicted, BOX._replace(points=corners)), SECOND)
     forms = {}
     for kind in ("standing", "striking", "open"):
         marker = find(markers, f"contacts/{kind}")
@@ -233,8 +237,7 @@ def test_contacts_that_stand_that_strike_and_that_are_open_differ_in_form(predic
 
 
 def test_the_words_tell_mode_time_impulses_and_velocities(predicted: Prediction) -> None:
-    scene = MarkerScene({"": BOX})
-    scene.take("", predicted)
+    scene = scene_of(predicted)
     name, when, impulses, after = find(drawn(scene, SECOND), "units/text").text.split("\n")
     touchdown = predicted.touchdown
     assert touchdown is not None
@@ -249,8 +252,7 @@ def test_the_words_tell_mode_time_impulses_and_velocities(predicted: Prediction)
 def test_a_touchdown_that_is_withdrawn_is_deleted_and_one_that_happened_shown_for_a_while(
     predicted: Prediction,
 ) -> None:
-    scene = MarkerScene({"": BOX})
-    scene.take("", predicted)
+    scene = scene_of(predicted)
     shown = drawn(scene, SECOND)
     scene.take("", Prediction(Status.ACCEPTED, standing(SECOND + PERIOD)))
     after = drawn(scene, SECOND + PERIOD)
@@ -275,8 +277,7 @@ def test_a_message_is_due_ten_times_a_second_of_stamps_whatever_comes() -> None:
 
 
 def test_a_clock_that_starts_anew_clears_the_picture(predicted: Prediction) -> None:
-    scene = MarkerScene({"": BOX})
-    scene.take("", predicted._replace(sample=tilted(100 * SECOND)))
+    scene = scene_of(predicted._replace(sample=tilted(100 * SECOND)))
     assert scene.due(100 * SECOND) is not None
     assert scene.due(100 * SECOND - PAUSE // 2) is None
     scene.take("", predicted)
@@ -293,14 +294,11 @@ def test_nothing_is_drawn_before_anything_is_known_and_a_refused_sample_changes_
     scene.take("", predicted)
     before = scene.due(SECOND)
     scene.take("", Prediction(Status.WRONG_FRAME, standing(SECOND)._replace(frame_id="elsewhere")))
-    again = MarkerScene({"": BOX})
-    again.take("", predicted)
-    assert again.due(SECOND) == before
+    assert scene_of(predicted).due(SECOND) == before
 
 
 def test_a_body_that_is_no_longer_measured_turns_grey() -> None:
-    scene = MarkerScene({"": BOX})
-    scene.take("", Prediction(Status.ACCEPTED, standing(SECOND)))
+    scene = scene_of(Prediction(Status.ACCEPTED, standing(SECOND)))
     fresh = find(drawn(scene, SECOND), "units").color
     late = drawn(scene, SECOND + PAUSE + PERIOD)
     grey = find(late, "units").color
@@ -417,8 +415,7 @@ def test_the_floor_is_below_the_bodies_and_does_not_creep_with_them() -> None:
 
 
 def test_contact_points_may_come_with_the_samples() -> None:
-    scene = MarkerScene({"": BOX._replace(points=())})
-    scene.take("", Prediction(Status.ACCEPTED, standing(SECOND)))
+    scene = scene_of(Prediction(Status.ACCEPTED, standing(SECOND)), BOX._replace(points=()))
     assert scene.due(SECOND) is None
     scene.set_geometry("", Geometry(SECOND, "box", BOTTOM))
     assert find(drawn(scene, SECOND), "units").type == CUBE
@@ -426,8 +423,7 @@ def test_contact_points_may_come_with_the_samples() -> None:
 
 def test_every_marker_that_is_shown_has_an_extent_and_words_are_not_empty(predicted: Prediction) -> None:
     """RViz warns of scales of zero, and shows nothing of them."""
-    scene = MarkerScene({"": BOX})
-    scene.take("", predicted)
+    scene = scene_of(predicted)
     for marker in drawn(scene, SECOND):
         assert marker.color.a > 0.0
         if marker.type == TEXT:
