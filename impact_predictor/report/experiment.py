@@ -25,29 +25,35 @@ LENGTH: Final = 0.4
 """m, of every rod; its ends are the farthest supports."""
 THICKNESSES: Final = (0.020, 0.010, 0.005, 0.002)
 """m, of wood, metal and plastic."""
-REBOUNDED: Final = 0.002
-"""m, the thickness of the rod that rebounded from both supports wherever they were."""
-VERY_SMALL: Final = 0.01
-"""m: with the old support about this near to the middle, and the new one farther, the rod turned back."""
 
 
 class RodTrial(NamedTuple):
-    """One rod over two supports at `a` and `b` from its middle (m), and what the paper `observed`.
-
-    `ratio` is the angular velocity after the impact over that before, and `gravity_share` the impulse of gravity while
-    the contact lasts, as a part of the impulse at the new support.
-    """
+    """One rod over two supports at `a` and `b` from its middle (m), the twist `before` the impact and its outcome."""
 
     thickness: float
     a: float
     b: float
+    before: Twist
     outcome: Outcome
-    ratio: float
-    gravity_share: float
-    observed: Mode
+
+    @property
+    def ratio(self) -> float:
+        """The angular velocity after the impact over that before."""
+        return self.outcome.twist.omega / self.before.omega
+
+    @property
+    def observed(self) -> Mode:
+        """What the paper says it saw of rods such as this one; it has words for all of them, and no table."""
+        if self.thickness == THICKNESSES[-1]:
+            return Mode.FLIGHT
+        # With the old support very close to the middle, and the new one farther, the rod turned back.
+        if self.a <= 0.01 and self.b > self.a:
+            return Mode.BACK_PIVOT
+        return Mode.STOP if 12.0 * self.a * self.b > LENGTH * LENGTH else Mode.PIVOT
 
     @property
     def agrees(self) -> bool:
+        """Whether that was predicted."""
         return self.outcome.mode is self.observed
 
     @property
@@ -70,21 +76,7 @@ def trial(thickness: float, a: float, b: float, friction: float, angle: float) -
     """
     body = rod(length=LENGTH, thickness=thickness, a=a, b=b, mass=1.0, friction=friction)
     before = falling(body, radians(angle))
-    outcome = solve_impact(body, before)
-    observed = Mode.STOP if 12.0 * a * b > LENGTH * LENGTH else Mode.PIVOT
-    if thickness == REBOUNDED:
-        observed = Mode.FLIGHT
-    elif a <= VERY_SMALL and b > a:
-        observed = Mode.BACK_PIVOT
-    return RodTrial(
-        thickness=thickness,
-        a=a,
-        b=b,
-        outcome=outcome,
-        ratio=outcome.twist.omega / before.omega,
-        gravity_share=body.mass * VALIDITY.gravity * VALIDITY.contact_time / outcome.impulses[1][0],
-        observed=observed,
-    )
+    return RodTrial(thickness=thickness, a=a, b=b, before=before, outcome=solve_impact(body, before))
 
 
 def falling(body: TwoPointBody, angle: float) -> Twist:
@@ -121,6 +113,7 @@ def trials(places: Sequence[tuple[int, int]], friction: float, angle: float) -> 
 
 def experiment_json(friction: float, angle: float) -> dict[str, Any]:
     """All trials and the borders, as JSON has them."""
+    weight = VALIDITY.gravity * VALIDITY.contact_time
     rows = trials((*SYMMETRIC, *VERY_CLOSE), friction, angle)
     return {
         "borders": [{"thickness": thickness, "a": border(thickness, friction)} for thickness in THICKNESSES],
@@ -132,7 +125,8 @@ def experiment_json(friction: float, angle: float) -> dict[str, Any]:
                 "predicted": one.outcome.mode.name,
                 "observed": one.observed.name,
                 "omega_ratio": one.ratio,
-                "gravity_share": one.gravity_share,
+                # The impulse of gravity on 1 kg while the contact lasts, as a part of that at the new support.
+                "gravity_share": weight / one.outcome.impulses[1][0],
                 "flags": [flag.name for flag in Flag if flag & one.outcome.flags],
             }
             for row in rows
@@ -148,7 +142,7 @@ def _said(place: int, row: Sequence[RodTrial]) -> str:
 def print_experiment(console: Console, friction: float, angle: float) -> None:
     """Print what is predicted, beside what was seen."""
     rows = trials((*SYMMETRIC, *VERY_CLOSE), friction, angle)
-    columns = [Column("a\nmm", lambda row: f"{1e3 * row[0].a:g}"), Column("b\nmm", lambda row: f"{1e3 * row[0].b:g}")]
+    columns = [Column("a   b\nmm", lambda row: f"{1e3 * row[0].a:g} {1e3 * row[0].b:3g}")]
     for k, thickness in enumerate(THICKNESSES):
         columns.append(Column(f"predicted\n{1e3 * thickness:g} mm thick", partial(_said, k), left=True))
     # Of all but the thinnest, which was seen to rebound everywhere.

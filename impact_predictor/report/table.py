@@ -28,20 +28,21 @@ class Column(NamedTuple):
 
 def table_of(columns: Sequence[Column], rows: Iterable[Any], style: Callable[[Any], str] | None = None) -> Table:
     """A table of rows, each perhaps in a style of rich."""
-    table = plain_table()
+    table, rows = plain_table(), list(rows)
     # Headers end on one line.
     lines = max(column.header.count("\n") for column in columns)
-    for column in columns:
+    texts = [[column.cell(row) for row in rows] for column in columns]
+    for column, cells in zip(columns, texts, strict=True):
         table.add_column(
             "\n" * (lines - column.header.count("\n")) + column.header,
             justify="left" if column.left else "right",
             no_wrap=not column.fold,
             overflow="fold",
             # rich narrows columns of a table that is too wide below their words.
-            min_width=column.fold or max(map(len, column.header.split("\n"))),
+            min_width=column.fold or max(len(line) for text in (column.header, *cells) for line in text.split("\n")),
         )
-    for row in rows:
-        table.add_row(*(column.cell(row) for column in columns), style="" if style is None else style(row))
+    for row, *cells in zip(rows, *texts, strict=True):
+        table.add_row(*cells, style="" if style is None else style(row))
     return table
 
 
