@@ -202,7 +202,9 @@ class Diagnostics:
                 return ERROR, f"nothing but refused messages ({count}); {reason}"
             return WARN, f"{count} messages refused in the last second; {reason}"
         if dropped := self._dropped - self._dropped_before:
-            return WARN, self._overload(dropped)
+            cost = f"{median(self._totals) * 1e3:.2g} ms" if self._totals else "too long"
+            why = f"they come faster than answers, of {cost} each"
+            return WARN, f"{dropped} samples dropped in the last second: {why}"
         if self.misfits:
             return WARN, f"QoS does not match ({len(self.misfits)}): {self.misfits[0]}"
         if len(self._last) < len(self.publishers):
@@ -213,11 +215,6 @@ class Diagnostics:
             return WARN, f"no sample{where} for {age:.1f} s"
         flaws = [feet.flaw for feet in self.feet.values() if feet.flaw]
         return (WARN, flaws[0]) if flaws else (OK, "predicting")
-
-    def _overload(self, dropped: int) -> str:
-        """Why samples were dropped."""
-        cost = f"{median(self._totals) * 1e3:.2g} ms" if self._totals else "too long"
-        return f"{dropped} samples dropped in the last second: they come faster than answers, of {cost} each"
 
     def _missing(self) -> str:
         """Which inputs never had a message."""

@@ -246,8 +246,7 @@ class Body:
             scale=shape.scale,
             look=(shape.shape, colour),
         )
-        drawn = [body, *(self._contacts(seen, axes, shape) if scene.radius == 0.0 else self._edges())]
-        drawn += self._landings(shape, letter)
+        drawn = [body, *self._contacts(seen, axes, shape), *(self._landings(shape, letter) if self._feet else ())]
         if ahead is not None:
             # How long the arrow of 1 m/s is, or of as much impulse on each kg: that of a fall from its own height is
             # as long as the body.
@@ -259,46 +258,37 @@ class Body:
         above = add(place, scene.normal, top + (0.6 * len(words) + 0.4) * letter)
         return [*drawn, Marker("units/text", self._number, letter, position=above, text="\n".join(words))]
 
-    def _ahead_of(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
-        """The contacts that stand and that strike next."""
-        ahead = self._ahead
-        return ((), ()) if ahead is None or ahead.happened else (ahead.touchdown.old, ahead.touchdown.new)
-
     def _contacts(self, seen: SeenPose, axes: Axes, shape: BodyShape) -> list[Marker]:
-        """The contact points: cubes stand, large spheres strike next, small ones are open."""
-        scene = self.scene
-        old, new = self._ahead_of()
-        height, normal = dot(scene.normal, seen.position) - scene.height, to_body(axes, scene.normal)
-        stands = [i in old or height + dot(normal, point) <= scene.tolerance for i, point in enumerate(self._points)]
-        strikes = [i in new for i in range(len(stands))]
-        if self._feet:
-            stands = [foot.stands for foot in self._feet]
-            strikes = [foot.lead_time is not None and not foot.stands for foot in self._feet]
-        kinds = ["striking" if b else "standing" if a else "open" for a, b in zip(stands, strikes, strict=True)]
-        drawn, size = [], 0.09 * shape.size
-        for kind, factor in _SIZES.items():
-            points = tuple(point for point, its in zip(self._points, kinds, strict=False) if its == kind)
+        """The contact points: cubes stand, large spheres strike next, small ones are open; of a cylinder the edges."""
+        scene, ahead, is_drum = self.scene, self._ahead, self.scene.radius > 0.0
+        old, new = ((), ()) if ahead is None or ahead.happened else (ahead.touchdown.old, ahead.touchdown.new)
+        places: dict[str, list[Vector3]] = {kind: [] for kind in _SIZES}
+        if is_drum:
+            half = times(drum_axis(scene), scene.radius)
+            for i, edge in enumerate(scene.edges):
+                places["striking" if i in new else "standing"] += (add(edge, half, -1.0), add(edge, half))
+        elif self._feet:
+            for foot, point in zip(self._feet, self._points, strict=False):
+                places["standing" if foot.stands else "open" if foot.lead_time is None else "striking"].append(point)
+        else:
+            height, normal = dot(scene.normal, seen.position) - scene.height, to_body(axes, scene.normal)
+            for i, point in enumerate(self._points):
+                stands = i in old or height + dot(normal, point) <= scene.tolerance
+                places["striking" if i in new else "standing" if stands else "open"].append(point)
+        drawn, pose = [], (NOWHERE, UNTURNED) if is_drum else (seen.position, seen.orientation)
+        for kind, points in places.items():
             if points:
-                at = seen.position, seen.orientation
-                drawn.append(Marker(f"contacts/{kind}", self._number, factor * size, points, *at))
-        return drawn
-
-    def _edges(self) -> list[Marker]:
-        """The edges of the support on which a cylinder lies, by their kinds."""
-        half = times(drum_axis(self.scene), self.scene.radius)
-        _, new = self._ahead_of()
-        drawn = []
-        for kind, strikes in (("standing", False), ("striking", True)):
-            edges = [edge for i, edge in enumerate(self.scene.edges) if (i in new) == strikes]
-            ends = tuple(end for edge in edges for end in (add(edge, half, -1.0), add(edge, half)))
-            if ends:
-                name, width = f"contacts/{kind}", 0.1 * _SIZES[kind] * self.scene.radius
-                drawn.append(Marker(name, self._number, width, ends, look=(LINE_LIST, LOOKS[name][1])))
+                name, factor = f"contacts/{kind}", _SIZES[kind]
+                size = 0.1 * factor * scene.radius if is_drum else factor * (0.09 * shape.size)
+                look = (LINE_LIST, LOOKS[name][1]) if is_drum else None
+                drawn.append(Marker(name, self._number, size, tuple(points), *pose, look=look))
         return drawn
 
     def _landings(self, shape: BodyShape, letter: float) -> list[Marker]:
         """A mark where each swinging foot lands, a line to it from the foot, and its name with the time until then."""
-        drawn, lines, places = list[Marker](), list[Vector3](), list[Vector3]()
+        drawn: list[Marker] = []
+        lines: list[Vector3] = []
+        places: list[Vector3] = []
         for k, foot in enumerate(self._feet):
             if foot.place is None or foot.position is None or foot.lead_time is None:
                 continue
@@ -318,7 +308,8 @@ class Body:
         an arrow of 1 m/s is of a `length` in m.
         """
         scene, number, pose = self.scene, self._number, (touchdown.position, touchdown.orientation)
-        axes, width, drawn = axes_of(touchdown.orientation), 0.04 * shape.size, list[Marker]()
+        axes, width = axes_of(touchdown.orientation), 0.04 * shape.size
+        drawn: list[Marker] = []
         if not self._feet:  # legs do not keep their form
             drawn.append(Marker("touchdown/body", number, 0.6 * width, shape.outline, *pose))
         center = add(touchdown.position, to_world(axes, scene.center_of_mass))

@@ -96,6 +96,7 @@ _NONE: Final = bytes(4)
 _BEFORE_TEXT: Final = b"".join((_NONE, _EMPTY, bytes(8), _EMPTY, _EMPTY, _NONE, _NONE))
 # mesh_resource, mesh_file and mesh_use_embedded_materials, padded to the next marker, or as DDS pads the whole.
 _AFTER_TEXT: Final = b"".join((_EMPTY, _EMPTY, _NONE, _NONE))
+_WITHOUT_TEXT: Final = _BEFORE_TEXT + _EMPTY + _AFTER_TEXT
 _string = lru_cache(maxsize=64)(string)
 
 
@@ -115,8 +116,8 @@ def encode_markers(markers: Iterable[Marker], nanoseconds: int, frame_id: str) -
             head += _NONE
         body = _BODY.pack(*position, *orientation, *scale, *colour, LIFETIME, 0, True, len(points))
         # Points are doubles again: what lies before them, from double to double, is a multiple of eight.
-        rest = _BEFORE_TEXT + (string(text) if text else _EMPTY) + _AFTER_TEXT
-        chunks += (head, body, _packed(points), rest)
+        rest = _BEFORE_TEXT + string(text) + _AFTER_TEXT if text else _WITHOUT_TEXT
+        chunks += (head, body, _packed(points), rest) if points else (head, body, rest)
         size += len(head) + len(body) + _POINT.size * len(points) + len(rest)
         count += 1
     return b"".join((LITTLE_ENDIAN_HEADER, LITTLE_ENDIAN.length.pack(count), *chunks))
