@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
+from .impact import approach
 from .impact.answer import mode_of
 from .motion import PlanarState
 from .motion.support import FixedSupport, MovingSupport, Support, SupportMotion, from_world, in_world
@@ -189,17 +190,7 @@ def compliant_motion(
     closes that was open.
     """
     contacts = (*((body.old,) if body.old is not None else ()), body.new, *more)
-    model = CompliantBody(
-        mass=body.mass,
-        inertia=body.inertia,
-        gravity=support.gravity,
-        places=tuple((contact.x, contact.y) for contact in contacts),
-        compliances=tuple(
-            _compliance(body, contact, stiffness, regularisation, damping_ratio(contact.restitution))
-            for contact in contacts
-        ),
-        supports=(support,),
-    )
+    model = _model(body, contacts, (support,), support.gravity, stiffness, regularisation)
 
     def gap(time: float, state: NDArray[np.float64]) -> float:
         return min(one.gap for one in model.contacts(time, state)[until_closed:])
@@ -227,25 +218,13 @@ def compliant_impact(
     `tolerance` is relative to these.
     """
     contacts = (*((body.old,) if body.old is not None else ()), body.new)
-    unit, rho = sqrt(body.mass / stiffness), sqrt(body.inertia / body.mass)
-    model = CompliantBody(
-        mass=body.mass,
-        inertia=body.inertia,
-        gravity=0.0,
-        places=tuple((contact.x, contact.y) for contact in contacts),
-        compliances=(),
-        supports=tuple(_surface(contact) for contact in contacts),
-    )
-    start = np.array((0.0, 0.0, 0.0, *twist))
-    speed = sum(abs(one.rate) + abs(one.slip) for one in model.contacts(0.0, start))
-    if all(one.rate >= 0.0 for one in model.contacts(0.0, start)):
+    before = [approach(contact, twist) for contact in contacts]
+    if all(normal >= 0.0 for normal, _ in before):
         return Mode.NO_IMPACT, twist
-    model = model._replace(
-        compliances=tuple(
-            _compliance(body, contact, stiffness, regularisation * speed, damping_ratio(contact.restitution))
-            for contact in contacts
-        )
-    )
+    speed = sum(abs(normal) + abs(slip) for normal, slip in before)
+    unit, rho = sqrt(body.mass / stiffness), sqrt(body.inertia / body.mass)
+    supports = tuple(map(_surface, contacts))
+    model = _model(body, contacts, supports, 0.0, stiffness, regularisation * speed)
 
     def remaining(time: float, state: NDArray[np.float64]) -> float:
         ax, ay, turning = model.rates(time, state)[3:]
@@ -253,6 +232,7 @@ def compliant_impact(
         return max(left, *[-APPROACHES - one.rate / speed for one in model.contacts(time, state)])
 
     errors = tolerance * speed * np.array((unit, unit, unit / rho, 1.0, 1.0, 1.0 / rho))
+    start = np.array((0.0, 0.0, 0.0, *twist))
     found = _integrated(model, start, (0.0, LONGEST * unit), "LSODA", (tolerance, errors), remaining)
     if found.status != 1:
         return None
@@ -274,14 +254,30 @@ def _surface(contact: Contact) -> MovingSupport:
     return MovingSupport(motion, period=1.0, gravity=0.0)
 
 
-def _compliance(
-    body: TwoPointBody, contact: Contact, stiffness: float, regularisation: float, ratio: float
-) -> Compliance:
-    """A contact whose damping is `ratio` times the critical one for a body that strikes it alone, without friction."""
-    nx, ny = contact.normal
-    moment = (contact.x * ny - contact.y * nx) / hypot(nx, ny)
-    mobility = 1.0 / body.mass + moment * moment / body.inertia
-    return Compliance(stiffness, 2.0 * ratio * sqrt(stiffness / mobility), contact.friction, regularisation)
+def _model(
+    body: TwoPointBody,
+    contacts: tuple[Contact, ...],
+    supports: tuple[Support, ...],
+    gravity: float,
+    stiffness: float,
+    regularisation: float,
+) -> CompliantBody:
+    """The body on contacts whose damping gives a body that strikes one alone, without friction, its restitution."""
+    compliances = []
+    for contact in contacts:
+        nx, ny = contact.normal
+        moment = (contact.x * ny - contact.y * nx) / hypot(nx, ny)
+        mobility = 1.0 / body.mass + moment * moment / body.inertia
+        damping = 2.0 * damping_ratio(contact.restitution) * sqrt(stiffness / mobility)
+        compliances.append(Compliance(stiffness, damping, contact.friction, regularisation=regularisation))
+    return CompliantBody(
+        mass=body.mass,
+        inertia=body.inertia,
+        gravity=gravity,
+        places=tuple((contact.x, contact.y) for contact in contacts),
+        compliances=tuple(compliances),
+        supports=supports,
+    )
 
 
 def _integrated(
