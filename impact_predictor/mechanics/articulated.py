@@ -7,11 +7,8 @@ joints are free in it, so that the mobility of its contacts is W = G M(q)^-1 G^T
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from pathlib import Path
-from tempfile import TemporaryFile
 from typing import Any
 
 import numpy as np
@@ -110,32 +107,13 @@ def _model(pinocchio: Any, urdf: str) -> Any:
     if not Path(urdf).is_file():
         where = f" in {Path.cwd()}, where this program runs" if not Path(urdf).is_absolute() else ""
         raise InputError(f"robot.urdf: there is no file {urdf!r}{where}; give the whole path of the machine's URDF")
-    with _complaints() as complained:
-        try:
-            return pinocchio.buildModelFromUrdf(urdf, pinocchio.JointModelFreeFlyer())
-        except (ValueError, RuntimeError) as error:
-            reason = f" ({said})" if (said := complained()) else ""
-            raise InputError(
-                f"robot.urdf: {urdf} is not a URDF that Pinocchio can read{reason}; check it with `check_urdf`"
-            ) from error
-
-
-@contextmanager
-def _complaints() -> Iterator[Callable[[], str]]:
-    """Hold back what the URDF parser, which is no Python, prints on standard error; gives its first line."""
-    shown = os.dup(2)
-    with TemporaryFile() as file:
-        os.dup2(file.fileno(), 2)
-
-        def first() -> str:
-            file.seek(0)
-            return file.readline().decode(errors="replace").strip().removeprefix("Error:").strip()
-
-        try:
-            yield first
-        finally:
-            os.dup2(shown, 2)
-            os.close(shown)
+    try:
+        return pinocchio.buildModelFromUrdf(urdf, pinocchio.JointModelFreeFlyer())
+    except (ValueError, RuntimeError) as error:
+        # The parser, which is no Python, prints what is wrong on standard error itself.
+        raise InputError(
+            f"robot.urdf: {urdf} is not a URDF that Pinocchio can read; check it with `check_urdf`"
+        ) from error
 
 
 def _frame(model: Any, name: str, urdf: str) -> int:

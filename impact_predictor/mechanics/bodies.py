@@ -139,12 +139,8 @@ def refuse(values: dict[str, Number], allowed: Callable[[Any], Any], wanted: str
     for name, value in values.items():
         good = allowed(value)
         if good is not True and not (good is not False and good.all()):
-            raise InputError(f"{name} is {first_bad(value, good)}; give {wanted}")
-
-
-def first_bad(value: Any, good: Any) -> Any:
-    """The value, or the first element of it that is not good."""
-    return value if good is False else value[~good].flat[0]
+            bad: Any = value if good is False else value[~good].flat[0]  # type: ignore[index]
+            raise InputError(f"{name} is {bad}; give {wanted}")
 
 
 def sine_and_cosine(angle: Any) -> tuple[Any, Any]:

@@ -5,7 +5,6 @@ import os
 import shutil
 import subprocess
 import sys
-import tracemalloc
 from pathlib import Path
 from struct import pack
 
@@ -18,7 +17,6 @@ from impact_predictor import (
     Contact,
     Flag,
     InputError,
-    Mode,
     Twist,
     TwoPointBody,
     Validity,
@@ -137,23 +135,6 @@ def test_the_outcome_has_the_dtypes_that_are_promised():
     }
 
 
-def test_more_impacts_than_a_chunk_all_get_their_answer():
-    frictions = np.linspace(0.0, 1.5, 3 * batch.CHUNK + 1)
-    body = plate(length=1.0, height=1.0, mass=1.0, friction=frictions)
-    outcomes = solve_impacts(body, body.turning(omega=-1.0))
-    middle = plate(length=1.0, height=1.0, mass=1.0, friction=float(frictions[2 * batch.CHUNK]))
-    assert row_of(outcomes, 2 * batch.CHUNK) == row(solve_impact(middle, middle.turning(omega=-1.0)))
-    assert set(outcomes.mode) == {Mode.SLIDE, Mode.PIVOT_SLIDE, Mode.PIVOT}
-
-
-def element_of_body(body, i):
-    """The i-th body, where only some fields are arrays."""
-    if isinstance(body, tuple):
-        parts = [element_of_body(part, i) for part in body]
-        return type(body)(*parts) if hasattr(body, "_fields") else tuple(parts)
-    return float(body[i]) if isinstance(body, np.ndarray) else body
-
-
 def test_normals_and_velocities_of_supports_may_be_arrays_part_by_part():
     speeds = np.array([0.0, 0.5, 1.0])
     old, new = Contact(-0.5, -0.2, 0.3), Contact(0.5, -0.2, 0.3, normal=(0.0, np.ones(3)), velocity=(speeds, 0.0))
@@ -188,34 +169,11 @@ def test_shapes_that_do_not_fit_and_unknown_laws_are_refused():
         solve_impacts(body, np.zeros((3, 2)))
 
 
-def test_bodies_are_made_from_arrays_like_from_numbers():
-    many = np.array([0.3, 0.9])
-    for make, name, fixed in (
-        (plate, "height", {"length": 1.0, "mass": 2.0, "friction": 0.3}),
-        (rod, "a", {"length": 1.0, "thickness": 0.1, "b": 0.2, "mass": 2.0, "friction": 0.3}),
-        (cylinder, "radius", {"gamma": 0.5, "mass": 2.0, "friction": 0.3}),
-    ):
-        bodies = make(**{name: many}, **fixed)
-        for i, value in enumerate(many):
-            assert element_of_body(bodies, i) == make(**{name: float(value)}, **fixed)
-
-
 def test_an_array_with_a_number_that_no_body_can_have_is_refused_with_that_number():
     with pytest.raises(InputError, match=r"friction is -0\.1"):
         plate(length=1.0, height=1.0, mass=1.0, friction=np.array([0.3, -0.1]))
     with pytest.raises(InputError, match="gamma"):
         cylinder(radius=1.0, gamma=np.array([0.5, 2.0]), mass=1.0, friction=0.3)
-
-
-def test_many_impacts_need_hardly_more_memory_than_their_outcomes():
-    friction = np.linspace(0.0, 1.0, 200_000)
-    body = plate(length=1.0, height=1.0, mass=1.0, friction=friction)
-    solve_impacts(body, body.turning(omega=-1.0))
-    tracemalloc.start()
-    outcomes = solve_impacts(body, body.turning(omega=-1.0))
-    _, peak = tracemalloc.get_traced_memory()
-    tracemalloc.stop()
-    assert peak - sum(field.nbytes for field in outcomes) < 200 * friction.size
 
 
 READ_ONLY = """

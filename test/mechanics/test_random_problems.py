@@ -23,12 +23,6 @@ def normal_velocity(contact, twist):
     return nx * (vx - omega * contact.y - ux) + ny * (vy + omega * contact.x - uy)
 
 
-def test_chunks_add_up_to_the_count_and_the_kinds_take_turns():
-    chunks = list(random_problems(seed=1, count=len(KINDS) * 10 + 3, chunk=10))
-    assert [each.kind for each in chunks] == [*KINDS, next(iter(KINDS))]
-    assert [len(each.twist.vx) for each in chunks] == [10] * len(KINDS) + [3]
-
-
 def test_a_seed_gives_the_same_problems_again():
     first, again, other = (list(random_problems(seed, 100, 10)) for seed in (5, 5, 6))
     for one, two in zip(first, again, strict=True):

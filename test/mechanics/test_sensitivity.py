@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 from alone import random_impacts
 
-from impact_predictor import Contact, Flag, Twist, TwoPointBody, cylinder, plate, solve_impact
-from impact_predictor.mechanics.closed_forms import cylindrical, flat
+from impact_predictor import Contact, Flag, Twist, TwoPointBody, plate, solve_impact
 from impact_predictor.mechanics.random_problems import KINDS
 from impact_predictor.mechanics.sensitivity import FREE, INPUTS, NO_CHANGE, allowed_changes, sensitivity
 
@@ -95,33 +94,6 @@ def test_a_sliding_plate_has_the_derivatives_of_its_closed_form():
     by_friction = np.add(derivatives.friction_old, derivatives.friction_new)
     assert by_friction == pytest.approx([-w * a, 0.0, 0.0], abs=ROUNDING)
     assert np.array(derivatives.twist)[:, 2] == pytest.approx([-(h - 0.2 * a), 0.0, 0.0], abs=ROUNDING)
-
-
-def test_pivoting_bodies_have_the_derivatives_of_their_closed_forms():
-    height, friction, step = 1.0, 0.4, 1e-6
-    body = plate(length=1.0, height=height, mass=10.0, friction=friction)
-    shape = flat.rectangle(height)
-    slope = (flat.pivot_slide(shape, friction + step).omega - flat.pivot_slide(shape, friction - step).omega) / (
-        2 * step
-    )
-    derivatives = sensitivity(body, body.turning(-1.0))
-    assert derivatives.friction_old == NO_CHANGE
-    # central differences of the closed form: a step squared and rounding by the step
-    assert derivatives.friction_new[2] == pytest.approx(slope, rel=1e-8)
-
-    gamma, friction = 0.8, 0.2
-    body = cylinder(radius=0.3, gamma=gamma, mass=2.0, friction=friction)
-    t = np.tan(gamma)
-    slope = (cylindrical.pivot_slide(t, 0.3).omega - cylindrical.pivot_slide(t, 0.1).omega) / 0.2  # linear in f
-    assert sensitivity(body, body.turning(-1.0)).friction_new[2] == pytest.approx(slope, rel=ROUNDING)
-
-
-def test_the_twist_after_is_proportional_to_the_twist_before():
-    """Euler's theorem: with supports at rest the derivative along the twist is the twist after."""
-    body = plate(length=0.1, height=0.1, mass=0.37, friction=0.18, inertia=8.1e-4, restitution=0.125)
-    twist = Twist(-0.3, -0.5, -10.0)
-    after = np.array(sensitivity(body, twist).twist) @ twist
-    assert after == pytest.approx(solve_impact(body, twist).twist, abs=ROUNDING)
 
 
 def test_restitution_limited_by_the_stored_work_has_exact_derivatives():
