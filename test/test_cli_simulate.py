@@ -237,7 +237,7 @@ def test_what_is_interrupted_leaves_no_output_named_as_whole(
                 one.write_bytes(b"half")
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("impact_predictor.report.motion_pictures.frames_of", lambda longest: [0.0, 0.1])
+    monkeypatch.setattr("impact_predictor.report.plot.frames_of", lambda longest: [0.0, 0.1])
     arguments = ["rod", option, name]
     assert run(*arguments).exit_code == 0
     older = Path(name).read_bytes()

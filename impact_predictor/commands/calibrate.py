@@ -62,9 +62,10 @@ def calibrate(
     if output is not None and not Path(output).resolve().parent.is_dir():
         raise InputError(f"the folder of {output} does not exist; make it, or give another name")
     if figure is not None:
-        from ..report.plot import check_picture
+        from ..report.files import named
+        from ..report.plot import PICTURE
 
-        check_picture(figure)
+        named(figure, *PICTURE)
     bags = tuple(bags_of(bags))
     records, results = read_all(bags, scenes, topics)
     scores = [settled.score for result in results for settled in result.settled]

@@ -65,11 +65,12 @@ class Products(NamedTuple):
             raise click.UsageError("--rate is that of a bag: give -o BAG too")
         refuse({"rate": self.samples_a_second}, lambda value: 0.0 < value <= 1e6, "a number above 0, up to 1e6")
         if self.draws:
-            from ..report.plot import check_film, check_picture
+            from ..report.files import named
+            from ..report.plot import FILM, PICTURE
 
-            for path, checked in ((self.plot, check_picture), (self.animate, check_film)):
+            for path, what in ((self.plot, PICTURE), (self.animate, FILM)):
                 if path is not None:
-                    checked(path)
+                    named(path, *what)
 
     @property
     def samples_a_second(self) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
-from math import degrees, hypot, radians
+from math import degrees, radians
 from typing import Final
 
 import numpy as np
@@ -18,26 +18,12 @@ from ..prediction.watch.onset import Onset, motions
 from ..prediction.watch.standing import Standing
 from ..ros.markers.body import box_of
 from ..scenarios.deck.cargo import CargoUnit, Span
-from ..scenarios.truth import TrueImpact, TrueOnset
+from ..scenarios.truth import TrueImpact
 from ..stamps import NANOSECONDS
 from ..wording import counted, words
+from . import plot
 from .modes import EDGE, MODES, PALETTE
-from .plot import (
-    CLOSED,
-    LINE,
-    OPEN,
-    STEP,
-    STRUCK,
-    SUPPORT,
-    Axes,
-    Film,
-    box,
-    circle,
-    common_legend,
-    picture,
-    placed,
-    turned,
-)
+from .motion_pictures import OPEN, STICKS, BodyScene, Look
 
 LONGEST: Final = 12.0
 """Seconds of a motion that a film shows, in real time: those in which most units move."""
@@ -45,32 +31,24 @@ MARGINS: Final = ("#dfe6e1", "#f2a91a", "#d62728")
 """Colours of a margin that is used little, enough to warn, and up."""
 ROLL, HEAVE, SLID = PALETTE[0], "#8a6d3b", PALETTE[2]
 
-_MOST: Final = 200_000
-"""Moments of a picture of a long motion; a rocking unit takes a second or so to and fro."""
-_MOMENT: Final = 0.05
-"""Seconds between the moments of a picture of a shorter one."""
+_MOST, _MOMENT = 200_000, 0.05
+"""A picture shows so many moments of a motion, or one each so many s if they are less."""
 _TILTS, _SLIDES = radians(0.1), 0.02
 """A unit moves that is tilted by so many rad, or slides at so many m/s."""
 _SLID: Final = 0.005
-"""A slide of so many m is told."""
-
-
-def moments(duration: float) -> NDArray[np.float64]:
-    """Times in s at which a picture of a motion needs the state of each unit."""
-    return np.linspace(0.0, duration, min(_MOST, max(2, round(duration / _MOMENT) + 1)))
+"""A slide of so many m is shown."""
 
 
 class UnitMotion:
-    """The motion of one unit at `times` (s), in the deck's plane from the deck's origin; NaN where it is not followed.
+    """The motion of one unit at `times` (s), seen from its foot; NaN where it is not followed.
 
-    `impacts` and `onsets` of it; `end` says how it ended, and `ended` when (s).
+    `impacts` of it, and the times of those in s, `struck`; `end` says how it ended, and `ended` when (s).
     """
 
     def __init__(self, unit: CargoUnit, times: NDArray[np.float64]) -> None:
         """Begin with nothing known."""
         self.unit, self.times = unit, times
         self.impacts: list[TrueImpact] = []
-        self.onsets: list[TrueOnset] = []
         self.end, self.ended = End.TIME_UP, 0.0
         self._states: NDArray[np.float64] = np.full((6, len(times)), np.nan)
 
@@ -79,15 +57,18 @@ class UnitMotion:
         within = (self.times >= span.start) & (self.times <= span.time)
         if within.any():
             self._states[:, within] = np.array(span.state(self.times[within]))
-            self._states[:2, within] += np.array(self.unit.foot)[:, None]
         self.impacts += span.impacts
-        self.onsets += span.onsets
         self.end, self.ended = span.end, span.time
 
     def at(self, time: float) -> PlanarState:
         """The state at a time in s; the last one that is known where it is not followed any more."""
         known = max(1, int(np.searchsorted(self.times, self.ended, side="right")))
         return PlanarState(*(float(np.interp(time, self.times[:known], part[:known])) for part in self._states))
+
+    @property
+    def struck(self) -> list[float]:
+        """Times of its impacts in s."""
+        return [one.stamp / NANOSECONDS for one in self.impacts]
 
     @property
     def toppled(self) -> bool:
@@ -107,10 +88,9 @@ class UnitMotion:
         if self.unit.scene.radius > 0.0:
             return np.asarray(0.0 * angle)
         c, s = np.cos(angle), np.sin(angle)
-        (low_old, old), (low_new, new) = (
-            (s * one.x + c * one.y, (c - 1.0) * one.x - s * one.y) for one in (body.old, body.new)
-        )
-        return np.asarray(np.where(low_old < low_new, old, new) + x - self.unit.foot[0] - self.unit.start.x)
+        ways = [(c - 1.0) * one.x - s * one.y for one in (body.old, body.new)]
+        old_is_lower = s * body.old.x + c * body.old.y < s * body.new.x + c * body.new.y
+        return np.asarray(np.where(old_is_lower, *ways) + x - self.unit.start.x)
 
     @property
     def moves(self) -> NDArray[np.bool_]:
@@ -124,7 +104,7 @@ class DeckMotion:
 
     def __init__(self, duration: float) -> None:
         """Begin with no unit."""
-        self.times = moments(duration)
+        self.times = np.linspace(0.0, duration, min(_MOST, max(2, round(duration / _MOMENT) + 1)))
         self.units: list[UnitMotion] = []
 
     def taking(self, unit: CargoUnit, spans: Iterable[Span]) -> Iterator[Span]:
@@ -134,18 +114,6 @@ class DeckMotion:
         for span in spans:
             motion.take(span)
             yield span
-
-
-def outline_of(unit: CargoUnit) -> NDArray[np.float64]:
-    """The outline (n, 2) in m of a unit seen along the deck, from its mass centre, while it stands."""
-    scene, body = unit.scene, unit.body
-    assert body.old is not None
-    if scene.radius > 0.0:
-        return circle(hypot(body.old.x, body.old.y))
-    (low, high), center = box_of(scene.points, scene.center_of_mass), scene.center_of_mass
-    c, s = np.cos(scene.yaw), np.sin(scene.yaw)
-    across = [s * (x - center[0]) + c * (y - center[1]) for x in (low[0], high[0]) for y in (low[1], high[1])]
-    return box(min(across), max(across), low[2] - center[2], high[2] - center[2])
 
 
 def margin_used(deck: MovingSupport, unit: CargoUnit, times: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -169,10 +137,6 @@ def busiest(units: Sequence[UnitMotion], most: int) -> list[UnitMotion]:
     return [one for one in units if one in chosen]
 
 
-def _seconds(impacts: Iterable[TrueImpact]) -> list[float]:
-    return [one.stamp / NANOSECONDS for one in impacts]
-
-
 def _greatest(values: NDArray[np.float64]) -> float:
     return float(np.nanmax(np.abs(values)))
 
@@ -184,83 +148,74 @@ def write_deck_figure(path: str | os.PathLike[str], deck: MovingSupport, units: 
         InputError: the file cannot be written, or is of another format.
     """
     shown, times = busiest(units, 6), units[0].times
-    said = f"{counted(len(units), 'unit')} on a rolling deck"
-    with picture(path, 10.0, 2.6 + 1.25 * len(shown)) as figure:
+    with plot.picture(path, 10.0, 2.6 + 1.25 * len(shown)) as figure:
         upper, *panels = figure.subplots(1 + len(shown), 1, sharex=True)
         motion = deck.motion(times)
         upper.plot(times, np.degrees(motion.angle), color=ROLL)
         upper.set_ylabel("deck roll (°)", color=ROLL)
-        upper.set_title(said + (f": the {len(shown)} that moved most" if shown != units else ""), fontweight="bold")
-        heave = upper.twinx()
-        heave.plot(times, motion.y - np.mean(motion.y), "--", color=HEAVE, linewidth=1.0)
-        heave.set_ylabel("heave (m)", color=HEAVE)
-        heave.grid(visible=False)
+        more = f": the {len(shown)} that moved most" if shown != units else ""
+        upper.set_title(f"{counted(len(units), 'unit')} on a rolling deck{more}", fontweight="bold")
+        _draw_right(upper, times, motion.y - np.mean(motion.y), "heave (m)", HEAVE)
         for axes, unit in zip(panels, shown, strict=True):
             _draw_unit(axes, deck, unit)
         panels[-1].set(xlabel="time (s)", xlim=(0.0, times[-1]))
         figure.align_ylabels([upper, *panels])
-        common_legend(figure)
+        plot.common_legend(figure)
 
 
-def _draw_unit(axes: Axes, deck: MovingSupport, unit: UnitMotion) -> None:
+def _draw_right(
+    axes: plot.Axes, times: NDArray[np.float64], values: NDArray[np.float64], label: str, colour: str
+) -> None:
+    """Draw a curve with an axis of its own on the right."""
+    other = axes.twinx()
+    other.plot(times, values, color=colour, linewidth=1.0)
+    other.set_ylabel(label, color=colour)
+    other.grid(visible=False)
+
+
+def _draw_unit(axes: plot.Axes, deck: MovingSupport, unit: UnitMotion) -> None:
     """Draw the tilt of a unit, how far it slid, its impacts, and along the bottom how much of its margin is used."""
     times, tilt = unit.times, np.degrees(unit.tilt)
-    axes.set_title(f"{unit.unit.name}: {_fate(unit)}", fontsize=10, pad=3)
+    ended = f", topples at {unit.ended:.0f} s" if unit.toppled else ""
+    most = f"tilts up to {_greatest(tilt):.2g}°, slides up to {_greatest(unit.slid):.2g} m"
+    axes.set_title(f"{unit.unit.name}: {counted(len(unit.impacts), 'impact')}, {most}{ended}", fontsize=10, pad=3)
     axes.plot(times, tilt, color="black", linewidth=1.2)
-    # A unit that has toppled would leave no room for how it rocked before.
-    rocked = _greatest(tilt[times < unit.ended - 2.0]) if unit.toppled and unit.ended > 2.0 else _greatest(tilt)
-    high = 1.75 * max(rocked, 1.0)
+    # A unit that topples would leave no room for how it rocked before.
+    high = 1.75 * max(min(_greatest(tilt), 15.0), 1.0)
     axes.set(ylabel="tilt (°)", ylim=(-high, high))
     for mode in sorted({impact.mode for impact in unit.impacts}):
-        at = _seconds(impact for impact in unit.impacts if impact.mode is mode)
-        look, label = MODES[mode], f"impact: {words(mode.name)}"
-        axes.plot(at, [0.0] * len(at), look.marker, color=look.colour, markeredgecolor=EDGE, label=label)
+        at = [time for time, impact in zip(unit.struck, unit.impacts, strict=True) if impact.mode is mode]
+        label = f"impact: {words(mode.name)}"
+        axes.plot(at, [0.0] * len(at), "o", color=MODES[mode].colour, markeredgecolor=EDGE, label=label)
     if unit.toppled:
         axes.plot(unit.ended, 0.0, "X", color=MARGINS[2], markeredgecolor=EDGE, label="topples")
     used, warn = margin_used(deck, unit.unit, times), Watching().warn
-    bottom = axes.get_xaxis_transform()
     for least, colour, label in (
         (warn, MARGINS[1], f"{warn:.0%} of the margin used"),
         (1.0, MARGINS[2], "margin used up: slides or tips"),
     ):
-        over = times[used >= least]
+        over, bottom = times[used >= least], axes.get_xaxis_transform()
         axes.plot(over, [0.06] * len(over), "|", color=colour, markersize=9, transform=bottom, label=label)
     if _greatest(unit.slid) > _SLID:
-        other = axes.twinx()
-        other.plot(times, unit.slid, color=SLID)
-        other.set_ylabel("slid (m)", color=SLID)
-        other.grid(visible=False)
-
-
-def _fate(unit: UnitMotion) -> str:
-    """What became of a unit, in words."""
-    said = [counted(len(unit.impacts), "impact")] if unit.impacts else []
-    if not unit.toppled and _greatest(unit.tilt) > _TILTS:
-        said.append(f"tilts {degrees(_greatest(unit.tilt)):.2g}°")
-    if _greatest(unit.slid) > _SLID:
-        said.append(f"slides {_greatest(unit.slid):.2g} m")
-    if unit.end is not End.TIME_UP:
-        said.append(f"{'topples' if unit.toppled else 'is lost'} at {unit.ended:.0f} s")
-    return ", ".join(said) or "stays where it is"
+        _draw_right(axes, times, unit.slid, "slid (m)", SLID)
 
 
 def deck_frames(units: Sequence[UnitMotion]) -> list[float]:
     """The times in s of the frames: the part of the motion in which most units move."""
     times = units[0].times
-    step = float(times[1] - times[0])
     busy = np.sum([one.moves for one in units], axis=0, dtype=float)
-    sums = np.convolve(busy, np.ones(min(len(times), round(LONGEST / step))), mode="valid")
+    sums = np.convolve(busy, np.ones(min(len(times), round(LONGEST / float(times[1])))), mode="valid")
     # In the middle of those that show as much.
     best = np.flatnonzero(sums >= sums.max() - 1e-9)
     begin = float(times[best[len(best) // 2]]) if sums.max() > 0.0 else 0.0
-    end = min(begin + LONGEST, float(times[-1]))
-    return [begin + STEP * k for k in range(max(2, 1 + int((end - begin) / STEP)))]
+    length = min(LONGEST, float(times[-1]) - begin)
+    return [begin + plot.STEP * k for k in range(max(2, 1 + int(length / plot.STEP)))]
 
 
-def deck_film(deck: MovingSupport, units: Sequence[UnitMotion]) -> Film:
+def deck_film(deck: MovingSupport, units: Sequence[UnitMotion]) -> plot.Film:
     """The film of a deck in real time: the busiest units, its roll and the impacts below."""
     times, near = deck_frames(units), busiest(units, 3)
-    return Film(
+    return plot.Film(
         scenes=[UnitScene(deck, one, times) for one in near],
         height=2.2,
         draw_curves=partial(_draw_roll, deck, near, np.array(times)),
@@ -269,56 +224,58 @@ def deck_film(deck: MovingSupport, units: Sequence[UnitMotion]) -> Film:
     )
 
 
-def _draw_roll(deck: MovingSupport, units: Sequence[UnitMotion], times: NDArray[np.float64], axes: Axes) -> None:
+def _draw_roll(deck: MovingSupport, units: Sequence[UnitMotion], times: NDArray[np.float64], axes: plot.Axes) -> None:
     axes.plot(times, np.degrees(deck.motion(times).angle), color=ROLL)
-    for unit in units:
-        at = _seconds(unit.impacts)
-        axes.plot(at, [0.0] * len(at), "|", color=STRUCK)
+    struck = [time for unit in units for time in unit.struck]
+    axes.plot(struck, [0.0] * len(struck), "|", color=plot.STRUCK)
     axes.set(xlim=(times[0], times[-1]), xlabel="time (s); red: impacts", ylabel="roll (°)")
 
 
-class UnitScene:
+class UnitScene(BodyScene):
     """One unit on its piece of the deck, seen from astern by a camera that stays upright: port is on the left."""
+
+    names = "", ""
 
     def __init__(self, deck: MovingSupport, motion: UnitMotion, times: Sequence[float]) -> None:
         """Look at the motion at some times (s), to know how much room it needs."""
-        unit, body = motion.unit, motion.unit.body
-        assert body.old is not None
-        self.title, self._deck, self._motion, self._outline = unit.name, deck, motion, outline_of(unit)
+        self._deck, self._motion, unit = deck, motion, motion.unit
         self._used = margin_used(deck, unit, motion.times)
-        self._contacts = np.array([(body.old.x, body.old.y), (body.new.x, body.new.y)])
-        start = unit.start._replace(x=unit.start.x + unit.foot[0], y=unit.start.y + unit.foot[1])
-        self._edges = placed(self._contacts, start)
-        self._pivot = np.array([np.mean(self._edges[:, 0]), self._edges[:, 1].min()])
-        seen = np.concatenate([self._seen(placed(self._outline, motion.at(time)), time) for time in times[::5]])
-        self._middle = 0.5 * (seen.min(axis=0) + seen.max(axis=0))
-        self._size = max(float(np.ptp(seen, axis=0).max()), 1e-3)
+        outline, scene = np.zeros((0, 2)), unit.scene
+        assert unit.body.old is not None
+        self._begin = plot.placed(np.array([(unit.body.old.x, unit.body.old.y)]), unit.start)[0]
+        if not scene.radius > 0.0:
+            (low, high), (x, y, z) = box_of(scene.points, scene.center_of_mass), scene.center_of_mass
+            corners = np.array([(one - x, other - y) for one in (low[0], high[0]) for other in (low[1], high[1])])
+            across = corners @ (np.sin(scene.yaw), np.cos(scene.yaw))
+            outline = plot.box(across.min(), across.max(), low[2] - z, high[2] - z)
+        super().__init__(unit.name, unit.body, outline, times[::5])
 
-    def draw(self, axes: Axes, time: float) -> str:
-        """Draw the unit at a time in s, red while it moves, else by its margin; what it does."""
-        state, far = self._motion.at(time), 3.0 * self._size
-        used = float(np.interp(time, self._motion.times, self._used))
+    def state(self, time: float) -> PlanarState:
+        """The state on the deck at a time in s."""
+        state = self._motion.at(time)
+        return state._replace(x=state.x - self._begin[0], y=state.y - self._begin[1])
+
+    def angle(self, time: float) -> float:
+        """The roll of the deck in rad."""
+        return float(self._deck.motion(time).angle)
+
+    def look(self, time: float) -> Look:
+        """Red while it moves, else by how much of its margin is used."""
+        state, used = self.state(time), float(np.interp(time, self._motion.times, self._used))
         tilt = degrees(abs(state.angle - self._motion.unit.start.angle))
+        moves, says = True, f"rocks, tilted by {tilt:.2g}°"
         if self._motion.toppled and time >= self._motion.ended:
-            does, moves = "has toppled", True
-        elif tilt > degrees(_TILTS):
-            does, moves = f"rocks, tilted by {tilt:.2g}°", True
-        elif abs(state.vx) > _SLIDES:
-            does, moves = f"slides at {abs(state.vx):.2g} m/s", True
-        else:
-            does, moves = f"stands, margin used: {min(used, 9.99):.0%}", False
-        colour = MARGINS[2 if moves or used >= 1.0 else 1 if used >= Watching().warn else 0]
-        deck = box(-far, far, -0.05 * self._size, 0.0) + self._pivot
-        axes.fill(*self._seen(deck, time).T, color=SUPPORT)
-        axes.fill(*self._seen(placed(self._outline, state), time).T, facecolor=colour, edgecolor=LINE)
-        is_disc = self._motion.unit.scene.radius > 0.0
-        for place in self._edges if is_disc else placed(self._contacts, state):
-            closed = is_disc or place[1] - self._pivot[1] < 1e-3
-            shown = self._seen(place[None], time)[0]
-            axes.plot(*shown, "o", color=CLOSED if closed else OPEN, markeredgecolor=CLOSED, markersize=6)
-        (x, y), half = self._middle, 0.575 * self._size
-        axes.set(xlim=(x + 1.3 * half, x - 1.3 * half), ylim=(y - half, y + half))
-        return does
+            says = "has toppled"
+        elif tilt <= degrees(_TILTS) and abs(state.vx) > _SLIDES:
+            says = f"slides at {abs(state.vx):.2g} m/s"
+        elif tilt <= degrees(_TILTS):
+            moves, says = False, f"stands, margin used: {min(used, 9.99):.0%}"
+        face = MARGINS[2 if moves or used >= 1.0 else 1 if used >= Watching().warn else 0]
+        old, new = (STICKS if place[1] < 1e-3 else OPEN for place in plot.placed(self._contacts, state))
+        return Look(face, (old, new), says)
 
-    def _seen(self, points: NDArray[np.float64], time: float) -> NDArray[np.float64]:
-        return np.asarray(turned(points - self._pivot, float(self._deck.motion(time).angle)) + self._pivot)
+    def draw(self, axes: plot.Axes, time: float) -> str:
+        """Draw the unit at a time in s; what it does, in words."""
+        says = super().draw(axes, time)
+        axes.invert_xaxis()
+        return says

@@ -13,9 +13,10 @@ import numpy as np
 from matplotlib.ticker import MaxNLocator, PercentFormatter
 
 from ..wording import percent
+from .files import named
 from .gait import MOST, Machine, machines_of, write_gait
 from .modes import PALETTE
-from .plot import GREY, Axes, Figure, check_picture, headline, picture
+from .plot import GREY, PICTURE, Axes, Figure, headline, picture
 from .summary import LEAD_TIME_EDGES, SpanErrors, Tally, errors_ahead
 from .touchdowns import TouchdownRow, row_of
 
@@ -41,7 +42,7 @@ class ReplayPicture:
         Raises:
             InputError: it is no such file, or its folder does not exist.
         """
-        self.path = check_picture(path)
+        self.path = named(path, *PICTURE)
         self._names: list[str] = []
         self._machines: list[Machine] = []
         self._tally = Tally()

@@ -3,44 +3,28 @@
 from __future__ import annotations
 
 import os
+from abc import ABC, abstractmethod
 from collections.abc import Iterable, Sequence
 from functools import partial
 from math import copysign, degrees, hypot, inf, tan
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..mechanics.motion import End, PlanarState, RockingImpact
+from ..mechanics.motion import PlanarState, RockingImpact
+from ..mechanics.types import TwoPointBody
 from ..scenarios.rocking import Rocking
 from ..scenarios.wheel import Rolling, Wheel
 from ..scenarios.wheel_closed_forms import downhill, least_friction, steady
+from . import plot
 from .modes import EDGE, MODES, PALETTE
-from .plot import (
-    BODY,
-    CLOSED,
-    GREY,
-    LINE,
-    OPEN,
-    SLIPS,
-    STRUCK,
-    SUPPORT,
-    Axes,
-    Film,
-    box,
-    circle,
-    common_legend,
-    frames_of,
-    picture,
-    placed,
-    speed_for,
-    turned,
-)
 
-CONTACT_COLOURS: Final = {"S": CLOSED, "+": SLIPS, "-": SLIPS, "O": OPEN}
+STICKS, SLIPS, OPEN = "#1a1a1a", "#e69f00", "#ffffff"
+CONTACT_COLOURS: Final = {"S": STICKS, "+": SLIPS, "-": SLIPS, "O": OPEN}
+BODY: Final = "#dbe4ee"
 
 _HUB, _FIRST = PALETTE[0], PALETTE[2]
-_SPOKE: Final = "#b5c1cd"
 _POINTS: Final = 2000
 """Points of a curve that is as long as the picture."""
 _LOOKS: Final = 400
@@ -51,39 +35,16 @@ _SEEN: Final = 5.6
 """Metres of slope, in lengths of a spoke, that the picture of a wheel shows."""
 
 
-def stance_of(contacts: Iterable[tuple[str, str]], impacts: Sequence[RockingImpact], time: float) -> str:
-    """How a body stands at a time (s) on contacts, each a name and a state, and what its last impact was, in words."""
-    closed = [(name, how) for name, how in contacts if how != "O"]
-    said = "flies"
-    if closed:
-        verb = "stands" if closed[0][1] == "S" else "slips"
-        said = f"{verb} on {' and '.join(name for name, _ in closed)}"
+def last_impact(impacts: Sequence[RockingImpact], time: float) -> str:
+    """The last of some impacts until a time in s, in words."""
     past = [one for one in impacts if one.time <= time]
-    return said + (f"\nimpact {len(past)}: {past[-1].outcome.mode.name}" if past else "\n")
+    return f"impact {len(past)}: {past[-1].outcome.mode.name}" if past else ""
 
 
-def draw_rate(
-    axes: Axes,
-    times: NDArray[np.float64],
-    rates: NDArray[np.float64],
-    impacts: Sequence[RockingImpact],
-    sign: float,
-    colour: str,
-    label: str,
-) -> None:
-    """Draw a rate of turning, `sign` times omega in rad/s, with a gap and dots at each impact; `rates` changes."""
-    struck = [one.time for one in impacts]
-    before, after = [sign * one.before.omega for one in impacts], [sign * one.after.omega for one in impacts]
-    rates[np.searchsorted(times, struck)] = np.nan
-    axes.plot(times, rates, color=colour, label=label)
-    axes.vlines(struck, before, after, color=colour, linestyle=":", linewidth=0.9)
-    axes.axhline(0.0, color=GREY, linewidth=0.8, zorder=1)
-
-
-def draw_contacts(axes: Axes, closed: Iterable[tuple[int, float, float, str]]) -> None:
+def draw_contacts(axes: plot.Axes, closed: Iterable[tuple[int, float, float, str]]) -> None:
     """Draw bars while contacts are closed: the row of each, begin and end (s), and its state."""
     bars = list(closed)
-    for colour, label in ((CLOSED, "contact sticks"), (SLIPS, "contact slips")):
+    for colour, label in ((STICKS, "contact sticks"), (SLIPS, "contact slips")):
         mine = [(row, begin, end - begin) for row, begin, end, how in bars if CONTACT_COLOURS[how] == colour]
         if mine:
             rows, begins, lengths = zip(*mine, strict=True)
@@ -101,30 +62,26 @@ def write_rocking_figure(path: str | os.PathLike[str], rockings: Sequence[Rockin
     """
     rocker, run = rockings[0]
     bodies = f"{rocker.name}s" if len(rockings) > 1 else f"a {rocker.name}, {rocker.label},"
-    times = times_of(rockings)
-    rows = range(2 * len(rockings))
-    with picture(path, 9.0, 6.0 + 0.4 * len(rockings)) as figure:
+    with plot.picture(path, 9.0, 6.0 + 0.4 * len(rockings)) as figure:
         heights = (2.7, 2.7, 0.3 + 0.4 * len(rockings))
         rates, angles, contacts = figure.subplots(3, 1, sharex=True, height_ratios=heights)
         draw_rates(rockings, rates)
         released = f"released at {degrees(run.state(0.0).angle):.3g}°"
         rates.set_title(f"Angular velocity and angle of {bodies} {released}", fontweight="bold")
-        rates.set(xlabel="", xlim=(0.0, times[-1]))
-        for (_, one), colour in zip(rockings, PALETTE * len(rockings), strict=False):
-            angles.plot(times, np.degrees(one.state(times).angle), color=colour)
+        rates.set_xlabel("")
+        closed, times = [], times_of(rockings)
+        for k, (_, one) in enumerate(rockings):
+            angles.plot(times, np.degrees(one.state(times).angle), color=PALETTE[k % len(PALETTE)])
+            # After its end a motion stays as it is.
+            ends = [*[phase.start for phase in one.phases[1:]], float(times[-1])]
+            for phase, end in zip(one.phases, ends, strict=True):
+                closed += [(2 * k + i, phase.start, end, phase.states[i]) for i in range(2) if phase.states[i] != "O"]
         angles.set_ylabel("φ (degrees)")
-        phases = [(k, phase) for k, (_, one) in enumerate(rockings) for phase in one.phases]
-        closed = [(2 * k + i, one.start, one.end, one.states[i]) for k, one in phases for i in range(2)]
-        closed += [
-            (row, rockings[row // 2].run.time, float(times[-1]), "S")
-            for row in rows
-            if rockings[row // 2].run.end is End.RESTS
-        ]
         draw_contacts(contacts, closed)
-        contacts.set_yticks(rows, ["A", "B"] * len(rockings))
-        for row, label in zip(rows, contacts.get_yticklabels(), strict=True):
+        contacts.set_yticks(range(2 * len(rockings)), ["A", "B"] * len(rockings))
+        for row, label in enumerate(contacts.get_yticklabels()):
             label.set(color=PALETTE[row // 2 % len(PALETTE)], fontweight="bold")
-        common_legend(figure, "contact A: behind the mass centre, B: ahead of it")
+        plot.common_legend(figure, "contact A: behind the mass centre, B: ahead of it")
 
 
 def times_of(rockings: Sequence[Rocking]) -> NDArray[np.float64]:
@@ -132,92 +89,126 @@ def times_of(rockings: Sequence[Rocking]) -> NDArray[np.float64]:
     return np.linspace(0.0, 1.06 * max(rocking.run.time for rocking in rockings) or 1.0, _POINTS)
 
 
-def draw_rates(rockings: Sequence[Rocking], axes: Axes) -> None:
+def draw_rates(rockings: Sequence[Rocking], axes: plot.Axes) -> None:
     """Draw angular velocities of motions, and when impacts accumulate."""
     times = times_of(rockings)
-    for (rocker, run), colour in zip(rockings, PALETTE * len(rockings), strict=False):
-        draw_rate(axes, times, np.array(run.state(times).omega), run.impacts, 1.0, colour, rocker.label)
-        for one in run.accumulations:
-            axes.plot(one.time, 0.0, "o", color=EDGE, markersize=5, label="impacts accumulate")
+    for k, (rocker, run) in enumerate(rockings):
+        axes.plot(times, run.state(times).omega, color=PALETTE[k % len(PALETTE)], label=rocker.label)
+    accumulated = [one.time for rocking in rockings for one in rocking.run.accumulations]
+    if accumulated:
+        axes.plot(accumulated, [0.0] * len(accumulated), "o", color=EDGE, markersize=5, label="impacts accumulate")
     axes.set(xlabel="time (s)", ylabel="ω (rad/s)", xlim=(0.0, times[-1]))
 
 
-def rocking_film(rockings: Sequence[Rocking]) -> Film:
+def rocking_film(rockings: Sequence[Rocking]) -> plot.Film:
     """The film of motions side by side, all to one scale, with their angular velocities."""
     longest = max(rocking.run.time for rocking in rockings)
     scenes = [RockingScene(rocking) for rocking in rockings]
     width, height = np.max([scene.size for scene in scenes], axis=0)
     for scene in scenes:
         scene.size = np.array([width, height])
-    return Film(
+    return plot.Film(
         scenes=scenes,
         height=min(_HIGHEST, 7.0 / len(scenes) * height / width),
         draw_curves=partial(draw_rates, rockings),
-        speed=speed_for(longest),
-        times=frames_of(longest),
+        speed=plot.speed_for(longest),
+        times=plot.frames_of(longest),
     )
 
 
-class RockingScene:
-    """A body that rocks on its contacts A and B, and what they stand on; `size` (m) of what is seen."""
+class Look(NamedTuple):
+    """How a body is seen: its colour, those of its old and new contact, and what it does, in words."""
 
-    def __init__(self, rocking: Rocking) -> None:
-        """Look at the whole motion, to know how much room it needs."""
-        self.title, self._run, body = rocking.rocker.label, rocking.run, rocking.rocker.body
+    face: str
+    contacts: tuple[str, str]
+    says: str
+
+
+class BodyScene(ABC):
+    """A body on two contacts and what they stand on, seen from where the old contact stood at the beginning.
+
+    `size` (width, height) in m of what is seen.
+    """
+
+    names = "A", "B"
+
+    def __init__(self, title: str, body: TwoPointBody, outline: NDArray[np.float64], times: Sequence[float]) -> None:
+        """Look at the body at some times (s), to know how much room it needs; no `outline` is that of a disc."""
         assert body.old is not None
+        self.title = title
         self._contacts = np.array([(body.old.x, body.old.y), (body.new.x, body.new.y)])
-        self._distance = float(hypot(*(self._contacts[1] - self._contacts[0])))
-        self._is_disc = not rocking.rocker.outline
-        self._outline = circle(hypot(body.old.x, body.old.y)) if self._is_disc else np.array(rocking.rocker.outline)
-        states = [self._run.state(float(time)) for time in np.linspace(0.0, self._run.time, _LOOKS)]
-        outlines = np.concatenate([placed(self._outline, state) for state in states])
-        supports = self._edges() if self._is_disc else self._floor(states, outlines)
-        self._slope = float(self._run.support.motion(0.0).angle)
-        self._supports = [turned(support, self._slope) for support in supports]
-        seen = np.concatenate([turned(outlines, self._slope), *self._supports])
-        self.size = 1.06 * np.ptp(seen, axis=0)
+        self._is_disc = not len(outline)
+        self._outline = plot.circle(hypot(body.old.x, body.old.y)) if self._is_disc else outline
+        self._edges = self._contacts - self._contacts[0]
+        states = [self.state(time) for time in times]
+        bodies = [plot.placed(self._outline, state) for state in states]
+        seen = np.concatenate([plot.turned(one, self.angle(time)) for one, time in zip(bodies, times, strict=True)])
+        self.size = np.ptp(seen, axis=0) + 0.15 * np.ptp(seen)
         self._middle = 0.5 * (seen.min(axis=0) + seen.max(axis=0))
+        wide = float(hypot(*self._edges[1]))
+        if self._is_disc:
+            (bx, by), depth = self._edges[1], 0.35 * wide
+            self._supports = [plot.box(-0.6 * wide, 0.0, -depth, 0.0), plot.box(bx, bx + 0.6 * wide, by - depth, by)]
+            return
+        # A body that reaches below its contacts stands on a table no wider than they ever are.
+        places = np.array([plot.placed(self._contacts, state) for state in states])
+        stood = places[..., 0][places[..., 1] < 1e-3 * wide]
+        beyond = 0.0 if min(one[:, 1].min() for one in bodies) < -0.05 * wide else float(self.size.sum())
+        self._supports = [plot.box(stood.min() - beyond, stood.max() + beyond, -0.1 * self.size[1], 0.0)]
 
-    def draw(self, axes: Axes, time: float) -> str:
-        """Draw the body at a time in s; how it stands."""
-        state, contacts = self._run.world(time), list(zip("AB", self._run.states(time), strict=True))
+    @abstractmethod
+    def state(self, time: float) -> PlanarState:
+        """The state on the support at a time in s."""
+
+    @abstractmethod
+    def angle(self, time: float) -> float:
+        """The angle of the support in rad."""
+
+    @abstractmethod
+    def look(self, time: float) -> Look:
+        """How the body is seen."""
+
+    def draw(self, axes: plot.Axes, time: float) -> str:
+        """Draw the body at a time in s; what it does, in words."""
+        state, angle, look = self.state(time), self.angle(time), self.look(time)
         for support in self._supports:
-            axes.fill(*support.T, color=SUPPORT)
-        outline = placed(self._outline, state)
-        axes.fill(*outline.T, facecolor=BODY, edgecolor=LINE, linewidth=1.3)
-        axes.plot(state.x, state.y, "P", color=LINE, markersize=6, markeredgewidth=0.0)
+            axes.fill(*plot.turned(support, angle).T, color=plot.SUPPORT)
+        outline = plot.turned(plot.placed(self._outline, state), angle)
+        axes.fill(*outline.T, facecolor=look.face, edgecolor=plot.LINE, linewidth=1.3)
+        centre = plot.turned(np.array([(state.x, state.y)]), angle)[0]
+        axes.plot(*centre, "P", color=plot.LINE, markersize=6, markeredgewidth=0.0)
         if self._is_disc:  # a spoke shows how it turns
-            axes.plot(*np.array([(state.x, state.y), outline[0]]).T, color=LINE, linewidth=1.0)
-        places = (
-            turned(self._contacts - self._contacts[0], self._slope) if self._is_disc else placed(self._contacts, state)
-        )
-        for (name, how), place in zip(contacts, places, strict=True):
-            axes.plot(*place, "o", color=CONTACT_COLOURS[how], markeredgecolor=CLOSED, markersize=7)
+            axes.plot(*np.array([centre, outline[0]]).T, color=plot.LINE, linewidth=1.0)
+        places = plot.turned(self._edges if self._is_disc else plot.placed(self._contacts, state), angle)
+        for name, place, colour in zip(self.names, places, look.contacts, strict=True):
+            axes.plot(*place, "o", color=colour, markeredgecolor=EDGE, markersize=7)
             axes.annotate(name, place, (0.0, -15.0), textcoords="offset points", ha="center", fontsize=9)
         low, high = self._middle - 0.5 * self.size, self._middle + 0.5 * self.size
         axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
-        return stance_of(contacts, self._run.impacts, time)
+        return look.says
 
-    def _edges(self) -> list[NDArray[np.float64]]:
-        """The blocks whose edges carry a disc."""
-        depth, width = 0.35 * self._distance, 0.6 * self._distance
-        (ax, ay), (bx, by) = self._contacts - self._contacts[0]
-        return [box(ax - width, ax, ay - depth, ay), box(bx, bx + width, by - depth, by)]
 
-    def _floor(self, states: Sequence[PlanarState], outlines: NDArray[np.float64]) -> list[NDArray[np.float64]]:
-        """The floor, or posts wherever the contacts stand if the body reaches below them."""
-        (left, lowest), (right, _) = outlines.min(axis=0), outlines.max(axis=0)
-        ground = lowest - 0.1 * self._distance if lowest < -0.05 * self._distance else 0.0
-        floor = [box(left - 0.1 * self._distance, right + 0.1 * self._distance, ground - 0.08 * self._distance, ground)]
-        if ground == 0.0:
-            return floor
-        places = np.array([placed(self._contacts, state) for state in states])
-        for one in (places[:, 0], places[:, 1]):
-            stood = one[one[:, 1] < 1e-6 * self._distance, 0]
-            if len(stood):
-                begin, end, foot = stood.min(), stood.max(), 0.1 * self._distance
-                floor.append(np.array([(begin, 0.0), (end, 0.0), (end + foot, ground), (begin - foot, ground)]))
-        return floor
+class RockingScene(BodyScene):
+    """One of the paper's bodies on its contacts A and B."""
+
+    def __init__(self, rocking: Rocking) -> None:
+        """Take a motion."""
+        self._run, rocker = rocking.run, rocking.rocker
+        times = np.linspace(0.0, self._run.time, _LOOKS).tolist()
+        super().__init__(rocker.label, rocker.body, np.array(rocker.outline), times)
+
+    def state(self, time: float) -> PlanarState:
+        """The state on the support at a time in s."""
+        return self._run.state(time)
+
+    def angle(self, time: float) -> float:
+        """The angle of the support in rad."""
+        return float(self._run.support.motion(time).angle)
+
+    def look(self, time: float) -> Look:
+        """The contacts as they stick or slip, and the last impact."""
+        old, new = (CONTACT_COLOURS[how] for how in self._run.states(time))
+        return Look(BODY, (old, new), last_impact(self._run.impacts, time))
 
 
 def title_of(wheel: Wheel) -> str:
@@ -236,20 +227,18 @@ def steady_rates(wheel: Wheel) -> tuple[float, ...]:
     return tuple(copysign(rate, wheel.hub.slope) for rate in (rolls.before, rolls.after))
 
 
-def draw_wheel_rate(rolling: Rolling, axes: Axes) -> None:
+def draw_wheel_rate(rolling: Rolling, axes: plot.Axes) -> None:
     """Draw the rate at which a wheel turns ahead, and that of steady rolling."""
-    end = 1.03 * rolling.time or 1.0
-    times, impacts = np.linspace(0.0, end, _POINTS), [one.strike for one in rolling.impacts]
-    rates = np.where(times > rolling.time, np.nan, -rolling.world(times).omega)
-    draw_rate(axes, times, rates, impacts, -1.0, _HUB, "")
+    times = np.linspace(0.0, rolling.time, _POINTS)
+    axes.plot(times, -rolling.world(times).omega, color=_HUB)
+    impacts = [one.strike for one in rolling.impacts]
     for mode in sorted({strike.outcome.mode for strike in impacts}):
         found = [(one.time, -one.after.omega) for one in impacts if one.outcome.mode is mode]
-        look, label = MODES[mode], f"after an impact: {mode.name}"
-        axes.plot(*np.array(found).T, look.marker, color=look.colour, markeredgecolor=EDGE, label=label)
+        label = f"after an impact: {mode.name}"
+        axes.plot(*np.array(found).T, "o", color=MODES[mode].colour, markeredgecolor=EDGE, label=label)
     for rate in steady_rates(rolling.wheel):
-        label = "steady rolling without slip"
-        axes.axhline(rate, color=GREY, linestyle="--", linewidth=0.9, label=label)
-    axes.set(xlabel="time (s)", ylabel="rate ahead (rad/s)", xlim=(0.0, end))
+        axes.axhline(rate, color=plot.GREY, linestyle="--", linewidth=0.9, label="steady rolling without slip")
+    axes.set(xlabel="time (s)", ylabel="rate ahead (rad/s)", xlim=(0.0, 1.03 * rolling.time or 1.0))
 
 
 def write_wheel_figure(path: str | os.PathLike[str], rolling: Rolling) -> None:
@@ -262,33 +251,32 @@ def write_wheel_figure(path: str | os.PathLike[str], rolling: Rolling) -> None:
     strobed = [0.0, *[one.strike.time for one in rolling.impacts], rolling.time]
     begin = rolling.world(0.0).x
     shown = [time for time in strobed if abs(rolling.world(time).x - begin) <= _SEEN * leg]
-    closed = [(tip, stand.start, stand.end, how) for stand in rolling.stands for tip, how in stand.tips]
-    with picture(path, 9.0, 8.2) as figure:
+    with plot.picture(path, 9.0, 8.2) as figure:
         upper, rates, stands = figure.subplots(3, 1, height_ratios=(3.1, 2.4, 1.5))
         upper.set_aspect("equal")
         upper.set_axis_off()
         more = "" if max(shown) == rolling.time else f", its first {max(shown):.2g} s"
-        upper.set_title(title_of(rolling.wheel) + more, fontweight="bold")
-        centres = [scene.draw_wheel(upper, time) for time in shown]
+        upper.set_title(scene.title + more, fontweight="bold")
+        centres = np.array([scene.draw_wheel(upper, time)[:2] for time in shown])
         scene.draw_way(upper, max(shown))
-        x, y = [one.x for one in centres], [one.y for one in centres]
-        upper.set(xlim=(min(x) - 1.1 * leg, max(x) + 1.1 * leg), ylim=(min(y) - 1.1 * leg, max(y) + 1.1 * leg))
+        (left, bottom), (right, top) = centres.min(axis=0) - 1.1 * leg, centres.max(axis=0) + 1.1 * leg
+        upper.set(xlim=(left, right), ylim=(bottom, top))
         draw_wheel_rate(rolling, rates)
-        rates.set(xlabel="")
-        draw_contacts(stands, closed)
+        rates.set_xlabel("")
+        draw_contacts(stands, [(tip, one.start, one.end, how) for one in rolling.stands for tip, how in one.tips])
         stands.set(ylabel="spoke", xlim=rates.get_xlim())
         stands.yaxis.get_major_locator().set_params(integer=True)
-        common_legend(figure)
+        plot.common_legend(figure)
 
 
-def wheel_film(rolling: Rolling) -> Film:
+def wheel_film(rolling: Rolling) -> plot.Film:
     """The film of a wheel, seen by a camera that goes along with it, and its rate."""
-    return Film(
+    return plot.Film(
         scenes=[WheelScene(rolling)],
         height=3.3,
         draw_curves=partial(draw_wheel_rate, rolling),
-        speed=speed_for(rolling.time),
-        times=frames_of(rolling.time),
+        speed=plot.speed_for(rolling.time),
+        times=plot.frames_of(rolling.time),
     )
 
 
@@ -297,37 +285,34 @@ class WheelScene:
 
     def __init__(self, rolling: Rolling) -> None:
         """Take a motion."""
-        self.title, self._rolling, self._wheel = title_of(rolling.wheel), rolling, rolling.wheel
+        self.title, self._rolling, self._tips = title_of(rolling.wheel), rolling, np.array(rolling.wheel.tips)
         self._times = np.linspace(0.0, rolling.time, _POINTS)
         self._hub = np.array(rolling.world(self._times)[:2])
-        self._impacts = [one.strike for one in rolling.impacts]
-        tips = [placed(np.array(self._wheel.tips), rolling.world(one.strike.time))[one.new] for one in rolling.impacts]
-        self._struck = np.array(tips).reshape(-1, 2)
 
-    def draw(self, axes: Axes, time: float) -> str:
-        """Draw the wheel at a time in s with the hub in the middle; how it stands."""
-        leg = self._wheel.hub.leg
-        state = self.draw_wheel(axes, time)
+    def draw(self, axes: plot.Axes, time: float) -> str:
+        """Draw the wheel at a time in s with the hub in the middle; its last impact."""
+        leg = self._rolling.wheel.hub.leg
+        x, y, *_ = self.draw_wheel(axes, time)
         self.draw_way(axes, time)
-        axes.set(xlim=(state.x - 2.6 * leg, state.x + 2.6 * leg), ylim=(state.y - 1.35 * leg, state.y + 1.15 * leg))
-        contacts = [(f"spoke {tip}", how) for tip, how in self._rolling.stood(time)]
-        return stance_of(contacts, self._impacts, time)
+        axes.set(xlim=(x - 2.6 * leg, x + 2.6 * leg), ylim=(y - 1.35 * leg, y + 1.15 * leg))
+        return last_impact([one.strike for one in self._rolling.impacts], time)
 
-    def draw_way(self, axes: Axes, time: float) -> None:
+    def draw_way(self, axes: plot.Axes, time: float) -> None:
         """Draw the slope, and the way of the hub and the strikes of the spokes until a time in s."""
-        axes.axline((0.0, 0.0), slope=-tan(self._wheel.hub.slope), color=SUPPORT, linewidth=5.0, zorder=1.0)
+        slope = -tan(self._rolling.wheel.hub.slope)
+        axes.axline((0.0, 0.0), slope=slope, color=plot.SUPPORT, linewidth=5.0, zorder=1.0)
         axes.plot(*self._hub[:, self._times <= time], color=_HUB, label="way of the hub")
-        past = [one.time <= time for one in self._impacts]
-        axes.plot(*self._struck[past].T, "o", color=STRUCK, markersize=5, label="strike of a spoke")
+        past = [one for one in self._rolling.impacts if one.strike.time <= time]
+        for one in past:
+            x, y = plot.placed(self._tips, self._rolling.world(one.strike.time))[one.new]
+            axes.plot(x, y, "o", color=plot.STRUCK, markersize=5, label="strike of a spoke")
 
-    def draw_wheel(self, axes: Axes, time: float) -> PlanarState:
+    def draw_wheel(self, axes: plot.Axes, time: float) -> PlanarState:
         """Draw the spokes at a time in s, and the hub; its state."""
         state, stood = self._rolling.world(time), dict(self._rolling.stood(time))
-        for k, tip in enumerate(placed(np.array(self._wheel.tips), state)):
-            colour = CONTACT_COLOURS[stood[k]] if k in stood else _FIRST if k == 0 else _SPOKE
-            label = "" if colour != _FIRST else "spoke 0"
-            axes.plot(
-                [state.x, tip[0]], [state.y, tip[1]], color=colour, linewidth=3.0 if k in stood else 1.5, label=label
-            )
+        for k, (x, y) in enumerate(plot.placed(self._tips, state)):
+            colour = CONTACT_COLOURS[stood[k]] if k in stood else _FIRST if k == 0 else plot.SPOKE
+            width, label = 3.0 if k in stood else 1.5, "spoke 0" if colour == _FIRST else ""
+            axes.plot([state.x, x], [state.y, y], color=colour, linewidth=width, label=label)
         axes.plot(state.x, state.y, "o", color=_HUB, markersize=6)
         return state

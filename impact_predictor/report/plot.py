@@ -6,7 +6,6 @@ import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from math import cos, pi, sin
-from pathlib import Path
 from typing import Any, Final, NamedTuple, Protocol
 
 import matplotlib
@@ -23,9 +22,7 @@ from ..mechanics.motion import PlanarState
 from .files import named, whole
 
 GREY: Final = "#666666"
-BODY, LINE, SUPPORT, STRUCK = "#dbe4ee", "#33475b", "#b5ada0", "#d62728"
-CLOSED, SLIPS, OPEN = "#1a1a1a", "#e69f00", "#ffffff"
-"""Colours of a contact that sticks, that slips, and that is open."""
+LINE, SPOKE, SUPPORT, STRUCK = "#33475b", "#b5c1cd", "#b5ada0", "#d62728"
 STYLE: Final[dict[Any, Any]] = {
     "font.size": 10,
     "axes.spines.top": False,
@@ -43,6 +40,9 @@ STYLE: Final[dict[Any, Any]] = {
 }
 SPEEDS: Final = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
 """What a film may be slowed down or sped up by: numbers that one can think in."""
+PICTURE: Final = "picture that can be drawn", (".png", ".svg")
+FILM: Final = "moving picture that can be drawn", (".gif",)
+"""What files are to be, and the ends of their names, for `files.named`."""
 STEP: Final = 0.08
 """Seconds for which a frame is seen; GIF counts in hundredths of a second."""
 
@@ -75,24 +75,6 @@ class Film(NamedTuple):
     times: Sequence[float]
 
 
-def check_picture(path: str | os.PathLike[str]) -> Path:
-    """The path of a picture that can be drawn.
-
-    Raises:
-        InputError: the suffix names no known format, or there is no such folder.
-    """
-    return named(path, "picture that can be drawn", (".png", ".svg"))
-
-
-def check_film(path: str | os.PathLike[str]) -> Path:
-    """The path of a moving picture that can be drawn.
-
-    Raises:
-        InputError: the suffix is another one, or there is no such folder.
-    """
-    return named(path, "moving picture that can be drawn", (".gif",))
-
-
 @contextmanager
 def picture(path: str | os.PathLike[str], width: float, height: float) -> Iterator[Figure]:
     """A figure of so many inches, which is written as PNG or SVG when it is drawn: the same bytes every time.
@@ -100,7 +82,7 @@ def picture(path: str | os.PathLike[str], width: float, height: float) -> Iterat
     Raises:
         InputError: the file cannot be written, or is of another format.
     """
-    path = check_picture(path)
+    path = named(path, *PICTURE)
     with matplotlib.rc_context(STYLE):
         figure = Figure(figsize=(width, height), layout="constrained")
         FigureCanvasAgg(figure)
@@ -140,7 +122,7 @@ def write_film(path: str | os.PathLike[str], film: Film, tell: Callable[[int], N
     Raises:
         InputError: the file cannot be written, or is of another format.
     """
-    path = check_film(path)
+    path = named(path, *FILM)
     slowed = f"slowed down {1.0 / film.speed:g} times" if film.speed < 1.0 else f"sped up {film.speed:g} times"
     pace = "real time" if film.speed == 1.0 else slowed
     digits = 4 if film.speed < 0.02 else 3 if film.speed < 0.2 else 2
@@ -158,7 +140,7 @@ def write_film(path: str | os.PathLike[str], film: Film, tell: Callable[[int], N
                 for artist in (*axes.lines, *axes.patches, *axes.texts):
                     artist.remove()
                 axes.set_axis_off()
-                axes.set_title(f"{scene.title}\n{scene.draw(axes, time)}", fontsize=10, loc="center")
+                axes.set_title(f"{scene.title}\n{scene.draw(axes, time) or ' '}", fontsize=10, loc="center")
             now.set_xdata([time, time])
             clock.set_text(f"t = {time:.{digits}f} s, {pace}")
             canvas.draw()

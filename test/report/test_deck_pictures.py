@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections import deque
 from math import cos, pi, radians, sin
 from pathlib import Path
 
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 from PIL import Image
 
 from impact_predictor.mechanics.motion import End
@@ -23,8 +25,6 @@ from impact_predictor.report.deck_pictures import (
     deck_film,
     deck_frames,
     margin_used,
-    moments,
-    outline_of,
     write_deck_figure,
 )
 from impact_predictor.report.plot import write_film
@@ -67,16 +67,22 @@ def units(deck: MovingSupport) -> list[UnitMotion]:
     return found.units
 
 
-def test_a_course_is_the_motion_from_the_decks_origin(deck: MovingSupport, units: list[UnitMotion]) -> None:
+@pytest.fixture(scope="module")
+def onsets(deck: MovingSupport) -> list[list[float]]:
+    """Times in s at which each unit leaves its rest."""
+    return [
+        [onset.stamp * 1e-9 for span in follow(unit, deck.at(*unit.foot), DURATION) for onset in span.onsets]
+        for unit in units_of(SCENES)
+    ]
+
+
+def test_the_state_between_two_moments_is_that_of_the_motion(deck: MovingSupport, units: list[UnitMotion]) -> None:
     for one in units:
-        unit = one.unit
-        (span, *_) = follow(unit, deck.at(*unit.foot), DURATION)
-        for time in one.times[one.times < one.ended][::200]:
-            state, seen = span.state(np.array([time])), one.at(float(time))
-            # At its own moments a one has what the motion tells, but for rounding.
-            assert seen.x == pytest.approx(float(state.x[0]) + unit.foot[0], abs=1e-12)
-            assert seen.y == pytest.approx(float(state.y[0]) + unit.foot[1], abs=1e-12)
-            assert seen.angle == pytest.approx(float(state.angle[0]), abs=1e-12)
+        (span, *_) = follow(one.unit, deck.at(*one.unit.foot), DURATION)
+        times = one.times[one.times < one.ended][::200]
+        # At its own moments a unit has what the motion tells, but for rounding.
+        seen = np.array([one.at(float(time)) for time in times]).T
+        assert seen == pytest.approx(np.array(span.state(times)), abs=1e-12)
 
 
 def test_units_rock_slide_topple_and_stay(units: list[UnitMotion]) -> None:
@@ -95,26 +101,31 @@ def test_units_rock_slide_topple_and_stay(units: list[UnitMotion]) -> None:
 
 
 def test_a_margin_is_used_up_when_a_unit_leaves_its_rest_and_not_before(
-    deck: MovingSupport, units: list[UnitMotion]
+    deck: MovingSupport, units: list[UnitMotion], onsets: list[list[float]]
 ) -> None:
-    for one in units:
+    for one, begun in zip(units, onsets, strict=True):
         used = margin_used(deck, one.unit, one.times)
-        step = one.times[1]
-        if not one.onsets:
+        if not begun:
             assert used.max() < 1.0
             continue
-        first = one.onsets[0].stamp * 1e-9
-        assert (used[one.times < first - step] < 1.0).all()
-        assert margin_used(deck, one.unit, np.array([first])) == pytest.approx(1.0, abs=1e-3)
+        assert (used[one.times < begun[0] - one.times[1]] < 1.0).all()
+        assert margin_used(deck, one.unit, np.array(begun[:1])) == pytest.approx(1.0, abs=1e-3)
 
 
-def test_an_outline_is_the_box_seen_along_the_deck() -> None:
-    (unit,) = units_of({"turned": box(1.0, 2.0, 0.5, (0.0, 0.0, 1.0), yaw=0.5 * pi)})
-    low, high = outline_of(unit).min(axis=0), outline_of(unit).max(axis=0)
-    assert (*low, *high) == pytest.approx((-0.6, -1.0, 0.6, 1.0))
+def outline_of(deck: MovingSupport, scene: Scene) -> NDArray[np.float64]:
+    """What the film draws of a unit before it moves, from where its old contact stands, on a deck that is level."""
+    motion = DeckMotion(1.0)
+    for unit in units_of({"one": scene}):
+        deque(motion.taking(unit, follow(unit, deck, 1.0)), maxlen=0)
+    axes = Figure().add_subplot()
+    UnitScene(deck, motion.units[0], motion.times.tolist()).draw(axes, 0.0)
+    return np.asarray(axes.patches[-1].get_path().vertices)
 
 
-def test_an_outline_of_a_cylinder_is_round() -> None:
+def test_a_box_and_a_drum_are_seen_along_the_deck() -> None:
+    level = harmonic_support([Wave(0.0, 1.0)])
+    corners = outline_of(level, box(1.0, 2.0, 0.5, (0.0, 0.0, 1.0), yaw=0.5 * pi))
+    assert (*corners.min(axis=0), *corners.max(axis=0)) == pytest.approx((0.0, 0.0, 1.2, 2.0))
     drum = Scene(
         *(200.0, ((16.0, 0.0, 0.0), (0.0, 16.0, 0.0), (0.0, 0.0, 16.0)), 0.5),
         radius=0.4,
@@ -122,20 +133,21 @@ def test_an_outline_of_a_cylinder_is_round() -> None:
         place=(0.0, 0.0, 0.4 * cos(0.5)),
         deck=MovingDeck(),
     )
-    (unit,) = units_of({"drum": drum})
-    assert np.hypot(*outline_of(unit).T) == pytest.approx(0.4)
+    centre = (0.4 * sin(0.5), 0.4 * cos(0.5))
+    assert np.hypot(*(outline_of(level, drum) - centre).T) == pytest.approx(0.4)
 
 
-def test_the_moving_picture_shows_the_seconds_in_which_most_units_move(units: list[UnitMotion]) -> None:
-    frames = deck_frames(units)
+def test_the_moving_picture_shows_the_seconds_in_which_most_units_move(
+    units: list[UnitMotion], onsets: list[list[float]]
+) -> None:
+    frames, begun = deck_frames(units), np.concatenate(onsets)
     assert frames[-1] - frames[0] == pytest.approx(LONGEST, abs=0.1)
-    onsets = [onset.stamp * 1e-9 for one in units for onset in one.onsets]
-    assert sum(frames[0] <= onset <= frames[-1] for onset in onsets) >= 0.5 * len(onsets)
+    assert np.mean((frames[0] <= begun) & (begun <= frames[-1])) >= 0.5
 
 
 def test_the_moving_picture_of_a_calm_deck_or_a_short_one_is_not_empty(units: list[UnitMotion]) -> None:
     assert len(deck_frames(units[:1])) > 100
-    short = UnitMotion(units[0].unit, moments(1.0))
+    short = UnitMotion(units[0].unit, DeckMotion(1.0).times)
     assert deck_frames([short])[-1] <= 1.0
 
 
@@ -153,8 +165,8 @@ def test_the_film_says_what_a_unit_does(deck: MovingSupport, units: list[UnitMot
 
 
 def test_moments_of_a_long_motion_are_not_too_many() -> None:
-    assert len(moments(1e6)) == 200_000
-    assert moments(10.0)[1] == pytest.approx(0.05)
+    assert len(DeckMotion(1e6).times) == 200_000
+    assert DeckMotion(10.0).times[1] == pytest.approx(0.05)
 
 
 def test_the_pictures_are_written_the_same_every_time(
