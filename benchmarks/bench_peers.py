@@ -104,8 +104,8 @@ def peers(step: float = 1e-4) -> Iterator[Method]:
 
 
 def question() -> SimpleNamespace:
-    """The question of the impact with ordinary bodies of the paper and tall blocks."""
-    draws: dict[str, Callable[[Random], Struck]] = {"tall block": impacts.tall}
+    """The question of the impact with ordinary bodies of the paper and any on a floor."""
+    draws: dict[str, Callable[[Random], Struck]] = {"floor": partial(impacts.drawn, kind="floor")}
     draws |= {shape: partial(ordinary, shape=shape) for shape in ("rod", "plate", "cylinder")}
     scenes = {AccuracyScene(name, IMPACT, name, "", ""): draw for name, draw in draws.items()}
     return SimpleNamespace(SCENES=scenes, reference_of=impacts.reference_of, errors_of=impacts.errors_of)

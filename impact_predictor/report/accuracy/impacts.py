@@ -15,6 +15,8 @@ import numpy as np
 
 from ...mechanics import bodies, closed_forms
 from ...mechanics.impact import LAWS, solve_impact
+from ...mechanics.invariants import problem_at
+from ...mechanics.random_problems import problems_of
 from ...mechanics.transverse import Transverse, solve_transverse_impact
 from ...mechanics.types import Mode, Twist, TwoPointBody
 from ...prediction.impact import TOLERANCE
@@ -46,29 +48,24 @@ def of_paper(source: Random) -> Struck:
     def decades(low: float, high: float) -> float:
         return float(10.0 ** source.uniform(low, high))
 
-    size, given = decades(-6.0, 6.0), {"mass": decades(-1.0, 1.0), "friction": decades(-3.0, 3.0)}
-    shape = source.choice(("rod", "plate", "cylinder"))
-    if shape == "rod":
-        a, b = (0.5 * size * decades(-6.0, 0.0) for _ in range(2))
-        given |= {"length": size, "thickness": size * decades(-8.0, -1.0), "a": a, "b": b}
-    elif shape == "plate":
-        given |= {"length": size, "height": size * decades(-8.0, 3.0)}
-    else:
-        given |= {"radius": size, "gamma": 1.4 * decades(-6.0, 0.0)}
-    body: TwoPointBody = getattr(bodies, shape)(**given)
-    omega = -decades(-1.0, 1.0)
+    size, a, b = decades(-6.0, 6.0), 0.5 * decades(-6.0, 0.0), 0.5 * decades(-6.0, 0.0)
+    shape, given = source.choice(
+        (
+            ("rod", {"length": size, "thickness": size * decades(-8.0, -1.0), "a": a * size, "b": b * size}),
+            ("plate", {"length": size, "height": size * decades(-8.0, 3.0)}),
+            ("cylinder", {"radius": size, "gamma": 1.4 * decades(-6.0, 0.0)}),
+        )
+    )
+    given |= {"mass": decades(-1.0, 1.0), "friction": decades(-3.0, 3.0)}
+    body, omega = getattr(bodies, shape)(**given), -decades(-1.0, 1.0)
     right = getattr(closed_forms, shape)(**given, omega=omega)
     return Struck(body, body.turning(omega), known=Aftermath(Twist(*right.twist.tolist()), Mode(int(right.mode))))
 
 
-def tall(source: Random) -> Struck:
-    """A block three to ten times as high as long; half of them slip at A, half of them bounce at B."""
-    length = 10.0 ** source.uniform(-1.0, 0.5)
-    restitution, friction = source.choice((0.0, 0.0, 0.125, 0.5)), source.uniform(0.0, 1.0)
-    body = bodies.plate(length, length * 10.0 ** source.uniform(0.5, 1.0), 1.0, friction, restitution=restitution)
-    twist = body.turning(-(10.0 ** source.uniform(-1.0, 1.0)))
-    slip = source.choice((0.0, 1.0)) * source.uniform(-2.0, 2.0) * twist.omega * length
-    return Struck(body, twist._replace(vx=twist.vx + slip))
+def drawn(source: Random, kind: str) -> Struck:
+    """One of the `random_problems`."""
+    _, body, twist = problems_of(kind, np.random.default_rng(source.getrandbits(32)), 1)
+    return Struck(problem_at(body, 0), problem_at(twist, 0))
 
 
 def crossing(source: Random) -> Struck:
@@ -88,7 +85,8 @@ SCENES: Final[dict[AccuracyScene, Callable[[Random], Struck]]] = {
     AccuracyScene(name, IMPACT, title, description, reference): draw
     for name, title, description, reference, draw in (
         ("paper", "Bodies of the paper, also stiff ones", PAPER, FORMULA, of_paper),
-        ("squat", "Tall blocks", "3 to 10 times as high as long; half slip, half bounce.", LONG, tall),
+        ("floor", "Any body on a floor", "Half of them slip at A, half bounce.", LONG, partial(drawn, kind="floor")),
+        ("slender", "Slender bodies", "Lengths, friction over 8 decades.", LONG, partial(drawn, kind="slender")),
         ("across", "Slip across the plane", "Cubes that also slip along the edge that strikes.", FINE, crossing),
     )
 }

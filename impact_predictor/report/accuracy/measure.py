@@ -21,32 +21,31 @@ AccuracyRow = dict[str, Any]
 ACCURACIES: Final = (1e-2, 1e-4, 1e-6, 1e-9)
 """Relative errors that a user may want, for which the report chooses a method."""
 
-PREDICTOR: Final = "predictor"
-"""The family of the whole predictor on recorded samples, whose truth is measured: no choice is made on them."""
-
 TOUCHDOWN: Final = "touchdown"
 IMPACT: Final = "impact"
 STABILITY: Final = "stability"
+TOSSES: Final = "tosses"
 
-ERRORS: Final = {TOUCHDOWN: ("time_error", "twist_error"), IMPACT: ("twist_error",), STABILITY: ("violation",)}
-"""What of a row is an error, by the question."""
+ERRORS: Final = {
+    TOUCHDOWN: ("time_error", "twist_error"),
+    IMPACT: ("twist_error",),
+    STABILITY: ("violation",),
+    TOSSES: ("twist_error",),
+}
+"""The questions, and what of a row is an error."""
 
 SPAN: Final = 2e-4
 """s of calls that are timed together, far above the resolution of the clock."""
 
 
 class AccuracyScene(NamedTuple):
-    """A set of problems that all methods of a question meet.
-
-    `reference` says what is held to be right; `measured` whether that is a measurement, which no choice is made on.
-    """
+    """A set of problems that all methods of a question meet; `reference` says what is held to be right."""
 
     name: str
     question: str
     title: str
     description: str
     reference: str
-    measured: bool = False
 
 
 class Method(NamedTuple):
@@ -124,16 +123,16 @@ def error_of(row: Mapping[str, Any]) -> float:
 
 
 def on_all(rows: Iterable[AccuracyRow], question: str) -> list[AccuracyRow]:
-    """The methods on all computed scenes of a question together, each with its mean cost and its largest errors."""
+    """The methods on all scenes of a question together, each with its mean cost and its largest errors."""
     groups: dict[tuple[str, str], list[AccuracyRow]] = {}
     for row in rows:
-        if row["question"] == question and row["family"] != PREDICTOR:
+        if row["question"] == question:
             groups.setdefault((row["method"], row["setting"]), []).append(row)
     return [max(group, key=error_of) | {"us": mean(row["us"] for row in group)} for group in groups.values()]
 
 
 def choices_of(rows: Iterable[AccuracyRow], question: str) -> Iterator[dict[str, Any]]:
-    """The cheapest method for each wanted accuracy on all computed scenes of a question together."""
+    """The cheapest method for each wanted accuracy on all scenes of a question together."""
     everywhere = on_all(rows, question)
     for accuracy in ACCURACIES:
         good = [row for row in everywhere if error_of(row) <= accuracy]

@@ -26,7 +26,7 @@ from ...parameters.file import read_values
 from ...prediction.scene import Scene, scenes_of
 from ...resources import find
 from . import impacts, measure, touchdowns
-from .measure import IMPACT, PREDICTOR, STABILITY, TOUCHDOWN, AccuracyRow, AccuracyScene
+from .measure import IMPACT, STABILITY, TOSSES, TOUCHDOWN, AccuracyRow, AccuracyScene
 
 USED: Final = {TOUCHDOWN: touchdowns.USED, IMPACT: impacts.USED}
 """What the node uses."""
@@ -35,13 +35,12 @@ TIMING: Final = (
     "CPU time of one prediction in plain Python unless the method says otherwise, of three runs the quickest."
 )
 
-TOSSES: Final = AccuracyScene(
+CUBE: Final = AccuracyScene(
     name="cube tosses",
-    question=IMPACT,
-    title="Cube tosses, measured",
+    question=TOSSES,
+    title="Cube tosses",
     description="A cube of 0.1 m, tossed onto a hard floor: twist in the impact plane after an edge lands.",
-    reference="median of samples 2 to 4 after the touchdown, captured at 148 Hz",
-    measured=True,
+    reference="measurement: median of samples 2 to 4 after the touchdown, captured at 148 Hz",
 )
 
 MECHANICS: Final = ("cone", "momentum", "approach", "work", "energy")
@@ -102,12 +101,12 @@ def report(size: Size, command: str, tell: Callable[[int], None] = lambda done: 
             rows.append(row)
             tell(len(rows))
     used = {name: measure.used_of(one, rows, name) for name, one in USED.items()}
-    says = {**touchdowns.SAYS, **impacts.SAYS, PREDICTOR: "The whole predictor on each sample, by the law named."}
+    says = {**touchdowns.SAYS, **impacts.SAYS, "predictor": "The whole predictor on each sample, by the law named."}
     return {
         "made": made(command),
         "node": {name: method for name, method in used.items() if method},
         "families": [{"name": one, "says": says[one]} for one in dict.fromkeys(row["family"] for row in rows)],
-        "scenes": [scene._asdict() for scene in (*touchdowns.SCENES, *impacts.SCENES, *RANDOM, TOSSES)],
+        "scenes": [scene._asdict() for scene in (*touchdowns.SCENES, *impacts.SCENES, *RANDOM, CUBE)],
         "rows": rows,
         "choices": [one for name in used for one in measure.choices_of(rows, name)],
     }
@@ -142,7 +141,7 @@ def toss_rows(count: int) -> Iterator[AccuracyRow]:
         scored = [one.score.relative_error for one in found.settled if one.score.scored]
         errors = [{"twist_error": inf if error is None else error} for error in scored]
         costs = [1e6 * settled.cost for settled in found.settled if settled.cost is not None]
-        yield measure.row_of(TOSSES, (PREDICTOR, name, ""), costs or [1e6 * median(found.costs)], errors)
+        yield measure.row_of(CUBE, ("predictor", name, ""), costs or [1e6 * median(found.costs)], errors)
 
 
 def made(command: str) -> dict[str, str]:

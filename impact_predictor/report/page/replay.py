@@ -7,12 +7,11 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from ...stamps import NANOSECONDS
 from ...wording import counted
 from . import answers as taken
 from . import sections
 from .answers import BagAnswer
-from .document import page, script_beside, script_inside, time_words, write_html
+from .document import page, script_beside, script_inside, write_html
 
 
 def write_replay_page(
@@ -69,19 +68,9 @@ def page_of_replay(
         sections.unused(answers),
         sections.scene(values),
     )
-    facts = [fact for fact in taken.facts_of(answers) if fact.answer != "–"]
-    title = ", ".join(f"{fact.question} {fact.answer}" for fact in facts[:-1])
-    lead, sections_there = lead_of(answers), [one for one in parts if one is not None]
-    return page(title if there else "No touchdown was predicted", lead, facts if there else [], sections_there, script)
-
-
-def lead_of(answers: Sequence[BagAnswer]) -> str:
-    """Which bags these are."""
-    what, failed = f"{len(answers):,} records", sum("error" in answer for answer in answers)
-    if len(answers) == 1:
-        begin, end = (answers[0].get(name) for name in ("begin", "end"))
-        over = "" if begin is None or end is None else f" of {time_words((end - begin) / NANOSECONDS)}"
-        what = f"The record {taken.names_of(answers)[0]}{over}"
+    facts = [fact for fact in taken.facts_of(answers) if fact.answer != "–"] if there else []
+    title = ", ".join(f"{fact.question} {fact.answer}" for fact in facts[:-1]) or "No touchdown was predicted"
+    what = taken.names_of(answers)[0] if len(answers) == 1 else f"{len(answers):,} records"
     samples = counted(sum(answer["samples"] for answer in taken.used(answers)), "sample")
-    unread = f"; {failed:,} could not be read" if failed else ""
-    return f"{what}, {samples}, went through the predictor as if live{unread}."
+    lead = f"{what}, {samples}, went through the predictor as if live."
+    return page(title, lead, facts, [one for one in parts if one is not None], script)

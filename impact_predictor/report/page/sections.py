@@ -32,7 +32,10 @@ def bags(answers: Sequence[BagAnswer], order: Sequence[int], links: Mapping[int,
         remark = next((kind for key, kind in REMARKS.items() if key != "notes" and answer.get(key)), "")
         cells = [Cell(fact.answer, fact.more if fact.question == "found" else "") for fact in facts]
         rows.append([Cell(names[place], remark, to=links.get(place, "")), *(cells if "error" not in answer else [])])
-    said = "First those that could not be used, then by what was missed or announced in vain, then by the error."
+    said = (
+        "First those that could not be used, then by what was missed or announced in vain, then by the error. The "
+        f"timelines of the first {DRAWN} with touchdowns are drawn."
+    )
     return Section("bags", "The bags", [said], [PageTable(["bag", *(fact.question for fact in facts)], rows)])
 
 
@@ -49,9 +52,7 @@ def when(answers: Sequence[BagAnswer], places: Sequence[int]) -> Section | None:
     """The timelines of some bags; None where nothing was predicted."""
     names = taken.names_of(answers)
     charts = [Chart(names[one], timeline(answers[one]), anchor=f"bag-{one + 1}") for one in places]
-    said = [READING, f"Of more than {DRAWN} bags those of the worst are drawn."]
-    said = said if len(answers) > DRAWN else said[:1]
-    return Section("when", "When the touchdowns came", said, charts) if charts else None
+    return Section("when", "When the touchdowns came", [READING], charts) if charts else None
 
 
 AGAINST: Final = (

@@ -11,7 +11,6 @@ from typing import Any
 import pytest
 
 from impact_predictor.report.accuracy.measure import (
-    PREDICTOR,
     TOUCHDOWN,
     AccuracyScene,
     Method,
@@ -58,7 +57,6 @@ ROWS = [
     row(1, "sharp", 30.0, 1e-11),
     row(0, "special", 5.0, 1e-12),
     row(1, "special", 5.0, 5e-3),
-    row(1, PREDICTOR, 1.0, 1e-9),
 ]
 
 

@@ -23,12 +23,12 @@ def test_a_small_report_has_a_row_for_each_method_on_each_scene_and_makes_a_page
         for scene in question.SCENES:
             assert {(name, scene.name, *method[:2]) for method in question.METHODS} <= rows
     assert {(STABILITY, scene.name, "total law", "over arrays") for scene in study.RANDOM} <= rows
-    (tosses,) = (row for row in report["rows"] if row["scene"] == study.TOSSES.name)
+    (tosses,) = (row for row in report["rows"] if row["scene"] == study.CUBE.name)
     assert tosses["method"] == "path law, slip across"
     assert 0.03 < tosses["twist_error"] < 0.1
     assert {row["family"] for row in report["rows"]} == {family["name"] for family in report["families"]}
     assert set(report["node"]) == {TOUCHDOWN, IMPACT}
-    assert len(PageReader(accuracy_page(report, script="")).figures) == 3
+    assert len(PageReader(accuracy_page(report, script="")).figures) == 4
 
 
 def test_random_impacts_of_all_kinds_keep_to_mechanics_and_what_is_not_answered_is_counted() -> None:
