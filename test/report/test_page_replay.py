@@ -73,17 +73,11 @@ def test_all_text_of_a_bag_is_escaped_on_the_page_and_in_its_figures() -> None:
     assert lanes[0] == '&lt;script&gt;alert("x")&lt;/script&gt; predicted'
 
 
-def test_names_are_as_short_as_they_can_be_and_no_two_are_the_same() -> None:
-    paths = ["/a/one/run.mcap", "/a/two/run.mcap", "/b/two/run.mcap", "x.bag"]
-    rows = read([answer(path) for path in paths]).tables["bags"][0][1:]
-    assert [row[0] for row in rows] == ["one/run.mcap", "a/two/run.mcap", "b/two/run.mcap", "x.bag"]
-
-
 def facts(*answers: BagAnswer) -> dict[str, str]:
     return {fact.question: f"{fact.answer}: {fact.more}" for fact in facts_of(answers)}
 
 
-def test_the_headlines_say_how_many_how_right_how_early_and_at_what_cost() -> None:
+def test_the_head_says_how_many_how_right_how_early_and_at_what_cost(page: PageReader) -> None:
     assert facts(TRUE, UNREADABLE) == {
         "touchdowns": "2: 2 compared with measured velocities",
         "found": "2 of 3: 1 missed, 1 false alarm, 1 more too slow or too close to be seen",
@@ -104,13 +98,9 @@ def test_the_headlines_say_how_many_how_right_how_early_and_at_what_cost() -> No
     # The error of the time is that of the first span from 20 ms ahead on that has any.
     later = {**TRUE, "time_errors_ahead": spans({0.0: [0.5], 0.03: [0.004]})}
     assert facts(later)["time error"].startswith("4 ms: median, 30 to 40 ms ahead")
-
-
-def test_the_title_and_the_lead_say_what_the_page_is_about(page: PageReader) -> None:
     head = "touchdowns 2, found 2 of 3, velocity error 2.0 %, time error 2 ms, first ahead 50 ms"
     assert head in read([TRUE]).text
     assert "4 records, 30 samples, went through the predictor as if live." in page.text
-    assert "tosses.mcap, 10 samples, went" in read([TOSSES]).text
 
 
 def marks(figure: dict[str, Any]) -> dict[str, list[tuple[float, int]]]:
@@ -166,20 +156,18 @@ def test_the_timeline_of_a_walk_has_lanes_for_each_foot_with_its_stances(page: P
     assert known["STOP"]["hovertext"][1] == f"0.302 s: {speed}<br>{others}<br>{off}"
 
 
-def test_the_graphics_card_draws_many_points(page: PageReader) -> None:
-    many = read([answer(touchdowns=[touchdown(k) for k in range(MANY + 1)])])
-    for title in ("run.mcap", "Along the support: vx"):
-        assert many.figures[title]["data"][-1]["type"] == "scattergl"
-        assert len(many.figures[title]["data"][-1]["x"]) == MANY + 1
-    assert page.figures["Along the support: vx"]["data"][-1]["type"] == "scatter"
-
-
-def test_points_stand_where_measured_and_predicted_velocities_say(page: PageReader) -> None:
+def test_points_stand_where_measured_and_predicted_velocities_say() -> None:
     along, turning = list(read([TOSSES]).figures.values())[1:3]
     assert traces(along)["PIVOT (1)"]["x"] == [0.4]
     assert traces(along)["PIVOT (1)"]["y"] == [0.5]
     assert [(trace["x"], trace["y"]) for trace in turning["data"][1:]] == [([-0.2], [-0.2]), ([-0.1], [-0.2])]
     assert traces(along)["PIVOT (1)"]["hovertext"] == ["tosses.mcap, 0.100 s, cube<br>relative error 10.0 %"]
+    # The graphics card draws many points, and a browser draws few without one.
+    many = read([answer(touchdowns=[touchdown(k) for k in range(MANY + 1)])])
+    assert along["data"][-1]["type"] == "scatter"
+    for title in ("run.mcap", "Along the support: vx"):
+        trace = many.figures[title]["data"][-1]
+        assert (trace["type"], len(trace["x"])) == ("scattergl", MANY + 1)
 
 
 def test_modes_are_confused_as_the_truth_tells_and_what_no_record_shows_does_not_count() -> None:
@@ -240,13 +228,14 @@ def test_a_row_for_each_bag_leads_to_its_timeline_and_the_worst_stand_first(page
     head, *rows = page.tables["bags"][0]
     assert head[:3] == ["bag", "touchdowns", "found"]
     assert rows[0] == ["broken.mcap could not be read"]
-    assert rows[1][:3] == [
-        "simulated.mcap",
-        "2",
-        "2 of 3 1 missed, 1 false alarm, 1 more too slow or too close to be seen",
-    ]
+    assert rows[1][:2] == ["simulated.mcap", "2"]
+    assert rows[1][2].startswith("2 of 3 1 missed, 1 false alarm")
     assert [link for link in page.links if link.startswith("#bag-")] == ["#bag-1", "#bag-3", "#bag-2"]
     assert "bags" not in read([TRUE]).tables
+    # Names are as short as they can be, and no two are the same.
+    paths = ["/a/one/run.mcap", "/a/two/run.mcap", "/b/two/run.mcap", "x.bag"]
+    rows = read([answer(path) for path in paths]).tables["bags"][0][1:]
+    assert [row[0] for row in rows] == ["one/run.mcap", "a/two/run.mcap", "b/two/run.mcap", "x.bag"]
 
 
 def test_of_many_bags_all_are_listed_and_the_worst_are_drawn() -> None:
@@ -272,16 +261,11 @@ def test_what_the_scene_leaves_out_stands_after_what_it_takes_in(page: PageReade
     assert "scene" not in read([TRUE]).tables
 
 
-@pytest.mark.parametrize(
-    ("part", "words"),
-    [(0.0, "0.0 %"), (8e-15, "< 0.01 %"), (0.00123, "0.12 %"), (0.0609, "6.1 %"), (0.105, "10.5 %"), (None, "–")],
-)
-def test_parts_of_one_read_as_in_the_tables_of_the_terminal(part: float | None, words: str) -> None:
-    assert part_words(part) == words
-
-
-def test_times_have_the_unit_that_suits_and_nothing_is_told_below_a_microsecond() -> None:
-    assert [time_words(one) for one in (0.0, 0.00123, 5681.4, None)] == ["less than 1 us", "1.23 ms", "5,681 s", "–"]
+def test_parts_and_times_are_told_to_what_can_be_told_apart() -> None:
+    parts = {0.0: "0.0 %", 8e-15: "< 0.01 %", 0.00123: "0.12 %", 0.0609: "6.1 %", 0.105: "10.5 %", None: "–"}
+    assert {part: part_words(part) for part in parts} == parts
+    times = {0.0: "less than 1 us", 0.00123: "1.23 ms", 5681.4: "5,681 s", None: "–"}
+    assert {time: time_words(time) for time in times} == times
 
 
 def test_the_page_of_a_record_without_anything_says_so() -> None:
