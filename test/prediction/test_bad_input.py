@@ -122,12 +122,6 @@ def test_one_stamp_far_in_the_future_does_not_stop_the_predictor_for_long() -> N
     assert statuses[-2:] == [Status.ACCEPTED, Status.ACCEPTED]
 
 
-def test_a_sample_of_another_frame_is_refused() -> None:
-    predictor = Predictor(CUBE_SCENE._replace(frame="map"))
-    assert predictor.update(flying_sample(frame_id="odom")).status is Status.WRONG_FRAME
-    assert goes_on(predictor)
-
-
 def test_the_geometry_must_be_of_the_samples_body() -> None:
     predictor = Predictor(BARE_SCENE)
     assert predictor.tell(Geometry(0, "crate", CUBE)) is Status.ACCEPTED

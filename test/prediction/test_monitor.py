@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from math import cos, inf, nan, pi, sin
 from typing import Any
 
@@ -11,7 +9,6 @@ import pytest
 
 from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction.monitor import Monitor
-from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Input, Scene, inputs_of, scenes_of
 from impact_predictor.prediction.types import Geometry, Imu, Quaternion, Sample, Schedule, Status, Vector3, Wrench
 from impact_predictor.prediction.vectors import axes_of, composed, cross, to_world
@@ -95,30 +92,6 @@ def test_it_has_what_its_scenes_need_and_nothing_else() -> None:
     plain = Monitor(scenes(onset__watch=None, support__motion=None, blind__source=None, leaning__source=None))
     assert list(plain.predictors) == ["crate", "blind", "leaning"]
     assert (plain.deck, plain.watch, plain.reports()) == (None, None, ())
-
-
-def test_a_body_alone_on_a_floor_is_answered_by_its_predictor_alone() -> None:
-    scene = scenes(bodies=None, blind__source=None, leaning__source=None, support__motion=None, onset__watch=None)[""]
-    monitor, predictor = Monitor({"": scene}), Predictor(scene)
-    samples = [standing(time, angle=-0.2 + 0.01 * time, rate=1.0) for time in range(30)]
-    answers = [monitor.update("", sample) for sample in samples]
-    assert answers == [predictor.update(sample) for sample in samples]
-    assert any(answer.touchdown is not None for answer in answers)
-    assert monitor.finish() == {"": predictor.finish()}
-
-
-def test_a_scene_loads_nothing_that_it_does_without() -> None:
-    code = """
-import sys
-from impact_predictor.prediction.monitor import Monitor
-from impact_predictor.prediction.scene import Scene
-Monitor({"": Scene(1.0, ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), 0.5, transverse_slip=False)})
-parts = [f"prediction.{name}" for name in ("deck", "watch", "walking", "uncertainty")] + ["mechanics.transverse"]
-print(*[name for name in parts if f"impact_predictor.{name}" in sys.modules])
-print(*({"numpy", "numba", "scipy"} & set(sys.modules)))
-"""
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=True, text=True)
-    assert done.stdout.split() == []
 
 
 def test_samples_are_answered_once_the_deck_is_known_and_seen_from_it() -> None:
@@ -271,16 +244,6 @@ def test_the_inputs_are_those_that_the_scenes_need() -> None:
     )
     alone = scenes_of(validate({"body.mass": 1.0, "body.inertia": [1.0], "contact.friction": 0.5}))
     assert inputs_of(alone) == (Input("contact_geometry", "contact_geometry", ""), Input("odom", "odom", ""))
-
-
-def test_the_deck_may_have_an_inertial_sensor_instead() -> None:
-    monitor = Monitor(scenes(support__motion="imu"))
-    for time in range(AGREED):
-        imu = Imu(SECOND + time * PERIOD, "deck", LEVEL, NOTHING, (0.0, 0.0, 9.81))
-        assert monitor.update_support_imu(imu) is Status.ACCEPTED
-        answer = monitor.update("crate", standing(time, frame_id="deck"))
-    assert answer.status is Status.ACCEPTED
-    assert monitor.update("crate", standing(AGREED)).status is Status.WRONG_FRAME
 
 
 @pytest.mark.parametrize("heading", [0.0, 1.0, pi])

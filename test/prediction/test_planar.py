@@ -130,28 +130,6 @@ def test_a_body_on_an_edge_turns_about_the_edge_however_it_spins() -> None:
     assert plane.gravity == pytest.approx((0.0, -9.81, 0.0), abs=ROUNDING)
 
 
-def test_the_part_of_the_spin_off_the_axis_is_reported() -> None:
-    scene, sample, posture = on_back_edge(np.array([0.3, 1.0, 0.4]), np.zeros(3))
-    plane = plane_of(scene, BOX, sample, posture, ActiveContacts(BACK, FRONT))
-    assert plane.off_axis == pytest.approx(0.5 / math.sqrt(1.25), abs=ROUNDING)
-
-
-def test_the_velocity_of_the_standing_contact_along_the_edge_is_reported() -> None:
-    spin, velocity = np.array([0.3, 1.0, 0.4]), np.array([0.1, 0.2, -0.5])
-    scene, sample, posture = on_back_edge(spin, velocity)
-    plane = plane_of(scene, BOX, sample, posture, ActiveContacts(BACK, FRONT))
-    assert plane.lateral == pytest.approx((velocity + np.cross(spin, [-0.5, 0.0, -0.3]))[1], abs=ROUNDING)
-
-
-def test_contacts_beside_the_mass_centre_are_reported() -> None:
-    scene, sample, posture = on_back_edge(np.array([0.0, 1.0, 0.0]), np.zeros(3), center=(0.0, 0.1, 0.0))
-    plane = plane_of(scene, BOX, sample, posture, ActiveContacts(BACK, FRONT))
-    assert plane.offset == pytest.approx(0.1, abs=ROUNDING)
-    for old, new, offset in ((BACK, (4,), 0.5), ((2,), FRONT, 0.3)):
-        one_side = plane_of(scene, BOX, sample, posture, ActiveContacts(old, new))
-        assert one_side.offset == pytest.approx(offset, abs=ROUNDING)
-
-
 def test_a_body_on_a_corner_turns_about_the_part_of_its_spin_in_the_support() -> None:
     scene, sample, posture = on_back_edge(np.array([0.6, 0.8, 5.0]), np.zeros(3))
     plane = plane_of(scene, BOX, sample, posture, ActiveContacts((2,), (4,)))
@@ -183,13 +161,6 @@ def test_a_body_that_drops_flat_without_turning_is_turned_against_its_sliding() 
     plane = plane_of(scene, BOX, sample, posture, ActiveContacts((), (0, 2, 4, 6)))
     assert plane.ahead == pytest.approx((-0.6, 0.8, 0.0), abs=ROUNDING)
     assert plane.off_axis == 0.0
-
-
-def test_a_body_that_drops_flat_and_plumb_has_a_plane_too() -> None:
-    scene, sample, posture = on_back_edge(np.zeros(3), np.array([0.0, 0.0, -1.0]))
-    plane = plane_of(scene, BOX, sample, posture, ActiveContacts((), (0, 2, 4, 6)))
-    assert math.hypot(*plane.axis) == pytest.approx(1.0, abs=ROUNDING)
-    assert plane.axis[2] == pytest.approx(0.0, abs=ROUNDING)
 
 
 def box_inertia(length: float, width: float, height: float) -> InertiaTensor:

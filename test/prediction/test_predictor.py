@@ -329,27 +329,6 @@ def test_gravity_across_the_plane_moves_a_body_in_flight_only() -> None:
     assert tilted.position == pytest.approx(level.position, abs=CLOSE)
 
 
-def test_the_order_of_the_points_changes_their_names_only() -> None:
-    placed = anywhere(SLIDING, 4)
-    points = placed.points()
-    order = (5, 2, 0, 4, 3, 1)
-    plain, shuffled = announced(placed, 0.03), announced(placed, 0.03, points=tuple(points[i] for i in order))
-    assert (shuffled.old, shuffled.new) == ((2, 5), (1, 4))
-    assert shuffled.lead_time == pytest.approx(plain.lead_time, abs=CLOSE)
-    assert shuffled.after == pytest.approx(plain.after, abs=CLOSE)
-    assert shuffled.axis == pytest.approx(plain.axis, abs=CLOSE)
-
-
-def test_an_edge_that_closes_askew_strikes_with_one_corner_first() -> None:
-    placed = anywhere(STICKING, 6)
-    points = list(placed.points())
-    raise_by = placed.mount.inv().apply([0.0, 0.02, 0.0])
-    points[3] = triple(points[3] + raise_by)
-    touchdown = announced(placed, 0.05, points=tuple(points))
-    assert touchdown.new == (2,)
-    assert touchdown.leftover & Leftover.ONE_CORNER_FIRST
-
-
 def test_an_edge_a_little_askew_strikes_as_one_and_says_how_askew() -> None:
     placed = anywhere(STICKING, 6)
     time = placed.body.motion()[0] - 0.02

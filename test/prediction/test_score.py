@@ -162,14 +162,6 @@ def test_each_earlier_prediction_is_measured_in_its_own_plane() -> None:
     assert score.history[4][1] == pytest.approx(seen / SCALE, abs=CLOSE)
 
 
-def test_predictions_of_other_contacts_are_no_part_of_the_history() -> None:
-    samples = before()
-    x, y, z = samples[3].position
-    samples[3] = samples[3]._replace(position=(x, y, z + 0.02))  # for a moment nothing seems to stand
-    score = only_score(SCENE, samples + after(4))
-    assert len(score.history) == len(samples) - 1
-
-
 def test_within_the_twist_window_the_prediction_is_held() -> None:
     window = 0.012
     predictor = Predictor(SCENE._replace(twist_window=window))
@@ -193,15 +185,6 @@ def test_what_an_averaged_twist_has_left_of_an_impact_is_no_new_touchdown(window
     blurred = landed(BEFORE_SAMPLES * PERIOD, left * BEFORE.vx, left * BEFORE.omega, left * BEFORE.vy)
     answer = run(predictor, [*before(), blurred])[-1]
     assert (answer.touchdown is not None) is announced
-
-
-def test_a_held_prediction_counts_down_to_zero_and_no_further() -> None:
-    predictor = Predictor(SCENE._replace(twist_window=0.012))
-    samples = before()
-    late = [falling(samples[-1].stamp, height=0.02)._replace(stamp=samples[-1].stamp + k * PERIOD) for k in (1, 2)]
-    answers = [answer.touchdown for answer in run(predictor, samples + late)]
-    assert answers[-1] is not None
-    assert answers[-1].lead_time == 0.0
 
 
 def test_a_touchdown_that_does_not_come_is_not_held_for_ever() -> None:
@@ -240,17 +223,6 @@ def test_a_body_that_is_caught_in_the_air_has_not_landed() -> None:
     assert predictor.finish() == ()
 
 
-def test_a_second_touchdown_of_the_same_points_has_a_history_of_its_own() -> None:
-    """What is left of the approach after the first, seen by an exact twist, is an approach."""
-    stamp = BEFORE_SAMPLES * PERIOD
-    left = [
-        landed(stamp + k * PERIOD, *(0.4 * part for part in (BEFORE.vx, BEFORE.omega, BEFORE.vy))) for k in range(2)
-    ]
-    rest = [landed(stamp + k * PERIOD, 0.0, 0.0, 0.0) for k in range(2, 8)]
-    scores = [answer.score for answer in run(Predictor(SCENE), before() + left + rest) if answer.score is not None]
-    assert [len(score.history) for score in scores] == [BEFORE_SAMPLES, 1]
-
-
 def test_another_touchdown_is_announced_though_the_last_one_was_held() -> None:
     predictor = Predictor(SCENE._replace(twist_window=0.012))
 
@@ -283,23 +255,6 @@ def test_a_pause_or_a_clock_that_starts_anew_ends_what_waits_for_its_measurement
     assert score is not None
     assert score.leftover is Leftover.TOO_SHORT
     assert predictor.finish() == ()
-
-
-def test_the_longest_gap_that_is_no_pause_keeps_the_touchdown() -> None:
-    predictor = Predictor(SCENE)
-    run(predictor, before() + after(2))
-    first = (BEFORE_SAMPLES + 1) * PERIOD + PAUSE
-    scores = [answer.score for answer in run(predictor, [landed(first), landed(first + PERIOD)])]
-    assert [score is not None and score.scored for score in scores] == [False, True]
-
-
-@pytest.mark.parametrize("window", [0.0, 0.002])
-def test_after_finish_the_stamps_may_begin_anew(window: float) -> None:
-    predictor = Predictor(SCENE._replace(twist_window=window))
-    for _ in range(2):
-        scores = [answer.score for answer in run(predictor, before() + after(4)) if answer.score]
-        assert len(scores) == 1
-        assert predictor.finish() == ()
 
 
 @pytest.mark.parametrize(

@@ -93,12 +93,6 @@ def test_it_changes_what_is_predicted_in_the_plane() -> None:
     assert velocity[1] == pytest.approx(1.0, abs=ROUNDING)
 
 
-def test_left_and_right_are_alike() -> None:
-    left, right = announced(turning(-4.0, 0.5, 1.0, 0.3)), announced(turning(-4.0, 0.5, -1.0, -0.3))
-    assert left.after == pytest.approx(right.after, abs=ROUNDING)
-    assert left.linear[1] == pytest.approx(-right.linear[1], abs=ROUNDING)
-
-
 @pytest.mark.parametrize("part", [0.0, 0.5 * SLIPS, 0.98 * SLIPS])
 def test_less_slip_than_can_be_measured_leaves_the_planar_law_to_the_last_bit(part: float) -> None:
     speed = 4.0 * LENGTH  # of the front, with a slip that its height above the edge takes away

@@ -161,17 +161,6 @@ def test_what_is_no_covariance_is_refused_by_name_and_the_twist_counts_as_exact(
     assert spread.mean == propagate(CUBE, SLIPPING, np.zeros((3, 3)), friction=0.02).mean
 
 
-def test_a_covariance_is_the_product_of_its_factor_with_the_transpose():
-    source = np.random.default_rng(2)
-    for _ in range(20):
-        root = source.normal(size=(6, 6)) * source.choice([1e-3, 1.0, 1e3], (6, 1))
-        covariance = root @ root.T
-        factor, given = factor_of(tuple(covariance.ravel()))
-        assert given is Covariance.USED
-        scales = np.sqrt(covariance.diagonal())
-        assert (factor @ factor.T - covariance) / np.outer(scales, scales) == pytest.approx(np.zeros((6, 6)), abs=1e-8)
-
-
 def test_odd_bodies_and_twists_give_numbers():
     for body, twist in (
         (CUBE._replace(mass=-1.0), SLIPPING),
@@ -272,12 +261,6 @@ def test_a_prediction_carries_the_covariance_of_the_twist_to_space():
     # A plane that turns with the angular velocity of a sample, and the lead time of 1e-3 s, are left out.
     assert found == pytest.approx(expected, abs=0.02 * np.abs(expected).max())
     assert touchdown.uncertainty.probabilities[touchdown.mode] == 1.0
-
-
-def test_a_prediction_without_samples_has_no_uncertainty():
-    touchdown = predicted(scene(), tipping_box())
-    assert touchdown.uncertainty is None
-    assert touchdown.planar is None
 
 
 def test_uncertainty_changes_nothing_else_of_a_prediction():

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from impact_predictor.prediction.deck import harmonic as deck_harmonic
-from impact_predictor.prediction.deck.harmonic import SECONDS, STEP, Harmonic, MotionForecast, predicted
+from impact_predictor.prediction.deck.harmonic import STEP, Harmonic, predicted
 from impact_predictor.prediction.deck.motion import SupportState, ahead
 from impact_predictor.prediction.types import Felt
 from impact_predictor.prediction.vectors import axes_of, to_body, turned
@@ -94,14 +94,6 @@ def test_what_is_ahead_is_smooth_and_its_parts_belong_together(offset: float) ->
         assert np.array(after.gravity) == pytest.approx(np.array(before.gravity), abs=50.0 * step)
 
 
-def test_an_offset_of_the_estimate_from_the_fit_fades() -> None:
-    harmonic = fitted()
-    plain, off = harmonic.ahead(known_at(30.0)), harmonic.ahead(known_at(30.0, 0.1))
-    near, far = (np.abs(np.array(off(time).angular) - np.array(plain(time).angular)).max() for time in (0.0, 5.0))
-    assert near == pytest.approx(0.1)
-    assert far < 1e-3
-
-
 def test_gravity_ahead_is_seen_along_the_axes_of_then() -> None:
     harmonic = Harmonic(4.0)
     rate = 0.2
@@ -131,19 +123,6 @@ def test_it_goes_on_with_constant_accelerations_until_half_the_window_is_known()
     assert not harmonic.fitted
 
 
-def test_it_is_fitted_a_few_times_a_second_of_stamps(monkeypatch: pytest.MonkeyPatch) -> None:
-    fits = []
-
-    def counted(rows: Array) -> Array:
-        fits.append(len(rows))
-        return predicted(rows)
-
-    monkeypatch.setattr(deck_harmonic, "predicted", counted)
-    fitted(until=30.0, rate=200.0)
-    assert len(fits) == pytest.approx(20.0 / 0.3, abs=2.0)
-    assert max(fits) == 200
-
-
 SHAPES: dict[str, Any] = {
     "noise": lambda times, rng: rng.standard_normal((len(times), 6)),
     "ramp": lambda times, rng: np.outer(times, np.ones(6)),
@@ -163,22 +142,3 @@ def test_whatever_the_course_was_its_prediction_stays_within_bounds(
     mean = rows.mean(0)
     limit = deck_harmonic.LIMIT * np.abs(rows - mean).max(0)
     assert (np.abs(course - mean) <= limit * (1.0 + 1e-9) + 1e-12 * np.abs(mean)).all()
-
-
-def cubic(times: Array) -> Array:
-    factors = np.array([[1.0, -2.0, 0.5, 0.1, 0.2, -0.3], [0.5] * 6, [-0.2] * 6, [0.03, 0.01, -0.02, 0.03, 0.0, 0.01]])
-    return np.vander(times, 4, increasing=True) @ factors
-
-
-def test_a_course_goes_through_cubics_exactly_with_their_slopes_and_areas() -> None:
-    rows = cubic(np.arange(40) * SECONDS)
-    course = MotionForecast(25, rows, 5)
-    assert course.time_of(20 * STEP) == 0.0
-    for time in (0.3, 0.37, 1.111, 2.5):
-        force, angular, turning, rotation = course.at(time)
-        values = cubic(np.array([time - 1e-3, time, time + 1e-3]))
-        assert [*force, *angular] == pytest.approx(values[1], abs=1e-13)
-        assert turning == pytest.approx((values[2, 3:] - values[0, 3:]) / 2e-3, abs=1e-6)  # third derivative 0.2
-        middle = cubic(np.array([0.5 * (0.3 + time)]))[0]
-        area = (time - 0.3) / 6.0 * (cubic(np.array([0.3]))[0] + 4.0 * middle + values[1])  # Simpson: exact for cubics
-        assert np.array(rotation) - course.at(0.3)[3] == pytest.approx(area[3:], abs=1e-13)

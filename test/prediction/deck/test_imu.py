@@ -11,7 +11,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from impact_predictor.prediction.deck.imu import FIRST
 from impact_predictor.prediction.deck.motion import ahead, rotation_between
 from impact_predictor.prediction.deck.tracker import Deck
 from impact_predictor.prediction.scene import MovingDeck
@@ -95,14 +94,6 @@ def test_without_an_orientation_the_tilt_is_that_in_which_the_mean_force_points_
             off = rotation_between(orientation, deck.last.orientation)
             # The sway of 0.08 g counts with 1/(w 10 s), and the drift for 10 s.
             assert hypot(off[0], off[1]) < 0.08 / 8.0 + 10.0 * bias + 0.003
-
-
-def test_a_sensor_is_trusted_after_a_second() -> None:
-    deck = imu_deck()
-    for k in range(200):
-        assert deck.update_imu(still(k * 10_000_000)) is Status.ACCEPTED
-        answer = deck.at(k * 10_000_000)
-        assert isinstance(answer, Moment) if k > 100 * FIRST + 10 else answer is Status.NO_SUPPORT or k > 100
 
 
 Sea = Callable[[float], tuple[float, float, float]]

@@ -7,7 +7,6 @@ import pytest
 
 from impact_predictor.prediction.scene import Robot
 from impact_predictor.prediction.types import Joints, Status
-from impact_predictor.prediction.walking.mechanism import ImpulseResponse
 
 pytestmark = pytest.mark.extras
 
@@ -54,10 +53,6 @@ def test_the_feet_follow_the_joints_in_whatever_order_their_names_come(frog):
     assert frog.geometry_of(Joints(7, NAMES[::-1], (-0.2, 0.3), (2.0, 1.0))) == found
 
 
-def test_joints_without_velocities_give_points_without(frog):
-    assert frog.geometry_of(Joints(0, NAMES, (0.0, 0.0), ())).velocities == ()
-
-
 @pytest.mark.parametrize(
     ("names", "positions", "velocities", "status"),
     [
@@ -98,11 +93,3 @@ def test_a_leg_without_mass_is_a_status_and_never_a_number(tmp_path):
     frog = articulated(tmp_path, massless=True)
     assert frog.geometry_of(Joints(0, NAMES, (0.3, -0.2), ())) is Status.SINGULAR_INERTIA
     assert frog.response((0,), (1,), UP, AHEAD, ()) is Status.SINGULAR_INERTIA
-
-
-def test_in_flight_the_rows_of_the_old_contact_are_zero(frog):
-    frog.geometry_of(Joints(0, NAMES, (0.3, -0.2), ()))
-    response = frog.response((), (1,), UP, AHEAD, ())
-    assert isinstance(response, ImpulseResponse)
-    assert np.array(response.W)[:2].any() == np.array(response.W)[:, :2].any() == np.array(response.twist)[:, :2].any()
-    assert not np.array(response.W)[:2].any()

@@ -47,11 +47,6 @@ def test_a_stance_is_believed_after_the_dead_time_and_not_before(measured: bool)
     assert changes(lambda t: 0.0 if t % 10 else 0.05, rate, 200) == []
 
 
-def test_a_foot_close_to_the_ground_does_not_stand_while_it_sinks() -> None:
-    assert changes(lambda t: 0.05 - 1e-4 * t, lambda _: -0.1, 545) == []
-    assert changes(lambda t: 0.05 - 3e-4 * t, lambda _: None, 180) == []
-
-
 def test_standing_feet_tell_the_level_and_the_noise() -> None:
     rng = np.random.default_rng(0)
     point, ground = FootPoint(SCENE, DEAD_TIME), Ground(SCENE)

@@ -264,17 +264,6 @@ def test_many_bodies_at_many_times_are_as_each_alone() -> None:
             assert together.lifted[n, k] == alone.lifted[0]
 
 
-def test_a_body_that_stands_otherwise_has_the_margins_of_its_new_stance() -> None:
-    onset = Onset([planar(CRATE), planar(SMOOTH)])
-    felt = motion((0.0, 1.0, -9.81))
-    onset.margins(felt)
-    many = on_points(FIVE, (0.0, 0.0, 0.7), 30.0, np.eye(3), 0.5)
-    onset.replace(1, many)
-    found = onset.margins(felt)
-    assert found.tip[0] == of_one(planar(CRATE), (0.0, 1.0, -9.81)).tip[0]
-    assert found.tip[1] == pytest.approx(of_one(many, (0.0, 1.0, -9.81)).tip[0], rel=ROUNDING)
-
-
 def test_the_first_time_is_where_a_ratio_first_passes_one() -> None:
     times = np.array([0.0, 1.0, 2.0, 3.0])
     ratios = np.array([[0.0, 0.5, 1.5, 0.0], [1.2, 0.0, 0.0, 2.0], [0.0, 0.9, 0.9, 0.9], [0.0, 1.0, 0.0, 0.0]])

@@ -58,16 +58,6 @@ def test_a_body_stands_where_it_is_placed_before_anything_is_measured() -> None:
     assert sorted(edge.name for edge in standing.stance.edges) == ["aft", "fore", "port", "starboard"]
 
 
-def test_a_measured_body_at_rest_stands_with_all_its_edges() -> None:
-    standing = Standing(CRATE)
-    assert not standing.update(sample((2.001, 1.0, 0.501)))  # as near as the contact tolerance: nothing is new
-    assert standing.motion is BodyMotion.STANDS
-    assert standing.tilt == pytest.approx(0.0)
-    assert standing.update(sample((2.1, 1.0, 0.5)))
-    assert standing.stance.center == (2.1, 1.0, 0.5)
-    assert len(standing.stance.edges) == 4
-
-
 @pytest.mark.parametrize("angle", [0.05, 0.3])
 def test_a_body_that_rocks_has_the_one_edge_it_turns_about(angle: float) -> None:
     standing = rested()
@@ -77,31 +67,6 @@ def test_a_body_that_rocks_has_the_one_edge_it_turns_about(angle: float) -> None
     (edge,) = standing.stance.edges
     assert edge.name == "port"
     assert edge.point[1:] == pytest.approx((1.3, 0.0))
-
-
-def test_the_energy_of_rocking_is_that_of_the_motion_relative_to_the_support() -> None:
-    standing = Standing(CRATE)
-    rocks = tipped(0.2)._replace(linear=(0.0, 1.0, 2.0), angular=(0.5, 0.0, 0.0))
-    shown(standing, rocks)
-    assert standing.kinetic == pytest.approx(0.5 * 50.0 * 5.0 + 0.5 * 5.0 * 0.25)
-    standing.update(sample((2.0, 1.0, 0.5), linear=(0.1, 0.0, 0.0)))
-    assert standing.kinetic == 0.0
-
-
-def test_a_body_in_the_air_is_off_the_deck() -> None:
-    standing = Standing(CRATE)
-    shown(standing, sample((2.0, 1.0, 0.6)))
-    assert standing.motion is BodyMotion.LIFTS
-
-
-def test_a_body_that_moves_along_the_deck_slides() -> None:
-    standing, told = rested(), []
-    for k in range(110):
-        standing.update(sample((2.0, 1.0 + 0.004 * max(0, k - 100), 0.5), time=0.05 * k))
-        told.append(standing.slid)
-    found = [words for words in told if words]
-    assert found
-    assert all(words.startswith("slides to port, by 0.0") for words in found)
 
 
 def test_a_slow_drift_of_the_pose_is_no_slide() -> None:
@@ -202,11 +167,6 @@ def test_a_drum_that_is_placed_roughly_lies_on_its_edges() -> None:
     stance = Standing(DRUM._replace(place=(2.5, 1.02, 0.4))).stance
     assert stance.center == pytest.approx((2.5, 1.0, HIGH))
     assert [edge.point for edge in stance.edges] == [pytest.approx((2.5, 0.9, 0.0)), pytest.approx((2.5, 1.1, 0.0))]
-
-
-def test_a_body_on_one_point_is_not_solid() -> None:
-    assert not Standing(CRATE._replace(points=((0.0, 0.0, -0.5), (0.0, 0.0, 0.5)))).solid
-    assert not Standing(CRATE._replace(points=())).solid
 
 
 def test_a_body_of_a_very_fine_contact_tolerance_is_not_taken_to_rock_by_noise() -> None:
