@@ -29,7 +29,7 @@ IMPORTS: Final = {
     "impact-predictor solve": "impact_predictor.cli, impact_predictor.report.outcome",
     "impact-predictor replay": "impact_predictor.cli, impact_predictor.bags.replay, impact_predictor.report.replay",
     "... --figure": "impact_predictor.cli, impact_predictor.report.figures",
-    "impact-predictor explain": "impact_predictor.cli, impact_predictor.prediction.features",
+    "impact-predictor explain": "impact_predictor.cli, impact_predictor.prediction.scene",
 }
 LOADED: Final = {"the plugin, after pytest itself": "pytest"}
 """What is loaded before the clock starts."""

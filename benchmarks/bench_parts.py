@@ -30,8 +30,7 @@ from impact_predictor.bags.write import BagWriter  # noqa: E402
 from impact_predictor.errors import InputError  # noqa: E402
 from impact_predictor.parameters.file import read_parameters  # noqa: E402
 from impact_predictor.parameters.validation import validate  # noqa: E402
-from impact_predictor.prediction.features import features_of  # noqa: E402
-from impact_predictor.prediction.scene import scenes_of  # noqa: E402
+from impact_predictor.prediction.scene import features_of, scenes_of  # noqa: E402
 from impact_predictor.ros.messages import INPUT_TYPES  # noqa: E402
 
 SWITCHES: Final[dict[str, tuple[dict[str, Any], dict[str, Any]]]] = {

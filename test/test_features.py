@@ -17,7 +17,7 @@ from fuzz_messages import encode, made_course
 from impact_predictor.bags.write import BagWriter
 from impact_predictor.parameters.file import read_parameters
 from impact_predictor.parameters.validation import PARAMETERS, validate
-from impact_predictor.prediction.features import features_of
+from impact_predictor.prediction.scene import features_of
 from impact_predictor.ros.messages import INPUT_TYPES
 from impact_predictor.stamps import NANOSECONDS
 

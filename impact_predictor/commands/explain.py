@@ -26,8 +26,7 @@ def explain(params: str, as_json: bool) -> None:
     parameter that is named switches a feature on or off.
     """
     from ..parameters.file import read_values
-    from ..prediction.features import features_of
-    from ..prediction.scene import inputs_of, scenes_of
+    from ..prediction.scene import features_of, inputs_of, scenes_of
 
     values = read_values(params)
     scene, features = Path(params).stem, features_of(values)

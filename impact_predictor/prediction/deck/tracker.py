@@ -12,8 +12,7 @@ from ..checks import LARGEST, PAUSE, check_orientation, order_of
 from ..scene import MovingDeck
 from ..types import Felt, Imu, Moment, Sample, Status, Vector3
 from ..vectors import add, axes_of, dot, times, to_body, to_world
-from .motion import MeanMotion, SupportState, ahead, between, forecast, later, resting
-from .window import JumpDetector, MotionWindow
+from .motion import MeanMotion, MotionWindow, SupportState, ahead, between, forecast, later, resting, rotation_between
 
 if TYPE_CHECKING:
     import numpy as np
@@ -21,6 +20,21 @@ if TYPE_CHECKING:
 
     from .harmonic import Harmonic
     from .imu import DeckImu
+
+BOUNDS = (
+    (0.05, 0.5, 3.75, 2),  # position
+    (0.01, 0.1, 1.25, 2),  # orientation
+    (0.1, 1.0, 30.0, 1),  # velocity
+    (0.05, 0.5, 10.0, 1),  # angular velocity
+)
+"""How far each quantity may be from where the message before leads it, in its unit: the least and the most that is
+allowed to noise, which is learnt; and what a slam of 30 m/s^2 or 10 rad/s^2 makes of it in 1 s, with the power of the
+time between two messages that this grows with."""
+
+FACTOR = 6.0
+"""Allowed to noise, in root mean squares of the steps; for three normal parts these are ten standard deviations."""
+
+MEMORY = 1.0 / 32.0  # of the mean square, the part of the newest step
 
 
 class Deck:
@@ -232,3 +246,33 @@ class Deck:
             ahead=partial(ahead, *felt) if self._harmonic is None else self._harmonic.ahead(known),
             gravity=self._gravity,
         )
+
+
+class JumpDetector:
+    """Tells messages that follow from those before from jumps.
+
+    Pose after pose is led on by the mean of both twists; a twist is expected to stay. What noise and the support's
+    motion make of that is learnt from every step, so that a rough source is trusted too, up to the `most` of each
+    quantity.
+    """
+
+    def __init__(self) -> None:
+        self._squares = [(least / FACTOR) ** 2 for least, _, _, _ in BOUNDS]
+
+    def follows(self, before: SupportState, now: SupportState) -> bool:
+        """Whether a message follows from the one before; it is learnt from in any case."""
+        time = (now.stamp - before.stamp) / NANOSECONDS
+        half = 0.5 * time
+        moved = add(add(now.position, before.position, -1.0), add(now.velocity, before.velocity), -half)
+        rotated = rotation_between(before.orientation, now.orientation)
+        turned = add(rotated, add(now.angular, before.angular), -half)
+        accelerated, spun = add(now.velocity, before.velocity, -1.0), add(now.angular, before.angular, -1.0)
+        squares, follows = self._squares, True
+        errors = moved, turned, accelerated, spun
+        for i, ((least, most, slam, power), error) in enumerate(zip(BOUNDS, errors, strict=True)):
+            square = dot(error, error)
+            noise = min(max(FACTOR * squares[i] ** 0.5, least), most)
+            if square > (noise + slam * time**power) ** 2:
+                follows = False
+            squares[i] += MEMORY * (min(square, most * most) - squares[i])
+        return follows

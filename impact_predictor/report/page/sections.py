@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
 from ...prediction.checks import REMEDIES
-from ...prediction.features import features_of
+from ...prediction.scene import features_of
 from ...prediction.types import Status
 from ...stamps import NANOSECONDS
 from ...wording import counted, words

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from impact_predictor.prediction.deck.window import slope_weights
+from impact_predictor.prediction.deck.motion import slope_weights
 
 
 @given(st.lists(st.floats(-0.99, 0.99), min_size=1, max_size=30))
