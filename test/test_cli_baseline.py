@@ -22,53 +22,45 @@ def bag(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-@pytest.fixture
-def other_scene(tmp_path: Path) -> Path:
-    path = tmp_path / "other.yaml"
-    path.write_text(SCENE.read_text().replace("restitution: 0.1", "restitution: 0.3"))
-    return path
-
-
-def replay(bag: Path, scene: Path, *options: str | Path) -> Result:
-    return CliRunner().invoke(main, ["replay", str(bag), "--params", str(scene), *map(str, options)])
+def replay(*options: str | Path, scene: Path = SCENE) -> Result:
+    return CliRunner().invoke(main, ["replay", "--params", str(scene), *map(str, options)])
 
 
 def test_a_run_compared_with_itself_says_that_nothing_has_changed(tmp_path: Path, bag: Path) -> None:
-    old = tmp_path / "old.mcap"
-    assert replay(bag, SCENE, "-o", old).exit_code == 0
+    old, told = tmp_path / "old.mcap", tmp_path / "old.json"
+    assert replay(bag, "-o", old).exit_code == 0
     # The new run takes the place of the baseline, which was read before.
-    same = replay(bag, SCENE, "--baseline", old, "--baseline-time", "0", "--baseline-error", "0", "-o", old)
+    same = replay(bag, "--baseline", old, "--baseline-time", "0", "--baseline-error", "0", "-o", old)
     assert (same.exit_code, same.stdout.splitlines()[-1]) == (0, f"Nothing has changed against {old}: 3 touchdowns.")
-    told = tmp_path / "old.json"
-    told.write_text(replay(bag, SCENE, "--json").stdout)
-    assert replay(bag, SCENE, "--baseline", told).exit_code == 0
+    told.write_text(replay(bag, "--json").stdout)
+    answer = json.loads(replay(bag, "--baseline", told, "--json").stdout)["baseline"]
+    assert answer == {"file": str(told), "touchdowns_before": 3, "touchdowns": 3, "unchanged": 3, "changes": []}
 
 
-def test_another_scene_changes_the_run_in_words_and_in_json(tmp_path: Path, bag: Path, other_scene: Path) -> None:
-    old = tmp_path / "old.mcap"
-    replay(bag, SCENE, "-o", old)
-    other = replay(bag, other_scene, "--baseline", old)
-    assert other.exit_code == 1
+def test_another_scene_changes_the_run_in_words_and_in_json(tmp_path: Path, bag: Path) -> None:
+    old, scene = tmp_path / "old.mcap", tmp_path / "other.yaml"
+    scene.write_text(SCENE.read_text().replace("restitution: 0.1", "restitution: 0.3"))
+    replay(bag, "-o", old)
+    other = replay(bag, "--baseline", old, scene=scene)
     assert other.stdout.splitlines()[-1] == f"Against {old} 1 of 3 touchdowns are as they were: 2 worse."
-    assert replay(bag, other_scene, "--baseline", old, "--baseline-error", "1").exit_code == 0
-    told = replay(bag, other_scene, "--baseline", old, "--json")
+    told = replay(bag, "--baseline", old, "--json", scene=scene)
     answer = json.loads(told.stdout)["baseline"]
-    assert (told.exit_code, answer["unchanged"], [one["change"] for one in answer["changes"]]) == (1, 1, ["worse"] * 2)
-    same = json.loads(replay(bag, SCENE, "--baseline", old, "--json").stdout)["baseline"]
-    assert same == {"file": str(old), "touchdowns_before": 3, "touchdowns": 3, "unchanged": 3, "changes": []}
+    assert (answer["unchanged"], [one["change"] for one in answer["changes"]]) == (1, ["worse"] * 2)
+    alike = replay(bag, "--baseline", old, "--baseline-error", "1", scene=scene)
+    assert (other.exit_code, told.exit_code, alike.exit_code) == (1, 1, 0)
 
 
 def test_a_bag_that_the_earlier_run_lacks_is_told_and_stops_no_other(tmp_path: Path, bag: Path) -> None:
-    (tmp_path / "new.mcap").hardlink_to(bag)
-    old, both = tmp_path / "old.json", (tmp_path / "new.mcap", "--baseline", tmp_path / "old.json")
-    old.write_text(f"[{replay(bag, SCENE, '--json').stdout}]")
-    said = f"the baseline {old} has no run of {tmp_path / 'new.mcap'}; replay that bag with -o or --json again"
-    result = replay(bag, SCENE, *both)
+    new, old = tmp_path / "new.mcap", tmp_path / "old.json"
+    new.hardlink_to(bag)
+    old.write_text(f"[{replay(bag, '--json').stdout}]")
+    said = f"the baseline {old} has no run of {new}; replay that bag with -o or --json again"
+    result = replay(bag, new, "--baseline", old)
     assert (result.exit_code, said in result.stderr) == (1, True)
     assert f"Nothing has changed against {old}: 3 touchdowns." in result.stdout
-    compared = [answer["baseline"] for answer in json.loads(replay(bag, SCENE, *both, "--json").stdout)]
+    compared = [answer["baseline"] for answer in json.loads(replay(bag, new, "--baseline", old, "--json").stdout)]
     assert (compared[0]["unchanged"], compared[1]) == (3, {"file": str(old), "error": said})
-    alone = replay(tmp_path / "new.mcap", SCENE, "--baseline", old)
+    alone = replay(new, "--baseline", old)
     assert (alone.exit_code, alone.stderr) == (2, f"error: {said}\n")
 
 
@@ -80,35 +72,28 @@ def test_a_set_of_bags_may_grow_beside_its_baseline(tmp_path: Path, bag: Path) -
         day.hardlink_to(bag)
     old = tmp_path / "old"
     old.mkdir()
-    assert replay(days[0], SCENE, "-o", old / "run.mcap").exit_code == 0
-    grown = replay(days[0], SCENE, days[1], "--baseline", old)
-    assert grown.exit_code == 1
+    assert replay(days[0], "-o", old / "run.mcap").exit_code == 0
+    grown = replay(*days[:2], "--baseline", old)
     notes = [line for line in grown.stderr.splitlines() if "the baseline" in line]
     assert notes == [
         f"note: the baseline {old} has no run of {day}; replay that bag with -o or --json again" for day in days[:2]
     ]
-    assert "2 bags together" in grown.stdout
-    assert replay(days[0], SCENE, days[1], "-o", old).exit_code == 0
-    assert replay(days[0], SCENE, days[1], "--baseline", old).exit_code == 0
-    assert replay(days[0], SCENE, *days[1:], "--baseline", old).exit_code == 1
+    assert replay(*days[:2], "-o", old).exit_code == 0
+    statuses = [replay(*days[:k], "--baseline", old).exit_code for k in (2, 3)]
     # One of them alone is still found.
     (old / "run.mcap").unlink()
-    assert replay(days[1], SCENE, "--baseline", old).exit_code == 0
+    assert [grown.exit_code, *statuses, replay(days[1], "--baseline", old).exit_code] == [1, 0, 1, 0]
 
 
-def test_the_run_of_one_bag_is_no_baseline_of_several(tmp_path: Path, bag: Path) -> None:
-    (tmp_path / "new.mcap").hardlink_to(bag)
-    for old, option in ((tmp_path / "old.mcap", "-o"), (tmp_path / "old.json", "--json")):
-        done = replay(bag, SCENE, "-o", old) if option == "-o" else replay(bag, SCENE, "--json")
-        if option == "--json":
-            old.write_text(done.stdout)
-        refused = replay(bag, SCENE, tmp_path / "new.mcap", "--baseline", old)
-        said = f"error: the baseline {old} is the run of one bag, but 2 bags are given; give what a run of several"
-        assert (refused.exit_code, refused.stderr.startswith(said), refused.stdout) == (2, True, "")
-
-
-def test_a_baseline_that_is_no_run_is_refused_before_anything_is_replayed(tmp_path: Path, bag: Path) -> None:
-    refused = replay(bag, SCENE, "--baseline", bag, "-o", tmp_path / "new.mcap")
-    assert refused.exit_code == 2
-    assert refused.stderr.startswith(f"error: the baseline {bag} has no predictions")
-    assert not (tmp_path / "new.mcap").exists()
+def test_what_is_no_run_of_these_bags_is_refused_before_anything_is_replayed(tmp_path: Path, bag: Path) -> None:
+    old, new = tmp_path / "old.json", tmp_path / "new.mcap"
+    old.write_text(replay(bag, "--json").stdout)
+    new.hardlink_to(bag)
+    for bags, baseline, said in (
+        ((bag, new), old, "is the run of one bag, but 2 bags are given; give what a run of several"),
+        ((bag,), bag, "has no predictions"),
+    ):
+        refused = replay(*bags, "--baseline", baseline, "-o", tmp_path / "out")
+        assert (refused.exit_code, refused.stdout) == (2, "")
+        assert refused.stderr.startswith(f"error: the baseline {baseline} {said}")
+    assert not (tmp_path / "out").exists()

@@ -1,7 +1,7 @@
-"""A sample and a touchdown with every field, of which a test replaces what it is about."""
+"""A sample, a touchdown with every field and its score, of which a test replaces what it is about."""
 
 from impact_predictor.mechanics.types import Flag, Mode, Twist
-from impact_predictor.prediction.types import Leftover, Sample, Touchdown
+from impact_predictor.prediction.types import Landing, Leftover, Sample, Score, Touchdown
 
 SAMPLE = Sample(
     10**9, "world", "cube", (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), (0.0,) * 3, (0.0,) * 3, (0.0,) * 36, (0.0,) * 36
@@ -31,3 +31,24 @@ TOUCHDOWN = Touchdown(
     offset=0.0,
     leftover=Leftover.NONE,
 )
+SCORE = Score(
+    stamp=1_004_000_000,
+    touchdown=TOUCHDOWN,
+    measured=Twist(0.5, 0.125, -2.0),
+    relative_error=0.25,
+    scored=True,
+    leftover=Leftover.NONE,
+    history=((0.055, 0.5), (0.01, 0.3), (0.004, 0.25)),
+)
+UNSCORED = SCORE._replace(scored=False, leftover=Leftover.OUT_OF_PLANE | Leftover.ONE_CORNER_FIRST)
+UNMEASURED = SCORE._replace(measured=None, relative_error=None, scored=False, leftover=Leftover.TOO_SHORT, history=())
+LANDING = Landing(
+    foot="left",
+    stamp=2_000_000_000,
+    late=-0.015,
+    confirmed=True,
+    history=((0.2, 0.004), (0.06, 0.002), (0.004, -0.001)),
+    speed=0.25,
+    impact=TOUCHDOWN,
+)
+LANDED = UNMEASURED._replace(stamp=2_000_000_000, leftover=Leftover.DRIVEN, landing=LANDING)

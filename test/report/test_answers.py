@@ -5,25 +5,14 @@ from __future__ import annotations
 import json
 
 import pytest
-from touchdowns import TOUCHDOWN
+from touchdowns import SCORE, TOUCHDOWN, UNMEASURED
 
 from impact_predictor.bags.replay import Result, Settled
-from impact_predictor.mechanics.types import Mode, Twist
-from impact_predictor.prediction.types import Leftover, Score, Status
+from impact_predictor.mechanics.types import Mode
+from impact_predictor.prediction.types import Status
 from impact_predictor.report.answers import as_json
 from impact_predictor.scenarios.comparison import BodyTruth, Truth, Warned
 from impact_predictor.scenarios.matching import Announcement, Match
-
-SCORED = Score(
-    1_004_000_000,
-    TOUCHDOWN,
-    Twist(0.5, 0.125, -2.0),
-    0.25,
-    True,
-    Leftover.NONE,
-    ((0.055, 0.5), (0.01, 0.3), (0.004, 0.25)),
-)
-UNMEASURED = SCORED._replace(measured=None, relative_error=None, scored=False, leftover=Leftover.TOO_SHORT, history=())
 
 
 def test_the_json_of_a_replay_has_the_promised_keys_and_no_nan() -> None:
@@ -31,7 +20,7 @@ def test_the_json_of_a_replay_has_the_promised_keys_and_no_nan() -> None:
         bag="a.mcap",
         samples=4,
         seconds=0.001,
-        settled=(Settled("cube", SCORED, 1e-4), Settled("cube", UNMEASURED, 1e-4)),
+        settled=(Settled("cube", SCORE, 1e-4), Settled("cube", UNMEASURED, 1e-4)),
         statuses={Status.ACCEPTED: 3, Status.NOT_FINITE: 1},
         geometry_statuses={Status.ACCEPTED: 1},
         notes=(),
@@ -70,7 +59,7 @@ def test_the_json_of_several_bodies_has_their_inputs_and_how_each_compares_with_
         "a.mcap",
         4,
         0.001,
-        (Settled("crate", SCORED, 1e-4),),
+        (Settled("crate", SCORE, 1e-4),),
         {Status.ACCEPTED: 4},
         {},
         (),
@@ -117,7 +106,7 @@ def test_the_json_of_a_replay_has_its_costs_its_errors_ahead_and_every_true_touc
         Match("cube", "left", 3_000_000_000, None, (), True),
         Match("cube", "", None, None, told[:1]),
     )
-    result = Result("a.mcap", 2, 0.001, (Settled("cube", SCORED, None),), {}, {}, ("took odom",), "", "")
+    result = Result("a.mcap", 2, 0.001, (Settled("cube", SCORE, None),), {}, {}, ("took odom",), "", "")
     result = result._replace(extent=(5, 9), costs=(1e-5, 3e-5), matches=matches)
     answer = json.loads(json.dumps(as_json(result), allow_nan=False))
     assert (answer["begin"], answer["end"], answer["notes"]) == (5, 9, ["took odom"])

@@ -6,30 +6,21 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+from touchdowns import SCORE
 
 from impact_predictor.errors import InputError
 from impact_predictor.mechanics.types import Mode, Twist
 from impact_predictor.report.figures import write_touchdowns
 from impact_predictor.report.summary import LEAD_TIME_EDGES, Distribution, SpanErrors
-from impact_predictor.report.touchdowns import TouchdownRow
+from impact_predictor.report.touchdowns import TouchdownRow, row_of
 
 ROWS = [
-    TouchdownRow(
-        body="cube",
+    row_of("cube", SCORE)._replace(
         stamp=k * 10**9,
-        announced_lead_time=0.06,
-        lead_time=0.003,
         mode=Mode(1 + k % 6),
-        before_twist=Twist(1.0, -0.5, -10.0),
         predicted_twist=Twist(0.05 * k, 0.1, -0.4 * k),
         measured_twist=Twist(0.05 * k + 0.02, 0.12, -0.39 * k),
-        half_distance=0.05,
         relative_error=0.01 * k,
-        out_of_plane=0.01,
-        scored=True,
-        flags=(),
-        old=(0,),
-        new=(1,),
     )
     for k in range(30)
 ]

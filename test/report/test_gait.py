@@ -8,33 +8,18 @@ from pathlib import Path
 
 import matplotlib
 import pytest
+import touchdowns
 
 from impact_predictor.bags.body import Gait
-from impact_predictor.mechanics.types import Mode, Twist
+from impact_predictor.mechanics.types import Mode
 from impact_predictor.prediction.scene import Walking
 from impact_predictor.prediction.types import Foot, Prediction, Sample, Status
 from impact_predictor.report.gait import Machine, write_gait
-from impact_predictor.report.touchdowns import TouchdownRow
+from impact_predictor.report.touchdowns import TouchdownRow, row_of
 
 SECOND = 10**9
 STILL = (0.0, 0.0, 0.0)
-LANDING = TouchdownRow(
-    body="base",
-    stamp=0,
-    announced_lead_time=0.06,
-    lead_time=0.01,
-    mode=Mode.STOP,
-    before_twist=Twist(0.0, 0.0, 0.0),
-    predicted_twist=Twist(0.0, 0.0, 0.0),
-    half_distance=0.1,
-    out_of_plane=0.0,
-    scored=False,
-    flags=(),
-    old=(),
-    new=(0,),
-    foot="left",
-    time_errors=(None, None),
-)
+LANDING = row_of("base", touchdowns.LANDED)._replace(mode=Mode.STOP)
 
 
 def machine(

@@ -6,13 +6,13 @@ import io
 import re
 
 import pytest
-import touchdowns
 from rich.console import Console
 from rich.table import Table
+from touchdowns import LANDED, LANDING, SCORE
 
 from impact_predictor.bags.replay import Result, Settled
-from impact_predictor.mechanics.types import Flag, Mode, Twist
-from impact_predictor.prediction.types import Landing, Leftover, Score, Status
+from impact_predictor.mechanics.types import Flag, Twist
+from impact_predictor.prediction.types import Status
 from impact_predictor.report.replay import (
     landings_table,
     lead_time_table,
@@ -22,10 +22,8 @@ from impact_predictor.report.replay import (
 )
 from impact_predictor.report.summary import Distribution, SpanErrors
 from impact_predictor.report.table import show
-from impact_predictor.report.touchdowns import TouchdownRow, rows_of
+from impact_predictor.report.touchdowns import TouchdownRow, row_of, rows_of
 from impact_predictor.scenarios.comparison import BodyTruth, Truth, Warned
-
-SCORE = Score(1_004_000_000, touchdowns.TOUCHDOWN, Twist(0.5, 0.125, -2.0), 0.25, True, Leftover.NONE, ())
 
 
 def test_the_truth_is_said_in_four_sentences() -> None:
@@ -153,23 +151,11 @@ def shown(table: Table, width: int) -> str:
     return text.getvalue()
 
 
-ROW = TouchdownRow(
-    body="cube",
+ROW = row_of("cube", SCORE, cost=98e-6)._replace(
     stamp=5_690_729_123_456,
-    announced_lead_time=0.058,
     lead_time=0.0123,
-    mode=Mode.PIVOT_SLIDE,
-    before_twist=Twist(-1.3, -0.9, -15.0),
     predicted_twist=Twist(-1.234, 0.571, -11.52),
     measured_twist=Twist(-1.199, 0.512, -10.25),
-    half_distance=0.05,
-    relative_error=0.1234,
-    out_of_plane=0.01,
-    scored=True,
-    flags=("REVERSED_SLIP",),
-    old=(0,),
-    new=(1,),
-    cost=98e-6,
 )
 UNSCORED = ROW._replace(scored=False, flags=("OUT_OF_PLANE", "ONE_CORNER_FIRST"), cost=None)
 UNMEASURED = ROW._replace(measured_twist=None, relative_error=None, scored=False, flags=("TOO_SHORT",))
@@ -221,14 +207,8 @@ def test_lead_times_without_predictions_have_no_error() -> None:
     assert ["10 to 20", "0", "-", "-"] in lines
 
 
-TOUCHDOWN = touchdowns.TOUCHDOWN._replace(
-    before=Twist(0.5, 0.0, 0.0),
-    after=Twist(0.47, 0.04, 0.1),
-    impulses=((1.0, 0.5), (3.0, -4.0)),
-    flags=Flag.NONE,
-    old=(1,),
-    new=(0,),
-    leftover=Leftover.DRIVEN,
+TOUCHDOWN = LANDED.touchdown._replace(
+    before=Twist(0.5, 0.0, 0.0), after=Twist(0.47, 0.04, 0.1), impulses=((1.0, 0.5), (3.0, -4.0)), flags=Flag.NONE
 )
 HISTORY = ((0.1, 0.004), (0.06, -0.0123), (0.05, 0.0034), (0.03, 0.002), (0.01, 0.001))
 
@@ -236,8 +216,11 @@ HISTORY = ((0.1, 0.004), (0.06, -0.0123), (0.05, 0.0034), (0.03, 0.002), (0.01, 
 def landed(at: float, foot: str = "LF", body: str = "robot", **changes: object) -> Settled:
     """A landing at a time in s."""
     stamp = round(at * 1e9)
-    landing = Landing(foot, stamp, None, None, HISTORY, 0.123, TOUCHDOWN)._replace(**changes)  # type: ignore[arg-type]
-    return Settled(body, Score(stamp, TOUCHDOWN, None, None, False, Leftover.DRIVEN, (), landing), None)
+    landing = LANDING._replace(
+        foot=foot, stamp=stamp, late=None, confirmed=None, history=HISTORY, speed=0.123, impact=TOUCHDOWN
+    )
+    score = LANDED._replace(stamp=stamp, touchdown=TOUCHDOWN, landing=landing._replace(**changes))  # type: ignore[arg-type]
+    return Settled(body, score, None)
 
 
 KNOWN = {"late": -0.0123, "confirmed": False}

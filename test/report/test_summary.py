@@ -6,8 +6,9 @@ import json
 
 import numpy as np
 import pytest
+import touchdowns
 
-from impact_predictor.mechanics.types import Mode, Twist
+from impact_predictor.mechanics.types import Twist
 from impact_predictor.prediction.types import Leftover
 from impact_predictor.report.summary import (
     PER_DECADE,
@@ -22,36 +23,16 @@ from impact_predictor.report.summary import (
     to_json,
     together,
 )
-from impact_predictor.report.touchdowns import TouchdownRow
+from impact_predictor.report.touchdowns import row_of
 
-SCORED = TouchdownRow(
-    body="cube",
-    stamp=1_004_000_000,
-    announced_lead_time=0.055,
-    lead_time=0.004,
-    mode=Mode.PIVOT_SLIDE,
-    before_twist=Twist(1.0, -0.5, -4.0),
-    predicted_twist=Twist(0.75, 0.25, -3.0),
-    measured_twist=Twist(0.5, 0.125, -2.0),
-    half_distance=0.05,
-    relative_error=0.125,
-    out_of_plane=0.0,
-    scored=True,
-    flags=("REVERSED_SLIP",),
-    old=(0, 1),
-    new=(2, 3),
-)
-UNSCORED = SCORED._replace(scored=False, flags=("OUT_OF_PLANE", "ONE_CORNER_FIRST"))
-UNMEASURED = SCORED._replace(measured_twist=None, relative_error=None, scored=False, flags=("OUT_OF_PLANE",))
-LANDED = SCORED._replace(
-    body="robot",
+SCORED = row_of("cube", touchdowns.SCORE)
+UNSCORED = row_of("cube", touchdowns.UNSCORED)
+UNMEASURED = row_of("cube", touchdowns.UNMEASURED)._replace(flags=("OUT_OF_PLANE",))
+LANDED = row_of("robot", touchdowns.LANDED)._replace(
     foot="LF",
     announced_lead_time=0.1,
-    time_error=0.001,
-    scored=False,
-    relative_error=None,
-    flags=("DRIVEN",),
     time_errors=(-0.002, None),
+    late=None,
     landing_speed=0.123,
     impulse=(3.0, -4.0),
     velocity_change=Twist(-0.03, 0.04, 0.1),
@@ -64,7 +45,7 @@ def test_every_reason_that_a_touchdown_is_not_scored_has_words() -> None:
 
 def test_only_scored_rows_count() -> None:
     rows = [SCORED, SCORED._replace(relative_error=0.75), UNSCORED, UNMEASURED]
-    assert errors_of(rows)[:3] == (2, 0.4375, pytest.approx(0.6875))
+    assert errors_of(rows)[:3] == (2, 0.5, pytest.approx(0.7))
     assert errors_of([]) == Distribution()
 
 
@@ -88,7 +69,7 @@ def test_every_prediction_counts_at_its_lead_time() -> None:
 
 
 def test_touchdowns_together_count_the_scored_and_explain_the_others() -> None:
-    scored = "scored: relative error 12.5 % in the median, 90 % below 12.5 %."
+    scored = "scored: relative error 25.0 % in the median, 90 % below 25.0 %."
     assert Tally([SCORED, UNSCORED, UNMEASURED]).sentences() == [
         f"1 of 3 touchdowns {scored}",
         "The samples after the others do not show what the impact left, for one or several reasons each:",

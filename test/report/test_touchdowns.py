@@ -6,10 +6,9 @@ import json
 from typing import Any
 
 import pytest
-from touchdowns import SAMPLE, TOUCHDOWN
+from touchdowns import LANDED, LANDING, SAMPLE, SCORE, TOUCHDOWN, UNMEASURED, UNSCORED
 
-from impact_predictor.mechanics.types import Twist
-from impact_predictor.prediction.types import Landing, Leftover, Prediction, Score, Status
+from impact_predictor.prediction.types import Landing, Prediction, Score, Status
 from impact_predictor.report.touchdowns import (
     FIELDS,
     TouchdownRow,
@@ -21,29 +20,6 @@ from impact_predictor.report.touchdowns import (
 )
 from impact_predictor.ros.messages import decode_diagnostic_array, encode_score
 
-HISTORY = ((0.055, 0.5), (0.01, 0.3), (0.004, 0.25))
-SCORED = Score(1_004_000_000, TOUCHDOWN, Twist(0.5, 0.125, -2.0), 0.25, True, Leftover.NONE, HISTORY)
-UNSCORED = SCORED._replace(scored=False, leftover=Leftover.OUT_OF_PLANE | Leftover.ONE_CORNER_FIRST)
-UNMEASURED = SCORED._replace(measured=None, relative_error=None, scored=False, leftover=Leftover.TOO_SHORT, history=())
-LANDING = Landing(
-    foot="left",
-    stamp=2_000_000_000,
-    late=-0.015,
-    confirmed=True,
-    history=((0.2, 0.004), (0.06, 0.002), (0.004, -0.001)),
-    speed=0.25,
-    impact=TOUCHDOWN,
-)
-LANDED = Score(
-    2_000_000_000,
-    TOUCHDOWN._replace(leftover=Leftover.DRIVEN),
-    None,
-    None,
-    False,
-    Leftover.DRIVEN,
-    (),
-    LANDING,
-)
 UNANNOUNCED = LANDED._replace(landing=Landing("left", 2_000_000_000, None, None, ()))
 
 
@@ -56,7 +32,7 @@ def test_the_fields_are_those_of_the_row_but_for_what_no_file_has() -> None:
     assert {field.key for field in FIELDS} == set(TouchdownRow._fields) - {"time_errors", "cost"}
 
 
-@pytest.mark.parametrize("score", [SCORED, UNSCORED, UNMEASURED])
+@pytest.mark.parametrize("score", [SCORE, UNSCORED, UNMEASURED])
 def test_a_row_of_the_message_is_the_row_of_the_score(score: Score) -> None:
     data = encode_score(Prediction(Status.ACCEPTED, SAMPLE, None, score))
     assert data is not None
@@ -79,13 +55,13 @@ def test_a_row_of_the_message_of_a_landing_has_all_but_its_impact(score: Score) 
     assert row_of_message("robot", diagnostic.values) == row_of("robot", score)._replace(**impact)
 
 
-@pytest.mark.parametrize("score", [SCORED, UNSCORED, UNMEASURED, LANDED, UNANNOUNCED])
+@pytest.mark.parametrize("score", [SCORE, UNSCORED, UNMEASURED, LANDED, UNANNOUNCED])
 def test_a_row_comes_back_from_its_json(score: Score) -> None:
     assert row_of_json(json_of(score)) == row_of("cube", score)._replace(time_errors=())
 
 
 def test_the_json_of_a_touchdown_has_the_promised_keys() -> None:
-    assert json_of(SCORED) == {
+    assert json_of(SCORE) == {
         "body": "cube",
         "stamp": 1_004_000_000,
         "announced_lead_time": 0.055,
@@ -109,7 +85,7 @@ def test_the_json_of_a_touchdown_has_the_promised_keys() -> None:
 def test_the_json_of_a_landing_has_its_foot_its_impact_and_how_late_it_was() -> None:
     entry = json_of(LANDED)
     assert (entry["announced_lead_time"], entry["scored"], entry["flags"]) == (0.2, False, ["DRIVEN", "REVERSED_SLIP"])
-    assert {key: entry[key] for key in entry.keys() - json_of(SCORED).keys()} == {
+    assert {key: entry[key] for key in entry.keys() - json_of(SCORE).keys()} == {
         "foot": "left",
         "point": None,
         "late": -0.015,
