@@ -52,11 +52,8 @@ READ: dict[str, Any] = {
     "true": True,
     "True": True,
     "FALSE": False,
-    "tRuE": "tRuE",
-    "path": "path",
-    "a b": "a b",
-    "base_link": "base_link",
-    "é": "é",
+    **{text: text for text in ("tRuE", "path", "a b", "base_link", "é", "a#b", "1,5", "1.5m", "1.0.0", "1e", "1d3")},
+    **{text: text for text in (".e5", "--5", "+", ".", "=")},
     "''": "",
     '""': "",
     '"5"': "5",
@@ -65,20 +62,9 @@ READ: dict[str, Any] = {
     '"0x10"': "0x10",
     "'it''s'": "it's",
     '"a\\tb"': "a\tb",
-    "a#b": "a#b",
     "a #b": "a",
     "1 # comment": 1,
     "one\n      two": "one two",
-    "1,5": "1,5",
-    "1.5m": "1.5m",
-    "1.0.0": "1.0.0",
-    "1e": "1e",
-    "1d3": "1d3",
-    ".e5": ".e5",
-    "--5": "--5",
-    "+": "+",
-    ".": ".",
-    "=": "=",
     "&anchor 5": 5,
     "[1, 2]": [1, 2],
     "[0x10, 1]": [16, 1],
@@ -130,12 +116,6 @@ def refusal(file: Path) -> str:
 
 def same(ours: object, theirs: object) -> bool:
     """Equal in value and type; NaN like NaN, -0.0 not like 0.0."""
-    if isinstance(ours, list):
-        return (
-            isinstance(theirs, list)
-            and len(ours) == len(theirs)
-            and all(same(one, other) for one, other in zip(ours, theirs, strict=True))
-        )
     return type(ours) is type(theirs) and repr(ours) == repr(theirs)
 
 
@@ -280,6 +260,9 @@ REFUSED_FILES = {
     "a name twice in two spellings": (section("0\n    a:\n      b: 1\n    a.b: 2"), "`a.b` is set twice"),
     "a value and names below": (section("0\n    x:\n      y:\n        z: 1"), "`x` has a value in line 3 and holds"),
     "no value": (section("1\n    y:"), "line 4 gives `y` no value"),
+    # The list that begins in line 4 goes on in line 5, where it breaks off.
+    "a list that breaks off": (section("1\n    y: [1\n    z: 2"), ", line 5 is not YAML: "),
+    "names beyond reason": (section("{a: " * 1200 + "1" + "}" * 1200), "nested too deeply"),
     "an empty group": (section("1\n    y: {}"), "line 4 gives `y` no value"),
 }
 
@@ -289,11 +272,6 @@ def test_a_file_that_is_no_parameter_file_is_refused(tmp_path: Path, text: str, 
     assert why in refusal(parameter_file(tmp_path, text))
 
 
-def test_the_line_of_bad_yaml_is_named(tmp_path: Path) -> None:
-    # The list that begins in line 4 goes on in line 5, where it breaks off.
-    assert ", line 5 is not YAML: " in refusal(parameter_file(tmp_path, section("1\n    y: [1\n    z: 2")))
-
-
 def test_a_file_that_cannot_be_read_is_named(tmp_path: Path) -> None:
     assert refusal(tmp_path / "nothing.yaml").endswith("cannot be read: No such file or directory")
     assert refusal(tmp_path).endswith("cannot be read: Is a directory")
@@ -301,10 +279,6 @@ def test_a_file_that_cannot_be_read_is_named(tmp_path: Path) -> None:
     assert "is not UTF-8 text" in refusal(tmp_path / "latin.yaml")
     (tmp_path / "null.yaml").write_bytes(section("a\0b").encode())
     assert "is not YAML" in refusal(tmp_path / "null.yaml")
-
-
-def test_a_file_nested_beyond_reason_is_refused(tmp_path: Path) -> None:
-    assert "nested too deeply" in refusal(parameter_file(tmp_path, section("{a: " * 1200 + "1" + "}" * 1200)))
 
 
 def test_a_node_in_a_namespace_has_its_own_sections(tmp_path: Path) -> None:
