@@ -1,7 +1,9 @@
 import ast
 import re
 import runpy
+import subprocess
 import sys
+from collections import defaultdict
 from pathlib import Path
 from types import SimpleNamespace
 from xml.etree import ElementTree
@@ -30,40 +32,28 @@ def manifest():
     return ElementTree.parse(ROOT / "package.xml").getroot()
 
 
-def test_package_xml_setup_py_changelog_and_the_library_name_one_version(setup_arguments, manifest):
-    version = manifest.findtext("version")
-    assert setup_arguments["version"] == version
-    assert impact_predictor.__version__ == version
+def test_package_xml_setup_py_changelog_and_the_library_say_the_same_of_the_package(setup_arguments, manifest):
+    version, maintainer = manifest.findtext("version"), manifest.find("maintainer")
     newest = re.search(r"^(\S+) \(.+\)\n-+$", (ROOT / "CHANGELOG.rst").read_text(), re.MULTILINE)
     assert newest is not None
-    assert newest[1] == version
-
-
-def test_package_xml_and_setup_py_name_one_maintainer_and_licence(setup_arguments, manifest):
-    maintainer = manifest.find("maintainer")
+    assert setup_arguments["version"] == impact_predictor.__version__ == newest[1] == version
     assert setup_arguments["maintainer"] == maintainer.text
     assert setup_arguments["maintainer_email"] == maintainer.get("email")
     assert setup_arguments["license"] == manifest.findtext("license")
     assert (ROOT / manifest.find("license").get("file")).is_file()
 
 
-def test_colcon_builds_it_as_an_ament_python_package(manifest):
+def test_colcon_builds_it_as_an_ament_python_package_that_the_ament_index_finds(setup_arguments, manifest):
     assert manifest.get("format") == "3"
     assert manifest.findtext("export/build_type") == "ament_python"
-
-
-def test_the_marker_of_the_ament_index_has_the_name_of_the_package(setup_arguments, manifest):
     marker = f"resource/{manifest.findtext('name')}"
     assert ("share/ament_index/resource_index/packages", [marker]) in setup_arguments["data_files"]
     assert (ROOT / marker).is_file()
 
 
-def test_every_folder_of_modules_is_a_package_so_that_setup_py_finds_it():
+def test_every_folder_of_modules_is_a_package_and_the_marker_of_typed_ones_is_shipped(setup_arguments):
     folders = {path.parent for path in (ROOT / "impact_predictor").rglob("*.py")}
     assert not {folder.name for folder in folders if not (folder / "__init__.py").is_file()}
-
-
-def test_the_marker_of_typed_packages_is_shipped(setup_arguments):
     [marker] = setup_arguments["package_data"]["impact_predictor"]
     assert marker == "py.typed"
     assert (ROOT / "impact_predictor" / marker).is_file()
@@ -81,12 +71,10 @@ def test_every_file_of_config_examples_and_launch_is_installed_under_share(setup
         installed.items()
     )
     assert Path("examples/cube_tosses/cube_tosses.mcap") in shipped
-
-
-def test_the_scene_that_the_launch_file_starts_with_is_shipped():
+    # The launch file starts with one.
     default = re.search(r'"config", "(.+?)"', (ROOT / "launch/predictor.launch.py").read_text())
     assert default is not None
-    assert (ROOT / "config" / default[1]).is_file()
+    assert Path("config", default[1]) in shipped
 
 
 def test_ros_from_pypi_is_pinned_wherever_setup_py_asks_for_it(setup_arguments):
@@ -136,20 +124,12 @@ def test_what_no_code_imports_is_not_declared(setup_arguments):
     distributions = {DISTRIBUTIONS.get(name, EXTRAS.get(name, (name, ""))[0]) for name in imported}
     assert names_of(setup_arguments["install_requires"]) <= distributions
     assert EXTRAS.keys() <= imported
-
-
-def test_the_extra_all_has_what_every_command_can_use(setup_arguments):
     extras = setup_arguments["extras_require"]
     assert {package for package, _ in EXTRAS.values()} <= names_of(extras["all"])
     assert not names_of(extras["all"]) & names_of(extras["test"])
 
 
-def test_package_xml_asks_for_no_package_that_only_pip_has(manifest):
-    dependencies = {element.text for element in manifest if element.tag.endswith("depend")}
-    assert not {name for name in dependencies if name.endswith("-pip") or "rosbags" in name}
-
-
-def test_every_ros_package_that_the_code_imports_is_in_package_xml(manifest):
+def test_package_xml_has_every_ros_package_that_the_code_imports_and_none_that_only_pip_has(manifest):
     # The messages of adapters are in no ROS: the bags that have them bring their definitions.
     files = [path for path in (ROOT / "impact_predictor").rglob("*.py") if path.name != "adapters.py"]
     code = "\n".join(path.read_text() for path in files)
@@ -157,3 +137,25 @@ def test_every_ros_package_that_the_code_imports_is_in_package_xml(manifest):
     imported = set(re.findall(rf"^\s*(?:from|import) {ros}\b", code, re.MULTILINE))
     imported |= set(re.findall(rf'"{ros}/msg/', code))
     assert imported <= {element.text for element in manifest.findall("exec_depend")}
+    dependencies = {element.text for element in manifest if element.tag.endswith("depend")}
+    assert not {name for name in dependencies if name.endswith("-pip") or "rosbags" in name}
+
+
+def test_importing_the_library_loads_neither_ros_nor_what_only_some_commands_need():
+    heavy = {"matplotlib", "numba", "rclpy", "rosbags", "scipy"}
+    code = f"import sys, impact_predictor; impact_predictor.solve_impact; print(*({heavy} & sys.modules.keys()))"
+    loaded = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+    assert loaded.stdout.split() == []
+
+
+def test_no_class_or_type_alias_has_the_name_of_another():
+    places = defaultdict(set)
+    for path in (ROOT / "impact_predictor").rglob("*.py"):
+        for statement in ast.parse(path.read_text()).body:
+            names = [statement.name] if isinstance(statement, ast.ClassDef) else []
+            if isinstance(statement, ast.Assign):
+                names = [target.id for target in statement.targets if isinstance(target, ast.Name)]
+                names = [name for name in names if name[0].isupper() and not name.isupper()]
+            for name in names:
+                places[name].add(path.relative_to(ROOT).as_posix())
+    assert {name: files for name, files in places.items() if len(files) > 1} == {}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import json
 import re
 import subprocess
@@ -50,20 +51,20 @@ def answer(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
 
 @pytest.fixture(scope="module")
 def noise() -> ModuleType:
-    return benchmark("walker_noise")
+    """The benchmark, whose folder is on the path of the tests."""
+    return importlib.import_module("walker_noise")
 
 
-def benchmark(name: str) -> ModuleType:
-    with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(ROOT / "benchmarks")
-        return __import__(name)
-
-
-def test_all_touchdowns_of_the_plan_are_found_and_none_besides(answer: dict[str, Any]) -> None:
+def test_all_touchdowns_of_the_plan_are_found_50_ms_ahead_to_2_ms_and_none_besides(answer: dict[str, Any]) -> None:
     assert answer["samples"] == 3601
     assert answer["statuses"] == answer["geometry_statuses"] == {"ACCEPTED": 3601}
     truth = answer["truth"]
     assert (truth["touchdowns"], truth["missed"], truth["false"]) == (49, 0, 0)
+    assert truth["least_lead_time"] >= 0.05
+    # The flags change at the first of the plan's samples, 2.5 ms apart, that follows the landing: half of that at best.
+    assert truth["median_time_error"] <= 0.002
+    assert set(truth["time_error_by_lead_time"]) == {"0.02", "0.05"}
+    assert all(error <= 0.002 for error in truth["time_error_by_lead_time"].values())
 
 
 def test_the_document_names_every_key(answer: dict[str, Any]) -> None:
@@ -75,19 +76,6 @@ def test_the_document_names_every_key(answer: dict[str, Any]) -> None:
     assert keys | of_some <= told
 
 
-def test_a_landing_speed_has_no_sign(answer: dict[str, Any]) -> None:
-    assert all(copysign(1.0, one["landing_speed"]) > 0.0 for one in answer["touchdowns"])
-
-
-def test_each_is_predicted_50_ms_ahead_and_to_2_ms_in_the_median(answer: dict[str, Any]) -> None:
-    truth = answer["truth"]
-    assert truth["least_lead_time"] >= 0.05
-    # The flags change at the first of the plan's samples, 2.5 ms apart, that follows the landing: half of that at best.
-    assert truth["median_time_error"] <= 0.002
-    assert set(truth["time_error_by_lead_time"]) == {"0.02", "0.05"}
-    assert all(error <= 0.002 for error in truth["time_error_by_lead_time"].values())
-
-
 def test_every_foot_is_told_to_land_as_often_as_it_does(answer: dict[str, Any]) -> None:
     landed = Counter(one["foot"] for one in answer["touchdowns"])
     assert landed == {"LF": 12, "RF": 13, "LH": 12, "RH": 12}
@@ -97,6 +85,7 @@ def test_every_foot_is_told_to_land_as_often_as_it_does(answer: dict[str, Any]) 
         assert one["confirmed"] is None
         assert not one["scored"]
         assert "DRIVEN" in one["flags"]
+        assert copysign(1.0, one["landing_speed"]) > 0.0
 
 
 def test_the_plans_own_flags_and_forces_are_no_input(tmp_path: Path) -> None:
