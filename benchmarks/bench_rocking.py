@@ -18,9 +18,11 @@ from collections.abc import Callable
 from pathlib import Path
 from time import perf_counter
 
+from harmonic_deck import Wave, harmonic_support
+
 from impact_predictor import TwoPointBody, cylinder, plate, rod
 from impact_predictor.mechanics.motion import PlanarState, Trajectory, next_strike, rock, standing
-from impact_predictor.mechanics.motion.support import FrameAcceleration, MovingSupport, Wave, harmonic_support
+from impact_predictor.mechanics.motion.support import FrameAcceleration, MovingSupport
 
 REPEATS = 5
 HORIZON, STRIKES = 0.25, 1000

@@ -22,6 +22,7 @@ import click
 import numpy as np
 from compliant_cases import BODIES, FIRM, FIRMER, cases, difference, disputed, moving, place, velocities
 from compliant_impact import METHODS, compliant_impact
+from harmonic_deck import Wave, harmonic_support
 from rich.console import Console
 from rich.table import Table
 
@@ -30,7 +31,7 @@ from impact_predictor.mechanics.compliant import STAYS, compliant_motion, dampin
 from impact_predictor.mechanics.impact import see, solve_impact
 from impact_predictor.mechanics.impact.answer import mode_of
 from impact_predictor.mechanics.motion import rock, standing
-from impact_predictor.mechanics.motion.support import FixedSupport, Wave, harmonic_support
+from impact_predictor.mechanics.motion.support import FixedSupport
 from impact_predictor.mechanics.types import Flag, Mode, Twist, Vector
 
 STIFFNESSES = (1e4, 1e6, 1e8, 1e10, 1e12)

@@ -7,10 +7,10 @@ from math import hypot
 from typing import Final, NamedTuple
 
 import numpy as np
+from harmonic_deck import Wave, harmonic_support
 
 from impact_predictor import TwoPointBody, cylinder, plate
 from impact_predictor.mechanics.motion import PlanarState, rock, standing
-from impact_predictor.mechanics.motion.support import Wave, harmonic_support
 from impact_predictor.prediction.scene import MovingDeck, Scene
 from impact_predictor.prediction.types import Sample, Vector3
 from impact_predictor.scenarios.sensors import ACROSS, Mount, poses

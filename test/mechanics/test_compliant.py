@@ -7,6 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from compliant_impact import compliant_impact as impact_in_its_units
+from harmonic_deck import Wave, harmonic_support
 
 from impact_predictor import Contact, Mode, Twist, TwoPointBody, plate, solve_impact
 from impact_predictor.mechanics.compliant import (
@@ -19,7 +20,7 @@ from impact_predictor.mechanics.compliant import (
     restitution_of,
 )
 from impact_predictor.mechanics.motion import rock, standing
-from impact_predictor.mechanics.motion.support import FixedSupport, Wave, harmonic_support
+from impact_predictor.mechanics.motion.support import FixedSupport
 
 FIRM = (50.0, 50.0)
 """Damping ratios of contacts that rebound by a ten-thousandth."""

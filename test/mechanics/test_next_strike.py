@@ -14,20 +14,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from harmonic_deck import Wave, harmonic_support
 from newton_in_world import newton, touch
 from scipy.integrate import solve_ivp
 
 from impact_predictor import Contact, InputError, TwoPointBody, cylinder, plate
 from impact_predictor.mechanics.motion import Fall, MotionKind, PlanarState, next_strike, next_touchdown, rock, standing
-from impact_predictor.mechanics.motion.support import (
-    FixedSupport,
-    MovingSupport,
-    SupportMotion,
-    Wave,
-    from_world,
-    harmonic_support,
-    in_world,
-)
+from impact_predictor.mechanics.motion.support import FixedSupport, MovingSupport, SupportMotion, from_world, in_world
 
 G = 9.81
 AGREES = 1e-9

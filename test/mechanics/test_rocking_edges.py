@@ -6,13 +6,14 @@ import math
 
 import numpy as np
 import pytest
+from harmonic_deck import Wave, harmonic_support
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from impact_predictor import cylinder, plate
 from impact_predictor.mechanics.motion import MotionKind, next_strike, rock, standing
 from impact_predictor.mechanics.motion.accumulation import FollowedImpact, ImpactSequence
-from impact_predictor.mechanics.motion.support import FixedSupport, FrameAcceleration, Wave, harmonic_support
+from impact_predictor.mechanics.motion.support import FixedSupport, FrameAcceleration
 
 G = 9.81
 

@@ -11,13 +11,14 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from harmonic_deck import Wave, harmonic_support
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from impact_predictor import Contact, Flag, TwoPointBody, cylinder, plate
 from impact_predictor.mechanics.motion import End, PlanarState, Trajectory, rock, standing
 from impact_predictor.mechanics.motion.equations import rocking_body
-from impact_predictor.mechanics.motion.support import FixedSupport, Support, Wave, harmonic_support
+from impact_predictor.mechanics.motion.support import FixedSupport, Support
 
 G = 9.81
 frictions = st.one_of(st.sampled_from([0.0, 0.3, 1.0, 1e3]), st.floats(0.02, 3.0))

@@ -7,20 +7,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from harmonic_deck import Wave, harmonic_support
 from newton_in_world import newton
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from impact_predictor import Contact, InputError, TwoPointBody, cylinder, plate
 from impact_predictor.mechanics.motion import End, Trajectory, rock, standing
-from impact_predictor.mechanics.motion.support import (
-    FixedSupport,
-    MovingSupport,
-    SupportMotion,
-    Wave,
-    harmonic_support,
-    sampled_support,
-)
+from impact_predictor.mechanics.motion.support import FixedSupport, MovingSupport, SupportMotion, sampled_support
 
 G = 9.81
 AGREES = 1e-9
@@ -232,8 +226,6 @@ def test_what_a_body_feels_comes_from_polynomials_exact_to_rounding() -> None:
 
 
 def test_supports_refuse_what_they_cannot_use() -> None:
-    with pytest.raises(InputError):
-        harmonic_support()
     with pytest.raises(InputError):
         MovingSupport(lambda t: SupportMotion(*[0.0 * t] * 9), period=0.0)
     with pytest.raises(InputError):

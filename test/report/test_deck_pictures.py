@@ -8,12 +8,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from harmonic_deck import Wave, harmonic_support
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from PIL import Image
 
 from impact_predictor.mechanics.motion import End
-from impact_predictor.mechanics.motion.support import MovingSupport, Wave, harmonic_support
+from impact_predictor.mechanics.motion.support import MovingSupport
 from impact_predictor.prediction.scene import MovingDeck, Scene
 from impact_predictor.prediction.types import Vector3
 from impact_predictor.report.deck_pictures import (

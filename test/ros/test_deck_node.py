@@ -9,10 +9,10 @@ from itertools import islice
 from pathlib import Path
 
 import pytest
+from harmonic_deck import Wave, harmonic_support
 
 from impact_predictor.bags.read import read_messages, topics
 from impact_predictor.bags.replay import replay
-from impact_predictor.mechanics.motion.support import Wave, harmonic_support
 from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction.scene import inputs_of, scenes_of
 from impact_predictor.prediction.types import Imu, Sample, Status

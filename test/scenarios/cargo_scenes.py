@@ -2,7 +2,9 @@
 
 from typing import Any
 
-from impact_predictor.mechanics.motion.support import MovingSupport, Wave, harmonic_support
+from harmonic_deck import Wave, harmonic_support
+
+from impact_predictor.mechanics.motion.support import MovingSupport
 from impact_predictor.prediction.scene import MovingDeck, Scene
 
 

@@ -17,28 +17,29 @@ _FOLLOWED = 8
 _SLOWEST = 0.9999
 """A factor nearer to 1 is not told from 1."""
 
+Place = tuple[float, float, float, float]
+"""u (rad), w (rad/s), z (m) and s (m/s): see `equations`."""
+
 
 class FollowedImpact(NamedTuple):
-    """An impact, `since` s after the one before: `kind` is old contact (-1: none), new contact and which ones leave.
+    """An impact, `since` s after the one before, with the place after it.
 
-    `place` is u (rad), w (rad/s), z (m) and s (m/s) after it.
+    `kind` is old contact (-1: none), new contact and which ones leave.
     """
 
     kind: tuple[int, int, int]
     since: float
-    place: tuple[float, float, float, float]
+    place: Place
 
 
 class Limit(NamedTuple):
-    """Where impacts accumulate.
-
-    Time `after` the last one and a bound on its `error` (s); the place there; the contacts that are closed then; how
-    many impacts were seen.
+    """Where impacts accumulate: time `after` the last one and a bound on its `error` (s), the place there, the contacts
+    that are closed then, and how many impacts were seen.
     """
 
     after: float
     error: float
-    place: tuple[float, float, float, float]
+    place: Place
     contacts: tuple[int, ...]
     impacts: int
 
@@ -58,11 +59,8 @@ class ImpactSequence:
 
     def add(self, impact: FollowedImpact) -> Limit | None:
         """One more impact; the limit when the rest can be summed."""
-        rows = self.rows
-        rows.append(impact)
+        rows = self.rows = [*self.rows[1 - _KEPT :], impact]
         self.impacts += 1
-        if len(rows) > _KEPT:
-            del rows[0]
         if self.impacts < _FOLLOWED:
             return None
         for period in range(1, _LONGEST_CYCLE + 1):
@@ -72,7 +70,7 @@ class ImpactSequence:
         return None
 
     def _limit(self, period: int) -> Limit | None:
-        rows = self.rows
+        rows, allowed = self.rows, self.tolerance
         first, before, last = (self._time_of(len(rows) - k * period, period) for k in (3, 2, 1))
         if not 0.0 < last < _SLOWEST * before or not before < _SLOWEST * first:
             return None
@@ -80,22 +78,18 @@ class ImpactSequence:
         after = last * part
         error = abs(after + last - before * part_before) * max(1.0, part)
         now, once, twice = (rows[-1 - k * period].place for k in range(3))
-        limits = [a + (a - b) * part for a, b in zip(now, once, strict=True)]
+        u, w, z, s = [a + (a - b) * part for a, b in zip(now, once, strict=True)]
         earlier = [b + (b - c) * part_before for b, c in zip(once, twice, strict=True)]
-        off = [abs(a - b) * max(1.0, part) for a, b in zip(limits, earlier, strict=True)]
-        allowed = self.tolerance
-        if error > allowed * self.time or max(off[0], off[2] / self.length) > allowed:
+        scales = 1.0, 1.0 / self.time, self.length, self.speed
+        off = [abs(a - b) * max(1.0, part) / scale for a, b, scale in zip((u, w, z, s), earlier, scales, strict=True)]
+        if max(error / self.time, *off) > allowed:
             return None
-        if max(off[1] * self.time, off[3] / self.speed) > allowed:
-            return None
-        u, w, z, s = limits
         if abs(s) <= allowed * self.speed:
             s = 0.0
         elif s * now[3] < 0.0 or abs(s) < 0.5 * abs(now[3]):
             return None  # the slip ends before the impacts do
-        contacts = {contact for row in rows[-period:] for contact in row.kind[:2] if contact >= 0}
-        place = u, w, z, s
-        return Limit(after=after, error=error, place=place, contacts=tuple(sorted(contacts)), impacts=self.impacts)
+        contacts = sorted({contact for row in rows[-period:] for contact in row.kind[:2] if contact >= 0})
+        return Limit(after=after, error=error, place=(u, w, z, s), contacts=tuple(contacts), impacts=self.impacts)
 
     def _time_of(self, start: int, period: int) -> float:
         """How long a cycle takes that starts with a row."""

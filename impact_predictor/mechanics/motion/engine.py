@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from ..impact.contacts import MINUS, OPEN, PLUS
 from ..types import TwoPointBody, Vector
+from .accumulation import Place
 from .equations import RockingBody, rocking_body, turned, two_points
 from .events import Event
 from .phases import FlightPhase, MotionPhase, PhaseEnd
@@ -125,12 +126,16 @@ class MotionEngine:
         if states == (OPEN, OPEN):
             self.fly(self.body.state(i, u, w, z, s), self.gaps(i, u))
             return
-        self.next = MotionPhase(
+        self.next = self.contact_phase(states, self.time, (u, w, z, s))
+
+    def contact_phase(self, states: tuple[int, int], start: float, place: Place) -> MotionPhase:
+        """A phase in which the contacts have these states, from a place on."""
+        return MotionPhase(
             body=self.body,
             support=self.support,
             states=states,
-            start=self.time,
-            place=(u, w, z, s),
+            start=start,
+            place=place,
             limit=self.limit,
             tolerance=self.tolerance,
         )

@@ -11,17 +11,14 @@ from .accumulation import FollowedImpact, ImpactSequence, Limit
 from .engine import MotionEngine, Strike
 from .equations import rocking_body
 from .integrate import Instant
-from .phases import MotionPhase
 from .support import FixedSupport, PlanarState, Support
 from .touchdown import MotionKind
 from .trajectory import Accumulation, End, RockingImpact, Trajectory, letters
 
 _SPEED_ROUNDING = 1e-15
 """Part of a body's speeds that is rounding in the normal velocity at a contact."""
-_BOUNCE = 1e-12
-"""A body thrown up more slowly than this part of its natural speed has stopped bouncing."""
 _QUIET = 1e-9
-"""So has one whose contacts both move more slowly than this part of it, as bouncing within bouncing does."""
+"""A contact that bounces more slowly than this part of the body's natural speed has stopped bouncing."""
 _NOTHING = 1e-100
 """Smaller numbers of a state are none: their products would be no numbers."""
 _ACCUMULATION = 1e-12, 1e-11
@@ -115,6 +112,8 @@ class _RockingMotion:
         self.validity = Validity(gravity=abs(support.gravity))
         self.impacts: list[RockingImpact] = []
         self.accumulations: list[Accumulation] = []
+        self.shift = 0.0
+        """What is added to angles from the pose with both contacts closed."""
         self.counted = 0
         """Phases up to the last impact."""
         contacts = self.body.contact(0, 0.0), self.body.contact(1, 0.0)
@@ -126,7 +125,7 @@ class _RockingMotion:
         engine = self.engine
         start = PlanarState(*[part if abs(part) >= _NOTHING else 0.0 for part in start])
         angle = math.remainder(start.angle + self.body.lean, 2.0 * math.pi)
-        shift = start.angle - angle
+        self.shift = start.angle - angle
         try:
             self._begin(start._replace(angle=angle))
             while strike := engine.next_strike():
@@ -134,9 +133,7 @@ class _RockingMotion:
         except ArithmeticError:  # numbers so large or so small that their products are none
             engine.end = End.NO_SOLUTION
         assert engine.end is not None
-        impacts = [
-            one._replace(before=_ahead(one.before, shift), after=_ahead(one.after, shift)) for one in self.impacts
-        ]
+        motions = [phase for phase in engine.phases[:-1] if phase.end > phase.start] + engine.phases[-1:]
         return Trajectory(
             body=self.two_point,
             support=self.support,
@@ -144,11 +141,11 @@ class _RockingMotion:
             start=start,
             time=engine.time,
             end=engine.end,
-            shift=shift,
-            phases=engine.phases,
-            impacts=impacts,
-            accumulations=self.accumulations,
-            jams=engine.jams,
+            impacts=tuple(self.impacts),
+            accumulations=tuple(self.accumulations),
+            jams=tuple(engine.jams),
+            motions=tuple(motions),
+            shift=self.shift,
         )
 
     def _begin(self, state: PlanarState) -> None:
@@ -186,43 +183,48 @@ class _RockingMotion:
     def _impact(self, strike: Strike) -> None:
         """Solve an impact, and find out what the body does after it."""
         body, engine, (old, new, before, u, _) = self.body, self.engine, strike
-        struck = (
-            self.pairs[old]
-            if old is not None
-            else TwoPointBody(self.two_point.mass, self.two_point.inertia, None, body.contact(new, u))
-        )
+        struck = self.two_point._replace(old=None, new=body.contact(new, u)) if old is None else self.pairs[old]
         outcome = solve_impact(struck, Twist(before.vx, before.vy, before.omega), self.law, self.validity)
         if outcome.flags & (Flag.NO_SOLUTION | Flag.INVALID_INPUT):
             engine.end = End.NO_SOLUTION
             return
         vx, vy, omega = outcome.twist
         after = before._replace(vx=vx, vy=vy, omega=omega)
-        self.impacts.append(
-            RockingImpact(time=engine.time, old=old, new=new, before=before, after=after, outcome=outcome)
+        impact = RockingImpact(
+            time=engine.time,
+            old=old,
+            new=new,
+            before=before._replace(angle=before.angle + self.shift),
+            after=after._replace(angle=after.angle + self.shift),
+            outcome=outcome,
         )
+        self.impacts.append(impact)
         since = self._since_last()
         # Normal velocities against the approach alone: beside a fast slip the mode counts slow hops as none.
-        touching = (new,) if old is None else (old, new)
+        touching = [new] if old is None else [old, new]
         approach = max(-body.gap_rate(i, before) for i in touching)
         size = abs(before.vx) + abs(before.vy) + abs(before.omega) * body.length
         least = STAYS * approach + (_SPEED_ROUNDING * size if body.rolls else 0.0)
-        rates = {i: body.gap_rate(i, after) for i in touching}
-        leaving = [i for i in touching if rates[i] > least]
-        closed = [i for i in touching if i not in leaving]
+        rates = [body.gap_rate(i, after) for i in _BOTH]
+        closed = [i for i in touching if rates[i] <= least]
+        flat = abs(body.gap_of_other(new, u)[0]) <= _QUIET * _QUIET * body.length
+        quiet = [i for i in _BOTH if abs(rates[i]) <= _QUIET * engine.speed and (i in touching or flat)]
         i = closed[-1] if closed else new
-        _, w, _, s = body.seen_from(i, after)
-        z = body.seen_from(new, before)[2]
-        if self._is_quiet(after, new, u):
-            self._quieten(_BOTH, _QUIET, u, w, z, s)
-        elif not closed and max(rates.values()) <= _BOUNCE * engine.speed:
-            self._quieten(touching, _BOUNCE, u, w, z, s)
-        elif leaving and self._is_summed(leaving, since, (u, w, z, s)):
-            return
-        elif not closed:
-            engine.fly(after, engine.gaps(new, u))
-        else:
+        _, w, z, s = body.seen_from(i, after)
+        if len(closed) < len(touching):
+            if any(body.restitution) and (len(quiet) == 2 or (quiet == touching and not closed)):
+                self._quieten(quiet, u, w, z, s)
+                return
+            kind = -1 if old is None else old, new, sum(1 << i for i in touching if i not in closed)
+            limit = self.sequence.add(FollowedImpact(kind=kind, since=since, place=(u, w, z, s)))
+            if limit is not None and self._stays_open(limit, since, after, new, u):
+                self._accumulate(limit, after, new)
+                return
+        if closed:
             s = 0.0 if abs(s) <= STAYS * (size + approach) else s
             engine.settle(i, u, 0.0 if len(closed) == 2 else w, z, s)
+        else:
+            engine.fly(after, engine.gaps(new, u))
 
     def _since_last(self) -> float:
         """Time since the last impact, which between accumulating impacts is too short for the digits of the clock."""
@@ -233,36 +235,6 @@ class _RockingMotion:
                 self.sequence.forget()
         self.counted = len(phases)
         return since
-
-    def _is_summed(self, leaving: list[int], since: float, place: tuple[float, float, float, float]) -> bool:
-        """Count an impact that contacts leave; pass to the end of all that follow it where they can be summed."""
-        last, engine = self.impacts[-1], self.engine
-        kind = -1 if last.old is None else last.old, last.new, sum(1 << i for i in leaving)
-        limit = self.sequence.add(FollowedImpact(kind, since, place))
-        if limit is None or not self._stays_open(limit, since, last.after, last.new, place[0]):
-            return False
-        u, w, z, s = limit.place
-        start, begin = engine.time, self.body.seen_from(last.new, last.after)
-        engine.time = min(engine.time + limit.after, engine.until)
-        if len(limit.contacts) == 2:
-            u = w = 0.0
-            begin = 0.0, 0.0, begin[2], begin[3]
-        engine.settle(last.new, u, w, z, s)
-        assert engine.next is not None
-        summed = MotionPhase(
-            body=self.body,
-            support=self.support,
-            states=engine.next.states,
-            start=start,
-            place=begin,
-            limit=engine.limit,
-            tolerance=engine.tolerance,
-        )
-        summed.close(Instant(time=engine.time - start, u=u, w=w, z=z, s=s, alpha=0.0, beta=0.0))
-        engine.phases.append(summed)
-        self.counted = len(engine.phases)
-        self._add_accumulation(limit.error, limit.contacts, limit.impacts)
-        return True
 
     def _stays_open(self, limit: Limit, since: float, after: PlanarState, new: int, u: float) -> bool:
         """Whether nothing but the impacts that are summed can happen before their end.
@@ -277,21 +249,30 @@ class _RockingMotion:
         weight = abs(felt[0]) + abs(felt[1]) + self.body.length * (after.omega**2 + abs(felt[3]))
         return gap + (rate - 4.0 * weight * span) * span > 0.0
 
-    def _is_quiet(self, after: PlanarState, new: int, u: float) -> bool:
-        """Whether both contacts bounce less than can matter: their hops may have no pattern that could be summed."""
-        body = self.body
-        if not any(body.restitution) or abs(body.gap_of_other(new, u)[0]) > _QUIET * _QUIET * body.length:
-            return False
-        return max(abs(body.gap_rate(i, after)) for i in _BOTH) <= _QUIET * self.engine.speed
-
-    def _quieten(self, contacts: tuple[int, ...], part: float, u: float, w: float, z: float, s: float) -> None:
-        """Contacts that hardly bounce any more are closed from now on."""
+    def _quieten(self, contacts: list[int], u: float, w: float, z: float, s: float) -> None:
+        """Contacts that hardly bounce any more are closed from now on: their hops may have no pattern to be summed."""
         engine, impacts = self.engine, self.sequence.impacts + 1
         if len(contacts) == 2:
             u = w = 0.0
-        engine.settle(contacts[0], u, w, z, 0.0 if abs(s) <= part * engine.speed else s)
-        error = 2.0 * part * engine.swing / max(0.01, 1.0 - max(self.body.restitution))
-        self._add_accumulation(error, tuple(sorted(contacts)), impacts)
+        engine.settle(contacts[0], u, w, z, 0.0 if abs(s) <= _QUIET * engine.speed else s)
+        error = 2.0 * _QUIET * engine.swing / max(0.01, 1.0 - max(self.body.restitution))
+        self._add_accumulation(error, tuple(contacts), impacts)
+
+    def _accumulate(self, limit: Limit, after: PlanarState, new: int) -> None:
+        """Pass from an impact to the end of all that follow it."""
+        engine, (u, w, z, s) = self.engine, limit.place
+        start, begin = engine.time, self.body.seen_from(new, after)
+        engine.time = min(engine.time + limit.after, engine.until)
+        if len(limit.contacts) == 2:
+            u = w = 0.0
+            begin = 0.0, 0.0, begin[2], begin[3]
+        engine.settle(new, u, w, z, s)
+        assert engine.next is not None
+        summed = engine.contact_phase(engine.next.states, start, begin)
+        summed.close(Instant(time=engine.time - start, u=u, w=w, z=z, s=s, alpha=0.0, beta=0.0))
+        engine.phases.append(summed)
+        self.counted = len(engine.phases)
+        self._add_accumulation(limit.error, limit.contacts, limit.impacts)
 
     def _add_accumulation(self, error: float, contacts: tuple[int, ...], impacts: int) -> None:
         """Infinitely many impacts end now; the next phase is what follows them."""
@@ -302,7 +283,3 @@ class _RockingMotion:
             Accumulation(time=engine.time, error=error, contacts=contacts, states=states, impacts=impacts)
         )
         self.sequence.forget()
-
-
-def _ahead(state: PlanarState, angle: float) -> PlanarState:
-    return state._replace(angle=state.angle + angle)

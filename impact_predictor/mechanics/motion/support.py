@@ -172,10 +172,10 @@ def _nodes(count: int) -> list[float]:
 class MovingSupport:
     """A straight support that moves as `function` of time tells, about the point of it where its frame has its origin.
 
-    `function(time)` gives a SupportMotion with derivatives that belong together, for a time in s or, if it can, an
-    array of times. `period` is the shortest time in s in which the motion swings to and fro: no shorter swing may be in
-    it. `gravity` in m/s^2 downwards; `origin` (x, y) in m is where the frame's origin lies in the frame of `function`.
-    `felt(time)` is what a body feels at rest at the origin. Not to be changed once it is made.
+    `function(time)` gives a SupportMotion with derivatives that belong together, for a time in s or an array of times.
+    `period` is the shortest time in s in which the motion swings to and fro: no shorter swing may be in it. `gravity`
+    in m/s^2 downwards; `origin` (x, y) in m is where the frame's origin lies in the frame of `function`. `felt(time)`
+    is what a body feels at rest at the origin. Not to be changed once it is made.
 
     Raises:
         InputError: the period is not a finite time above 0.
@@ -191,8 +191,7 @@ class MovingSupport:
         if not 0.0 < period < math.inf:
             raise InputError(f"period of the moving support is {period}; give a finite number of seconds above 0")
         self.function, self.period, self.gravity, self.origin = function, period, gravity, origin
-        self.felt = FeltPolynomials(self._felt_at_all, _PART * period, _NODES, _FIT).felt
-        self._takes_arrays = True
+        self.felt = FeltPolynomials(self._rows, _PART * period, _NODES, _FIT).felt
 
     def at(self, x: float, y: float) -> MovingSupport:
         """The same support, its frame's origin moved by (x, y) in m along its axes: to where a body stands."""
@@ -218,22 +217,15 @@ class MovingSupport:
         down = self.gravity + ay
         return -cosine * ax - sine * down, sine * ax - cosine * down, rate, acceleration
 
-    def felt_at(self, times: NDArray[np.float64]) -> NDArray[np.float64]:
-        """As `felt_exactly` in the columns of an array (n, 4), also where the function takes one time only."""
+    def felt_at(self, times: Any) -> NDArray[np.float64]:
+        """As `felt_exactly` in the columns of an array (n, 4)."""
         import numpy as np
 
-        if self._takes_arrays:
-            try:
-                columns = [np.broadcast_to(part, times.shape) for part in self.felt_exactly(times)]
-                return np.stack(columns, axis=1).astype(float)
-            except (TypeError, ValueError):
-                self._takes_arrays = False
-        return np.array([self.felt_exactly(time) for time in times.tolist()], dtype=float)
+        times = np.asarray(times, dtype=float)
+        return np.stack([np.broadcast_to(part, times.shape) for part in self.felt_exactly(times)], axis=1)
 
-    def _felt_at_all(self, times: list[float]) -> list[list[float]]:
-        import numpy as np
-
-        return self.felt_at(np.array(times)).tolist()  # type: ignore[no-any-return]
+    def _rows(self, times: list[float]) -> list[list[float]]:
+        return self.felt_at(times).tolist()  # type: ignore[no-any-return]
 
 
 Support = FixedSupport | MovingSupport
@@ -268,45 +260,6 @@ def from_world(motion: SupportMotion, state: PlanarState) -> PlanarState:
         cosine * uy - sine * ux,
         omega - motion.rate,
     )
-
-
-class Wave(NamedTuple):
-    """amplitude * sin(frequency * time + phase); `frequency` in rad/s, `phase` in rad."""
-
-    amplitude: float
-    frequency: float
-    phase: float = 0.0
-
-
-def harmonic_support(
-    angle: Sequence[Wave] = (),
-    x: Sequence[Wave] = (),
-    y: Sequence[Wave] = (),
-    mean_angle: float = 0.0,
-    gravity: float = 9.81,
-) -> MovingSupport:
-    """A support whose angle (rad) and origin (m, in the world's axes) are sums of waves: a deck in a sea.
-
-    Raises:
-        InputError: no wave has a frequency above 0.
-    """
-    import numpy as np
-
-    waves = *angle, *x, *y
-    amplitude, frequency, phase = np.array([*waves, Wave(0.0, 0.0)]).T
-    if not 0.0 < np.abs(frequency).max() < math.inf:
-        raise InputError("the waves of the support have no frequency above 0; give one, or use FixedSupport")
-    part = np.repeat(np.arange(4), [len(angle), len(x), len(y), 1])
-    places = np.where(part[:, None] == np.arange(3), (amplitude * np.exp(1j * phase))[:, None], 0.0)
-    rates = 1j * frequency[:, None] * places
-    moves = np.hstack([places, rates, 1j * frequency[:, None] * rates])
-
-    def motion(time: Any) -> SupportMotion:
-        turns = np.exp(1j * np.multiply.outer(np.asarray(time, dtype=float), frequency))
-        a, px, py, da, vx, vy, dda, ax, ay = np.einsum("...i,ij->j...", turns, moves).imag
-        return SupportMotion(angle=mean_angle + a, rate=da, acceleration=dda, x=px, y=py, vx=vx, vy=vy, ax=ax, ay=ay)
-
-    return MovingSupport(motion, 2.0 * math.pi / float(np.abs(frequency).max()), gravity)
 
 
 def sampled_support(times: Any, angle: Any, x: Any, y: Any, gravity: float = 9.81) -> MovingSupport:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from bisect import bisect_right
-from collections.abc import Sequence
+from dataclasses import dataclass
 from enum import IntEnum
 from typing import Any, NamedTuple
 
@@ -78,43 +77,37 @@ class Phase(NamedTuple):
     states: str
 
 
-class Trajectory:
-    """A rocking motion, in the support's frame, from `start` to `time` (s)."""
+_NONE = Phase(start=0.0, end=0.0, states="OO")
 
-    def __init__(
-        self,
-        body: TwoPointBody,
-        support: Support,
-        law: str,
-        start: PlanarState,
-        time: float,
-        end: End,
-        shift: float = 0.0,
-        phases: Sequence[MotionPhase] = (),
-        impacts: Sequence[RockingImpact] = (),
-        accumulations: Sequence[Accumulation] = (),
-        jams: Sequence[float] = (),
-    ) -> None:
-        self.body, self.support, self.law = body, support, law
-        self.end, self.time = end, time
-        self.impacts, self.accumulations = tuple(impacts), tuple(accumulations)
-        self.jams = tuple(jams)
-        """Times (s) at which slip that no finite reaction can go with ended at once (Painleve)."""
-        self._start, self._shift = start, shift
-        self._phases = [one for one in phases[:-1] if one.end > one.start]
-        self._phases += phases[-1:]
-        self._starts = [one.start for one in self._phases]
+
+@dataclass(frozen=True, eq=False)
+class Trajectory:
+    """A rocking motion in the support's frame, until `time` (s).
+
+    `jams` are times (s) at which slip that no finite reaction can go with ended at once (Painleve). `motions` are the
+    phases with their dense output; their angles count from the pose with both contacts closed, less `shift` rad.
+    """
+
+    body: TwoPointBody
+    support: Support
+    law: str
+    start: PlanarState
+    time: float
+    end: End
+    impacts: tuple[RockingImpact, ...] = ()
+    accumulations: tuple[Accumulation, ...] = ()
+    jams: tuple[float, ...] = ()
+    motions: tuple[MotionPhase, ...] = ()
+    shift: float = 0.0
 
     @property
     def phases(self) -> tuple[Phase, ...]:
         """The phases between events."""
-        return tuple(Phase(one.start, one.end, letters(one.states)) for one in self._phases)
+        return tuple(Phase(one.start, one.end, letters(one.states)) for one in self.motions)
 
     def states(self, time: float) -> str:
         """Contact states at a time, as those of `Phase`."""
-        if not self._phases:
-            return "OO"
-        return letters(self._phases[max(0, bisect_right(self._starts, time) - 1)].states)
+        return next((one.states for one in reversed(self.phases) if one.start <= time), (*self.phases, _NONE)[0].states)
 
     def state(self, time: Any) -> PlanarState:
         """State in the support's frame at a time in s (numbers) or at an array of times (arrays).
@@ -125,16 +118,13 @@ class Trajectory:
 
         times = np.asarray(time, dtype=float)
         flat = times.ravel()
-        values = np.empty((6, flat.size))
-        if not self._phases:
-            values[:] = np.array(self._start)[:, None]
-        else:
-            order = np.argsort(flat, kind="stable")
-            borders = np.searchsorted(flat[order], self._starts[1:])
-            for phase, chosen in zip(self._phases, np.split(order, borders), strict=True):
-                if chosen.size:
-                    values[:, chosen] = phase.at(np.clip(flat[chosen], phase.start, phase.end))
-            values[2] += self._shift
+        values = np.repeat(np.array(self.start)[:, None], flat.size, axis=1)
+        order = np.argsort(flat, kind="stable")
+        borders = np.searchsorted(flat[order], [phase.start for phase in self.motions[1:]])
+        for phase, chosen in zip(self.motions, np.split(order, borders), strict=False):
+            if chosen.size:
+                values[:, chosen] = phase.at(np.clip(flat[chosen], phase.start, phase.end))
+                values[2, chosen] += self.shift
         return PlanarState(*(values.reshape(6, *times.shape) if times.ndim else values[:, 0].tolist()))
 
     def world(self, time: Any) -> PlanarState:

@@ -8,12 +8,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from harmonic_deck import Wave, harmonic_support
 from scipy.optimize import brentq, linprog, minimize_scalar
 from scipy.spatial.transform import Rotation
 
 from impact_predictor import TwoPointBody, cylinder, plate
 from impact_predictor.mechanics.motion import rock, standing
-from impact_predictor.mechanics.motion.support import MovingSupport, Wave, harmonic_support
+from impact_predictor.mechanics.motion.support import MovingSupport
 from impact_predictor.prediction.watch.onset import FULL, Onset, OnsetMargins, first_times, motions
 from impact_predictor.prediction.watch.stance import Edge, StandingBody, edges_of, outline
 

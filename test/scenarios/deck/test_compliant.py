@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 from cargo_scenes import a_deck as rolling_deck
 from cargo_scenes import box
+from harmonic_deck import Wave, harmonic_support
 
 from impact_predictor.mechanics.motion import End, standing
-from impact_predictor.mechanics.motion.support import MovingSupport, Wave, harmonic_support
+from impact_predictor.mechanics.motion.support import MovingSupport
 from impact_predictor.scenarios.deck import compliant as compliant_deck
 from impact_predictor.scenarios.deck.cargo import follow, unit_of
 from impact_predictor.scenarios.deck.compliant import follow_compliant

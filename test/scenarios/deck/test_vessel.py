@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from harmonic_deck import Wave, harmonic_support
 from touchdowns import SAMPLE
 
 from impact_predictor.bags.write import BagWriter
 from impact_predictor.errors import InputError
-from impact_predictor.mechanics.motion.support import Wave, harmonic_support
 from impact_predictor.ros.messages import ODOMETRY, encode_odometry
 from impact_predictor.scenarios.deck.sea import SeaState, Waves, waves_of
 from impact_predictor.scenarios.deck.vessel import ResponseTable, SecondOrder, Vessel, deck_in, read_deck, read_vessel

@@ -1,0 +1,38 @@
+"""A deck that moves as sums of waves: what benchmarks and tests stand bodies on."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from impact_predictor.mechanics.motion.support import MovingSupport, SupportMotion
+
+
+class Wave(NamedTuple):
+    """amplitude * sin(frequency * time + phase); `frequency` in rad/s, `phase` in rad."""
+
+    amplitude: float
+    frequency: float
+    phase: float = 0.0
+
+
+def harmonic_support(
+    angle: Sequence[Wave] = (), x: Sequence[Wave] = (), y: Sequence[Wave] = (), gravity: float = 9.81
+) -> MovingSupport:
+    """A support whose angle (rad) and origin (m, in the world's axes) are sums of waves."""
+    columns = [np.array([*waves, Wave(0.0, 0.0)]).T for waves in (angle, x, y)]
+    fastest = max(float(np.abs(frequency).max()) for _, frequency, _ in columns)
+
+    def motion(time: Any) -> SupportMotion:
+        sums = []
+        for amplitude, frequency, phase in columns:
+            turns = np.multiply.outer(np.asarray(time, dtype=float), frequency) + phase
+            swing, slope = amplitude * np.sin(turns), amplitude * frequency * np.cos(turns)
+            sums.append((swing.sum(axis=-1), slope.sum(axis=-1), -(frequency**2 * swing).sum(axis=-1)))
+        (a, da, dda), (px, vx, ax), (py, vy, ay) = sums
+        return SupportMotion(angle=a, rate=da, acceleration=dda, x=px, y=py, vx=vx, vy=vy, ax=ax, ay=ay)
+
+    return MovingSupport(motion, 2.0 * math.pi / fastest, gravity)
