@@ -9,13 +9,14 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from .events import End
 from .support import PlanarState
 from .touchdown import Fall, MotionKind, next_touchdown
 
 if TYPE_CHECKING:
     from .engine import next_strike
     from .run import rock, standing
-    from .trajectory import Accumulation, End, Phase, RockingImpact, Trajectory
+    from .trajectory import Accumulation, Phase, RockingImpact, Trajectory
 
 __all__ = [
     "Accumulation",

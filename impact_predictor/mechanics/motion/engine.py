@@ -10,14 +10,12 @@ from typing import NamedTuple
 
 from ..impact.contacts import MINUS, OPEN, PLUS
 from ..types import TwoPointBody, Vector
-from .accumulation import Place
-from .equations import RockingBody, rocking_body, turned, two_points
-from .events import Event
-from .phases import FlightPhase, MotionPhase, PhaseEnd
+from .equations import rocking_body, turned, two_points
+from .events import End, Event
+from .phases import FlightPhase, MotionPhase, PhaseEnd, RockingProblem
 from .states import JAM, rest, state_of_one, states_of_both
-from .support import FeltSupport, FixedSupport, PlanarState
+from .support import FeltSupport, PlanarState
 from .touchdown import Fall, MotionKind
-from .trajectory import End
 
 _LOOK_AHEAD = 1e-6
 """Part of a swing after which the states that follow a rest are asked for: at its very end two states agree."""
@@ -46,29 +44,19 @@ class Strike(NamedTuple):
 
 
 class MotionEngine:
-    """A body on its support at `time` s, and the phase that is next; `limit` rad is where it overturns."""
+    """A body on its support at `time` s, and the phase that is next."""
 
     def __init__(
-        self,
-        body: RockingBody,
-        support: FeltSupport,
-        time: float,
-        until: float,
-        limit: float,
-        most_events: int,
-        most_steps: int,
-        tolerance: float,
-        waits: bool,
+        self, problem: RockingProblem, time: float, until: float, most_events: int, most_steps: int, waits: bool
     ) -> None:
         """Follow `most_events` events and `most_steps` steps at most; a rest on a moving support is the end, unless the
         engine `waits` until the body moves.
         """
-        self.body, self.support, self.tolerance, self.waits = body, support, tolerance, waits
-        self.fixed = isinstance(support, FixedSupport)
-        self.time, self.until, self.limit = time, until, limit
+        self.problem, self.body, self.support, self.fixed = problem, problem.body, problem.support, problem.fixed
+        self.time, self.until, self.waits = time, until, waits
         self.events, self.most = most_events, most_steps
-        weight = abs(support.gravity) or 1.0
-        self.swing, self.speed = math.sqrt(body.length / weight), math.sqrt(body.length * weight)
+        length, weight = problem.body.length, abs(problem.support.gravity) or 1.0
+        self.swing, self.speed = math.sqrt(length / weight), math.sqrt(length * weight)
         self.rests_from = 0.0
         """How long from now on a rest lasts anyway, in s."""
         self.still = 0
@@ -114,7 +102,7 @@ class MotionEngine:
 
     def fly(self, state: PlanarState, gaps: Vector) -> None:
         """No contact is closed; `gaps` in m."""
-        self.next = FlightPhase(self.body, self.support, self.time, state, gaps, self.tolerance)
+        self.next = FlightPhase(self.problem, self.time, state, gaps)
 
     def gaps(self, i: int, u: float) -> Vector:
         """The gaps of both contacts while contact i is closed."""
@@ -126,19 +114,7 @@ class MotionEngine:
         if states == (OPEN, OPEN):
             self.fly(self.body.state(i, u, w, z, s), self.gaps(i, u))
             return
-        self.next = self.contact_phase(states, self.time, (u, w, z, s))
-
-    def contact_phase(self, states: tuple[int, int], start: float, place: Place) -> MotionPhase:
-        """A phase in which the contacts have these states, from a place on."""
-        return MotionPhase(
-            body=self.body,
-            support=self.support,
-            states=states,
-            start=start,
-            place=place,
-            limit=self.limit,
-            tolerance=self.tolerance,
-        )
+        self.next = MotionPhase(self.problem, states, self.time, (u, w, z, s))
 
     def _follow_next(self) -> None:
         """Follow the next phase to its event, and find out what comes after it."""
@@ -157,8 +133,8 @@ class MotionEngine:
         self.still = 0 if self.time > before else self.still + 1
         if self.still > _STUCK:
             self.end = End.NO_SOLUTION
-        elif end.event in _ENDS:
-            self.end = _ENDS[end.event]
+        elif isinstance(end.event, End):
+            self.end = end.event
         elif isinstance(phase, FlightPhase):
             self._land(phase, end)
         else:
@@ -188,7 +164,7 @@ class MotionEngine:
         body, new = self.body, end.contact
         state, gap, together = phase.landing(end.at, new)
         u = body.seen_from(new, state)[0]
-        if abs(u) >= self.limit:
+        if abs(u) >= self.problem.limit:
             self.end = End.OVERTURNED
             return
         old = None
@@ -212,14 +188,6 @@ class MotionEngine:
         """The body stands on one contact, with both closed, and the other one strikes."""
         motion = MotionKind.SLIDING if s else MotionKind.TURNING
         self.strike = Strike(old=old, new=1 - old, state=self.body.state(old, 0.0, w, z, s), u=0.0, motion=motion)
-
-
-_ENDS = {
-    Event.TIME_IS_UP: End.TIME_UP,
-    Event.OVERTURNS: End.OVERTURNED,
-    Event.BALANCES: End.BALANCED,
-    Event.TAKES_TOO_LONG: End.TOO_MANY_EVENTS,
-}
 
 
 def next_strike(
@@ -248,17 +216,8 @@ def next_strike(
     alone = body.old is None and old is None
     if alone:  # the contact opposite to it is above it until it touches
         body = body._replace(old=body.new._replace(x=-body.new.x, y=-body.new.y))
-    engine = MotionEngine(
-        body=two_points(body) if alone else rocking_body(body),
-        support=support,
-        time=0.0,
-        until=duration,
-        limit=_OVERTURNED,
-        most_events=_MOST_EVENTS,
-        most_steps=_MOST_STEPS,
-        tolerance=tolerance,
-        waits=False,
-    )
+    problem = RockingProblem(two_points(body) if alone else rocking_body(body), support, _OVERTURNED, tolerance)
+    engine = MotionEngine(problem, 0.0, duration, _MOST_EVENTS, _MOST_STEPS, waits=False)
     if not math.isfinite(sum(state)):
         return None
     own_angle = math.remainder(state.angle + engine.body.lean, 2.0 * math.pi)
@@ -281,7 +240,7 @@ def _begin_measured(engine: MotionEngine, state: PlanarState, old: int | None, c
     body = engine.body
     if old is not None:
         u, w, z, s = body.seen_from(old, state)
-        if abs(u) >= engine.limit:
+        if abs(u) >= engine.problem.limit:
             engine.end = End.OVERTURNED
             return
         small = _SLIP_ROUNDING * (abs(state.vx) + abs(state.vy) + abs(state.omega) * body.length)

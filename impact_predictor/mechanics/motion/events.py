@@ -28,31 +28,44 @@ _BEYOND = 2.0
 
 
 class Event(IntEnum):
-    """What ends a phase."""
+    """What ends a phase of motion that goes on after it."""
 
     TOUCHES = 0
     """An open contact reaches the support."""
-    OVERTURNS = 1
-    STOPS = 2
+    STOPS = 1
     """The slip is zero."""
-    LIFTS = 3
+    LIFTS = 2
     """The support would have to pull at a contact (so a body leaves it where it might as well press on, Painleve)."""
-    SLIPS = 4
+    SLIPS = 3
     """A contact that stuck begins to slip along +t."""
-    SLIPS_BACK = 5
-    YIELDS = 6
+    SLIPS_BACK = 4
+    YIELDS = 5
     """A body that rested on both contacts begins to move."""
-    JAMS = 7
+    JAMS = 6
     """No finite reaction keeps the slipping contact on the support (Painleve)."""
-    TURNS_BACK = 8
+    TURNS_BACK = 7
     """The angular velocity is zero and changes its sign."""
-    BALANCES = 9
-    """At rest on one contact for ever."""
-    TIME_IS_UP = 10
-    TAKES_TOO_LONG = 11
-    """As many steps as are allowed came first."""
-    NEVER = 12
+    NEVER = 8
     """Nothing happens any more, or nothing within the horizon."""
+
+
+class End(IntEnum):
+    """Why a motion is followed no further."""
+
+    RESTS = 0
+    """At rest on both contacts of a fixed support, for ever."""
+    BALANCED = 1
+    """At rest on one contact of a fixed support, for ever."""
+    OVERTURNED = 2
+    """Turned too far to be carried by its two contacts; a disc has left its edges."""
+    TIME_UP = 3
+    """The duration is over; `phases` tell how the body moved then."""
+    TOO_MANY_EVENTS = 4
+    """As many events, or steps in all, as were allowed came first."""
+    NO_SOLUTION = 5
+    """No law has an answer to an impact, or numbers become too large or too small."""
+    INVALID_INPUT = 6
+    """A number is not finite or out of its range."""
 
 
 def first_descent(

@@ -11,29 +11,27 @@ from typing import Any, NamedTuple
 
 from ..impact.contacts import OPEN, PLUS, STICK
 from ..types import Vector
+from .accumulation import Place
 from .equations import RockingBody, turned
-from .events import Condition, Event, dip, fall, falling_root, may_fall, safe_step
+from .events import Condition, End, Event, dip, fall, falling_root, may_fall, safe_step
 from .integrate import GROWTH, NEAR, Instant, add_dense, middle_of, nudged, step, values_at
 from .pivot import Pivot, roll, turn
 from .support import FeltSupport, FixedSupport, FrameAcceleration, MovingSupport, PlanarState
 
-_FIRST_STEP = 0.9, 1.2
-"""Length of a first step over one contact and over both, in times that the motion needs to change."""
-_STEP_OF_FLIGHT = 0.25
-"""Longest step of a flight, in times that a gap needs to change."""
-_BEYOND = 1.05
+_FIRST_STEP, _STEP_OF_FLIGHT = 1.0, 0.25
+"""Length of a first step, and of the longest one in flight, in times that the motion needs to change."""
+_BEYOND = 1.1
 """A step goes as much farther than where its parabola ends the phase."""
-_BEYOND_FLIGHT = 1.1
 _LEAST = 0.1
 """But it is not shorter than this part of what it could be."""
 _SMALLEST = 1e-10
 """Relative to the first step. Where smaller steps are refused, no smooth motion goes on."""
-_PART_OF_PERIOD, _PART_OF_PERIOD_IN_FLIGHT = 0.125, 0.0625
+_PART_OF_PERIOD = 0.125
 """The longest step, in shortest periods of the support: none of its swings is stepped over."""
 _BORDER = 1e-12
 """A condition that starts below this part of the weight starts at its border."""
-_SHORTEST, _SHORTEST_FLIGHT = 1e-6, 1e-9
-"""What begins at its border and ends sooner than this ends then: times of the body's swing, longest steps."""
+_SHORTEST = 1e-9
+"""What begins at its border and ends sooner than this, in times of the body's swing, ends then."""
 _FINER = 0.01
 """Tolerance of dense output, relative to that of steps: it must meet an end that is known exactly."""
 _ROUNDING = 1e-14
@@ -50,16 +48,30 @@ _GAUSS = (
 """Gauss' quadrature of order 10 on 0..1: nodes and weights."""
 
 
+class RockingProblem(NamedTuple):
+    """A body on its support, where in rad it overturns, and the error allowed to a step, relative to what happens."""
+
+    body: RockingBody
+    support: FeltSupport
+    limit: float
+    tolerance: float
+
+    @property
+    def fixed(self) -> bool:
+        """Whether the support stands still."""
+        return isinstance(self.support, FixedSupport)
+
+
 class PhaseEnd(NamedTuple):
     """What ends a phase, at which contact, and when: `at.time` counts from the phase's start."""
 
-    event: Event
+    event: Event | End
     contact: int
     at: Instant
 
 
 class MotionPhase:
-    """Motion over closed contacts, of `states`, from (u, w, z, s) at `start` s on; it overturns at `limit` rad.
+    """Motion over closed contacts, of `states`, from (u, w, z, s) at `start` s on.
 
     The times of its instants count from its start, so that short hops keep their digits.
     """
@@ -70,19 +82,10 @@ class MotionPhase:
     shortest = 0.0
     """What begins at its border and fails within less than this (s) ends then."""
 
-    def __init__(
-        self,
-        body: RockingBody,
-        support: FeltSupport,
-        states: tuple[int, int],
-        start: float,
-        place: tuple[float, float, float, float],
-        limit: float,
-        tolerance: float,
-    ) -> None:
-        self.body, self.support, self.states, self.start = body, support, states, start
-        self.limit, self.tolerance = limit, tolerance
-        self.fixed = isinstance(support, FixedSupport)
+    def __init__(self, problem: RockingProblem, states: tuple[int, int], start: float, place: Place) -> None:
+        self.body, support, self.limit, self.tolerance = problem
+        self.support, self.states, self.start = support, states, start
+        self.fixed = problem.fixed
         self.felt = felt = support.felt(start)
         self.both = OPEN not in states
         self.contact = i = 1 if states[0] == OPEN else 0
@@ -93,8 +96,8 @@ class MotionPhase:
         """Whether it moves at all."""
         self.pivots = self.fixed and not self.both and self.state == STICK
         """Whether it turns about one point at rest: that is known in closed form."""
-        touches = (Event.TOUCHES, 1 - i), (Event.OVERTURNS, i)
-        self.events: tuple[tuple[Event, int], ...]
+        touches = (Event.TOUCHES, 1 - i), (End.OVERTURNED, i)
+        self.events: tuple[tuple[Event | End, int], ...]
         """What happens where a condition falls to zero, and to which contact."""
         if self.both:
             self.events = (Event.STOPS, i), (Event.LIFTS, 0), (Event.LIFTS, 1)
@@ -102,7 +105,7 @@ class MotionPhase:
             self.events = *touches, (Event.SLIPS, i), (Event.SLIPS_BACK, i)
         else:
             self.events = *touches, (Event.STOPS, i), (Event.LIFTS, i)
-        self.scale = body.length, max(abs(support.gravity), abs(felt[0]) + abs(felt[1]))
+        self.scale = self.body.length, max(abs(support.gravity), abs(felt[0]) + abs(felt[1]))
         self.instants = [Instant(0.0, *place, 0.0, 0.0)]
         """The ends of the steps."""
         if self.moves and not self.pivots:
@@ -143,11 +146,11 @@ class MotionPhase:
         if math.isnan(now.alpha + now.beta):
             return PhaseEnd(Event.JAMS, self.contact, now)
         before = self.conditions(now)
-        h = min(self._first_step(now, last), self._reach(now, before), self.longest)
+        h = min(self._first_step(now, last), self._reach(now, before), self.longest, last)
         smallest = _SMALLEST * h
         while now.time < last:
             if len(self.instants) > most:
-                return PhaseEnd(Event.TAKES_TOO_LONG, self.contact, now)
+                return PhaseEnd(End.TOO_MANY_EVENTS, self.contact, now)
             h = min(h, self.longest)
             left = last - now.time
             if h > left * (1.0 - 1e-9):
@@ -178,7 +181,7 @@ class MotionPhase:
             now, before = then, after
             h *= GROWTH[rows]
             h = min(h, max(self._reach(now, before), _LEAST * h))
-        return PhaseEnd(Event.TIME_IS_UP, self.contact, now)
+        return PhaseEnd(End.TIME_UP, self.contact, now)
 
     def rate(self, time: float, u: float, w: float, z: float, s: float) -> Vector:
         """Accelerations of the two coordinates."""
@@ -213,13 +216,13 @@ class MotionPhase:
 
     def _first_step(self, now: Instant, last: float) -> float:
         """Length of the first step; sets the longest and the shortest one, too."""
-        felt, length = self.felt, self.body.length
+        felt, length, period = self.felt, self.body.length, self.support.period
         weight = math.hypot(felt[0], felt[1]) + length * (abs(felt[3]) + felt[2] * felt[2])
         swing = math.sqrt(length / weight) if weight > 0.0 else math.inf
         self.border = _BORDER * length / (swing * swing)
-        self.longest = _PART_OF_PERIOD * self.support.period
-        self.shortest = _SHORTEST * min(swing, self.support.period)
-        return _FIRST_STEP[self.both] / (abs(now.w) + math.sqrt(abs(now.alpha)) + 1.0 / swing)
+        self.longest, self.shortest = _PART_OF_PERIOD * period, _SHORTEST * min(swing, period, last)
+        pace = abs(now.w) + math.sqrt(abs(now.alpha)) + 1.0 / swing
+        return _FIRST_STEP / pace if pace > 0.0 else last
 
     def _reach(self, now: Instant, conditions: list[Condition]) -> float:
         """A little more than the time after which the phase might end, by the parabola of the instant."""
@@ -252,7 +255,7 @@ class MotionPhase:
         contact, side = self.contact, self.side
         time, u, w, _, _, _, _ = self.instants[0]
         pivot = self._pivot(u, w)
-        event = pivot.event
+        event: Event | End = pivot.event
         if event is Event.TURNS_BACK and u == 0.0:
             # What rises from both contacts comes back as it went, with the same reactions at every angle.
             event, contact, time, w = Event.TOUCHES, 1 - contact, 2.0 * pivot.time, -w
@@ -263,13 +266,13 @@ class MotionPhase:
                 event = pivot.event
             time, u, w = time + pivot.time, u + pivot.turned, pivot.omega
             if event is Event.NEVER or event is Event.TURNS_BACK:
-                event, time = Event.BALANCES, math.inf if w else time
+                event, time = End.BALANCED, math.inf if w else time
             elif event is Event.TOUCHES and pivot.direction * side < 0.0:
                 contact, u = 1 - contact, 0.0
             elif event is Event.TOUCHES:
-                event, u = Event.OVERTURNS, side * self.limit
+                event, u = End.OVERTURNED, side * self.limit
         if not time <= last:  # where it is then, its dense output finds
-            event, contact, time, u = Event.TIME_IS_UP, self.contact, last, math.nan
+            event, contact, time, u = End.TIME_UP, self.contact, last, math.nan
         self.instants.append(self.instants[0]._replace(time=time, u=u, w=w))
         return PhaseEnd(event, contact, self.instants[-1])
 
@@ -288,17 +291,15 @@ class FlightPhase(MotionPhase):
     These count from the start, so that the gap of a contact that has just left keeps its digits, too.
     """
 
-    def __init__(
-        self, body: RockingBody, support: FeltSupport, start: float, state: PlanarState, gaps: Vector, tolerance: float
-    ) -> None:
+    def __init__(self, problem: RockingProblem, start: float, state: PlanarState, gaps: Vector) -> None:
         self.begin, self.gaps = state, gaps
         self._mark = 0.0, 0.0
         """A time and the angle turned until then."""
-        super().__init__(body, support, (OPEN, OPEN), start, (0.0, state.vx, 0.0, state.vy), math.inf, tolerance)
+        super().__init__(problem, (OPEN, OPEN), start, (0.0, state.vx, 0.0, state.vy))
         self.contact = 0
         self.events = (Event.TOUCHES, 0), (Event.TOUCHES, 1)
-        if body.rolls:
-            self.events = *self.events, (Event.OVERTURNS, 0)
+        if self.body.rolls:
+            self.events = *self.events, (End.OVERTURNED, 0)
         self.scale = 1.0, self.scale[1]
         self.weight = math.hypot(self.felt[0], self.felt[1])
 
@@ -360,15 +361,14 @@ class FlightPhase(MotionPhase):
         super()._pass(then)
 
     def _first_step(self, now: Instant, last: float) -> float:
+        super()._first_step(now, last)
         pace = abs(self.begin.omega) + math.sqrt(self.weight / self.body.length)
-        first = _STEP_OF_FLIGHT / pace if pace > 0.0 else math.inf
-        self.longest = min(first, _PART_OF_PERIOD_IN_FLIGHT * self.support.period, last)
-        self.shortest = _SHORTEST_FLIGHT * self.longest
+        self.longest = min(0.5 * self.longest, _STEP_OF_FLIGHT / pace if pace > 0.0 else last)
         return self.longest
 
     def _reach(self, now: Instant, conditions: list[Condition]) -> float:
         # Under the weight at the start.
-        return _BEYOND_FLIGHT * min(safe_step(max(0.0, gap), rate, self.weight) for gap, rate in conditions)
+        return _BEYOND * min(safe_step(max(0.0, gap), rate, self.weight) for gap, rate in conditions)
 
 
 class _Crossing:

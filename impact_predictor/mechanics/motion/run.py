@@ -10,15 +10,19 @@ from ..types import Flag, Twist, TwoPointBody, Validity
 from .accumulation import FollowedImpact, ImpactSequence, Limit
 from .engine import MotionEngine, Strike
 from .equations import rocking_body
+from .events import End
 from .integrate import Instant
+from .phases import MotionPhase, RockingProblem
 from .support import FixedSupport, PlanarState, Support
 from .touchdown import MotionKind
-from .trajectory import Accumulation, End, RockingImpact, Trajectory, letters
+from .trajectory import Accumulation, RockingImpact, Trajectory, letters
 
 _SPEED_ROUNDING = 1e-15
 """Part of a body's speeds that is rounding in the normal velocity at a contact."""
+_BOUNCE = 1e-12
+"""A body thrown up more slowly than this part of its natural speed has stopped bouncing."""
 _QUIET = 1e-9
-"""A contact that bounces more slowly than this part of the body's natural speed has stopped bouncing."""
+"""So has one whose contacts both move more slowly than this part of it, as bouncing within bouncing does."""
 _NOTHING = 1e-100
 """Smaller numbers of a state are none: their products would be no numbers."""
 _ACCUMULATION = 1e-12, 1e-11
@@ -79,17 +83,8 @@ def rock(
     number_of(law)
     if not _is_valid(body, start, duration, start_time, overturned, tolerance):
         return Trajectory(body=body, support=support, law=law, start=start, time=start_time, end=End.INVALID_INPUT)
-    engine = MotionEngine(
-        body=rocking_body(body),
-        support=support,
-        time=start_time,
-        until=start_time + duration,
-        limit=overturned,
-        most_events=max_events,
-        most_steps=max_events,
-        tolerance=tolerance,
-        waits=True,
-    )
+    problem = RockingProblem(rocking_body(body), support, overturned, tolerance)
+    engine = MotionEngine(problem, start_time, start_time + duration, max_events, max_events, waits=True)
     return _RockingMotion(engine, body, support, law).follow(start)
 
 
@@ -162,7 +157,7 @@ class _RockingMotion:
         u, _, z, _ = body.seen_from(first, state)
         if len(closed) == 2:
             u = 0.0
-        if abs(u) >= engine.limit:
+        if abs(u) >= engine.problem.limit:
             engine.end = End.OVERTURNED
             return
         place = body.state(first, u, 0.0, z, 0.0)
@@ -207,13 +202,13 @@ class _RockingMotion:
         least = STAYS * approach + (_SPEED_ROUNDING * size if body.rolls else 0.0)
         rates = [body.gap_rate(i, after) for i in _BOTH]
         closed = [i for i in touching if rates[i] <= least]
-        flat = abs(body.gap_of_other(new, u)[0]) <= _QUIET * _QUIET * body.length
-        quiet = [i for i in _BOTH if abs(rates[i]) <= _QUIET * engine.speed and (i in touching or flat)]
+        flat = any(body.restitution) and abs(body.gap_of_other(new, u)[0]) <= _QUIET * _QUIET * body.length
+        quiet = flat and max(map(abs, rates)) <= _QUIET * engine.speed
         i = closed[-1] if closed else new
         _, w, z, s = body.seen_from(i, after)
         if len(closed) < len(touching):
-            if any(body.restitution) and (len(quiet) == 2 or (quiet == touching and not closed)):
-                self._quieten(quiet, u, w, z, s)
+            if quiet or (not closed and max(rates[i] for i in touching) <= _BOUNCE * engine.speed):
+                self._quieten([0, 1] if quiet else touching, _QUIET if quiet else _BOUNCE, u, w, z, s)
                 return
             kind = -1 if old is None else old, new, sum(1 << i for i in touching if i not in closed)
             limit = self.sequence.add(FollowedImpact(kind=kind, since=since, place=(u, w, z, s)))
@@ -249,14 +244,14 @@ class _RockingMotion:
         weight = abs(felt[0]) + abs(felt[1]) + self.body.length * (after.omega**2 + abs(felt[3]))
         return gap + (rate - 4.0 * weight * span) * span > 0.0
 
-    def _quieten(self, contacts: list[int], u: float, w: float, z: float, s: float) -> None:
+    def _quieten(self, contacts: list[int], part: float, u: float, w: float, z: float, s: float) -> None:
         """Contacts that hardly bounce any more are closed from now on: their hops may have no pattern to be summed."""
         engine, impacts = self.engine, self.sequence.impacts + 1
         if len(contacts) == 2:
             u = w = 0.0
-        engine.settle(contacts[0], u, w, z, 0.0 if abs(s) <= _QUIET * engine.speed else s)
-        error = 2.0 * _QUIET * engine.swing / max(0.01, 1.0 - max(self.body.restitution))
-        self._add_accumulation(error, tuple(contacts), impacts)
+        engine.settle(contacts[0], u, w, z, 0.0 if abs(s) <= part * engine.speed else s)
+        error = 2.0 * part * engine.swing / max(0.01, 1.0 - max(self.body.restitution))
+        self._add_accumulation(error, tuple(sorted(contacts)), impacts)
 
     def _accumulate(self, limit: Limit, after: PlanarState, new: int) -> None:
         """Pass from an impact to the end of all that follow it."""
@@ -268,7 +263,7 @@ class _RockingMotion:
             begin = 0.0, 0.0, begin[2], begin[3]
         engine.settle(new, u, w, z, s)
         assert engine.next is not None
-        summed = engine.contact_phase(engine.next.states, start, begin)
+        summed = MotionPhase(engine.problem, engine.next.states, start, begin)
         summed.close(Instant(time=engine.time - start, u=u, w=w, z=z, s=s, alpha=0.0, beta=0.0))
         engine.phases.append(summed)
         self.counted = len(engine.phases)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..impact.contacts import MINUS, OPEN, PLUS, STICK
 from .equations import RockingBody
-from .events import Event, may_fall
+from .events import End, Event, may_fall
 from .phases import MotionPhase, PhaseEnd
 from .support import FrameAcceleration, MovingSupport
 
@@ -105,7 +105,7 @@ def rest(phase: MotionPhase, after: float, last: float, most: int) -> PhaseEnd:
             return PhaseEnd(Event.YIELDS, phase.contact, phase.instants[-1])
         time, block = float(times[-1]), min(2 * block, _LAST_BLOCK)
     phase.instants.append(here._replace(time=max(time, here.time)))
-    event = Event.TIME_IS_UP if time >= last else Event.TAKES_TOO_LONG
+    event = End.TIME_UP if time >= last else End.TOO_MANY_EVENTS
     return PhaseEnd(event, phase.contact, phase.instants[-1])
 
 

@@ -29,8 +29,6 @@ _PART = 1.0 / 24.0
 """Length of one polynomial, in shortest periods."""
 _MAX_PARTS = 4096
 """Polynomials that are kept."""
-_FIT = 1e-12
-"""Where the last two terms of a polynomial are above this part of the first ones the motion is evaluated itself."""
 
 
 class PlanarState(NamedTuple):
@@ -100,8 +98,7 @@ class FixedSupport(NamedTuple):
 class FeltPolynomials:
     """What is felt, from polynomials in time: a motion asks for it a hundred times, and a sum of waves takes long.
 
-    Each has a `length` in s and goes through the exact values at `nodes` Chebyshev nodes of it. Where its last terms
-    are not below `fit`, relative, the exact value is taken instead. `exactly` gives the exact values at some times.
+    Each has a `length` in s and goes through the values that `exactly` gives at `nodes` Chebyshev nodes of it.
     """
 
     period = math.inf
@@ -111,10 +108,9 @@ class FeltPolynomials:
         exactly: Callable[[list[float]], Sequence[Sequence[float]]],
         length: float,
         nodes: int,
-        fit: float = math.inf,
         gravity: float = 9.81,
     ) -> None:
-        self._exactly, self._length, self._fit, self._nodes = exactly, length, fit, _nodes(nodes)
+        self._exactly, self._length, self._nodes = exactly, length, _nodes(nodes)
         self.gravity = gravity
         self._parts: dict[int, list[tuple[float, Sequence[float]]]] = {}
 
@@ -127,9 +123,6 @@ class FeltPolynomials:
             if len(self._parts) >= _MAX_PARTS:
                 self._parts.clear()
             part = self._parts[number] = self._polynomials(number)
-        if not part:
-            ((x, y, w, a),) = self._exactly([time])
-            return x, y, w, a
         s = 2.0 * (place - number) - 1.0
         x = y = w = a = 0.0
         for node, (cx, cy, cw, ca) in part:
@@ -141,21 +134,14 @@ class FeltPolynomials:
         return x, y, w, a
 
     def _polynomials(self, number: int) -> list[tuple[float, Sequence[float]]]:
-        """Nodes and divided differences of one part (Newton's form), the highest first; none where they do not fit."""
+        """Nodes and divided differences of one part (Newton's form), the highest first."""
         nodes, length = self._nodes, self._length
-        rows = self._exactly([(number + 0.5 + 0.5 * node) * length for node in nodes])
-        x, y, rate, turning = (max(map(abs, column)) for column in zip(*rows, strict=True))
-        sizes = (x + y, x + y, rate, rate / length + turning)
-        differences = list(rows)
+        rows = list(self._exactly([(number + 0.5 + 0.5 * node) * length for node in nodes]))
         for order in range(1, len(nodes)):
             for k in range(len(nodes) - 1, order - 1, -1):
                 gap = nodes[k] - nodes[k - order]
-                differences[k] = [(b - a) / gap for a, b in zip(differences[k - 1], differences[k], strict=True)]
-        share = 0.5 ** (len(nodes) - 2)  # of a highest power in the polynomial of Chebyshev that begins with it
-        for one, other, size in zip(differences[-1], differences[-2], sizes, strict=True):
-            if share * (abs(one) + 2.0 * abs(other)) > self._fit * size:
-                return []
-        return list(zip(nodes, differences, strict=True))[::-1]
+                rows[k] = [(b - a) / gap for a, b in zip(rows[k - 1], rows[k], strict=True)]
+        return list(zip(nodes, rows, strict=True))[::-1]
 
 
 @cache
@@ -191,7 +177,7 @@ class MovingSupport:
         if not 0.0 < period < math.inf:
             raise InputError(f"period of the moving support is {period}; give a finite number of seconds above 0")
         self.function, self.period, self.gravity, self.origin = function, period, gravity, origin
-        self.felt = FeltPolynomials(self._rows, _PART * period, _NODES, _FIT).felt
+        self.felt = FeltPolynomials(self._rows, _PART * period, _NODES).felt
 
     def at(self, x: float, y: float) -> MovingSupport:
         """The same support, its frame's origin moved by (x, y) in m along its axes: to where a body stands."""

@@ -3,34 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import IntEnum
 from typing import Any, NamedTuple
 
 from ..types import Outcome, TwoPointBody
+from .events import End
 from .phases import MotionPhase
 from .support import PlanarState, Support, in_world
 
 _STATES = "OS+-"
 """Letters of the contact states: open, sticks, slips along +t and along -t."""
-
-
-class End(IntEnum):
-    """Why a motion is followed no further."""
-
-    RESTS = 0
-    """At rest on both contacts of a fixed support, for ever."""
-    BALANCED = 1
-    """At rest on one contact of a fixed support, for ever."""
-    OVERTURNED = 2
-    """Turned too far to be carried by its two contacts; a disc has left its edges."""
-    TIME_UP = 3
-    """The duration is over; `phases` tell how the body moved then."""
-    TOO_MANY_EVENTS = 4
-    """As many events, or steps in all, as were allowed came first."""
-    NO_SOLUTION = 5
-    """No law has an answer to an impact, or numbers become too large or too small."""
-    INVALID_INPUT = 6
-    """A number is not finite or out of its range."""
 
 
 class RockingImpact(NamedTuple):
