@@ -27,11 +27,7 @@ class SqliteFile:
     """A file of one database; `flaw` is the damage that is known before messages are read."""
 
     def __init__(self, path: Path) -> None:
-        """Find the topics of a file.
-
-        Raises:
-            OSError: it cannot be read.
-        """
+        """Find the topics of a file; OSError where it cannot be read."""
         self.path, self._storage = path, path
         self.size = path.stat().st_size
         with path.open("rb") as file:

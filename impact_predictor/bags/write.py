@@ -83,11 +83,7 @@ class BagWriter:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
     ) -> None:
-        """End the bag and, unless an exception passes, give it its name.
-
-        Raises:
-            InputError: the disk does not take it.
-        """
+        """End the bag and, unless an exception passes, give it its name; InputError where the disk does not take it."""
         if kind is not None:
             # What was written so far becomes a readable bag; the exception that passes matters more than a second one.
             with suppress(Exception):
@@ -135,11 +131,7 @@ def left_of(path: str | os.PathLike[str]) -> Path | None:
 
 
 def _check_replaceable(path: Path, is_file: bool) -> None:
-    """Refuse to replace anything that this module did not write.
-
-    Raises:
-        InputError: something else has the name.
-    """
+    """Refuse to replace anything that this module did not write; InputError where something else has the name."""
     if not os.path.lexists(path):
         return
     if path.is_dir():

@@ -184,11 +184,7 @@ def check_output(file: Path) -> None:
 
 
 def write(file: Path, modes: ModeMap) -> None:
-    """Write a map in the format of the file's name.
-
-    Raises:
-        InputError: the file cannot be written.
-    """
+    """Write a map in the format of the file's name; InputError where the file cannot be written."""
     if file.suffix.lower() == ".csv":
         from ..report.map import write_csv
 

@@ -78,11 +78,7 @@ def edge_options(default: float | None) -> Callable[[F], F]:
 
 
 def edges_of(gamma: float, gamma_new: float | None) -> tuple[float, float]:
-    """The central angles of both edges in rad.
-
-    Raises:
-        InputError: no cylinder lies on such edges.
-    """
+    """The central angles of both edges in rad; InputError where no cylinder lies on such edges."""
     ahead = gamma if gamma_new is None else gamma_new
     if not 0.0 < gamma + ahead < 180.0:
         raise InputError(f"--gamma and --gamma-new have the sum {gamma + ahead:g}; give degrees between 0 and 180")

@@ -63,13 +63,13 @@ class ReplayReport:
         self.number = 0
         self.replayed = 0
         self._bags, self._wanted = len(bags), wanted
-        self._failed = self._damaged = False
+        self._statuses: set[int] = set()
         # What is said of many bags is said once.
         self._notes: Counter[str] = Counter()
         self._picture: ReplayPicture | None = None
         self._answers: list[dict[str, Any]] | None = None
         self._table: TouchdownTable | None = None
-        self._baseline = None if wanted.baseline is None else Baseline(wanted.baseline, bags, wanted)
+        self._earlier = {} if wanted.baseline is None else earlier_runs(wanted.baseline, bags)
         if wanted.figure is not None:
             from ..report.figures import ReplayPicture
 
@@ -90,22 +90,18 @@ class ReplayReport:
             self._together = Tally()
 
     def take(self, outcome: BagOutcome, output: Path | None) -> None:
-        """Say what became of a bag.
-
-        Raises:
-            InputError: what is made of the bags cannot be written.
-        """
+        """Say what became of a bag; InputError where what is made of the bags cannot be written."""
         result, answer = outcome.result, outcome.answer
         if result is None:
             click.echo(f"error: {outcome.error}", err=True)
-            self._failed = True
+            self._statuses.add(FAILED)
         else:
             self._say(result)
             self.replayed += 1
             if output is not None and self._bags <= MANY:
                 self._say_file("Predictions", output)
-            if self._baseline is not None:
-                answer |= self._baseline.judge(result)
+            if self._earlier:
+                answer |= self._judge(result)
         if self._wanted.as_json:
             # A list is printed as it grows, so that thousands of bags need no memory.
             before = ("[" if not self.number else ", ") if self._bags > 1 else ""
@@ -146,11 +142,7 @@ class ReplayReport:
     @property
     def status(self) -> int:
         """The exit status."""
-        if self._failed:
-            return FAILED
-        if self._damaged:
-            return DAMAGED
-        return CHANGED if self._baseline is not None and self._baseline.has_changed else 0
+        return next((one for one in (FAILED, DAMAGED, CHANGED) if one in self._statuses), 0)
 
     def _say_file(self, what: str, path: str | Path) -> None:
         """Say where something was written."""
@@ -166,10 +158,10 @@ class ReplayReport:
                 self._notes[without_bag(note, result.bag)] += 1
         if result.unpredictable:
             click.echo(f"error: {result.bag}: {result.unpredictable}", err=True)
-            self._failed = True
+            self._statuses.add(FAILED)
         if result.damaged:
             click.echo(f"warning: {result.damaged}", err=True)
-            self._damaged = True
+            self._statuses.add(DAMAGED)
         if self._picture is not None:
             self._picture.add(result)
         if self._wanted.as_json:
@@ -187,52 +179,48 @@ class ReplayReport:
 
         print_replay(Console(), result, self._wanted.every)
 
-
-class Baseline:
-    """An earlier run of some bags; it is read at once, because the output may take its place."""
-
-    def __init__(self, path: str, bags: Sequence[str], wanted: Wanted) -> None:
-        """Read it.
-
-        Raises:
-            InputError: it cannot be read, is the run of one bag where several are given, or lacks the only one.
-        """
-        from ..bags.find import names_of
-        from ..report.baseline import Earlier
-
-        self.has_changed = False
-        self._path, self._wanted = path, wanted
-        self._runs: dict[str, Sequence[TouchdownRow]] = {}
-        self._missing: dict[str, InputError] = {}
-        earlier = Earlier(path)
-        earlier.check_of_several(len(bags))
-        for bag, name in zip(bags, names_of(bags), strict=True):
-            try:
-                self._runs[bag] = earlier.touchdowns_of(bag, name)
-            except InputError as flaw:  # noqa: PERF203 (each bag is missed by itself)
-                self._missing[bag] = flaw
-        if len(bags) == 1 and self._missing:
-            raise next(iter(self._missing.values()))
-
-    def judge(self, result: Result) -> dict[str, Any]:
-        """Print what has changed (the first changes, or every one), or give it as JSON.
+    def _judge(self, result: Result) -> dict[str, Any]:
+        """Print what has changed against the baseline, or give it as JSON.
 
         A bag that the earlier run does not have is a change: nothing vouches for it.
         """
         from ..report.baseline import compare_runs, comparison_as_json, print_changes
         from ..report.touchdowns import rows_of
 
-        if result.bag in self._missing:
-            self.has_changed = True
-            flaw = str(self._missing[result.bag])
-            click.echo(f"note: {flaw}", err=True)
-            return {"baseline": {"file": self._path, "error": flaw}} if self._wanted.as_json else {}
-        limits = self._wanted.baseline_time, self._wanted.baseline_error
-        compared = compare_runs(self._runs[result.bag], rows_of(result.settled), *limits)
-        self.has_changed |= bool(compared.changes)
-        if self._wanted.as_json:
-            return {"baseline": comparison_as_json(compared, self._path)}
+        wanted, earlier = self._wanted, self._earlier[result.bag]
+        assert wanted.baseline is not None
+        if isinstance(earlier, InputError):
+            self._statuses.add(CHANGED)
+            click.echo(f"note: {earlier}", err=True)
+            return {"baseline": {"file": wanted.baseline, "error": str(earlier)}} if wanted.as_json else {}
+        compared = compare_runs(earlier, rows_of(result.settled), wanted.baseline_time, wanted.baseline_error)
+        if compared.changes:
+            self._statuses.add(CHANGED)
+        if wanted.as_json:
+            return {"baseline": comparison_as_json(compared, wanted.baseline)}
         from rich.console import Console
 
-        print_changes(Console(), compared, self._path, self._wanted.every)
+        print_changes(Console(), compared, wanted.baseline, wanted.every)
         return {}
+
+
+def earlier_runs(path: str, bags: Sequence[str]) -> dict[str, Sequence[TouchdownRow] | InputError]:
+    """An earlier run of some bags, read at once, because the output may take its place; why one is missing in it.
+
+    Raises:
+        InputError: it cannot be read, is the run of one bag where several are given, or lacks the only one.
+    """
+    from ..bags.find import names_of
+    from ..report.baseline import Earlier
+
+    runs: dict[str, Sequence[TouchdownRow] | InputError] = {}
+    earlier = Earlier(path)
+    earlier.check_of_several(len(bags))
+    for bag, name in zip(bags, names_of(bags), strict=True):
+        try:
+            runs[bag] = earlier.touchdowns_of(bag, name)
+        except InputError as flaw:  # noqa: PERF203 (each bag is missed by itself)
+            if len(bags) == 1:
+                raise
+            runs[bag] = flaw
+    return runs

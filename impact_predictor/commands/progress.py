@@ -94,20 +94,14 @@ def compiling_is_said() -> Iterator[None]:
 
 
 def say_unfinished(outputs: Sequence[Path | None], scheduler: str | None = None) -> None:
-    """Name the bags that are left unfinished of some outputs, where their writers were stopped.
-
-    The workers of a scheduler are not: they write the bags to the end that they have begun.
-    """
-    files = [output for output in outputs if output is not None]
-    if not files:
-        return
-    if scheduler is not None:
-        click.echo("note: the workers of the scheduler finish the bags that they have begun, and write them", err=True)
-        return
+    """Name the bags that stopped writers left unfinished; the workers of a scheduler write theirs to the end."""
     from ..bags.write import left_of
 
-    left = [str(bag) for bag in map(left_of, files) if bag is not None]
-    if left:
+    files = [output for output in outputs if output is not None]
+    left = [str(bag) for bag in map(left_of, files) if bag is not None] if scheduler is None else []
+    if files and scheduler is not None:
+        click.echo("note: the workers of the scheduler finish the bags that they have begun, and write them", err=True)
+    elif left:
         stay, them = ("stays as a bag in", "it") if len(left) == 1 else ("stays as bags in", "them")
         click.echo(
             f"note: what was written until Ctrl-C {stay} {listed(left, NAMED)}, until the next run with this "

@@ -63,7 +63,11 @@ class Products(NamedTuple):
         """
         if self.rate is not None and self.output is None:
             raise click.UsageError("--rate is that of a bag: give -o BAG too")
-        refuse({"rate": self.samples_a_second}, lambda value: 0.0 < value <= 1e6, "a number above 0, up to 1e6")
+        refuse(
+            {"rate": RATE if self.rate is None else self.rate},
+            lambda value: 0.0 < value <= 1e6,
+            "a number above 0, up to 1e6",
+        )
         if self.draws:
             from ..report.files import named
             from ..report.plot import FILM, PICTURE
@@ -71,11 +75,6 @@ class Products(NamedTuple):
             for path, what in ((self.plot, PICTURE), (self.animate, FILM)):
                 if path is not None:
                     named(path, *what)
-
-    @property
-    def samples_a_second(self) -> float:
-        """The rate of the bag."""
-        return RATE if self.rate is None else self.rate
 
     @property
     def draws(self) -> bool:
@@ -87,7 +86,7 @@ class Products(NamedTuple):
         from ..scenarios.record import write_record
 
         assert self.output is not None
-        rate = self.samples_a_second
+        rate = RATE if self.rate is None else self.rate
         with writing(self.output, total=sum(actor.samples(rate) for actor in actors)) as bar:
             write_record(self.output, actors, rate, bar)
 

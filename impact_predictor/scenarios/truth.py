@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import cos, hypot, inf, sin
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from ..mechanics.impact import approach
 from ..mechanics.types import Mode, Outcome, TwoPointBody
@@ -23,10 +23,7 @@ TRUTH_TOPIC: Final = "/truth/impacts"
 ONSET_TOPIC: Final = "/truth/onsets"
 
 _VECTORS: Final = ("linear_before", "angular_before", "linear_after", "angular_after")
-_KEYS: Final = (
-    *("stamp", "body", "mode", "old", "new", "approach", "half_distance", "energy_lost", "border"),
-    *(f"{name}.{axis}" for name in _VECTORS for axis in "xyz"),
-)
+_NUMBERS: Final = ("approach", "half_distance", "energy_lost", "border")
 
 
 class TrueImpact(NamedTuple):
@@ -125,16 +122,11 @@ def border_of(outcome: Outcome) -> float:
 
 def encode_true_impact(impact: TrueImpact, frame_id: str) -> bytes:
     """A diagnostic_msgs/DiagnosticArray stamped with the impact; every number reads back as the same double."""
-    values = [
-        str(impact.stamp),
-        impact.body,
-        impact.mode.name,
-        " ".join(map(str, impact.old)),
-        " ".join(map(str, impact.new)),
-        *[repr(float(part)) for part in (impact.approach, impact.half_distance, impact.energy_lost, impact.border)],
-        *[repr(float(part)) for name in _VECTORS for part in getattr(impact, name)],
-    ]
-    named = dict(zip(_KEYS, values, strict=True))
+    named = {"stamp": str(impact.stamp), "body": impact.body, "mode": impact.mode.name}
+    named |= {name: " ".join(map(str, getattr(impact, name))) for name in ("old", "new")}
+    named |= {name: repr(float(getattr(impact, name))) for name in _NUMBERS}
+    for name in _VECTORS:
+        named |= {f"{name}.{axis}": repr(float(part)) for axis, part in zip("xyz", getattr(impact, name), strict=True)}
     status = diagnostic_status(OK, "truth/impact", impact.mode.name, impact.body, pairs_of(named))
     return diagnostic_array(impact.stamp, frame_id, [status])
 
@@ -152,13 +144,12 @@ def decode_true_impacts(data: bytes) -> list[TrueImpact]:
 
 
 def _impact(values: dict[str, str]) -> TrueImpact:
-    old, new = (tuple(map(int, values[name].split())) for name in ("old", "new"))
-    numbers = {name: float(values[name]) for name in ("approach", "half_distance", "energy_lost")}
-    vectors = {name: tuple(float(values[f"{name}.{axis}"]) for axis in "xyz") for name in _VECTORS}
+    contacts = {name: tuple(map(int, values[name].split())) for name in ("old", "new")}
     # Bags of older versions have no border.
-    border = float(values.get("border", inf))
-    stamp, body, mode = int(values["stamp"]), values["body"], Mode[values["mode"]]
-    return TrueImpact(stamp=stamp, body=body, mode=mode, old=old, new=new, border=border, **numbers, **vectors)  # type: ignore[arg-type]
+    numbers = {name: float({"border": "inf", **values}[name]) for name in _NUMBERS}
+    vectors = {name: tuple(float(values[f"{name}.{axis}"]) for axis in "xyz") for name in _VECTORS}
+    told: Any = {**contacts, **numbers, **vectors}
+    return TrueImpact(stamp=int(values["stamp"]), body=values["body"], mode=Mode[values["mode"]], **told)
 
 
 def encode_true_onset(onset: TrueOnset, frame_id: str) -> bytes:

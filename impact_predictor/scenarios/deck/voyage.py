@@ -137,7 +137,12 @@ def sail(
         support = supports.setdefault(unit.foot, deck.at(*unit.foot))
         followed.append(Followed(unit, support, seen(unit, motion_of(unit, support, duration, unit.scene.law))))
     if bag is None:
-        _pass(followed, tell)
+        done = 0.0
+        for one in followed:
+            for span in one.spans():
+                if tell is not None:
+                    tell(round(done + span.time))
+            done += one.time
     else:
         write_messages(bag, deck_messages(followed, deck, "" in scenes, duration, sensors, truths), tell)
     return Voyage(deck, tuple(followed), duration, rolled, lateral)
@@ -175,12 +180,3 @@ def total(scenes: Mapping[str, Scene], duration: float, bag: bool, sensors: Sens
     """What `tell` of `sail` counts to, for a duration that may be."""
     check_duration(duration)
     return messages_in(scenes, duration, sensors) if bag else round(duration * len(scenes))
-
-
-def _pass(followed: list[Followed], tell: Callable[[int], None] | None) -> None:
-    done = 0.0
-    for one in followed:
-        for span in one.spans():
-            if tell is not None:
-                tell(round(done + span.time))
-        done += one.time
