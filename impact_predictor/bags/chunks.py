@@ -199,7 +199,7 @@ class ChunkedFile(ABC):
         return messages
 
     def _look_into_chunks(self) -> None:
-        """Take what only the chunks themselves tell of their channels; Flaw where a chunk is damaged."""
+        """Take what only the chunks themselves tell of their channels; raises the Flaw of a damaged one."""
         for number, chunk in enumerate(self._chunks):
             if chunk.channels is not None and chunk.channels <= self._channels.keys():
                 continue

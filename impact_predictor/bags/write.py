@@ -93,18 +93,15 @@ class BagWriter:
             return
         try:
             self._writer.close()
-            self._publish()
+            if self._is_file:
+                (self._staged / _FILES[0]).replace(self.path)
+            else:
+                if self.path.exists():
+                    self.path.rename(self.partial / _REPLACED)
+                self._staged.rename(self.path)
+            _remove_partial(self.partial)
         except OSError as failure:
             raise self._unwritable(failure) from failure
-
-    def _publish(self) -> None:
-        if self._is_file:
-            (self._staged / _FILES[0]).replace(self.path)
-        else:
-            if self.path.exists():
-                self.path.rename(self.partial / _REPLACED)
-            self._staged.rename(self.path)
-        _remove_partial(self.partial)
 
     def _unwritable(self, error: OSError) -> InputError:
         kept = f"; what was written stays in {self._staged}" if self._staged.exists() else ""
