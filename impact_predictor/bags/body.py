@@ -8,7 +8,7 @@ from math import dist, inf
 from typing import Final, NamedTuple
 
 from ..prediction.scene import Scene, Walking
-from ..prediction.types import Geometry, Prediction, Sample, Score, Status, Vector3
+from ..prediction.types import Geometry, Prediction, Sample, Score, Status
 from ..prediction.vectors import add, axes_of, dot, to_world
 from ..ros.messages import OUTPUTS
 from ..stamps import NANOSECONDS
@@ -96,7 +96,7 @@ class BodyRecord:
 
     `seen` is the last sample, `first` and `last` are those that were accepted. Of the contact points, `geometry` is
     what was told last, `told` how often, and `moved` how often elsewhere than first. `nearest` is how near (m) a foot
-    came to the ground, and `nearest_in_world` how near it were if the points were places in the world.
+    came to the ground.
     """
 
     def __init__(self, body: str, scene: Scene, write: Write | None) -> None:
@@ -107,7 +107,7 @@ class BodyRecord:
         self.last: Sample | None = None
         self.geometry: Geometry | None = None
         self.told = self.moved = 0
-        self.nearest = self.nearest_in_world = inf
+        self.nearest = inf
         self._first_geometry: Geometry | None = None
         self._write = write
         prefix = f"{NODE}/{body}/" if body else f"{NODE}/"
@@ -143,7 +143,6 @@ class BodyRecord:
         first = self._first_geometry = self._first_geometry or geometry
         self.geometry, self.told = geometry, self.told + 1
         self.moved += any(dist(*pair) > MOVED for pair in zip(first.points, geometry.points, strict=False))
-        self.nearest_in_world = min([self.nearest_in_world, *[abs(self._gap(point)) for point in geometry.points]])
 
     @property
     def depth(self) -> float | None:
@@ -152,7 +151,7 @@ class BodyRecord:
             return None
         axes = axes_of(self.seen.orientation)
         places = [add(self.seen.position, to_world(axes, point)) for point in self.geometry.points]
-        return -min(self._gap(place) for place in places)
+        return self.scene.height - min(dot(self.scene.normal, place) for place in places)
 
     @property
     def interval(self) -> float:
@@ -161,9 +160,6 @@ class BodyRecord:
         if first is None or last is None or self.told < 2:
             return 0.0
         return (last.stamp - first.stamp) / NANOSECONDS / (self.told - 1)
-
-    def _gap(self, place: Vector3) -> float:
-        return dot(self.scene.normal, place) - self.scene.height
 
     def _publish(self, prediction: Prediction, only: str = "") -> None:
         if self._write is not None:

@@ -168,17 +168,8 @@ def _doubts(run: Run, body: str) -> list[str]:
     if left_out:
         unknown = listed(left_out, _MOST_NAMED)
         said.append(f"robot.urdf does not know {unknown}, so what is told of these joints is left out")
-    near = NEAR * record.scene.tolerance
-    if near < record.nearest < inf:
-        in_world = record.nearest_in_world < near
-        said.append(
-            f"no foot came nearer to the ground than {record.nearest:.3g} m"
-            + (
-                ", while the points reach it as if they were places in the world: tell them in the frame of the body"
-                if in_world
-                else f": {_COMPARE}"
-            )
-        )
+    if NEAR * record.scene.tolerance < record.nearest < inf:
+        said.append(f"no foot came nearer to the ground than {record.nearest:.3g} m: {_COMPARE}")
     return said
 
 

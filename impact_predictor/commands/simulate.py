@@ -195,18 +195,7 @@ def answer(
 @as_json_option
 @record_options
 def simulate_wheel(
-    slope: float,
-    alpha: float,
-    leg: float,
-    mass: float,
-    inertia: float,
-    omega: float,
-    gravity: float,
-    friction: float | None,
-    law: str,
-    steps: int | None,
-    duration: float | None,
-    **asked: Any,
+    omega: float, alpha: float, law: str, steps: int | None, duration: float | None, slope: float, **options: Any
 ) -> int:
     """A rimless wheel: spokes without a rim roll down a slope, one after the other, until they stop.
 
@@ -216,11 +205,13 @@ def simulate_wheel(
     from ..report.simulation import print_rolling, rolling_as_json
     from ..scenarios.wheel import Hub, RollEnd, Wheel, roll
 
-    products = Products(**asked)
+    hub = Hub(slope=radians(slope), **{name: options.pop(name) for name in ("mass", "inertia", "leg", "gravity")})
+    friction = options.pop("friction")
+    hub = hub._replace(friction=STICKS if friction is None else friction)
+    products = Products(**options)
     products.check()
     if steps is None and duration is None:
         steps = STEPS
-    hub = Hub(mass, inertia, leg, STICKS if friction is None else friction, radians(slope), gravity)
     rolling = roll(Wheel(hub, radians(alpha)), omega, steps, 60.0 if duration is None else duration, law)
     if products.output is not None:
         from ..scenarios.record import wheel_actor

@@ -151,35 +151,22 @@ def check_options(*, recorded: bool) -> None:
             raise click.UsageError(f"{option} is {why}")
 
 
-def deck_of(
-    record: str | None,
-    seed: int,
-    gravity: float,
-    hs: float,
-    tp: float,
-    gamma: float,
-    spectrum: str,
-    roll_period: float,
-    roll_damping: float,
-    deck_height: float,
-    rao: str | None,
-    record_topic: str,
-) -> tuple[MovingSupport, float]:
-    """The deck of a vessel in a sea, or a recorded one, and how long it lasts in s."""
+def deck_of(record: str | None, seed: int, gravity: float, **sea: Any) -> tuple[MovingSupport, float]:
+    """The deck of a vessel in a sea by its options, or a recorded one, and how long it lasts in s."""
     if record is not None:
         from ..scenarios.deck.vessel import read_deck
 
-        recorded = read_deck(record, record_topic, gravity)
+        recorded = read_deck(record, sea["record_topic"], gravity)
         return recorded.support, recorded.duration
     from ..mechanics.bodies import positive
     from ..scenarios.deck.sea import SeaState, waves_of
     from ..scenarios.deck.vessel import PONTOON_ROLL, Vessel, deck_in, read_vessel
 
-    positive(roll_period=roll_period, roll_damping=roll_damping)
-    if rao is None:
-        roll = PONTOON_ROLL._replace(frequency=2.0 * pi / roll_period, damping=roll_damping)
-        vessel = Vessel(roll, height=deck_height)
+    period, damping, height = sea["roll_period"], sea["roll_damping"], sea["deck_height"]
+    positive(roll_period=period, roll_damping=damping)
+    if sea["rao"] is None:
+        vessel = Vessel(PONTOON_ROLL._replace(frequency=2.0 * pi / period, damping=damping), height=height)
     else:
-        vessel = read_vessel(rao, deck_height)
-    waves = waves_of(SeaState(hs, tp, spectrum, gamma), seed)
+        vessel = read_vessel(sea["rao"], height)
+    waves = waves_of(SeaState(sea["hs"], sea["tp"], sea["spectrum"], sea["gamma"]), seed)
     return deck_in(waves, vessel, gravity), float("inf")

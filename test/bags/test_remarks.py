@@ -125,18 +125,6 @@ def test_feet_that_never_come_near_the_ground_are_told_with_their_height(tmp_pat
     assert "no foot came nearer to the ground than 0.1 m: compare support.height, the units of the points (m)" in note
 
 
-def test_points_that_are_told_in_the_world_are_known_by_lying_on_the_ground_there(tmp_path: Path) -> None:
-    def in_world(_: int, one: Any) -> Any:
-        if isinstance(one, Geometry):
-            return one._replace(points=tuple((x, y, z + 0.5) for x, y, z in one.points), velocities=())
-        return one
-
-    (note,) = replayed(tmp_path, change=in_world).notes
-    assert (
-        "no foot came nearer to the ground than 0.5 m, while the points reach it as if they were places in the" in note
-    )
-
-
 def test_points_that_move_are_taken_for_feet_that_the_scene_does_not_name(tmp_path: Path) -> None:
     rigid = Scene.from_parameters(validate({k: v for k, v in GIVEN.items() if not k.startswith("feet")}))
     stepping = replayed(tmp_path, rigid)
