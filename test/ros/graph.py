@@ -2,13 +2,20 @@
 
 import json
 import os
+import pickle
+import subprocess
+import sys
 import time
 from contextlib import contextmanager
+from pathlib import Path
 
 import rclpy
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import QoSProfile
 
+from impact_predictor.bags.read import read_messages, topics
+from impact_predictor.bags.replay import replay
+from impact_predictor.prediction.scene import inputs_of, scenes_of
 from impact_predictor.ros.cdr import STALE, Diagnostic, decode_diagnostic_array
 from impact_predictor.ros.messages import OUTPUTS
 from impact_predictor.ros.process import message_class
@@ -88,6 +95,35 @@ def arguments_of(values):
     """Parameters as arguments of a node."""
     given = [f"{name}:={json.dumps(value)}" for name, value in values.items() if value not in ((), "")]
     return ["--ros-args", *[word for one in given for word in ("-p", one)]]
+
+
+def serve(values, messages, outputs):
+    """What the node publishes when it is told messages one by one, and which topics it reads."""
+    done = subprocess.run(
+        [sys.executable, str(Path(__file__).with_name("serve.py")), *arguments_of(values)],
+        input=pickle.dumps((messages, outputs)),
+        capture_output=True,
+        env={**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])},
+        timeout=120.0,
+    )
+    assert done.returncode == 0, done.stderr.decode()
+    heard, read, _ = pickle.loads(done.stdout)
+    return heard, read
+
+
+def served_and_replayed(values, bag, output):
+    """What the node publishes of the messages in a bag and what a replay writes, by topics; the topics it reads."""
+    scenes = scenes_of(values)
+    replay(bag, scenes, output=output)
+    written = topics(output)
+    replayed = {topic: [] for topic in written}
+    for message in read_messages(output, written):
+        replayed[message.topic].append(message.data)
+    inputs = {f"/{one.name}" for one in inputs_of(scenes)}
+    types = {topic: kind for topic, kind in topics(bag).items() if topic in inputs}
+    messages = [(topic, types[topic], data) for topic, _, data in read_messages(bag, types)]
+    heard, read = serve(values, messages, written)
+    return heard, replayed, read
 
 
 @contextmanager

@@ -1,20 +1,15 @@
 """The node for several bodies over a moving support: the same as a replay, and never OK where something is wrong."""
 
 import os
-import pickle
 import struct
-import subprocess
-import sys
 from itertools import islice
 from pathlib import Path
 
 import pytest
 from harmonic_deck import Wave, harmonic_support
 
-from impact_predictor.bags.read import read_messages, topics
-from impact_predictor.bags.replay import replay
 from impact_predictor.parameters.validation import validate
-from impact_predictor.prediction.scene import inputs_of, scenes_of
+from impact_predictor.prediction.scene import scenes_of
 from impact_predictor.prediction.types import Imu, Sample, Status
 from impact_predictor.ros.cdr import OK, STALE, WARN
 from impact_predictor.ros.messages import (
@@ -32,12 +27,11 @@ from impact_predictor.scenarios.record import Sensors
 
 pytest.importorskip("rclpy", reason="the node needs ROS 2: source it, or install the extra `ros`")
 
-from graph import arguments_of
+from graph import arguments_of, serve, served_and_replayed
 
 from impact_predictor.ros.process import message_class
 
 ROOT = Path(__file__).parents[2]
-SERVE = Path(__file__).with_name("serve.py")
 UNIT = "impact_predictor/unit/"
 BODIES = ("rocker", "tilter", "plain")
 CARGO = {
@@ -61,20 +55,6 @@ def sailed(bag, **more):
     assert len(voyage.units[0].impacts) == 3
 
 
-def serve(values, messages, outputs):
-    """What the node publishes when it is told messages one by one, and which topics it reads."""
-    done = subprocess.run(
-        [sys.executable, str(SERVE), *arguments_of(values)],
-        input=pickle.dumps((messages, outputs)),
-        capture_output=True,
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-        timeout=120.0,
-    )
-    assert done.returncode == 0, done.stderr.decode()
-    heard, read, _ = pickle.loads(done.stdout)
-    return heard, read
-
-
 def said_of_units(arrays):
     """What a sequence of diagnostics says about units, and not about the node."""
     return [one for data in arrays for one in decode_diagnostic_array(data) if one.name.startswith(UNIT)]
@@ -87,16 +67,9 @@ def test_several_bodies_on_a_deck_are_told_live_what_the_replay_tells_byte_for_b
     values = validate({**CARGO, **more})
     bag, output = tmp_path / "deck.mcap", tmp_path / "replayed.mcap"
     sailed(bag, **more)
-    replay(bag, scenes_of(values), output=output)
-    replayed = {topic: [] for topic in topics(output)}
-    for message in read_messages(output, topics(output)):
-        replayed[message.topic].append(message.data)
-    of_rocker = {f"/impact_predictor/rocker/{name}": one.type_name for name, one in OUTPUTS.items()}
+    heard, replayed, read = served_and_replayed(values, bag, output)
+    of_rocker = {f"/impact_predictor/rocker/{name}" for name in OUTPUTS}
     assert replayed.keys() == {*of_rocker, "/diagnostics"}
-    inputs = {f"/{one.name}" for one in inputs_of(scenes_of(values))}
-    types = {topic: kind for topic, kind in topics(bag).items() if topic in inputs}
-    messages = [(topic, types[topic], data) for topic, _, data in read_messages(bag, types)]
-    heard, read = serve(values, messages, {**of_rocker, "/diagnostics": DIAGNOSTIC_ARRAY})
     assert read - {"/parameter_events"} == {f"/support/{motion}", "/rocker/odom", "/tilter/imu"}
     for topic in of_rocker:
         assert len(heard[topic]) > 2

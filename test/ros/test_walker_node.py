@@ -10,23 +10,16 @@ import pytest
 
 pytest.importorskip("rclpy", reason="the node needs ROS 2: source it, or install the extra `ros`")
 
-import rclpy
-from graph import arguments_of, running_node
+from graph import running_node, served_and_replayed
 from trot import FEET, plan, trot
 
-from impact_predictor.bags.read import read_messages, topics
-from impact_predictor.bags.replay import replay
 from impact_predictor.bags.write import BagWriter
 from impact_predictor.parameters.file import read_parameters
 from impact_predictor.parameters.validation import validate
-from impact_predictor.prediction.scene import scenes_of
 from impact_predictor.prediction.types import Geometry, Joints, Schedule, Wrench
-from impact_predictor.ros import predictor_node
-from impact_predictor.ros import topics as node_topics
 from impact_predictor.ros.cdr import OK
 from impact_predictor.ros.messages import (
     ODOMETRY,
-    OUTPUTS,
     POLYGON,
     decode_diagnostic_array,
     encode_joints,
@@ -162,7 +155,8 @@ def test_diagnostics_say_which_feet_stand_how_late_they_land_and_which_sensor_di
         assert not {"confirmed"} & {key for one in scores if one["foot"] == "LH" for key in one}
 
 
-def test_a_walking_machine_is_told_by_the_node_what_the_replay_tells_byte_for_byte(tmp_path, monkeypatch):
+@pytest.mark.slow
+def test_a_walking_machine_is_told_by_the_node_what_the_replay_tells_byte_for_byte(tmp_path):
     values = validate({**read_parameters(SCENE), "feet.force": 50.0, "feet.has_schedule": True})
     messages = [("/schedule", JOINT_TRAJECTORY, encode_schedule(plan(2.0, earlier=0.004)))]
     for geometry, sample in trot(RATE, 2.0):
@@ -171,35 +165,14 @@ def test_a_walking_machine_is_told_by_the_node_what_the_replay_tells_byte_for_by
         # Every other time the trunk is told of first.
         both = [("/contact_geometry", POLYGON, encode_polygon(geometry)), ("/odom", ODOMETRY, encode_odometry(sample))]
         messages += both if len(messages) % 2 else reversed(both)
-    bag, output = tmp_path / "trot.mcap", tmp_path / "replayed.mcap"
+    bag = tmp_path / "trot.mcap"
     with BagWriter(bag) as writer:
         for k, (topic, kind, data) in enumerate(messages):
             writer.write(topic, kind, k, data)
-    replay(bag, scenes_of(values), output=output)
-    replayed = {topic: [] for topic in topics(output)}
-    for message in read_messages(output, topics(output)):
-        replayed[message.topic].append(message.data)
-
-    told = {f"/impact_predictor/{name}": [] for name in OUTPUTS}
-
-    def publish(output, encode, prediction):
-        data = encode(prediction)
-        if data is not None:
-            told[output.topic_name].append(data)
-
-    monkeypatch.setattr(node_topics, "Outlet", lambda publisher: publisher)
-    monkeypatch.setattr(node_topics, "_publish", publish)
-    rclpy.init(args=list(arguments_of(values)))
-    node = predictor_node.PredictorNode()
-    take = {one.topic_name: one.callback for one in node.subscriptions}
-    assert take.keys() == {topic for topic, _, _ in messages}
-    for topic, _, data in messages:
-        take[topic](data)
-    node.finish()
-    node.destroy_node()
-    rclpy.shutdown()
+    heard, replayed, read = served_and_replayed(values, bag, tmp_path / "replayed.mcap")
+    assert read - {"/parameter_events"} == {topic for topic, _, _ in messages}
     assert len(replayed["/impact_predictor/score"]) >= 10
-    assert told == replayed
+    assert heard == replayed
 
 
 LEG = """
