@@ -12,9 +12,7 @@ from ..mechanics.impact import LAWS
 from .options import choice, examples, json_flag, number, seed_option
 
 if TYPE_CHECKING:
-    from rich.table import Table
-
-    from ..mechanics.invariants import Soak, WorstViolation
+    from ..mechanics.invariants import Soak
 
 BROKEN: Final = 1
 """Exit status where an invariant is violated by more than rounding explains."""
@@ -138,9 +136,20 @@ def say(soak: Soak, seconds: float, interrupted: bool) -> None:
     """Print what a soak found."""
     from rich.console import Console
 
-    from ..report.table import show
+    from ..report.table import Column, show, table_of
 
-    show(Console(), table_of(list(soak.worst.values())))
+    columns = [
+        Column("law", lambda worst: worst.law, left=True),
+        Column("problems", lambda worst: "stiff" if worst.stiff else "ordinary", left=True),
+        Column("invariant", lambda worst: worst.invariant, left=True),
+        Column("worst violation", lambda worst: f"{worst.violation:.2g}"),
+        Column("limit", lambda worst: f"{worst.limit:.2g}" if worst.limit < float("inf") else "-"),
+        Column("by a problem of kind", lambda worst: worst.kind, left=True),
+    ]
+    show(
+        Console(),
+        table_of(columns, list(soak.worst.values()), style=lambda worst: "bold red" if worst.broken_by else ""),
+    )
     if any(worst.stiff and worst.violation > 0.0 for worst in soak.worst.values()):
         click.echo("\nA stiff problem multiplies rounding by its condition number, without limit: - is no failure.")
     made = [worst for worst in soak.worst.values() if worst.body is not None]
@@ -155,18 +164,3 @@ def say(soak: Soak, seconds: float, interrupted: bool) -> None:
         click.echo("Violated by more than rounding explains, with the kinds of problems:")
     for worst in soak.broken:
         click.echo(f"  {worst.invariant}, {worst.law} law: {', '.join(worst.broken_by)}")
-
-
-def table_of(found: list[WorstViolation]) -> Table:
-    """The worst violations, one line each."""
-    from ..report.table import Column, table_of
-
-    columns = [
-        Column("law", lambda worst: worst.law, left=True),
-        Column("problems", lambda worst: "stiff" if worst.stiff else "ordinary", left=True),
-        Column("invariant", lambda worst: worst.invariant, left=True),
-        Column("worst violation", lambda worst: f"{worst.violation:.2g}"),
-        Column("limit", lambda worst: f"{worst.limit:.2g}" if worst.limit < float("inf") else "-"),
-        Column("by a problem of kind", lambda worst: worst.kind, left=True),
-    ]
-    return table_of(columns, found, style=lambda worst: "bold red" if worst.broken_by else "")

@@ -13,7 +13,7 @@ from ..errors import InputError, need
 from .options import LAW, examples, json_flag, number, together
 
 if TYPE_CHECKING:
-    from ..report.map import Axis, MapParameter, ModeMap
+    from ..report.map import Axis, MapParameter
 
 PICTURES: Final = (".png", ".svg")
 SUFFIXES: Final = (*PICTURES, ".csv")
@@ -85,9 +85,11 @@ def command_of(name: str) -> click.Command:
         as_json: bool,
         **parameters: float | None,
     ) -> None:
-        axes = axis_of(x, subject.x), axis_of(y, subject.y)
+        asked = ((x, subject.x), (y, subject.y))
+        axes = [type(most)(one[0].replace("-", "_"), *one[1:]) if one else most for one, most in asked]
         given = {name: value for name, value in parameters.items() if value is not None}
-        answer(name, axes, fixed_values(subject, axes, given), law, resolution, output, as_json)
+        fixed = fixed_values(subject, (axes[0], axes[1]), given)
+        answer(name, (axes[0], axes[1]), fixed, law, resolution, output, as_json)
 
     def axis(option: str, default: Axis, where: str) -> Callable[[Any], Any]:
         shown = f"{option_of(default.name)} {default.low:g} {default.high:g}"
@@ -128,10 +130,6 @@ def help_of(parameter: MapParameter) -> str:
     return f"{meaning}{unit}." + (f" [default: {default}]" if default else "")
 
 
-def axis_of(given: tuple[str, float, float] | None, default: Axis) -> Axis:
-    return default if given is None else type(default)(given[0].replace("-", "_"), *given[1:])
-
-
 def answer(
     name: str,
     axes: tuple[Axis, Axis],
@@ -152,7 +150,14 @@ def answer(
     with compiling_is_said(), progress(name, "cells", resolution * resolution) as tell:
         modes = map_modes(name, *axes, fixed, law, resolution, tell)
     for file in files:
-        write(file, modes)
+        if file.suffix.lower() == ".csv":
+            from ..report.map import write_csv
+
+            write_csv(file, modes)
+        else:
+            from ..report.map_figure import write_map
+
+            write_map(file, modes)
     if as_json:
         from ..report.map import summary_of
 
@@ -181,15 +186,3 @@ def check_output(file: Path) -> None:
         raise InputError(f"the folder of {file} does not exist; make it, or give another name")
     if file.suffix.lower() in PICTURES:
         need("contourpy", "matplotlib")
-
-
-def write(file: Path, modes: ModeMap) -> None:
-    """Write a map in the format of the file's name; InputError where the file cannot be written."""
-    if file.suffix.lower() == ".csv":
-        from ..report.map import write_csv
-
-        write_csv(file, modes)
-    else:
-        from ..report.map_figure import write_map
-
-        write_map(file, modes)

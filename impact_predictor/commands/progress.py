@@ -111,10 +111,10 @@ def say_unfinished(outputs: Sequence[Path | None], scheduler: str | None = None)
 
 
 @contextmanager
-def writing(output: str, unit: str = "samples", total: int | None = None) -> Iterator[ProgressBar]:
-    """A bar while a bag is written; the bag that Ctrl-C leaves unfinished is named."""
+def writing(output: str, seconds: int | None) -> Iterator[ProgressBar]:
+    """A bar while a bag of so many seconds is written; the bag that Ctrl-C leaves unfinished is named."""
     try:
-        with progress(Path(output).name, unit, total) as bar:
+        with progress(Path(output).name, "s", seconds) as bar:
             yield bar
     except KeyboardInterrupt:
         say_unfinished([Path(output)])

@@ -14,7 +14,7 @@ from ..report.files import make_folder, whole
 from .options import examples
 
 if TYPE_CHECKING:
-    from rich.table import Table
+    pass
 
 PAGE: Final = "report.html"
 DATA: Final = "report.json"
@@ -65,9 +65,19 @@ def report(output: Path | None, quick: bool, as_json: bool) -> None:
 
     from rich.console import Console
 
-    from ..report.table import show
+    from ..report.table import Column, show, table_of
 
-    show(Console(), table_of(fields))
+    columns = [
+        Column("question", lambda one: one["question"], left=True),
+        Column("error below", lambda one: f"{one['accuracy']:.0e}"),
+        Column(
+            "cheapest method that is so good on every scene",
+            lambda one: ", ".join(filter(None, (one["method"], one["setting"]))) or "-",
+            left=True,
+        ),
+        Column("us", lambda one: "-" if one["us"] is None else f"{one['us']:.3g}"),
+    ]
+    show(Console(), table_of(columns, fields["choices"]))
     for question, used in fields["node"].items():
         click.echo(f"The node answers the {question} by {', '.join(filter(None, (used['method'], used['setting'])))}:")
         click.echo(used["why"])
@@ -90,20 +100,3 @@ def write(folder: Path, fields: dict[str, Any]) -> None:
         writer.writeheader()
         writer.writerows(fields["rows"])
     write_accuracy_page(folder / PAGE, fields)
-
-
-def table_of(fields: dict[str, Any]) -> Table:
-    """The cheapest method for each wanted accuracy that holds on every computed scene of a question."""
-    from ..report.table import Column, table_of
-
-    columns = [
-        Column("question", lambda one: one["question"], left=True),
-        Column("error below", lambda one: f"{one['accuracy']:.0e}"),
-        Column(
-            "cheapest method that is so good on every scene",
-            lambda one: ", ".join(filter(None, (one["method"], one["setting"]))) or "-",
-            left=True,
-        ),
-        Column("us", lambda one: "-" if one["us"] is None else f"{one['us']:.3g}"),
-    ]
-    return table_of(columns, fields["choices"])

@@ -93,7 +93,7 @@ def simulate_deck(
     from ..parameters.file import read_values
     from ..prediction.scene import MovingDeck, scenes_of, shared_by
     from ..resources import find
-    from ..scenarios.deck.voyage import gravity_of, sail, total
+    from ..scenarios.deck.voyage import gravity_of, sail
     from ..scenarios.record import Sensors
     from ..scenarios.sensors import SensorNoise
 
@@ -118,9 +118,8 @@ def simulate_deck(
 
         motion = DeckMotion(duration)
     seen = {} if motion is None else {"seen": motion.taking}
-    work = total(scenes, duration, output is not None, sensors)
-    shown = progress("simulated deck", "s", work) if output is None else writing(output, "messages", work)
-    with shown as tell:
+    seconds = round(duration) if duration < float("inf") else None
+    with progress("simulated deck", "s", seconds) if output is None else writing(output, seconds) as tell:
         voyage = sail(scenes, deck, duration, contacts, output, sensors, tell, **seen)
     if motion is not None:
         units = motion.units

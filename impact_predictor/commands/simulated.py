@@ -87,7 +87,7 @@ class Products(NamedTuple):
 
         assert self.output is not None
         rate = RATE if self.rate is None else self.rate
-        with writing(self.output, total=sum(actor.samples(rate) for actor in actors)) as bar:
+        with writing(self.output, round(max(actor.duration for actor in actors))) as bar:
             write_record(self.output, actors, rate, bar)
 
     def draw(self, write_figure: Callable[[str], object], film: Callable[[], Film]) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import heapq
 import os
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Final, NamedTuple
 
@@ -15,7 +15,7 @@ from ..bags.write import BagWriter
 from ..mechanics.motion import End, PlanarState, Trajectory
 from ..mechanics.motion.support import MovingSupport
 from ..mechanics.types import Vector
-from ..prediction.scene import MovingDeck, Scene
+from ..prediction.scene import MovingDeck
 from ..prediction.types import Geometry
 from ..ros.cdr import diagnostic_array
 from ..ros.messages import DIAGNOSTIC_ARRAY, IMU, ODOMETRY, POLYGON, encode_imu, encode_odometry, encode_polygon
@@ -124,7 +124,7 @@ def write_record(
 
     The topics are `/odom` and `/contact_geometry`, with several bodies `/<name>/odom` and `/<name>/contact_geometry`,
     and `TRUTH_TOPIC`. The plane of the motions is x forward and z up of the frame `FRAME`. Stamps count from the
-    beginning of a motion. `tell` takes now and then how many samples are done.
+    beginning of a motion. `tell` takes now and then how many seconds are done.
 
     Raises:
         InputError: the bag cannot be written.
@@ -140,7 +140,7 @@ def write_messages(
 ) -> None:
     """Write a bag of messages, each stream of them ordered, while they are made: a long record takes no more memory.
 
-    `tell` takes now and then how many messages are done.
+    `tell` takes now and then how many seconds of it are done.
 
     Raises:
         InputError: the bag cannot be written.
@@ -149,7 +149,7 @@ def write_messages(
         for count, (log_time, topic, type_name, data) in enumerate(_by_time(*streams), 1):
             writer.write(topic, type_name, log_time, data)
             if tell is not None and count % AT_ONCE == 0:
-                tell(count)
+                tell(log_time // NANOSECONDS)
 
 
 def deck_messages(
@@ -176,12 +176,6 @@ def deck_messages(
             for number, one in enumerate(followed, 1)
         ),
     ]
-
-
-def messages_in(scenes: Mapping[str, Scene], duration: float, sensors: Sensors) -> int:
-    """How many messages of sensors a record of a deck has at most."""
-    observed = sum(scene.source != "none" for scene in scenes.values())
-    return round(duration * (sensors.deck_rate + observed * sensors.rate))
 
 
 def _by_time(*streams: Iterable[RecordedMessage]) -> Iterator[RecordedMessage]:

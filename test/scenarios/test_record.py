@@ -31,8 +31,9 @@ def recorded(path: Path, *actors: Actor, rate: float = RATE) -> Path:
 def test_one_body_stands_on_the_topics_of_the_node_and_several_on_their_own(tmp_path: Path) -> None:
     alone, told = tmp_path / "alone.mcap", list[int]()
     write_record(alone, [rocking_actor("rod", a_rod().run)], RATE, told.append)
-    assert told == sorted(told)
-    assert 0 < told[-1] <= len(samples_of(alone))
+    # In seconds: it is over before the first one.
+    assert told
+    assert set(told) == {0}
     assert topics(alone) == {"/contact_geometry": POLYGON, "/odom": ODOMETRY, TRUTH_TOPIC: DIAGNOSTIC_ARRAY}
     (message,) = read_messages(alone, {"/contact_geometry": POLYGON})
     geometry = decode_polygon(message.data)

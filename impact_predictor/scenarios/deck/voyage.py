@@ -14,7 +14,7 @@ from ...errors import InputError
 from ...mechanics.motion import End, PlanarState
 from ...mechanics.motion.support import MovingSupport, in_world
 from ...prediction.scene import Scene, shared_by
-from ..record import Sensors, deck_messages, messages_in, write_messages
+from ..record import Sensors, deck_messages, write_messages
 from ..truth import ONSET_TOPIC, TRUTH_TOPIC, TrueImpact, TrueOnset
 from .cargo import CargoUnit, Span, follow, units_of
 
@@ -112,12 +112,13 @@ def sail(
     """Follow all units of the scenes for `duration` s, and write a `bag` with what their sensors told.
 
     `contacts` are rigid, by the impact law of each scene, or compliant (see `compliant`). `tell` takes now and
-    then how many messages are done, without a bag how many seconds. The spans of each unit pass `seen`.
+    then how many seconds are done. The spans of each unit pass `seen`.
 
     Raises:
         InputError: a unit cannot be simulated, a number is out of its range, or the bag cannot be written.
     """
-    check_duration(duration)
+    if not 0.0 < duration <= _LONGEST:
+        raise InputError(f"the duration is {duration}; give seconds above 0, up to a week")
     for name, rate in (("rate", sensors.rate), ("deck rate", sensors.deck_rate)):
         if not 0.0 < rate <= 1e4:
             raise InputError(f"the {name} is {rate}; give Hz above 0, up to 10000")
@@ -141,21 +142,11 @@ def sail(
         for one in followed:
             for span in one.spans():
                 if tell is not None:
-                    tell(round(done + span.time))
-            done += one.time
+                    tell(round((done + span.time) / len(followed)))
+            done += duration
     else:
         write_messages(bag, deck_messages(followed, deck, "" in scenes, duration, sensors, truths), tell)
     return Voyage(deck, tuple(followed), duration, rolled, lateral)
-
-
-def check_duration(duration: float) -> None:
-    """See that a voyage may last so many seconds.
-
-    Raises:
-        InputError: it may not.
-    """
-    if not 0.0 < duration <= _LONGEST:
-        raise InputError(f"the duration is {duration}; give seconds above 0, up to a week")
 
 
 def _extremes(deck: MovingSupport, duration: float) -> tuple[float, float]:
@@ -174,9 +165,3 @@ def _extremes(deck: MovingSupport, duration: float) -> tuple[float, float]:
             raise InputError(f"the deck {what}, which no cargo is simulated on; give a lower sea, or another record")
         lateral = max(lateral, float(np.abs(ahead / up).max()))
     return rolled, lateral
-
-
-def total(scenes: Mapping[str, Scene], duration: float, bag: bool, sensors: Sensors) -> int:
-    """What `tell` of `sail` counts to, for a duration that may be."""
-    check_duration(duration)
-    return messages_in(scenes, duration, sensors) if bag else round(duration * len(scenes))
