@@ -41,7 +41,6 @@ from .impact.answer import (
     unchanged,
 )
 from .impact.contacts import (
-    JAMMED,
     MINUS,
     NO_SOLUTION,
     OPEN,
@@ -69,7 +68,7 @@ GAIN = 10.0
 steps but roundings of a body far from any shape."""
 
 MAX_STEPS = 400
-"""An impact needs two to forty, at the finest tolerance two hundred; jams can follow each other without end."""
+"""An impact needs two to forty, at the finest tolerance two hundred."""
 
 FAR = 1e9
 """A contact that does not exist leaves this many times faster than anything moves."""
@@ -140,9 +139,9 @@ def solve_transverse_impact(
     end.
 
     Without slip across the plane the answer is that of `solve_impact`, to the last bit, and where both contacts are
-    struck it answers for the plane alone. Where the path is lost it does so too, with Flag.LAST_RESORT. Input that no
-    body can have gives Flag.INVALID_INPUT, never an exception. Where several contact states are consistent the first
-    is followed and the others are not told.
+    struck it answers for the plane alone. Where the path jams or is lost it does so too, with Flag.LAST_RESORT. Input
+    that no body can have gives Flag.INVALID_INPUT, never an exception. Where several contact states are consistent the
+    first is followed and the others are not told.
     """
     mass, inertia, old, new = body
     stands, foot = old is not None, old or NOWHERE
@@ -222,83 +221,77 @@ def follow(across: Across, before: SpatialVelocities, small: float, restitution:
         if phase is None:
             phase = phase_at(across, state, compressing)
         if phase is None:
-            struck = strike_old(across, state, small, segments)
-            if struck is None:
-                break
-            state, segments = struck
-            notes |= JAMMED
-        else:
-            a, b, way, rate, straight = phase
-            _, _, _, nb, _, _, cna, cta, cza, cnb, ctb, czb = state
-            _, _, _, _, _, _, rna, rta, rza, rnb, rtb, rzb = rate
-            sign_a, sign_b = a, b
-            if a >= PLUS:
-                slip = cta or rta
-                sign_a = MINUS if slip < 0.0 else PLUS
-                first_a = first_a or slip
-                notes |= REVERSED if slip * first_a < 0.0 else 0
-            if b >= PLUS:
-                slip = ctb or rtb
-                sign_b = MINUS if slip < 0.0 else PLUS
-                first_b = first_b or slip
-                notes |= REVERSED if slip * first_b < 0.0 else 0
-            elif a == STICK and b == STICK:
-                notes |= SHARED_FRICTION
-            if told != 4 * sign_a + sign_b:
-                told = 4 * sign_a + sign_b
-                if segments < ROOM:
-                    segments = 16 * segments + told
+            break
+        a, b, way, rate, straight = phase
+        _, _, _, nb, _, _, cna, cta, cza, cnb, ctb, czb = state
+        _, _, _, _, _, _, rna, rta, rza, rnb, rtb, rzb = rate
+        sign_a, sign_b = a, b
+        if a >= PLUS:
+            slip = cta or rta
+            sign_a = MINUS if slip < 0.0 else PLUS
+            first_a = first_a or slip
+            notes |= REVERSED if slip * first_a < 0.0 else 0
+        if b >= PLUS:
+            slip = ctb or rtb
+            sign_b = MINUS if slip < 0.0 else PLUS
+            first_b = first_b or slip
+            notes |= REVERSED if slip * first_b < 0.0 else 0
+        elif a == STICK and b == STICK:
+            notes |= SHARED_FRICTION
+        if told != 4 * sign_a + sign_b:
+            told = 4 * sign_a + sign_b
+            if segments < ROOM:
+                segments = 16 * segments + told
 
-            # How far N_B may grow until a contact changes its state, were the rates to stay as they are.
-            span = inf if straight else reach
-            if a == OPEN and cna > 0.0 and rna < 0.0:
-                span = min(span, -cna / rna * (1.0 if straight else BEYOND))
-            if a >= PLUS:
-                span = min(span, until_turned(cta, cza, rta, rza, 0.0 if straight else turn_a))
-            if b >= PLUS:
-                span = min(span, until_turned(ctb, czb, rtb, rzb, 0.0 if straight else turn_b))
-            whole = target - nb
-            if compressing:
-                whole = -cnb / rnb if rnb > 0.0 else inf
-            ends, span = whole <= span, min(whole, span)
-            if span == inf:
-                break
-            step = advance(across, phase, state, span, ends and compressing, small)
-            if step is None:
-                break
-            arc, further = step
-            reach = further if further < inf else reach
-            event, spent = first_event(across, phase, arc, inf if compressing else work, small)
-            state, way, rate = arc.end, arc.way, arc.last
-            if event <= 1.0:
-                state = arc.at(event)
-                if not straight:
-                    _, _, _, _, _, _, _, cta, cza, _, ctb, czb = state
-                    way = way_of(cta, cza, ctb, czb, way, small)
-                    rate = rates(across, a, b, way) or rate
-            work = 0.0 if spent else work - arc.worked(min(event, 1.0))
-            notes |= WORK_LIMITED if spent else 0
+        # How far N_B may grow until a contact changes its state, were the rates to stay as they are.
+        span = inf if straight else reach
+        if a == OPEN and cna > 0.0 and rna < 0.0:
+            span = min(span, -cna / rna * (1.0 if straight else BEYOND))
+        if a >= PLUS:
+            span = min(span, until_turned(cta, cza, rta, rza, 0.0 if straight else turn_a))
+        if b >= PLUS:
+            span = min(span, until_turned(ctb, czb, rtb, rzb, 0.0 if straight else turn_b))
+        whole = target - nb
+        if compressing:
+            whole = -cnb / rnb if rnb > 0.0 else inf
+        ends, span = whole <= span, min(whole, span)
+        if span == inf:
+            break
+        step = advance(across, phase, state, span, ends and compressing, small)
+        if step is None:
+            break
+        arc, further = step
+        reach = further if further < inf else reach
+        event, spent = first_event(across, phase, arc, inf if compressing else work, small)
+        state, way, rate = arc.end, arc.way, arc.last
+        if event <= 1.0:
+            state = arc.at(event)
+            if not straight:
+                _, _, _, _, _, _, _, cta, cza, _, ctb, czb = state
+                way = way_of(cta, cza, ctb, czb, way, small)
+                rate = rates(across, a, b, way) or rate
+        work = 0.0 if spent else work - arc.worked(min(event, 1.0))
+        notes |= WORK_LIMITED if spent else 0
 
-            # What has come to zero is made exactly zero.
-            na, ta, za, nb, tb, zb, cna, cta, cza, cnb, ctb, czb = state
-            _, _, _, _, _, _, rna, rta, rza, rnb, rtb, rzb = rate
-            ended = straight or event <= 1.0
-            if compressing and cnb >= -small and rnb > 0.0:
-                cnb = 0.0
-            if a == OPEN:
-                if cna <= small and rna < 0.0:
-                    cna, ended = 0.0, True
-            elif a >= PLUS and rests(cta, cza, rta, rza, small):
-                cta, cza, ended = 0.0, 0.0, True
-            if b >= PLUS and rests(ctb, czb, rtb, rzb, small):
-                ctb, czb, ended = 0.0, 0.0, True
-            if abs(czb) <= small and (cna > 0.0 or abs(cza) <= small) and (czb != 0.0 or (cza != 0.0 and cna == 0.0)):
-                czb, ended = 0.0, True
-                cza = cza if cna > 0.0 else 0.0
-            state = (na, ta, za, nb, tb, zb, cna, cta, cza, cnb, ctb, czb)
-            phase = None if ended else (a, b, way, rate, False)
+        # What has come to zero is made exactly zero.
+        na, ta, za, nb, tb, zb, cna, cta, cza, cnb, ctb, czb = state
+        _, _, _, _, _, _, rna, rta, rza, rnb, rtb, rzb = rate
+        ended = straight or event <= 1.0
+        if compressing and cnb >= -small and rnb > 0.0:
+            cnb = 0.0
+        if a == OPEN:
+            if cna <= small and rna < 0.0:
+                cna, ended = 0.0, True
+        elif a >= PLUS and rests(cta, cza, rta, rza, small):
+            cta, cza, ended = 0.0, 0.0, True
+        if b >= PLUS and rests(ctb, czb, rtb, rzb, small):
+            ctb, czb, ended = 0.0, 0.0, True
+        if abs(czb) <= small and (cna > 0.0 or abs(cza) <= small) and (czb != 0.0 or (cza != 0.0 and cna == 0.0)):
+            czb, ended = 0.0, True
+            cza = cza if cna > 0.0 else 0.0
+        state = (na, ta, za, nb, tb, zb, cna, cta, cza, cnb, ctb, czb)
+        phase = None if ended else (a, b, way, rate, False)
 
-        _, _, _, nb, _, _, _, _, _, cnb, _, _ = state
         if compressing:
             if cnb >= 0.0:
                 if restitution == 0.0 or cnb > 0.0:
@@ -352,31 +345,6 @@ def first_event(across: Across, phase: SlipPhase, arc: Arc, work: float, small: 
 
         event = min(event, descent(held, margin(across, a, b, arc.first), last))
     return event, event == spent < inf
-
-
-def strike_old(across: Across, state: State, small: float, segments: int) -> tuple[State, int] | None:
-    """End a jam by a tangential impact at A: B is held, and A follows its own one-contact path.
-
-    Its normal impulse grows while its slip presses it into the support and on until it leaves it. Returns the state
-    after it and the code of the segments with its own; None where there is no such impact.
-    """
-    (cos, sin, qa, sa, qb, sb, fa, _), waa, wab, _ = across
-    na, ta, za, nb, tb, zb, cna, cta, cza, cnb, ctb, czb = state
-    if cna > 0.0 or (cta == 0.0 and cza == 0.0):
-        return None
-    alone = (1.0, 0.0, 0.0, 0.0, qa, sa, 0.0, fa), 1.0, 0.0, waa
-    before = (FAR * (abs(cta) + abs(cza)), 0.0, 0.0, 0.0, cta, cza)
-    (_, _, _, n, t, z, _, _, _, _, cta, cza), code, notes = follow(alone, before, small, 0.0)
-    if notes & NO_SOLUTION or n == 0.0:
-        return None
-    code, size = 4 * code, 16  # a digit of a path of B alone is the state of B
-    while size <= code:
-        size *= 16
-    if segments * size < ROOM:
-        segments = segments * size + code
-    q = qa * n + sa * t
-    cnb, ctb, czb = cnb + cos * n - sin * t + qb * q, ctb + cos * t + sin * n + sb * q, czb + wab * z
-    return (na + n, ta + t, za + z, nb, tb, zb, 0.0, cta, cza, cnb, ctb, czb), segments
 
 
 def phase_at(across: Across, state: State, compressing: bool) -> SlipPhase | None:

@@ -85,15 +85,11 @@ def conditioning(body, twist, problem, answer, law):
     return largest
 
 
-def error_of(body, twist, law, at_rest=None):
-    """Compare an impact with exact arithmetic and return its error.
-
-    `at_rest` are the exact body and twist as somebody sees them who moves with the supports, where these move.
-    """
+def error_of(body, twist, law):
+    """Compare an impact with exact arithmetic and return its error."""
     outcome = solve_impact(body, twist, law)
     assert all(map(math.isfinite, (*outcome.twist, *outcome.impulses[0], *outcome.impulses[1], outcome.energy_lost)))
-    seen_body, seen_twist = at_rest or (body, twist)
-    problem = exact.problem_of(seen_body, seen_twist)
+    problem = exact.problem_of(body, twist)
     if not any(problem.velocities[n] is not None and problem.velocities[n] < 0 for n in (exact.NA, exact.NB)):
         assert outcome.mode is Mode.NO_IMPACT
         return 0.0
@@ -109,5 +105,5 @@ def error_of(body, twist, law, at_rest=None):
             if (apart := distance(problem, answer, change)) < error:
                 error, nearest = apart, answer
     if error > CLOSE:
-        assert error <= conditioning(seen_body, seen_twist, problem, nearest, law), (body, twist)
+        assert error <= conditioning(body, twist, problem, nearest, law), (body, twist)
     return error

@@ -160,24 +160,6 @@ def test_an_impact_keeps_momentum_and_loses_energy():
         assert outcome.energy_lost > 0.0
 
 
-@pytest.mark.parametrize("friction", [0.05, 0.5])
-def test_a_crate_on_a_slope_slides_when_its_friction_is_too_small(friction):
-    slope = 0.2
-    body = plate(1.0, 0.4, 10.0, friction)
-    run = compliant_motion(body, standing(body, 0.0), FixedSupport(slope), 1.0, stiffness=1e7)
-    tangential = -9.81 * (math.sin(slope) - friction * math.cos(slope))
-    if friction < math.tan(slope):
-        # The springs shake when the load comes on them, by 1e-5 m and as much of the friction's impulse.
-        assert run.state(1.0).vx == pytest.approx(tangential, rel=1e-3)
-        assert run.state(1.0).x == pytest.approx(0.5 * tangential + standing(body, 0.0).x, abs=1e-3)
-    else:
-        # It creeps: by less than the regularisation times the part of the friction that it needs.
-        assert abs(run.state(1.0).vx) < 1e-4
-    (left, _), (right, _) = run.forces(1.0)
-    assert left + right == pytest.approx(10.0 * 9.81 * math.cos(slope), rel=1e-4)
-    assert right < left  # it leans downhill, to the left
-
-
 @pytest.mark.parametrize("support", [FixedSupport(), DECK], ids=["floor", "deck"])
 def test_a_rocking_plate_converges_to_the_rigid_motion(support):
     start = standing(PLATE, 0.1)

@@ -3,7 +3,6 @@
 import itertools
 import math
 import random
-from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -30,26 +29,7 @@ def test_a_stiff_impact_has_no_error_above_its_conditioning(kind, law):
     assert np.median(errors) <= CLOSE
 
 
-@pytest.mark.parametrize("law", LAWS)
-def test_on_a_deck_that_moves_the_impact_is_that_on_a_deck_at_rest(law):
-    ux, uy, turning = Fraction(7, 4), Fraction(-5, 8), Fraction(3, 2)
-
-    def carried(contact):
-        return contact._replace(
-            velocity=(float(ux - turning * Fraction(contact.y)), float(uy + turning * Fraction(contact.x)))
-        )
-
-    for body, twist in itertools.chain.from_iterable(
-        random_impacts(kind, 20, seed=2) for kind in ("floor", "step", "wedge", "cylinder")
-    ):
-        deck = body._replace(old=carried(body.old), new=carried(body.new))
-        moving = Twist(*(float(Fraction(v) + u) for v, u in zip(twist, (ux, uy, turning), strict=True)))
-        assert error_of(deck, moving, law, at_rest=(body, twist)) <= CLOSE
-
-
 DECADES = [10.0**exponent for exponent in range(-6, 7, 2)]
-SLENDER = [10.0**exponent for exponent in range(-4, 5)]
-FRICTIONS = (0.0, 1e-4, 0.1, 0.7, 30.0, 1e4)
 
 
 @pytest.mark.parametrize("law", LAWS)
@@ -67,17 +47,6 @@ def test_twelve_decades_of_any_one_parameter_leave_all_digits(law):
         cases += [(bodies[0], bodies[0].turning(-value)), (bodies[4], bodies[4].turning(-value))]
         for body, twist in cases:
             assert error_of(body, twist, law) <= CLOSE
-
-
-@pytest.mark.parametrize("law", LAWS)
-def test_bodies_of_any_slenderness_and_friction_keep_the_bound(law):
-    for slenderness, friction in itertools.product(SLENDER, FRICTIONS):
-        body = plate(1.0, slenderness, 10.0, friction, restitution=0.25)
-        twist = body.turning(-1.0)
-        error_of(body, twist, law)
-        error_of(body, twist._replace(vx=twist.vx - 0.3 * slenderness), law)
-        bent = body._replace(new=body.new._replace(normal=(-0.6, 0.8), restitution=0.0))
-        error_of(bent, twist, law)
 
 
 def neighbours(number):
@@ -119,14 +88,6 @@ def test_a_cylinder_at_the_borders_of_its_modes(law):
     for gamma, friction in cases:
         body = cylinder(1.0, gamma, 2.0, friction)
         assert error_of(body, body.turning(-1.0), law) <= CLOSE
-
-
-@pytest.mark.parametrize("law", LAWS)
-def test_a_body_at_the_borders_of_a_jam(law):
-    # On one floor the path jams beyond f_A = (rho^2 + a^2)/(a h) = 2, if rho^2 < ab + f_B a h.
-    for old, b in itertools.product(neighbours(2.0), neighbours(0.5)):
-        body = TwoPointBody(1.0, 1.0, Contact(-1.0, -1.0, old), Contact(b, -1.0, 0.5))
-        error_of(body, Twist(-1.5, -1.0, -1.0), law)
 
 
 @pytest.mark.parametrize("law", LAWS)

@@ -132,20 +132,6 @@ def test_an_impact_that_gravity_outweighs_while_it_lasts_is_flagged_as_slow():
     assert not solve_impact(*falling_block(1.001 * border)).flags & Flag.SLOW_IMPACT
 
 
-@pytest.mark.parametrize("law", ["path", "total"])
-def test_where_an_impact_is_slow_is_the_users_choice(law):
-    body, twist = falling_block(1.0)
-    assert not solve_impact(body, twist, law).flags & Flag.SLOW_IMPACT
-    for validity in (Validity(contact_time=1.0), Validity(gravity=2000.0), Validity(gravity_share=1e-3)):
-        assert solve_impact(body, twist, law, validity).flags & Flag.SLOW_IMPACT
-    assert not solve_impact(*falling_block(1e-6), law, Validity(gravity_share=1e6)).flags & Flag.SLOW_IMPACT
-
-
-def test_an_impact_that_does_not_happen_is_not_slow():
-    body, _ = falling_block(1.0)
-    assert solve_impact(body, body.turning(omega=1.0)).flags is Flag.NONE
-
-
 @pytest.mark.parametrize("scale", [1e-3, 1.0, 1e3])
 def test_thickness_over_length_decides_whether_a_rod_is_thin(scale):
     for thickness, thin in ((0.0099, True), (0.0101, False)):
@@ -153,9 +139,3 @@ def test_thickness_over_length_decides_whether_a_rod_is_thin(scale):
         assert bool(solve_impact(body, body.turning(omega=-1.0)).flags & Flag.THIN_BODY) is thin
         everyone = solve_impact(body, body.turning(omega=-1.0), validity=Validity(slenderness=0.02))
         assert everyone.flags & Flag.THIN_BODY
-
-
-def test_a_body_that_reaches_far_below_one_of_its_contacts_is_not_thin():
-    body = TwoPointBody(1.0, 1.0, Contact(-1.0, 0.0, 0.5), Contact(1.0, -0.5, 0.5))
-    for one in (body, body._replace(old=body.old._replace(y=-0.5), new=body.new._replace(y=0.0))):
-        assert not solve_impact(one, one.turning(omega=-1.0)).flags & Flag.THIN_BODY

@@ -86,15 +86,6 @@ def test_a_body_that_slides_backwards_on_a_flat_floor_jams_under_two_conditions(
     assert min(counted.values()) > 300
 
 
-def test_a_body_that_slides_forwards_on_a_flat_floor_never_jams():
-    for body, twist, _, _ in random_sliders(1000):
-        forwards = twist._replace(vx=2.0 * twist.omega * body.old.y - twist.vx)
-        assert contact_velocity(body.old, forwards)[1] == pytest.approx(-contact_velocity(body.old, twist)[1])
-        outcome = solve_impact(body, forwards)
-        assert not outcome.flags & Flag.JAMMED
-        assert outcome.unique
-
-
 def test_alternatives_are_different_answers_of_the_same_law():
     for body, twist, self_locking, pressed in random_sliders(500):
         if self_locking and not pressed:

@@ -134,15 +134,6 @@ def test_without_and_with_full_restitution_the_derivative_is_one_sided():
         assert slope == pytest.approx(np.array(derivatives.restitution), abs=1e-6)
 
 
-def test_a_ball_that_falls_without_slip_loses_the_slip_that_it_gets():
-    body = TwoPointBody(2.0, 0.008, None, Contact(0.0, -0.1, 0.3))
-    k = 0.4
-    derivatives = np.array(sensitivity(body, Twist(0.0, -1.0, 0.0)).twist)
-    # It grips: what is left of vx is the speed at which it rolls, 1 / (1 + k), and rolls back no further.
-    assert derivatives[0, 0] == pytest.approx(1.0 / (1.0 + k), rel=ROUNDING)
-    assert derivatives[2, 0] == pytest.approx(-10.0 / (1.0 + k), rel=ROUNDING)
-
-
 def test_what_would_move_a_resting_contact_is_no_change():
     body = plate(length=1.0, height=0.4, mass=10.0, friction=0.2)
     turning = np.array(allowed_changes(body, body.turning(-1.0)))
