@@ -17,8 +17,9 @@ from random import Random
 from types import SimpleNamespace
 from typing import Any
 
+from compliant_impact import compliant_impact
+
 from impact_predictor.mechanics import bodies, closed_forms
-from impact_predictor.mechanics.compliant import compliant_impact
 from impact_predictor.mechanics.types import Contact, Mode, Twist
 from impact_predictor.report.accuracy import impacts
 from impact_predictor.report.accuracy.impacts import Aftermath, Struck
@@ -57,7 +58,7 @@ def ordinary(source: Random, shape: str) -> Struck:
 def compliant(strike: Struck, stiffness: float) -> Aftermath | None:
     """One impact on springs; None where the integration does not come to its end."""
     found = compliant_impact(strike.body, strike.twist, stiffness)
-    return None if found is None else Aftermath(found[1], found[0])
+    return Aftermath(found.twist, found.mode) if found.over else None
 
 
 def mujoco(strike: Struck, step: float) -> Aftermath:

@@ -24,18 +24,23 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from impact_predictor.mechanics.compliant import (
-    APPROACHES,
-    LONGEST,
-    QUIET,
-    STAYS,
-    Compliance,
-    damping_ratio,
-    force,
-)
+from impact_predictor.mechanics.compliant import Compliance, damping_ratio, force
 from impact_predictor.mechanics.impact import see
 from impact_predictor.mechanics.impact.answer import mode_of
 from impact_predictor.mechanics.types import Contact, Mode, Twist, TwoPointBody, Vector
+
+STAYS = 0.01
+"""A contact velocity after the impact below this part of the contact speeds before is zero for the mode: a contact with
+the damping of `PLASTIC` rebounds by a thousandth, one of two that push each other by several."""
+
+APPROACHES = 1e-6
+"""A contact that closes by less than this part of the contact speeds does not strike again."""
+
+QUIET = 1e-6
+"""The impact is over when the contact forces have fallen below this part of V sqrt(k m), V the contact speeds."""
+
+LONGEST = 1e4
+"""The longest impact, in units of sqrt(m / k)."""
 
 METHODS = ("Radau", "BDF", "LSODA", "DOP853", "RK45")
 """The integrators of scipy: three for stiff equations, two explicit ones for comparison."""
