@@ -214,8 +214,7 @@ def earlier_runs(path: str, bags: Sequence[str]) -> dict[str, Sequence[Touchdown
     from ..report.baseline import Earlier
 
     runs: dict[str, Sequence[TouchdownRow] | InputError] = {}
-    earlier = Earlier(path)
-    earlier.check_of_several(len(bags))
+    earlier = Earlier(path, len(bags))
     for bag, name in zip(bags, names_of(bags), strict=True):
         try:
             runs[bag] = earlier.touchdowns_of(bag, name)

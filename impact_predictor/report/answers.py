@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final
 
 from ..errors import need
 from ..prediction.types import Status
@@ -144,29 +144,12 @@ def _match(match: Match) -> dict[str, Any]:
     }
 
 
-class ParquetColumn(NamedTuple):
-    """A column: its name, the name of its type in Arrow, and its unit, "" where it has none."""
-
-    name: str
-    type: str
-    unit: str = ""
-
-
-def _columns_of(field: TouchdownField) -> list[ParquetColumn]:
+def _columns_of(field: TouchdownField) -> dict[str, tuple[str, str]]:
+    """The columns of a field: for each name the type in Arrow, and the unit."""
     stem, parts = field.key.removesuffix("_twist"), _PARTS.get(field.type)
     if parts is None:
-        return [ParquetColumn(field.key, "string" if field.type == "mode" else field.type, field.unit)]
-    return [ParquetColumn(f"{stem}_{part}", "float64", unit) for part, unit in parts.items()]
-
-
-COLUMNS: Final = (
-    ParquetColumn("bag", "string"),
-    ParquetColumn("bag_status", "string"),
-    ParquetColumn("bag_problem", "string"),
-    ParquetColumn("bag_samples", "int64"),
-    *(column for field in FIELDS for column in _columns_of(field)),
-)
-"""What is known of a touchdown, in SI units; docs/fleets.md tells what each column is."""
+        return {field.key: ("string" if field.type == "mode" else field.type, field.unit)}
+    return {f"{stem}_{part}": ("float64", unit) for part, unit in parts.items()}
 
 
 class TouchdownTable:
@@ -195,7 +178,7 @@ class TouchdownTable:
             for field in FIELDS:
                 value = touchdown.get(field.key)
                 values = (value,) if field.type not in _PARTS or value is None else value
-                row |= zip((column.name for column in _columns_of(field)), values, strict=False)
+                row |= zip(_columns_of(field), values, strict=False)
             self._rows.append(row)
         if len(self._rows) >= _GROUP:
             self.flush()
@@ -228,11 +211,14 @@ def touchdown_table(path: str | Path) -> Iterator[TouchdownTable]:
             return pyarrow.list_(arrow_type(name[5:-1]))
         return pyarrow.type_for_alias(name)
 
-    units = [{"unit": column.unit} if column.unit else {} for column in COLUMNS]
-    fields = [
-        pyarrow.field(one.name, arrow_type(one.type), metadata=unit) for one, unit in zip(COLUMNS, units, strict=True)
-    ]
-    with whole(path) as partial, ParquetWriter(partial, pyarrow.schema(fields), compression="zstd") as writer:
+    columns = dict.fromkeys(("bag", "bag_status", "bag_problem"), ("string", "")) | {"bag_samples": ("int64", "")}
+    for field in FIELDS:
+        columns |= _columns_of(field)
+    schema = pyarrow.schema(
+        pyarrow.field(name, arrow_type(kind), metadata={"unit": unit} if unit else {})
+        for name, (kind, unit) in columns.items()
+    )
+    with whole(path) as partial, ParquetWriter(partial, schema, compression="zstd") as writer:
         table = TouchdownTable(writer)
         yield table
         table.flush()

@@ -42,11 +42,11 @@ class Earlier:
     bags the folder of what was written, or the JSON with one object for each.
     """
 
-    def __init__(self, path: str | os.PathLike[str]) -> None:
-        """Look at it; JSON is read at once, bags when they are asked for.
+    def __init__(self, path: str | os.PathLike[str], bags: int = 1) -> None:
+        """Look at it, to compare so many bags with it; JSON is read at once, bags when they are asked for.
 
         Raises:
-            InputError: it does not exist, or is JSON that cannot be read, or none of a replay.
+            InputError: it does not exist, is JSON that cannot be read, or none of a replay, or the run of one bag only.
         """
         self.path = Path(path)
         # By the path of each bag, or by "" that of the only one: its touchdowns, or the file that has them.
@@ -59,12 +59,6 @@ class Earlier:
             files = self.path.rglob("*.mcap")
             self._runs = {os.fspath(file.relative_to(path).with_suffix("")): file for file in files}
 
-    def check_of_several(self, bags: int) -> None:
-        """Whether it can be of so many bags.
-
-        Raises:
-            InputError: it is the run of one bag, and there are several.
-        """
         if bags > 1 and "" in self._runs:
             raise InputError(
                 f"the baseline {self.path} is the run of one bag, but {bags:,} bags are given; give what a run of "

@@ -106,15 +106,16 @@ def border(thickness: float, friction: float) -> float:
     return high
 
 
-def trials(places: Sequence[tuple[int, int]], friction: float, angle: float) -> list[list[RodTrial]]:
-    """A row of trials for each place of the supports (mm), one for each thickness."""
+def trials(friction: float, angle: float) -> list[list[RodTrial]]:
+    """A row of trials for each place of the supports, one for each thickness."""
+    places = (*SYMMETRIC, *VERY_CLOSE)
     return [[trial(one, a / 1e3, b / 1e3, friction, angle) for one in THICKNESSES] for a, b in places]
 
 
 def experiment_json(friction: float, angle: float) -> dict[str, Any]:
     """All trials and the borders, as JSON has them."""
+    # The impulse of gravity on a rod of 1 kg while the contact lasts.
     weight = VALIDITY.gravity * VALIDITY.contact_time
-    rows = trials((*SYMMETRIC, *VERY_CLOSE), friction, angle)
     return {
         "borders": [{"thickness": thickness, "a": border(thickness, friction)} for thickness in THICKNESSES],
         "trials": [
@@ -125,23 +126,18 @@ def experiment_json(friction: float, angle: float) -> dict[str, Any]:
                 "predicted": one.outcome.mode.name,
                 "observed": one.observed.name,
                 "omega_ratio": one.ratio,
-                # The impulse of gravity on 1 kg while the contact lasts, as a part of that at the new support.
                 "gravity_share": weight / one.outcome.impulses[1][0],
                 "flags": [flag.name for flag in Flag if flag & one.outcome.flags],
             }
-            for row in rows
+            for row in trials(friction, angle)
             for one in row
         ],
     }
 
 
-def _said(place: int, row: Sequence[RodTrial]) -> str:
-    return row[place].said
-
-
 def print_experiment(console: Console, friction: float, angle: float) -> None:
     """Print what is predicted, beside what was seen."""
-    rows = trials((*SYMMETRIC, *VERY_CLOSE), friction, angle)
+    rows = trials(friction, angle)
     columns = [Column("a   b\nmm", lambda row: f"{1e3 * row[0].a:g} {1e3 * row[0].b:3g}")]
     for k, thickness in enumerate(THICKNESSES):
         columns.append(Column(f"predicted\n{1e3 * thickness:g} mm thick", partial(_said, k), left=True))
@@ -161,3 +157,7 @@ def print_experiment(console: Console, friction: float, angle: float) -> None:
         "Seen: sticking from a = 115.5 mm and no sliding; rods of 2 mm rebound at both supports everywhere (FLIGHT).",
         f"As seen: {len(every) - len(others)} of {len(every)}; of the {len(others)} others {doubted} are flagged.",
     )
+
+
+def _said(place: int, row: Sequence[RodTrial]) -> str:
+    return row[place].said

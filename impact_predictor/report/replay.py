@@ -28,6 +28,15 @@ TOO_EARLY: Final = {
     Status.NO_GEOMETRY: "before the first contact points",
 }
 """Samples that came before something is known, which is no fault of theirs."""
+_NO_TRUTH: Final = Truth(
+    touchdowns=0,
+    missed=0,
+    false=0,
+    unresolved=0,
+    mode_accuracy=None,
+    median_velocity_error=None,
+    median_time_error=None,
+)
 
 
 def print_replay(console: Console, result: Result, every: bool = False) -> None:
@@ -160,7 +169,7 @@ def bodies_of(result: Result, rows: Sequence[TouchdownRow]) -> list[BodySummary]
                 name=body,
                 samples=sum(sum(inputs.get(f"{body}/{kind}", {}).values()) for kind in STATES),
                 rows=[row for row in rows if row.body == body],
-                truth=truth or Truth(0, 0, 0, 0, None, None, None),
+                truth=truth or _NO_TRUTH,
                 warned=warned or Warned(None, None, None, None),
             )
         )

@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from math import degrees, hypot, inf
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 from rich.console import Console
-from rich.table import Table
 
-from ..mechanics.motion import End, RockingImpact, Trajectory
+from ..mechanics.motion import End, PlanarState, RockingImpact, Trajectory
 from ..mechanics.types import Mode
 from ..scenarios.deck.voyage import Followed, Voyage
 from ..scenarios.rocking import Rocking
@@ -61,29 +60,39 @@ def _spatial(impact: TrueImpact) -> dict[str, Any]:
     return impact_as_json(impact.stamp / NANOSECONDS, impact.mode, before, after)
 
 
-def impacts_table(header: str, strikes: Sequence[tuple[str, RockingImpact]], sign: float) -> Table:
-    """The first impacts of a motion: the place of each, and the angular velocities times a sign."""
+class ListedImpact(NamedTuple):
+    """An impact in a table, and where it was."""
+
+    number: int
+    place: str
+    strike: RockingImpact
+
+
+def _print_impacts(console: Console, header: str, places: Iterable[str], strikes: Sequence[RockingImpact]) -> None:
+    """Print the first impacts of a motion, angular velocities as magnitudes."""
+    listed = [ListedImpact(k, *one) for k, one in enumerate(zip(places, strikes[:MOST_IMPACTS], strict=False), 1)]
     columns = [
-        Column("impact\n", lambda row: f"{row[0]}"),
-        Column("time\ns", lambda row: f"{row[2].time:.6f}"),
-        Column(header, lambda row: row[1], left=True),
-        Column("mode\n", lambda row: row[2].outcome.mode.name, left=True),
-        Column("before\nrad/s", lambda row: f"{row[3]:.6g}"),
-        Column("after\nrad/s", lambda row: f"{row[4]:.6g}"),
-        Column("ratio\n", lambda row: f"{row[4] / row[3]:.4f}" if row[3] and row[4] else NONE),
-        Column("energy\nlost, J", lambda row: f"{row[2].outcome.energy_lost:.3g}"),
+        Column("impact\n", lambda row: f"{row.number}"),
+        Column("time\ns", lambda row: f"{row.strike.time:.6f}"),
+        Column(header, lambda row: row.place, left=True),
+        Column("mode\n", lambda row: row.strike.outcome.mode.name, left=True),
+        Column("before\nrad/s", lambda row: f"{_rate(row.strike.before):.6g}"),
+        Column("after\nrad/s", lambda row: f"{_rate(row.strike.after):.6g}"),
+        Column("ratio\n", lambda row: _ratio(row.strike)),
+        Column("energy\nlost, J", lambda row: f"{row.strike.outcome.energy_lost:.3g}"),
     ]
-    rows = []
-    for number, (place, strike) in enumerate(strikes[:MOST_IMPACTS], 1):
-        rates = [sign * one.omega if abs(one.omega) > _REST else 0.0 for one in (strike.before, strike.after)]
-        rows.append((number, place, strike, *rates))
-    return table_of(columns, rows)
-
-
-def _print_impacts(console: Console, header: str, strikes: Sequence[tuple[str, RockingImpact]], sign: float) -> None:
-    if strikes:
-        show(console, impacts_table(header, strikes, sign))
+    if listed:
+        show(console, table_of(columns, listed))
     say(console, *more(len(strikes) - MOST_IMPACTS, "impact", "read them with --json"))
+
+
+def _rate(state: PlanarState) -> float:
+    return abs(state.omega) if abs(state.omega) > _REST else 0.0
+
+
+def _ratio(strike: RockingImpact) -> str:
+    kept = strike.after.omega / strike.before.omega if _rate(strike.before) and _rate(strike.after) else None
+    return fixed(kept, 4)
 
 
 def rocking_as_json(run: Trajectory) -> dict[str, Any]:
@@ -103,7 +112,7 @@ def print_rocking(console: Console, rocking: Rocking) -> None:
     """Print the impacts of a motion and how it ended."""
     run = rocking.run
     say(console, f"{rocking.rocker.name}, {rocking.rocker.label}")
-    _print_impacts(console, "at\n", [("AB"[one.new], one) for one in run.impacts], 1.0)
+    _print_impacts(console, "at\n", ["AB"[one.new] for one in run.impacts], run.impacts)
     for one in run.accumulations:
         then = f"the body {'slides' if one.slides else 'stays'} on both contacts"
         if len(one.contacts) == 1:
@@ -145,8 +154,8 @@ def print_rolling(console: Console, rolling: Rolling) -> None:
     wheel = rolling.wheel
     slope = f"{degrees(wheel.hub.slope):.4g} degrees"
     say(console, f"wheel, {wheel.spokes} spokes {wheel.hub.leg:g} m long, slope {slope}")
-    strikes = [(f"{NONE if old is None else old} > {new}", strike) for old, new, strike in rolling.impacts]
-    _print_impacts(console, "from, to\nspoke", strikes, -1.0)
+    places = [f"{NONE if one.old is None else one.old} > {one.new}" for one in rolling.impacts]
+    _print_impacts(console, "from, to\nspoke", places, [one.strike for one in rolling.impacts])
     say(console, *rolling_sentences(rolling))
 
 

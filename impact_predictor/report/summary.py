@@ -26,6 +26,8 @@ PER_DECADE: Final = 100
 LEAST: Final = 1e-12
 """Smaller numbers, and 0, count as this one."""
 
+_PERCENTILES: Final = {"p50": 0.5, "p90": 0.9, "p99": 0.99}
+
 WHY: Final = {
     "ONE_POINT": "nothing stood on the support before",
     "OUT_OF_PLANE": "the body also turned off the plane of the impact, or its contacts lay beside it",
@@ -96,8 +98,8 @@ def spread_of(numbers: Sequence[float]) -> Distribution:
     if not numbers:
         return Distribution()
     bins = Counter(floor(PER_DECADE * log10(max(number, LEAST))) for number in numbers)
-    p50, p90, p99 = (quantile(numbers, part) for part in (0.5, 0.9, 0.99))
-    return Distribution(len(numbers), p50, p90, p99, max(numbers), bins)
+    percentiles = {name: quantile(numbers, part) for name, part in _PERCENTILES.items()}
+    return Distribution(number=len(numbers), most=max(numbers), bins=bins, **percentiles)
 
 
 def together(spreads: Iterable[Distribution]) -> Distribution:
@@ -108,8 +110,9 @@ def together(spreads: Iterable[Distribution]) -> Distribution:
     bins: Counter[int] = Counter()
     for spread in known:
         bins.update(spread.bins)
-    p50, p90, p99 = (_below(bins, part) for part in (0.5, 0.9, 0.99))
-    return Distribution(sum(bins.values()), p50, p90, p99, max(spread.most or 0.0 for spread in known), bins)
+    percentiles = {name: _below(bins, part) for name, part in _PERCENTILES.items()}
+    most = max(spread.most or 0.0 for spread in known)
+    return Distribution(number=bins.total(), most=most, bins=bins, **percentiles)
 
 
 def _below(bins: Mapping[int, int], part: float) -> float:
@@ -124,16 +127,17 @@ def _below(bins: Mapping[int, int], part: float) -> float:
 
 def to_json(spread: Distribution) -> dict[str, Any]:
     """As JSON: `count`, `p50`, `p90`, `p99`, `max`, and `bins` as pairs of a bin and its count, those with any."""
-    parts = {"p50": spread.p50, "p90": spread.p90, "p99": spread.p99, "max": spread.most}
-    return {"count": spread.number, **parts, "bins": [list(one) for one in sorted(spread.bins.items())]}
+    parts = {name: getattr(spread, name) for name in _PERCENTILES}
+    bins = [list(one) for one in sorted(spread.bins.items())]
+    return {"count": spread.number, **parts, "max": spread.most, "bins": bins}
 
 
 def from_json(entry: Mapping[str, Any] | None) -> Distribution:
     """What `to_json` wrote; empty where there is nothing."""
     if not entry:
         return Distribution()
-    p50, p90, p99, most = (entry[name] for name in ("p50", "p90", "p99", "max"))
-    return Distribution(entry["count"], p50, p90, p99, most, dict(entry["bins"]))
+    percentiles = {name: entry[name] for name in _PERCENTILES}
+    return Distribution(number=entry["count"], most=entry["max"], bins=dict(entry["bins"]), **percentiles)
 
 
 class Tally:

@@ -100,8 +100,7 @@ class BagCollection:
         if baseline is not None:
             from ..report.baseline import Earlier
 
-            self._earlier = Earlier(baseline)
-            self._earlier.check_of_several(len(bags))
+            self._earlier = Earlier(baseline, len(bags))
             self._names = dict(zip(bags, names_of(bags), strict=True))
         self._remap = remapping(setting(config, "remap"))
         self._tolerances = read_tolerances({name: str(setting(config, name)) for name in TOLERANCES})
