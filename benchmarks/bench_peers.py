@@ -9,7 +9,7 @@ step allows. Compliant contacts are Kelvin-Voigt springs with regularised fricti
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import lru_cache, partial
 from importlib.util import find_spec
 from math import hypot
@@ -23,7 +23,7 @@ from impact_predictor.mechanics import bodies, closed_forms
 from impact_predictor.mechanics.types import Contact, Mode, Twist
 from impact_predictor.report.accuracy import impacts
 from impact_predictor.report.accuracy.impacts import Aftermath, Struck
-from impact_predictor.report.accuracy.measure import IMPACT, AccuracyScene, Method, error_of, rows_of
+from impact_predictor.report.accuracy.measure import IMPACT, AccuracyScene, error_of, rows_of
 
 STEPS = 5
 """Steps of MuJoCo through an impact."""
@@ -96,12 +96,13 @@ def geoms(contact: Contact, pad: float, bit: int) -> tuple[str, str]:
     return plane, f'<geom type="sphere" size="{pad:.17g}" pos="{centre}" {shared}/>'
 
 
-def peers(step: float = 1e-4) -> Iterator[Method]:
+def peers(step: float = 1e-4) -> dict[tuple[str, str], Callable[[Any], Any]]:
     """The methods that this machine has, after the path law."""
-    yield Method("path law", "", partial(impacts.law, name="path"))
-    yield Method("compliant contacts", "k = 1e+08 N/m", partial(compliant, stiffness=1e8))
+    found: dict[tuple[str, str], Callable[[Any], Any]] = {("path law", ""): partial(impacts.law, name="path")}
+    found["compliant contacts", "k = 1e+08 N/m"] = partial(compliant, stiffness=1e8)
     if find_spec("mujoco"):
-        yield Method("MuJoCo", f"dt = {step:g} s", partial(mujoco, step=step))
+        found["MuJoCo", f"dt = {step:g} s"] = partial(mujoco, step=step)
+    return found
 
 
 def question() -> SimpleNamespace:
@@ -119,7 +120,7 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=0.6, help="for a method on a scene")
     arguments = parser.parse_args()
     print(f"{'scene':12}{'method':36}{'median error':>14}{'90 % below':>12}{'us':>11}{'problems':>10}")
-    for row in rows_of(question(), list(peers()), arguments.count, arguments.seconds):
+    for row in rows_of(question(), peers(), arguments.count, arguments.seconds):
         median = float("inf") if row["twist_error"] is None else row["twist_error"]
         method = f"{row['method']} {row['setting']}"
         print(f"{row['scene']:12}{method:36}{median:14.2g}{error_of(row):12.2g}{row['us']:11.1f}{row['count']:10,}")

@@ -20,7 +20,7 @@ from ...mechanics.random_problems import problems_of
 from ...mechanics.transverse import Transverse, solve_transverse_impact
 from ...mechanics.types import Mode, Twist, TwoPointBody
 from ...prediction.impact import TOLERANCE
-from .measure import IMPACT, AccuracyScene, Method
+from .measure import IMPACT, AccuracyScene, Methods
 
 FINEST: Final = 1e-7
 """Tolerance of the reference where a body slips across the plane, too."""
@@ -140,19 +140,11 @@ def errors_of(strike: Struck, after: Aftermath, right: Aftermath) -> dict[str, f
 
 ACROSS: Final = "path law with slip across"
 
-SAYS: Final = {
-    "path law": "The impulse path of this program (Routh's hypothesis).",
-    "total law": "The paper's laws on the impulses of the whole impact, at both contacts at once.",
-    ACROSS: "The path law with friction against the slip across the plane, too, within a tolerance: the node's.",
-    "no slip": "Housner's rocking model: the old contact leaves and the new one neither slips nor bounces.",
-}
-"""What the methods do."""
-
 # Without slip across the plane this is the path law, to the bit.
-USED: Final = Method(ACROSS, f"tolerance = {TOLERANCE:g}", partial(across, tolerance=TOLERANCE))
-METHODS: Final = [
-    *(Method(f"{name} law", "", partial(law, name=name)) for name in LAWS),
-    USED,
-    Method(ACROSS, "tolerance = 1e-06", partial(across, tolerance=1e-6)),
-    Method("no slip", "", no_slip),
-]
+USED: Final = (ACROSS, f"tolerance = {TOLERANCE:g}")
+METHODS: Final[Methods] = {
+    **{(f"{name} law", ""): partial(law, name=name) for name in LAWS},
+    USED: partial(across, tolerance=TOLERANCE),
+    (ACROSS, "tolerance = 1e-06"): partial(across, tolerance=1e-6),
+    ("no slip", ""): no_slip,
+}

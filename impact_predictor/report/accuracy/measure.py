@@ -17,6 +17,8 @@ from timeit import Timer
 from typing import Any, Final, NamedTuple
 
 AccuracyRow = dict[str, Any]
+Methods = Mapping[tuple[str, str], Callable[[Any], Any]]
+"""Methods by name and setting, "" where it has none; each answers a problem, or None where it has no answer."""
 
 ACCURACIES: Final = (1e-2, 1e-4, 1e-6, 1e-9)
 """Relative errors that a user may want, for which the report chooses a method."""
@@ -48,21 +50,13 @@ class AccuracyScene(NamedTuple):
     reference: str
 
 
-class Method(NamedTuple):
-    """A method with one setting, "" where it has none; it answers a problem, or None where it has no answer."""
-
-    name: str
-    setting: str
-    solve: Callable[[Any], Any]
-
-
 def problems(draw: Callable[[Random], Any], name: str, count: int) -> list[Any]:
     """`count` problems of a scene, always the same."""
     source = Random(f"4 {name}")
     return [draw(source) for _ in range(count)]
 
 
-def rows_of(question: Any, methods: Sequence[Method], count: int, seconds: float) -> Iterator[AccuracyRow]:
+def rows_of(question: Any, methods: Methods, count: int, seconds: float) -> Iterator[AccuracyRow]:
     """Methods on `count` problems of each scene of a question; a slow one gets as many as it answers in `seconds`.
 
     `touchdowns` and `impacts` are the questions: their `SCENES` draw problems, `reference_of` answers one rightly, and
@@ -72,18 +66,18 @@ def rows_of(question: Any, methods: Sequence[Method], count: int, seconds: float
         drawn = problems(draw, scene.name, count)
         references = list(map(question.reference_of, drawn))
         none = dict.fromkeys(ERRORS[scene.question], inf)
-        for method in methods:
+        for (name, setting), solve in methods.items():
             found, us, began = list[Mapping[str, float]](), list[float](), process_time()
             with warnings.catch_warnings():
                 # Methods that lose their way say so.
                 warnings.simplefilter("ignore")
                 for problem, right in zip(drawn, references, strict=True):
-                    answer = method.solve(problem)
+                    answer = solve(problem)
                     found.append(none if answer is None else question.errors_of(problem, answer, right))
-                    us.append(1e6 * seconds_of(partial(method.solve, problem)))
+                    us.append(1e6 * seconds_of(partial(solve, problem)))
                     if process_time() - began > seconds:
                         break
-            yield row_of(scene, (method.name, method.name, method.setting), us, found)
+            yield row_of(scene, (name, name, setting), us, found)
 
 
 def seconds_of(call: Callable[[], Any]) -> float:
@@ -141,10 +135,11 @@ def choices_of(rows: Iterable[AccuracyRow], question: str) -> Iterator[dict[str,
         yield choice | {key: best and best[key] for key in ("family", "method", "setting", "us")}
 
 
-def used_of(method: Method, rows: Iterable[AccuracyRow], question: str) -> dict[str, str]:
+def used_of(method: tuple[str, str], rows: Iterable[AccuracyRow], question: str) -> dict[str, str]:
     """What the node uses, with its error and cost in a sentence; empty where it was not measured."""
-    row = next((one for one in on_all(rows, question) if (one["method"], one["setting"]) == method[:2]), None)
-    if row is None:
-        return {}
-    why = f"90 % of the predictions of every scene are within {error_of(row):.1g}; one takes {row['us']:.0f} us."
-    return {"method": method.name, "setting": method.setting, "why": why}
+    for row in on_all(rows, question):
+        name, setting, us = row["method"], row["setting"], row["us"]
+        if (name, setting) == method:
+            why = f"90 % of the predictions of every scene are within {error_of(row):.1g}; one takes {us:.0f} us."
+            return {"method": name, "setting": setting, "why": why}
+    return {}

@@ -101,11 +101,9 @@ def report(size: Size, command: str, tell: Callable[[int], None] = lambda done: 
             rows.append(row)
             tell(len(rows))
     used = {name: measure.used_of(one, rows, name) for name, one in USED.items()}
-    says = {**touchdowns.SAYS, **impacts.SAYS, "predictor": "The whole predictor on each sample, by the law named."}
     return {
         "made": made(command),
         "node": {name: method for name, method in used.items() if method},
-        "families": [{"name": one, "says": says[one]} for one in dict.fromkeys(row["family"] for row in rows)],
         "scenes": [scene._asdict() for scene in (*touchdowns.SCENES, *impacts.SCENES, *RANDOM, CUBE)],
         "rows": rows,
         "choices": [one for name in used for one in measure.choices_of(rows, name)],

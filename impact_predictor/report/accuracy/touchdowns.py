@@ -17,7 +17,7 @@ from scipy.integrate import solve_ivp
 from ...mechanics.motion import PlanarState, next_touchdown
 from ...mechanics.types import Twist, Vector
 from ...prediction.points import ACCURACY
-from .measure import TOUCHDOWN, AccuracyScene, Method
+from .measure import TOUCHDOWN, AccuracyScene, Methods
 
 GRAVITY: Final = (0.0, -9.81)
 SLIPS: Final = 0.2
@@ -188,18 +188,10 @@ def errors_of(fall: FallingBody, answer: PredictedTouchdown, right: PredictedTou
     return {"time_error": abs(answer.time - right.time) / right.time, "twist_error": apart}
 
 
-SAYS: Final = {
-    "constant twist": "The gap of the new contact goes on closing at the rate that it has now.",
-    "constant acceleration": "Gap and twist go on with the accelerations that they have now.",
-    "DOP853": "scipy's solve_ivp of order 8 with adaptive steps; its event function is the gap.",
-    "next_touchdown": "The node's: closed forms where the stance sticks, steps within a tolerance where it slips.",
+USED: Final = ("next_touchdown", f"tolerance = {ACCURACY:g}")
+METHODS: Final[Methods] = {
+    ("constant twist", ""): partial(extrapolated, accelerated=False),
+    ("constant acceleration", ""): partial(extrapolated, accelerated=True),
+    **{("DOP853", f"rtol = {rtol:g}"): partial(integrated, tolerance=rtol) for rtol in (1e-3, 1e-6, 1e-9)},
+    USED: own,
 }
-"""What the methods do."""
-
-USED: Final = Method("next_touchdown", f"tolerance = {ACCURACY:g}", own)
-METHODS: Final = [
-    Method("constant twist", "", partial(extrapolated, accelerated=False)),
-    Method("constant acceleration", "", partial(extrapolated, accelerated=True)),
-    *(Method("DOP853", f"rtol = {rtol:g}", partial(integrated, tolerance=rtol)) for rtol in (1e-3, 1e-6, 1e-9)),
-    USED,
-]

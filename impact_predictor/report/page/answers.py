@@ -6,7 +6,6 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from math import inf
 from pathlib import Path
-from statistics import median
 from typing import Any, Final
 
 from ...bags.find import told_apart
@@ -122,7 +121,7 @@ def badness(answer: BagAnswer) -> tuple[float, ...]:
 
 
 def facts_of(answers: Sequence[BagAnswer]) -> list[Headline]:
-    """How many, how right, how early and at what cost, of one bag or of all together; "–" where nothing tells it."""
+    """How many, how right (medians), how early and at what cost, of one bag or of all; "–" where nothing tells it."""
     number, scored, reasons = sum(1 for _ in touchdowns_of(answers)), scored_of(answers), uncompared(answers)
     compared = f"{len(scored):,} compared with measured velocities" if scored or reasons else ""
     compared += "".join(f"; most of the others not, as {WHY[reason]}" for reason, _ in reasons.most_common(1))
@@ -133,27 +132,21 @@ def facts_of(answers: Sequence[BagAnswer]) -> list[Headline]:
         missed += f", {truth['unresolved']:,} more too slow or too close to be seen" if truth["unresolved"] else ""
     elif landings := [one["time_error"] is not None for one in touchdowns_of(answers) if "foot" in one]:
         found, missed = f"{sum(landings):,} of {len(landings):,}", "landings, as the feet's motion shows them"
-    errors, cost = velocity_errors(answers), costs(answers)
-    counted_ones = (one for one in touchdowns_of(answers) if one["scored"] or one.get("time_error") is not None)
-    times = [one["announced_lead_time"] for one in counted_ones]
-    wrong = f"median, against the {'true' if truth else 'measured'} ones; 90 % below {part_words(errors.p90)}."
-    wrong = f"{wrong} {right_modes(confusion(answers))}" if errors.number else ""
-    spans = (one for one in errors_ahead(answers, "time_errors_ahead") if one.begin >= LEAST_LEAD_TIME)
-    time, of_time = next(spans, SpanErrors(0.0, 0.0, Distribution())), ""
-    if time.errors.number:
-        of_time = f"median, {1e3 * time.begin:.0f} to {1e3 * time.end:.0f} ms ahead; "
-        of_time += f"90 % below {time_words(time.errors.p90)}"
-    early = (
-        f"median; 90 % at least {time_words(quantile(times, 0.1))}, the latest {time_words(min(times))}"
-        if times
-        else ""
-    )
-    per_sample = f"median; 99 % below {time_words(1e-6 * (cost.p99 or 0.0))}" if cost.number else ""
+    errors, cost, of = velocity_errors(answers), costs(answers), "true" if truth else "measured"
+    ahead = [one for one in errors_ahead(answers, "time_errors_ahead") if one.begin >= LEAST_LEAD_TIME]
+    span = f"{1e3 * ahead[0].begin:.0f} to {1e3 * ahead[0].end:.0f} ms ahead" if ahead else ""
+    late = ahead[0].errors if ahead else Distribution()
+    known = [one for one in touchdowns_of(answers) if one["scored"] or one.get("time_error") is not None]
+    times = [one["announced_lead_time"] for one in known]
+    first, early, latest = (quantile(times, part) if times else None for part in (0.5, 0.1, 0.0))
+    half, most = (None if one is None else 1e-6 * one for one in (cost.p50, cost.p99))
+    right = f"median against the {of} ones; 90 % below {part_words(errors.p90)}. {right_modes(confusion(answers))}"
+    soon = f"median; 90 % at least {time_words(early)}, the latest {time_words(latest)}"
     return [
         Headline("touchdowns", f"{number:,}", compared),
         Headline("found", found, missed),
-        Headline("velocity error", part_words(errors.p50), wrong),
-        Headline("time error", time_words(time.errors.p50), of_time),
-        Headline("first ahead", time_words(median(times) if times else None), early),
-        Headline("cost of a sample", time_words(None if cost.p50 is None else 1e-6 * cost.p50), per_sample),
+        Headline("velocity error", part_words(errors.p50), right),
+        Headline("time error", time_words(late.p50), f"median {span}; 90 % below {time_words(late.p90)}"),
+        Headline("first ahead", time_words(first), soon),
+        Headline("cost of a sample", time_words(half), f"median; 99 % below {time_words(most)}"),
     ]

@@ -38,10 +38,14 @@ class PageTable(NamedTuple):
 
 
 class Chart(NamedTuple):
-    """A plotly figure with a title and a caption; `wide` takes the whole width, `anchor` is where links lead, or ""."""
+    """A plotly figure with a title and a caption; `wide` takes the whole width, `anchor` is where links lead, or "".
+
+    Text of others must be escaped in it, as `safe` does it; the page adds its look to the layout.
+    """
 
     title: str
-    figure: Mapping[str, Any]
+    traces: Sequence[Mapping[str, Any]]
+    layout: Mapping[str, Any]
     caption: str = ""
     wide: bool = True
     anchor: str = ""
@@ -64,26 +68,6 @@ class Headline(NamedTuple):
     more: str
 
 
-def plot(
-    traces: Sequence[Mapping[str, Any]], height: int, xaxis: dict[str, Any], yaxis: dict[str, Any], **layout: Any
-) -> dict[str, Any]:
-    """A figure of traces, each a dictionary as plotly has it; text of others must be escaped, as `safe` does it."""
-    axis = {"gridcolor": f"{GREY}40", "zeroline": False}
-    look: dict[str, Any] = {
-        "height": height,
-        "margin": {"l": 64, "r": 16, "t": 40, "b": 48},
-        "paper_bgcolor": "rgba(0,0,0,0)",
-        "plot_bgcolor": "rgba(0,0,0,0)",
-        "font": {"size": 13, "family": "system-ui, sans-serif", "color": "#444"},
-        "hoverlabel": {"align": "left", "bgcolor": "white", "font": {"color": "black"}},
-        "legend": {"orientation": "h", "yanchor": "bottom", "y": 1.0},
-        "hovermode": "closest",
-        "xaxis": {**axis, **xaxis},
-        "yaxis": {**axis, **yaxis},
-    }
-    return {"data": traces, "layout": look | layout}
-
-
 def marks(name: str, points: Iterable[tuple[float, float, str]], **look: Any) -> dict[str, Any]:
     """A trace of marks with their points; lines with `mode`."""
     return {"type": "scatter", "mode": "markers", "name": safe(name), **points_of(points), **look}
@@ -93,11 +77,6 @@ def points_of(points: Iterable[tuple[float, float, str]]) -> dict[str, Any]:
     """The places of points, and the texts of each that a reader sees who points at it."""
     x, y, texts = zip(*points, strict=True)
     return {"x": x, "y": y, "hovertext": [safe(text) for text in texts], "hoverinfo": "text"}
-
-
-def titled(title: str, **axis: Any) -> dict[str, Any]:
-    """An axis with its title, quantity and unit."""
-    return {"title": {"text": title, "standoff": 8}, **axis}
 
 
 def safe(text: str) -> str:

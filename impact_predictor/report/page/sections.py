@@ -12,10 +12,10 @@ from ...prediction.types import Status
 from ...stamps import NANOSECONDS
 from ...wording import counted, words
 from ..modes import MODES, PALETTE
-from ..summary import PER_DECADE, WHY, SpanErrors, quantile, without_bag
+from ..summary import PER_DECADE, WHY, quantile, without_bag
 from . import answers as taken
 from .answers import NOTHING, BagAnswer
-from .document import GREY, Cell, Chart, PageTable, Section, marks, part_words, plot, time_words, titled
+from .document import GREY, Cell, Chart, PageTable, Section, marks, part_words, time_words
 from .timeline import FALSE, MANY, MISSED, in_order, look_of, timeline
 
 DRAWN: Final = 8
@@ -51,7 +51,7 @@ READING: Final = (
 def when(answers: Sequence[BagAnswer], places: Sequence[int]) -> Section | None:
     """The timelines of some bags; None where nothing was predicted."""
     names = taken.names_of(answers)
-    charts = [Chart(names[one], timeline(answers[one]), anchor=f"bag-{one + 1}") for one in places]
+    charts = [timeline(names[one], answers[one], f"bag-{one + 1}") for one in places]
     return Section("when", "When the touchdowns came", [READING], charts) if charts else None
 
 
@@ -98,8 +98,9 @@ def _against(title: str, compared: Sequence[tuple[str, BagAnswer]], part: int) -
     for mode in in_order(points):
         look = {"type": kind, "marker": look_of(mode) | {"size": 8}, "opacity": 0.75, "hovertemplate": hover}
         traces.append(marks(f"{mode} ({len(points[mode]):,})", points[mode], **look))
-    axes = {"xaxis": titled("measured, m/s"), "yaxis": titled("predicted, m/s", scaleanchor="x")}
-    return Chart(title, plot(traces, 460, **axes), wide=False)
+    layout = {"height": 460, "xaxis": {"title": "measured, m/s"}}
+    layout["yaxis"] = {"title": "predicted, m/s", "scaleanchor": "x"}
+    return Chart(title, traces, layout, wide=False)
 
 
 UNTOLD: Final = (
@@ -142,29 +143,22 @@ def lead_times(answers: Sequence[BagAnswer]) -> Section | None:
         ("relative_errors_ahead", "Velocities after the impact, against measured ones", "relative error, %", 100.0),
         ("time_errors_ahead", "Time of the touchdown", "error of the time, ms", 1e3),
     ):
-        if spans := taken.errors_ahead(answers, key):
-            number = sum(one.errors.number for one in spans)
-            caption = f"All {counted(number, 'prediction')}, by how long before the touchdown they were made."
-            charts.append(Chart(title, _over_lead_time(spans, axis, factor), caption, wide=False))
+        spans, traces = taken.errors_ahead(answers, key), []
+        for name, part, colour in (("median", "p50", PALETTE[0]), ("90 % below", "p90", PALETTE[1])):
+            points = []
+            for one in spans:
+                made = f"{1e3 * one.begin:.0f} to {1e3 * one.end:.0f} ms ahead"
+                error, number = factor * getattr(one.errors, part), counted(one.errors.number, "prediction")
+                points.append((500.0 * (one.begin + one.end), error, f"{number}, {made}\n{name} {error:.3g} ({axis})"))
+            if points:
+                look = {"marker": {"color": colour, "size": 8}, "line": {"color": colour}}
+                traces.append(marks(name, points, mode="lines+markers", **look))
+        if traces:
+            across = {"title": "made before the touchdown, ms", "range": [0.0, 1e3 * spans[-1].end]}
+            layout = {"height": 320, "xaxis": across, "yaxis": {"title": axis, "rangemode": "tozero"}}
+            charts.append(Chart(title, traces, layout, wide=False))
     said = "Every sample before a touchdown makes a prediction of it. Does one that is made earlier do as well?"
     return Section("ahead", "Error against the time ahead", [said], charts) if charts else None
-
-
-def _over_lead_time(spans: Sequence[SpanErrors], axis: str, factor: float) -> dict[str, Any]:
-    traces = []
-    for name, part, symbol, colour in (
-        ("median", "p50", "circle", PALETTE[0]),
-        ("90 % below", "p90", "square", PALETTE[1]),
-    ):
-        points = []
-        for one in spans:
-            error = factor * getattr(one.errors, part)
-            made = f"{1e3 * one.begin:.0f} to {1e3 * one.end:.0f} ms ahead, {counted(one.errors.number, 'prediction')}"
-            points.append((500.0 * (one.begin + one.end), error, f"{made}\n{name} {error:.3g} ({axis})"))
-        look = {"color": colour, "symbol": symbol, "size": 8}
-        traces.append(marks(name, points, mode="lines+markers", marker=look, line={"color": colour}))
-    across = titled("made before the touchdown, ms", range=[0.0, 1e3 * spans[-1].end])
-    return plot(traces, 320, across, titled(axis, rangemode="tozero"))
 
 
 def cost(answers: Sequence[BagAnswer]) -> Section | None:
@@ -186,10 +180,11 @@ def cost(answers: Sequence[BagAnswer]) -> Section | None:
         between = f"{time_words(1e-6 * begin)} to {time_words(1e-6 * end)}"
         points.append((middle, counts[place], f"{between}: {counted(counts[place], 'sample')}"))
     steps = marks("samples", points, mode="lines", line={"shape": "hvh", "color": PALETTE[0]}, fill="tozeroy")
-    figure = plot([steps], 300, titled("time for a sample, us", type="log", dtick=1), titled("samples"))
+    across = {"title": "time for a sample, us", "type": "log", "dtick": 1}
+    layout = {"height": 300, "xaxis": across, "yaxis": {"title": "samples"}}
     known = (time_words(1e-6 * (one or 0.0)) for one in (spread.p50, spread.p90, spread.p99, spread.most))
     caption = "The median of {} is {}, 90 % are below {}, 99 % below {}, the longest is {}."
-    chart = Chart("Time for a sample", figure, caption.format(counted(spread.number, "sample"), *known))
+    chart = Chart("Time for a sample", [steps], layout, caption.format(counted(spread.number, "sample"), *known))
     return Section("cost", "What a sample costs", [said], [chart])
 
 

@@ -11,7 +11,7 @@ from ...stamps import NANOSECONDS
 from ...wording import words
 from ..modes import EDGE, MODES
 from .answers import BagAnswer, begin_of
-from .document import GREY, marks, part_words, plot, points_of, safe, time_words, titled
+from .document import GREY, Chart, marks, part_words, points_of, safe, time_words
 
 MISSED: Final = "missed"
 """The mark of a true touchdown that no prediction announced."""
@@ -48,8 +48,8 @@ class Lane(NamedTuple):
     colour: str = BLUE
 
 
-def timeline(answer: BagAnswer) -> dict[str, Any]:
-    """The timeline of a bag as a figure of plotly."""
+def timeline(title: str, answer: BagAnswer, anchor: str) -> Chart:
+    """The timeline of a bag."""
     lanes = [lane for body in answer.get("gaits", {}) for lane in _feet(answer, body)]
     both = [*answer["touchdowns"], *answer.get("true_touchdowns", ())]
     for body in dict.fromkeys(one["body"] for one in both if "foot" not in one):
@@ -76,22 +76,17 @@ def timeline(answer: BagAnswer) -> dict[str, Any]:
             look["error_x"] = announced | {"width": 0, "thickness": 1.5, "color": GREY}
             traces.append(marks(label.format(name), drawn[faint, name], **look))
     end = ((answer.get("end") or begin) - begin) / NANOSECONDS
-    return plot(
-        traces,
-        height=120 + 28 * len(lanes),
-        margin={"l": 16, "r": 16, "t": 40, "b": 48},
-        xaxis=titled("time in the record, s", range=[-0.01 * end, 1.01 * end] if end else None),
-        yaxis={
-            "tickvals": [-row for row in range(len(lanes))],
-            "ticktext": [safe(lane.name) for lane in lanes],
-            "range": [0.6 - len(lanes), 0.6],
-            "automargin": True,
-            "fixedrange": True,
-            "showgrid": False,
-        },
-        barmode="overlay",
-        showlegend=True,
-    )
+    lane_axis = {"tickvals": [-row for row in range(len(lanes))], "ticktext": [safe(lane.name) for lane in lanes]}
+    lane_axis |= {"range": [0.6 - len(lanes), 0.6], "automargin": True, "fixedrange": True, "showgrid": False}
+    layout = {
+        "height": 120 + 28 * len(lanes),
+        "margin": {"l": 16, "r": 16, "t": 40, "b": 48},
+        "xaxis": {"title": "time in the record, s", "range": [-0.01 * end, 1.01 * end] if end else None},
+        "yaxis": lane_axis,
+        "barmode": "overlay",
+        "showlegend": True,
+    }
+    return Chart(title, traces, layout, anchor=anchor)
 
 
 def look_of(mark: str) -> dict[str, Any]:

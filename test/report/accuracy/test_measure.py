@@ -13,7 +13,6 @@ import pytest
 from impact_predictor.report.accuracy.measure import (
     TOUCHDOWN,
     AccuracyScene,
-    Method,
     choices_of,
     error_of,
     row_of,
@@ -32,14 +31,13 @@ def busy(seconds: float) -> float:
 
 
 def test_a_method_answers_every_problem_or_as_many_as_there_is_time_for() -> None:
-    methods = [Method("exact", "", lambda n: n), Method("none", "", lambda n: None)]
-    slow = Method("slow", "", lambda n: busy(0.03))
+    methods = {("exact", ""): lambda n: n, ("none", ""): lambda n: None, ("slow", ""): lambda n: busy(0.03)}
     question = SimpleNamespace(
         SCENES=dict.fromkeys(SCENES, Random.random),
         reference_of=lambda problem: problem,
         errors_of=lambda problem, answer, right: {"time_error": abs(answer - right), "twist_error": 0.0},
     )
-    exact, none, few = list(rows_of(question, [*methods, slow], 50, 0.05))[:3]
+    exact, none, few = list(rows_of(question, methods, 50, 0.05))[:3]
     assert (exact["method"], exact["count"], exact["failed"], error_of(exact)) == ("exact", 50, 0, 0.0)
     assert (none["count"], none["failed"], error_of(none)) == (50, 50, inf)
     assert 1 <= few["count"] <= 3
@@ -79,7 +77,7 @@ def test_the_cheapest_that_is_good_enough_on_all_computed_scenes_is_chosen() -> 
 
 def test_what_the_node_uses_is_told_with_its_numbers() -> None:
     rows = [*ROWS, row(0, "own", 10.0, 1e-15, "t = 1"), row(1, "own", 12.0, 1e-14, "t = 1")]
-    used = used_of(Method("own", "t = 1", busy), rows, TOUCHDOWN)
+    used = used_of(("own", "t = 1"), rows, TOUCHDOWN)
     assert (used["method"], used["setting"]) == ("own", "t = 1")
     assert "within 1e-14; one takes 11 us" in used["why"]
-    assert used_of(Method("other", "", busy), rows, TOUCHDOWN) == {}
+    assert used_of(("other", ""), rows, TOUCHDOWN) == {}

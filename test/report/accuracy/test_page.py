@@ -28,15 +28,15 @@ def test_the_picture_of_a_question_has_a_point_for_each_method_on_each_scene(que
     (figure,) = read(report).figures.values()
     names = {scene["name"]: scene["title"] for scene in report["scenes"]}
     drawn = {
-        (family, text.rpartition("<br>")[0]): (x, y)
-        for family, trace in traces(figure).items()
+        (method, text.rpartition("<br>")[0]): (x, y)
+        for method, trace in traces(figure).items()
         for text, x, y in zip(trace["hovertext"], trace["x"], trace["y"], strict=True)
     }
     expected = {}
     for row in report["rows"]:
         if row["scene"] in names and error_of(row) < float("inf"):
             name = ", ".join(filter(None, (row["method"], row["setting"])))
-            expected[row["family"], f"{name}<br>{names[row['scene']]}"] = (row["us"], max(error_of(row), 1e-16))
+            expected[row["method"], f"{name}<br>{names[row['scene']]}"] = (row["us"], max(error_of(row), 1e-16))
     assert drawn == expected
     assert figure["layout"]["yaxis"]["type"] == figure["layout"]["xaxis"]["type"] == "log"
 
@@ -61,14 +61,14 @@ def test_names_of_a_report_cannot_become_part_of_the_page() -> None:
     report, evil = copy.deepcopy(REPORT), "<script>alert(1)</script>"
     report["made"]["machine"] = report["scenes"][0]["title"] = evil
     for row in report["rows"]:
-        row["family"] = row["setting"] = evil
+        row["method"] = row["setting"] = evil
     text = accuracy_page(report, script="")
     assert "<script>alert" not in text
     assert evil in PageReader(text).text
 
 
 def test_a_report_with_little_in_it_makes_a_page_too(tmp_path: Path) -> None:
-    report = REPORT | {"rows": [], "choices": [], "node": {}, "families": []}
+    report = REPORT | {"rows": [], "choices": [], "node": {}}
     assert read(report).figures == {}
     with pytest.raises(InputError, match="cannot be written: No such file or directory"):
         write_accuracy_page(tmp_path / "nowhere" / "report.html", report)
