@@ -223,7 +223,7 @@ def test_a_mistake_is_said_in_one_sentence_and_nothing_is_written(
 @pytest.mark.parametrize(
     ("name", "option", "last"),
     [
-        ("rod.mcap", "-o", "impact_predictor.bags.write.BagWriter._publish"),
+        ("rod.mcap", "-o", "rosbags.rosbag2.Writer.close"),
         ("rod.png", "--plot", "matplotlib.figure.Figure.savefig"),
         ("rod.gif", "--animate", "PIL.Image.Image.save"),
     ],
