@@ -23,7 +23,7 @@ from ..stamps import NANOSECONDS
 from ..wording import counted, words
 from . import plot
 from .modes import EDGE, MODES, PALETTE
-from .motion_pictures import OPEN, STICKS, BodyScene, Look
+from .motion_pictures import OPEN, STICKS, BodyScene
 
 LONGEST: Final = 12.0
 """Seconds of a motion that a film shows, in real time: those in which most units move."""
@@ -234,34 +234,20 @@ def _draw_roll(deck: MovingSupport, units: Sequence[UnitMotion], times: NDArray[
 class UnitScene(BodyScene):
     """One unit on its piece of the deck, seen from astern by a camera that stays upright: port is on the left."""
 
-    names = "", ""
-
     def __init__(self, deck: MovingSupport, motion: UnitMotion, times: Sequence[float]) -> None:
         """Look at the motion at some times (s), to know how much room it needs."""
-        self._deck, self._motion, unit = deck, motion, motion.unit
-        self._used = margin_used(deck, unit, motion.times)
-        outline, scene = np.zeros((0, 2)), unit.scene
-        assert unit.body.old is not None
-        self._begin = plot.placed(np.array([(unit.body.old.x, unit.body.old.y)]), unit.start)[0]
+        self._motion, unit, scene = motion, motion.unit, motion.unit.scene
+        self._used, outline = margin_used(deck, unit, motion.times), np.zeros((0, 2))
         if not scene.radius > 0.0:
             (low, high), (x, y, z) = box_of(scene.points, scene.center_of_mass), scene.center_of_mass
             corners = np.array([(one - x, other - y) for one in (low[0], high[0]) for other in (low[1], high[1])])
             across = corners @ (np.sin(scene.yaw), np.cos(scene.yaw))
             outline = plot.box(across.min(), across.max(), low[2] - z, high[2] - z)
-        super().__init__(unit.name, unit.body, outline, times[::5])
+        super().__init__(unit.name, unit.body, outline, deck, unit.start, motion.at, times[::5])
 
-    def state(self, time: float) -> PlanarState:
-        """The state on the deck at a time in s."""
-        state = self._motion.at(time)
-        return state._replace(x=state.x - self._begin[0], y=state.y - self._begin[1])
-
-    def angle(self, time: float) -> float:
-        """The roll of the deck in rad."""
-        return float(self._deck.motion(time).angle)
-
-    def look(self, time: float) -> Look:
-        """Red while it moves, else by how much of its margin is used."""
-        state, used = self.state(time), float(np.interp(time, self._motion.times, self._used))
+    def draw(self, axes: plot.Axes, time: float) -> str:
+        """Draw the unit at a time in s, red while it moves, else by its margin; what it does, in words."""
+        state, used = self._motion.at(time), float(np.interp(time, self._motion.times, self._used))
         tilt = degrees(abs(state.angle - self._motion.unit.start.angle))
         moves, says = True, f"rocks, tilted by {tilt:.2g}°"
         if self._motion.toppled and time >= self._motion.ended:
@@ -271,11 +257,7 @@ class UnitScene(BodyScene):
         elif tilt <= degrees(_TILTS):
             moves, says = False, f"stands, margin used: {min(used, 9.99):.0%}"
         face = MARGINS[2 if moves or used >= 1.0 else 1 if used >= Watching().warn else 0]
-        old, new = (STICKS if place[1] < 1e-3 else OPEN for place in plot.placed(self._contacts, state))
-        return Look(face, (old, new), says)
-
-    def draw(self, axes: plot.Axes, time: float) -> str:
-        """Draw the unit at a time in s; what it does, in words."""
-        says = super().draw(axes, time)
+        heights = plot.placed(self._contacts, state)[:, 1] - self._edges[:, 1]
+        self.draw_body(axes, time, face, [STICKS if height < 1e-3 else OPEN for height in heights])
         axes.invert_xaxis()
         return says

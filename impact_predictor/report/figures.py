@@ -5,20 +5,20 @@ from __future__ import annotations
 import os
 from array import array
 from collections.abc import Sequence
-from itertools import islice
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from matplotlib.ticker import MaxNLocator, PercentFormatter
 
-from ..wording import percent
+from ..wording import listed, percent
 from .files import named
-from .gait import MOST, Machine, machines_of, write_gait
+from .gait import FootLandings, feet_of, write_gait
 from .modes import PALETTE
 from .plot import GREY, PICTURE, Axes, Figure, headline, picture
 from .summary import LEAD_TIME_EDGES, SpanErrors, Tally, errors_ahead
-from .touchdowns import TouchdownRow, row_of
+from .touchdowns import TouchdownRow, rows_of
 
 if TYPE_CHECKING:
     from ..bags.replay import Result
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from ..calibration.search import Estimate
 
 _BLUE, _VERMILION = PALETTE[:2]
-_NAMED: Final = 3
-"""Bags whose names stand in the title."""
+MOST: Final = 3
+"""Bags whose names stand in the title, and machines in one picture."""
 
 
 class ReplayPicture:
@@ -44,7 +44,7 @@ class ReplayPicture:
         """
         self.path = named(path, *PICTURE)
         self._names: list[str] = []
-        self._machines: list[Machine] = []
+        self._machines: dict[str, list[FootLandings]] = {}
         self._tally = Tally()
         self._scored: list[TouchdownRow] = []
         # Lead time and error in turns.
@@ -52,14 +52,18 @@ class ReplayPicture:
 
     def add(self, result: Result) -> None:
         """Take a replay."""
-        # One more than it shows tells that there are more.
-        self._names += [Path(result.bag).name][: _NAMED + 1 - len(self._names)]
-        self._machines += islice(machines_of([result]), MOST + 1 - len(self._machines))
+        bag, rows = Path(result.bag).name, rows_of(result.settled)
+        self._names.append(bag)
+        self._tally.add(rows)
+        for body, gait in result.gaits.items():
+            if len(self._machines) < MOST:
+                machine = f"{bag} {body}".rstrip()
+                self._machines[machine] = feet_of(
+                    machine, gait, [one for one in rows if one.body == (body or one.body)]
+                )
+        self._scored += [row for row in rows if row.scored]
         for settled in result.settled:
-            row = row_of(*settled)
-            self._tally.add([row])
-            if row.scored:
-                self._scored.append(row)
+            if settled.score.scored:
                 for lead_time, error in settled.score.history:
                     if lead_time < LEAD_TIME_EDGES[-1]:
                         self._ahead.extend((lead_time, error))
@@ -70,10 +74,10 @@ class ReplayPicture:
         Raises:
             InputError: the file cannot be written.
         """
+        names = listed(self._names, MOST)
         if self._machines:
-            write_gait(self.path, self._machines)
+            write_gait(self.path, list(chain.from_iterable(self._machines.values())), names)
             return
-        names = ", ".join(self._names[:_NAMED]) + (", ..." if len(self._names) > _NAMED else "")
         errors = errors_ahead(zip(self._ahead[::2], self._ahead[1::2], strict=True))
         write_touchdowns(self.path, self._scored, errors, f"{names}: {self._tally.sentences()[0].rstrip('.')}")
 

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from math import hypot
-from pathlib import Path
 from statistics import median
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import Final, NamedTuple
 
 from ..bags.body import Gait
 from ..scenarios.comparison import LEAD_TIMES
@@ -16,49 +15,25 @@ from ..wording import counted
 from .modes import PALETTE
 from .plot import GREY, Axes, common_legend, headline, picture
 from .summary import quantile
-from .touchdowns import TouchdownRow, rows_of
-
-if TYPE_CHECKING:
-    from ..bags.replay import Result
+from .touchdowns import TouchdownRow
 
 AHEAD: Final = LEAD_TIMES[-1]
 """Seconds before a landing at which the prediction is made that is shown."""
-MOST: Final = 3
-"""Machines in one picture."""
-
 _MANY: Final = 60
 """Landings of a foot above which they are drawn as dots alone."""
 _TRUE: Final = "#d0d0d0"
 """Colour of the stances that a record has."""
 
 
-class Machine(NamedTuple):
-    """A machine in a picture, by the name of its record, or of it in its record, and the landings of its feet."""
-
-    name: str
-    gait: Gait
-    landings: Sequence[TouchdownRow]
-
-
-def machines_of(results: Sequence[Result]) -> list[Machine]:
-    """The machines of some replays."""
-    machines = []
-    for result in results:
-        # What follows of a foot that stands already is no landing of its own.
-        landings = [one for one in rows_of(result.settled) if one.foot and not one.is_second]
-        for body, gait in result.gaits.items():
-            name = f"{Path(result.bag).name} {body}".rstrip()
-            machines.append(Machine(name, gait, [one for one in landings if one.body == (body or one.body)]))
-    return machines
-
-
 class FootLandings(NamedTuple):
     """A foot in a picture, times in s since the record began: its stances as (begin, length), and its landings.
 
     Of landings, (time, value): `errors` (ms) of the times predicted `AHEAD`, against the true ones or, where the record
-    has none, the inferred ones; `speeds` (m/s) before them and `impulses` (N s).
+    has none, the inferred ones; `speeds` (m/s) before them and `impulses` (N s). The record has `length` s, and one
+    sample each `period` ms.
     """
 
+    machine: str
     name: str
     colour: str
     landings: int
@@ -67,65 +42,64 @@ class FootLandings(NamedTuple):
     errors: list[tuple[float, float]]
     speeds: list[tuple[float, float]]
     impulses: list[tuple[float, float]]
+    length: float
+    period: float
+
+
+def feet_of(machine: str, gait: Gait, rows: Iterable[TouchdownRow]) -> list[FootLandings]:
+    """The feet of a machine of a name, from their stances and from all that touched down."""
+    feet, length = [], (gait.end - gait.begin) / NANOSECONDS
+    # What follows of a foot that stands already is no landing of its own.
+    all_landings = [(_seconds(gait, row.stamp), row) for row in rows if not row.is_second]
+    for number, name in enumerate(gait.feet):
+        landings = [(time, row) for time, row in all_landings if row.foot == name]
+        stances, true = (
+            [(_seconds(gait, one.begin), (one.end - one.begin) / NANOSECONDS) for one in ones if one.foot == number]
+            for ones in (gait.stances, gait.true_stances)
+        )
+        begun, errors = [begin for begin, _ in true if begin > 0.0], []
+        for time, row in landings:
+            if (error := row.time_errors[-1]) is not None:
+                landed = min(begun, key=lambda begin: abs(begin - time - error), default=time)
+                errors.append((landed, 1e3 * (time + error - landed)))
+        feet.append(
+            FootLandings(
+                machine=machine,
+                name=name,
+                colour=PALETTE[number % len(PALETTE)],
+                landings=len(landings),
+                stances=stances,
+                true_stances=true,
+                errors=errors,
+                speeds=[(time, row.landing_speed) for time, row in landings if row.landing_speed is not None],
+                impulses=[(time, hypot(*row.impulse)) for time, row in landings if row.impulse],
+                length=length,
+                period=1e3 * length / max(1, gait.samples - 1),
+            )
+        )
+    return feet
 
 
 def _seconds(gait: Gait, stamp: int) -> float:
     return (stamp - gait.begin) / NANOSECONDS
 
 
-def feet_of(machine: Machine, named: bool) -> list[FootLandings]:
-    """The feet of a machine, with its name where it is `named`."""
-    gait, feet = machine.gait, []
-    for number, name in enumerate(gait.feet):
-        landings = [one for one in machine.landings if one.foot == name]
-        inferred, true = ([one for one in ones if one.foot == number] for ones in (gait.stances, gait.true_stances))
-        begun = [one.begin for one in true if one.begin > gait.begin]
-        errors = []
-        for one in landings:
-            if (error := one.time_errors[-1]) is not None:
-                predicted = one.stamp + round(error * NANOSECONDS)
-                stamp = min(begun, key=lambda begin: abs(begin - predicted), default=one.stamp)
-                errors.append((_seconds(gait, stamp), 1e3 * (predicted - stamp) / NANOSECONDS))
-        spans = [
-            [(_seconds(gait, one.begin), (one.end - one.begin) / NANOSECONDS) for one in ones]
-            for ones in (inferred, true)
-        ]
-        feet.append(
-            FootLandings(
-                name=f"{machine.name} {name}" if named else name,
-                colour=PALETTE[number % len(PALETTE)],
-                landings=len(landings),
-                stances=spans[0],
-                true_stances=spans[1],
-                errors=errors,
-                speeds=[
-                    (_seconds(gait, one.stamp), one.landing_speed) for one in landings if one.landing_speed is not None
-                ],
-                impulses=[(_seconds(gait, one.stamp), hypot(*one.impulse)) for one in landings if one.impulse],
-            )
-        )
-    return feet
-
-
-def write_gait(path: str | os.PathLike[str], machines: Sequence[Machine]) -> None:
+def write_gait(path: str | os.PathLike[str], feet: Sequence[FootLandings], title: str) -> None:
     """Draw when the feet of machines stand, and their landings as they were predicted `AHEAD`, into a PNG or SVG file.
 
     Raises:
         InputError: the file cannot be written, or is of another format.
     """
-    shown = machines[:MOST]
-    feet = [foot for one in shown for foot in feet_of(one, len(shown) > 1)]
-    names = ", ".join(one.name for one in shown) + (", ..." if len(machines) > MOST else "")
     with picture(path, 13.5, 4.9 + 0.42 * len(feet)) as figure:
         heights = (0.42 * len(feet) + 0.4, 1.2, 0.9, 0.9)
         gait, errors, speeds, impulses = figure.subplots(4, 1, height_ratios=heights, sharex=True)
-        headline(figure, f"{names}: {conclusion(feet)}")
+        headline(figure, f"{title}: {conclusion(feet)}")
         _draw_stances(gait, feet)
         what = "true" if any(foot.true_stances for foot in feet) else "inferred"
         errors.set_title(f"Predicted less {what} time of each landing, as predicted {1e3 * AHEAD:.0f} ms before")
         errors.axhline(0.0, color=GREY, linewidth=1.0)
         if what == "true":
-            period = max((one.gait.end - one.gait.begin) / max(1, one.gait.samples - 1) for one in shown) * 1e-6
+            period = max(foot.period for foot in feet)
             said = f"no error: the record tells a landing up to one sample ({period:.3g} ms) late"
             errors.axhspan(-period, 0.0, color="#eeeeee", zorder=0, label=said)
         speeds.set_title("Speed of the foot in its last sample in the air")
@@ -136,8 +110,7 @@ def write_gait(path: str | os.PathLike[str], machines: Sequence[Machine]) -> Non
             _draw_landings(impulses, foot.impulses, foot.colour)
         for axes, unit in ((errors, "ms"), (speeds, "m/s"), (impulses, "N s")):
             axes.set_ylabel(unit)
-        last = max(((one.gait.end - one.gait.begin) / NANOSECONDS for one in shown), default=0.0)
-        impulses.set(xlabel="time (s)", xlim=(0.0, last or 1.0))
+        impulses.set(xlabel="time (s)", xlim=(0.0, max((foot.length for foot in feet), default=0.0) or 1.0))
         common_legend(figure)
 
 
@@ -152,7 +125,9 @@ def _draw_stances(axes: Axes, feet: Sequence[FootLandings]) -> None:
         label = f"landing, predicted {1e3 * AHEAD:.0f} ms ahead"
         axes.plot(times, [row - 0.33] * len(times), "v", color="black", markersize=6, label=label)
     axes.set_ylim(len(feet) - 0.5, -0.65)
-    axes.set_yticks(range(len(feet)), [foot.name for foot in feet])
+    several = len({foot.machine for foot in feet}) > 1
+    names = [f"{foot.machine} {foot.name}" if several else foot.name for foot in feet]
+    axes.set_yticks(range(len(feet)), names)
     axes.grid(visible=False, axis="y")
 
 

@@ -77,20 +77,20 @@ def cylinder_of(values: Mapping[str, Any]) -> TwoPointBody:
 
 INERTIA: Final = "inertia about the mass centre by mass"
 CONTACTS: Final = {
-    "friction": MapParameter("f", "", "friction coefficient of both contacts", 0.5),
-    "friction_old": MapParameter("f_A", "", "friction coefficient of the old contact A", None, "friction"),
-    "friction_new": MapParameter("f_B", "", "friction coefficient of the new contact B", None, "friction"),
-    "restitution": MapParameter("e", "", "restitution at the new contact B", 0.0),
-    "slip": MapParameter("v_{tA}", "m/s", "slip of the old contact A before the impact, at ω = −1 rad/s", 0.0),
+    "friction": MapParameter("$f$", "", "friction coefficient of both contacts", 0.5),
+    "friction_old": MapParameter("$f_A$", "", "friction coefficient of the old contact A", None, "friction"),
+    "friction_new": MapParameter("$f_B$", "", "friction coefficient of the new contact B", None, "friction"),
+    "restitution": MapParameter("$e$", "", "restitution at the new contact B", 0.0),
+    "slip": MapParameter("$v_{tA}$", "m/s", "slip of the old contact A before the impact, at ω = −1 rad/s", 0.0),
 }
 SUBJECTS: Final = {
     "plate": Subject(
         {
             "delta": MapParameter("δ = H/L", "", "height by length", 1.0),
-            "length": MapParameter("L", "m", "length", 1.0),
-            "height": MapParameter("H", "m", "height, in the place of δ"),
-            "a": MapParameter("a", "m", "distance of the old contact A behind the mass centre", None, "L/2"),
-            "b": MapParameter("b", "m", "distance of the new contact B ahead of the mass centre", None, "L/2"),
+            "length": MapParameter("$L$", "m", "length", 1.0),
+            "height": MapParameter("$H$", "m", "height, in the place of δ"),
+            "a": MapParameter("$a$", "m", "distance of the old contact A behind the mass centre", None, "L/2"),
+            "b": MapParameter("$b$", "m", "distance of the new contact B ahead of the mass centre", None, "L/2"),
             "inertia": MapParameter("J/m", "m²", INERTIA, None, "(L² + H²)/12"),
             **CONTACTS,
         },
@@ -101,10 +101,10 @@ SUBJECTS: Final = {
     ),
     "rod": Subject(
         {
-            "length": MapParameter("l", "m", "length", 0.4),
-            "thickness": MapParameter("h", "m", "thickness", 0.005),
-            "a": MapParameter("a", "m", "distance of the old support A behind the middle", 0.1),
-            "b": MapParameter("b", "m", "distance of the new support B ahead of the middle", None, "a"),
+            "length": MapParameter("$l$", "m", "length", 0.4),
+            "thickness": MapParameter("$h$", "m", "thickness", 0.005),
+            "a": MapParameter("$a$", "m", "distance of the old support A behind the middle", 0.1),
+            "b": MapParameter("$b$", "m", "distance of the new support B ahead of the middle", None, "a"),
             "inertia": MapParameter("J/m", "m²", INERTIA, None, "l²/12"),
             **CONTACTS,
         },
@@ -115,9 +115,9 @@ SUBJECTS: Final = {
     ),
     "cylinder": Subject(
         {
-            "gamma": MapParameter("γ_1", "°", "central angle of the old edge A behind the vertical", 45.0),
-            "gamma_new": MapParameter("γ_2", "°", "central angle of the new edge B ahead of it", None, "gamma"),
-            "radius": MapParameter("R", "m", "radius", 1.0),
+            "gamma": MapParameter("$γ_1$", "°", "central angle of the old edge A behind the vertical", 45.0),
+            "gamma_new": MapParameter("$γ_2$", "°", "central angle of the new edge B ahead of it", None, "gamma"),
+            "radius": MapParameter("$R$", "m", "radius", 1.0),
             "inertia": MapParameter("J/m", "m²", INERTIA, None, "R²/2"),
             **CONTACTS,
         },
@@ -137,30 +137,29 @@ def fixed_values(subject: Subject, axes: tuple[Axis, Axis], given: Mapping[str, 
     """
     names = [axis.name for axis in axes]
     for axis in axes:
+        option = option_of(axis.name)
         if axis.name not in subject.parameters:
             allowed = ", ".join(map(option_of, subject.parameters))
             raise InputError(f"there is no parameter {axis.name!r} for an axis; give one of {allowed}")
         if axis.name in given:
-            name = option_of(axis.name)
-            raise InputError(f"{name} is an axis of the map and --{name} a number; leave one of them out")
+            raise InputError(f"{option} is an axis of the map and --{option} a number; leave one of them out")
         if not -inf < axis.low < axis.high < inf:
-            raise InputError(
-                f"the axis {option_of(axis.name)} goes from {axis.low:g} to {axis.high:g}; "
-                "give two finite numbers, the lower one first"
-            )
+            ends = f"{axis.low:g} to {axis.high:g}; give two finite numbers, the lower one first"
+            raise InputError(f"the axis {option} goes from {ends}")
     if names[0] == names[1]:
         raise InputError(f"both axes, --x and --y, are {option_of(names[0])}; give two parameters")
     chosen = {*names, *given}
-    if {"friction_old", "friction_new"} <= chosen:
-        chosen.add("friction")  # it is the friction of none
     if {"delta", "height"} <= chosen:
         raise InputError("delta and height are one thing, height = delta length; leave one of them out")
+    replaced = {"delta"} if "height" in chosen else set()
+    if {"friction_old", "friction_new"} <= chosen:
+        replaced.add("friction")  # it is the friction of none
     defaults = {
         name: parameter.default
         for name, parameter in subject.parameters.items()
-        if parameter.default is not None and name not in chosen and not (name == "delta" and "height" in chosen)
+        if parameter.default is not None and name not in chosen | replaced
     }
-    return {name: value for name, value in {**defaults, **given}.items() if name not in names}
+    return {**defaults, **given}
 
 
 def problem_at(subject: Subject, values: Mapping[str, Any]) -> tuple[TwoPointBody, Twist]:
@@ -241,28 +240,25 @@ def map_modes(
         InputError: a parameter is out of its range.
     """
     subject, columns, rows = SUBJECTS[name], middles(x, resolution), middles(y, resolution)
-    shape = (resolution, resolution)
-    fields: Any = [np.empty(shape, kind) for kind in (np.uint8, np.int64, float, float, bool, bool, bool)]
-    step = max(1, CELLS_AT_ONCE // resolution)
+    step, blocks = max(1, CELLS_AT_ONCE // resolution), []
     for start in range(0, resolution, step):
-        block = slice(start, min(start + step, resolution))
-        body, twist = problem_at(subject, {**fixed, x.name: columns, y.name: rows[block, None]})
+        body, twist = problem_at(subject, {**fixed, x.name: columns, y.name: rows[start : start + step, None]})
         path, total = solve_impacts(body, twist, "path"), solve_impacts(body, twist, "total")
         outcomes = path if law == "path" else total
         energy = 0.5 * (body.mass * (twist.vx**2 + twist.vy**2) + body.inertia * twist.omega**2)
-        parts = (
-            outcomes.mode,
-            outcomes.segments,
-            outcomes.twist[..., 2] / OMEGA,
-            outcomes.energy_lost / energy,
-            (path.flags & np.uint16(Flag.JAMMED)) != 0,
-            path.unique,
-            total.unique,
-        )
-        for field, part in zip(fields, parts, strict=True):
-            field[block] = part
-        tell(block.stop * resolution)
-    return ModeMap(name, x, y, fixed, law, *fields)
+        found: dict[str, Any] = {
+            "mode": outcomes.mode,
+            "segments": outcomes.segments,
+            "omega_ratio": outcomes.twist[..., 2] / OMEGA,
+            "energy_lost": outcomes.energy_lost / energy,
+            "jammed": (path.flags & np.uint16(Flag.JAMMED)) != 0,
+            "path_unique": path.unique,
+            "total_unique": total.unique,
+        }
+        blocks.append(found)
+        tell(min(start + step, resolution) * resolution)
+    fields = {key: np.concatenate([block[key] for block in blocks]) for key in blocks[0]}
+    return ModeMap(subject=name, x=x, y=y, fixed=fixed, law=law, **fields)
 
 
 def shares(modes: ModeMap) -> dict[Mode, float]:
@@ -277,26 +273,18 @@ def write_csv(path: Path, modes: ModeMap) -> None:
     Raises:
         InputError: the file cannot be written.
     """
-    rows, columns = modes.mode.shape
-    x, y = middles(modes.x, columns).tolist(), middles(modes.y, rows).tolist()
+    x, y = (middles(axis, len(modes.mode)).tolist() for axis in (modes.x, modes.y))
     names = [mode.name for mode in Mode]
     flags = ("unique", "jammed", "path_unique", "total_unique")
     with whole(path) as partial, partial.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow([modes.x.name, modes.y.name, "mode", "segments", *flags, "omega_ratio", "energy_lost"])
-        for row in range(rows):
-            writer.writerows(
-                zip(
-                    x,
-                    [y[row]] * columns,
-                    [names[mode] for mode in modes.mode[row]],
-                    [" ".join(states_of(code)) for code in modes.segments[row].tolist()],
-                    *(getattr(modes, flag)[row].astype(int).tolist() for flag in flags),
-                    modes.omega_ratio[row].tolist(),
-                    modes.energy_lost[row].tolist(),
-                    strict=True,
-                )
-            )
+        for row, height in enumerate(y):
+            mode = [names[mode] for mode in modes.mode[row]]
+            segments = [" ".join(states_of(code)) for code in modes.segments[row].tolist()]
+            truths = [getattr(modes, flag)[row].astype(int).tolist() for flag in flags]
+            numbers = modes.omega_ratio[row].tolist(), modes.energy_lost[row].tolist()
+            writer.writerows(zip(x, [height] * len(x), mode, segments, *truths, *numbers, strict=True))
 
 
 def summary_of(modes: ModeMap) -> dict[str, Any]:
@@ -345,22 +333,16 @@ def given_in(modes: ModeMap) -> set[str]:
 def axis_label(axis: Axis, modes: ModeMap) -> str:
     """Symbol, meaning and unit of what changes along an axis."""
     parameter = SUBJECTS[modes.subject].parameters[axis.name]
-    unit = f" ({parameter.unit})" if parameter.unit else ""
-    return f"{italic(parameter.symbol)}, {parameter.meaning}{unit}"
+    return f"{parameter.symbol}, {parameter.meaning}" + (f" ({parameter.unit})" if parameter.unit else "")
 
 
 def conditions(modes: ModeMap) -> str:
     """What is the same all over the map, and which parameters follow others."""
     parameters, said = SUBJECTS[modes.subject].parameters, []
-    for name, parameter in parameters.items():
+    for name, one in parameters.items():
         if name in modes.fixed:
-            said.append(f"{italic(parameter.symbol)} = {modes.fixed[name]:g} {parameter.unit}".rstrip())
-        elif parameter.otherwise and name not in given_in(modes) and parameter.otherwise != "friction":
-            leader = parameters.get(parameter.otherwise)
-            said.append(f"{italic(parameter.symbol)} = {italic(leader.symbol) if leader else parameter.otherwise}")
+            said.append(f"{one.symbol} = {modes.fixed[name]:g} {one.unit}".rstrip())
+        elif one.otherwise not in ("", "friction") and name not in given_in(modes):
+            leader = parameters.get(one.otherwise)
+            said.append(f"{one.symbol} = {leader.symbol if leader else one.otherwise}")
     return ", ".join((*said, f"{modes.law} law"))
-
-
-def italic(symbol: str) -> str:
-    """A symbol as a formula has it, if it is one letter with or without an index."""
-    return f"${symbol}$" if len(symbol) == 1 or "_" in symbol else symbol

@@ -12,14 +12,13 @@ class ModeLook(NamedTuple):
 
     `meaning` is that of an impact of two contacts, `one_point` that of one contact. `colour` is one of seven from dark
     to light in even steps, so that they differ for every colour vision and in grey; the light ones need an `EDGE`.
-    `marker` is a name of matplotlib, `symbol` one of plotly.
+    `symbol` is a marker of plotly.
     """
 
     meaning: str
-    one_point: str
     colour: str
-    marker: str
     symbol: str
+    one_point: str = ""
 
     @property
     def is_dark(self) -> bool:
@@ -32,49 +31,39 @@ MODES: Final = {
         meaning="the new contact is not approached",
         one_point="the contact is not approached",
         colour="#ffffff",
-        marker="D",
         symbol="diamond",
     ),
     Mode.STOP: ModeLook(
         meaning="both contacts hold, neither slips: the body stops",
-        one_point="",
         colour="#0b3c6f",
-        marker="s",
         symbol="square",
     ),
     Mode.SLIDE: ModeLook(
         meaning="both contacts hold and slip",
-        one_point="",
         colour="#56b4e9",
-        marker=">",
         symbol="triangle-right",
     ),
     Mode.PIVOT_SLIDE: ModeLook(
         meaning="the old contact lifts, the new one slips",
         one_point="the contact holds and slips",
         colour="#f7e57a",
-        marker="P",
         symbol="cross",
     ),
     Mode.PIVOT: ModeLook(
         meaning="the old contact lifts, the new one sticks",
         one_point="the contact holds and sticks: the body turns about it",
         colour="#d55e00",
-        marker="o",
         symbol="circle",
     ),
     Mode.BACK_PIVOT: ModeLook(
         meaning="the new contact lifts again, the old one holds",
-        one_point="",
         colour="#7f4a8c",
-        marker="<",
         symbol="triangle-left",
     ),
     Mode.FLIGHT: ModeLook(
         meaning="both contacts lift",
         one_point="the contact lifts again",
         colour="#e3b5c9",
-        marker="^",
         symbol="triangle-up",
     ),
 }

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import os
-from abc import ABC, abstractmethod
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from math import copysign, degrees, hypot, inf, tan
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..mechanics.motion import PlanarState, RockingImpact
+from ..mechanics.motion import PlanarState, RockingImpact, standing
+from ..mechanics.motion.support import Support
 from ..mechanics.types import TwoPointBody
 from ..scenarios.rocking import Rocking
 from ..scenarios.wheel import Rolling, Wheel
@@ -116,76 +116,67 @@ def rocking_film(rockings: Sequence[Rocking]) -> plot.Film:
     )
 
 
-class Look(NamedTuple):
-    """How a body is seen: its colour, those of its old and new contact, and what it does, in words."""
+class BodyScene:
+    """A body on two contacts and what they stand on, turned with it about the place of the old one.
 
-    face: str
-    contacts: tuple[str, str]
-    says: str
-
-
-class BodyScene(ABC):
-    """A body on two contacts and what they stand on, seen from where the old contact stood at the beginning.
-
-    `size` (width, height) in m of what is seen.
+    `start` is the state in which it stands on both, `state` that at a time in s; `size` (width, height) in m is seen.
     """
 
-    names = "A", "B"
-
-    def __init__(self, title: str, body: TwoPointBody, outline: NDArray[np.float64], times: Sequence[float]) -> None:
+    def __init__(
+        self,
+        title: str,
+        body: TwoPointBody,
+        outline: NDArray[np.float64],
+        support: Support,
+        start: PlanarState,
+        state: Callable[[float], PlanarState],
+        times: Sequence[float],
+    ) -> None:
         """Look at the body at some times (s), to know how much room it needs; no `outline` is that of a disc."""
         assert body.old is not None
-        self.title = title
+        self.title, self._support, self._state = title, support, state
         self._contacts = np.array([(body.old.x, body.old.y), (body.new.x, body.new.y)])
         self._is_disc = not len(outline)
         self._outline = plot.circle(hypot(body.old.x, body.old.y)) if self._is_disc else outline
-        self._edges = self._contacts - self._contacts[0]
-        states = [self.state(time) for time in times]
-        bodies = [plot.placed(self._outline, state) for state in states]
-        seen = np.concatenate([plot.turned(one, self.angle(time)) for one, time in zip(bodies, times, strict=True)])
+        self._edges = plot.placed(self._contacts, start)
+        bodies = [plot.placed(self._outline, state(time)) for time in times]
+        seen = np.concatenate([self._seen(one, time) for one, time in zip(bodies, times, strict=True)])
         self.size = np.ptp(seen, axis=0) + 0.15 * np.ptp(seen)
         self._middle = 0.5 * (seen.min(axis=0) + seen.max(axis=0))
-        wide = float(hypot(*self._edges[1]))
+        (left, floor), (right, top) = self._edges
+        wide, depth = right - left, 0.1 * self.size[1]
         if self._is_disc:
-            (bx, by), depth = self._edges[1], 0.35 * wide
-            self._supports = [plot.box(-0.6 * wide, 0.0, -depth, 0.0), plot.box(bx, bx + 0.6 * wide, by - depth, by)]
+            self._supports = [
+                plot.box(left - 0.6 * wide, left, floor - 4.0 * depth, floor),
+                plot.box(right, right + 0.6 * wide, top - 4.0 * depth, top),
+            ]
             return
         # A body that reaches below its contacts stands on a table no wider than they ever are.
-        places = np.array([plot.placed(self._contacts, state) for state in states])
-        stood = places[..., 0][places[..., 1] < 1e-3 * wide]
-        beyond = 0.0 if min(one[:, 1].min() for one in bodies) < -0.05 * wide else float(self.size.sum())
-        self._supports = [plot.box(stood.min() - beyond, stood.max() + beyond, -0.1 * self.size[1], 0.0)]
+        places = np.array([plot.placed(self._contacts, state(time)) for time in times])
+        stood = places[..., 0][places[..., 1] < floor + 1e-3 * wide]
+        beyond = 0.0 if min(one[:, 1].min() for one in bodies) < floor - 0.05 * wide else float(self.size.sum())
+        self._supports = [plot.box(stood.min() - beyond, stood.max() + beyond, floor - depth, floor)]
 
-    @abstractmethod
-    def state(self, time: float) -> PlanarState:
-        """The state on the support at a time in s."""
-
-    @abstractmethod
-    def angle(self, time: float) -> float:
-        """The angle of the support in rad."""
-
-    @abstractmethod
-    def look(self, time: float) -> Look:
-        """How the body is seen."""
-
-    def draw(self, axes: plot.Axes, time: float) -> str:
-        """Draw the body at a time in s; what it does, in words."""
-        state, angle, look = self.state(time), self.angle(time), self.look(time)
+    def draw_body(self, axes: plot.Axes, time: float, face: str, contacts: Sequence[str]) -> list[NDArray[np.float64]]:
+        """Draw the body at a time in s, with colours of it and of both contacts; the places of those."""
+        state = self._state(time)
         for support in self._supports:
-            axes.fill(*plot.turned(support, angle).T, color=plot.SUPPORT)
-        outline = plot.turned(plot.placed(self._outline, state), angle)
-        axes.fill(*outline.T, facecolor=look.face, edgecolor=plot.LINE, linewidth=1.3)
-        centre = plot.turned(np.array([(state.x, state.y)]), angle)[0]
+            axes.fill(*self._seen(support, time).T, color=plot.SUPPORT)
+        outline = self._seen(plot.placed(self._outline, state), time)
+        axes.fill(*outline.T, facecolor=face, edgecolor=plot.LINE, linewidth=1.3)
+        centre = self._seen(np.array([(state.x, state.y)]), time)[0]
         axes.plot(*centre, "P", color=plot.LINE, markersize=6, markeredgewidth=0.0)
         if self._is_disc:  # a spoke shows how it turns
             axes.plot(*np.array([centre, outline[0]]).T, color=plot.LINE, linewidth=1.0)
-        places = plot.turned(self._edges if self._is_disc else plot.placed(self._contacts, state), angle)
-        for name, place, colour in zip(self.names, places, look.contacts, strict=True):
+        places = self._seen(self._edges if self._is_disc else plot.placed(self._contacts, state), time)
+        for place, colour in zip(places, contacts, strict=True):
             axes.plot(*place, "o", color=colour, markeredgecolor=EDGE, markersize=7)
-            axes.annotate(name, place, (0.0, -15.0), textcoords="offset points", ha="center", fontsize=9)
-        low, high = self._middle - 0.5 * self.size, self._middle + 0.5 * self.size
-        axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
-        return look.says
+        (left, bottom), (right, top) = self._middle - 0.5 * self.size, self._middle + 0.5 * self.size
+        axes.set(xlim=(left, right), ylim=(bottom, top))
+        return list(places)
+
+    def _seen(self, points: NDArray[np.float64], time: float) -> NDArray[np.float64]:
+        return plot.turned(points - self._edges[0], float(self._support.motion(time).angle))
 
 
 class RockingScene(BodyScene):
@@ -193,22 +184,17 @@ class RockingScene(BodyScene):
 
     def __init__(self, rocking: Rocking) -> None:
         """Take a motion."""
-        self._run, rocker = rocking.run, rocking.rocker
-        times = np.linspace(0.0, self._run.time, _LOOKS).tolist()
-        super().__init__(rocker.label, rocker.body, np.array(rocker.outline), times)
+        rocker, self._run = rocking
+        times, outline = np.linspace(0.0, self._run.time, _LOOKS).tolist(), np.array(rocker.outline)
+        start = standing(rocker.body, 0.0)
+        super().__init__(rocker.label, rocker.body, outline, self._run.support, start, self._run.state, times)
 
-    def state(self, time: float) -> PlanarState:
-        """The state on the support at a time in s."""
-        return self._run.state(time)
-
-    def angle(self, time: float) -> float:
-        """The angle of the support in rad."""
-        return float(self._run.support.motion(time).angle)
-
-    def look(self, time: float) -> Look:
-        """The contacts as they stick or slip, and the last impact."""
-        old, new = (CONTACT_COLOURS[how] for how in self._run.states(time))
-        return Look(BODY, (old, new), last_impact(self._run.impacts, time))
+    def draw(self, axes: plot.Axes, time: float) -> str:
+        """Draw the body at a time in s; its last impact, in words."""
+        places = self.draw_body(axes, time, BODY, [CONTACT_COLOURS[how] for how in self._run.states(time)])
+        for name, place in zip("AB", places, strict=True):
+            axes.annotate(name, (place[0], place[1]), (0.0, -15.0), textcoords="offset points", ha="center")
+        return last_impact(self._run.impacts, time)
 
 
 def title_of(wheel: Wheel) -> str:
