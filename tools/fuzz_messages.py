@@ -10,6 +10,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
+from encoders import encode_joints, encode_schedule, encode_wrench
 from fuzz_choices import Choices
 from made_motions import OfSupport, made
 
@@ -118,9 +119,9 @@ def encode(value: Any) -> bytes:
         Sample: coded.encode_odometry,
         Imu: coded.encode_imu,
         Geometry: coded.encode_polygon,
-        Joints: coded.encode_joints,
-        Wrench: coded.encode_wrench,
-        Schedule: coded.encode_schedule,
+        Joints: encode_joints,
+        Wrench: encode_wrench,
+        Schedule: encode_schedule,
     }
     try:
         return bytes(encoders[type(value)](value))

@@ -141,7 +141,7 @@ def decoder(type_name: str) -> Callable[[Callable[[bytes], Decoded]], Callable[[
         def decoded(data: bytes) -> Decoded:
             try:
                 return decode(data)
-            except (struct.error, UnicodeDecodeError) as error:
+            except (struct.error, UnicodeDecodeError, IndexError) as error:
                 raise MalformedMessage(f"not a {type_name}: {error}") from None
 
         return decoded
@@ -180,21 +180,6 @@ def stamp(nanoseconds: int) -> bytes:
     seconds, rest = divmod(nanoseconds, NANOSECONDS)
     lowest, highest = _SECONDS_RANGE
     return _pack_stamp(min(max(seconds, lowest), highest), rest)
-
-
-def add_strings(data: bytearray, texts: Sequence[str]) -> None:
-    """Append a sequence of strings to a message whose end is aligned to four bytes; it is so afterwards, too."""
-    data += _pack_length(len(texts))
-    for text in texts:
-        data += string(text)
-
-
-def add_doubles(data: bytearray, numbers: Sequence[float]) -> None:
-    """Append a sequence of doubles to a message whose end is aligned to four bytes; it is so afterwards, too."""
-    data += _pack_length(len(numbers))
-    if numbers:
-        data += bytes(align8(len(data)) - len(data))
-        data += struct.pack(f"<{len(numbers)}d", *numbers)
 
 
 _name = lru_cache(maxsize=1024)(string)
@@ -261,32 +246,29 @@ class Diagnostic(NamedTuple):
     hardware_id: str
 
 
+@decoder("diagnostic_msgs/msg/DiagnosticArray")
 def decode_diagnostic_array(data: bytes) -> list[Diagnostic]:
     """The statuses in the bytes of a diagnostic_msgs/DiagnosticArray, of either byte order.
 
     Raises:
         MalformedMessage: the bytes are no such message.
     """
-    order = byte_order(data)
+    order, _, _, end = read_header(data)
     length = order.length.unpack_from
     found = []
-    try:
-        _, end = read_string(data, HEADER_SIZE + 8, order)
-        (count,) = length(data, align4(end))
+    (count,) = length(data, align4(end))
+    end = align4(end) + 4
+    for _ in range(count):
+        level = data[end]
+        name, end = read_string(data, align4(end + 1), order)
+        message, end = read_string(data, align4(end), order)
+        hardware_id, end = read_string(data, align4(end), order)
+        (pairs,) = length(data, align4(end))
         end = align4(end) + 4
-        for _ in range(count):
-            level = data[end]
-            name, end = read_string(data, align4(end + 1), order)
-            message, end = read_string(data, align4(end), order)
-            hardware_id, end = read_string(data, align4(end), order)
-            (pairs,) = length(data, align4(end))
-            end = align4(end) + 4
-            values = {}
-            for _ in range(pairs):
-                key, end = read_string(data, align4(end), order)
-                values[key], end = read_string(data, align4(end), order)
-            found.append(Diagnostic(name, level, message, values, hardware_id))
-    except (struct.error, UnicodeDecodeError, IndexError) as error:
-        raise MalformedMessage(f"not a diagnostic_msgs/DiagnosticArray: {error}") from None
+        values = {}
+        for _ in range(pairs):
+            key, end = read_string(data, align4(end), order)
+            values[key], end = read_string(data, align4(end), order)
+        found.append(Diagnostic(name, level, message, values, hardware_id))
     check_end(data, end)
     return found

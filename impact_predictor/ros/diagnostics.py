@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 from ..prediction.checks import REMEDIES
 from ..prediction.score import median
-from ..prediction.types import Foot, Landing, Prediction, Score, Status
+from ..prediction.types import Foot, Prediction, Score, Status
 from ..stamps import NANOSECONDS
 from .cdr import ERROR, OK, WARN, StatusBytes, diagnostic_status, pairs_of
 
@@ -18,6 +18,9 @@ if TYPE_CHECKING:
 
 STALE_AFTER: Final = 1.0
 """Seconds without a sample after which the input counts as stale."""
+
+REMEMBERED: Final = 1000
+"""Touchdowns whose errors count for a median."""
 
 COMPARABLE: Final = 10.0
 """Stamps further than this many seconds from the clock were not taken from it, so that no latency follows from them."""
@@ -67,7 +70,7 @@ class Diagnostics:
         self._last_stamps: dict[str, int] = {}
         self._touchdowns = 0
         self._scored = 0
-        self._errors: deque[float] = deque(maxlen=1000)
+        self._errors: deque[float] = deque(maxlen=REMEMBERED)
         self._second: tuple[float, float, float | None] = 0.0, 0.0, None
         self._costs: list[float] | None = None
         self._refused_now: Counter[Refusal] = Counter()
@@ -230,8 +233,6 @@ class Diagnostics:
 DISAGREES: Final = 0.5
 """The part of a second's samples above which a force sensor disagrees; while a foot lands or lifts each one does."""
 
-_REMEMBERED: Final = 1000
-
 
 class FeetReport:
     """Counts what the answers tell of the feet of one body, which it calls by their names."""
@@ -245,8 +246,8 @@ class FeetReport:
         self._feet: tuple[Foot, ...] = ()
         self._landings: Counter[str] = Counter()
         self._unannounced = 0
-        self._late: deque[float] = deque(maxlen=_REMEMBERED)
-        self._time_errors: deque[float] = deque(maxlen=_REMEMBERED)
+        self._late: deque[float] = deque(maxlen=REMEMBERED)
+        self._time_errors: deque[float] = deque(maxlen=REMEMBERED)
         self._begin_second()
 
     def _begin_second(self) -> None:
@@ -260,10 +261,9 @@ class FeetReport:
         for foot in prediction.feet:
             if foot.confirmed is False:
                 self._disagreed[foot.name] += 1
-        if prediction.score is not None and prediction.score.landing is not None:
-            self._landed(prediction.score.landing)
-
-    def _landed(self, landing: Landing) -> None:
+        landing = None if prediction.score is None else prediction.score.landing
+        if landing is None:
+            return
         self._landings[landing.foot] += 1
         if landing.late is not None:
             self._late.append(landing.late)

@@ -10,7 +10,6 @@ import threading
 from collections.abc import Callable
 from functools import partial
 from itertools import pairwise
-from types import TracebackType
 from typing import TYPE_CHECKING, Any, Final
 
 from ..errors import InputError
@@ -39,9 +38,7 @@ class Stop:
         self._waiter.start()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self._wake = bool
         if self.requested:
             # The process is about to end: a second signal shall not end it less cleanly.

@@ -9,7 +9,6 @@ import socket
 import subprocess
 import sys
 import tempfile
-from types import TracebackType
 from typing import IO, Final
 
 from ..errors import InputError
@@ -78,9 +77,7 @@ class Child:
         )
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         if not self.ended:
             self._process.send_signal(signal.SIGINT)
             try:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from encoders import encode_schedule, encode_wrench
 from made_motions import made
 
 from impact_predictor.bags.read import BagMessage
@@ -23,8 +24,6 @@ from impact_predictor.ros.messages import (
     WRENCH,
     encode_odometry,
     encode_polygon,
-    encode_schedule,
-    encode_wrench,
 )
 
 GIVEN: dict[str, Any] = {

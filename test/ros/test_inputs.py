@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from encoders import encode_joints, encode_schedule, encode_wrench
 from hypothesis import given
 from hypothesis import strategies as st
 from messages_of_rosbags import FRAMES, TYPES, TYPESTORE, header, numbers, odometry, random_sample, serialize
@@ -33,11 +34,8 @@ from impact_predictor.ros.messages import (
     decode_schedule,
     decode_wrench,
     encode_imu,
-    encode_joints,
     encode_odometry,
     encode_polygon,
-    encode_schedule,
-    encode_wrench,
 )
 
 ENDIAN = pytest.mark.parametrize("little_endian", [True, False], ids=["little", "big"])

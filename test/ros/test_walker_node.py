@@ -7,6 +7,7 @@ from math import cos
 from pathlib import Path
 
 import pytest
+from encoders import encode_joints, encode_schedule, encode_wrench
 
 pytest.importorskip("rclpy", reason="the node needs ROS 2: source it, or install the extra `ros`")
 
@@ -22,11 +23,8 @@ from impact_predictor.ros.messages import (
     ODOMETRY,
     POLYGON,
     decode_diagnostic_array,
-    encode_joints,
     encode_odometry,
     encode_polygon,
-    encode_schedule,
-    encode_wrench,
 )
 from impact_predictor.ros.messages.inputs import JOINT_STATE, JOINT_TRAJECTORY, WRENCH
 from impact_predictor.ros.process import message_class

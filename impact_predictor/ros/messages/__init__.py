@@ -20,11 +20,8 @@ from .inputs import decode_polygon as decode_polygon
 from .inputs import decode_schedule as decode_schedule
 from .inputs import decode_wrench as decode_wrench
 from .inputs import encode_imu as encode_imu
-from .inputs import encode_joints as encode_joints
 from .inputs import encode_odometry as encode_odometry
 from .inputs import encode_polygon as encode_polygon
-from .inputs import encode_schedule as encode_schedule
-from .inputs import encode_wrench as encode_wrench
 from .outputs import DIAGNOSTIC_ARRAY as DIAGNOSTIC_ARRAY
 from .outputs import MARKER_ARRAY as MARKER_ARRAY
 from .outputs import OUTPUTS as OUTPUTS

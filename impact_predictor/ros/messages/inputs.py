@@ -16,8 +16,6 @@ from ...stamps import NANOSECONDS
 from ..cdr import (
     LITTLE_ENDIAN,
     LITTLE_ENDIAN_HEADER,
-    add_doubles,
-    add_strings,
     align4,
     align8,
     check_end,
@@ -111,10 +109,9 @@ def encode_odometry(sample: Sample) -> bytes:
 
 def encode_polygon(geometry: Geometry) -> bytes:
     """A geometry_msgs/PolygonStamped of contact points, which float32 rounds."""
-    data = _headed(geometry.stamp, geometry.frame_id) + LITTLE_ENDIAN.length.pack(len(geometry.points))
-    for point in geometry.points:
-        data += LITTLE_ENDIAN.point32.pack(*point)
-    return bytes(data)
+    head = LITTLE_ENDIAN_HEADER + stamp(geometry.stamp) + string(geometry.frame_id)
+    points = b"".join([LITTLE_ENDIAN.point32.pack(*point) for point in geometry.points])
+    return head + LITTLE_ENDIAN.length.pack(len(geometry.points)) + points
 
 
 @decoder(IMU)
@@ -132,7 +129,8 @@ def encode_imu(imu: Imu) -> bytes:
     """A sensor_msgs/Imu of a measurement, with unknown covariances; without an orientation it says so."""
     turned = (0.0, 0.0, 0.0, 1.0, *_ABSENT) if imu.orientation is None else (*imu.orientation, *_UNKNOWN)
     numbers = LITTLE_ENDIAN.imu_numbers.pack(*turned, *imu.angular, *_UNKNOWN, *imu.specific_force, *_UNKNOWN)
-    return bytes(_headed(imu.stamp, imu.frame_id, aligned=True) + numbers)
+    head = LITTLE_ENDIAN_HEADER + stamp(imu.stamp) + string(imu.frame_id)
+    return head + bytes(align8(len(head)) - len(head)) + numbers
 
 
 @decoder(JOINT_STATE)
@@ -178,39 +176,6 @@ def decode_schedule(data: bytes) -> Schedule:
         stands.append(tuple(position > STANDS for position in positions))
     check_end(data, end, 4 * count)
     return Schedule(stamp=nanoseconds, feet=feet, times=tuple(times), stands=tuple(stands))
-
-
-def encode_joints(joints: Joints) -> bytes:
-    """A sensor_msgs/JointState without efforts."""
-    data = _headed(joints.stamp, "")
-    add_strings(data, joints.names)
-    for numbers in (joints.positions, joints.velocities, ()):
-        add_doubles(data, numbers)
-    return bytes(data)
-
-
-def encode_wrench(wrench: Wrench) -> bytes:
-    """A geometry_msgs/WrenchStamped without a torque."""
-    numbers = LITTLE_ENDIAN.wrench_numbers.pack(*wrench.force, 0.0, 0.0, 0.0)
-    return bytes(_headed(wrench.stamp, wrench.frame_id, aligned=True) + numbers)
-
-
-def encode_schedule(schedule: Schedule) -> bytes:
-    """A trajectory_msgs/JointTrajectory whose positions are 1 where a foot stands and 0 where it swings."""
-    data = _headed(schedule.stamp, "")
-    add_strings(data, schedule.feet)
-    data += LITTLE_ENDIAN.length.pack(len(schedule.times))
-    for time, stands in zip(schedule.times, schedule.stands, strict=True):
-        for numbers in ([1.0 if one else 0.0 for one in stands], (), (), ()):
-            add_doubles(data, numbers)
-        data += stamp(time - schedule.stamp)
-    return bytes(data)
-
-
-def _headed(nanoseconds: int, frame_id: str, *, aligned: bool = False) -> bytearray:
-    """What begins a message with a std_msgs/Header; `aligned` for the doubles that follow."""
-    head = bytearray(LITTLE_ENDIAN_HEADER + stamp(nanoseconds) + string(frame_id))
-    return head + bytes(align8(len(head)) - len(head)) if aligned else head
 
 
 class InputType(NamedTuple):

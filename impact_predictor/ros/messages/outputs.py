@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from ...mechanics.types import Flag, Mode
-from ...prediction.types import Foot, Landing, Leftover, Prediction, Score, Status, Touchdown
+from ...prediction.types import Foot, Landing, Leftover, Prediction, Score, Status
 from ...stamps import NANOSECONDS
 from ..cdr import LITTLE_ENDIAN_HEADER, OK, WARN, StatusBytes, diagnostic_array, diagnostic_status, pairs_of
 from .fields import FOOT, LANDING, MARGINS, PREDICTION, SCORE, TOUCHDOWN, UNCERTAINTY, text
@@ -84,7 +84,10 @@ def encode_prediction(prediction: Prediction) -> bytes:
         level = OK if accepted else WARN
         message = "no touchdown within the horizon" if accepted else f"sample refused: {text(prediction.status)}"
     else:
-        level = WARN if _is_doubtful(touchdown, _DOUBTFUL_ON_FEET if prediction.feet else _DOUBTFUL_FLAGS) else OK
+        flags = _DOUBTFUL_ON_FEET if prediction.feet else _DOUBTFUL_FLAGS
+        # As integers: what & makes of two flags is a flag again, which takes longer.
+        is_odd = int(touchdown.flags) & flags or int(touchdown.leftover) & _DOUBTFUL_LEFTOVERS
+        level = WARN if is_odd or not touchdown.unique else OK
         message = f"{text(touchdown.mode)} in {touchdown.lead_time * 1e3:.1f} ms"
         TOUCHDOWN.add_to(pairs, touchdown)
         if touchdown.uncertainty is not None:
@@ -93,12 +96,6 @@ def encode_prediction(prediction: Prediction) -> bytes:
             MARGINS.add_to(pairs, touchdown.planar.margins)
     first = diagnostic_status(level, "impact_predictor/prediction", message, sample.child_frame_id, pairs)
     return diagnostic_array(sample.stamp, sample.frame_id, [first, *map(_foot_status, prediction.feet)])
-
-
-def _is_doubtful(touchdown: Touchdown, flags: int) -> bool:
-    # As integers: what & makes of two flags is a flag again, which takes longer.
-    is_odd = int(touchdown.flags) & flags or int(touchdown.leftover) & _DOUBTFUL_LEFTOVERS
-    return bool(not touchdown.unique or is_odd)
 
 
 def _foot_status(foot: Foot) -> StatusBytes:

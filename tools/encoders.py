@@ -1,0 +1,54 @@
+"""Joints, forces and plans as bytes of ROS 2 Jazzy: what searches and tests tell a predictor, which only reads them."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Sequence
+
+from impact_predictor.prediction.types import Joints, Schedule, Wrench
+from impact_predictor.ros.cdr import LITTLE_ENDIAN, LITTLE_ENDIAN_HEADER, align8, stamp, string
+
+
+def encode_joints(joints: Joints) -> bytes:
+    """A sensor_msgs/JointState without efforts."""
+    data = _headed(joints.stamp, "")
+    _add_strings(data, joints.names)
+    for numbers in (joints.positions, joints.velocities, ()):
+        _add_doubles(data, numbers)
+    return bytes(data)
+
+
+def encode_wrench(wrench: Wrench) -> bytes:
+    """A geometry_msgs/WrenchStamped without a torque."""
+    data = _headed(wrench.stamp, wrench.frame_id)
+    data += bytes(align8(len(data)) - len(data))
+    return bytes(data + LITTLE_ENDIAN.wrench_numbers.pack(*wrench.force, 0.0, 0.0, 0.0))
+
+
+def encode_schedule(schedule: Schedule) -> bytes:
+    """A trajectory_msgs/JointTrajectory whose positions are 1 where a foot stands and 0 where it swings."""
+    data = _headed(schedule.stamp, "")
+    _add_strings(data, schedule.feet)
+    data += LITTLE_ENDIAN.length.pack(len(schedule.times))
+    for time, stands in zip(schedule.times, schedule.stands, strict=True):
+        for numbers in ([1.0 if one else 0.0 for one in stands], (), (), ()):
+            _add_doubles(data, numbers)
+        data += stamp(time - schedule.stamp)
+    return bytes(data)
+
+
+def _headed(nanoseconds: int, frame_id: str) -> bytearray:
+    return bytearray(LITTLE_ENDIAN_HEADER + stamp(nanoseconds) + string(frame_id))
+
+
+def _add_strings(data: bytearray, texts: Sequence[str]) -> None:
+    data += LITTLE_ENDIAN.length.pack(len(texts))
+    for text in texts:
+        data += string(text)
+
+
+def _add_doubles(data: bytearray, numbers: Sequence[float]) -> None:
+    data += LITTLE_ENDIAN.length.pack(len(numbers))
+    if numbers:
+        data += bytes(align8(len(data)) - len(data))
+        data += struct.pack(f"<{len(numbers)}d", *numbers)
