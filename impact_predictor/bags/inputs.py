@@ -52,7 +52,7 @@ def find_topics(
     support = [one for one in inputs if one.body is None]
     # No topic is ever guessed to be the support: over a wrong one every answer would be wrong, and look right.
     if any(one not in found for one in support):
-        raise InputError(_untold(path, recorded, support))
+        raise _untold(path, recorded, support)
     chosen = {}
     for one in inputs:
         taken = [topic for other, topic in found.items() if other.kind == one.kind]
@@ -60,7 +60,7 @@ def find_topics(
         if one in found or one.body or not free or one.kind not in GUESSED:
             continue
         if len(free) > 1:
-            raise InputError(_ambiguous(path, free, one))
+            raise _ambiguous(path, free, one)
         chosen[one] = free[0]
     found |= chosen
     adapted = _adapted(path, recorded, inputs, found)
@@ -70,18 +70,14 @@ def find_topics(
     missing = [one for one in states if one not in found]
     if missing and len(missing) == len(states):
         if support:
-            raise InputError(_untold(path, recorded, missing))
+            raise _untold(path, recorded, missing)
         found |= {one: f"/{one.name}" for one in missing[:1]}
     notes = []
-    if chosen:
-        took = " and ".join(f"{topic} as {one.name}" for one, topic in chosen.items())
-        notes.append(f"in {os.fspath(path)}, took {took}: there is no other of the type")
-    if adapted:
-        adapting = [
-            f"{topic} as {listed([one.name for one in inputs if adapted.get(one) == topic], last='and')}"
-            for topic in dict.fromkeys(adapted.values())
-        ]
-        notes.append(f"in {os.fspath(path)}, took {', '.join(adapting)}: its messages have an adapter")
+    for guessed, why in ((chosen, "there is no other of the type"), (adapted, "its messages have an adapter")):
+        named = {topic: [one.name for one in inputs if guessed.get(one) == topic] for topic in guessed.values()}
+        if named:
+            took = [f"{topic} as {listed(names, last='and')}" for topic, names in named.items()]
+            notes.append(f"in {os.fspath(path)}, took {listed(took, last='and')}: {why}")
     if missing and len(missing) < len(states):
         names = listed([one.name for one in missing], last="and")
         notes.append(f"{os.fspath(path)} has no {names}: nothing is predicted there")
@@ -109,7 +105,7 @@ def _adapted(
         if not topics and not state.body and state not in found:
             topics = [topic for topic, kind in recorded.items() if kind in adapters]
         if len(topics) > 1:
-            raise InputError(_ambiguous(path, topics, state))
+            raise _ambiguous(path, topics, state)
         adapted |= {one: topic for one in missing for topic in topics}
     return adapted
 
@@ -145,18 +141,17 @@ def _remapped(inputs: Sequence[Input], remap: Mapping[str, str]) -> dict[Input, 
     return found
 
 
-def _ambiguous(path: str | os.PathLike[str], free: Sequence[str], one: Input) -> str:
+def _ambiguous(path: str | os.PathLike[str], free: Sequence[str], one: Input) -> InputError:
     could = f"{len(free)} topics that could be {one.name}: {listed(free)}"
-    return f"{os.fspath(path)} has {could}; choose one: --remap {one.name}:={free[0]}"
+    return InputError(f"{os.fspath(path)} has {could}; choose one: --remap {one.name}:={free[0]}")
 
 
-def _untold(path: str | os.PathLike[str], recorded: Mapping[str, str], inputs: Sequence[Input]) -> str:
+def _untold(path: str | os.PathLike[str], recorded: Mapping[str, str], inputs: Sequence[Input]) -> InputError:
     """That no topic is told to be the support, or none to be any of the bodies on it, and what there is."""
     names = listed([one.name for one in inputs], last="or")
     what = "the deck" if inputs[0].body is None else "a unit"
-    there = listing(recorded, _type(inputs[0]))
-    return (
-        f"nothing in {os.fspath(path)} is told to be {what} ({names}); it has {there}; "
+    return InputError(
+        f"nothing in {os.fspath(path)} is told to be {what} ({names}); it has {listing(recorded, _type(inputs[0]))}; "
         f"if {what} is among them, tell which: --remap {inputs[0].name}:=TOPIC"
     )
 
