@@ -7,11 +7,10 @@ distance; a narrower one if the contact states beyond it differ too. A border is
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from math import copysign, hypot, inf
 from typing import NamedTuple
 
-from .impact import MODES, NOWHERE, number_of, see
+from .impact import MODES, NOWHERE, approach, number_of
 from .impact.answer import NO_IMPACT, answer
 from .types import Contact, Flag, Mode, Outcome, Twist, TwoPointBody, Vector
 
@@ -61,8 +60,8 @@ class Margins(NamedTuple):
 NO_MARGIN = Margin(inf, None)
 NO_MARGINS = Margins(NO_MARGIN, NO_MARGIN, NO_MARGIN, NO_MARGIN, NO_MARGIN)
 
-Case = tuple[Contact, Contact, Twist]
-"""Old contact, new contact and twist before the impact."""
+AskedImpact = tuple[float, float, bool, Contact, Contact, Twist, int]
+"""Mass, inertia, whether there is an old contact, both contacts, the twist before the impact, and the law's number."""
 
 
 class ChangedImpact(NamedTuple):
@@ -75,11 +74,32 @@ class ChangedImpact(NamedTuple):
 
 
 class Change(NamedTuple):
-    """A way to change an impact: the impact after a change, the unit of changes, and the least one."""
+    """A way to change an impact: the unit of changes, the least one, and what grows by how much with a change of 1.
 
-    at: Callable[[float], ChangedImpact]
-    unit: float
+    That is the friction of both contacts, their places, the velocity of the new one's support, and that of the body.
+    """
+
+    asked: AskedImpact
+    unit: float = 1.0
     least: float = -inf
+    friction: float = 0.0
+    old: Vector = (0.0, 0.0)
+    new: Vector = (0.0, 0.0)
+    support: Vector = (0.0, 0.0)
+    velocity: Vector = (0.0, 0.0)
+
+    def at(self, change: float) -> ChangedImpact:
+        """The impact after a change."""
+        mass, inertia, stands, old, new, (vx, vy, omega), law = self.asked
+        (ax, ay), (bx, by), (ux, uy), (wx, wy) = self.old, self.new, self.support, self.velocity
+        (old_x, old_y, old_friction, *_), (new_x, new_y, new_friction, _, _, (sx, sy)) = old, new
+        rougher = change * self.friction
+        old = old._replace(x=old_x + change * ax, y=old_y + change * ay, friction=max(0.0, old_friction + rougher))
+        new = new._replace(x=new_x + change * bx, y=new_y + change * by, friction=max(0.0, new_friction + rougher))
+        new = new._replace(velocity=(sx + change * ux, sy + change * uy))
+        twist = Twist(vx + change * wx, vy + change * wy, omega)
+        mode, _, _, _, _, _, states, flags, _, _, _ = answer(mass, inertia, stands, old, new, twist, law)
+        return ChangedImpact(change=change, mode=mode, states=states, flags=flags)
 
 
 def margins(body: TwoPointBody, twist: Twist, law: str = "path") -> Margins:
@@ -87,28 +107,40 @@ def margins(body: TwoPointBody, twist: Twist, law: str = "path") -> Margins:
 
     Where there is no impact, or none can be solved, there are no margins. An unknown law raises ValueError.
     """
-    number, twist = number_of(law), Twist(*twist)
-    mass, inertia, stands = body.mass, body.inertia, body.old is not None
-    old, new = body.old or NOWHERE, body.new
-
-    def at(change: float, case: Case) -> ChangedImpact:
-        mode, _, _, _, _, _, states, flags, _, _, _ = answer(mass, inertia, stands, *case, number)
-        return ChangedImpact(change=change, mode=mode, states=states, flags=flags)
-
-    here = at(0.0, (old, new, twist))
+    twist, stands, old, new = Twist(*twist), body.old is not None, body.old or NOWHERE, body.new
+    asked = body.mass, body.inertia, stands, old, new, twist, number_of(law)
+    here = Change(asked).at(0.0)
     if here.mode == NO_IMPACT or here.flags & UNSOLVED:
         return NO_MARGINS
 
+    # The line of the contacts, across it out of the support, and the height of the mass centre above it.
     stood = old if stands else new
-    along, across, distance, height = frame_of(stood, new, stands)
-    tangent = stood.normal[1], -stood.normal[0]
-    speed = speed_of(old, twist) + speed_of(new, twist) if stands else speed_of(new, twist)
+    (nx, ny), (bx, by) = stood.normal, new.normal
+    dx, dy = new.x - stood.x, new.y - stood.y
+    distance = hypot(dx, dy)
+    along_x, along_y = (dx / distance, dy / distance) if distance > 0.0 else (ny, -nx)
+    up = 1.0 if along_x * (ny + by) >= along_y * (nx + bx) else -1.0
+    across_x, across_y = -up * along_y, up * along_x
+    height = -across_x * stood.x - across_y * stood.y
+
+    def shifted(x: float, y: float, least: float = -inf) -> Change:
+        """The mass centre shifts in a body that moves as before."""
+        velocity = -twist.omega * y, twist.omega * x
+        return Change(asked, unit=unit, least=least, old=(-x, -y), new=(-x, -y), velocity=velocity)
+
+    unit = distance if stands else hypot(new.x, new.y)
+    speed = sum(abs(part) for contact in ((old, new) if stands else (new,)) for part in approach(contact, twist))
+    # The support of the new contact turns with that of the old one.
+    (ux, uy), (wx, wy) = old.velocity, new.velocity
+    x, y = new.x - old.x, new.y - old.y
+    square = x * x + y * y
+    turn = (x * (wy - uy) - y * (wx - ux)) / square if square > 0.0 else 0.0
     ways = (
-        Change(lambda s: at(s, rubbed(old, new, twist, s)), 1.0, -max(old.friction, new.friction)),
-        Change(lambda s: at(s, centered(old, new, twist, along, s)), distance),
-        Change(lambda s: at(s, centered(old, new, twist, across, s)), distance, -height if height >= 0.0 else -inf),
-        Change(lambda s: at(s, (old, reaching(old, new, s), twist)), distance),
-        Change(lambda s: at(s, (old, new, slipping(twist, tangent, s))), speed),
+        Change(asked, least=-max(old.friction, new.friction), friction=1.0),
+        shifted(along_x, along_y),
+        shifted(across_x, across_y, -height if height >= 0.0 else -inf),
+        Change(asked, unit=unit, new=(by, -bx), support=(turn * bx, turn * by)),
+        Change(asked, unit=speed, velocity=(ny, -nx)),
     )
     return Margins(*[nearest_border(way, here) for way in ways])
 
@@ -120,63 +152,6 @@ def margins_of(outcome: Outcome) -> Margins:
     # Where the total law answered for the path law, it was the path law that was asked.
     asked = "path" if outcome.flags & (Flag.BOTH_STRUCK | Flag.LAST_RESORT) else outcome.law
     return margins(outcome.body, outcome.before, asked)
-
-
-def frame_of(stood: Contact, new: Contact, stands: bool) -> tuple[Vector, Vector, float, float]:
-    """Unit vectors along the line of the contacts and across it, their distance, and the height of the mass centre."""
-    nx, ny = stood.normal
-    dx, dy = new.x - stood.x, new.y - stood.y
-    distance = hypot(dx, dy)
-    if distance > 0.0:
-        dx, dy = dx / distance, dy / distance
-    else:
-        dx, dy = ny, -nx
-    up = 1.0 if dx * (ny + new.normal[1]) >= dy * (nx + new.normal[0]) else -1.0
-    x, y = -up * dy, up * dx
-    height = -x * stood.x - y * stood.y
-    return (dx, dy), (x, y), distance if stands else hypot(new.x, new.y), height
-
-
-def speed_of(contact: Contact, twist: Twist) -> float:
-    _, normal, tangential, *_ = see(contact, twist)
-    return abs(normal) + abs(tangential)
-
-
-def rubbed(old: Contact, new: Contact, twist: Twist, change: float) -> Case:
-    """The impact with more friction at both contacts."""
-    return (
-        old._replace(friction=max(0.0, old.friction + change)),
-        new._replace(friction=max(0.0, new.friction + change)),
-        twist,
-    )
-
-
-def placed(contact: Contact, direction: Vector, shift: float) -> Contact:
-    """The contact shifted in the body."""
-    x, y = direction
-    return contact._replace(x=contact.x + shift * x, y=contact.y + shift * y)
-
-
-def centered(old: Contact, new: Contact, twist: Twist, direction: Vector, shift: float) -> Case:
-    """The impact with the mass centre shifted in a body that moves as before."""
-    vx, vy, omega = twist
-    x, y = direction
-    moved = Twist(vx - omega * shift * y, vy + omega * shift * x, omega)
-    return placed(old, direction, -shift), placed(new, direction, -shift), moved
-
-
-def reaching(old: Contact, new: Contact, shift: float) -> Contact:
-    """The new contact shifted along its tangent, on a support that turns with that of the old contact."""
-    nx, ny = new.normal
-    x, y = new.x - old.x, new.y - old.y
-    (ux, uy), (vx, vy), square = old.velocity, new.velocity, x * x + y * y
-    turn = (x * (vy - uy) - y * (vx - ux)) / square if square > 0.0 else 0.0
-    there = placed(new, (ny, -nx), shift)
-    return there._replace(velocity=(vx + turn * shift * nx, vy + turn * shift * ny))
-
-
-def slipping(twist: Twist, direction: Vector, change: float) -> Twist:
-    return Twist(twist.vx + change * direction[0], twist.vy + change * direction[1], twist.omega)
 
 
 def nearest_border(way: Change, here: ChangedImpact) -> Margin:
