@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+import pytest
+
 from impact_predictor.calibration.table import ENOUGH, MOST, blocks_of
 from impact_predictor.calibration.touchdowns import ScoredTouchdown
 
@@ -13,31 +16,24 @@ def at(*seconds: float, body: str = "") -> list[ScoredTouchdown]:
     return [ScoredTouchdown(body, round(time * 1e9), nothing, nothing, nothing, 1.0) for time in seconds]
 
 
-def test_touchdowns_of_one_toss_are_one_block() -> None:
-    tosses = [20.0 * toss + bounce for toss in range(12) for bounce in (0.0, 0.4, 0.9)]
-    assert blocks_of([at(*tosses)]).tolist() == [toss for toss in range(12) for _ in range(3)]
-
-
-def test_records_and_bodies_never_share_a_block() -> None:
-    records = [at(0.0, 0.1) + at(0.2, 0.3, body="b"), at(0.4, 0.5)] * 5
-    blocks = blocks_of(records)
-    assert blocks.tolist() == [k // 2 for k in range(30)]
+@pytest.mark.parametrize(
+    ("records", "blocks"),
+    [
+        ([at(*(20.0 * toss + bounce for toss in range(12) for bounce in (0.0, 0.4, 0.9)))], np.repeat(range(12), 3)),
+        ([at(0.0, 0.1) + at(0.2, 0.3, body="b"), at(0.4, 0.5)] * 5, np.repeat(range(15), 2)),
+        ([at(0.0, 0.1, 0.3, 0.6, 0.7)], range(5)),
+        ([[], at(*range(0, 40, 2)), []], range(20)),
+    ],
+    ids=["a toss is one", "records and bodies never share one", "few are one each", "an empty record takes none"],
+)
+def test_touchdowns_near_each_other_are_one_block(records: list[list[ScoredTouchdown]], blocks: Any) -> None:
+    assert blocks_of(records).tolist() == list(blocks)
 
 
 def test_a_record_without_pauses_is_cut_at_its_longest_ones() -> None:
-    pauses = [0.1, 0.1, 0.3] * 20
-    times = [sum(pauses[:k]) for k in range(len(pauses))]
-    blocks = blocks_of([at(*times)])
+    blocks = blocks_of([at(*np.cumsum([0.3, 0.1, 0.1] * 20))])
     assert blocks.max() + 1 >= ENOUGH
-    assert all(a == b == c for a, b, c in zip(blocks[0::3], blocks[1::3], blocks[2::3], strict=True))
-
-
-def test_few_touchdowns_are_each_a_block() -> None:
-    assert blocks_of([at(0.0, 0.1, 0.3, 0.6, 0.7)]).tolist() == [0, 1, 2, 3, 4]
-
-
-def test_an_empty_record_takes_no_block() -> None:
-    assert blocks_of([[], at(*range(0, 40, 2)), []]).tolist() == list(range(20))
+    assert (blocks.reshape(-1, 3) == blocks[::3, None]).all()
 
 
 def test_a_very_long_record_has_no_more_than_so_many_blocks() -> None:
