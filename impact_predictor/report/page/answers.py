@@ -24,11 +24,6 @@ LEAST_LEAD_TIME: Final = 0.02
 """Seconds before a touchdown, from which on the errors of the times are given."""
 
 
-def used(answers: Iterable[BagAnswer]) -> list[BagAnswer]:
-    """The answers of bags that could be read."""
-    return [answer for answer in answers if "error" not in answer]
-
-
 def names_of(answers: Iterable[BagAnswer]) -> list[str]:
     """A name for each bag: the last part of its path, or as much of it as no other bag has."""
     return [str(name) for name in told_apart([Path(answer["bag"]) for answer in answers])]
@@ -36,7 +31,7 @@ def names_of(answers: Iterable[BagAnswer]) -> list[str]:
 
 def touchdowns_of(answers: Iterable[BagAnswer]) -> Iterator[BagAnswer]:
     """The touchdowns of all bags that could be read."""
-    return (touchdown for answer in used(answers) for touchdown in answer["touchdowns"])
+    return (touchdown for answer in answers for touchdown in answer.get("touchdowns", ()))
 
 
 def scored_of(answers: Iterable[BagAnswer]) -> list[BagAnswer]:
@@ -46,13 +41,7 @@ def scored_of(answers: Iterable[BagAnswer]) -> list[BagAnswer]:
 
 def true_touchdowns_of(answers: Iterable[BagAnswer]) -> Iterator[BagAnswer]:
     """The true touchdowns and the false alarms of the bags that carry the truth."""
-    return (one for answer in used(answers) for one in answer.get("true_touchdowns", ()))
-
-
-def begin_of(answer: BagAnswer) -> int:
-    """The stamp (ns) from which the times of a record are counted: that of its first sample."""
-    begin = answer.get("begin")
-    return int(min((one["stamp"] for one in answer["touchdowns"]), default=0) if begin is None else begin)
+    return (one for answer in answers for one in answer.get("true_touchdowns", ()))
 
 
 def uncompared(answers: Iterable[BagAnswer]) -> Counter[str]:
@@ -73,7 +62,7 @@ def velocity_errors(answers: Iterable[BagAnswer]) -> Distribution:
 def truth_of(answers: Iterable[BagAnswer]) -> Counter[str]:
     """How many true touchdowns there are, were missed, false alarms or cannot be seen; empty where no bag tells it."""
     counts: Counter[str] = Counter()
-    for truth in (answer["truth"] for answer in used(answers) if "truth" in answer):
+    for truth in (answer["truth"] for answer in answers if "truth" in answer):
         counts.update({key: truth[key] for key in ("touchdowns", "missed", "false", "unresolved")})
     return counts
 
@@ -100,7 +89,7 @@ def right_modes(counts: Mapping[tuple[str, str], int]) -> str:
 def errors_ahead(answers: Iterable[BagAnswer], key: str) -> list[SpanErrors]:
     """The errors by lead time under a key of the answers, all together; the spans that have any."""
     spans: dict[tuple[float, float], list[Distribution]] = {}
-    for entry in (entry for answer in used(answers) for entry in answer.get(key, ())):
+    for entry in (entry for answer in answers for entry in answer.get(key, ())):
         spans.setdefault((entry["from"], entry["to"]), []).append(from_json(entry))
     found = [SpanErrors(*span, together(spreads)) for span, spreads in sorted(spans.items())]
     return [one for one in found if one.errors.number]
@@ -108,7 +97,7 @@ def errors_ahead(answers: Iterable[BagAnswer], key: str) -> list[SpanErrors]:
 
 def costs(answers: Iterable[BagAnswer]) -> Distribution:
     """What the answers to samples took, in microseconds."""
-    return together(from_json(answer.get("cost_us")) for answer in used(answers))
+    return together(from_json(answer.get("cost_us")) for answer in answers)
 
 
 def badness(answer: BagAnswer) -> tuple[float, ...]:

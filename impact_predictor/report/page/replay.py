@@ -71,6 +71,6 @@ def page_of_replay(
     facts = [fact for fact in taken.facts_of(answers) if fact.answer != "–"] if there else []
     title = ", ".join(f"{fact.question} {fact.answer}" for fact in facts[:-1]) or "No touchdown was predicted"
     what = taken.names_of(answers)[0] if len(answers) == 1 else f"{len(answers):,} records"
-    samples = counted(sum(answer["samples"] for answer in taken.used(answers)), "sample")
+    samples = counted(sum(answer.get("samples", 0) for answer in answers), "sample")
     lead = f"{what}, {samples}, went through the predictor as if live."
     return page(title, lead, facts, [one for one in parts if one is not None], script)

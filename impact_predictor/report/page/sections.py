@@ -59,15 +59,14 @@ AGAINST: Final = (
     "Each point is a touchdown: to the right the velocity that the samples 2 to 4 after it show, upwards the one that "
     "was predicted last before it. On the line both are the same. The relative error of a touchdown is the distance of "
     "both its points from the line, over its velocities before the impact. By the time of those samples gravity, "
-    "further impacts and a moving support have changed what the impact left: errors against true velocities, where a "
-    "record tells them, are smaller."
+    "further impacts and a moving support have changed what the impact left."
 )
 
 
 def velocities(answers: Sequence[BagAnswer]) -> Section | None:
     """Predicted against measured velocities right after the touchdowns; None where none were measured."""
     compared = [
-        (f"{name}, {(one['stamp'] - taken.begin_of(answer)) / NANOSECONDS:.3f} s, {one['body']}", one)
+        (f"{name}, {(one['stamp'] - answer['begin']) / NANOSECONDS:.3f} s, {one['body']}", one)
         for name, answer in zip(taken.names_of(answers), answers, strict=True)
         for one in taken.scored_of([answer])
     ]
@@ -200,9 +199,9 @@ REMARKS: Final = {
 def unused(answers: Sequence[BagAnswer]) -> Section:
     """What could not be used: refused messages, touchdowns that are not compared, damage, failures and notes."""
     inputs: dict[str, Counter[str]] = {}
-    for answer in taken.used(answers):
-        known = answer.get("inputs") or {"odom": answer["statuses"], "contact_geometry": answer["geometry_statuses"]}
-        for name, counts in known.items():
+    for answer in answers:
+        known = {"odom": answer.get("statuses", {}), "contact_geometry": answer.get("geometry_statuses", {})}
+        for name, counts in (answer.get("inputs") or known).items():
             inputs.setdefault(name, Counter()).update(counts)
     refused: list[list[Cell | str]] = []
     for name, all_of in inputs.items():

@@ -10,7 +10,7 @@ from ...mechanics.types import Mode
 from ...stamps import NANOSECONDS
 from ...wording import words
 from ..modes import EDGE, MODES
-from .answers import BagAnswer, begin_of
+from .answers import BagAnswer
 from .document import GREY, Chart, marks, part_words, points_of, safe, time_words
 
 MISSED: Final = "missed"
@@ -54,7 +54,7 @@ def timeline(title: str, answer: BagAnswer, anchor: str) -> Chart:
     both = [*answer["touchdowns"], *answer.get("true_touchdowns", ())]
     for body in dict.fromkeys(one["body"] for one in both if "foot" not in one):
         lanes += _body(answer, body)
-    begin, traces = begin_of(answer), list[dict[str, Any]]()
+    begin, traces = answer["begin"], list[dict[str, Any]]()
     drawn: dict[tuple[bool, str], list[tuple[float, float, str]]] = {}
     ahead: dict[tuple[bool, str], list[float]] = {}
     for row, lane in enumerate(lanes):
@@ -75,13 +75,13 @@ def timeline(title: str, answer: BagAnswer, anchor: str) -> Chart:
             look = {"type": kind, "marker": look_of(name), "opacity": opacity}
             look["error_x"] = announced | {"width": 0, "thickness": 1.5, "color": GREY}
             traces.append(marks(label.format(name), drawn[faint, name], **look))
-    end = ((answer.get("end") or begin) - begin) / NANOSECONDS
+    end = (answer["end"] - begin) / NANOSECONDS
     lane_axis = {"tickvals": [-row for row in range(len(lanes))], "ticktext": [safe(lane.name) for lane in lanes]}
     lane_axis |= {"range": [0.6 - len(lanes), 0.6], "automargin": True, "fixedrange": True, "showgrid": False}
     layout = {
         "height": 120 + 28 * len(lanes),
         "margin": {"l": 16, "r": 16, "t": 40, "b": 48},
-        "xaxis": {"title": "time in the record, s", "range": [-0.01 * end, 1.01 * end] if end else None},
+        "xaxis": {"title": "time in the record, s", "range": [-0.01 * end, 1.01 * end]},
         "yaxis": lane_axis,
         "barmode": "overlay",
         "showlegend": True,
