@@ -112,15 +112,9 @@ def nudged(rate: Rate, now: Instant, h: float) -> Instant:
 def middle_of(now: Instant, then: Instant) -> Instant:
     """The instant in the middle of a step, on polynomials of degree 5 through both ends; without accelerations."""
     h = then.time - now.time
-    return Instant(
-        time=now.time + 0.5 * h,
-        u=0.5 * (now.u + then.u) + h * (5.0 * (now.w - then.w) + 0.5 * h * (now.alpha + then.alpha)) / 32.0,
-        w=1.875 * (then.u - now.u) / h - 0.4375 * (now.w + then.w) + h * (then.alpha - now.alpha) / 32.0,
-        z=0.5 * (now.z + then.z) + h * (5.0 * (now.s - then.s) + 0.5 * h * (now.beta + then.beta)) / 32.0,
-        s=1.875 * (then.z - now.z) / h - 0.4375 * (now.s + then.s) + h * (then.beta - now.beta) / 32.0,
-        alpha=math.nan,
-        beta=math.nan,
-    )
+    u, w = _between(0.5, h, (now.u, now.w, now.alpha), (then.u, then.w, then.alpha))
+    z, s = _between(0.5, h, (now.z, now.s, now.beta), (then.z, then.s, then.beta))
+    return Instant(time=now.time + 0.5 * h, u=u, w=w, z=z, s=s, alpha=math.nan, beta=math.nan)
 
 
 def add_dense(
@@ -175,10 +169,7 @@ def _between(x: Any, h: Any, start: tuple[Any, Any, Any], end: tuple[Any, Any, A
     # Where a rise is rounding of the value, the rates tell it better.
     by_rates = c1 + c2 + 0.5 * slope - bend / 12.0
     rise = by_rates + (rise - by_rates) * (abs(rise - by_rates) > 1e-15 * abs(u)) - c1 - c2
-    c3, c4, c5 = (
-        10.0 * rise - 4.0 * slope + 0.5 * bend,
-        7.0 * slope - 15.0 * rise - bend,
-        6.0 * rise - 3.0 * slope + 0.5 * bend,
-    )
+    c5 = 6.0 * rise - 3.0 * slope + 0.5 * bend
+    c3, c4 = 4.0 * rise - slope + c5, 7.0 * slope - 15.0 * rise - bend
     value = u + x * (c1 + x * (c2 + x * (c3 + x * (c4 + x * c5))))
     return value, (c1 + x * (2.0 * c2 + x * (3.0 * c3 + x * (4.0 * c4 + x * 5.0 * c5)))) / h

@@ -8,7 +8,7 @@ from ..impact import number_of, solve_impact
 from ..impact.answer import STAYS
 from ..types import Flag, Twist, TwoPointBody, Validity
 from .accumulation import FollowedImpact, ImpactSequence, Limit
-from .engine import MotionEngine, Strike
+from .engine import SLIP_ROUNDING, MotionEngine, Strike
 from .equations import rocking_body
 from .events import End
 from .integrate import Instant
@@ -29,11 +29,6 @@ _ACCUMULATION = 1e-12, 1e-11
 """Error allowed to a sum of accumulating impacts on a fixed and on a moving support, in the body's own scales."""
 _TOUCHES = 1e-9
 """A contact of the start that is nearer to the support than this part of the body's size stands on it."""
-_FLAT = 1e-14
-"""A gap below this part of the body's size is rounding."""
-_SPEED = 1e-12
-"""A velocity of the start below this part of those it is the difference of is none."""
-_BOTH = (0, 1)
 
 
 def standing(body: TwoPointBody, angle: float, omega: float = 0.0, slip: float = 0.0, x: float = 0.0) -> PlanarState:
@@ -81,21 +76,13 @@ def rock(
         ValueError: an unknown law.
     """
     number_of(law)
-    if not _is_valid(body, start, duration, start_time, overturned, tolerance):
+    flags = solve_impact(body, Twist(0.0, 0.0, 0.0), law).flags
+    numbers = *start, duration, start_time, overturned, tolerance
+    if flags & Flag.INVALID_INPUT or not all(map(math.isfinite, numbers)) or duration < 0.0:
         return Trajectory(body=body, support=support, law=law, start=start, time=start_time, end=End.INVALID_INPUT)
     problem = RockingProblem(rocking_body(body), support, overturned, tolerance)
     engine = MotionEngine(problem, start_time, start_time + duration, max_events, max_events, waits=True)
     return _RockingMotion(engine, body, support, law).follow(start)
-
-
-def _is_valid(body: TwoPointBody, start: PlanarState, *numbers: float) -> bool:
-    contacts = [body.new] if body.old is None else [body.old, body.new]
-    values = [*start, *numbers, body.mass, body.inertia]
-    for x, y, friction, (nx, ny), restitution, _ in contacts:
-        values += [x, y, friction, nx, ny, restitution]
-        if friction < 0.0 or not 0.0 <= restitution <= 1.0:
-            return False
-    return all(map(math.isfinite, values)) and body.mass > 0.0 and body.inertia > 0.0 and numbers[0] >= 0.0
 
 
 class _RockingMotion:
@@ -112,7 +99,7 @@ class _RockingMotion:
         self.counted = 0
         """Phases up to the last impact."""
         contacts = self.body.contact(0, 0.0), self.body.contact(1, 0.0)
-        self.pairs = tuple(TwoPointBody(body.mass, body.inertia, contacts[old], contacts[1 - old]) for old in _BOTH)
+        self.pairs = tuple(TwoPointBody(body.mass, body.inertia, contacts[old], contacts[1 - old]) for old in (0, 1))
         """The body as an impact law sees it when it stands on one contact and the other strikes."""
 
     def follow(self, start: PlanarState) -> Trajectory:
@@ -147,13 +134,12 @@ class _RockingMotion:
         """Put contacts that are near the support on it, and find out what the body does."""
         body, engine = self.body, self.engine
         near = _TOUCHES * body.length
-        gaps = [body.gap(i, state.x, state.y, state.angle) for i in _BOTH]
+        gaps = [body.gap(i, state.x, state.y, state.angle) for i in (0, 1)]
         first = 0 if gaps[0] <= gaps[1] else 1
-        apart = abs(gaps[1] - gaps[0])
         if gaps[first] > near:
-            engine.fly(state, (gaps[0], gaps[0] if apart <= _FLAT * body.length else gaps[1]))
+            engine.fly(state, (gaps[0], gaps[1]))
             return
-        closed = [first] if max(gaps) > near or apart > near else [first, 1 - first]
+        closed = [first] if max(gaps) > near or max(gaps) - min(gaps) > near else [first, 1 - first]
         u, _, z, _ = body.seen_from(first, state)
         if len(closed) == 2:
             u = 0.0
@@ -162,7 +148,7 @@ class _RockingMotion:
             return
         place = body.state(first, u, 0.0, z, 0.0)
         state = state._replace(x=place.x, y=place.y, angle=place.angle)
-        small = _SPEED * (abs(state.vx) + abs(state.vy) + abs(state.omega) * body.length)
+        small = SLIP_ROUNDING * (abs(state.vx) + abs(state.vy) + abs(state.omega) * body.length)
         rates = {i: body.gap_rate(i, state) for i in closed}
         held = sorted((i for i in closed if rates[i] <= small), key=lambda i: -rates[i])
         if not held:
@@ -200,7 +186,7 @@ class _RockingMotion:
         approach = max(-body.gap_rate(i, before) for i in touching)
         size = abs(before.vx) + abs(before.vy) + abs(before.omega) * body.length
         least = STAYS * approach + (_SPEED_ROUNDING * size if body.rolls else 0.0)
-        rates = [body.gap_rate(i, after) for i in _BOTH]
+        rates = [body.gap_rate(i, after) for i in (0, 1)]
         closed = [i for i in touching if rates[i] <= least]
         flat = any(body.restitution) and abs(body.gap_of_other(new, u)[0]) <= _QUIET * _QUIET * body.length
         quiet = flat and max(map(abs, rates)) <= _QUIET * engine.speed
