@@ -10,7 +10,7 @@ from ..mechanics.motion import Fall
 from ..mechanics.types import Outcome, Twist, TwoPointBody, Vector
 from .planar import GRAZES, ORIGIN, ActiveContacts, ImpactPlane, Posture, hardly, inertia_about
 from .scene import Scene
-from .types import Leftover, Quaternion, Sample, Touchdown, Vector3
+from .types import Leftover, Sample, Touchdown
 from .vectors import add, axes_of, combine, cross, dot, to_body, to_world, total, turned
 
 if TYPE_CHECKING:
@@ -125,17 +125,28 @@ class ImpactModel:
     def touchdown(self, sample: Sample, posture: Posture, collision: Collision) -> Touchdown:
         """The touchdown at the end of an approach, with its impact."""
         scene, contacts, plane, body = self._scene, collision.contacts, collision.plane, collision.body
-        before = collision.before
-        along = to_world(posture.axes, plane.axis)
-        after = collision.across
+        before, across, time = collision.before, collision.across, collision.lead_time
+        n, center = scene.normal, scene.center_of_mass
         slipped = impact_across(scene, collision) if self._slips_across else None
-        if slipped is None:
-            outcome = solve_impact(body, before, scene.law, scene.validity)
-        else:
-            outcome, after = slipped
-        position, orientation, linear, angular = in_space(
-            scene, sample, posture, collision, along, outcome.twist, after
+        outcome, after = slipped or (solve_impact(body, before, scene.law, scene.validity), across)
+        # From the plane to space: the pose then, and the twist of the body frame after the impact.
+        along = to_world(posture.axes, plane.axis)
+        ahead = cross(along, n)
+        rotation = combine(
+            -collision.angle, plane.axis, across.roll * time, plane.ahead, across.yaw * time, posture.normal
         )
+        orientation = turned(sample.orientation, rotation)
+        now = axes_of(orientation)
+        vx, vy, omega = outcome.twist
+        angular = to_body(now, combine(-omega, along, after.roll, ahead, after.yaw, n))
+        linear = to_body(now, combine(vx, ahead, vy, n, after.velocity, along))
+        pull = plane.gravity[2] if plane.old is None else 0.0
+        x, y = collision.shift
+        glide = combine(x, ahead, y, n, (across.velocity - 0.5 * pull * time) * time, along)
+        position = add(sample.position, glide)
+        if center != ORIGIN:
+            linear = add(linear, cross(angular, center), -1.0)
+            position = add(add(position, to_world(posture.axes, center)), to_world(now, center), -1.0)
         gaps = [posture.gaps[i] for i in contacts.new]
         spread = (max(gaps) - min(gaps)) / collision.speed
         half_distance = 0.0
@@ -202,40 +213,6 @@ def impact_across(scene: Scene, collision: Collision) -> tuple[Outcome, LateralM
     motion = Transverse(velocity, roll, yaw, roll_inertia, yaw_inertia)
     outcome, after, _ = solve_transverse_impact(body, before, motion, TOLERANCE, scene.validity)
     return outcome, LateralMotion(-after.velocity, collision.across.roll if blocked else after.roll, after.yaw)
-
-
-def in_space(
-    scene: Scene,
-    sample: Sample,
-    posture: Posture,
-    collision: Collision,
-    along: Vector3,
-    after: Twist,
-    lateral_after: LateralMotion,
-) -> tuple[Vector3, Quaternion, Vector3, Vector3]:
-    """Position, orientation, linear and angular velocity of the body frame after an impact in the plane.
-
-    `along` is the axis of the plane in the frame of the support; `after` and `lateral_after` are the motion in the
-    plane and across it after the impact.
-    """
-    plane, time, n, center = collision.plane, collision.lead_time, scene.normal, scene.center_of_mass
-    lateral = collision.across
-    roll, yaw = lateral.roll * time, lateral.yaw * time
-    rotation = combine(-collision.angle, plane.axis, roll, plane.ahead, yaw, posture.normal)
-    orientation = turned(sample.orientation, rotation)
-    now = axes_of(orientation)
-
-    ahead = cross(along, n)
-    angular = to_body(now, combine(-after.omega, along, lateral_after.roll, ahead, lateral_after.yaw, n))
-    linear = to_body(now, combine(after.vx, ahead, after.vy, n, lateral_after.velocity, along))
-    pull = plane.gravity[2] if plane.old is None else 0.0
-    glide = (lateral.velocity - 0.5 * pull * time) * time
-    x, y = collision.shift
-    position = add(sample.position, combine(x, ahead, y, n, glide, along))
-    if center != ORIGIN:
-        linear = add(linear, cross(angular, center), -1.0)
-        position = add(add(position, to_world(posture.axes, center)), to_world(now, center), -1.0)
-    return position, orientation, linear, angular
 
 
 def leftover_of(scene: Scene, collision: Collision, half_distance: float, spread: float) -> Leftover:

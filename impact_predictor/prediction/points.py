@@ -92,7 +92,13 @@ class PointContacts(Contacts):
         sample, posture = self._recent[-1]
         collision = self.collision_of(sample, posture, self._moment)
         track = self._track
-        if collision is None or self._is_echo(collision, sample):
+        landed = self._landed
+        if collision is not None and landed is not None:
+            # What an averaged twist still has of the approach before the last touchdown is no approach.
+            fresh = sample.stamp - landed.stamp < self.scene.twist_window * NANOSECONDS
+            if fresh and not set(collision.contacts.new).isdisjoint(landed.track.last.new):
+                collision = None
+        if collision is None:
             self._track = None
             return None
         if track is not None and set(collision.contacts.new).isdisjoint(track.last.new):
@@ -171,15 +177,6 @@ class PointContacts(Contacts):
             gap -= total([gaps[i] for i in old]) / len(old)
         approach = -total([rates[i] for i in new]) / len(new)
         return gap <= self.scene.tolerance and approach < SETTLED * track.approach
-
-    def _is_echo(self, collision: Collision, sample: Sample) -> bool:
-        """Whether the approach is what an averaged twist still has of the approach before the last touchdown."""
-        landed = self._landed
-        return (
-            landed is not None
-            and sample.stamp - landed.stamp < self.scene.twist_window * NANOSECONDS
-            and not set(collision.contacts.new).isdisjoint(landed.track.last.new)
-        )
 
 
 def collision_of(

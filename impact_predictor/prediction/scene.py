@@ -305,14 +305,14 @@ def features_of(values: Mapping[str, Any]) -> tuple[Feature, ...]:
 
 def _feature(name: str, switches: list[str], values: Mapping[str, Any]) -> Feature:
     """Whether a body has a feature, by the first parameter that leaves it out, or else by the first of all."""
-    off = [one for one in switches if _is_on(one.lstrip("!"), values) == one.startswith("!")]
+    off = []
+    for switch in switches:
+        parameter = switch.lstrip("!")
+        is_on = values[parameter] in ON[parameter] if parameter in ON else bool(values[parameter])
+        off += [parameter] if is_on == switch.startswith("!") else []
     parameter = (off or switches)[0].lstrip("!")
     value = values[parameter]
     said = str(value).lower() if isinstance(value, bool) else f"{value:g}" if isinstance(value, int | float) else value
     if isinstance(value, tuple | list):
         said = "given"
     return Feature(name, not off, f"{parameter} is {said if value or said in ('0', 'false') else 'not given'}")
-
-
-def _is_on(parameter: str, values: Mapping[str, Any]) -> bool:
-    return values[parameter] in ON[parameter] if parameter in ON else bool(values[parameter])

@@ -27,15 +27,12 @@ class Track:
         """Stamp (ns) of each sample that announced the touchdown, and how it did."""
         self.stamp = 0
         """When the touchdown is predicted, in ns."""
-        self.seen = 0
-        """Stamp in ns of the sample that the prediction was made from."""
         self.approach = 0.0
         """How fast the new contact approached at that sample, in m/s."""
 
     def add(self, stamp: int, touchdown: Touchdown, approach: float) -> None:
         """A prediction made from the sample of `stamp`, which measured the approach."""
         self.stamp = stamp + round(touchdown.lead_time * NANOSECONDS)
-        self.seen = stamp
         self.approach = approach
         self.answers.append((stamp, touchdown))
 

@@ -13,7 +13,7 @@ from operator import itemgetter
 from typing import NamedTuple
 
 from ...stamps import NANOSECONDS
-from ..checks import LARGEST, PAUSE, order_of
+from ..checks import LARGEST, followed
 from ..planar import posture_of
 from ..scene import Scene, Walking
 from ..score import LONGEST, MEASURED, Pending, Track
@@ -47,19 +47,18 @@ class FootCollision(NamedTuple):
 
 
 class PendingLanding:
-    """A landing that was announced or has happened, until it is scored."""
+    """A landing that was announced or has happened, until it is scored.
+
+    `times` has the stamps in ns at which it was `announced`, and its lead times in s then; `seen` is what was seen of
+    it, until its impact is computed, `landing` set once one of its points stands, and `after` has the samples after it.
+    """
 
     def __init__(self) -> None:
         self.times: deque[tuple[int, float]] = deque(maxlen=LONGEST)
-        """Stamps in ns at which it was announced, with its lead times in s."""
         self.announced: FootCollision | None = None
-        """The last announcement."""
         self.seen: FootCollision | None = None
-        """What was seen of it, until its impact is computed."""
         self.landing: Landing | None = None
-        """The landing, once one of its points has come to stand."""
         self.after = Pending(Track(), 0)
-        """The samples after it."""
 
 
 class LandingTracker:
@@ -278,9 +277,8 @@ class LandingSchedule:
         times = schedule.times
         if not set(schedule.feet) <= set(self._stances):
             return Status.FEET_CHANGED
-        if any(b <= a for a, b in pairwise(times)) or len(schedule.stands) != len(times):
-            return Status.MALFORMED
-        if any(len(stands) != len(schedule.feet) for stands in schedule.stands):
+        fits = len(schedule.stands) == len(times) and all(len(one) == len(schedule.feet) for one in schedule.stands)
+        if not fits or any(b <= a for a, b in pairwise(times)):
             return Status.MALFORMED
         if not times:
             return Status.ACCEPTED
@@ -316,12 +314,11 @@ class FootForces:
             return Status.WRONG_FRAME
         if not square < LARGEST:
             return Status.NOT_FINITE
-        last = self._pressed[foot][0] if foot in self._pressed else None
-        status = order_of(wrench.stamp, last)
+        status, last = followed(wrench.stamp, self._pressed[foot][0] if foot in self._pressed else None)
         if status is Status.ACCEPTED:
             self._pressed[foot] = wrench.stamp, square >= self._least
-        elif last is not None and last - wrench.stamp > PAUSE:
-            del self._pressed[foot]
+        elif last is None:
+            self._pressed.pop(foot, None)
         return status
 
     def agree(self, foot: str, stands: bool, stamp: int) -> bool | None:

@@ -131,9 +131,7 @@ class FootPoint:
         changed = self._changes(ground, awaited)
         if not near:
             self._arriving = None
-        elif self._arriving is not None and not self._arriving.is_full:
-            self._arriving.add(frame)
-        elif changed or not self.stands:
+        elif (self._arriving is None or not self._arriving.add(frame)) and (changed or not self.stands):
             begin = trajectory.top if self._last is None else max(trajectory.top, self._last.begin)
             frames = trajectory.last(NEAREST)
             self._arriving = ArrivalFit(frames, begin, ground.level, self._scene.tolerance, ground.noise)

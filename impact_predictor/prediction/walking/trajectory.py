@@ -229,15 +229,13 @@ class ArrivalFit:
         self._near = 0.0, 0.0
         self._tried: list[ArrivalCandidate] = []
 
-    @property
-    def is_full(self) -> bool:
-        """Whether it has so many frames that the next one is to begin another."""
-        return len(self._frames) >= FULL
-
-    def add(self, frame: PointFrame) -> None:
-        """Take the next frame near the ground."""
+    def add(self, frame: PointFrame) -> bool:
+        """Take the next frame near the ground; False where it has so many that this one is to begin another."""
+        if len(self._frames) >= FULL:
+            return False
         self._frames.append(frame)
         self._catch_up(SHARE)
+        return True
 
     def _catch_up(self, most: int) -> None:
         done = self._sums.count
