@@ -16,15 +16,7 @@ from ..mechanics.motion.support import FeltSupport, FixedSupport
 from ..mechanics.types import Contact, Twist, TwoPointBody, Vector
 from .deck.frame import gravity_over, is_uniform, planar_support
 from .impact import Collision, collision_after
-from .planar import (
-    ActiveContacts,
-    ImpactPlane,
-    Posture,
-    center_of,
-    contacts_of,
-    inertia_about,
-    off_axis_of,
-)
+from .planar import ActiveContacts, ImpactPlane, Posture, center_of, contacts_of, inertia_about, off_axis_of
 from .points import PointContacts
 from .scene import Scene
 from .types import Moment, Sample, Vector3

@@ -9,19 +9,7 @@ from typing import TYPE_CHECKING
 from ..stamps import NANOSECONDS
 from .predictor import Predictor
 from .scene import MovingDeck, Scene, shared_by
-from .types import (
-    Geometry,
-    Imu,
-    Joints,
-    Moment,
-    Prediction,
-    Quaternion,
-    Sample,
-    Schedule,
-    Score,
-    Status,
-    Wrench,
-)
+from .types import ContactInput, Geometry, Imu, Moment, Prediction, Quaternion, Sample, Score, Status
 
 if TYPE_CHECKING:
     from .deck.imu import Tilt
@@ -162,7 +150,7 @@ class Monitor:
         assert self.deck is not None
         return self._moved(self.deck.update_imu(imu), imu.stamp)
 
-    def tell(self, body: str, message: Geometry | Joints | Wrench | Schedule) -> Status:
+    def tell(self, body: str, message: ContactInput) -> Status:
         """Take what is told about the contacts of a body; what became of the message."""
         status = self.predictors[body].tell(message)
         if status is Status.ACCEPTED and isinstance(message, Geometry) and body in self._watched:

@@ -10,20 +10,11 @@ from ..mechanics.types import Contact, TwoPointBody, Vector
 from ..stamps import NANOSECONDS
 from .checks import check_points
 from .impact import Collision, ImpactModel, collision_after
-from .planar import (
-    ImpactPlane,
-    Posture,
-    center_of,
-    contacts_of,
-    edge_of,
-    inertia_about,
-    plane_of,
-    posture_of,
-)
+from .planar import ImpactPlane, Posture, center_of, contacts_of, edge_of, inertia_about, plane_of, posture_of
 from .predictor import DEEP, DEEP_TOLERANCES, Contacts
 from .scene import Scene
 from .score import Pending, Track
-from .types import Geometry, Joints, Moment, Sample, Schedule, Status, Touchdown, Vector3, Wrench
+from .types import ContactInput, Geometry, Moment, Sample, Status, Touchdown, Vector3
 from .vectors import total
 
 ACCURACY = 1e-6  # of the motion before the touchdown, relative: a thousandth of what poses and twists are measured to
@@ -57,7 +48,7 @@ class PointContacts(Contacts):
         self._recent: deque[tuple[Sample, Posture]] = deque(maxlen=4)
         self._measure_size()
 
-    def tell(self, message: Geometry | Joints | Wrench | Schedule) -> Status:
+    def tell(self, message: ContactInput) -> Status:
         assert isinstance(message, Geometry)
         status = check_points(message.points)
         if status is Status.ACCEPTED:

@@ -11,20 +11,7 @@ from typing import TYPE_CHECKING
 
 from .checks import PAUSE, check_numbers, order_of
 from .scene import Scene
-from .types import (
-    Foot,
-    Geometry,
-    Joints,
-    Moment,
-    Prediction,
-    Sample,
-    Schedule,
-    Score,
-    Status,
-    Touchdown,
-    Vector3,
-    Wrench,
-)
+from .types import ContactInput, Foot, Geometry, Moment, Prediction, Sample, Score, Status, Touchdown, Vector3
 
 if TYPE_CHECKING:
     from .deck.tracker import Deck
@@ -62,7 +49,7 @@ class Contacts(ABC):
         """Joints that were told last and that the model does not know."""
 
     @abstractmethod
-    def tell(self, message: Geometry | Joints | Wrench | Schedule) -> Status:
+    def tell(self, message: ContactInput) -> Status:
         """Take what is told about the contacts; what became of the message. A refused one leaves the last."""
 
     @abstractmethod
@@ -136,7 +123,7 @@ class Predictor:
         other.contacts.stamp = last
         self.contacts, self.scene, self._deck = other.contacts, other.scene, other._deck
 
-    def tell(self, message: Geometry | Joints | Wrench | Schedule) -> Status:
+    def tell(self, message: ContactInput) -> Status:
         """Take what is told about the contacts of the body; what became of the message. A refused one changes nothing.
 
         Contact points are in the body's frame and hold from now on; those of feet have a stamp, and hold then.

@@ -11,7 +11,7 @@ from ..stamps import NANOSECONDS
 from .planar import Posture
 from .scene import Scene
 from .types import Leftover, Sample, Score, Touchdown, Vector3
-from .vectors import cross, dot, to_world, total
+from .vectors import cross, dot, lines, to_world
 
 MEASURED = slice(1, 4)
 """Samples 2 to 4 after a touchdown: the first may average the impact itself, later ones see friction and bounces."""
@@ -106,21 +106,13 @@ class Pending:
         else:
             # What rocks on a deck comes slowly and has turned on by then: it is followed back to the touchdown.
             times = [(stamp - self.stamp) / NANOSECONDS for stamp, _, _ in self._measured]
-            vx, vy, omega = [_at_zero(times, values) for values in (along, up, spin)]
+            (vx, _), (vy, _), (omega, _) = lines(times, (along, up, spin))
         return Twist(vx, vy, omega)
 
 
 def _distance(one: Twist, other: Twist, half_distance: float) -> float:
     """How far two twists are apart in the plane, as a speed in m/s."""
     return hypot(one.vx - other.vx, (one.omega - other.omega) * half_distance)
-
-
-def _at_zero(times: list[float], values: list[float]) -> float:
-    """The value at time zero of the straight line nearest to some values (least squares)."""
-    middle = total(times) / len(times)
-    mean = total(values) / len(values)
-    slope = total([(t - middle) * v for t, v in zip(times, values, strict=True)])
-    return mean - middle * slope / total([(t - middle) ** 2 for t in times])
 
 
 def median(numbers: Iterable[float]) -> float:

@@ -171,6 +171,10 @@ class Schedule(NamedTuple):
     stands: tuple[tuple[bool, ...], ...]
 
 
+ContactInput = Geometry | Joints | Wrench | Schedule
+"""What may be told about the contacts of a body besides its scene."""
+
+
 class Foot(NamedTuple):
     """A foot as one sample shows it.
 

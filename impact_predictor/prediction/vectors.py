@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import operator
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from functools import reduce
 from math import cos, sin, sqrt
 
@@ -25,6 +25,18 @@ if sys.version_info >= (3, 12):
 
 else:
     total = sum
+
+
+def lines(times: Sequence[float], columns: Iterable[Sequence[float]]) -> list[tuple[float, float]]:
+    """The straight line nearest to the values of each column at some times (least squares): its value at time zero, and
+    its slope.
+    """
+    count = len(times)
+    middle = total(times) / count
+    arms = [time - middle for time in times]
+    spread = total(map(operator.mul, arms, arms))
+    slopes = [(column, total(map(operator.mul, arms, column)) / spread) for column in columns]
+    return [(total(column) / count - middle * slope, slope) for column, slope in slopes]
 
 
 def dot(u: Vector3, v: Vector3) -> float:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from ...stamps import NANOSECONDS
 from ..types import Felt, Moment, Quaternion, Vector3
-from ..vectors import Axes, add, axes_of, combine, composed, cross, dot, times, to_body, total, turned
+from ..vectors import Axes, add, axes_of, combine, composed, cross, dot, lines, times, to_body, total, turned
 
 if TYPE_CHECKING:
     import numpy as np
@@ -212,8 +212,9 @@ class MotionWindow:
 
     def slopes(self) -> list[float]:
         """The derivatives of the channels at the last sample, per s."""
-        scale, x = self._places()
-        weights = slope_weights(x)
+        first, last = self._stamps[0], self._stamps[-1]
+        scale = 2.0 / (last - first)
+        weights = slope_weights([1.0 + scale * (stamp - last) for stamp in self._stamps])
         scale *= NANOSECONDS
         # Less its last value: a large constant would leave its rounding in the slope.
         return [scale * total(map(mul, weights, map(sub, channel, repeat(channel[-1])))) for channel in self._channels]
@@ -223,19 +224,8 @@ class MotionWindow:
 
         Exact for a value that changes linearly. The noise is 2/sqrt(n) of a sample's.
         """
-        _, x = self._places()
-        count = len(x)
-        s1, s2 = total(x), total(map(mul, x, x))
-        part = 1.0 / (count * s2 - s1 * s1)
-        c0, c1 = part * (s2 - s1), part * (count - s1)
-        weights = [c0 + c1 * each for each in x]
-        return [total(map(mul, weights, channel)) for channel in self._channels]
-
-    def _places(self) -> tuple[float, list[float]]:
-        """The stamps on -1 .. 1, and how much of that a nanosecond is."""
-        first, last = self._stamps[0], self._stamps[-1]
-        scale = 2.0 / (last - first)
-        return scale, [1.0 + scale * (stamp - last) for stamp in self._stamps]
+        last = self._stamps[-1]
+        return [end for end, _ in lines([(stamp - last) / NANOSECONDS for stamp in self._stamps], self._channels)]
 
 
 def slope_weights(x: list[float]) -> list[float]:

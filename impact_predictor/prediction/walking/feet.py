@@ -10,7 +10,7 @@ from ...stamps import NANOSECONDS
 from ..checks import LARGEST, PAUSE, order_of
 from ..predictor import DEEP, DEEP_TOLERANCES, Contacts
 from ..scene import Scene
-from ..types import Foot, Geometry, Joints, Moment, Sample, Schedule, Status, Touchdown, Wrench
+from ..types import ContactInput, Foot, Geometry, Joints, Moment, Sample, Schedule, Status, Touchdown, Wrench
 from ..vectors import add, axes_of, cross, dot, to_world
 from .cubic import PointFrame
 from .landings import FootForces, LandingSchedule, LandingTracker
@@ -55,7 +55,7 @@ class FeetContacts(Contacts):
             self.scene, self._machine, self._points, self._base, self._schedule, self._forces
         )
 
-    def tell(self, message: Geometry | Joints | Wrench | Schedule) -> Status:
+    def tell(self, message: ContactInput) -> Status:
         """Take where the points or the joints are, the force on a foot, or when the feet are planned to stand."""
         if isinstance(message, Wrench):
             return self._forces.set(message)

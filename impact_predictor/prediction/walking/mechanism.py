@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections import deque
 from math import isfinite
-from operator import mul
 from typing import NamedTuple
 
 import numpy as np
@@ -16,7 +15,7 @@ from ...errors import InputError
 from ...stamps import NANOSECONDS
 from ..scene import Robot, Scene
 from ..types import Geometry, Joints, Sample, Status, Vector3
-from ..vectors import add, axes_of, cross, mean, times, to_body, to_world, total, turned
+from ..vectors import add, axes_of, cross, lines, mean, times, to_body, to_world, turned
 
 SINGULAR = 1e-12  # a principal moment of inertia below this part of the largest one is rounding
 NOTHING = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -71,13 +70,8 @@ class BaseMotion:
         twists = self._twists
         if self._line is None and len(twists) >= FEWEST and twists[-1][0] - twists[0][0] >= LEAST_SPAN:
             ages = [(stamp - twists[-1][0]) / NANOSECONDS for stamp, _ in twists]
-            middle = total(ages) / len(ages)
-            arms = [age - middle for age in ages]
-            spread = total(map(mul, arms, arms))
-            columns = list(zip(*[twist for _, twist in twists], strict=True))
-            rates = [total(map(mul, arms, column)) / spread for column in columns]
-            means = [total(column) / len(ages) for column in columns]
-            self._line = tuple([m - middle * rate for m, rate in zip(means, rates, strict=True)]), tuple(rates)
+            found = lines(ages, zip(*[twist for _, twist in twists], strict=True))
+            self._line = tuple([now for now, _ in found]), tuple([rate for _, rate in found])
         return self._line
 
 
