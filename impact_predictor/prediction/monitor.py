@@ -113,11 +113,8 @@ class Monitor:
         if watch is not None:
             if prediction.status is not Status.ACCEPTED:
                 self._refused(watch, body, prediction.status, sample.stamp)
-            else:
-                self._rest(watch, sample.stamp)
-                if body in self._watched:
-                    self._known[body] = sample.stamp
-                    watch.update_body(body, prediction.relative or sample, prediction.touchdown)
+            elif self._heard(watch, body, sample.stamp):
+                watch.update_body(body, prediction.relative or sample, prediction.touchdown)
         return prediction
 
     def update_imu(self, body: str, imu: Imu) -> Status:
@@ -133,11 +130,8 @@ class Monitor:
                 self._refused(watch, body, status, imu.stamp)
             return status
         orientation = self.tilts[body] = tilt.on(moment, imu.orientation)
-        if watch is not None:
-            self._rest(watch, imu.stamp)
-            if body in self._watched:
-                self._known[body] = imu.stamp
-                watch.update_tilt(body, imu.stamp, orientation)
+        if watch is not None and self._heard(watch, body, imu.stamp):
+            watch.update_tilt(body, imu.stamp, orientation)
         return status
 
     def update_support(self, sample: Sample) -> Status:
@@ -196,6 +190,12 @@ class Monitor:
     def _rest(self, watch: Watch, stamp: int) -> None:
         if self._resting is not None:
             watch.update_support(self._resting._replace(stamp=stamp))
+
+    def _heard(self, watch: Watch, body: str, stamp: int) -> bool:
+        """Know that a body, and a fixed support, are there at a stamp; whether the body is watched."""
+        self._rest(watch, stamp)
+        self._known[body] = stamp
+        return body in self._watched
 
     def _refused(self, watch: Watch, body: str, status: Status, stamp: int) -> None:
         if status in OF_SUPPORT and self._lost(status):

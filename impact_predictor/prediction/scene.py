@@ -172,7 +172,8 @@ class Scene(NamedTuple):
         normal = values["support.normal"]
         length = hypot(*normal)
         robot = Robot(values["robot.urdf"], values["robot.frames"]) if values["robot.urdf"] else None
-        points = () if values["body.radius"] or values["feet.names"] else values["body.contact_points"]
+        motion, feet, pull = values["support.motion"], values["feet.names"], hypot(*values["gravity"])
+        points = () if values["body.radius"] or feet else values["body.contact_points"]
         return cls(
             mass=values.get("body.mass", 1.0),
             inertia=inertia_matrix(values.get("body.inertia", (1.0,))),
@@ -194,21 +195,15 @@ class Scene(NamedTuple):
             friction_deviation=values["uncertainty.friction"],
             restitution_deviation=values["uncertainty.restitution"],
             margins=values["margins"],
-            validity=_record(
-                Validity, "validity", values, gravity=hypot(*values["gravity"]), contact_time=values["contact.time"]
-            ),
-            deck=_record(MovingDeck, "support", values, source=values["support.motion"])
-            if values["support.motion"] != "fixed"
-            else None,
+            validity=_record(Validity, "validity", values, gravity=pull, contact_time=values["contact.time"]),
+            deck=None if motion == "fixed" else _record(MovingDeck, "support", values, source=motion),
             source=values["source"],
             place=triple(values["place.position"]),
             yaw=values["place.yaw"],
             radius=values["body.radius"],
             edges=triples(values["support.edges"]),
             watching=_record(Watching, "onset", values) if values["onset.watch"] else None,
-            walking=_record(Walking, "feet", values, feet=values["feet.names"], robot=robot)
-            if values["feet.names"]
-            else None,
+            walking=_record(Walking, "feet", values, feet=feet, robot=robot) if feet else None,
         )
 
     @property

@@ -256,7 +256,7 @@ class WatchedBody:
             past = f" ({held:.1f} s ago: {'; '.join(rose)})"
         return "; ".join(words) + past
 
-    def values(self, outlook: BodyOutlook, per_hour: tuple[float, float, float]) -> dict[str, str]:
+    def values(self, outlook: BodyOutlook, per_hour: Sequence[float]) -> dict[str, str]:
         """The values of a report, always the same in the same order; `per_hour` are tips, slides and impacts."""
         used, tilt, (tips, slides, impacts) = outlook.used or NOTHING, self.standing.tilt, per_hour
         margins = {

@@ -197,11 +197,9 @@ class OnsetCounts:
     """
 
     def __init__(self, hysteresis: NDArray[np.float64]) -> None:
-        count = len(hysteresis)
         self._again = 1.0 - hysteresis
-        self._over = np.zeros((2, count), dtype=bool)
-        self._onsets = np.zeros((2, count), dtype=np.int64)
-        self._impacts = [0] * count
+        self._over = np.zeros((2, len(hysteresis)), dtype=bool)
+        self._counts = np.zeros((3, len(hysteresis)), dtype=np.int64)
         self._seconds = 0.0
 
     def update(self, tip: NDArray[np.float64], slide: NDArray[np.float64], seconds: float) -> None:
@@ -209,18 +207,17 @@ class OnsetCounts:
         self._seconds += seconds
         used = np.array((tip, slide))
         over = used >= 1.0
-        self._onsets += over > self._over
+        self._counts[:2] += over > self._over
         self._over = over | (self._over & (used > self._again))
 
     def struck(self, number: int) -> None:
         """Count an impact of a body."""
-        self._impacts[number] += 1
+        self._counts[2, number] += 1
 
-    def per_hour(self, number: int) -> tuple[float, float, float]:
+    def per_hour(self, number: int) -> list[float]:
         """Tips, slides and impacts of a body per hour of the time watched."""
         scale = HOUR / max(self._seconds, LEAST_WATCHED)
-        tips, slides = self._onsets[:, number].tolist()
-        return tips * scale, slides * scale, self._impacts[number] * scale
+        return [count * scale for count in self._counts[:, number].tolist()]
 
 
 def first_times(ratios: NDArray[np.float64], times: NDArray[np.float64]) -> NDArray[np.float64]:
