@@ -100,6 +100,11 @@ def test_json_is_all_that_is_printed_and_the_options_reach_the_law(folder: Path)
         ),
         (["cylinder", "--x", "gamma", "0", "180"], "give angles in degrees with a sum between 0 and 180"),
         (["rod", "--x", "friction", "0", "1"], "both axes, --x and --y, are friction; give two parameters"),
+        (["plate", "--x", "delta", "0", "nan"], "the axis delta goes from 0 to nan"),
+        (["plate", "--height", "0.1"], "delta and height are one thing"),
+        (["plate", "--x", "delta", "-1", "1", "--resolution", "4"], "height is -0.75; give a finite number above 0"),
+        (["plate", "--slip", "inf"], "slip is inf; give a number of at most 1e6"),
+        (["plate", "--friction-new", "-1"], "friction_new is -1.0; give a finite"),
         (["plate", "--restitution", "3"], "restitution is 3.0; give a number from 0 to 1"),
         (["cylinder", "--x", "gamma", "0", "100"], "gamma + gamma-new is"),
         (

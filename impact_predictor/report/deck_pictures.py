@@ -26,7 +26,7 @@ from .modes import EDGE, MODES, PALETTE
 from .motion_pictures import OPEN, STICKS, BodyScene
 
 LONGEST: Final = 12.0
-"""Seconds of a motion that a film shows, in real time: those in which most units move."""
+"""Seconds of a motion that a film shows, in real time: those about the fastest."""
 MARGINS: Final = ("#dfe6e1", "#f2a91a", "#d62728")
 """Colours of a margin that is used little, enough to warn, and up."""
 ROLL, HEAVE, SLID = PALETTE[0], "#8a6d3b", PALETTE[2]
@@ -93,10 +93,9 @@ class UnitMotion:
         return np.asarray(np.where(old_is_lower, *ways) + x - self.unit.start.x)
 
     @property
-    def moves(self) -> NDArray[np.bool_]:
-        """Whether it moves on the deck so that a film shows it."""
-        with np.errstate(invalid="ignore"):
-            return np.asarray((np.abs(self.tilt) > _TILTS) | (np.abs(self._states[3]) > _SLIDES))
+    def speed(self) -> NDArray[np.float64]:
+        """How fast it moves on the deck, in m/s and rad/s together; 0 where it is not followed."""
+        return np.asarray(np.nan_to_num(np.abs(self._states[3]) + np.abs(self._states[5])))
 
 
 class DeckMotion:
@@ -201,15 +200,11 @@ def _draw_unit(axes: plot.Axes, deck: MovingSupport, unit: UnitMotion) -> None:
 
 
 def deck_frames(units: Sequence[UnitMotion]) -> list[float]:
-    """The times in s of the frames: the part of the motion in which most units move."""
+    """The times in s of the frames: the part of the motion about the moment in which the units move fastest."""
     times = units[0].times
-    busy = np.sum([one.moves for one in units], axis=0, dtype=float)
-    sums = np.convolve(busy, np.ones(min(len(times), round(LONGEST / float(times[1])))), mode="valid")
-    # In the middle of those that show as much.
-    best = np.flatnonzero(sums >= sums.max() - 1e-9)
-    begin = float(times[best[len(best) // 2]]) if sums.max() > 0.0 else 0.0
-    length = min(LONGEST, float(times[-1]) - begin)
-    return [begin + plot.STEP * k for k in range(max(2, 1 + int(length / plot.STEP)))]
+    fastest = times[np.argmax(np.sum([one.speed for one in units], axis=0))]
+    begin = max(0.0, min(float(fastest) - 0.5 * LONGEST, float(times[-1]) - LONGEST))
+    return np.arange(begin, min(begin + LONGEST, float(times[-1])) + 1e-9, plot.STEP).tolist()
 
 
 def deck_film(deck: MovingSupport, units: Sequence[UnitMotion]) -> plot.Film:
@@ -219,7 +214,6 @@ def deck_film(deck: MovingSupport, units: Sequence[UnitMotion]) -> plot.Film:
         scenes=[UnitScene(deck, one, times) for one in near],
         height=2.2,
         draw_curves=partial(_draw_roll, deck, near, np.array(times)),
-        speed=1.0,
         times=times,
     )
 

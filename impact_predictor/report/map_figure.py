@@ -7,7 +7,7 @@ from functools import partial
 from math import atan2, cos, degrees, pi, radians, sin
 from pathlib import Path
 from textwrap import wrap
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
 import contourpy
 import matplotlib
@@ -42,14 +42,6 @@ _SKETCHED: Final = {
 """The bodies of the sketches, from their mass, friction, inertia and restitution."""
 
 
-class BorderEquation(NamedTuple):
-    """A formula, what is zero where it holds, and whether the modes that it parts meet there."""
-
-    formula: str
-    residual: Any
-    parts: Any
-
-
 def borders_of(modes: ModeMap) -> dict[str, list[NDArray[np.float64]]]:
     """The borders that cross the map by their formulas, each as curves (points, 2); none where no formula applies.
 
@@ -62,26 +54,28 @@ def borders_of(modes: ModeMap) -> dict[str, list[NDArray[np.float64]]]:
     # At the very ends of an axis there may be no body, such as a plate without height.
     x, y = (axis.low + (axis.high - axis.low) * np.linspace(1e-9, 1.0 - 1e-9, NODES) for axis in (modes.x, modes.y))
     borders: dict[str, list[NDArray[np.float64]]] = {}
-    for number, equation in enumerate(_equations(modes, x, y[:, None])):
+    for formula, (residual, _) in _equations(modes, x, y[:, None]).items():
         # The equation is smooth all over the map, the modes end within a cell of it: so it is cut point by point.
-        field = np.broadcast_to(equation.residual, (NODES, NODES))
-        lines: Any = contourpy.contour_generator(x, y, field).lines(0.0)
+        lines: Any = contourpy.contour_generator(x, y, np.broadcast_to(residual, (NODES, NODES))).lines(0.0)
         for curve in lines:
-            parts = np.broadcast_to(_equations(modes, *curve.T)[number].parts, len(curve))
-            for part in np.split(curve, np.flatnonzero(np.diff(parts)) + 1):
-                if len(part) > 1 and _equations(modes, *part.T)[number].parts.all():
-                    borders.setdefault(equation.formula, []).append(part)
+            _, parts = _equations(modes, *curve.T)[formula]
+            ends = np.flatnonzero(np.diff(np.broadcast_to(parts, len(curve)), prepend=False, append=False))
+            pieces = [curve[begin:end] for begin, end in ends.reshape(-1, 2) if end - begin > 1]
+            if pieces:
+                borders.setdefault(formula, []).extend(pieces)
     return borders
 
 
-def _equations(modes: ModeMap, x: NDArray[np.float64], y: NDArray[np.float64]) -> list[BorderEquation]:
-    """The equations of the borders, at places on the map."""
+def _equations(
+    modes: ModeMap, x: NDArray[np.float64], y: NDArray[np.float64]
+) -> dict[str, tuple[NDArray[np.float64], NDArray[np.bool_]]]:
+    """The formulas of the borders: what is 0 where one holds, and whether the modes that it parts meet there."""
     values = {**modes.fixed, modes.x.name: x, modes.y.name: y}
     with np.errstate(divide="ignore", invalid="ignore"):
         return cylinder_equations(values) if modes.subject == "cylinder" else flat_equations(modes.subject, values)
 
 
-def flat_equations(subject: str, values: dict[str, Any]) -> list[BorderEquation]:
+def flat_equations(subject: str, values: dict[str, Any]) -> dict[str, Any]:
     """The borders of the plate and the rod, in the form of Fig. 5 where the plate is that of Fig. 5."""
     body, _ = problem_at(SUBJECTS[subject], values)
     assert body.old is not None
@@ -96,15 +90,15 @@ def flat_equations(subject: str, values: dict[str, Any]) -> list[BorderEquation]
     ]
     if "delta" in values and not {"a", "b", "inertia"} & values.keys():
         formulas = ["f = δ", "f = (2 − δ²) / 3δ", "f = 3δ / (4δ² + 1)", "δ = 1/√2"]
-    return [
-        BorderEquation(formulas[0], h - f * a, np.isfinite(flat.stop_friction(shape))),
-        BorderEquation(formulas[1], a * b - rho2 - f * h * a, np.isfinite(flat.lift_friction(shape))),
-        BorderEquation(formulas[2], h * b - f * (rho2 + h * h), np.isfinite(flat.pivot_friction(shape))),
-        BorderEquation(formulas[3], a * b - rho2 - h * h, f * a >= h),
-    ]
+    return {
+        formulas[0]: (h - f * a, np.isfinite(flat.stop_friction(shape))),
+        formulas[1]: (a * b - rho2 - f * h * a, np.isfinite(flat.lift_friction(shape))),
+        formulas[2]: (h * b - f * (rho2 + h * h), np.isfinite(flat.pivot_friction(shape))),
+        formulas[3]: (a * b - rho2 - h * h, f * a >= h),
+    }
 
 
-def cylinder_equations(values: dict[str, Any]) -> list[BorderEquation]:
+def cylinder_equations(values: dict[str, Any]) -> dict[str, Any]:
     """The borders of the cylinder; t is the tangent of the mean of both angles, k = J/mR².
 
     Each equation is multiplied by the cosine of that angle or its square, which keeps it finite at 90 degrees.
@@ -119,12 +113,12 @@ def cylinder_equations(values: dict[str, Any]) -> list[BorderEquation]:
     stops = np.where(f <= middle, np.isfinite(low), np.isfinite(high))
     sticks = f >= cylindrical.pivot_friction(cylindrical.stop_tangent(k), k)
     lifts, turns = cylindrical.lift_friction(t, k), cylindrical.pivot_friction(t, k)
-    return [
-        BorderEquation("(1 + k) f² − t f + k = 0", ((1.0 + k) * f * f + k) * cos - f * sin, stops),
-        BorderEquation("t = f + √(1 + f²)", sin * sin - cos * cos - 2.0 * f * sin * cos, np.isfinite(lifts)),
-        BorderEquation("f = kt / (1 + k)", k * sin - f * (1.0 + k) * cos, np.isfinite(turns)),
-        BorderEquation("t² = (1 + k) / (1 − k)", (1.0 - k) * sin * sin - (1.0 + k) * cos * cos, sticks),
-    ]
+    return {
+        "(1 + k) f² − t f + k = 0": (((1.0 + k) * f * f + k) * cos - f * sin, stops),
+        "t = f + √(1 + f²)": (sin * sin - cos * cos - 2.0 * f * sin * cos, np.isfinite(lifts)),
+        "f = kt / (1 + k)": (k * sin - f * (1.0 + k) * cos, np.isfinite(turns)),
+        "t² = (1 + k) / (1 − k)": ((1.0 - k) * sin * sin - (1.0 + k) * cos * cos, sticks),
+    }
 
 
 def write_map(path: Path, modes: ModeMap) -> None:

@@ -111,7 +111,6 @@ def rocking_film(rockings: Sequence[Rocking]) -> plot.Film:
         scenes=scenes,
         height=min(_HIGHEST, 7.0 / len(scenes) * height / width),
         draw_curves=partial(draw_rates, rockings),
-        speed=plot.speed_for(longest),
         times=plot.frames_of(longest),
     )
 
@@ -199,9 +198,8 @@ class RockingScene(BodyScene):
 
 def title_of(wheel: Wheel) -> str:
     """The wheel in words."""
-    hub = wheel.hub
-    grip = "that does not slip" if hub.friction >= 50.0 else f"with friction {hub.friction:g}"
-    return f"A rimless wheel of {wheel.spokes} spokes {grip} on a slope of {degrees(hub.slope):.3g}°"
+    slope = f"{degrees(wheel.hub.slope):.3g}°"
+    return f"A rimless wheel of {wheel.spokes} spokes on a slope of {slope} with friction {wheel.hub.friction:g}"
 
 
 def steady_rates(wheel: Wheel) -> tuple[float, ...]:
@@ -261,7 +259,6 @@ def wheel_film(rolling: Rolling) -> plot.Film:
         scenes=[WheelScene(rolling)],
         height=3.3,
         draw_curves=partial(draw_wheel_rate, rolling),
-        speed=plot.speed_for(rolling.time),
         times=plot.frames_of(rolling.time),
     )
 

@@ -38,16 +38,14 @@ STYLE: Final[dict[Any, Any]] = {
     # So that the same results make the same bytes.
     "svg.hashsalt": "impact_predictor",
 }
-SPEEDS: Final = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
-"""What a film may be slowed down or sped up by: numbers that one can think in."""
 PICTURE: Final = "picture that can be drawn", (".png", ".svg")
 FILM: Final = "moving picture that can be drawn", (".gif",)
 """What files are to be, and the ends of their names, for `files.named`."""
 STEP: Final = 0.08
 """Seconds for which a frame is seen; GIF counts in hundredths of a second."""
 
-_LONGEST: Final = 10.0
-"""Seconds that a film lasts at most, unless its motion is longer than the highest speed can show."""
+_LENGTH: Final = 10.0
+"""Seconds that a film of a whole motion lasts, about."""
 _STILL: Final = 1.5
 """Seconds for which the end is seen before it begins again."""
 _COLOURS: Final = 128
@@ -65,13 +63,12 @@ class FilmScene(Protocol):
 class Film(NamedTuple):
     """A moving picture: scenes side by side, `height` inches high, and curves below them with a line at the time.
 
-    `speed` is seconds of the motion for each one of the film, `times` (s) those of its frames.
+    `times` (s) are those of its frames.
     """
 
     scenes: Sequence[FilmScene]
     height: float
     draw_curves: Callable[[Axes], None]
-    speed: float
     times: Sequence[float]
 
 
@@ -105,14 +102,9 @@ def common_legend(figure: Figure, title: str = "") -> None:
     figure.legend(list(entries.values()), list(entries), **place)
 
 
-def speed_for(longest: float) -> float:
-    """How fast the film of a motion of so many s runs: the slowest of `SPEEDS` that shows it within its time."""
-    return next((speed for speed in SPEEDS if longest <= speed * _LONGEST), SPEEDS[-1])
-
-
 def frames_of(longest: float) -> list[float]:
-    """The moments in s at which the frames of a whole motion are drawn."""
-    step = speed_for(longest) * STEP
+    """The moments in s at which the frames of a whole motion are drawn; it is slowed down or sped up to fit a film."""
+    step = STEP * float(f"{max(longest, 1e-6) / _LENGTH:.1g}")  # a factor of one digit is easy to think in
     return [k * step for k in range(2 + int(longest / step))]
 
 
@@ -123,9 +115,9 @@ def write_film(path: str | os.PathLike[str], film: Film, tell: Callable[[int], N
         InputError: the file cannot be written, or is of another format.
     """
     path = named(path, *FILM)
-    slowed = f"slowed down {1.0 / film.speed:g} times" if film.speed < 1.0 else f"sped up {film.speed:g} times"
-    pace = "real time" if film.speed == 1.0 else slowed
-    digits = 4 if film.speed < 0.02 else 3 if film.speed < 0.2 else 2
+    slower = STEP / (film.times[1] - film.times[0])
+    pace = f"slowed down {slower:.3g} times" if slower > 1.0 else f"sped up {1.0 / slower:.3g} times"
+    pace = "real time" if abs(slower - 1.0) < 1e-6 else pace
     frames: list[Image.Image] = []
     with matplotlib.rc_context(STYLE), whole(path) as partial:
         figure = Figure(figsize=(7.0, film.height + 2.5), dpi=90, layout="constrained")
@@ -142,7 +134,7 @@ def write_film(path: str | os.PathLike[str], film: Film, tell: Callable[[int], N
                 axes.set_axis_off()
                 axes.set_title(f"{scene.title}\n{scene.draw(axes, time) or ' '}", fontsize=10, loc="center")
             now.set_xdata([time, time])
-            clock.set_text(f"t = {time:.{digits}f} s, {pace}")
+            clock.set_text(f"{pace}: {time:.4g} s")
             canvas.draw()
             figure.set_layout_engine("none")  # what is seen does not jump
             frames.append(Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB"))

@@ -138,18 +138,12 @@ def test_a_box_and_a_drum_are_seen_along_the_deck() -> None:
     assert np.hypot(*(outline_of(level, drum) - centre).T) == pytest.approx(0.4)
 
 
-def test_the_moving_picture_shows_the_seconds_in_which_most_units_move(
-    units: list[UnitMotion], onsets: list[list[float]]
-) -> None:
-    frames, begun = deck_frames(units), np.concatenate(onsets)
+def test_the_film_shows_the_seconds_about_the_fastest(units: list[UnitMotion]) -> None:
+    frames, tank = deck_frames(units), units[-1]
     assert frames[-1] - frames[0] == pytest.approx(LONGEST, abs=0.1)
-    assert np.mean((frames[0] <= begun) & (begun <= frames[-1])) >= 0.5
-
-
-def test_the_moving_picture_of_a_calm_deck_or_a_short_one_is_not_empty(units: list[UnitMotion]) -> None:
-    assert len(deck_frames(units[:1])) > 100
-    short = UnitMotion(units[0].unit, DeckMotion(1.0).times)
-    assert deck_frames([short])[-1] <= 1.0
+    assert frames[0] <= tank.ended <= frames[-1]  # it topples, which is faster than what else happens
+    assert deck_frames(units[:1])[0] == 0.0  # nothing moves
+    assert deck_frames([UnitMotion(units[0].unit, DeckMotion(1.0).times)])[-1] <= 1.0
 
 
 def test_the_busiest_units_are_drawn_in_their_order(units: list[UnitMotion]) -> None:

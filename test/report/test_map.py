@@ -278,24 +278,3 @@ def test_axes_and_conditions_are_said_as_the_paper_does() -> None:
     )
     one = a_map("cylinder", Axis("inertia", 0.1, 1.0), cells=2, slip=0.5, law="total")
     assert conditions(one) == "$γ_1$ = 45 °, $γ_2$ = $γ_1$, $R$ = 1 m, $e$ = 0, $v_{tA}$ = 0.5 m/s, total law"
-
-
-@pytest.mark.parametrize(
-    ("axes", "given", "sentence"),
-    [
-        ((Axis("warp", 0.0, 1.0), frictions(1.0)), {}, "no parameter 'warp' .* give one of delta, length, "),
-        ((Axis("delta", 1.0, 1.0), frictions(1.0)), {}, "the axis delta goes from 1 to 1"),
-        ((Axis("delta", 0.0, np.nan), frictions(1.0)), {}, "the axis delta goes from 0 to nan"),
-        ((frictions(1.0), frictions(1.0)), {}, "both axes, --x and --y, are friction"),
-        ((Axis("friction_old", 0.0, 1.0), frictions(1.0)), {"friction_old": 0.1}, "leave one of them out"),
-        ((Axis("delta", 0.0, 1.0), frictions(1.0)), {"height": 0.1}, "delta and height are one thing"),
-        ((Axis("delta", -1.0, 1.0), frictions(1.0)), {}, "height is -0.75; give a finite number above 0"),
-        ((Axis("delta", 0.0, 1.0), frictions(1.0)), {"slip": np.inf}, "slip is inf; give a number of at most 1e6"),
-        ((Axis("delta", 0.0, 1.0), frictions(1.0)), {"friction_new": -1.0}, "friction_new is -1.0; give a finite"),
-    ],
-)
-def test_a_map_that_cannot_be_is_refused_in_one_sentence(
-    axes: tuple[Axis, Axis], given: dict[str, float], sentence: str
-) -> None:
-    with pytest.raises(InputError, match=sentence):
-        map_modes("plate", *axes, fixed_values(SUBJECTS["plate"], axes, given), "path", 4)

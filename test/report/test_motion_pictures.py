@@ -22,7 +22,7 @@ from impact_predictor.report.motion_pictures import (
     wheel_film,
     write_wheel_figure,
 )
-from impact_predictor.report.plot import SPEEDS
+from impact_predictor.report.plot import STEP
 from impact_predictor.report.simulation import rolling_as_json, rolling_sentences
 from impact_predictor.scenarios.rocking import Rocking, release, rocking_cylinder, rocking_rod
 from impact_predictor.scenarios.wheel import Hub, Rolling, Wheel, roll
@@ -60,10 +60,8 @@ def test_the_film_lasts_as_long_as_one_can_look(rod: Rocking, stops: Rolling) ->
     for duration in (1e-4, 0.01, 0.3, 2.0, 9.9, 40.0):
         motion = release(rod.rocker, radians(30.0), duration=duration)
         film = rocking_film([motion])
-        assert film.speed in SPEEDS
-        assert 2 <= len(film.times) < 130
+        assert 5.0 < len(film.times) * STEP < 16.0
         assert film.times[-1] >= motion.run.time
-    assert rocking_film([rod]).speed == 0.1
     assert wheel_film(stops).times[-1] >= stops.time
 
 
@@ -108,8 +106,7 @@ def test_the_spokes_that_are_drawn_end_where_the_standing_one_touches_the_slope(
 
 
 def test_titles_and_sentences_say_what_rolls_and_what_it_needs(slips: Rolling, stops: Rolling) -> None:
-    assert title_of(slips.wheel) == "A rimless wheel of 8 spokes with friction 0.35 on a slope of 5°"
-    assert title_of(stops.wheel) == "A rimless wheel of 8 spokes that does not slip on a slope of 3°"
+    assert title_of(slips.wheel) == "A rimless wheel of 8 spokes on a slope of 5° with friction 0.35"
     assert "between them 0.375327; the wheel has 0.35" in rolling_sentences(slips)[-1]
     assert rolling_sentences(slips)[-2].startswith("Steady rolling without slip, closed form: 1.605412029 rad/s")
     assert rolling_sentences(stops)[-1].startswith("On this slope it does not keep rolling")
