@@ -128,10 +128,9 @@ class ReplayReport:
         page = self._wanted.report
         if page is not None and self._answers is not None:
             from ..parameters.file import read_values
-            from ..report.page.replay import write_replay_page, write_replay_pages
+            from ..report.page.replay import write_replay_page
 
-            write = write_replay_page if Path(page).suffix else write_replay_pages
-            write(page, self._answers, read_values(params))
+            write_replay_page(page, self._answers, read_values(params))
             self._say_file("Page", page)
 
     def say_table(self) -> None:

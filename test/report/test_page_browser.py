@@ -14,7 +14,7 @@ from replay_answers import TOSSES, TRUE, UNREADABLE, WALK, answer, touchdown
 
 from impact_predictor.parameters.file import read_values
 from impact_predictor.report.accuracy.page import write_accuracy_page
-from impact_predictor.report.page.replay import write_replay_page, write_replay_pages
+from impact_predictor.report.page.replay import write_replay_page
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 sync_api = pytest.importorskip(
@@ -65,7 +65,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("pages")
     answers, values = [TRUE, WALK, TOSSES, UNREADABLE], read_values("config/cube_tosses.yaml")
     write_replay_page(folder / "replay.html", answers, values)
-    write_replay_pages(folder / "week", answers, values)
+    write_replay_page(folder / "week", answers, values)
     write_accuracy_page(folder / "report.html", json.loads((Path(__file__).parent / "page_report.json").read_text()))
     return folder
 

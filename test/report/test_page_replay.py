@@ -14,9 +14,9 @@ from replay_answers import ahead as spans
 from impact_predictor.errors import InputError
 from impact_predictor.parameters.file import read_values
 from impact_predictor.prediction.types import Leftover
-from impact_predictor.report.page.answers import BagAnswer, facts_of
 from impact_predictor.report.page.document import part_words, time_words
-from impact_predictor.report.page.replay import page_of_replay, write_replay_page, write_replay_pages
+from impact_predictor.report.page.facts import BagAnswer, facts_of
+from impact_predictor.report.page.replay import page_of_replay, write_replay_page
 from impact_predictor.report.page.sections import DRAWN
 from impact_predictor.report.page.timeline import MANY
 from impact_predictor.report.summary import WHY
@@ -49,7 +49,7 @@ def test_a_page_is_one_file_with_the_script_once_and_refers_to_nothing_outside_i
 
 
 def test_pages_of_several_bags_share_one_file_of_the_script(tmp_path: Path) -> None:
-    write_replay_pages(tmp_path / "week", ALL)
+    write_replay_page(tmp_path / "week", ALL)
     files = {file.name: file for file in (tmp_path / "week").iterdir()}
     assert sorted(files) == ["bag-1.html", "bag-2.html", "bag-3.html", "index.html", "plotly.min.js"]
     for name in set(files) - {"plotly.min.js"}:
@@ -58,7 +58,7 @@ def test_pages_of_several_bags_share_one_file_of_the_script(tmp_path: Path) -> N
         assert {link for link in page.links if not link.startswith("#")} <= set(files)
     (tmp_path / "taken").write_text("")
     with pytest.raises(InputError, match=r"the folder .*taken cannot be made: File exists; give another name"):
-        write_replay_pages(tmp_path / "taken", ALL)
+        write_replay_page(tmp_path / "taken", ALL)
 
 
 def test_all_text_of_a_bag_is_escaped_on_the_page_and_in_its_figures() -> None:

@@ -13,9 +13,9 @@ from ...stamps import NANOSECONDS
 from ...wording import counted, words
 from ..modes import MODES, PALETTE
 from ..summary import PER_DECADE, WHY, quantile, without_bag
-from . import answers as taken
-from .answers import NOTHING, BagAnswer
+from . import facts
 from .document import GREY, Cell, Chart, PageTable, Section, marks, part_words, time_words
+from .facts import NOTHING, BagAnswer
 from .timeline import FALSE, MANY, MISSED, in_order, look_of, timeline
 
 DRAWN: Final = 8
@@ -26,17 +26,17 @@ def bags(answers: Sequence[BagAnswer], order: Sequence[int], links: Mapping[int,
     """A row for each of several bags, the worst first; None where there is only one."""
     if len(answers) < 2:
         return None
-    names, rows = taken.names_of(answers), list[list[Cell | str]]()
+    names, rows = facts.names_of(answers), list[list[Cell | str]]()
     for place in order:
-        answer, facts = answers[place], taken.facts_of([answers[place]])
+        answer, found = answers[place], facts.facts_of([answers[place]])
         remark = next((kind for key, kind in REMARKS.items() if key != "notes" and answer.get(key)), "")
-        cells = [Cell(fact.answer, fact.more if fact.question == "found" else "") for fact in facts]
+        cells = [Cell(fact.answer, fact.more if fact.question == "found" else "") for fact in found]
         rows.append([Cell(names[place], remark, to=links.get(place, "")), *(cells if "error" not in answer else [])])
     said = (
         "First those that could not be used, then by what was missed or announced in vain, then by the error. The "
         f"timelines of the first {DRAWN} with touchdowns are drawn."
     )
-    return Section("bags", "The bags", [said], [PageTable(["bag", *(fact.question for fact in facts)], rows)])
+    return Section("bags", "The bags", [said], [PageTable(["bag", *(fact.question for fact in found)], rows)])
 
 
 READING: Final = (
@@ -50,7 +50,7 @@ READING: Final = (
 
 def when(answers: Sequence[BagAnswer], places: Sequence[int]) -> Section | None:
     """The timelines of some bags; None where nothing was predicted."""
-    names = taken.names_of(answers)
+    names = facts.names_of(answers)
     charts = [timeline(names[one], answers[one], f"bag-{one + 1}") for one in places]
     return Section("when", "When the touchdowns came", [READING], charts) if charts else None
 
@@ -67,8 +67,8 @@ def velocities(answers: Sequence[BagAnswer]) -> Section | None:
     """Predicted against measured velocities right after the touchdowns; None where none were measured."""
     compared = [
         (f"{name}, {(one['stamp'] - answer['begin']) / NANOSECONDS:.3f} s, {one['body']}", one)
-        for name, answer in zip(taken.names_of(answers), answers, strict=True)
-        for one in taken.scored_of([answer])
+        for name, answer in zip(facts.names_of(answers), answers, strict=True)
+        for one in facts.scored_of([answer])
     ]
     if not compared:
         return None
@@ -112,11 +112,11 @@ UNTOLD: Final = (
 def modes(answers: Sequence[BagAnswer]) -> Section | None:
     """The modes that were predicted against the true ones, or what can be told of them without a truth."""
     # Of a landing it is the mode of an impact with the speed of the foot in its last sample in the air.
-    found = Counter(one.get("landing_mode") or one["mode"] for one in taken.touchdowns_of(answers))
+    found = Counter(one.get("landing_mode") or one["mode"] for one in facts.touchdowns_of(answers))
     if not found:
         return None
     looks = {mode.name: Cell(mode.name, look.meaning) for mode, look in MODES.items()}
-    if counts := taken.confusion(answers):
+    if counts := facts.confusion(answers):
         true, predicted = ([one for one in (*looks, NOTHING) if one in kinds] for kinds in zip(*counts, strict=True))
         looks[NOTHING] = Cell(FALSE)
         rows: list[list[Cell | str]] = []
@@ -125,10 +125,10 @@ def modes(answers: Sequence[BagAnswer]) -> Section | None:
             rows.append([looks[row], *cells])
         caption = "How many touchdowns of each true mode (a row) were predicted in which mode (a column)."
         table = PageTable(["true mode", *(MISSED if one == NOTHING else one for one in predicted)], rows, caption)
-        return Section("modes", "Predicted against true modes", [taken.right_modes(counts)], [table])
+        return Section("modes", "Predicted against true modes", [facts.right_modes(counts)], [table])
     rows = []
     for mode in in_order(found):
-        errors = [one["relative_error"] for one in taken.scored_of(answers) if one["mode"] == mode]
+        errors = [one["relative_error"] for one in facts.scored_of(answers) if one["mode"] == mode]
         parts = [part_words(quantile(errors, part) if errors else None) for part in (0.5, 0.9)]
         rows.append([looks[mode], f"{found[mode]:,}", f"{len(errors):,}", *parts])
     head = ["predicted mode", "touchdowns", "compared", "median error", "90 % below"]
@@ -142,7 +142,7 @@ def lead_times(answers: Sequence[BagAnswer]) -> Section | None:
         ("relative_errors_ahead", "Velocities after the impact, against measured ones", "relative error, %", 100.0),
         ("time_errors_ahead", "Time of the touchdown", "error of the time, ms", 1e3),
     ):
-        spans, traces = taken.errors_ahead(answers, key), []
+        spans, traces = facts.errors_ahead(answers, key), []
         for name, part, colour in (("median", "p50", PALETTE[0]), ("90 % below", "p90", PALETTE[1])):
             points = []
             for one in spans:
@@ -162,7 +162,7 @@ def lead_times(answers: Sequence[BagAnswer]) -> Section | None:
 
 def cost(answers: Sequence[BagAnswer]) -> Section | None:
     """What the answer to a sample costs; None where nothing is known of it."""
-    spread = taken.costs(answers)
+    spread = facts.costs(answers)
     if not spread.number:
         return None
     said = (
@@ -211,8 +211,8 @@ def unused(answers: Sequence[BagAnswer]) -> Section:
                 remedy = REMEDIES[Status[status]] if status in Status.__members__ else ""
                 of = Cell(f"{number:,}", f"of {every:,}, {part_words(number / every)}")
                 refused.append([Cell(name, words(status)), remedy, of])
-    reasons = [[WHY[flag], f"{number:,}"] for flag, number in taken.uncompared(answers).most_common()]
-    names, said = taken.names_of(answers), dict[tuple[str, str], list[str]]()
+    reasons = [[WHY[flag], f"{number:,}"] for flag, number in facts.uncompared(answers).most_common()]
+    names, said = facts.names_of(answers), dict[tuple[str, str], list[str]]()
     for key, kind in REMARKS.items():
         for name, answer in zip(names, answers, strict=True):
             of_bag = answer.get(key) or []

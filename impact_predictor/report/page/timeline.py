@@ -10,8 +10,8 @@ from ...mechanics.types import Mode
 from ...stamps import NANOSECONDS
 from ...wording import words
 from ..modes import EDGE, MODES
-from .answers import BagAnswer
 from .document import GREY, Chart, marks, part_words, points_of, safe, time_words
+from .facts import BagAnswer
 
 MISSED: Final = "missed"
 """The mark of a true touchdown that no prediction announced."""
