@@ -58,13 +58,9 @@ def test_the_rod_that_turned_back_about_a_support_close_to_its_middle_struck_slo
         assert found.outcome.flags & Flag.SLOW_IMPACT
 
 
-def test_a_thin_rod_stops_from_115_5_mm_on():
-    # 12 a^2 = l^2: a = l / sqrt 12 = 115.47 mm.
-    assert border(0.0, FRICTION) == pytest.approx(LENGTH / math.sqrt(12.0), abs=1e-8)
-
-
-@pytest.mark.parametrize("thickness", THICKNESSES)
-def test_a_thick_rod_stops_where_12_ab_is_l_squared_and_3_h_squared(thickness):
+@pytest.mark.parametrize("thickness", [0.0, *THICKNESSES])
+def test_a_rod_stops_where_12_ab_is_l_squared_and_3_h_squared(thickness):
+    # A thin one from a = l / sqrt 12 = 115.47 mm on.
     expected = math.sqrt((LENGTH**2 + 3.0 * thickness**2) / 12.0)
     assert border(thickness, FRICTION) == pytest.approx(expected, abs=1e-8)
 
@@ -97,14 +93,14 @@ def test_as_json_it_has_every_trial_with_what_was_predicted_and_seen():
     assert all(entry["observed"] == "FLIGHT" and "THIN_BODY" in entry["flags"] for entry in thin)
 
 
-def test_a_friction_that_no_support_has_is_refused_in_a_sentence():
-    result = run("--friction", "-1")
-    assert result.exit_code == 2
-    assert result.stderr.startswith("error: ")
-    assert result.stderr.count("\n") == 1
-
-
-def test_a_rod_that_is_raised_beyond_its_balance_is_refused_in_a_sentence():
-    result = run("--angle", "60")
-    assert result.exit_code == 2
-    assert result.stderr == "error: a body raised by 60 degrees does not fall back; give a smaller angle\n"
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("--friction", "-1"), "error: "),
+        (("--angle", "60"), "error: a body raised by 60 degrees does not fall back; give a smaller angle\n"),
+    ],
+)
+def test_what_no_rod_can_do_is_refused_in_a_sentence(arguments, said):
+    result = run(*arguments)
+    assert (result.exit_code, result.stderr.count("\n")) == (2, 1)
+    assert result.stderr.startswith(said)

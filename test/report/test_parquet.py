@@ -8,44 +8,19 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from touchdowns import LANDED, UNMEASURED
 
 from impact_predictor.errors import InputError
 from impact_predictor.report.answers import touchdown_table
+from impact_predictor.report.touchdowns import row_as_json, row_of
 
 parquet = pytest.importorskip("pyarrow.parquet", reason="needs the extra fleet (make test-extras)")
 
 pytestmark = pytest.mark.extras
 
 DOCS = Path(__file__).parents[2] / "docs/fleets.md"
-TOUCHDOWN = {
-    "body": "cube",
-    "stamp": 1_700_000_000_123_456_789,
-    "announced_lead_time": 0.05,
-    "lead_time": 0.01,
-    "mode": "PIVOT",
-    "before_twist": [1.0, -2.0, 3.0],
-    "predicted_twist": (0.5, 0.25, 0.125),
-    "measured_twist": None,
-    "half_distance": 0.05,
-    "relative_error": None,
-    "out_of_plane": 0.1,
-    "scored": False,
-    "flags": ["TOO_SHORT"],
-    "old": [1],
-    "new": [0, 2],
-}
-LANDING = TOUCHDOWN | {
-    "foot": "LF",
-    "point": None,
-    "late": 0.001,
-    "confirmed": True,
-    "time_error": -0.002,
-    "landing_speed": 0.1,
-    "landing_mode": "PIVOT",
-    "impulse": [2.0, -1.0],
-    "others_impulse": [4.0, 0.5],
-    "velocity_change": [0.01, 0.02, 0.03],
-}
+TOUCHDOWN = row_as_json(row_of("cube", UNMEASURED)) | {"stamp": 1_700_000_000_123_456_789, "old": [1], "new": [0, 2]}
+LANDING = row_as_json(row_of("robot", LANDED))
 ANSWERS: list[dict[str, Any]] = [
     {"bag": "a.mcap", "samples": 10, "touchdowns": [TOUCHDOWN, LANDING]},
     {"bag": "b.mcap", "samples": 5, "touchdowns": []},
@@ -72,10 +47,10 @@ def test_there_is_a_row_for_each_touchdown_and_one_for_a_bag_without_any(tmp_pat
     assert toss["stamp"] == TOUCHDOWN["stamp"]  # whole: as a float it would lose its last digits
     assert (toss["predicted_vx"], toss["predicted_vy"], toss["predicted_omega"]) == TOUCHDOWN["predicted_twist"]
     assert (toss["measured_vx"], toss["relative_error"], toss["foot"]) == (None, None, None)
-    assert (toss["flags"], toss["old"], toss["new"]) == (["TOO_SHORT"], [1], [0, 2])
-    assert (landing["impulse_normal"], landing["impulse_tangential"]) == (2.0, -1.0)
-    assert (landing["others_impulse_normal"], landing["others_impulse_tangential"]) == (4.0, 0.5)
-    assert (landing["velocity_change_omega"], landing["confirmed"], landing["late"]) == (0.03, True, 0.001)
+    assert (toss["flags"], toss["old"], toss["new"]) == (["TOO_SHORT", "REVERSED_SLIP"], [1], [0, 2])
+    assert (landing["impulse_normal"], landing["impulse_tangential"]) == (0.5, -0.125)
+    assert (landing["others_impulse_normal"], landing["others_impulse_tangential"]) == (0.0, 0.0)
+    assert (landing["velocity_change_omega"], landing["confirmed"], landing["late"]) == (1.0, True, -0.015)
 
 
 def test_the_documented_lines_read_the_table(
@@ -93,7 +68,7 @@ def test_the_documented_lines_read_the_table(
     failed, errors = map(literal_eval, capsys.readouterr().out.splitlines())
     assert failed == [{"bag": "c.mcap", "bag_problem": "c.mcap does not exist"}]
     assert errors == [
-        {"mode": "PIVOT", "relative_error_count": 2, "relative_error_mean": 0.2, "relative_error_max": 0.3}
+        {"mode": "PIVOT_SLIDE", "relative_error_count": 2, "relative_error_mean": 0.2, "relative_error_max": 0.3}
     ]
 
 
