@@ -226,21 +226,6 @@ def test_replay_writes_predictions_and_a_picture(tmp_path: Path, bag: str) -> No
     assert f"Predictions: {output}" in result.stdout
 
 
-def test_replay_tells_bodies_with_names_apart(tmp_path: Path, bag: str) -> None:
-    scene = tmp_path / "two.yaml"
-    given = (
-        Path(SCENE).read_text(encoding="utf-8").replace("ros__parameters:", "ros__parameters:\n    bodies: [cube, rod]")
-    )
-    scene.write_text(given, encoding="utf-8")
-    result = run("replay", bag, "--params", str(scene))
-    assert result.exit_code == 0
-    assert "has no rod/odom: nothing is predicted there" in result.stderr
-    assert any(line.split()[:1] == ["cube"] for line in result.stdout.splitlines())
-    answer = json.loads(run("replay", bag, "--params", str(scene), "--json").stdout)
-    assert {touchdown["body"] for touchdown in answer["touchdowns"]} == {"cube"}
-    assert set(answer["inputs"]) == {"cube/odom", "cube/contact_geometry"}
-
-
 def test_of_several_bags_one_that_cannot_be_read_stops_no_other(tmp_path: Path, bag: str) -> None:
     output = tmp_path / "out"
     missing = str(tmp_path / "missing.mcap")

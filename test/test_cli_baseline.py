@@ -64,27 +64,6 @@ def test_a_bag_that_the_earlier_run_lacks_is_told_and_stops_no_other(tmp_path: P
     assert (alone.exit_code, alone.stderr) == (2, f"error: {said}\n")
 
 
-def test_a_set_of_bags_may_grow_beside_its_baseline(tmp_path: Path, bag: Path) -> None:
-    """Where a second bag of the name comes, the folder calls both otherwise, so that it has none of them."""
-    days = [tmp_path / day / "run.mcap" for day in ("monday", "tuesday", "wednesday")]
-    for day in days:
-        day.parent.mkdir()
-        day.hardlink_to(bag)
-    old = tmp_path / "old"
-    old.mkdir()
-    assert replay(days[0], "-o", old / "run.mcap").exit_code == 0
-    grown = replay(*days[:2], "--baseline", old)
-    notes = [line for line in grown.stderr.splitlines() if "the baseline" in line]
-    assert notes == [
-        f"note: the baseline {old} has no run of {day}; replay that bag with -o or --json again" for day in days[:2]
-    ]
-    assert replay(*days[:2], "-o", old).exit_code == 0
-    statuses = [replay(*days[:k], "--baseline", old).exit_code for k in (2, 3)]
-    # One of them alone is still found.
-    (old / "run.mcap").unlink()
-    assert [grown.exit_code, *statuses, replay(days[1], "--baseline", old).exit_code] == [1, 0, 1, 0]
-
-
 def test_what_is_no_run_of_these_bags_is_refused_before_anything_is_replayed(tmp_path: Path, bag: Path) -> None:
     old, new = tmp_path / "old.json", tmp_path / "new.mcap"
     old.write_text(replay(bag, "--json").stdout)

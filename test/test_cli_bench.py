@@ -133,20 +133,3 @@ def test_a_count_that_is_none_is_refused_in_one_sentence(count: str) -> None:
     assert (result.exit_code, result.stdout) == (2, "")
     assert "is not a whole number above 0, such as 1000000 or 1e6" in result.stderr
     assert len(result.stderr.splitlines()) == 1
-
-
-def test_the_invariants_solve_a_second_time_by_the_same_law() -> None:
-    """Mirror, units and continuity need it; a law that forgets its mirror must fail there."""
-    asked = []
-
-    def lopsided(body: TwoPointBody, twist: Twist, law: str) -> Outcomes:
-        asked.append(law)
-        outcomes = solve_impacts(body, twist, law)
-        right = np.broadcast_to(np.asarray(twist.vx) > 0.0, outcomes.mode.shape)[..., None]
-        return outcomes._replace(twist=np.where(right, 1.01 * outcomes.twist, outcomes.twist))
-
-    _, body, twist = next(random_problems(1, 100, 100))
-    _, found = invariants.violations(body, twist, "total", lopsided)
-    assert set(asked) == {"total"}
-    assert len(asked) > 3
-    assert np.max(found["mirror"]) > 1e-3

@@ -56,10 +56,6 @@ def test_what_is_a_bag_or_is_not_there_is_kept_as_it_is(runs: Path) -> None:
     assert bags_of(["./here.mcap"]) == ["./here.mcap"]
 
 
-def test_a_bag_that_is_found_twice_is_taken_once(runs: Path) -> None:
-    assert names(runs, "run_10.mcap", "*.mcap", "") == ["run_10.mcap", *[name for name in ALL if name != "run_10.mcap"]]
-
-
 def test_files_that_are_numbered_but_not_named_as_their_folder_are_bags_of_their_own(runs: Path) -> None:
     for number in (0, 1):
         (runs / "empty" / f"toss_{number}.mcap").touch()

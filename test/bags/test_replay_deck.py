@@ -140,20 +140,6 @@ def read(path: Path, topic: str) -> list[BagMessage]:
     return list(read_messages(path, {topic: topics(path)[topic]}))
 
 
-def test_every_input_is_counted_by_its_name(result: Result) -> None:
-    assert {name: sum(counts.values()) for name, counts in result.inputs.items()} == {
-        "support/odom": END,
-        "crate/odom": END // 5,
-        "falling/odom": END,
-        "leaning/imu": END // 5,
-    }
-    assert result.samples == END // 5 + END
-    assert result.statuses[Status.ACCEPTED] + result.statuses[Status.NO_SUPPORT] == END // 5 * 2 + END
-    assert set(result.statuses) == {Status.ACCEPTED, Status.NO_SUPPORT}
-    assert result.inputs["support/odom"] == {Status.ACCEPTED: END}
-    assert (result.unpredictable, result.notes, result.truth) == ("", (), None)
-
-
 def test_a_bag_gives_what_the_monitor_gives_in_the_order_of_the_recording(
     output: Path, bag: Path, scenes: dict[str, Scene]
 ) -> None:
@@ -180,13 +166,6 @@ def test_a_bag_gives_what_the_monitor_gives_in_the_order_of_the_recording(
     monitor.finish()
     for topic, messages in expected.items():
         assert [(message.log_time, message.data) for message in read(output, topic)] == messages, topic
-
-
-def test_only_what_the_scene_needs_is_read(tmp_path: Path, bag: Path, scenes: dict[str, Scene]) -> None:
-    few = {"crate": scenes["crate"]._replace(watching=None)}
-    result = replay(bag, few, output=tmp_path / "out.mcap")
-    assert set(result.inputs) == {"support/odom", "crate/odom"}
-    assert set(topics(tmp_path / "out.mcap")) == {f"{NODE}/crate/{name}" for name in ("mode", "prediction")}
 
 
 def test_a_body_that_is_not_in_the_bag_is_named_and_never_ok(tmp_path: Path, scenes: dict[str, Scene]) -> None:

@@ -78,15 +78,6 @@ def test_every_input_tells_what_became_of_its_messages(tmp_path: Path, messages:
     assert result.statuses[Status.ACCEPTED] == 400
 
 
-def test_feet_of_a_named_body_are_told_under_its_name(tmp_path: Path, messages: list[BagMessage]) -> None:
-    path = write_bag(tmp_path / "walk.mcap", messages, prefix="/robot")
-    result = replay(path, {"robot": SCENE})
-    assert list(result.inputs) == [
-        f"robot{topic}" for topic in ("/contact_wrench", "/schedule", "/odom", "/contact_geometry")
-    ]
-    assert {settled.body for settled in result.settled} == {"robot"}
-
-
 def test_without_points_of_its_feet_it_is_said_which_topic_to_give(tmp_path: Path, messages: list[BagMessage]) -> None:
     alone = write_bag(tmp_path / "walk.mcap", [one for one in messages if one.topic == "/odom"])
     result = replay(alone, SCENE)

@@ -117,20 +117,6 @@ def test_spokes_count_on_every_turn_and_uphill_they_count_back() -> None:
     assert up.distance < 0.0
 
 
-@pytest.mark.parametrize("friction", [1.0, 0.35])
-@pytest.mark.parametrize("steps", [1, 2, 9])
-def test_on_a_slope_that_rises_ahead_it_rolls_backwards_as_its_mirror_image_rolls_ahead(
-    steps: int, friction: float
-) -> None:
-    hub = HUB._replace(inertia=0.1, friction=friction)
-    ahead, back = (roll(Wheel(hub._replace(slope=slope), ALPHA), 0.0, steps) for slope in (0.08, -0.08))
-    assert (back.end, back.steps) == (RollEnd.STEPS_DONE, -steps)
-    assert back.time == pytest.approx(ahead.time, rel=1e-9)
-    assert back.distance == pytest.approx(-ahead.distance, rel=1e-9)
-    assert rates_of(back) == [pytest.approx((-before, -after), rel=1e-9) for before, after in rates_of(ahead)]
-    assert [one.new for one in back.impacts] == [-one.new % 8 for one in ahead.impacts]
-
-
 @pytest.mark.parametrize(("slope", "spokes", "end"), [(20.0, 8, "STEPS_DONE"), (40.0, 8, "TAKES_OFF")])
 def test_a_wheel_for_which_no_friction_is_enough_slips_or_takes_off(slope: float, spokes: int, end: str) -> None:
     wheel = Wheel(HUB._replace(inertia=0.1, friction=100.0, slope=radians(slope)), pi / spokes)

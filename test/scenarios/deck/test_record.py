@@ -19,9 +19,8 @@ from impact_predictor.prediction.scene import MovingDeck, Scene
 from impact_predictor.prediction.types import Imu
 from impact_predictor.prediction.vectors import axes_of
 from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY, IMU, ODOMETRY, decode_imu
-from impact_predictor.scenarios.deck.cargo import follow, unit_of
-from impact_predictor.scenarios.deck.voyage import Followed, gravity_of, sail
-from impact_predictor.scenarios.record import Sensors, deck_messages
+from impact_predictor.scenarios.deck.voyage import gravity_of, sail
+from impact_predictor.scenarios.record import Sensors
 from impact_predictor.scenarios.sensors import SensorNoise
 from impact_predictor.scenarios.truth import (
     ONSET_TOPIC,
@@ -220,15 +219,6 @@ def test_a_toppled_unit_tells_nothing_more_and_the_others_go_on(tmp_path: Path) 
     last = samples_of(path, "/tall/odom")[-1].stamp / 1e9
     assert toppled.time - 1.0 / RATE < last <= toppled.time
     assert samples_of(path, "/low/odom")[-1].stamp == samples_of(path, "/support/odom")[-1].stamp == DURATION * 1e9
-
-
-def test_a_long_record_is_made_while_it_is_written() -> None:
-    # The first messages come when the first minute has been followed, not the whole day.
-    unit, day = unit_of("a", box(friction=0.1)), 24 * 3600.0
-    one = Followed(unit, a_deck(), follow(unit, a_deck(), day))
-    streams = deck_messages([one], a_deck(), False, day, Sensors())
-    next(streams[-1])
-    assert one.time == 60.0
 
 
 @pytest.mark.parametrize(
