@@ -15,7 +15,6 @@ from .replay import read_scenes
 
 if TYPE_CHECKING:
     from ..bags.replay import Result
-    from ..calibration.fit import Calibration
     from ..calibration.touchdowns import ScoredTouchdown
     from ..prediction.scene import Scene
 
@@ -78,7 +77,14 @@ def calibrate(
             raise InputError(f"{error}; not scored are {counts}") from None
         raise
     if output is not None:
-        write_scene(params, output, calibration)
+        from ..calibration.scene_file import changed
+        from ..report.calibration import changes_of
+        from ..report.files import whole
+
+        given = Path(params).read_text(encoding="utf-8")
+        with whole(Path(output)) as partial:
+            partial.write_text(changed(given, changes_of(calibration)), encoding="utf-8")
+            read_scenes(str(partial))
     if figure is not None:
         from ..report.figures import write_calibration
 
@@ -88,7 +94,16 @@ def calibrate(
     if as_json:
         click.echo(json.dumps(fields_of(calibration, bags, scores), allow_nan=False))
     else:
-        print_calibration(calibration, results)
+        from rich.console import Console
+
+        from ..report.calibration import estimates_table, sentences
+        from ..report.table import show
+
+        console = Console()
+        show(console, estimates_table(calibration))
+        console.print()
+        for sentence in sentences(calibration, scores):
+            console.print(sentence, markup=False, highlight=False, soft_wrap=True)
         for label, name in (("Scene", output), ("Picture", figure)):
             if name is not None:
                 click.echo(f"{label}: {name}")
@@ -129,33 +144,3 @@ def read_all(
         records.append(monitor.touchdowns)
         results.append(result)
     return records, results
-
-
-def write_scene(params: str, output: str, calibration: Calibration) -> None:
-    """Write the parameter file with the fitted values in it, first under another name.
-
-    Raises:
-        InputError: it cannot be written.
-    """
-    from ..calibration.scene_file import changed
-    from ..report.calibration import changes_of
-    from ..report.files import whole
-
-    text = Path(params).read_text(encoding="utf-8")
-    with whole(Path(output)) as partial:
-        partial.write_text(changed(text, changes_of(calibration)), encoding="utf-8")
-        read_scenes(str(partial))
-
-
-def print_calibration(calibration: Calibration, results: list[Result]) -> None:
-    """Print what was fitted and what it is worth."""
-    from rich.console import Console
-
-    from ..report.calibration import estimates_table, sentences
-    from ..report.table import show
-
-    console = Console()
-    show(console, estimates_table(calibration))
-    console.print()
-    for sentence in sentences(calibration, [settled.score for result in results for settled in result.settled]):
-        console.print(sentence, markup=False, highlight=False, soft_wrap=True)

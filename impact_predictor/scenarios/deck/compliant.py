@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from math import cos, pi, sin
-from typing import Final, NamedTuple
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,14 +53,6 @@ PRESSED: Final = 2.0
 
 PART: Final = 0.02
 """A velocity above this part of the approach is one: out of the support the contact opens, along it it slips."""
-
-
-class _Contacts(NamedTuple):
-    """Gaps (m), their rates and slips (m/s) of both contacts, seen from the support; numbers or arrays."""
-
-    gaps: tuple[NDArray[np.float64], NDArray[np.float64]]
-    rates: tuple[NDArray[np.float64], NDArray[np.float64]]
-    slips: tuple[NDArray[np.float64], NDArray[np.float64]]
 
 
 def follow_compliant(unit: CargoUnit, support: MovingSupport, duration: float, law: str = "path") -> Iterator[Span]:
@@ -112,27 +104,22 @@ class _Stretch:
         """The mass centre's states at a time or an array of times."""
         return from_world(self.support.motion(times), PlanarState(*self.motion.way(times)))
 
-    def contacts(self, times: NDArray[np.float64] | float) -> _Contacts:
-        return self.of(self.state(times))
-
-    def of(self, state: PlanarState) -> _Contacts:
+    def contact(self, i: int, state: PlanarState) -> tuple[Any, Any, Any]:
+        """Gap (m), its rate and the slip (m/s) of a contact in a state of numbers or arrays."""
         _, y, angle, vx, vy, omega = state
-        c, s = np.cos(angle), np.sin(angle)
-        (up_a, rate_a, slip_a), (up_b, rate_b, slip_b) = (
-            (y + s * px + c * py, vy + omega * (c * px - s * py), vx - omega * (s * px + c * py))
-            for px, py in self.points
-        )
-        return _Contacts((up_a, up_b), (rate_a, rate_b), (slip_a, slip_b))
+        (px, py), c, s = self.points[i], np.cos(angle), np.sin(angle)
+        return y + s * px + c * py, vy + omega * (c * px - s * py), vx - omega * (s * px + c * py)
 
     def impacts(self, times: NDArray[np.float64], last_open: list[float], law: str) -> Iterator[TrueImpact]:
         """The impacts between the steps `times` of the integrator, in order.
 
         `last_open` is since when each contact has been open, below zero for a closed one; it is kept up to date.
         """
-        gaps = self.contacts(times).gaps
+        states = self.state(times)
         closings: list[tuple[float, int]] = []
         for i in (0, 1):
-            is_open = gaps[i] > 0.0
+            gaps, _, _ = self.contact(i, states)
+            is_open = gaps > 0.0
             if is_open[0] and last_open[i] < 0.0:
                 last_open[i] = float(times[0])
             for k in np.flatnonzero(is_open[1:] != is_open[:-1]).tolist():
@@ -152,7 +139,8 @@ class _Stretch:
         """When a contact closes between two times."""
 
         def gap(time: float) -> float:
-            return float(self.contacts(time).gaps[i])
+            width, _, _ = self.contact(i, self.state(time))
+            return float(width)
 
         # One time by itself is rounded otherwise than in an array of them.
         return float(brentq(gap, low, high, xtol=1e-16)) if gap(low) > 0.0 > gap(high) else high
@@ -172,21 +160,19 @@ class _Stretch:
     def _impact(self, at: float, new: int, last: float, law: str) -> TrueImpact | None:
         """The impact of a contact that closes; None where it comes too slowly."""
         unit, before = self.unit, self.state(at)
-        seen = self.of(before)
-        approach = -float(seen.rates[new])
+        (gap, _, _), (_, rate, _) = self.contact(1 - new, before), self.contact(new, before)
+        approach, stood = -float(rate), float(gap) <= 0.0
         if approach <= SLOWEST:
             return None
-        stood = float(seen.gaps[1 - new]) <= 0.0
-        after = self.state(self._over(at, last))
-        then, least = self.of(after), PART * approach
-        leaves = [float(rate) > least for rate in then.rates]
-        slips = abs(float(then.slips[new])) > least + 10.0 * REGULARISATION
+        after, least = self.state(self._over(at, last)), PART * approach
+        (_, old_rate, _), (_, new_rate, slip) = self.contact(1 - new, after), self.contact(new, after)
+        slips = abs(float(slip)) > least + 10.0 * REGULARISATION
         body = self._body(before, new, stood)
         twist, twist_after = (Twist(float(one.vx), float(one.vy), float(one.omega)) for one in (before, after))
         return TrueImpact(
             stamp=round(at * NANOSECONDS),
             body=unit.name,
-            mode=_mode(stood and not leaves[1 - new], not leaves[new], slips),
+            mode=_mode(stood and float(old_rate) <= least, float(new_rate) <= least, slips),
             old=unit.contacts[1 - new] if stood else (),
             new=unit.contacts[new],
             approach=approach,
