@@ -129,7 +129,10 @@ def margins(body: TwoPointBody, twist: Twist, law: str = "path") -> Margins:
         return Change(asked, unit=unit, least=least, old=(-x, -y), new=(-x, -y), velocity=velocity)
 
     unit = distance if stands else hypot(new.x, new.y)
-    speed = sum(abs(part) for contact in ((old, new) if stands else (new,)) for part in approach(contact, twist))
+    speed = 0.0
+    for contact in (old, new) if stands else (new,):
+        normal, slip = approach(contact, twist)
+        speed += abs(normal) + abs(slip)
     # The support of the new contact turns with that of the old one.
     (ux, uy), (wx, wy) = old.velocity, new.velocity
     x, y = new.x - old.x, new.y - old.y

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .impact import NOWHERE, number_of, see
+from .impact import NOWHERE, approach, number_of, see
 from .impact.answer import answer
 from .types import Contact, Flag, Twist, TwoPointBody
 
@@ -70,13 +70,15 @@ def sensitivity(body: TwoPointBody, twist: Twist, law: str = "path") -> Sensitiv
     states, flags = states_at(body, inputs, number)
     if flags & (INVALID_INPUT | NO_SOLUTION) or not states:
         return Sensitivity(NO_CHANGE, NO_CHANGE, NO_CHANGE, FREE, ())
-    directions = directions_of(allowed_changes(body, twist))
+    directions = np.eye(len(INPUTS))
+    directions[3:, 3:] = np.transpose(allowed_changes(body, twist))
     columns = derivatives(body, inputs, directions, number)
     one_sided = []
     for i, (direction, step) in enumerate(zip(directions, steps_of(body, inputs), strict=True)):
-        if not any(direction) or (i == 0 and body.old is None):
+        if not direction.any() or (i == 0 and body.old is None):
             continue
-        more, less = moved(inputs, direction, step), moved(inputs, direction, -step)
+        ways = list(zip(inputs, direction.tolist(), strict=True))
+        more, less = (tuple([value + change * part for value, part in ways]) for change in (step, -step))
         (above, flags_above), (below, flags_below) = states_at(body, more, number), states_at(body, less, number)
         if flags_above & flags_below & INVALID_INPUT:
             continue  # so near to the mass centre is the contact that no finite turn moves it
@@ -109,34 +111,23 @@ def allowed_changes(body: TwoPointBody, twist: Twist) -> TwistMatrix:
     return (1.0 - nx * nx, -nx * ny, nx * lever), (-nx * ny, 1.0 - ny * ny, ny * lever), (0.0, 0.0, 1.0)
 
 
-def directions_of(allowed: TwistMatrix) -> tuple[tuple[float, ...], ...]:
-    """How all inputs change with each of them."""
-    coefficients = (1.0, 0.0, 0.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
-    return (*coefficients, *((0.0, 0.0, 0.0, *column) for column in zip(*allowed, strict=True)))
-
-
 def steps_of(body: TwoPointBody, inputs: Inputs) -> tuple[float, ...]:
     """How far each input is moved to look for a border."""
     friction_old, friction_new, _, vx, vy, omega = inputs
     speed = reach = 0.0
     for contact in (body.old, body.new):
         if contact is not None:
-            _, normal, tangential, *_ = see(contact, Twist(vx, vy, omega))
+            normal, tangential = approach(contact, Twist(vx, vy, omega))
             speed += abs(normal) + abs(tangential)
             reach += abs(contact.x) + abs(contact.y)
     turn = speed / reach if reach > 0.0 else abs(omega) + speed
-    sizes = (1.0 + friction_old, 1.0 + friction_new, 1.0, speed, speed, turn)
-    return tuple([STEP * size for size in sizes])
-
-
-def moved(inputs: Inputs, direction: tuple[float, ...], step: float) -> Inputs:
-    return tuple([value + step * part for value, part in zip(inputs, direction, strict=True)])
+    return tuple([STEP * size for size in (1.0 + friction_old, 1.0 + friction_new, 1.0, speed, speed, turn)])
 
 
 def rests(body: TwoPointBody, inputs: Inputs) -> list[tuple[bool, bool]]:
     """Whether each contact has no normal and no tangential velocity before the impact."""
-    seen = [see(contact, Twist(*inputs[3:])) for contact in (body.old or NOWHERE, body.new)]
-    return [(normal == 0.0, tangential == 0.0) for _, normal, tangential, *_ in seen]
+    approaches = [approach(contact, Twist(*inputs[3:])) for contact in (body.old or NOWHERE, body.new)]
+    return [(normal == 0.0, tangential == 0.0) for normal, tangential in approaches]
 
 
 def problem_at(body: TwoPointBody, inputs: Inputs, law: int) -> tuple[float, float, bool, Contact, Contact, Twist, int]:
@@ -153,11 +144,9 @@ def states_at(body: TwoPointBody, inputs: Inputs, law: int) -> tuple[int, int]:
     return states, flags
 
 
-def derivatives(
-    body: TwoPointBody, inputs: Inputs, directions: tuple[tuple[float, ...], ...], law: int
-) -> list[Triple]:
+def derivatives(body: TwoPointBody, inputs: Inputs, directions: Parts, law: int) -> list[Triple]:
     """Derivatives of the twist after the impact along each of the directions."""
-    duals = tuple(map(Dual, inputs, np.transpose(directions)))
+    duals = tuple(map(Dual, inputs, directions.T))
     with np.errstate(all="ignore"):
         _, after, *_ = dual_answer()(*problem_at(body, duals, law))
     vx, vy, omega = (part.parts.tolist() for part in after)
