@@ -26,7 +26,7 @@ from ..ros.messages import DIAGNOSTIC_ARRAY, MalformedMessage, decode_diagnostic
 from ..scenarios.matching import NEAREST
 from ..stamps import NANOSECONDS
 from ..wording import NONE, counted, percent
-from .table import MOST_ROWS, Column, first_stamp, more, say, show, table_of
+from .table import MOST_ROWS, first_stamp, more, say
 from .touchdowns import TouchdownRow, row_of_json, row_of_message
 
 if TYPE_CHECKING:
@@ -58,7 +58,6 @@ class Earlier:
         elif self.path.is_dir() and not (self.path / METADATA).exists():
             files = self.path.rglob("*.mcap")
             self._runs = {os.fspath(file.relative_to(path).with_suffix("")): file for file in files}
-
         if bags > 1 and "" in self._runs:
             raise InputError(
                 f"the baseline {self.path} is the run of one bag, but {bags:,} bags are given; give what a run of "
@@ -129,7 +128,7 @@ def _read_bag(path: Path) -> list[TouchdownRow]:
 
 
 class ChangeKind(Enum):
-    """What has changed, in the words of the table; the JSON has the names in small letters."""
+    """What has changed, in words; the JSON has the names in small letters."""
 
     APPEARED = "appeared"
     VANISHED = "vanished"
@@ -247,20 +246,9 @@ def print_changes(
     console: Console, compared: RunComparison, baseline: str | os.PathLike[str], every: bool = False
 ) -> None:
     """Print what has changed against a baseline (the first changes, or `every` one), or that nothing has."""
-    changes, start = compared.changes, compared.start
-    if changes:
-        columns = [
-            Column("since first\ns" if start else "time\ns", lambda change: _seconds(change.row.stamp - start)),
-            Column("body", _who, left=True),
-            Column("change", lambda change: change.kind.value, left=True),
-            Column("was", lambda change: _text(change, change.was, start), fold=8),
-            Column("now", lambda change: _text(change, change.now, start), fold=8),
-        ]
-        listed = changes if every else changes[:MOST_ROWS]
-        console.print()
-        show(console, table_of(columns, listed))
-        say(console, *more(len(changes) - len(listed), "change"))
-    say(console, concluded(compared, baseline))
+    lines = sentences(compared)
+    listed = lines if every else lines[:MOST_ROWS]
+    say(console, *listed, *more(len(lines) - len(listed), "change"), concluded(compared, baseline))
 
 
 def concluded(compared: RunComparison, baseline: str | os.PathLike[str]) -> str:
@@ -274,11 +262,10 @@ def concluded(compared: RunComparison, baseline: str | os.PathLike[str]) -> str:
 
 
 def sentences(compared: RunComparison) -> list[str]:
-    """The changes, one line each."""
-    start = compared.start
+    """The changes, one line each, in SI units but for the errors of landings, which are in ms."""
     return [
-        f"{_seconds(one.row.stamp - start)} s {_who(one)}: {one.kind.value}, was {_text(one, one.was, start)}, "
-        f"now {_text(one, one.now, start)}"
+        f"{(one.row.stamp - compared.start) / NANOSECONDS:.3f} s {f'{one.row.body} {one.row.foot}'.rstrip()}: "
+        f"{one.kind.value}, was {_text(one, one.was, compared.start)}, now {_text(one, one.now, compared.start)}"
         for one in compared.changes
     ]
 
@@ -304,16 +291,7 @@ def comparison_as_json(compared: RunComparison, baseline: str | os.PathLike[str]
     }
 
 
-def _who(change: TouchdownChange) -> str:
-    return f"{change.row.body} {change.row.foot}".rstrip()
-
-
-def _seconds(nanoseconds: int) -> str:
-    return f"{nanoseconds / NANOSECONDS:.3f}"
-
-
 def _text(change: TouchdownChange, value: Any, start: int) -> str:
-    """A value of a change: times in s, the error of a landing in ms, velocities in SI units."""
     if value is None:
         return NONE
     if change.kind is ChangeKind.MOVED:

@@ -154,18 +154,18 @@ NOW = [
 ]
 
 
-def test_the_table_says_what_was_and_what_is_in_80_columns() -> None:
+def test_each_change_is_said_with_what_was_and_what_is() -> None:
     text = printed(compare_runs(WAS, NOW))
-    assert max(map(len, text.splitlines()[:-1])) <= 80
-    assert {" ".join(line.split()) for line in text.splitlines()} >= {
-        "1.000 crate other mode STOP SLIDE",
-        "1.000 crate worse 10.0 % 34.5 %",
-        "2.004 crate moved 2.0000 2.0040",
-        "3.000 crate other vx, vy, omega 0.500 0.000 -1.00 -10.500 -10.250 -12.25",
-        "4.000 crate vanished STOP -",
-        "5.000 robot LF worse +2.0 ms -12.0 ms",
-        "7.000 crate appeared - STOP",
-    }
+    assert text.splitlines()[:-1] == [
+        "1.000 s crate: other mode, was STOP, now SLIDE",
+        "1.000 s crate: worse, was 10.0 %, now 34.5 %",
+        "2.004 s crate: moved, was 2.0000, now 2.0040",
+        "3.000 s crate: other vx, vy, omega, was 0.500 0.000 -1.00, now -10.500 -10.250 -12.25",
+        "4.000 s crate: vanished, was STOP, now -",
+        "5.000 s robot LF: worse, was +2.0 ms, now -12.0 ms",
+        "6.000 s crate: other contacts, was 0 1 then 2 3, now 0 1 2 3 then 4 5 6 7",
+        "7.000 s crate: appeared, was -, now STOP",
+    ]
     kinds = "2 worse, 1 other mode, 1 moved, 1 other vx, vy, omega, 1 vanished, 1 other contacts, 1 appeared"
     assert text.splitlines()[-1] == f"Against old.mcap 0 of 6 touchdowns are as they were: {kinds}."
     assert concluded(compare_runs(WAS, WAS), "a") == "Nothing has changed against a: 6 touchdowns."
