@@ -639,35 +639,12 @@ def test_a_body_that_spins_fast_and_falls_far_strikes_within_half_a_turn_of_bein
     assert found.time == pytest.approx(2 * vy / pull, rel=1e-6)
 
 
-def test_slip_starts_where_the_stance_would_leave_its_friction_cone() -> None:
-    state = standing(PLATE[0], 0.4, 0.0)
-    falls = [Case(state, PLATE, 0, RHO_SQUARED, friction).fall() for friction in (HELD, 0.8, 0.6, 0.4, 0.2, 0.0)]
-    assert [fall.motion for fall in falls] == [MotionKind.TURNING] * 3 + [MotionKind.SLIDING] * 3
-    assert falls[0] == falls[1] == falls[2]
-    # The less it is held, the further the foot slides back and the sooner the plate is down.
-    times, places = [fall.time for fall in falls[2:]], [fall.state.x for fall in falls[2:]]
-    assert times == sorted(times, reverse=True)
-    assert places == sorted(places, reverse=True)
-    # Without friction the mass centre falls straight.
-    assert falls[-1].state.x == pytest.approx(state.x, abs=ROUNDING)
-    assert falls[-1].state.vx == pytest.approx(0.0, abs=ROUNDING)
-
-
 def test_a_slip_of_one_rounding_is_none() -> None:
     state = standing(PLATE[0], 0.4, -1.0)
     sticking = Case(state, PLATE, 0, RHO_SQUARED, 1.5).fall()
     assert sticking.motion is MotionKind.TURNING
     nudged = Case(state._replace(vx=math.nextafter(state.vx, 1.0)), PLATE, 0, RHO_SQUARED, 1.5).fall()
     assert nudged == sticking
-
-
-def test_a_slip_that_stops_on_the_way_sticks() -> None:
-    slipping = Case(standing(PLATE[0], 0.4, 0.0, 0.02), PLATE, 0, RHO_SQUARED, 1.5).fall()
-    sticking = Case(standing(PLATE[0], 0.4, 0.0), PLATE, 0, RHO_SQUARED, 1.5).fall()
-    assert slipping.motion is MotionKind.TURNING
-    assert slipping.time == pytest.approx(sticking.time, rel=0.02)
-    # It moved by half the slip over the time it took to stop.
-    assert 0.0 < slipping.state.x - sticking.state.x < 1e-4
 
 
 def test_a_foot_that_slips_while_nothing_turns_the_body_stops_after_the_time_of_a_block() -> None:

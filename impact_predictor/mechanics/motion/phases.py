@@ -174,7 +174,7 @@ class MotionPhase:
                 at, k = then, (late or crossed)[0]
                 if not late:
                     found = [(_Crossing(self, now, then, k).find(before[k], after[k]), k) for k in crossed]
-                    at, k = min(found, key=_time_of)
+                    at, k = min(found)
                 self.instants.append(at)
                 return PhaseEnd(*self.events[k], at)
             self._pass(then)
@@ -396,10 +396,6 @@ class _Crossing:
             here, _ = step(phase.rate, self.here, span, phase.scale, phase.tolerance)
         self.here, self.place = here._replace(time=self.start + place), place
         return phase.conditions(self.here)[self.k]
-
-
-def _time_of(found: tuple[Instant, int]) -> float:
-    return found[0].time
 
 
 def _began(start: Condition, border: float) -> bool:

@@ -58,9 +58,6 @@ class Phase(NamedTuple):
     states: str
 
 
-_NONE = Phase(start=0.0, end=0.0, states="OO")
-
-
 @dataclass(frozen=True, eq=False)
 class Trajectory:
     """A rocking motion in the support's frame, until `time` (s).
@@ -88,7 +85,9 @@ class Trajectory:
 
     def states(self, time: float) -> str:
         """Contact states at a time, as those of `Phase`."""
-        return next((one.states for one in reversed(self.phases) if one.start <= time), (*self.phases, _NONE)[0].states)
+        if not self.motions:
+            return "OO"
+        return letters(next((one for one in reversed(self.motions) if one.start <= time), self.motions[0]).states)
 
     def state(self, time: Any) -> PlanarState:
         """State in the support's frame at a time in s (numbers) or at an array of times (arrays).
