@@ -7,7 +7,6 @@ from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
 from math import floor, hypot, log10
-from statistics import median
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
@@ -210,17 +209,15 @@ class Tally:
         modes = ", ".join(f"{self._modes[mode]:,} {mode.name}" for mode in sorted(self._modes))
         told = [said, f"Predicted modes: {modes}."]
         if errors := [abs(error) for error in known["error"]]:
-            wrong = f"{1e3 * median(errors):.1f} ms wrong in the median, by when the foot's motion ends"
+            wrong = f"{1e3 * quantile(errors, 0.5):.1f} ms wrong in the median, by when the foot's motion ends"
             told.append(f"The time predicted {1e3 * LEAD_TIMES[0]:.0f} ms ahead is {wrong}.")
         if known["impulse"]:
-            speeds = f"{median(known['speed']):.3f} m/s in the median, at most {max(known['speed']):.3f} m/s"
+            speeds = f"{quantile(known['speed'], 0.5):.3f} m/s in the median, at most {max(known['speed']):.3f} m/s"
             told.append(
                 f"In its last sample in the air a foot has {speeds}; an impact with that speed gives it at most "
                 f"{max(known['impulse']):.2f} N s, and the body at most {max(known['change']):.3f} m/s."
             )
         if late := [1e3 * one for one in known["late"]]:
-            told.append(
-                f"Against the plan {counted(len(late), 'landing')} came {median(late):+.1f} ms late in the median, "
-                f"from {min(late):+.1f} to {max(late):+.1f} ms."
-            )
+            times = f"{quantile(late, 0.5):+.1f} ms late in the median, from {min(late):+.1f} to {max(late):+.1f} ms"
+            told.append(f"Against the plan {counted(len(late), 'landing')} came {times}.")
         return told
