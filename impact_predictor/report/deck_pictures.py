@@ -29,7 +29,7 @@ LONGEST: Final = 12.0
 """Seconds of a motion that a film shows, in real time: those about the fastest."""
 MARGINS: Final = ("#dfe6e1", "#f2a91a", "#d62728")
 """Colours of a margin that is used little, enough to warn, and up."""
-ROLL, HEAVE, SLID = PALETTE[0], "#8a6d3b", PALETTE[2]
+ROLL, SLID = PALETTE[0], PALETTE[2]
 
 _MOST, _MOMENT = 200_000, 0.05
 """A picture shows so many moments of a motion, or one each so many s if they are less."""
@@ -42,7 +42,7 @@ _SLID: Final = 0.005
 class UnitMotion:
     """The motion of one unit at `times` (s), seen from its foot; NaN where it is not followed.
 
-    `impacts` of it, and the times of those in s, `struck`; `end` says how it ended, and `ended` when (s).
+    `impacts` of it; `end` says how it ended, and `ended` when (s).
     """
 
     def __init__(self, unit: CargoUnit, times: NDArray[np.float64]) -> None:
@@ -149,12 +149,10 @@ def write_deck_figure(path: str | os.PathLike[str], deck: MovingSupport, units: 
     shown, times = busiest(units, 6), units[0].times
     with plot.picture(path, 10.0, 2.6 + 1.25 * len(shown)) as figure:
         upper, *panels = figure.subplots(1 + len(shown), 1, sharex=True)
-        motion = deck.motion(times)
-        upper.plot(times, np.degrees(motion.angle), color=ROLL)
-        upper.set_ylabel("deck roll (°)", color=ROLL)
+        upper.plot(times, np.degrees(deck.motion(times).angle), color=ROLL)
+        upper.set_ylabel("deck roll (°)")
         more = f": the {len(shown)} that moved most" if shown != units else ""
         upper.set_title(f"{counted(len(units), 'unit')} on a rolling deck{more}", fontweight="bold")
-        _draw_right(upper, times, motion.y - np.mean(motion.y), "heave (m)", HEAVE)
         for axes, unit in zip(panels, shown, strict=True):
             _draw_unit(axes, deck, unit)
         panels[-1].set(xlabel="time (s)", xlim=(0.0, times[-1]))
@@ -162,21 +160,11 @@ def write_deck_figure(path: str | os.PathLike[str], deck: MovingSupport, units: 
         plot.common_legend(figure)
 
 
-def _draw_right(
-    axes: plot.Axes, times: NDArray[np.float64], values: NDArray[np.float64], label: str, colour: str
-) -> None:
-    """Draw a curve with an axis of its own on the right."""
-    other = axes.twinx()
-    other.plot(times, values, color=colour, linewidth=1.0)
-    other.set_ylabel(label, color=colour)
-    other.grid(visible=False)
-
-
 def _draw_unit(axes: plot.Axes, deck: MovingSupport, unit: UnitMotion) -> None:
     """Draw the tilt of a unit, how far it slid, its impacts, and along the bottom how much of its margin is used."""
     times, tilt = unit.times, np.degrees(unit.tilt)
     ended = f", topples at {unit.ended:.0f} s" if unit.toppled else ""
-    most = f"tilts up to {_greatest(tilt):.2g}°, slides up to {_greatest(unit.slid):.2g} m"
+    most = f"tilts up to {_greatest(tilt):.1f}°, slides up to {_greatest(unit.slid):.3f} m"
     axes.set_title(f"{unit.unit.name}: {counted(len(unit.impacts), 'impact')}, {most}{ended}", fontsize=10, pad=3)
     axes.plot(times, tilt, color="black", linewidth=1.2)
     # A unit that topples would leave no room for how it rocked before.
@@ -186,8 +174,6 @@ def _draw_unit(axes: plot.Axes, deck: MovingSupport, unit: UnitMotion) -> None:
         at = [time for time, impact in zip(unit.struck, unit.impacts, strict=True) if impact.mode is mode]
         label = f"impact: {words(mode.name)}"
         axes.plot(at, [0.0] * len(at), "o", color=MODES[mode].colour, markeredgecolor=EDGE, label=label)
-    if unit.toppled:
-        axes.plot(unit.ended, 0.0, "X", color=MARGINS[2], markeredgecolor=EDGE, label="topples")
     used, warn = margin_used(deck, unit.unit, times), Watching().warn
     for least, colour, label in (
         (warn, MARGINS[1], f"{warn:.0%} of the margin used"),
@@ -196,7 +182,10 @@ def _draw_unit(axes: plot.Axes, deck: MovingSupport, unit: UnitMotion) -> None:
         over, bottom = times[used >= least], axes.get_xaxis_transform()
         axes.plot(over, [0.06] * len(over), "|", color=colour, markersize=9, transform=bottom, label=label)
     if _greatest(unit.slid) > _SLID:
-        _draw_right(axes, times, unit.slid, "slid (m)", SLID)
+        right = axes.twinx()
+        right.plot(times, unit.slid, color=SLID)
+        right.set_ylabel("slid (m)", color=SLID)
+        right.grid(visible=False)
 
 
 def deck_frames(units: Sequence[UnitMotion]) -> list[float]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from array import array
 from collections.abc import Sequence
 from itertools import chain
 from pathlib import Path
@@ -47,8 +46,7 @@ class ReplayPicture:
         self._machines: dict[str, list[FootLandings]] = {}
         self._tally = Tally()
         self._scored: list[TouchdownRow] = []
-        # Lead time and error in turns.
-        self._ahead = array("d")
+        self._ahead: list[tuple[float, float]] = []
 
     def add(self, result: Result) -> None:
         """Take a replay."""
@@ -62,11 +60,8 @@ class ReplayPicture:
                     machine, gait, [one for one in rows if one.body == (body or one.body)]
                 )
         self._scored += [row for row in rows if row.scored]
-        for settled in result.settled:
-            if settled.score.scored:
-                for lead_time, error in settled.score.history:
-                    if lead_time < LEAD_TIME_EDGES[-1]:
-                        self._ahead.extend((lead_time, error))
+        scores = [settled.score for settled in result.settled if settled.score.scored]
+        self._ahead += [(lead, error) for one in scores for lead, error in one.history if lead < LEAD_TIME_EDGES[-1]]
 
     def write(self) -> None:
         """Draw it.
@@ -78,7 +73,7 @@ class ReplayPicture:
         if self._machines:
             write_gait(self.path, list(chain.from_iterable(self._machines.values())), names)
             return
-        errors = errors_ahead(zip(self._ahead[::2], self._ahead[1::2], strict=True))
+        errors = errors_ahead(self._ahead)
         write_touchdowns(self.path, self._scored, errors, f"{names}: {self._tally.sentences()[0].rstrip('.')}")
 
 
