@@ -25,8 +25,8 @@ from impact_predictor.mechanics.random_problems import problems_of
 COUNT = 1_000_000
 TURNS = 5
 LAWS = ("total", "path")
-MIXTURE = ("plate", "rod", "cylinder", "floor", "step", "wedge", "tilted", "deck", "both")
-PAPER = ("plate", "rod", "cylinder", "floor")
+MIXTURE = ("plate", "cylinder", "floor", "wedge", "tilted", "deck", "both")
+PAPER = ("plate", "cylinder", "floor")
 
 
 def mixture(count: int, kinds: tuple[str, ...] = MIXTURE) -> tuple[TwoPointBody, Twist]:

@@ -36,7 +36,7 @@ from impact_predictor.mechanics.types import Flag, Mode, Twist, Vector
 
 STIFFNESSES = (1e4, 1e6, 1e8, 1e10, 1e12)
 RATIOS = (1e-8, 1e-4, 1e-2, 1.0, 1e2, 1e4, 1e8)
-KINDS = ("plate", "rod", "cylinder", "floor", "step", "wedge", "tilted")
+KINDS = ("plate", "cylinder", "floor", "wedge", "tilted")
 DOWN = (0.0, -9.81)
 
 

@@ -95,7 +95,7 @@ def disputed(count: int) -> list[Case]:
     """Cases of the kinds in which a body may slip before, in which the laws differ."""
     return [
         case
-        for kind in ("floor", "step", "wedge", "tilted")
+        for kind in ("floor", "wedge", "tilted")
         for case in cases(kind, count)
         if difference(case.body, case.path.twist, case.total.twist, case.twist) > DIFFERENT
     ]

@@ -55,7 +55,7 @@ def slipping_out(impulses: Any) -> Any:
 )
 def test_a_law_that_is_wrong_is_caught(monkeypatch: pytest.MonkeyPatch, change: dict[str, Any], name: str) -> None:
     monkeypatch.setattr(invariants, "violations", lambda body, twist, law: violations(body, twist, law, wrong(change)))
-    result = run("--count", "1700", "--json")
+    result = run("--count", "1200", "--json")
     assert result.exit_code == BROKEN
     assert name in {one["invariant"] for one in json.loads(result.stdout)["invariants"] if one["broken_by"]}
 
@@ -100,7 +100,7 @@ def test_what_exceeds_its_limit_is_said_in_words(monkeypatch: pytest.MonkeyPatch
     law, _, kinds = line.partition(": ")
     assert law == "  momentum, path law"
     assert set(kinds.split(", ")) <= set(KINDS)
-    assert len(kinds.split(", ")) > 8
+    assert len(kinds.split(", ")) > 6
     assert not set(kinds.split(", ")) & set(STIFF)
 
 
@@ -111,7 +111,7 @@ def test_ctrl_c_tells_what_was_found_so_far(loose: None, monkeypatch: pytest.Mon
         raise KeyboardInterrupt
 
     monkeypatch.setattr(invariants, "random_problems", interrupted)
-    result = run("--count", "1700")
+    result = run("--count", "1200")
     assert result.exit_code == 130
     assert "\nInterrupted: 100 problems in " in result.stdout
 

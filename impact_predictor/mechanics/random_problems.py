@@ -66,13 +66,6 @@ def plate(draw: Draw) -> ContactPair:
     return ContactPair((a * a + height * height) / 3.0, (-a, -height), (a, -height))
 
 
-def rod(draw: Draw) -> ContactPair:
-    """A rod on two supports."""
-    length = draw.decades(-1.0, 1.0)
-    a, b, height = (0.5 * length * draw.decades(low, 0.0) for low in (-2.0, -2.0, -4.0))
-    return ContactPair(length * length / 12.0, (-a, -height), (b, -height))
-
-
 def cylinder(draw: Draw) -> ContactPair:
     """A cylinder between two edges."""
     radius, old, new = draw.decades(-1.0, 1.0), -draw.uniform(0.01, 1.56), draw.uniform(0.01, 1.56)
@@ -84,13 +77,6 @@ def floor(draw: Draw) -> ContactPair:
     """Any body on a floor."""
     a, b, height = (draw.uniform(0.02, 2.0) for _ in range(3))
     return ContactPair(draw.uniform(0.01, 2.0), (-a, -height), (b, -height))
-
-
-def step(draw: Draw) -> ContactPair:
-    """B higher or lower than A, its tangent through A."""
-    flat, rise = floor(draw), draw.uniform(-1.0, 1.0)
-    (a, _), (b, height) = flat.old, flat.new
-    return flat._replace(new=(b, height + rise), new_angle=np.arctan2(rise, b - a))
 
 
 def wedge(draw: Draw) -> ContactPair:
@@ -113,20 +99,6 @@ def slender(draw: Draw) -> ContactPair:
     return ContactPair(square, (-a, -height), (b, -drop), new_angle=sloped * draw.uniform(-1.5, 1.5))
 
 
-def close(draw: Draw) -> ContactPair:
-    """Contacts nearly at one place."""
-    tilt = tilted(draw)
-    gap, (x, y) = draw.decades(-9.0, -1.0), tilt.old
-    return tilt._replace(new=(x + gap * draw.uniform(-1.0, 1.0), y + gap * draw.uniform(-1.0, 1.0)))
-
-
-def parallel(draw: Draw) -> ContactPair:
-    """Normals nearly parallel, or nearly opposed."""
-    tilt = tilted(draw)
-    turn = draw.decades(-12.0, -1.0) * (2.0 * draw.chance(0.5) - 1.0) * draw.chance(0.8)
-    return tilt._replace(new_angle=tilt.old_angle + turn + np.pi * draw.chance(0.5))
-
-
 def extreme(draw: Draw) -> ContactPair:
     """Every length over twelve decades."""
     ax, ay, bx, by = (draw.wild() for _ in range(4))
@@ -136,27 +108,22 @@ def extreme(draw: Draw) -> ContactPair:
 
 KINDS: dict[str, tuple[Callable[[Draw], ContactPair], str]] = {
     "plate": (plate, "turns"),
-    "rod": (rod, "turns"),
     "cylinder": (cylinder, "turns"),
     "floor": (floor, "slips"),
-    "step": (step, "slips"),
     "wedge": (wedge, "slips"),
     "tilted": (tilted, "slips"),
     "deck": (tilted, "deck"),
     "apart": (tilted, "apart"),
     "both": (floor, "falls"),
-    "both-tilted": (tilted, "falls"),
     "one-point": (tilted, "alone"),
     "slender": (slender, "slips"),
-    "close": (close, "slips"),
-    "parallel": (parallel, "slips"),
     "extreme": (extreme, "slips"),
     "extreme-apart": (extreme, "apart"),
 }
 """Kinds of problems: a geometry, and how the body moves. It turns about A; or it may slip on A or leave it, on supports
 at rest, on a deck, whose points move as one body, or on supports that move apart; it falls on A; or there is no A."""
 
-STIFF = ("slender", "close", "extreme", "extreme-apart")
+STIFF = ("slender", "extreme", "extreme-apart")
 """The kinds in which one rounding of the input can be much in the outcome."""
 
 

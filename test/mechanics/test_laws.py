@@ -15,7 +15,7 @@ LEAVES = {Mode.PIVOT: (1, 0), Mode.PIVOT_SLIDE: (1, 0), Mode.BACK_PIVOT: (0, 1),
 
 
 @pytest.mark.parametrize("law", ["path", "total"])
-@pytest.mark.parametrize("kind", ["plate", "cylinder", "floor", "step", "wedge", "tilted", "deck"])
+@pytest.mark.parametrize("kind", ["plate", "cylinder", "floor", "wedge", "tilted", "deck"])
 def test_the_mode_says_what_the_contacts_do(kind, law):
     for body, twist in random_impacts(kind, 100, seed=1):
         outcome = solve_impact(body, twist, law)

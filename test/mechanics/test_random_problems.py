@@ -37,21 +37,13 @@ def test_a_problem_is_arrays_of_finite_numbers_and_mostly_an_impact(kind):
 def test_kinds_are_what_they_are_called():
     made = {kind: problems_of(kind, np.random.default_rng(1), COUNT) for kind in KINDS}
     assert [kind for kind, each in made.items() if each.body.old is None] == ["one-point"]
-    for kind in ("both", "both-tilted"):
-        assert (normal_velocity(made[kind].body.old, made[kind].twist) < 0.0).all()
-    step = made["step"].body
-    tangent = step.new.normal[1] * (step.new.y - step.old.y) + step.new.normal[0] * (step.new.x - step.old.x)
-    assert abs(tangent).max() < 1e-14
+    assert (normal_velocity(made["both"].body.old, made["both"].twist) < 0.0).all()
     deck = made["deck"].body
     rise, run = deck.new.y - deck.old.y, deck.new.x - deck.old.x
     stretch = run * (deck.new.velocity[0] - deck.old.velocity[0]) + rise * (deck.new.velocity[1] - deck.old.velocity[1])
     assert abs(stretch).max() < 1e-13
     apart = made["apart"].body
     assert np.ptp(apart.new.velocity[0] - apart.old.velocity[0]) > 3.0
-    close = made["close"].body
-    assert np.hypot(close.new.x - close.old.x, close.new.y - close.old.y).min() < 1e-8
-    cross = [each.normal[0] for each in (made["parallel"].body.old, made["parallel"].body.new)]
-    assert np.median(abs(abs(cross[0]) - abs(cross[1]))) < 1e-5
     wide = made["extreme"].body
     for number in (wide.mass, abs(wide.old.x), abs(made["extreme"].twist.omega)):
         number = number[number > 0.0]

@@ -61,7 +61,7 @@ def columns_of(derivatives):
 
 
 @pytest.mark.parametrize("law", LAWS)
-@pytest.mark.parametrize("kind", ["plate", "rod", "cylinder", "floor", "step", "wedge", "tilted", "deck", "one-point"])
+@pytest.mark.parametrize("kind", ["plate", "cylinder", "floor", "wedge", "tilted", "deck", "one-point"])
 def test_derivatives_are_those_of_exact_solutions(kind, law):
     compared = 0
     for body, twist in random_impacts(kind, 6, seed=4):

@@ -51,8 +51,6 @@ RANDOM: Final = [
     for kind, title, description in (
         ("tilted", "Ordinary bodies", "Two contacts anywhere with any normals, sizes of 0.1 to 2 m, friction to 4."),
         ("slender", "Slender bodies", "Lengths and frictions over eight decades, on a floor or a slope."),
-        ("close", "Close contacts", "Both contacts nearly at one place, 1e-9 to 0.1 m from each other."),
-        ("parallel", "Parallel normals", "Normals that are parallel or opposed but for 1e-12 to 0.1 rad."),
         ("extreme", "Extreme bodies", "Every length, mass, friction and speed over eight to twelve decades."),
         ("extreme-apart", "Extreme supports", "The same on supports that move apart."),
     )
