@@ -224,7 +224,8 @@ def test_all_at_once_is_each_by_itself(coefficients: Coefficients) -> None:
     assert solver.after(coefficients).tolist() == [list(one) for one in alone]
     plane = [after(one._replace(scene=one.scene._replace(transverse_slip=False)), coefficients) for one in some]
     # Without friction nothing that happens across the plane matters.
-    assert sum(one != other for one, other in zip(alone, plane, strict=True)) == (8 if coefficients.friction else 0)
+    slipped = sum(one != other for one, other in zip(alone, plane, strict=True))
+    assert (0 < slipped <= 8) == (coefficients.friction > 0.0)
     missed = solver.misses(coefficients)
     for one, twist, (along, turning) in zip(some, alone, missed.tolist(), strict=True):
         assert along == (twist.vx - one.measured.vx) / one.speed

@@ -39,16 +39,15 @@ def main() -> None:
     def until(true, executor=runner):
         patience = time.monotonic() + PATIENCE
         while not true():
-            assert time.monotonic() < patience
+            assert time.monotonic() < patience, {topic: len(data) for topic, data in heard.items()}
             executor.spin_once(timeout_sec=0.003)
 
     heard = {topic: [] for topic in outputs}
     for topic, kind in outputs.items():
         other.create_subscription(message_class(kind), topic, heard[topic].append, 10_000, raw=True)
     topics = {one.topic_name for one in node.subscriptions}
-    publishers = {
-        topic: other.create_publisher(message_class(kind), topic, 100) for topic, kind, _ in messages if topic in topics
-    }
+    types = {topic: kind for topic, kind, _ in messages if topic in topics}
+    publishers = {topic: other.create_publisher(message_class(kind), topic, 100) for topic, kind in types.items()}
     spoken = [one for one in node.publishers if one.topic_name in outputs]
     until(lambda: all(one.get_subscription_count() for one in (*publishers.values(), *spoken)))
     predictors = node._monitor.predictors
