@@ -91,6 +91,8 @@ class LandingTracker:
         landings = [(min([due.stamp for due in own.values()]), own) for foot in feet if (own := self._own(foot, dues))]
         for i in [i for i in self._announced if points[i].due is None]:
             del self._announced[i]
+        if not landings:
+            return None
         landings.sort(key=itemgetter(0))
         standing = [i for i, point in enumerate(points) if point.stands or point.closed]
         places = [

@@ -59,6 +59,8 @@ class BaseMotion:
             if abs(sample.stamp - stamp) > abs(near.stamp - stamp):
                 break
             near = sample
+        if near.stamp == stamp:
+            return near
         return extrapolated(near, None, (stamp - near.stamp) / NANOSECONDS)._replace(stamp=stamp)
 
     @property
@@ -83,11 +85,9 @@ def twist_of(sample: Sample) -> tuple[float, ...]:
 
 def extrapolated(sample: Sample, line: TwistLine | None, time: float) -> Sample:
     """A base `time` s after a sample, whose stamp it keeps; its twists lie on a line, or are those that it has."""
-    if line is None:
-        if time == 0.0:
-            return sample
-        line = twist_of(sample), NOTHING
-    (x, y, z, u, v, w), (a, b, c, p, q, r) = line
+    if line is None and time == 0.0:
+        return sample
+    (x, y, z, u, v, w), (a, b, c, p, q, r) = line or (twist_of(sample), NOTHING)
     half = 0.5 * time
     spin = to_body(axes_of(sample.orientation), (u + half * p, v + half * q, w + half * r))
     orientation = turned(sample.orientation, times(spin, time))
