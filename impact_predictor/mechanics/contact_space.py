@@ -41,13 +41,13 @@ class ContactOutcome(NamedTuple):
 
     mode: Mode
     velocities: Velocities
-    impulses: tuple[Vector, Vector]
-    segments: tuple[str, ...]
-    flags: Flag
-    energy_lost: float
-    unique: bool
-    alternatives: tuple[ContactAlternative, ...]
-    law: str
+    impulses: tuple[Vector, Vector] = ((0.0, 0.0), (0.0, 0.0))
+    segments: tuple[str, ...] = ()
+    flags: Flag = Flag.NONE
+    energy_lost: float = 0.0
+    unique: bool = True
+    alternatives: tuple[ContactAlternative, ...] = ()
+    law: str = "path"
 
 
 def solve(
@@ -256,23 +256,9 @@ def crossed(one: tuple[float, float, float], other: tuple[float, float, float]) 
 
 def unchanged(c: Velocities, law: str, notes: int) -> ContactOutcome:
     """The outcome where no impact changes the contact velocities; those that are no numbers become 0."""
-    cna, cta, cnb, ctb = c
-    kept = cna if cna == inf else finite(cna), finite(cta), finite(cnb), finite(ctb)
-    return ContactOutcome(
-        mode=Mode.NO_IMPACT,
-        velocities=kept,
-        impulses=((0.0, 0.0), (0.0, 0.0)),
-        segments=(),
-        flags=flags_of(notes),
-        energy_lost=0.0,
-        unique=True,
-        alternatives=(),
-        law=law,
-    )
-
-
-def finite(number: float) -> float:
-    return number if isfinite(number) else 0.0
+    kept = [speed if isfinite(speed) else 0.0 for speed in c]
+    cna, cta, cnb, ctb = c[0] if c[0] == inf else kept[0], *kept[1:]
+    return ContactOutcome(mode=Mode.NO_IMPACT, velocities=(cna, cta, cnb, ctb), flags=flags_of(notes), law=law)
 
 
 def alternative(impact: Impact, read: Reading) -> ContactAlternative:

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from .impact import MODES, NOWHERE, approach, number_of
 from .impact.answer import NO_IMPACT, answer
-from .types import Contact, Flag, Mode, Outcome, Twist, TwoPointBody, Vector
+from .types import Contact, Flag, Mode, Twist, TwoPointBody, Vector
 
 STEPS = tuple([k / 32.0 for k in (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64)])
 """How far is looked, in the unit of a way."""
@@ -146,15 +146,6 @@ def margins(body: TwoPointBody, twist: Twist, law: str = "path") -> Margins:
         Change(asked, unit=speed, velocity=(ny, -nx)),
     )
     return Margins(*[nearest_border(way, here) for way in ways])
-
-
-def margins_of(outcome: Outcome) -> Margins:
-    """The margins of an impact that was solved. ValueError where the body also moved across the impact plane."""
-    if outcome.body is None or outcome.before is None:
-        raise ValueError("an impact with slip across the plane has no margins; ask solve_impact for those of the plane")
-    # Where the total law answered for the path law, it was the path law that was asked.
-    asked = "path" if outcome.flags & (Flag.BOTH_STRUCK | Flag.LAST_RESORT) else outcome.law
-    return margins(outcome.body, outcome.before, asked)
 
 
 def nearest_border(way: Change, here: ChangedImpact) -> Margin:

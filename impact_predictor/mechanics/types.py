@@ -163,6 +163,12 @@ class Outcome(NamedTuple):
         Raises:
             ValueError: the body also moved across the impact plane; only the plane has margins.
         """
-        from .margins import margins_of
+        from .margins import margins
 
-        return margins_of(self)
+        if self.body is None or self.before is None:
+            raise ValueError(
+                "an impact with slip across the plane has no margins; ask solve_impact for those of the plane"
+            )
+        # Where the total law answered for the path law, it was the path law that was asked.
+        asked = "path" if self.flags & (Flag.BOTH_STRUCK | Flag.LAST_RESORT) else self.law
+        return margins(self.body, self.before, asked)
