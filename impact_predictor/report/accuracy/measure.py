@@ -6,7 +6,6 @@ give counts as infinitely wrong; what is infinite is null.
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from math import inf
@@ -68,15 +67,12 @@ def rows_of(question: Any, methods: Methods, count: int, seconds: float) -> Iter
         none = dict.fromkeys(ERRORS[scene.question], inf)
         for (name, setting), solve in methods.items():
             found, us, began = list[Mapping[str, float]](), list[float](), process_time()
-            with warnings.catch_warnings():
-                # Methods that lose their way say so.
-                warnings.simplefilter("ignore")
-                for problem, right in zip(drawn, references, strict=True):
-                    answer = solve(problem)
-                    found.append(none if answer is None else question.errors_of(problem, answer, right))
-                    us.append(1e6 * seconds_of(partial(solve, problem)))
-                    if process_time() - began > seconds:
-                        break
+            for problem, right in zip(drawn, references, strict=True):
+                answer = solve(problem)
+                found.append(none if answer is None else question.errors_of(problem, answer, right))
+                us.append(1e6 * seconds_of(partial(solve, problem)))
+                if process_time() - began > seconds:
+                    break
             yield row_of(scene, (name, name, setting), us, found)
 
 

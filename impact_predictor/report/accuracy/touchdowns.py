@@ -20,8 +20,6 @@ from ...prediction.points import ACCURACY
 from .measure import TOUCHDOWN, AccuracyScene, Methods
 
 GRAVITY: Final = (0.0, -9.81)
-SLIPS: Final = 0.2
-"""Friction of a stance that slips all the way; one that sticks is held."""
 HORIZON: Final = 20.0
 """s within which the touchdown is looked for."""
 
@@ -87,9 +85,9 @@ def leaving_balance(source: Random) -> FallingBody:
 
 
 def slipping(source: Random) -> FallingBody:
-    """A crate whose standing edge slips forwards or back."""
+    """A crate whose standing edge slips forwards or back, all the way; one that sticks is held."""
     slip = source.choice((-1.0, 1.0)) * source.uniform(1.0, 2.0)
-    return falling(CRATE, source.uniform(0.02, 0.2), -source.uniform(0.2, 1.5), slip, SLIPS)
+    return falling(CRATE, source.uniform(0.02, 0.2), -source.uniform(0.2, 1.5), slip, friction=0.2)
 
 
 def thrown(source: Random) -> FallingBody:
@@ -97,7 +95,7 @@ def thrown(source: Random) -> FallingBody:
     x, y, rho_squared = CRATE
     vx, vy, omega = source.uniform(-2.0, 2.0), source.uniform(-2.0, 2.0), source.uniform(-6.0, 6.0)
     state = PlanarState(0.0, source.uniform(0.7, 1.5), source.uniform(-pi, pi), vx, vy, omega)
-    return FallingBody(state, ((-x, -y), (x, -y), (x, y), (-x, y)), None, rho_squared, SLIPS)
+    return FallingBody(state, ((-x, -y), (x, -y), (x, y), (-x, y)), None, rho_squared, 0.2)
 
 
 SCENES: Final[dict[AccuracyScene, Callable[[Random], FallingBody]]] = {
