@@ -238,12 +238,7 @@ class Run:
                 self._write(f"{NODE}/markers", MARKER_ARRAY, log_time, data)
 
 
-def _take_truth(
-    known: list[Any],
-    decode: Callable[[bytes], Iterable[Any]],
-    log_time: int,
-    data: bytes,
-) -> None:
+def _take_truth(known: list[Any], decode: Callable[[bytes], Iterable[Any]], _: int, data: bytes) -> None:
     # What tells no truth there is another program's.
     with suppress(MalformedMessage):
         known.extend(decode(data))

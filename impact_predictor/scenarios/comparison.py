@@ -15,7 +15,6 @@ from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
 from math import dist, hypot, inf
-from statistics import median
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from ..prediction.planar import hardly
@@ -24,17 +23,13 @@ from ..prediction.types import Prediction, Vector3
 from ..prediction.vectors import add, axes_of, cross, to_world
 from ..ros.cdr import ERROR, STALE, WARN
 from ..stamps import NANOSECONDS
-from .matching import NEAREST, Announcement, Match, Rows, match
+from .matching import LEAD_TIMES as LEAD_TIMES
+from .matching import NEAREST, Announcement, Match, Rows, match, truth_of
+from .matching import Truth as Truth
 from .truth import TrueImpact, TrueOnset
 
 if TYPE_CHECKING:
     from ..prediction.watch.watch import Report
-
-LEAD_TIMES: Final = (0.02, 0.05)
-"""Seconds before a touchdown at which the predictions are made whose errors of time count."""
-
-BORDER: Final = 0.02
-"""Relative change of friction or geometry within which another mode may be as right as the true one."""
 
 SEEN: Final = 2
 """Samples between two impacts of which the last one shows the second ahead: a body that rocks rises before it falls."""
@@ -42,37 +37,6 @@ SEEN: Final = 2
 APART: Final = 5_000_000_000
 """ns without slide, lift or impact after which the next one is an event of its own: half a roll of a ship, as long as
 levels are usually held. A body that rocks strikes many times within it."""
-
-
-class Truth(NamedTuple):
-    """How the predictions compare with what happened.
-
-    `touchdowns` that a record can show, and how many of them were `missed`; `false` alarms; `unresolved` impacts that
-    no record shows at its rate: fewer than two samples lie between them and the one before, or they come slower than
-    gravity moves a body within the contact time. Of those found: the part whose mode the last prediction had right; the
-    median relative error of the velocities after them, all three in the plane; the median error in s of the time that
-    was announced 20 ms ahead, or last before that. None where there is none.
-
-    `time_error_by_lead_time` has that error for each of `LEAD_TIMES`, and `least_lead_time` is the shortest time in s
-    from the first prediction of one to it.
-
-    `clear` of those found are far enough from another mode to tell it: so small an error as `BORDER` does not change
-    theirs; then the part of them whose mode was right. `unresolved_wrong` of the unresolved impacts were predicted all
-    the same, with another mode than they had.
-    """
-
-    touchdowns: int
-    missed: int
-    false: int
-    unresolved: int
-    mode_accuracy: float | None
-    median_velocity_error: float | None
-    median_time_error: float | None
-    clear: int = 0
-    clear_mode_accuracy: float | None = None
-    unresolved_wrong: int = 0
-    time_error_by_lead_time: Mapping[str, float | None] = {}
-    least_lead_time: float | None = None
 
 
 class Warned(NamedTuple):
@@ -213,9 +177,9 @@ class Comparison:
                 warned[name or alone] = self._warned(name, impacts[name or alone], onsets[name or alone])
         everything = [one for of_body in matches.values() for one in of_body]
         return Compared(
-            _truth(everything) if self._knows_impacts or matches else None,
+            truth_of(everything) if self._knows_impacts or matches else None,
             {
-                body: BodyTruth(_truth(matches[body]) if body in matches else None, warned.get(body))
+                body: BodyTruth(truth_of(matches[body]) if body in matches else None, warned.get(body))
                 for body in {**matches, **warned}
             },
             everything,
@@ -298,34 +262,6 @@ def _standing(stood: Iterable[tuple[int, float]], stamp: int) -> float | None:
     """How long a warning had been standing at a stamp, in s; None where none stood."""
     begun = [begin for begin, end in stood if begin < stamp <= end]
     return (stamp - begun[-1]) / NANOSECONDS if begun else None
-
-
-def _truth(matches: Sequence[Match]) -> Truth:
-    shown = [one for one in matches if one.stamp is not None and one.shown]
-    hidden = [one for one in matches if one.stamp is not None and not one.shown]
-    found = [one for one in shown if one.predictions]
-    right = [one.mode_is_right for one in found if one.mode is not None]
-    clear = [one.mode_is_right for one in found if one.mode is not None and one.border > BORDER]
-    time_errors = {str(lead_time): _median(one.time_error(lead_time) for one in found) for lead_time in LEAD_TIMES}
-    return Truth(
-        touchdowns=len(shown),
-        missed=len(shown) - len(found),
-        false=sum(one.stamp is None for one in matches),
-        unresolved=len(hidden),
-        mode_accuracy=sum(right) / len(right) if right else None,
-        median_velocity_error=_median(one.velocity_error for one in matches),
-        median_time_error=time_errors[str(LEAD_TIMES[0])],
-        clear=len(clear),
-        clear_mode_accuracy=sum(clear) / len(clear) if clear else None,
-        unresolved_wrong=sum(bool(one.predictions) and not one.mode_is_right for one in hidden),
-        time_error_by_lead_time=time_errors,
-        least_lead_time=min((one.first_lead_time for one in found), default=None),
-    )
-
-
-def _median(values: Iterable[float | None]) -> float | None:
-    known = [value for value in values if value is not None]
-    return median(known) if known else None
 
 
 def _velocity_error(impact: TrueImpact, last: Announcement, center: Vector3) -> float:

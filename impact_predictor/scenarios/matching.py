@@ -11,8 +11,9 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from math import inf
+from statistics import median
 from typing import Final, NamedTuple
 
 from ..mechanics.types import Mode
@@ -21,6 +22,13 @@ from ..stamps import NANOSECONDS
 
 NEAREST: Final = 20_000_000
 """ns between an announced touchdown and the true one that it is taken for."""
+
+
+LEAD_TIMES: Final = (0.02, 0.05)
+"""Seconds before a touchdown at which the predictions are made whose errors of time count."""
+
+BORDER: Final = 0.02
+"""Relative change of friction or geometry within which another mode may be as right as the true one."""
 
 
 class Announcement(NamedTuple):
@@ -116,3 +124,63 @@ def match(
         elif announced <= end - NEAREST:
             alarms.append(row)
     return matched, alarms
+
+
+class Truth(NamedTuple):
+    """How the predictions compare with what happened.
+
+    `touchdowns` that a record can show, and how many of them were `missed`; `false` alarms; `unresolved` impacts that
+    no record shows at its rate: fewer than two samples lie between them and the one before, or they come slower than
+    gravity moves a body within the contact time. Of those found: the part whose mode the last prediction had right; the
+    median relative error of the velocities after them, all three in the plane; the median error in s of the time that
+    was announced 20 ms ahead, or last before that. None where there is none.
+
+    `time_error_by_lead_time` has that error for each of `LEAD_TIMES`, and `least_lead_time` is the shortest time in s
+    from the first prediction of one to it.
+
+    `clear` of those found are far enough from another mode to tell it: so small an error as `BORDER` does not change
+    theirs; then the part of them whose mode was right. `unresolved_wrong` of the unresolved impacts were predicted all
+    the same, with another mode than they had.
+    """
+
+    touchdowns: int
+    missed: int
+    false: int
+    unresolved: int
+    mode_accuracy: float | None
+    median_velocity_error: float | None
+    median_time_error: float | None
+    clear: int = 0
+    clear_mode_accuracy: float | None = None
+    unresolved_wrong: int = 0
+    time_error_by_lead_time: Mapping[str, float | None] = {}
+    least_lead_time: float | None = None
+
+
+def truth_of(matches: Sequence[Match]) -> Truth:
+    """What is said of true touchdowns and false alarms."""
+    shown = [one for one in matches if one.stamp is not None and one.shown]
+    hidden = [one for one in matches if one.stamp is not None and not one.shown]
+    found = [one for one in shown if one.predictions]
+    right = [one.mode_is_right for one in found if one.mode is not None]
+    clear = [one.mode_is_right for one in found if one.mode is not None and one.border > BORDER]
+    time_errors = {str(lead_time): _median(one.time_error(lead_time) for one in found) for lead_time in LEAD_TIMES}
+    return Truth(
+        touchdowns=len(shown),
+        missed=len(shown) - len(found),
+        false=sum(one.stamp is None for one in matches),
+        unresolved=len(hidden),
+        mode_accuracy=sum(right) / len(right) if right else None,
+        median_velocity_error=_median(one.velocity_error for one in matches),
+        median_time_error=time_errors[str(LEAD_TIMES[0])],
+        clear=len(clear),
+        clear_mode_accuracy=sum(clear) / len(clear) if clear else None,
+        unresolved_wrong=sum(bool(one.predictions) and not one.mode_is_right for one in hidden),
+        time_error_by_lead_time=time_errors,
+        least_lead_time=min((one.first_lead_time for one in found), default=None),
+    )
+
+
+def _median(values: Iterable[float | None]) -> float | None:
+    known = [value for value in values if value is not None]
+    return median(known) if known else None
