@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from array import array
 from collections.abc import Sequence
 from itertools import chain
 from pathlib import Path
@@ -43,25 +44,23 @@ class ReplayPicture:
         """
         self.path = named(path, *PICTURE)
         self._names: list[str] = []
-        self._machines: dict[str, list[FootLandings]] = {}
+        self._machines: list[list[FootLandings]] = []
         self._tally = Tally()
         self._scored: list[TouchdownRow] = []
-        self._ahead: list[tuple[float, float]] = []
+        self._ahead = array("d")  # lead time and error in turns
 
     def add(self, result: Result) -> None:
         """Take a replay."""
         bag, rows = Path(result.bag).name, rows_of(result.settled)
         self._names.append(bag)
         self._tally.add(rows)
-        for body, gait in result.gaits.items():
-            if len(self._machines) < MOST:
-                machine = f"{bag} {body}".rstrip()
-                self._machines[machine] = feet_of(
-                    machine, gait, [one for one in rows if one.body == (body or one.body)]
-                )
+        for body, gait in list(result.gaits.items())[: MOST - len(self._machines)]:
+            mine = [row for row in rows if row.body == (body or row.body)]
+            self._machines.append(feet_of(f"{bag} {body}".rstrip(), gait, mine))
         self._scored += [row for row in rows if row.scored]
         scores = [settled.score for settled in result.settled if settled.score.scored]
-        self._ahead += [(lead, error) for one in scores for lead, error in one.history if lead < LEAD_TIME_EDGES[-1]]
+        made = [(lead, error) for one in scores for lead, error in one.history if lead < LEAD_TIME_EDGES[-1]]
+        self._ahead.extend(chain.from_iterable(made))
 
     def write(self) -> None:
         """Draw it.
@@ -71,9 +70,9 @@ class ReplayPicture:
         """
         names = listed(self._names, MOST)
         if self._machines:
-            write_gait(self.path, list(chain.from_iterable(self._machines.values())), names)
+            write_gait(self.path, list(chain.from_iterable(self._machines)), names)
             return
-        errors = errors_ahead(self._ahead)
+        errors = errors_ahead(zip(self._ahead[::2], self._ahead[1::2], strict=True))
         write_touchdowns(self.path, self._scored, errors, f"{names}: {self._tally.sentences()[0].rstrip('.')}")
 
 
