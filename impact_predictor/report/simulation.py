@@ -245,9 +245,9 @@ def print_voyage(console: Console, voyage: Voyage) -> None:
     show(console, table_of(columns, voyage.units))
     impacts = [impact for one in voyage.units for impact in one.impacts]
     modes = Counter(impact.mode.name for impact in _resolved(impacts))
-    counts = "".join(f", {count} {mode}" for mode, count in modes.most_common())
+    counts = ", ".join(f"{count} {mode}" for mode, count in modes.most_common()) or "none"
     every = f"{counted(len(impacts), 'impact')}, {60.0 * len(impacts) / voyage.duration:.3g} a minute"
-    say(console, f"{every}, {modes.total()} with more than {RESOLVED:g} m/s{counts}.")
+    say(console, f"{every}, with more than {RESOLVED:g} m/s: {counts}.")
     toppled = [f"{one.unit.name} at {one.time:.1f} s" for one in voyage.units if one.end is End.OVERTURNED]
     if toppled:
         say(console, f"Toppled, and not recorded after that: {', '.join(toppled)}.")
