@@ -48,11 +48,10 @@ def message(data: bytes = b"") -> bytes:
     return record(5, struct.pack("<HIQQ", 1, 0, 1, 1) + data)
 
 
-def chunk(inner: bytes, says: int | None = None, compression: str = "zstd") -> bytes:
-    size = len(inner) if says is None else says
-    data = zstd.compress(inner) if compression == "zstd" else inner
-    head = struct.pack("<QQQI", 1, 1, size, 0)
-    return record(6, head + text(compression) + struct.pack("<Q", len(data)) + data)
+def chunk(inner: bytes, says: int) -> bytes:
+    """A compressed chunk that says how long it was before."""
+    data = zstd.compress(inner)
+    return record(6, struct.pack("<QQQI", 1, 1, says, 0) + text("zstd") + struct.pack("<Q", len(data)) + data)
 
 
 def files_in(folder: Path) -> set[Path]:

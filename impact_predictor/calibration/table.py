@@ -66,9 +66,6 @@ class Grid(NamedTuple):
         i, j = divmod(place, len(self.restitution))
         return Coefficients(float(self.friction[i]), float(self.restitution[j]), self.inertia)
 
-    def finer(self) -> Grid:
-        return Grid(_between(self.friction, 0), _between(self.restitution, 0), self.inertia)
-
 
 class ErrorTable:
     """The errors of touchdowns over a grid, summed in blocks.
@@ -80,7 +77,7 @@ class ErrorTable:
 
     def __init__(self, blocks: Blocks, nodes: Grid, misses_at: Callable[[Coefficients], NDArray[np.float64]]) -> None:
         self.nodes = nodes
-        self.grid = nodes.finer()
+        self.grid = Grid(_between(nodes.friction, 0), _between(nodes.restitution, 0), nodes.inertia)
         solved = [
             misses_at(Coefficients(float(friction), float(restitution), nodes.inertia))
             for friction, restitution in product(nodes.friction, nodes.restitution)

@@ -57,7 +57,12 @@ def check_body(body: str, values: Mapping[str, Any], given: Collection[str]) -> 
     _check_feet(one)
     _check_source(one)
     _check_cylinder(one)
-    _check_gravity(one)
+    is_felt = values["support.motion"] != "fixed" or values["onset.watch"]
+    if is_felt and sum(g * n for g, n in zip(values["gravity"], values["support.normal"], strict=True)) > 0.0:
+        raise InputError(
+            f"gravity points out of the support{one.of}, so everything falls off it: it is the acceleration of a free "
+            "body, [0.0, 0.0, -9.81] where z points up"
+        )
     if values["onset.watch"] and values["source"] != "odom":
         _check_place(one)
     if values["onset.warn"] > values["onset.error"]:
@@ -128,16 +133,6 @@ def _check_feet(one: _Given) -> None:
         raise InputError(
             f"{named} has {frames} names{one.of}, but feet.names has {len(values[feet])} and feet.points "
             f"is {values['feet.points']}: give one frame for each point of each foot"
-        )
-
-
-def _check_gravity(one: _Given) -> None:
-    values = one.values
-    is_felt = values["support.motion"] != "fixed" or values["onset.watch"]
-    if is_felt and sum(g * n for g, n in zip(values["gravity"], values["support.normal"], strict=True)) > 0.0:
-        raise InputError(
-            f"gravity points out of the support{one.of}, so everything falls off it: it is the acceleration of a free "
-            "body, [0.0, 0.0, -9.81] where z points up"
         )
 
 

@@ -37,7 +37,10 @@ def validate(values: Mapping[str, object]) -> dict[str, Value]:
             values do not fit together.
     """
     given = {name: value for name, value in values.items() if not is_of_every_node(name)}
-    bodies = _bodies(given)
+    bodies: Any = check(PARAMETERS["bodies"], given.get("bodies", ()))
+    for body in bodies:
+        if body in _TAKEN:
+            raise InputError(f"a body cannot be named {body}, as parameters begin with that; give it another name")
     checked: dict[str, Value] = {"bodies": bodies}
     own: dict[str, Value] = {}
     for name, value in given.items():
@@ -80,16 +83,6 @@ def check_change(before: Mapping[str, Any], after: Mapping[str, Any]) -> None:
             raise InputError(
                 f"the parameter {name} cannot change while the node runs, for {why}: start the node again with it"
             )
-
-
-def _bodies(given: Mapping[str, object]) -> tuple[str, ...]:
-    if "bodies" not in given:
-        return ()
-    bodies: Any = check(PARAMETERS["bodies"], given["bodies"])
-    for body in bodies:
-        if body in _TAKEN:
-            raise InputError(f"a body cannot be named {body}, as parameters begin with that; give it another name")
-    return tuple(bodies)
 
 
 def _parameter_of(name: str, bodies: Sequence[str]) -> Parameter:

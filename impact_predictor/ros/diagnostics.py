@@ -65,7 +65,8 @@ class Diagnostics:
         self._accepted = 0
         self._refused: Counter[Refusal] = Counter()
         self._others = 0
-        self._dropped = 0
+        self.dropped = 0
+        """Samples that were dropped because newer ones waited behind them."""
         self._last: dict[str, float] = {}
         self._last_stamps: dict[str, int] = {}
         self._touchdowns = 0
@@ -82,7 +83,7 @@ class Diagnostics:
         self._totals: list[float] = []
         self._largest_gap = 0
         self._latency: int | None = None
-        self._dropped_before = self._dropped
+        self._dropped_before = self.dropped
         self._refused_before = self._refused_now
         self._refused_now = Counter()
         self._told: set[tuple[str, Status]] = set()
@@ -117,10 +118,6 @@ class Diagnostics:
         self._refused[reason] += 1
         self._refused_now[reason] += 1
         return self.level == OK and self._judge(now)
-
-    def dropped(self, count: int) -> None:
-        """Count samples that were dropped because newer ones waited behind them."""
-        self._dropped += count
 
     def is_news(self, reason: Refusal) -> bool:
         """Whether a message is the first in this second to be refused for a reason, and so worth a line in the log."""
@@ -171,7 +168,7 @@ class Diagnostics:
             ("samples.rate", ".1f", rate),
             ("samples.largest_gap", ".4f", largest_gap),
             ("samples.publishers", "d", sum(self.publishers.values())),
-            ("samples.dropped", "d", self._dropped),
+            ("samples.dropped", "d", self.dropped),
             ("samples.lost", "d", self.lost),
             ("incompatible_qos", "d", len(self.misfits)),
             ("samples.seconds_since_last", ".3f", since),
@@ -204,7 +201,7 @@ class Diagnostics:
             if only_refused and reason.status is not Status.NO_GEOMETRY:
                 return ERROR, f"nothing but refused messages ({count}); {reason}"
             return WARN, f"{count} messages refused in the last second; {reason}"
-        if dropped := self._dropped - self._dropped_before:
+        if dropped := self.dropped - self._dropped_before:
             cost = f"{median(self._totals) * 1e3:.2g} ms" if self._totals else "too long"
             why = f"they come faster than answers, of {cost} each"
             return WARN, f"{dropped} samples dropped in the last second: {why}"

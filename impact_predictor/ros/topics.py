@@ -92,8 +92,7 @@ class BodyTopics:
         self._encoders = [(Outlet(self.outputs[name]), output.encode) for name, output in OUTPUTS.items()]
 
     def _on_odometry(self, data: bytes) -> None:
-        if dropped := self._backlog.take(data):
-            self._reporter.diagnostics.dropped(dropped)
+        self._reporter.diagnostics.dropped += self._backlog.take(data)
 
     def _answer(self, data: bytes) -> None:
         began = perf_counter()

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, Protocol
+from typing import TYPE_CHECKING, Final
 
 import pytest
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from ..bags.replay import Result
 
@@ -33,18 +33,6 @@ TOLERANCES: Final = {
     "touchdowns": ("1..", "how many touchdowns a run has: N, N..M, or N.. for at least N"),
 }
 """Defaults of the tolerances, and what they are."""
-
-
-class ImpactReplay(Protocol):
-    """Type of the fixture `impact_replay`."""
-
-    def __call__(self, bag: StrPath, params: StrPath | None = None, remap: Mapping[str, str] | None = None) -> Result:
-        """Replay a bag; without `params`, by the parameter file of `--impact-params` or `impact_params`.
-
-        Raises:
-            InputError: the bag or the parameter file cannot be read, or is wrong.
-            UsageError: there is no parameter file.
-        """
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -91,11 +79,12 @@ def path_of(config: pytest.Config, name: str) -> Path | None:
 
 
 @pytest.fixture(scope="module")
-def impact_replay(request: pytest.FixtureRequest) -> ImpactReplay:
-    """Replay a recorded bag: impact_replay("run.mcap", "scene.yaml").
+def impact_replay(request: pytest.FixtureRequest) -> Callable[..., Result]:
+    """Replay a recorded bag: impact_replay("run.mcap", "scene.yaml", remap={"odom": "/cube/odom"}).
 
-    It returns an impact_predictor.bags.replay.Result. Paths are seen from the folder of the test. A bag is replayed
-    once in a session, whoever asks for it.
+    It returns an impact_predictor.bags.replay.Result, and raises InputError where the bag or the parameter file cannot
+    be read, or is wrong; without a file it is that of `--impact-params` or `impact_params`. Paths are seen from the
+    folder of the test. A bag is replayed once in a session, whoever asks for it.
     """
     from .collection import replayed
 

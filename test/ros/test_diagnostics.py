@@ -83,7 +83,7 @@ def test_an_error_names_the_reason_and_a_silence_its_length(diagnostics):
 
 def test_a_second_in_which_samples_were_dropped_is_a_warning_that_says_how_many_and_what_an_answer_takes(diagnostics):
     accept(diagnostics, 0.1, total=3e-3)
-    diagnostics.dropped(7)
+    diagnostics.dropped += 7
     assert diagnostics.second_over(1.0)
     assert diagnostics.level == WARN
     assert report(diagnostics).message.startswith("7 samples dropped in the last second")

@@ -110,18 +110,16 @@ def _why(values: Mapping[str, str]) -> str:
     """The level of a body in a line or two: what nothing is known of, or the margins and what comes next."""
     if values["status"] != Status.ACCEPTED.name or "unknown" in (values["tip_ratio"], values["slide_ratio"]):
         return values["status"].replace("_", " ")
-    margins = f"margin used: tip {_part(values['tip_ratio'])}, slide {_part(values['slide_ratio'])}"
+    # Nothing holds a body that uses many times as much as there is.
+    used = {key: float(values[f"{key}_ratio"]) for key in ("tip", "slide")}
+    parts = [f"{key} {100.0 * ratio:.0f} %" if ratio < 10.0 else f"{key} all" for key, ratio in used.items()]
+    margins = f"margin used: {', '.join(parts)}"
     due = [
         f"{verb} now" if float(values[key]) == 0.0 else f"{verb} in {float(values[key]):.1f} s"
         for verb, key in (("tips", "time_to_tip"), ("slides", "time_to_slide"))
         if values[key] != "inf"
     ]
     return "\n".join([margins, ", ".join(due)] if due else [margins])
-
-
-def _part(ratio: str) -> str:
-    """A part that is used of a margin; nothing holds a body that uses many times as much as there is."""
-    return f"{100.0 * float(ratio):.0f} %" if float(ratio) < 10.0 else "all"
 
 
 class Slab(NamedTuple):
