@@ -20,8 +20,6 @@ LEVEL: Quaternion = (0.0, 0.0, 0.0, 1.0)
 NOTHING: Vector3 = (0.0, 0.0, 0.0)
 ZEROS = (0.0,) * 36
 HEIGHT = 0.8
-AGREED = 200
-"""Messages after which a sensor is believed to feel gravity and not something else: 2 s."""
 BOX = [x for a in (-0.5, 0.5) for b in (-0.5, 0.5) for x in (a, b, -HEIGHT)]
 CARGO: dict[str, Any] = {
     "bodies": ["crate", "blind", "leaning"],
@@ -82,16 +80,6 @@ def afloat(monitor: Monitor, steps: int = 60) -> int:
 
 def by_body(reports: tuple[Report, ...]) -> dict[str, Report]:
     return {report.body: report for report in reports}
-
-
-def test_it_has_what_its_scenes_need_and_nothing_else() -> None:
-    monitor = Monitor(scenes())
-    assert list(monitor.predictors) == ["crate"]
-    assert monitor.deck is not None
-    assert monitor.watch is not None
-    plain = Monitor(scenes(onset__watch=None, support__motion=None, blind__source=None, leaning__source=None))
-    assert list(plain.predictors) == ["crate", "blind", "leaning"]
-    assert (plain.deck, plain.watch, plain.reports()) == (None, None, ())
 
 
 def test_samples_are_answered_once_the_deck_is_known_and_seen_from_it() -> None:

@@ -406,17 +406,6 @@ def test_a_body_that_hops_on_its_old_contact_has_no_touchdown_of_the_new_one_ahe
     assert prediction.touchdown is None
 
 
-def test_what_reaches_the_support_slower_than_a_nanometre_a_second_only_grazes_it() -> None:
-    points = ((0.1, 0.0, -0.05), (-0.1, 0.0, 0.05))
-    scene = Scene(
-        1.0, ((1, 0, 0), (0, 1, 0), (0, 0, 1)), 0.3, points=points, gravity=(0, 0, 0), contact_time=0.0, horizon=60.0
-    )
-    for speed, touches in ((1e-8, True), (1e-10, False)):
-        place, down = (0.0, 0.0, 0.05 + speed), (0.0, 0.0, -speed)
-        sample = Sample(0, "", "", place, (0.0, 0.0, 0.0, 1.0), down, (0.0, 0.0, 0.0), (), ())
-        assert (Predictor(scene).update(sample).touchdown is not None) is touches
-
-
 def test_one_corner_of_an_edge_strikes_a_body_that_nothing_guides() -> None:
     """Up to the touchdown the stance edge holds the axis; the impact at one point may turn the body off it."""
     placed = anywhere(STICKING, 13)

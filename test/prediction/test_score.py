@@ -331,23 +331,6 @@ def test_touchdowns_shortly_after_one_another_are_both_scored() -> None:
     assert all(score.scored for score in scores.values())
 
 
-def test_what_waits_is_handed_out_one_score_for_each_sample_and_the_rest_at_the_end() -> None:
-    """Two touchdowns settle within four samples, then the record pauses."""
-    period, slope = 2_000_000, 0.01
-    predictor = Predictor(ROCKER_SCENE)
-    first = [rocking(k * period, 0, slope + 0.002 * (6 - k) * 2, -2.0) for k in range(6)]
-    second = [rocking((6 + k) * period, 1, slope - 0.004 * (k + 3), -2.0) for k in range(2)]
-    flat = [rocking(8 * period, 2, -slope, 0.0)]
-    run(predictor, first + second + flat)
-    late = flat[0]._replace(stamp=9 * period + PAUSE)
-    answer = predictor.update(late)
-    assert answer.score is not None
-    assert answer.score.touchdown.new == (2, 3)
-    rest = predictor.finish()
-    assert [score.touchdown.new for score in rest] == [(4, 5)]
-    assert predictor.finish() == ()
-
-
 def test_the_memory_of_a_touchdown_that_never_comes_is_bounded() -> None:
     predictor = Predictor(SCENE)
     hover = [falling(30_000_000)._replace(stamp=k * PERIOD) for k in range(LONGEST + 50)]

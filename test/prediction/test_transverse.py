@@ -101,11 +101,6 @@ def test_less_slip_than_can_be_measured_leaves_the_planar_law_to_the_last_bit(pa
     assert on == off
 
 
-def test_the_total_law_knows_no_slip_across_the_plane() -> None:
-    sample, scene = turning(-4.0, 0.5, 1.0), SCENE._replace(law="total")
-    assert announced(sample, scene) == announced(sample, scene._replace(transverse_slip=False))
-
-
 def test_a_body_on_an_edge_cannot_roll_and_one_that_lands_on_a_point_can() -> None:
     edge = announced(turning(-4.0, 0.5, 1.0))
     assert Rotation.from_quat(edge.orientation).apply(edge.angular)[0] == pytest.approx(0.0, abs=ROUNDING)

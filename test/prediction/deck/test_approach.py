@@ -34,7 +34,6 @@ from impact_predictor.prediction.types import Felt, Moment, Prediction, Sample, 
 AGREES = 1e-9
 """The reference integrates to 1e-12 and steps err by less than 1e-10, at up to 2 m/s and 2 rad/s."""
 
-G = 9.81
 ZEROS = (0.0,) * 36
 HALF_EDGE = 0.3
 CRATE = plate(length=0.8, height=1.0, mass=50.0, friction=0.9, restitution=0.1)

@@ -7,15 +7,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from impact_predictor.bags.read import read_messages
 from impact_predictor.prediction.deck.tracker import Deck
 from impact_predictor.prediction.scene import MovingDeck
 from impact_predictor.prediction.types import Imu, Moment, Sample, Status
 from impact_predictor.ros.messages import IMU, ODOMETRY, decode_imu, decode_odometry
-
-Array = NDArray[np.float64]
 
 BAG = Path(__file__).parents[3] / "examples/vessel_deck"
 GRAVITY = (0.0, 0.0, -9.80665)

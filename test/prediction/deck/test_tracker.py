@@ -196,15 +196,6 @@ def test_clocks_that_stay_apart_are_named(offset: float) -> None:
     assert set(answers[1:]) == {Status.CLOCKS_APART}
 
 
-def test_a_late_message_of_the_deck_does_not_set_clocks_apart() -> None:
-    deck = deck_at_rest()
-    for k in range(1, 60):  # 0.1 s of latency
-        moment_at(deck, SECOND + k * 10_000_000 + 100_000_000)
-        deck.update(still(SECOND + k * 10_000_000))
-    answers = [deck.at(SECOND + 590_000_000 + k * 10_000_000) for k in range(1, 300)]
-    assert {answer for answer in answers if not isinstance(answer, Moment)} == {Status.SUPPORT_STALE}
-
-
 JUMPS: dict[str, dict[str, Any]] = {
     "place": {"position": (0.0, 0.2, 0.0)},
     "place far away": {"position": (0.0, 2000.0, 0.0)},

@@ -19,11 +19,6 @@ FOOT = """<link name="foot_{k}"/><joint name="leg_{k}" type="fixed"><parent link
     <origin xyz="{place}"/></joint>"""
 
 
-def across(x):
-    """The matrix of a cross product."""
-    return np.array([[0.0, -x[2], x[1]], [x[2], 0.0, -x[0]], [-x[1], x[0], 0.0]])
-
-
 def random_body(source):
     """A rigid body with its mass centre off the origin, and four feet."""
     parts = source.normal(size=(3, 8))
@@ -38,35 +33,9 @@ def random_body(source):
     return scene, tuple(map(tuple, source.uniform(-0.5, 0.5, (4, 3)).tolist()))
 
 
-def mass_matrix(scene):
-    """Of the velocity of the origin and the angular velocity."""
-    center, inertia = across(scene.center_of_mass), np.array(scene.inertia)
-    upper = np.hstack([scene.mass * np.eye(3), -scene.mass * center])
-    return np.vstack([upper, np.hstack([scene.mass * center, inertia - scene.mass * center @ center])])
-
-
 def random_plane(source):
     normal, ahead = np.linalg.qr(source.normal(size=(3, 3)))[0].T[:2]
     return tuple(normal.tolist()), tuple(ahead.tolist())
-
-
-@pytest.mark.parametrize("old", [(1,), (1, 2), (0, 1, 2), ()])
-def test_the_response_of_a_trunk_is_that_of_its_mass_matrix(old):
-    source = np.random.default_rng(1)
-    for _ in range(20):
-        scene, points = random_body(source)
-        normal, ahead = random_plane(source)
-        rows = np.zeros((4, 6))
-        for first, those in ((0, old), (2, (3,))):
-            for k, way in enumerate((normal, ahead)):
-                if those:
-                    middle = np.mean([points[i] for i in those], axis=0)
-                    rows[first + k] = [*way, *np.cross(middle, way)]
-        moved = np.linalg.solve(mass_matrix(scene), rows.T)
-        W, twist = RigidMachine(scene).response(old, (3,), normal, ahead, points)
-        # Rounding of numbers of about 1.
-        assert np.array(W) == pytest.approx(rows @ moved, abs=1e-13)
-        assert np.array(twist) == pytest.approx(moved, abs=1e-13)
 
 
 def test_a_body_whose_inertia_has_no_inverse_is_refused_in_one_sentence():

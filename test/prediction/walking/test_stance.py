@@ -59,16 +59,6 @@ def test_standing_feet_tell_the_level_and_the_noise() -> None:
     assert ground.noise.rate == pytest.approx(0.03, rel=0.3)
 
 
-def test_a_foot_that_lifts_slowly_is_not_taken_for_the_ground() -> None:
-    point, ground = FootPoint(SCENE, DEAD_TIME), Ground(SCENE)
-    for k in range(400):
-        time = max(0.0, 2.5e-3 * k - 0.5)
-        point.add(frame(2.5 * k, 2.0 * time**2, 4.0 * time), ground)
-    assert not point.stands
-    assert ground.level == 0.0
-    assert ground.noise.gap <= 1e-5
-
-
 @pytest.mark.parametrize("drift", [-0.003, 0.003])
 def test_the_level_follows_a_base_whose_height_drifts(drift: float) -> None:
     ground = Ground(SCENE)

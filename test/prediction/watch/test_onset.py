@@ -15,7 +15,7 @@ from scipy.spatial.transform import Rotation
 from impact_predictor import TwoPointBody, cylinder, plate
 from impact_predictor.mechanics.motion import rock, standing
 from impact_predictor.mechanics.motion.support import MovingSupport
-from impact_predictor.prediction.watch.onset import FULL, Onset, OnsetMargins, first_times, motions
+from impact_predictor.prediction.watch.onset import FULL, Onset, OnsetMargins, motions
 from impact_predictor.prediction.watch.stance import Edge, StandingBody, edges_of, outline
 
 ROUNDING = 1e-11
@@ -193,12 +193,6 @@ def test_on_points_of_a_line_only_the_plane_of_the_line_is_judged() -> None:
     assert on_points(third, (0.0, 0.0, 0.5), 1.0, np.eye(3), 0.5).edges == planar(CRATE, -0.4).edges
 
 
-def test_a_mass_centre_beyond_an_edge_is_held_by_nothing() -> None:
-    stance = on_points([(-1, -1, 0), (1, -1, 0), (0, 1, 0)], (0.0, 1.5, 0.5), 1.0, np.eye(3), 0.5)
-    assert of_one(stance, (0.0, 0.0, -9.81)).tip[0] == FULL
-    assert Onset([stance]).barriers(motion((0.0, 0.0, -9.81)))[0][0] == 0.0
-
-
 def test_the_outline_is_the_convex_hull_whatever_lies_within_it() -> None:
     rng = np.random.default_rng(3)
     square = [(-1.0, -1.0, 0.0), (1.0, -1.0, 0.0), (1.0, 1.0, 0.0), (-1.0, 1.0, 0.0)]
@@ -263,9 +257,3 @@ def test_many_bodies_at_many_times_are_as_each_alone() -> None:
             assert together.slide[n, k] == pytest.approx(alone.slide[0], rel=ROUNDING)
             assert together.tip[n, k] == pytest.approx(alone.tip[0], rel=ROUNDING, abs=ROUNDING)
             assert together.lifted[n, k] == alone.lifted[0]
-
-
-def test_the_first_time_is_where_a_ratio_first_passes_one() -> None:
-    times = np.array([0.0, 1.0, 2.0, 3.0])
-    ratios = np.array([[0.0, 0.5, 1.5, 0.0], [1.2, 0.0, 0.0, 2.0], [0.0, 0.9, 0.9, 0.9], [0.0, 1.0, 0.0, 0.0]])
-    assert first_times(ratios, times).tolist() == [1.5, 0.0, math.inf, 1.0]
