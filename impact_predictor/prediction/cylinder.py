@@ -58,7 +58,6 @@ class CylinderContacts(PointContacts):
         self._centers = tuple((0.5 * x - high * y, 0.5 * y + high * x) for x, y in self._lines)
 
     def posture_of(self, sample: Sample) -> Posture:
-        """The sample over the edges."""
         scene, spin = self.scene, sample.angular
         axes = axes_of(sample.orientation)
         velocity = add(sample.linear, cross(spin, scene.center_of_mass))
@@ -128,7 +127,6 @@ class CylinderContacts(PointContacts):
         return collision_after(sample, posture, contacts, plane, body, fall, (x, y), age, blocked=True)
 
     def _contact(self, edge: Vector, center: Vector) -> Contact:
-        """A contact at an edge of a cylinder with its axis at `center`."""
         scene, (x, y) = self.scene, (edge[0] - center[0], edge[1] - center[1])
         distance = hypot(x, y)
         return Contact(x, y, scene.friction, (-x / distance, -y / distance), scene.restitution)

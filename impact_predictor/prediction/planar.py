@@ -80,7 +80,6 @@ def posture_of(scene: Scene, points: tuple[Vector3, ...], sample: Sample) -> Pos
 
 
 def center_of(scene: Scene, sample: Sample, posture: Posture) -> Vector3:
-    """Where the mass centre is."""
     return add(sample.position, to_world(posture.axes, scene.center_of_mass))
 
 

@@ -115,7 +115,6 @@ class PointContacts(Contacts):
         self.stamp = None
 
     def posture_of(self, sample: Sample) -> Posture:
-        """The sample over the support."""
         return posture_of(self.scene, self.points, sample)
 
     def collision_of(self, sample: Sample, posture: Posture, moment: Moment | None) -> Collision | None:

@@ -60,7 +60,6 @@ class Pending:
         self._measured: list[tuple[int, Vector3, Vector3]] = []
 
     def add(self, sample: Sample, posture: Posture) -> None:
-        """Take a sample after the touchdown."""
         axes = posture.axes
         self._measured.append((sample.stamp, to_world(axes, posture.velocity), to_world(axes, sample.angular)))
 

@@ -100,7 +100,6 @@ class Harmonic:
         return self._fit is not None
 
     def add(self, state: SupportState) -> None:
-        """Take what a message tells."""
         before, self._last = self._last, state
         if before is None:
             return

@@ -36,7 +36,6 @@ class DeckImu:
         self.clear()
 
     def clear(self) -> None:
-        """Forget the mean."""
         self._sum = self._weight = self._righting = 0.0
         self._stamp: int | None = None
         self._verdict = Status.NO_SUPPORT

@@ -189,7 +189,6 @@ class MotionWindow:
         self._channels: tuple[deque[float], ...] = tuple([deque() for _ in range(channels)])
 
     def clear(self) -> None:
-        """Forget all samples."""
         self._stamps.clear()
         for channel in self._channels:
             channel.clear()

@@ -59,7 +59,6 @@ class CubicSums:
     """
 
     def __init__(self, frames: Sequence[PointFrame], places: bool = True) -> None:
-        """Take one frame or more."""
         self.first = frames[0]
         self.count = 0
         self.measured = True
@@ -73,7 +72,6 @@ class CubicSums:
             self.add(frame)
 
     def add(self, frame: PointFrame) -> None:
-        """Take the next frame."""
         first = self.first
         s = (frame.stamp - first.stamp) / (SCALE * NANOSECONDS)
         s2 = s * s
@@ -293,7 +291,6 @@ def _halfway(factor: Factor, b: Cubic) -> Cubic:
 
 
 def square_of(factor: Factor, b: Cubic) -> float:
-    """b^T N^-1 b."""
     y0, y1, y2, y3 = _halfway(factor, b)
     return y0 * y0 + y1 * y1 + y2 * y2 + y3 * y3
 

@@ -275,7 +275,6 @@ class LandingSchedule:
         self._landings: dict[str, list[int]] = {foot: [] for foot in feet}
 
     def set(self, schedule: Schedule) -> Status:
-        """Take a schedule; what became of it."""
         times = schedule.times
         if not set(schedule.feet) <= set(self._stances):
             return Status.FEET_CHANGED
@@ -310,7 +309,6 @@ class FootForces:
         self._pressed: dict[str, tuple[int, bool]] = {}
 
     def set(self, wrench: Wrench) -> Status:
-        """Take the force on a foot; what became of the message."""
         foot, square = wrench.frame_id, dot(wrench.force, wrench.force)
         if foot not in self._feet:
             return Status.WRONG_FRAME

@@ -136,7 +136,6 @@ class FootTrajectory:
         return self._sums.motion(factor, fit.ratio, fit.end + time / SCALE)
 
     def last(self, count: int) -> list[PointFrame]:
-        """The last `count` frames."""
         return list(islice(self.frames, max(0, len(self.frames) - count), None))
 
     def _fit_of(self, sums: CubicSums, noise: GapNoise, prior: DescentPrior) -> Fit | None:

@@ -93,7 +93,6 @@ class Levels:
         return ranks
 
     def begin_anew(self) -> None:
-        """Hold nothing that was before."""
         self._justified[:] = _NEVER
 
 
@@ -149,7 +148,6 @@ class WatchedBody:
 
     @property
     def _unheard(self) -> Status:
-        """Its status before its source is heard."""
         return Status.BODY_STALE if self.scene.source != "none" else Status.ACCEPTED
 
     @property

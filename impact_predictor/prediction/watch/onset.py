@@ -74,7 +74,6 @@ class Onset:
         self._collect()
 
     def replace(self, number: int, stance: StandingBody) -> None:
-        """Let a body stand otherwise from now on."""
         self._stances[number] = stance
         self._changed = True
 
@@ -211,7 +210,6 @@ class OnsetCounts:
         self._over = over | (self._over & (used > self._again))
 
     def struck(self, number: int) -> None:
-        """Count an impact of a body."""
         self._counts[2, number] += 1
 
     def per_hour(self, number: int) -> list[float]:

@@ -69,7 +69,6 @@ class Standing:
 
     @property
     def solid(self) -> bool:
-        """Whether it has points enough to stand on."""
         return len(self._feet) > 1
 
     def edge_name(self, number: int) -> str:
@@ -234,7 +233,6 @@ class Standing:
         return add(edge, self._axis, dot(self._axis, add(pose.place(self._scene.center_of_mass), edge, -1.0)))
 
     def _on_edges(self, pose: BodyPose) -> BodyPose:
-        """A cylinder put on its edges."""
         scene = self._scene
         first, second = scene.edges[:2]
         line = add(second, first, -1.0)
