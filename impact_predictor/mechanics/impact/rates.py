@@ -268,8 +268,7 @@ def try_all(
                 rate = slide_stick_rates(contacts, a, cta)
             else:
                 rate = rolling_rates(contacts) if together else wedged_rates(contacts)
-            consistent, _, _, _, _, _, _, _, _, _, _ = rate
-            if given and consistent:
+            if given:
                 a, b, rate = without_rounding(contacts, a, b, rate, cta, ctb)
             if goes_on(rate, a, b, cta, ctb, compressing) and not seen & (1 << (4 * a + b)):
                 seen |= 1 << (4 * a + b)
