@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
-from math import copysign, degrees, hypot, inf, tan
+from math import copysign, degrees, hypot, tan
 from typing import Final
 
 import numpy as np
@@ -16,9 +16,9 @@ from ..mechanics.motion.support import Support
 from ..mechanics.types import TwoPointBody
 from ..scenarios.rocking import Rocking
 from ..scenarios.wheel import Rolling, Wheel
-from ..scenarios.wheel_closed_forms import downhill, least_friction, steady
 from . import plot
 from .modes import EDGE, MODES, PALETTE
+from .simulation import rolling_as_json
 
 STICKS, SLIPS, OPEN = "#1a1a1a", "#e69f00", "#ffffff"
 CONTACT_COLOURS: Final = {"S": STICKS, "+": SLIPS, "-": SLIPS, "O": OPEN}
@@ -202,15 +202,6 @@ def title_of(wheel: Wheel) -> str:
     return f"A rimless wheel of {wheel.spokes} spokes on a slope of {slope} with friction {wheel.hub.friction:g}"
 
 
-def steady_rates(wheel: Wheel) -> tuple[float, ...]:
-    """Rates ahead (rad/s) before and after each impact of steady rolling without slip; none where there is no such."""
-    down = downhill(wheel)
-    rolls = steady(down)
-    if rolls is None or least_friction(down) == inf:
-        return ()
-    return tuple(copysign(rate, wheel.hub.slope) for rate in (rolls.before, rolls.after))
-
-
 def draw_wheel_rate(rolling: Rolling, axes: plot.Axes) -> None:
     """Draw the rate at which a wheel turns ahead, and that of steady rolling."""
     times = np.linspace(0.0, rolling.time, _POINTS)
@@ -220,8 +211,10 @@ def draw_wheel_rate(rolling: Rolling, axes: plot.Axes) -> None:
         found = [(one.time, -one.after.omega) for one in impacts if one.outcome.mode is mode]
         label = f"after an impact: {mode.name}"
         axes.plot(*np.array(found).T, "o", color=MODES[mode].colour, markeredgecolor=EDGE, label=label)
-    for rate in steady_rates(rolling.wheel):
-        axes.axhline(rate, color=plot.GREY, linestyle="--", linewidth=0.9, label="steady rolling without slip")
+    known = rolling_as_json(rolling)["steady"]
+    for rate in (known["omega_before"], known["omega_after"]) if known else ():
+        ahead = copysign(rate, rolling.wheel.hub.slope)
+        axes.axhline(ahead, color=plot.GREY, linestyle="--", linewidth=0.9, label="steady rolling without slip")
     axes.set(xlabel="time (s)", ylabel="rate ahead (rad/s)", xlim=(0.0, 1.03 * rolling.time or 1.0))
 
 
