@@ -138,10 +138,14 @@ class Predictor:
         contacts = self.contacts
         moment = relative = None
         if self.scene.deck is not None:
-            seen = self._seen(sample)
-            if isinstance(seen, Status):
-                return Prediction(seen, sample)
-            moment, relative = seen
+            from .deck.frame import seen_from  # only where the support moves
+
+            moment = Status.NO_SUPPORT if self._deck is None else self._deck.at(sample.stamp)
+            if isinstance(moment, Status):
+                return Prediction(moment, sample)
+            relative = seen_from(moment, self.scene.frame, sample)
+            if relative is None:
+                return Prediction(Status.WRONG_FRAME, sample)
         status = contacts.take(relative or sample, moment)
         if status is not Status.ACCEPTED:
             return Prediction(status, sample, support=moment, relative=relative)
@@ -177,13 +181,3 @@ class Predictor:
         if last is not None and abs(sample.stamp - last) > PAUSE:
             contacts.forget()
         return known if status is Status.ACCEPTED else status
-
-    def _seen(self, sample: Sample) -> tuple[Moment, Sample] | Status:
-        """The moving support at the sample's stamp, and the sample in its frame; or why there is none."""
-        from .deck.frame import seen_from  # only where the support moves
-
-        moment = Status.NO_SUPPORT if self._deck is None else self._deck.at(sample.stamp)
-        if isinstance(moment, Status):
-            return moment
-        relative = seen_from(moment, self.scene.frame, sample)
-        return Status.WRONG_FRAME if relative is None else (moment, relative)

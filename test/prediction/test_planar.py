@@ -119,28 +119,11 @@ def on_back_edge(spin: Array, velocity: Array, center: Vector3 = (0.0, 0.0, 0.0)
     return scene, sample, posture_of(scene, BOX, sample)
 
 
-def test_a_body_on_an_edge_turns_about_the_edge_however_it_spins() -> None:
-    scene, sample, posture = on_back_edge(np.array([0.3, 1.0, 0.4]), np.array([0.1, 0.2, -0.5]))
-    plane = plane_of(scene, BOX, sample, posture, ActiveContacts(BACK, FRONT))
-    assert plane.axis == pytest.approx((0.0, 1.0, 0.0), abs=ROUNDING)
-    assert plane.ahead == pytest.approx((1.0, 0.0, 0.0), abs=ROUNDING)
-    assert plane.old == pytest.approx((-0.5, -0.3), abs=ROUNDING)
-    assert plane.new == pytest.approx((0.5, -0.3), abs=ROUNDING)
-    assert plane.twist == pytest.approx((0.1, -0.5, -1.0), abs=ROUNDING)
-    assert plane.gravity == pytest.approx((0.0, -9.81, 0.0), abs=ROUNDING)
-
-
 def test_a_body_on_a_corner_turns_about_the_part_of_its_spin_in_the_support() -> None:
     scene, sample, posture = on_back_edge(np.array([0.6, 0.8, 5.0]), np.zeros(3))
     plane = plane_of(scene, BOX, sample, posture, ActiveContacts((2,), (4,)))
     assert plane.axis == pytest.approx((0.6, 0.8, 0.0), abs=ROUNDING)
     assert plane.off_axis == pytest.approx(5.0 / math.sqrt(26.0), abs=ROUNDING)
-
-
-def test_two_standing_points_above_one_another_are_no_edge() -> None:
-    scene, sample, posture = on_back_edge(np.array([0.6, 0.8, 0.0]), np.zeros(3))
-    plane = plane_of(scene, BOX, sample, posture, ActiveContacts((0, 1), (4,)))
-    assert plane.axis == pytest.approx((0.6, 0.8, 0.0), abs=ROUNDING)
 
 
 def test_a_body_that_hardly_turns_is_turned_towards_its_new_contact() -> None:

@@ -223,16 +223,6 @@ def test_a_body_that_is_caught_in_the_air_has_not_landed() -> None:
     assert predictor.finish() == ()
 
 
-def test_another_touchdown_is_announced_though_the_last_one_was_held() -> None:
-    predictor = Predictor(SCENE._replace(twist_window=0.012))
-
-    def tilted(stamp: int, angle: float) -> Sample:
-        return block(stamp, angle, Twist(0.0, -1.0, 0.0), height=0.01 + max(0.0, -0.2 * math.sin(angle)))
-
-    answers = [answer.touchdown for answer in run(predictor, [tilted(0, 0.1), tilted(PERIOD, -0.1)])]
-    assert [touchdown.new for touchdown in answers if touchdown is not None] == [(0, 1), (2, 3)]
-
-
 @pytest.mark.parametrize("count", [1, 3])
 def test_a_record_that_ends_too_early_leaves_a_touchdown_without_measurement(count: int) -> None:
     predictor = Predictor(SCENE)

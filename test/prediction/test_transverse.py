@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from impact_predictor.mechanics.impact import solve_impact
 from impact_predictor.mechanics.transverse import Transverse, solve_transverse_impact
 from impact_predictor.mechanics.types import Contact, Flag, Twist, TwoPointBody, Validity
 from impact_predictor.prediction.impact import SLIPS, TOLERANCE
@@ -82,15 +81,6 @@ def test_friction_of_a_box_that_slips_along_its_edge_opposes_the_whole_slip(late
     assert now.apply(touchdown.angular) == pytest.approx((0.0, -expected.twist.omega, after.yaw), abs=ROUNDING)
     assert abs(after.velocity) < 0.9 * abs(lateral)
     assert touchdown.lateral == pytest.approx(lateral + 0.5 * LENGTH * -yaw, abs=ROUNDING)
-
-
-def test_it_changes_what_is_predicted_in_the_plane() -> None:
-    sample = turning(-4.0, 0.5, 1.0)
-    whole, alone = announced(sample), announced(sample, SCENE._replace(transverse_slip=False))
-    assert alone.after == pytest.approx(solve_impact(planar(), alone.before).twist, abs=ROUNDING)
-    assert abs(whole.after.vx - alone.after.vx) > 0.1
-    velocity = Rotation.from_quat(alone.orientation).apply(alone.linear)
-    assert velocity[1] == pytest.approx(1.0, abs=ROUNDING)
 
 
 @pytest.mark.parametrize("part", [0.0, 0.5 * SLIPS, 0.98 * SLIPS])

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from impact_predictor.prediction.deck import harmonic as deck_harmonic
 from impact_predictor.prediction.deck.harmonic import STEP, Harmonic, predicted
-from impact_predictor.prediction.deck.motion import SupportState, ahead
+from impact_predictor.prediction.deck.motion import SupportState
 from impact_predictor.prediction.types import Felt
 from impact_predictor.prediction.vectors import axes_of, to_body, turned
 
@@ -107,20 +107,6 @@ def test_gravity_ahead_is_seen_along_the_axes_of_then() -> None:
         orientation = turned(LEVEL, (rate * (9.9 + time), 0.0, 0.0))
         wanted = Felt(to_body(axes_of(orientation), (0.0, 0.0, -9.81)), (rate, 0.0, 0.0), NOTHING)
         assert np.allclose(harmonic.ahead(known)(time), wanted, atol=1e-12)  # roundings of 10 m/s^2
-
-
-def test_it_goes_on_with_constant_accelerations_until_half_the_window_is_known() -> None:
-    harmonic = Harmonic(20.0)
-    for time in np.arange(0.0, 9.9, 0.05):
-        harmonic.add(known_at(float(time)))
-        assert not harmonic.fitted
-    known = known_at(9.9)
-    assert harmonic.ahead(known)(0.4) == ahead(known.felt, known.angular, known.turning, 0.4)
-    for time in np.arange(9.9, 10.2, 0.05):
-        harmonic.add(known_at(float(time)))
-    assert harmonic.fitted
-    harmonic.clear()
-    assert not harmonic.fitted
 
 
 SHAPES: dict[str, Any] = {

@@ -109,18 +109,6 @@ def test_the_side_on_which_it_is_first_seen_is_its_own() -> None:
     assert standing.motion is BodyMotion.STANDS
 
 
-def test_a_planar_body_stands_on_two_points_and_rocks_on_one() -> None:
-    points = tuple((0.0, y, z) for y in (-0.3, 0.3) for z in (-0.5, 0.5))
-    standing = Standing(CRATE._replace(points=points))
-    standing.update(sample((2.0, 1.0, 0.5)))
-    assert [edge.name for edge in standing.stance.edges] == ["starboard", "port"]
-    shown(standing, tipped(0.1))
-    assert standing.motion is BodyMotion.ROCKS
-    assert [edge.name for edge in standing.stance.edges] == ["port"]
-    standing.update(tipped(0.5 * math.pi))
-    assert standing.toppled
-
-
 def test_a_tilt_alone_tells_rocking_but_no_misalignment_of_sensors() -> None:
     standing = Standing(CRATE)
     for angle, motion in ((0.01, BodyMotion.STANDS), (0.1, BodyMotion.ROCKS), (0.0, BodyMotion.STANDS)):
