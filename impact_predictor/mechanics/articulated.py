@@ -68,7 +68,11 @@ class WholeBody:
         for k, frame in enumerate(self._frames):
             self.points[k] = data.oMf[frame].translation
             self.jacobians[k] = pinocchio.getFrameJacobian(model, data, frame, aligned)[:3]
-        return _has_inverse(self.inertia)
+        try:
+            pivots = np.diagonal(np.linalg.cholesky(self.inertia)) ** 2
+        except np.linalg.LinAlgError:
+            return False
+        return bool(np.all(pivots > SINGULAR * np.diagonal(self.inertia)))
 
     def velocities(self, rates: NDArray[np.float64]) -> NDArray[np.float64]:
         """Velocities (k, 3) of the points relative to the base, by the `rates` of `joints` (rad/s or m/s)."""
@@ -121,12 +125,3 @@ def _frame(model: Any, name: str, urdf: str) -> int:
         raise InputError(f"robot.frames: {urdf} has no link or joint {name!r}; give one for each contact point")
     number: int = model.getFrameId(name)
     return number
-
-
-def _has_inverse(inertia: NDArray[np.float64]) -> bool:
-    diagonal = np.diagonal(inertia)
-    try:
-        pivots = np.diagonal(np.linalg.cholesky(inertia)) ** 2
-    except np.linalg.LinAlgError:
-        return False
-    return bool(np.all(pivots > SINGULAR * diagonal))

@@ -60,7 +60,7 @@ from .impact.path_law import ROOM
 from .impact.rates import Rates, choose, open_rates, state_alone
 from .impact.restitution import poisson
 from .motion.events import falling_root
-from .transverse_step import SLACK, Across, Arc, SlipPhase, Slips, State, advance, margin, rates, way_of
+from .transverse_step import SLACK, Across, Arc, PathSegment, Slips, State, advance, margin, rates, way_of
 from .types import Contact, Flag, Outcome, Twist, TwoPointBody, Validity
 
 GAIN = 10.0
@@ -212,7 +212,7 @@ def follow(across: Across, before: SpatialVelocities, small: float, restitution:
     turn_a, turn_b = (fa * max(1.0 + sa * sa, waa)) ** 2, (fb * max(1.0 + sb * sb, wbb)) ** 2
     state: State = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, *before)
     _, first_a, _, _, first_b, _ = before
-    phase: SlipPhase | None = None
+    phase: PathSegment | None = None
     target, reach = inf, inf
     compressing = True
     told, segments, notes = -1, 0, 0
@@ -321,7 +321,7 @@ def rests(t: float, z: float, rate_t: float, rate_z: float, small: float) -> boo
     return not (along > 0.0 and along * along >= STRAIGHT * square * (rate_t * rate_t + rate_z * rate_z))
 
 
-def first_event(across: Across, phase: SlipPhase, arc: Arc, work: float, small: float) -> tuple[float, bool]:
+def first_event(across: Across, phase: PathSegment, arc: Arc, work: float, small: float) -> tuple[float, bool]:
     """The part of a stretch after which the first condition ends, inf without one, and whether it is B's work.
 
     `work` is what B has stored, inf while it is compressed.
@@ -347,7 +347,7 @@ def first_event(across: Across, phase: SlipPhase, arc: Arc, work: float, small: 
     return event, event == spent < inf
 
 
-def phase_at(across: Across, state: State, compressing: bool) -> SlipPhase | None:
+def phase_at(across: Across, state: State, compressing: bool) -> PathSegment | None:
     """The first consistent states in the order O, S, slip (A before B); None where the path jams."""
     pair, _, _, _ = across
     cos, sin, qa, _, qb, sb, _, fb = pair
@@ -373,20 +373,20 @@ def phase_at(across: Across, state: State, compressing: bool) -> SlipPhase | Non
     return slipping(across, SLIP, SLIP, way)
 
 
-def slipping(across: Across, a: int, b: int, way: Slips) -> SlipPhase | None:
+def slipping(across: Across, a: int, b: int, way: Slips) -> PathSegment | None:
     """These states, if their impulses lie within the cones."""
     rate = rates(across, a, b, way)
     return None if rate is None or margin(across, a, b, rate) < 0.0 else (a, b, way, rate, False)
 
 
-def set_off(across: Across, contact: int, way: Slips) -> SlipPhase | None:
+def set_off(across: Across, contact: int, way: Slips) -> PathSegment | None:
     """Both contacts slip, the one at rest, A (0) or B (1), in the direction in which its own slip grows.
 
     The direction is one that the slip keeps, and to which it returns when it is turned. Of several the slip that
     grows most is taken.
     """
 
-    def towards(k: int, part: float) -> tuple[SlipPhase | None, float, float]:
+    def towards(k: int, part: float) -> tuple[PathSegment | None, float, float]:
         """The phase with a direction next to the k-th; how fast the slip turns in it, and how fast it grows."""
         (u, v), (t, z), (ut, uz, wt, wz) = COMPASS[k - 1], COMPASS[k], way
         t, z = u + part * (t - u), v + part * (z - v)

@@ -33,7 +33,7 @@ Slips = tuple[float, float, float, float]
 State = tuple[float, float, float, float, float, float, float, float, float, float, float, float]
 """N_A, T_A, Z_A, N_B, T_B, Z_B so far, and c_nA, c_tA, c_zA, c_nB, c_tB, c_zB; or the rates of all per unit N_B."""
 
-SlipPhase = tuple[int, int, Slips, State, bool]
+PathSegment = tuple[int, int, Slips, State, bool]
 """States of A and B, the ways in which they slip, the rates, and whether these stay as they are."""
 
 ATTEMPTS = 40
@@ -149,7 +149,7 @@ def cubic(begin: float, end: float, first: float, last: float, part: float) -> f
 
 
 def advance(
-    across: Across, phase: SlipPhase, y: State, span: float, ends: bool, small: float
+    across: Across, phase: PathSegment, y: State, span: float, ends: bool, small: float
 ) -> tuple[Arc, float] | None:
     """A step in which N_B grows by `span` or less, with an error below `small` in every slip; None where none is found.
 
@@ -159,7 +159,8 @@ def advance(
     _, _, way, rate, straight = phase
     if straight or span == 0.0:
         end: State = tuple([p + span * q for p, q in zip(y, rate, strict=True)])  # type: ignore[assignment]
-        return Arc(y, end, rate, rate, span, span, work=0.5 * span * (y[9] + end[9]), way=way), inf
+        work = 0.5 * span * (y[9] + end[9])
+        return Arc(begin=y, end=end, first=rate, last=rate, first_span=span, last_span=span, work=work, way=way), inf
     for _ in range(ATTEMPTS):
         step = tried(across, phase, y, span, ends, small)
         if step is None:
@@ -175,7 +176,7 @@ def advance(
 
 
 def tried(
-    across: Across, phase: SlipPhase, y: State, span: float, ends: bool, small: float
+    across: Across, phase: PathSegment, y: State, span: float, ends: bool, small: float
 ) -> tuple[Arc, float] | None:
     """The stretch that a step makes, and the largest error of a slip in it.
 
@@ -218,4 +219,5 @@ def tried(
         abs(span * rzb1 - 2.0 * span2 * rzb2 + span4 * rzb4),
     )
     work = p * cnb + q * (cnb + 0.5 * span * rnb1) + r * (cnb + 0.75 * span2 * rnb2)
-    return Arc(y, end, first, last, span, span4, work=work, way=there), error
+    arc = Arc(begin=y, end=end, first=first, last=last, first_span=span, last_span=span4, work=work, way=there)
+    return arc, error

@@ -83,13 +83,13 @@ def solve_impacts(
     )
     shape, count = np.broadcast_shapes(*(field.shape for field in fields)), chunks.itersize
     outcomes = Outcomes(
-        np.empty(count, np.uint8),
-        np.empty((count, 3)),
-        np.empty((count, 2, 2)),
-        np.empty(count, np.int64),
-        np.empty(count, np.uint16),
-        np.empty(count),
-        np.empty(count, np.bool_),
+        mode=np.empty(count, np.uint8),
+        twist=np.empty((count, 3)),
+        impulses=np.empty((count, 2, 2)),
+        segments=np.empty(count, np.int64),
+        flags=np.empty(count, np.uint16),
+        energy_lost=np.empty(count),
+        unique=np.empty(count, np.bool_),
     )
     fill, start = filler(), 0
     if count:
