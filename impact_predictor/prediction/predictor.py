@@ -140,10 +140,10 @@ class Predictor:
         if self.scene.deck is not None:
             from .deck.frame import seen_from  # only where the support moves
 
-            moment = Status.NO_SUPPORT if self._deck is None else self._deck.at(sample.stamp)
-            if isinstance(moment, Status):
-                return Prediction(moment, sample)
-            relative = seen_from(moment, self.scene.frame, sample)
+            known = Status.NO_SUPPORT if self._deck is None else self._deck.at(sample.stamp)
+            if isinstance(known, Status):
+                return Prediction(known, sample)
+            moment, relative = known, seen_from(known, self.scene.frame, sample)
             if relative is None:
                 return Prediction(Status.WRONG_FRAME, sample)
         status = contacts.take(relative or sample, moment)
