@@ -31,15 +31,7 @@ from math import inf, isfinite, nan, sqrt
 from typing import NamedTuple
 
 from .impact import NOWHERE, outcome_of, solve_impact
-from .impact.answer import (
-    INVALID_INPUT,
-    OLD_RESTITUTION_IGNORED,
-    PATH,
-    VALIDITY,
-    doubts,
-    mode_of,
-    unchanged,
-)
+from .impact.answer import INVALID_INPUT, OLD_RESTITUTION_IGNORED, PATH, VALIDITY, doubts, mode_of, unchanged
 from .impact.contacts import (
     MINUS,
     NO_SOLUTION,

@@ -5,17 +5,7 @@ Law code (see `contacts`).
 
 from __future__ import annotations
 
-from .contacts import (
-    CANCELLED,
-    MINUS,
-    OPEN,
-    PLUS,
-    ROUNDING,
-    STICK,
-    ContactRows,
-    below_rounding,
-    push_interval,
-)
+from .contacts import CANCELLED, MINUS, OPEN, PLUS, ROUNDING, STICK, ContactRows, below_rounding, push_interval
 
 Rates = tuple[bool, float, float, float, float, float, float, float, float, float, float]
 """Whether the states are consistent; N_A, T_A, T_B; rates of c_nA, c_tA, c_nB, c_tB and of the twist (x, y, rho
