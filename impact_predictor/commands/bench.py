@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from ..mechanics.impact import LAWS
-from .options import choice, examples, json_flag, number, seed_option
+from .options import choice, examples, json_flag, seed_option
 
 if TYPE_CHECKING:
     from ..mechanics.invariants import Soak
@@ -28,41 +28,12 @@ def whole(context: click.Context, option: click.Parameter, count: float) -> int:
 
 
 @click.group(
-    short_help="Put the laws to the test: invariants of random impacts, the paper's experiment.",
+    short_help="Put the laws to the test: invariants of random impacts.",
     no_args_is_help=False,
-    epilog=examples("impact-predictor bench invariants --count 1e6", "impact-predictor bench experiment"),
+    epilog=examples("impact-predictor bench invariants --count 1e6"),
 )
 def bench() -> None:
     """Put the laws to the test."""
-
-
-@bench.command(
-    short_help="Predict the paper's falling rods, beside what it observed.",
-    epilog=examples("impact-predictor bench experiment", "impact-predictor bench experiment --angle 30 --json"),
-)
-@number("--friction", "Of rod and supports.", 0.4, type=click.FloatRange(0.0, 100.0))
-@number(
-    "--angle",
-    "From which the rods are released; in the experiment 15 to 30.",
-    15.0,
-    type=click.FloatRange(0.0, 90.0, min_open=True, max_open=True),
-    metavar="DEGREES",
-)
-@json_flag()
-def experiment(friction: float, angle: float, as_json: bool) -> None:
-    """Predict the paper's falling rods, beside what it observed.
-
-    Rods of 400 mm turn about one support and strike a second one (Polukoshko and Sokolova, section 2.2). Where rigid
-    theory is too simple for what was seen, the prediction itself says so by a flag.
-    """
-    from rich.console import Console
-
-    from ..report.experiment import experiment_json, print_experiment
-
-    if as_json:
-        click.echo(json.dumps(experiment_json(friction, angle), indent=2, allow_nan=False))
-    else:
-        print_experiment(Console(), friction, angle)
 
 
 @bench.command(

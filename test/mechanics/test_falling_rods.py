@@ -5,21 +5,11 @@ from __future__ import annotations
 import json
 import math
 
+import falling_rods
 import pytest
-from click.testing import CliRunner
+from falling_rods import LENGTH, THICKNESSES, border, falling, trial
 
 from impact_predictor import Flag, Mode, rod
-from impact_predictor.cli import main
-from impact_predictor.report import experiment
-from impact_predictor.report.experiment import (
-    LENGTH,
-    SYMMETRIC,
-    THICKNESSES,
-    VERY_CLOSE,
-    border,
-    falling,
-    trial,
-)
 
 FRICTION = 0.4
 ANGLES = (15.0, 30.0)
@@ -29,7 +19,7 @@ DOUBTS = Flag.THIN_BODY | Flag.SLOW_IMPACT
 
 
 def trials(angle):
-    return [one for row in experiment.trials(FRICTION, angle) for one in row]
+    return [one for row in falling_rods.trials(FRICTION, angle) for one in row]
 
 
 @pytest.mark.parametrize("angle", ANGLES)
@@ -65,42 +55,23 @@ def test_a_rod_stops_where_12_ab_is_l_squared_and_3_h_squared(thickness):
     assert border(thickness, FRICTION) == pytest.approx(expected, abs=1e-8)
 
 
-def test_a_thin_rod_strikes_with_the_angular_velocity_of_2_1():
-    for angle in (15.0, 30.0):
-        body = rod(length=0.4, thickness=0.0, a=0.075, b=0.05, mass=1.0, friction=0.0)
-        expected = math.sqrt(24.0 * 9.81 * 0.075 / (0.4**2 + 12.0 * 0.075**2) * math.sin(math.radians(angle)))
-        assert falling(body, math.radians(angle)).omega == pytest.approx(-expected, rel=1e-12)
+@pytest.mark.parametrize("angle", ANGLES)
+def test_a_thin_rod_strikes_with_the_angular_velocity_of_2_1(angle):
+    body = rod(length=0.4, thickness=0.0, a=0.075, b=0.05, mass=1.0, friction=0.0)
+    expected = math.sqrt(24.0 * 9.81 * 0.075 / (0.4**2 + 12.0 * 0.075**2) * math.sin(math.radians(angle)))
+    assert falling(body, math.radians(angle)).omega == pytest.approx(-expected, rel=1e-12)
 
 
-def run(*arguments: str):
-    return CliRunner().invoke(main, ("bench", "experiment", *arguments), terminal_width=100)
-
-
-def test_the_command_tells_the_border_and_how_many_are_as_seen():
-    result = run()
-    assert result.exit_code == 0
-    assert "stops from a = 115.9 mm (20 mm thick), 115.6 mm (10 mm thick), 115.5 mm (5 mm thick), 115.5 mm (2 mm" in (
-        result.output
-    )
-    assert "As seen: 45 of 68; of the 23 others 23 are flagged." in result.output
-
-
-def test_as_json_it_has_every_trial_with_what_was_predicted_and_seen():
-    answer = json.loads(run("--json").stdout)
-    assert [round(1e3 * entry["a"], 1) for entry in answer["borders"]] == [115.9, 115.6, 115.5, 115.5]
-    assert len(answer["trials"]) == (len(SYMMETRIC) + len(VERY_CLOSE)) * len(THICKNESSES)
+def test_its_table_and_its_json_tell_which_of_the_rods_are_as_seen(capsys):
+    falling_rods.main([])
+    assert "As seen: 45 of 68; of the 23 others 23 are flagged." in capsys.readouterr().out
+    falling_rods.main(["--json"])
+    answer = json.loads(capsys.readouterr().out)
+    assert sum(entry["predicted"] == entry["observed"] for entry in answer["trials"]) == 45
     thin = [entry for entry in answer["trials"] if entry["thickness"] == 0.002]
     assert all(entry["observed"] == "FLIGHT" and "THIN_BODY" in entry["flags"] for entry in thin)
 
 
-@pytest.mark.parametrize(
-    ("arguments", "said"),
-    [
-        (("--friction", "-1"), "error: "),
-        (("--angle", "60"), "error: a body raised by 60 degrees does not fall back; give a smaller angle\n"),
-    ],
-)
-def test_what_no_rod_can_do_is_refused_in_a_sentence(arguments, said):
-    result = run(*arguments)
-    assert (result.exit_code, result.stderr.count("\n")) == (2, 1)
-    assert result.stderr.startswith(said)
+def test_an_angle_from_which_no_rod_falls_back_is_refused_in_a_sentence():
+    with pytest.raises(SystemExit, match=r"^error: a body raised by 60 degrees does not fall back; give a smaller"):
+        falling_rods.main(["--angle", "60"])
