@@ -7,6 +7,7 @@ by Aitken's extrapolation; the rest is summed when two cycles in a row extrapola
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 _LONGEST_CYCLE = 4
@@ -71,7 +72,8 @@ class ImpactSequence:
 
     def _limit(self, period: int) -> Limit | None:
         rows, allowed = self.rows, self.tolerance
-        first, before, last = (self._time_of(len(rows) - k * period, period) for k in (3, 2, 1))
+        cycles = (rows[len(rows) - k * period :][:period] for k in (3, 2, 1))
+        first, before, last = (math.fsum(row.since for row in cycle) for cycle in cycles)
         if not 0.0 < last < _SLOWEST * before or not before < _SLOWEST * first:
             return None
         part, part_before = last / (before - last), before / (first - before)
@@ -90,10 +92,3 @@ class ImpactSequence:
             return None  # the slip ends before the impacts do
         contacts = sorted({contact for row in rows[-period:] for contact in row.kind[:2] if contact >= 0})
         return Limit(after=after, error=error, place=(u, w, z, s), contacts=tuple(contacts), impacts=self.impacts)
-
-    def _time_of(self, start: int, period: int) -> float:
-        """How long a cycle takes that starts with a row."""
-        time = 0.0
-        for row in self.rows[start : start + period]:
-            time += row.since
-        return time

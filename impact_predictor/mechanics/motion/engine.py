@@ -24,6 +24,8 @@ _OVERTURNED = 0.5 * math.pi
 _MOST_EVENTS = 100
 """More changes of stick, slip and flight before an impact come only from rounding."""
 _MOST_STEPS = 1000
+_STUCK = 1000
+"""Events without any time between them; more come only from rounding."""
 SLIP_ROUNDING = 1e-12
 """A slip this small, relative to the speeds it is the difference of, is none: states come through conversions."""
 
@@ -57,6 +59,8 @@ class MotionEngine:
         self.swing, self.speed = math.sqrt(length / weight), math.sqrt(length * weight)
         self.rests_from = 0.0
         """How long from now on a rest lasts anyway, in s."""
+        self.still = 0
+        """Events since time last went on."""
         self.phases: list[MotionPhase] = []
         self.jams: list[float] = []
         self.next: MotionPhase | None = None
@@ -125,8 +129,11 @@ class MotionEngine:
         else:
             self.end = End.RESTS
             return
-        self.time += end.at.time
-        if isinstance(end.event, End):
+        before, self.time = self.time, self.time + end.at.time
+        self.still = 0 if self.time > before else self.still + 1
+        if self.still > _STUCK:
+            self.end = End.NO_SOLUTION
+        elif isinstance(end.event, End):
             self.end = end.event
         elif isinstance(phase, FlightPhase):
             self._land(phase, end)

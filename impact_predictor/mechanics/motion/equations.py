@@ -50,19 +50,27 @@ class RockingBody:
     """A body on two points fixed in it, over the straight support y = 0; lengths in m, angles in rad."""
 
     rolls = False
-    radius = 0.0
-    along, spin = 1.0, 0.0
-    """How far the mass centre moves along the support, and by how much the body turns, where a contact slips by 1 m."""
+    along = 1.0
+    """How far the mass centre moves along the support where a contact slips by 1 m."""
     held, free = (1, 2), 0
     """Which parts of a wrench both contacts take up while both slip: the body moves along the other one."""
 
-    def __init__(self, body: TwoPointBody, lean: float, arms: tuple[Vector, Vector], edges: tuple[Vector, Vector]):
-        """`lean`: direction from contact 0 to contact 1 in the body at angle 0. With both contacts closed and z = 0
-        `arms` lead from the contacts to the mass centre, and `edges` are the contacts in the support's frame.
+    def __init__(
+        self,
+        body: TwoPointBody,
+        arms: tuple[Vector, Vector],
+        edges: tuple[Vector, Vector],
+        lean: float = 0.0,
+        radius: float = 0.0,
+    ) -> None:
+        """With both contacts closed and z = 0 `arms` lead from the contacts to the mass centre, and `edges` are the
+        contacts in the support's frame; `lean` is the direction from contact 0 to contact 1 in the body at angle 0.
         """
         old, new = body.old, body.new
         assert old is not None
-        self.lean, self.arms, self.edges = lean, arms, edges
+        self.lean, self.arms, self.edges, self.radius = lean, arms, edges, radius
+        self.spin = 1.0 / radius if self.rolls else 0.0
+        """By how much the body turns where a contact slips by 1 m."""
         self.rho_squared = body.inertia / body.mass
         self.friction = old.friction, new.friction
         self.restitution = old.restitution, new.restitution
@@ -221,11 +229,6 @@ class Disc(RockingBody):
     along = 0.0
     held, free = (0, 1), 2
 
-    def __init__(self, body: TwoPointBody, lean: float, arms: tuple[Vector, Vector], edges: tuple[Vector, Vector]):
-        super().__init__(body, lean, arms, edges)
-        self.radius = math.hypot(*arms[0])
-        self.spin = 1.0 / self.radius
-
     def normal(self, dx: float, dy: float) -> Vector:
         return dx / self.radius, dy / self.radius
 
@@ -284,7 +287,8 @@ def rocking_body(body: TwoPointBody) -> RockingBody:
             "the contacts are neither points over a straight support (both normals (0, 1)) nor the edges under a disc "
             "(normals through the mass centre, equal distances, contact 1 ahead); give one of these"
         )
-    return Disc(body, 0.0, ((-old.x, -old.y), (-new.x, -new.y)), ((0.0, 0.0), (new.x - old.x, new.y - old.y)))
+    arms, edges = ((-old.x, -old.y), (-new.x, -new.y)), ((0.0, 0.0), (new.x - old.x, new.y - old.y))
+    return Disc(body, arms, edges, radius=radius)
 
 
 def two_points(body: TwoPointBody) -> RockingBody:
@@ -295,7 +299,7 @@ def two_points(body: TwoPointBody) -> RockingBody:
     span = math.hypot(dx, dy)
     c, s = dx / span, dy / span
     x, y = -(c * old.x + s * old.y), s * old.x - c * old.y
-    return RockingBody(body, math.atan2(dy, dx), ((x, y), (x - span, y)), ((0.0, 0.0), (span, 0.0)))
+    return RockingBody(body, ((x, y), (x - span, y)), ((0.0, 0.0), (span, 0.0)), lean=math.atan2(dy, dx))
 
 
 def turned(arm: Vector, angle: Any) -> tuple[Any, Any]:

@@ -76,12 +76,6 @@ class MotionPhase:
     The times of its instants count from its start, so that short hops keep their digits.
     """
 
-    border = 0.0
-    longest = math.inf
-    """The longest step in s."""
-    shortest = 0.0
-    """What begins at its border and fails within less than this (s) ends then."""
-
     def __init__(self, problem: RockingProblem, states: tuple[int, int], start: float, place: Place) -> None:
         self.body, support, self.limit, self.tolerance = problem
         self.support, self.states, self.start = support, states, start
@@ -220,7 +214,9 @@ class MotionPhase:
         weight = math.hypot(felt[0], felt[1]) + length * (abs(felt[3]) + felt[2] * felt[2])
         swing = math.sqrt(length / weight) if weight > 0.0 else math.inf
         self.border = _BORDER * length / (swing * swing)
-        self.longest, self.shortest = _PART_OF_PERIOD * period, _SHORTEST * min(swing, period, last)
+        self.longest = _PART_OF_PERIOD * period
+        self.shortest = _SHORTEST * min(swing, period, last)
+        """What begins at its border and fails within less than this (s) ends then."""
         pace = abs(now.w) + math.sqrt(abs(now.alpha)) + 1.0 / swing
         return _FIRST_STEP / pace if pace > 0.0 else last
 
