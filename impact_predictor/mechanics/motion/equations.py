@@ -142,13 +142,14 @@ class RockingBody:
             high, side = self.radius, 0.0
             pull, pull_along = (fx * dx + fy * dy) / high, (fx * dy - fy * dx) / high
         square, inertia, rho_squared = w * w, self.inertia[i], self.rho_squared
-        # Accelerations of the contact without a reaction, and rho^2 times what a reaction adds to them.
-        free, free_slip = pull + square * high + spin_up * side, pull_along + square * side - spin_up * high
-        nn, nt, tt = rho_squared + side * side, -side * high, rho_squared + high * high
-        if slides == STICK:
-            normal, tangential = (nt * free_slip - tt * free) / inertia, (nt * free - nn * free_slip) / inertia
+        free = pull + square * high + spin_up * side
+        if slides == STICK:  # the reaction is what the mass centre's acceleration lacks
             alpha = (dx * fy - dy * fx - rho_squared * spin_up) / inertia
+            normal, tangential = alpha * side - square * high - pull, -alpha * high - square * side - pull_along
             return ContactForces(alpha=alpha, beta=0.0, normal=normal, tangential=tangential, free=free)
+        # Acceleration along the tangent without a reaction, and rho^2 times what a reaction adds.
+        free_slip = pull_along + square * side - spin_up * high
+        nn, nt, tt = rho_squared + side * side, -side * high, rho_squared + high * high
         drag = self.friction[i] if slides == PLUS else -self.friction[i]
         bracket = nn - drag * nt
         if bracket <= 0.0:

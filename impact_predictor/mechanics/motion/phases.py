@@ -18,7 +18,7 @@ from .integrate import GROWTH, NEAR, Instant, add_dense, middle_of, nudged, step
 from .pivot import Pivot, roll, turn
 from .support import FeltSupport, FixedSupport, FrameAcceleration, MovingSupport, PlanarState
 
-_FIRST_STEP, _STEP_OF_FLIGHT = 1.0, 0.25
+_FIRST_STEP, _STEP_OF_FLIGHT = 0.9, 0.25
 """Length of a first step, and of the longest one in flight, in times that the motion needs to change."""
 _BEYOND = 1.1
 """A step goes as much farther than where its parabola ends the phase."""
