@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import struct
 import zlib
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from io import BytesIO
 from pathlib import Path
 from typing import Final
@@ -44,7 +44,18 @@ class McapFile(ChunkedFile):
     def __init__(self, path: Path) -> None:
         """Find the chunks and channels of a file, up to the first damage; OSError where it cannot be read."""
         self._schemas: dict[int, Schema] = {}
+        self._checksum: tuple[int, int] | None = None
         super().__init__(path)
+
+    def messages(self, wanted: Collection[int]) -> Iterator[RawMessage]:
+        """The messages of some channels in the order of their log times.
+
+        Raises:
+            Flaw: the file is damaged, after all messages before that.
+        """
+        yield from super().messages(wanted)
+        if self._checksum is not None and not self._data_are_right(*self._checksum):
+            raise Flaw(self.size, "the checksum of all its data is wrong, so that any message may be")
 
     def _scan(self) -> None:
         if self._file.read(len(MAGIC)) != MAGIC:
@@ -83,6 +94,8 @@ class McapFile(ChunkedFile):
             self._chunks[-1] = self._chunks[-1]._replace(channels=known | {channel})
             self._counts[channel] += entries // 16
         elif opcode == Opcode.DATA_END:
+            (crc,) = struct.unpack("<I", self._body(place, 4))
+            self._checksum = (crc, place) if crc else None
             self._take_summary(end)
         elif opcode == Opcode.FOOTER:
             self._take_summary(place)
@@ -168,6 +181,13 @@ class McapFile(ChunkedFile):
             if opcode in (Opcode.SCHEMA, Opcode.CHANNEL) and place <= len(data):
                 self._learn(opcode, data[begin:place])
         return chunk
+
+    def _data_are_right(self, checksum: int, end: int) -> bool:
+        self._file.seek(0)
+        crc = 0
+        for place in range(0, end, _GROUP):
+            crc = zlib.crc32(self._file.read(min(_GROUP, end - place)), crc)
+        return crc == checksum
 
     @staticmethod
     def _messages(chunk: Chunk, data: bytes, wanted: Collection[int]) -> list[RawMessage]:

@@ -2,8 +2,8 @@
 
 The database reads them itself. Where it finds them damaged or cut off, it loses what the tree that leads to the
 messages does not reach any more (of a file cut in the middle often all of them), though the leaves of the tree are
-there: then the messages are taken from the pages of the file, up to the first that a page does not hold. Source:
-https://www.sqlite.org/fileformat.html, sections 1.3, 1.6 and 2.1.
+there: then the messages are taken from the pages of the file. Source: https://www.sqlite.org/fileformat.html, sections
+1.3, 1.6 and 2.1.
 """
 
 from __future__ import annotations
@@ -82,10 +82,10 @@ class SqliteFile:
             with self._storage.open("rb") as file:
                 for row in self._whole_rows(file):
                     if row.topic in wanted and (last is None or (row.log_time, row.id) > last):
-                        if not row.size:
+                        data = self._data(file, row)
+                        if data is None:
                             break
-                        file.seek(row.place)
-                        yield RawMessage(row.log_time, 0, row.topic, file.read(row.size))
+                        yield RawMessage(row.log_time, 0, row.topic, data)
         if flaw is not None:
             raise flaw
 
@@ -144,23 +144,43 @@ class SqliteFile:
         null, topic_kind, time_kind, data_kind = types
         topic, at = _integer(page, at, topic_kind)
         log_time, at = _integer(page, at, time_kind)
-        length = (data_kind - 12) // 2
-        if null or data_kind < 12 or data_kind % 2 or at - begin + length != size:
+        if null or data_kind < 12 or data_kind % 2 or at - begin + (data_kind - 12) // 2 != size:
             raise ValueError("no message")
+        local, least = size, (self._usable - 12) * 32 // 255 - 23
         if size > self._usable - 35:
-            return _MessageRow(log_time, id_, topic, 0, 0)
-        if begin + size > len(page):
+            fitting = least + (size - least) % (self._usable - 4)
+            local = fitting if fitting <= self._usable - 35 else least
+        if begin + local > len(page):
             raise ValueError("cut off")
-        return _MessageRow(log_time, id_, topic, place + at, length)
+        return _MessageRow(
+            log_time=log_time, id=id_, topic=topic, place=place + begin, head=at - begin, local=local, size=size
+        )
+
+    def _data(self, file: BinaryIO, row: _MessageRow) -> bytes | None:
+        """The data of a message, or None where they are not all there."""
+        file.seek(row.place)
+        record = bytearray(file.read(row.local))
+        following = file.read(4)
+        while len(record) < row.size:
+            page = int.from_bytes(following, "big")
+            file.seek(max(0, page - 1) * self._page)
+            following = file.read(4)
+            more = file.read(min(self._usable - 4, row.size - len(record)))
+            if page < 2 or not more:
+                return None
+            record += more
+        return bytes(record[row.head :])
 
 
 class _MessageRow(NamedTuple):
-    """A message: where its data begin, and how long they are; 0 where they go on in another page."""
+    """A message: where its record begins, how long its head is, and how much of its `size` lies in its own page."""
 
     log_time: int
     id: int
     topic: int
     place: int
+    head: int
+    local: int
     size: int
 
 

@@ -83,6 +83,7 @@ def write_mcap(
     *,
     chunked: bool = True,
     indexed: bool = True,
+    checksum: bool = False,
     encoding: str = "cdr",
     types: dict[str, str] = WANTED,
 ) -> Path:
@@ -99,6 +100,7 @@ def write_mcap(
             use_chunking=chunked,
             use_statistics=indexed,
             use_summary_offsets=indexed,
+            enable_data_crcs=checksum,
         )
         writer.start(profile="", library="test")
         channels: dict[str, int] = {}

@@ -162,6 +162,17 @@ def test_it_is_said_how_much_is_lost_and_where(tmp_path: Path) -> None:
     assert topics(damaged) == WANTED
 
 
+def test_where_one_checksum_guards_all_data_it_is_said_that_any_message_may_be_wrong(tmp_path: Path) -> None:
+    whole = write_mcap(tmp_path / "a.mcap", MESSAGES, CompressionType.NONE, chunked=False, checksum=True)
+    assert read_before(whole) == (MESSAGES, "")
+    data = bytearray(whole.read_bytes())
+    data[len(data) // 2] ^= 1
+    whole.write_bytes(data)
+    messages, said = read_before(whole)
+    assert len(messages) == COUNT
+    assert "the checksum of all its data is wrong, so that any message may be" in said
+
+
 def test_a_damaged_page_of_sqlite_stops_the_reading_there(tmp_path: Path) -> None:
     whole = sqlite(tmp_path)
     data = bytearray(whole.read_bytes())
