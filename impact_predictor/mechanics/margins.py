@@ -1,7 +1,8 @@
 """How far an impact is from another mode: in friction, in geometry and in speed.
 
-Along each way the nearest border is looked for outwards on both sides at the STEPS, and halved down to its place. So a
-mode is found that holds over a thirty-second of the way's unit and over half of its distance.
+Along each way the nearest border is looked for outwards on both sides at the STEPS, and between two of them where the
+contact states differ; it is halved down to its place. So a mode is found that holds over a thirty-second of the way's
+unit and over half of its distance; a narrower one if the contact states beyond it differ too.
 """
 
 from __future__ import annotations
@@ -15,6 +16,9 @@ from .types import Contact, Flag, Mode, Twist, TwoPointBody, Vector
 
 STEPS = tuple([k / 32.0 for k in (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64)])
 """How far is looked, in the unit of a way."""
+
+PROBES = 5
+"""How often an interval is halved in which the contact states change but the mode does not."""
 
 ACCURACY = 1e-10
 """A border is halved down to this, in the unit of its way: a contact velocity below 1e-10 is zero for the mode."""
@@ -61,10 +65,11 @@ AskedImpact = tuple[float, float, bool, Contact, Contact, Twist, int]
 
 
 class ChangedImpact(NamedTuple):
-    """An impact after a change: its mode and flags."""
+    """An impact after a change: its mode, contact states and flags."""
 
     change: float
     mode: int
+    states: int
     flags: int
 
 
@@ -93,8 +98,8 @@ class Change(NamedTuple):
         new = new._replace(x=new_x + change * bx, y=new_y + change * by, friction=max(0.0, new_friction + rougher))
         new = new._replace(velocity=(sx + change * ux, sy + change * uy))
         twist = Twist(vx + change * wx, vy + change * wy, omega)
-        mode, _, _, _, _, _, _, flags, _, _, _ = answer(mass, inertia, stands, old, new, twist, law)
-        return ChangedImpact(change, mode, flags)
+        mode, _, _, _, _, _, states, flags, _, _, _ = answer(mass, inertia, stands, old, new, twist, law)
+        return ChangedImpact(change=change, mode=mode, states=states, flags=flags)
 
 
 def margins(body: TwoPointBody, twist: Twist, law: str = "path") -> Margins:
@@ -156,16 +161,29 @@ def nearest_border(way: Change, here: ChangedImpact) -> Margin:
             if trial.flags & UNSOLVED:
                 del last[side]
                 continue
+            border = border_between(way, last[side], trial)
+            if border is not None:
+                found.append(border)
             if trial.mode == here.mode:
                 last[side] = trial
-            else:
-                border = border_in(way, last[side], trial)
-                found += [border] if border is not None else []
             if change == way.least:
                 del last[side]
         if found:
             return min(found, key=lambda margin: abs(margin.change))
     return NO_MARGIN
+
+
+def border_between(way: Change, near: ChangedImpact, far: ChangedImpact) -> Margin | None:
+    """The border between two changes, if there is one; `near` has the mode of the unchanged impact."""
+    if near.mode != far.mode:
+        return border_in(way, near, far)
+    probes, mode = PROBES if near.states != far.states else 0, near.mode
+    for _ in range(probes):
+        middle = way.at(0.5 * (near.change + far.change))
+        if middle.mode != mode and not middle.flags & UNSOLVED:
+            return border_in(way, near, middle)
+        near, far = (middle, far) if middle.states == near.states else (near, middle)
+    return None
 
 
 def border_in(way: Change, near: ChangedImpact, far: ChangedImpact) -> Margin | None:

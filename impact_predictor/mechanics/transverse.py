@@ -33,6 +33,7 @@ from typing import NamedTuple
 from .impact import NOWHERE, outcome_of, solve_impact
 from .impact.answer import INVALID_INPUT, OLD_RESTITUTION_IGNORED, PATH, VALIDITY, doubts, mode_of, unchanged
 from .impact.contacts import (
+    JAMMED,
     MINUS,
     NO_SOLUTION,
     OPEN,
@@ -52,7 +53,20 @@ from .impact.path_law import ROOM
 from .impact.rates import Rates, choose, open_rates, state_alone
 from .impact.restitution import poisson
 from .motion.events import falling_root
-from .transverse_step import SLACK, Across, Arc, PathSegment, Slips, State, advance, margin, rates, way_of
+from .transverse_step import (
+    EXPLICIT,
+    SLACK,
+    SLIP,
+    Across,
+    Arc,
+    PathSegment,
+    Slips,
+    State,
+    advance,
+    margin,
+    rates,
+    way_of,
+)
 from .types import Contact, Flag, Outcome, Twist, TwoPointBody, Validity
 
 GAIN = 10.0
@@ -60,7 +74,7 @@ GAIN = 10.0
 steps but roundings of a body far from any shape."""
 
 MAX_STEPS = 400
-"""An impact needs two to forty, at the finest tolerance two hundred."""
+"""An impact needs two to forty, at the finest tolerance two hundred; jams can follow each other without end."""
 
 FAR = 1e9
 """A contact that does not exist leaves this many times faster than anything moves."""
@@ -73,9 +87,6 @@ ARRIVED = 1.0 - 1e-12
 
 STRAIGHT = 0.9
 """Square of the cosine of the angle from a slip to its rate below which it grows in its direction."""
-
-SLIP = PLUS
-"""State of a contact that slips in any direction."""
 
 QUARTER = tuple([(4.0 / sqrt(16.0 + k * k), k / sqrt(16.0 + k * k)) for k in range(-4, 4)])
 COMPASS = QUARTER + tuple(
@@ -131,9 +142,9 @@ def solve_transverse_impact(
     end.
 
     Without slip across the plane the answer is that of `solve_impact`, to the last bit, and where both contacts are
-    struck it answers for the plane alone. Where the path jams or is lost it does so too, with Flag.LAST_RESORT. Input
-    that no body can have gives Flag.INVALID_INPUT, never an exception. Where several contact states are consistent the
-    first is followed and the others are not told.
+    struck it answers for the plane alone. Where the path is lost it does so too, with Flag.LAST_RESORT. Input that no
+    body can have gives Flag.INVALID_INPUT, never an exception. Where several contact states are consistent the first is
+    followed and the others are not told.
     """
     mass, inertia, old, new = body
     stands, foot = old is not None, old or NOWHERE
@@ -207,13 +218,27 @@ def follow(across: Across, before: SpatialVelocities, small: float, restitution:
     phase: PathSegment | None = None
     target, reach = inf, inf
     compressing = True
-    told, segments, notes = -1, 0, 0
+    told, segments, notes, tries = -1, 0, 0, 0
     work = 0.0
-    for _ in range(MAX_STEPS):
+    for steps in range(MAX_STEPS):
+        _, _, _, nb, _, _, _, _, _, cnb, _, _ = state
+        if compressing and cnb >= 0.0 and steps:
+            if restitution == 0.0 or cnb > 0.0:
+                return state, segments, notes
+            compressing, target, told = False, poisson(restitution, nb), -1
+        elif not compressing and (nb >= ARRIVED * target or work <= 0.0):
+            if cnb >= -small:
+                return state, segments, notes
+            # B was pressed again while it expanded: a plastic compression ends that.
+            compressing, restitution, told = True, 0.0, -1
         if phase is None:
             phase = phase_at(across, state, compressing)
         if phase is None:
-            break
+            freed, state, segments = strike_old(across, state, small, segments)
+            if not freed:
+                break
+            notes |= JAMMED
+            continue
         a, b, way, rate, straight = phase
         _, _, _, nb, _, _, cna, cta, cza, cnb, ctb, czb = state
         _, _, _, _, _, _, rna, rta, rza, rnb, rtb, rzb = rate
@@ -249,10 +274,12 @@ def follow(across: Across, before: SpatialVelocities, small: float, restitution:
         ends, span = whole <= span, min(whole, span)
         if span == inf:
             break
-        step = advance(across, phase, state, span, ends and compressing, small)
+        step = advance(across, phase, state, span, ends and compressing, small, tries)
         if step is None:
             break
-        arc, further = step
+        arc, further, tries = step
+        if tries >= EXPLICIT:
+            turn_a = turn_b = 0.0
         reach = further if further < inf else reach
         event, spent = first_event(across, phase, arc, inf if compressing else work, small)
         state, way, rate = arc.end, arc.way, arc.last
@@ -283,18 +310,32 @@ def follow(across: Across, before: SpatialVelocities, small: float, restitution:
             cza = cza if cna > 0.0 else 0.0
         state = (na, ta, za, nb, tb, zb, cna, cta, cza, cnb, ctb, czb)
         phase = None if ended else (a, b, way, rate, False)
-
-        if compressing:
-            if cnb >= 0.0:
-                if restitution == 0.0 or cnb > 0.0:
-                    return state, segments, notes
-                compressing, target, told = False, poisson(restitution, nb), -1
-        elif nb >= ARRIVED * target or work <= 0.0:
-            if cnb >= -small:
-                return state, segments, notes
-            # B was pressed again while it expanded: a plastic compression ends that.
-            compressing, restitution, told = True, 0.0, -1
     return state, segments, notes | NO_SOLUTION
+
+
+def strike_old(across: Across, state: State, small: float, segments: int) -> tuple[bool, State, int]:
+    """End a jam by a tangential impact at A: B is held, and A follows its own one-contact path.
+
+    Its normal impulse grows while its slip presses it into the support and on until it leaves it. Returns whether there
+    is such an impact, the state after it and the code of the segments with its own.
+    """
+    (cos, sin, qa, sa, qb, sb, fa, fb), waa, wab, _ = across
+    na, ta, za, nb, tb, zb, cna, cta, cza, cnb, ctb, czb = state
+    if cna > 0.0 or (cta == 0.0 and cza == 0.0):
+        return False, state, segments
+    alone = (1.0, 0.0, 0.0, 0.0, qa, sa, 0.0, fa), 1.0, 0.0, waa
+    before = (FAR * (abs(cta) + abs(cza)), 0.0, 0.0, 0.0, cta, cza)
+    (_, _, _, n, t, z, _, _, _, _, cta, cza), code, notes = follow(alone, before, small, 0.0)
+    if notes & NO_SOLUTION or n == 0.0:
+        return False, state, segments
+    code, size = 4 * code, 16  # a digit of a path of B alone is the state of B
+    while size <= code:
+        size *= 16
+    if segments * size < ROOM:
+        segments = segments * size + code
+    q = qa * n + sa * t
+    cnb, ctb, czb = cnb + cos * n - sin * t + qb * q, ctb + cos * t + sin * n + sb * q, czb + wab * z
+    return True, (na + n, ta + t, za + z, nb, tb, zb, 0.0, cta, cza, cnb, ctb, czb), segments
 
 
 def until_turned(t: float, z: float, rate_t: float, rate_z: float, least: float) -> float:

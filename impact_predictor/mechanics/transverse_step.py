@@ -8,6 +8,12 @@ nothing else; the plane answers as in `impact.contacts`, whose units hold here t
 Most steps are explicit, of order 3, and their last rates are the next step's first: P. Bogacki, L. F. Shampine, A 3(2)
 pair of Runge-Kutta formulas, Applied Mathematics Letters 2 (1989). A step that ends the compression of B is one along
 c_nB, whose end is known, and not along N_B: each of its rates counts for as much of N_B as stops c_nB.
+
+A path that needs many steps is stiff: the direction of a slip that is about to vanish, or has just begun, follows
+within an impulse r / m, r being the slip and m of the size of friction times mobility. Its other steps are linearly
+implicit, by ROS3, of order 3 and L-stable: A. Sandu, J. G. Verwer, J. G. Blom, E. J. Spee, G. R. Carmichael,
+F. A. Potra, Benchmarking stiff ODE solvers for atmospheric chemistry problems II, Atmospheric Environment 31 (1997).
+The rates depend on no more than the directions of two slips, so that its linear systems are two by two.
 """
 
 from __future__ import annotations
@@ -15,7 +21,10 @@ from __future__ import annotations
 from math import inf, sqrt
 from typing import NamedTuple
 
-from .impact.contacts import OPEN, STICK
+from .impact.contacts import OPEN, PLUS, STICK
+
+SLIP = PLUS
+"""State of a contact that slips in any direction."""
 
 SLACK = 1e-12
 """A cone of friction left by less than this impulse, per unit of N_B, still holds: less is rounding."""
@@ -36,12 +45,30 @@ State = tuple[float, float, float, float, float, float, float, float, float, flo
 PathSegment = tuple[int, int, Slips, State, bool]
 """States of A and B, the ways in which they slip, the rates, and whether these stay as they are."""
 
+EXPLICIT = 24
+"""Attempts at explicit steps before a path counts as stiff: one to a tolerance of 1e-3 needs two to eight."""
+
 ATTEMPTS = 40
 """How often a step is shortened before the path counts as lost: by a factor of two at least each time."""
 
 SURE = 0.1
 """What the second difference of the rates counts as the error of an explicit step. 1 / 24 would make it that of a step
 of order 2, which is too little where a slip turns by much."""
+
+GAMMA = 0.43586652150845900
+C21, C31, C32 = -1.0156171083877702, 4.0759956452537700, 9.2076794298330791
+M2, M3 = 6.1697947043828246, -0.42772256543218573
+E1, E2, E3 = 0.5, -2.9079558716805470, 0.22354069897811570
+"""Coefficients of ROS3 (the cited paper's table 2); those left out are 1."""
+
+TURNED = 1e-7
+"""rad. How far a slip is turned to see how the rates depend on its direction: half the digits of a double."""
+
+Stage = tuple[float, float, float, float]
+"""A stage of an implicit step: its parts of the rates at the beginning, those in the middle, and the derivatives of the
+former by the angles of the slips at A and at B."""
+
+NO_CHANGE: State = (0.0,) * 12
 
 
 def rates(across: Across, a: int, b: int, way: Slips) -> State | None:
@@ -149,33 +176,37 @@ def cubic(begin: float, end: float, first: float, last: float, part: float) -> f
 
 
 def advance(
-    across: Across, phase: PathSegment, y: State, span: float, ends: bool, small: float
-) -> tuple[Arc, float] | None:
+    across: Across, phase: PathSegment, y: State, span: float, ends: bool, small: float, tries: int
+) -> tuple[Arc, float, int] | None:
     """A step in which N_B grows by `span` or less, with an error below `small` in every slip; None where none is found.
 
     With `ends` the compression would end with the step, were the rates to stay. Returns also how far the next step may
-    go.
+    go, and the number of attempts on this path, `tries` before the step.
     """
     _, _, way, rate, straight = phase
     if straight or span == 0.0:
         end: State = tuple([p + span * q for p, q in zip(y, rate, strict=True)])  # type: ignore[assignment]
         work = 0.5 * span * (y[9] + end[9])
-        return Arc(begin=y, end=end, first=rate, last=rate, first_span=span, last_span=span, work=work, way=way), inf
-    for _ in range(ATTEMPTS):
-        step = tried(across, phase, y, span, ends, small)
+        arc = Arc(begin=y, end=end, first=rate, last=rate, first_span=span, last_span=span, work=work, way=way)
+        return arc, inf, tries
+    for attempt in range(tries, tries + ATTEMPTS):
+        if attempt < EXPLICIT:
+            step = explicit_step(across, phase, y, span, ends, small)
+        else:
+            step = implicit_step(across, phase, y, span, small)
         if step is None:
             span *= 0.25
         else:
             arc, error = step
             factor = 0.8 * sqrt(sqrt(small / error)) if error > 0.0 else 4.0
             if error <= small:
-                return arc, min(factor, 4.0) * arc.last_span
+                return arc, min(factor, 4.0) * arc.last_span, attempt + 1
             span *= min(max(factor, 0.1), 0.5)
         ends = False
     return None
 
 
-def tried(
+def explicit_step(
     across: Across, phase: PathSegment, y: State, span: float, ends: bool, small: float
 ) -> tuple[Arc, float] | None:
     """The stretch that a step makes, and the largest error of a slip in it.
@@ -221,3 +252,82 @@ def tried(
     work = p * cnb + q * (cnb + 0.5 * span * rnb1) + r * (cnb + 0.75 * span2 * rnb2)
     arc = Arc(begin=y, end=end, first=first, last=last, first_span=span, last_span=span4, work=work, way=there)
     return arc, error
+
+
+def implicit_step(across: Across, phase: PathSegment, y: State, span: float, small: float) -> tuple[Arc, float] | None:
+    """As `explicit_step`, linearly implicit and along N_B; the error is that of all contact velocities.
+
+    None where the step is too long: a slip turns away further than it can be followed, or jams.
+    """
+    a, b, way, rate, _ = phase
+    (_, _, _, _, _, _, friction_a, friction_b), _, _, _ = across
+    ut, uz, wt, wz = way
+    _, _, _, _, _, _, _, cta, cza, _, ctb, czb = y
+    turn_a = turn_b = NO_CHANGE
+    # A contact that does not slip, or without friction, has no angle that matters.
+    ra = rb = 1.0
+    if a == SLIP and friction_a > 0.0:
+        turn_a = derivative(across, a, b, (ut - TURNED * uz, uz + TURNED * ut, wt, wz), rate)
+        ra = sqrt(cta * cta + cza * cza)
+    if b == SLIP and friction_b > 0.0:
+        turn_b = derivative(across, a, b, (ut, uz, wt - TURNED * wz, wz + TURNED * wt), rate)
+        rb = sqrt(ctb * ctb + czb * czb)
+    (aa, ba), (ab, bb) = turning(way, turn_a), turning(way, turn_b)
+    h = GAMMA * span
+    left_a, left_b = ra - h * aa, rb - h * bb
+    det = left_a * left_b - h * h * ab * ba
+    if not (left_a >= 0.5 * ra and left_b >= 0.5 * rb and det > 0.0):
+        return None
+
+    def stage(rated: float, middled: float, turned_a: float, turned_b: float) -> Stage:
+        """The stage of a force that is these parts of rate, middle, turn_a and turn_b, as such parts itself."""
+        # Forces across the slips turn them.
+        fa = h * (rated * rate_a + middled * middle_a + turned_a * aa + turned_b * ab)
+        fb = h * (rated * rate_b + middled * middle_b + turned_a * ba + turned_b * bb)
+        ya, yb = (left_b * fa + h * ab * fb) / det, (left_a * fb + h * ba * fa) / det
+        return h * rated, h * middled, h * (turned_a + ya), h * (turned_b + yb)
+
+    rate_a, rate_b = turning(way, rate)
+    middle_a = middle_b = 0.0
+    a1, _, c1, d1 = stage(1.0, 0.0, 0.0, 0.0)
+    moved = zip(y, rate, turn_a, turn_b, strict=True)
+    _, _, _, _, _, _, _, cta, cza, _, ctb, czb = [v + a1 * p + c1 * q + d1 * r for v, p, q, r in moved]
+    middle = rates(across, a, b, way_of(cta, cza, ctb, czb, way))
+    if middle is None:
+        return None
+    middle_a, middle_b = turning(way, middle)
+    c = C21 / span
+    a2, b2, c2, d2 = stage(c * a1, 1.0, c * c1, c * d1)
+    c, d = C31 / span, C32 / span
+    a3, b3, c3, d3 = stage(c * a1 + d * a2, 1.0 + d * b2, c * c1 + d * c2, c * d1 + d * d2)
+
+    changes = list(zip(rate, middle, turn_a, turn_b, strict=True))
+    to_rate, to_middle = a1 + M2 * a2 + M3 * a3, M2 * b2 + M3 * b3
+    to_a, to_b = c1 + M2 * c2 + M3 * c3, d1 + M2 * d2 + M3 * d3
+    end: State = tuple(  # type: ignore[assignment]
+        [v + to_rate * p + to_middle * q + to_a * r + to_b * s for v, (p, q, r, s) in zip(y, changes, strict=True)]
+    )
+    to_rate, to_middle = E1 * a1 + E2 * a2 + E3 * a3, E2 * b2 + E3 * b3
+    to_a, to_b = E1 * c1 + E2 * c2 + E3 * c3, E1 * d1 + E2 * d2 + E3 * d3
+    error = max([abs(to_rate * p + to_middle * q + to_a * r + to_b * s) for p, q, r, s in changes[6:]])
+    _, _, _, _, _, _, _, cta, cza, cnb, ctb, czb = end
+    there = way_of(cta, cza, ctb, czb, way, small)
+    last = rates(across, a, b, there)
+    if last is None:
+        return None
+    work = span * (0.5 * (y[9] + cnb) + span * (rate[9] - last[9]) / 12.0)
+    arc = Arc(begin=y, end=end, first=rate, last=last, first_span=span, last_span=span, work=work, way=there)
+    return arc, error
+
+
+def turning(way: Slips, rate: State) -> tuple[float, float]:
+    """How fast the slips at A and at B turn, times their sizes."""
+    ut, uz, wt, wz = way
+    _, _, _, _, _, _, _, rta, rza, _, rtb, rzb = rate
+    return ut * rza - uz * rta, wt * rzb - wz * rtb
+
+
+def derivative(across: Across, a: int, b: int, turned: Slips, rate: State) -> State:
+    """Derivative of the rates by the angle of a slip, from those where it is turned a little."""
+    there = rates(across, a, b, turned)
+    return NO_CHANGE if there is None else tuple([(p - q) / TURNED for p, q in zip(there, rate, strict=True)])  # type: ignore[return-value]

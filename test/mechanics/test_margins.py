@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from itertools import pairwise
 from math import inf, isfinite, nan, sqrt
 
 import numpy as np
@@ -119,6 +120,22 @@ def test_the_mode_is_the_same_before_a_border_and_another_behind_it(kind, law, m
             assert way.at(margin.change + step).mode == margin.mode != here.mode
             if abs(margin.change) > abs(step):
                 assert way.at(margin.change - step).mode == here.mode
+
+
+@pytest.mark.parametrize("kind", ["plate", "cylinder", "floor", "wedge", "one-point"])
+def test_no_mode_that_holds_for_long_lies_nearer_than_the_border(kind, monkeypatch):
+    for body, twist in random_impacts(kind, 10, seed=5):
+        for way, here, margin in ways_of(monkeypatch, body, twist, "path"):
+            for side in (1.0, -1.0):
+                end = min(abs(margin.change), 2.0 * way.unit)
+                changes = [side * end * k / 100.0 for k in range(100) if side * end * k / 100.0 >= way.least]
+                other = [change for change in changes if way.at(change).mode != here.mode]
+                # the longest run of other modes, by neighbours in the list of changes
+                run = longest = 0.0
+                for one, two in pairwise(other):
+                    run = run + abs(two - one) if abs(two - one) < 1.5 * end / 100.0 else 0.0
+                    longest = max(longest, run)
+                assert longest <= max(way.unit / 32.0, 0.5 * end)
 
 
 def test_an_impact_on_a_border_has_no_room():
