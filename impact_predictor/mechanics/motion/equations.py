@@ -24,7 +24,7 @@ from .support import FrameAcceleration, PlanarState
 _UNIT = 1e-9
 """How far contacts may be from what a body that rocks has, relative to its size."""
 
-Wrench = tuple[float, float, float]
+PlanarWrench = tuple[float, float, float]
 """A force and its moment about the mass centre."""
 
 
@@ -162,7 +162,7 @@ class RockingBody:
             alpha=alpha, beta=beta, normal=rho_squared * push, tangential=rho_squared * drive, free=free
         )
 
-    def wrench(self, i: int, side: float) -> Wrench:
+    def wrench(self, i: int, side: float) -> PlanarWrench:
         """What contact i does for a normal force of 1, with both contacts closed and `side` along its tangent."""
         dx, dy = self.arms[i]
         nx, ny = self.normal(dx, dy)
@@ -190,7 +190,7 @@ class RockingBody:
         return Contact(-x, -y, self.friction[i], self.normal(x, y), self.restitution[i])
 
     @cached_property
-    def facets(self) -> tuple[Wrench, ...]:
+    def facets(self) -> tuple[PlanarWrench, ...]:
         """Inward normals of the cone of the wrenches that both contacts can give while neither slips.
 
         Moments are divided by rho.
@@ -198,7 +198,7 @@ class RockingBody:
         rho = math.sqrt(self.rho_squared)
         wrenches = [self.wrench(i, side) for i in (0, 1) for side in (self.friction[i], -self.friction[i])]
         rays = [_unit((fx, fy, moment / rho)) for fx, fy, moment in wrenches]
-        found: list[Wrench] = []
+        found: list[PlanarWrench] = []
         for one, other in combinations(rays, 2):
             across = _cross(one, other)
             if _dot(across, across) <= _UNIT * _UNIT:
@@ -308,14 +308,14 @@ def turned(arm: Vector, angle: Any) -> tuple[Any, Any]:
     return arm[0] * cosine - arm[1] * sine, arm[0] * sine + arm[1] * cosine
 
 
-def _unit(a: Wrench) -> Wrench:
+def _unit(a: PlanarWrench) -> PlanarWrench:
     size = math.sqrt(_dot(a, a))
     return a[0] / size, a[1] / size, a[2] / size
 
 
-def _cross(a: Wrench, b: Wrench) -> Wrench:
+def _cross(a: PlanarWrench, b: PlanarWrench) -> PlanarWrench:
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
-def _dot(a: Wrench, b: Wrench) -> float:
+def _dot(a: PlanarWrench, b: PlanarWrench) -> float:
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
