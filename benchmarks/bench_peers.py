@@ -21,9 +21,8 @@ from compliant_impact import compliant_impact
 
 from impact_predictor.mechanics import bodies, closed_forms
 from impact_predictor.mechanics.types import Contact, Mode, Twist
-from impact_predictor.report.accuracy import impacts
+from impact_predictor.report.accuracy import IMPACT, AccuracyScene, error_of, impacts, rows_of
 from impact_predictor.report.accuracy.impacts import Aftermath, Struck
-from impact_predictor.report.accuracy.measure import IMPACT, AccuracyScene, error_of, rows_of
 
 STEPS = 5
 """Steps of MuJoCo through an impact."""
@@ -110,7 +109,9 @@ def question() -> SimpleNamespace:
     draws: dict[str, Callable[[Random], Struck]] = {"floor": partial(impacts.drawn, kind="floor")}
     draws |= {shape: partial(ordinary, shape=shape) for shape in ("rod", "plate", "cylinder")}
     scenes = {AccuracyScene(name, IMPACT, name, "", ""): draw for name, draw in draws.items()}
-    return SimpleNamespace(SCENES=scenes, reference_of=impacts.reference_of, errors_of=impacts.errors_of)
+    return SimpleNamespace(
+        SCENES=scenes, METHODS=peers(), reference_of=impacts.reference_of, errors_of=impacts.errors_of
+    )
 
 
 def main() -> None:
@@ -120,7 +121,7 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=0.6, help="for a method on a scene")
     arguments = parser.parse_args()
     print(f"{'scene':12}{'method':36}{'median error':>14}{'90 % below':>12}{'us':>11}{'problems':>10}")
-    for row in rows_of(question(), peers(), arguments.count, arguments.seconds):
+    for row in rows_of(question(), arguments.count, arguments.seconds):
         median = float("inf") if row["twist_error"] is None else row["twist_error"]
         method = f"{row['method']} {row['setting']}"
         print(f"{row['scene']:12}{method:36}{median:14.2g}{error_of(row):12.2g}{row['us']:11.1f}{row['count']:10,}")

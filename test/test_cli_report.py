@@ -12,20 +12,20 @@ import pytest
 from click.testing import CliRunner, Result
 
 from impact_predictor.cli import main
-from impact_predictor.report.accuracy import study
+from impact_predictor.report import accuracy
 
 REPORT = Path(__file__).parent / "report" / "page_report.json"
 
 
-def made_up(size: study.Size, command: str, tell: object) -> dict[str, Any]:
+def made_up(part: float, command: str, tell: object) -> dict[str, Any]:
     """A report that was measured before."""
-    return json.loads(REPORT.read_text()) | {"made": {"command": command, "falls": str(size.falls)}}
+    return json.loads(REPORT.read_text()) | {"made": {"command": command, "part": str(part)}}
 
 
 @pytest.fixture(autouse=True)
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(study, "report", made_up)
+    monkeypatch.setattr(accuracy, "report", made_up)
     return tmp_path
 
 
@@ -54,7 +54,7 @@ def test_the_terminal_shows_what_to_choose_and_what_the_node_uses() -> None:
 def test_with_json_nothing_else_is_printed_and_no_file_written(folder: Path) -> None:
     result = run("--json", "--quick")
     fields = json.loads(result.stdout)
-    assert fields["made"]["falls"] == str(study.QUICK.falls)
+    assert fields["made"]["part"] == str(accuracy.QUICK)
     assert fields["made"]["command"] == "impact-predictor report --quick --json"
     assert list(folder.iterdir()) == []
 

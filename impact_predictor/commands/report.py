@@ -5,16 +5,13 @@ from __future__ import annotations
 import csv
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import click
 
 from ..errors import need
 from ..report.files import make_folder, whole
 from .options import examples
-
-if TYPE_CHECKING:
-    pass
 
 PAGE: Final = "report.html"
 DATA: Final = "report.json"
@@ -50,13 +47,12 @@ def report(output: Path | None, quick: bool, as_json: bool) -> None:
         # Before the long work, so that a wrong name is told at once.
         make_folder(folder)
     need(*(["plotly", "jinja2"] if folder else []), "scipy")
-    from ..report.accuracy import study
+    from ..report import accuracy
     from .progress import compiling_is_said, progress
 
-    size = study.QUICK if quick else study.FULL
     command = "impact-predictor report" + (" --quick" if quick else "") + (f" -o {folder}" if folder else " --json")
-    with compiling_is_said(), progress("report", "methods", study.steps(size)) as tell:
-        fields = study.report(size, command, tell)
+    with compiling_is_said(), progress("report", "methods", accuracy.STEPS) as tell:
+        fields = accuracy.report(accuracy.QUICK if quick else 1.0, command, tell)
     if folder is not None:
         write(folder, fields)
     if as_json:
@@ -91,7 +87,8 @@ def write(folder: Path, fields: dict[str, Any]) -> None:
     Raises:
         InputError: a file cannot be written.
     """
-    from ..report.accuracy.page import write_accuracy_page
+    from ..report.accuracy.page import accuracy_page
+    from ..report.page.document import script_inside, write_html
 
     with whole(folder / DATA) as partial:
         partial.write_text(json.dumps(fields, indent=1, allow_nan=False), encoding="utf-8")
@@ -99,4 +96,4 @@ def write(folder: Path, fields: dict[str, Any]) -> None:
         writer = csv.DictWriter(file, list(fields["rows"][0]), lineterminator="\n")
         writer.writeheader()
         writer.writerows(fields["rows"])
-    write_accuracy_page(folder / PAGE, fields)
+    write_html(folder / PAGE, accuracy_page(fields, script_inside()))

@@ -1,1 +1,255 @@
-"""Error against run time: every method of a prediction on the same problems, beside a reference of 40 digits."""
+"""Error against run time: methods on the same problems, recorded tosses of a cube, and which method to choose.
+
+A row is an object of the report's JSON: one method with one setting on one scene. A prediction that a method did not
+give counts as infinitely wrong; what is infinite is null.
+"""
+
+from __future__ import annotations
+
+import os
+import platform
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from datetime import datetime, timezone
+from functools import partial
+from importlib.metadata import version
+from importlib.util import find_spec
+from math import inf
+from random import Random
+from statistics import mean, median
+from time import process_time
+from timeit import Timer
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+
+from ... import __version__
+from ...bags.replay import replay
+from ...mechanics.impact import LAWS
+from ...mechanics.impact.batch import solve_impacts
+from ...mechanics.invariants import UNANSWERED, violations
+from ...mechanics.random_problems import problems_of
+from ...parameters.file import read_values
+from ...prediction.scene import scenes_of
+from ...resources import find
+
+AccuracyRow = dict[str, Any]
+Methods = Mapping[tuple[str, str], Callable[[Any], Any]]
+"""Methods by name and setting, "" where it has none; each answers a problem, or None where it has no answer."""
+
+ACCURACIES: Final = (1e-2, 1e-4, 1e-6, 1e-9)
+"""Relative errors that a user may want, for which the report chooses a method."""
+
+TOUCHDOWN: Final = "touchdown"
+IMPACT: Final = "impact"
+STABILITY: Final = "stability"
+TOSSES: Final = "tosses"
+ERRORS: Final = {
+    TOUCHDOWN: ("time_error", "twist_error"),
+    IMPACT: ("twist_error",),
+    STABILITY: ("violation",),
+    TOSSES: ("twist_error",),
+}
+"""The questions, and what of a row is an error."""
+
+SPAN: Final = 2e-4
+"""s of calls that are timed together, far above the resolution of the clock."""
+
+TIMING: Final = (
+    "CPU time of one prediction in plain Python unless the method says otherwise, of three runs the quickest."
+)
+
+
+class AccuracyScene(NamedTuple):
+    """A set of problems that all methods of a question meet; `reference` says what is held to be right."""
+
+    name: str
+    question: str
+    title: str
+    description: str
+    reference: str
+
+
+RANDOM: Final = [
+    AccuracyScene(kind, STABILITY, title, description, "mechanics itself: no other solution is needed")
+    for kind, title, description in (
+        ("tilted", "Ordinary bodies", "Two contacts anywhere with any normals, sizes of 0.1 to 2 m, friction to 4."),
+        ("slender", "Slender bodies", "Lengths and frictions over eight decades, on a floor or a slope."),
+        ("extreme", "Extreme bodies", "Every length, mass, friction and speed over eight to twelve decades."),
+        ("extreme-apart", "Extreme supports", "The same on supports that move apart."),
+    )
+]
+"""The scenes of the stability, by the kinds of `random_problems`."""
+
+MECHANICS: Final = ("cone", "momentum", "approach", "work", "energy")
+"""The invariants that one outcome violates or not."""
+
+CUBE: Final = AccuracyScene(
+    name="cube tosses",
+    question=TOSSES,
+    title="Cube tosses",
+    description="A cube of 0.1 m, tossed onto a hard floor: twist in the impact plane after an edge lands.",
+    reference="measurement: median of samples 2 to 4 after the touchdown, captured at 148 Hz",
+)
+
+VARIANTS: Final[dict[str, dict[str, Any]]] = {
+    "path law, slip across": {},
+    "path law": {"transverse_slip": False},
+    # The largest friction that is allowed holds any contact.
+    "no slip": {"transverse_slip": False, "friction": 100.0, "restitution": 0.0},
+    "total law": {"transverse_slip": False, "law": "total"},
+}
+"""What differs of the predictor in each replay of the tosses."""
+
+QUICK: Final = 0.15
+"""Part of the problems and of the time that a quick report has."""
+
+STEPS: Final = 62
+"""How many rows a report has."""
+
+
+def report(part: float, command: str, tell: Callable[[int], None] = lambda done: None) -> dict[str, Any]:
+    """Measure everything, on a part of the problems; the report as its JSON has it.
+
+    `command` is what asked for it; `tell` is told how many of the `STEPS` are done.
+    """
+    from . import impacts, touchdowns
+
+    rows: list[AccuracyRow] = []
+    for work in (
+        rows_of(touchdowns, round(32 * part), 0.6 * part),
+        rows_of(impacts, round(200 * part), 0.6 * part),
+        stability_rows(round(20_000 * part)),
+        toss_rows(),
+    ):
+        for row in work:
+            rows.append(row)
+            tell(len(rows))
+    made = {"version": __version__, "python": platform.python_version()}
+    made |= {name: version(name) if find_spec(name) else "not installed" for name in ("numpy", "scipy", "numba")}
+    made["machine"] = f"{platform.processor() or platform.machine()}, {os.cpu_count()} cores"
+    made["date"] = datetime.now(timezone.utc).date().isoformat()
+    found = {TOUCHDOWN: conclusions(rows, TOUCHDOWN, touchdowns.USED), IMPACT: conclusions(rows, IMPACT, impacts.USED)}
+    return {
+        "made": made | {"command": command, "timing": TIMING},
+        "node": {question: used for question, (used, _) in found.items()},
+        "scenes": [scene._asdict() for scene in (*touchdowns.SCENES, *impacts.SCENES, *RANDOM, CUBE)],
+        "rows": rows,
+        "choices": [choice for _, choices in found.values() for choice in choices],
+    }
+
+
+def problems(draw: Callable[[Random], Any], name: str, count: int) -> list[Any]:
+    """`count` problems of a scene, always the same."""
+    source = Random(f"4 {name}")
+    return [draw(source) for _ in range(count)]
+
+
+def rows_of(question: Any, count: int, seconds: float) -> Iterator[AccuracyRow]:
+    """The methods of a question on `count` problems of each scene; a slow one gets what it answers in `seconds`.
+
+    `touchdowns` and `impacts` are the questions: their `SCENES` draw problems, their `METHODS` answer them,
+    `reference_of` answers one rightly, and `errors_of` gives the errors of an answer by their names in `ERRORS`, and
+    whether the mode is wrong.
+    """
+    for scene, draw in question.SCENES.items():
+        drawn = problems(draw, scene.name, count)
+        references = list(map(question.reference_of, drawn))
+        none = dict.fromkeys(ERRORS[scene.question], inf)
+        for method, solve in question.METHODS.items():
+            errors, us, began = list[Mapping[str, float]](), list[float](), process_time()
+            for problem, right in zip(drawn, references, strict=True):
+                answer = solve(problem)
+                errors.append(none if answer is None else question.errors_of(problem, answer, right))
+                us.append(1e6 * seconds_of(partial(solve, problem)))
+                if process_time() - began > seconds:
+                    break
+            yield row_of(scene, method, us, errors)
+
+
+def stability_rows(count: int) -> Iterator[AccuracyRow]:
+    """Each law on random impacts of ordinary, stiff and extreme kinds: by how much the outcomes violate mechanics."""
+    for scene in RANDOM:
+        _, body, twist = problems_of(scene.name, np.random.default_rng(4), count)
+        for law in LAWS:
+            # Sizes over many decades overflow in sums of squares; what is not a number counts as endlessly wrong.
+            with np.errstate(all="ignore"):
+                outcomes, found = violations(body, twist, law)
+                us = 1e6 * seconds_of(partial(solve_impacts, body, twist, law)) / count
+            worst = np.nan_to_num(np.maximum.reduce([found[name] for name in MECHANICS]), nan=inf)
+            answered = (outcomes.flags & UNANSWERED) == 0
+            errors = [{"violation": one} if known else {} for one, known in zip(worst.tolist(), answered, strict=True)]
+            yield row_of(scene, (f"{law} law", "over arrays"), [us], errors)
+
+
+def toss_rows() -> Iterator[AccuracyRow]:
+    """The recorded tosses through variants of the predictor, against what was measured after each landing."""
+    (scene,) = scenes_of(read_values(find("config/cube_tosses.yaml"))).values()
+    for name, changes in VARIANTS.items():
+        found = replay(find("examples/cube_tosses"), scene._replace(samples=0, margins=False, **changes))
+        scored = [one.score.relative_error for one in found.settled if one.score.scored]
+        errors = [{"twist_error": inf if error is None else error} for error in scored]
+        costs = [1e6 * settled.cost for settled in found.settled if settled.cost is not None]
+        yield row_of(CUBE, (name, ""), costs or [1e6 * median(found.costs)], errors)
+
+
+def seconds_of(call: Callable[[], Any]) -> float:
+    """CPU time of a call, of three runs the quickest."""
+    timer = Timer(call, timer=process_time)
+    repeats = 1 + int(SPAN / max(timer.timeit(1), 1e-6))
+    return min(timer.repeat(3, repeats)) / repeats
+
+
+def row_of(
+    scene: AccuracyScene, method: tuple[str, str], us: Sequence[float], errors: Sequence[Mapping[str, float]]
+) -> AccuracyRow:
+    """A row from the name and setting of a method, its costs, and its errors by their names.
+
+    What was not answered has no errors, or infinite ones.
+    """
+    name, setting = method
+    row: AccuracyRow = {"family": "predictor" if scene is CUBE else name, "method": name, "setting": setting}
+    row |= {"question": scene.question, "scene": scene.name, "us": median(us), "us_90": sorted(us)[len(us) * 9 // 10]}
+    for key in ("time_error", "twist_error", "violation"):
+        values = sorted(one[key] for one in errors if key in one) or [inf]
+        last = len(values) - 1
+        for end, value in (("", values[last // 2]), ("_90", values[-(-9 * last // 10)]), ("_worst", values[-1])):
+            row[f"{key}{end}"] = value if value < inf else None
+    wrong = [one["wrong_modes"] for one in errors if "wrong_modes" in one]
+    failed = sum(not one or inf in one.values() for one in errors)
+    return row | {"wrong_modes": mean(wrong) if wrong else None, "count": len(errors), "failed": failed}
+
+
+def error_of(row: Mapping[str, Any]) -> float:
+    """What 90 % of a row's errors stay below, the larger of the time's and the twist's; inf where there is none.
+
+    Of the stability it is the worst violation.
+    """
+    end = "worst" if row["question"] == STABILITY else "90"
+    errors = [row[f"{name}_{end}"] for name in ERRORS[row["question"]]]
+    return max(inf if error is None else error for error in errors)
+
+
+def conclusions(
+    rows: Iterable[AccuracyRow], question: str, used: tuple[str, str]
+) -> tuple[dict[str, str], list[dict[str, Any]]]:
+    """What follows of all scenes of a question together: the used method with its numbers in a sentence, and choices.
+
+    A choice is the cheapest method that has a wanted accuracy on every scene, with nulls where there is none.
+    """
+    groups: dict[tuple[str, str], list[AccuracyRow]] = {}
+    for row in rows:
+        if row["question"] == question:
+            groups.setdefault((row["method"], row["setting"]), []).append(row)
+    overall = {
+        method: group[0] | {"us": mean(row["us"] for row in group), "error": max(map(error_of, group))}
+        for method, group in groups.items()
+    }
+    choices = []
+    for accuracy in ACCURACIES:
+        good = [row for row in overall.values() if row["error"] <= accuracy]
+        best = min(good, key=lambda row: float(row["us"]), default=AccuracyRow())
+        known = {key: best.get(key) for key in ("error", "family", "method", "setting", "us")}
+        choices.append({"question": question, "scene": "all", "accuracy": accuracy} | known)
+    error, us, (name, setting) = overall[used]["error"], overall[used]["us"], used
+    why = f"90 % of the predictions of every scene are within {error:.1g}; one takes {us:.0f} us."
+    return {"method": name, "setting": setting, "why": why}, choices

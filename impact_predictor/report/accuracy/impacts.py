@@ -20,7 +20,7 @@ from ...mechanics.random_problems import problems_of
 from ...mechanics.transverse import Transverse, solve_transverse_impact
 from ...mechanics.types import Mode, Twist, TwoPointBody
 from ...prediction.impact import TOLERANCE
-from .measure import IMPACT, AccuracyScene, Methods
+from . import IMPACT, AccuracyScene, Methods
 
 FINEST: Final = 1e-7
 """Tolerance of the reference where a body slips across the plane, too."""
@@ -95,10 +95,8 @@ SCENES: Final[dict[AccuracyScene, Callable[[Random], Struck]]] = {
 
 def reference_of(strike: Struck) -> Aftermath:
     """What is held to be right."""
-    if strike.known is not None:
-        return strike.known
-    if strike.across:
-        return across(strike, FINEST)
+    if strike.known is not None or strike.across:
+        return strike.known or across(strike, FINEST)
     return law(strike._replace(body=with_long_floats(strike.body), twist=with_long_floats(strike.twist)), "path")
 
 

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping, Sequence
 from math import inf
-from pathlib import Path
 from typing import Any, Final
 
 from ...wording import duration
 from ..modes import PALETTE
-from ..page import document
-from ..page.document import Chart, Headline, PageTable, Section
-from .measure import ERRORS, IMPACT, STABILITY, TOSSES, TOUCHDOWN, error_of
+from ..page.document import Chart, Headline, PageTable, Section, marks, page
+from . import ERRORS, IMPACT, STABILITY, TOSSES, TOUCHDOWN, error_of
 
 CLOSES: Final = (
     "When, and with which twist, does the next contact strike? Gap and twist go on at constant twist or constant "
@@ -57,45 +54,34 @@ HOW: Final = (
 )
 
 
-def write_accuracy_page(file: str | os.PathLike[str], report: Mapping[str, Any]) -> None:
-    """Write one page that needs nothing else: no network, no other file.
-
-    Args:
-        file: to write, HTML.
-        report: as `report.json` has it.
-
-    Raises:
-        InputError: the file cannot be written.
-    """
-    document.write_html(Path(file), accuracy_page(report, document.script_inside()))
-
-
 def accuracy_page(report: Mapping[str, Any], script: str) -> str:
-    """The page as HTML; `script` is that of plotly."""
-    titles = {one["name"]: one["title"] for one in report["scenes"]}
+    """The page of a report as `report.json` has it, as HTML; `script` is that of plotly."""
+    titles = {scene["name"]: scene["title"] for scene in report["scenes"]}
     sections = []
     for name, (title, asked) in QUESTIONS.items():
         rows = [row for row in report["rows"] if row["question"] == name]
-        choices = [
-            [f"{one['accuracy']:g}", _name(one) or "none", duration(one["us"] and 1e-6 * one["us"])]
-            for one in report["choices"]
-            if one["question"] == name
-        ]
-        best = PageTable(["error of 90 % below", "cheapest method on all scenes", "run time"], choices, words=2)
+        choices = [choice for choice in report["choices"] if choice["question"] == name]
         if rows:
-            table = best if choices else _errors(rows, titles)
+            table = _choices(choices) if choices else _errors(rows, titles)
             sections.append(Section(name, title, [asked], [table, _picture(title, rows, titles)]))
-    scenes = [[one["title"], one["description"], one["reference"]] for one in report["scenes"]]
+    scenes = [[scene["title"], scene["description"], scene["reference"]] for scene in report["scenes"]]
     tables = [
         PageTable(["scene", "problems", "held to be right"], scenes, words=3),
-        PageTable(["made with", ""], [[name, value] for name, value in report["made"].items()], words=2),
+        PageTable(["made with", ""], list(report["made"].items()), words=2),
     ]
     sections.append(Section("made", "How it was measured", [HOW], tables))
     headlines = [
         Headline(f"the node's method for the {question}", _name(used), used["why"])
         for question, used in report["node"].items()
     ]
-    return document.page("How right, how fast", LEAD, headlines, sections, script)
+    return page("How right, how fast", LEAD, headlines, sections, script)
+
+
+def _choices(choices: Sequence[Mapping[str, Any]]) -> PageTable:
+    cells = [
+        [f"{one['accuracy']:g}", _name(one) or "none", duration(one["us"] and 1e-6 * one["us"])] for one in choices
+    ]
+    return PageTable(["error of 90 % below", "cheapest method on all scenes", "run time"], cells, words=2)
 
 
 def _errors(rows: Sequence[Mapping[str, Any]], titles: Mapping[str, str]) -> PageTable:
@@ -119,7 +105,7 @@ def _picture(title: str, rows: Sequence[Mapping[str, Any]], titles: Mapping[str,
                 said = f"{_name(row)}\n{titles[row['scene']]}\n{duration(1e-6 * row['us'])}, error {error:.2g}"
                 points.append((row["us"], max(error, LEAST), said))
         look = {"size": 10, "color": PALETTE[number % len(PALETTE)], "symbol": SYMBOLS[number]}
-        traces += [document.marks(name, points, marker=look)] if points else []
+        traces += [marks(name, points, marker=look)] if points else []
     log = {"type": "log", "exponentformat": "power"}
     axis = "worst violation" if rows[0]["question"] == STABILITY else "relative error, 90 % are below"
     layout = {"height": 480, "showlegend": True, "xaxis": {"title": "time of one prediction, us", **log}}

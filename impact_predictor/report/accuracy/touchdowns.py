@@ -17,7 +17,7 @@ from scipy.integrate import solve_ivp
 from ...mechanics.motion import PlanarState, next_touchdown
 from ...mechanics.types import Twist, Vector
 from ...prediction.points import ACCURACY
-from .measure import TOUCHDOWN, AccuracyScene, Methods
+from . import TOUCHDOWN, AccuracyScene, Methods
 
 GRAVITY: Final = (0.0, -9.81)
 HORIZON: Final = 20.0
@@ -33,6 +33,10 @@ class FallingBody(NamedTuple):
     rho_squared: float
     friction: float
     gravity: Vector = GRAVITY
+
+    def others(self) -> list[Vector]:
+        """The points that do not stand."""
+        return [point for index, point in enumerate(self.points) if index != self.stance]
 
 
 class PredictedTouchdown(NamedTuple):
@@ -122,18 +126,18 @@ def accelerations(fall: FallingBody, state: Any) -> tuple[float, float, float]:
     (px, py), c, s, g = fall.points[fall.stance], cos(angle), sin(angle), fall.gravity[1]
     x, y, square = s * py - c * px, -s * px - c * py, omega * omega  # of the mass centre from the contact
     if fall.friction == inf:
-        alpha, slide = g * x / (fall.rho_squared + x * x + y * y), 0.0
-    else:
-        drag = fall.friction if vx + omega * y > 0.0 else -fall.friction
-        lever = x + drag * y
-        alpha = (square * y + g) * lever / (fall.rho_squared + x * lever)
-        slide = alpha * y + square * x - drag * (alpha * x - square * y - g)
-    return slide - alpha * y - square * x, alpha * x - square * y, alpha
+        alpha = g * x / (fall.rho_squared + x * x + y * y)
+        return -alpha * y - square * x, alpha * x - square * y, alpha
+    drag = fall.friction if vx + omega * y > 0.0 else -fall.friction
+    lever = x + drag * y
+    alpha = (square * y + g) * lever / (fall.rho_squared + x * lever)
+    up = alpha * x - square * y
+    return -drag * (up - g), up, alpha
 
 
 def integrated(fall: FallingBody, tolerance: float) -> PredictedTouchdown | None:
     """scipy's DOP853 up to the event that a point touches."""
-    others = [point for index, point in enumerate(fall.points) if index != fall.stance]
+    others = fall.others()
 
     def rates(_: float, state: Any) -> Any:
         return (*state[3:], *accelerations(fall, state))
@@ -149,26 +153,23 @@ def integrated(fall: FallingBody, tolerance: float) -> PredictedTouchdown | None
     return PredictedTouchdown(float(found.t_events[0][0]), Twist(*found.y_events[0][0][3:].tolist()))
 
 
-def reference_of(fall: FallingBody) -> PredictedTouchdown:
-    """The touchdown to 13 digits."""
-    found = integrated(fall, 1e-13)
-    assert found is not None
-    return found
+reference_of: Final[Callable[[FallingBody], Any]] = partial(integrated, tolerance=1e-13)
+"""The touchdown to 13 digits."""
 
 
 def extrapolated(fall: FallingBody, accelerated: bool) -> PredictedTouchdown | None:
     """The first root of the parabolas of the gaps, with their rates of now and, if so, their accelerations of now."""
-    state, first = fall.state, inf
-    ax, ay, alpha = accelerations(fall, state) if accelerated else (0.0, 0.0, 0.0)
-    c, s, omega = cos(state.angle), sin(state.angle), state.omega
-    for index, (px, py) in enumerate(fall.points):
-        if index != fall.stance:
-            x, y = c * px - s * py, s * px + c * py
-            rate = state.vy + omega * x
-            square = rate * rate - 2.0 * (state.y + y) * (ay + alpha * x - omega * omega * y if accelerated else 0.0)
-            down = sqrt(square) - rate if square >= 0.0 else 0.0
-            first = min(first, 2.0 * (state.y + y) / down if down > 0.0 else inf)
-    twist = Twist(state.vx + ax * first, state.vy + ay * first, omega + alpha * first)
+    _, height, angle, vx, vy, omega = fall.state
+    ax, ay, alpha = accelerations(fall, fall.state) if accelerated else (0.0, 0.0, 0.0)
+    square, c, s, first = omega * omega if accelerated else 0.0, cos(angle), sin(angle), inf
+    for px, py in fall.others():
+        x, y = c * px - s * py, s * px + c * py
+        rate = vy + omega * x
+        discriminant = rate * rate - 2.0 * (height + y) * (ay + alpha * x - square * y)
+        down = sqrt(max(0.0, discriminant)) - rate
+        if discriminant >= 0.0 and down > 0.0:
+            first = min(first, 2.0 * (height + y) / down)
+    twist = Twist(vx + ax * first, vy + ay * first, omega + alpha * first)
     return PredictedTouchdown(first, twist) if first < inf else None
 
 
@@ -182,8 +183,8 @@ def errors_of(fall: FallingBody, answer: PredictedTouchdown, right: PredictedTou
     """Error of the time, relative to it, and of the twist at the touchdown, relative to its size."""
     (vx, vy, omega), rho = right.twist, sqrt(fall.rho_squared)
     wx, wy, turning = answer.twist
-    apart = hypot(wx - vx, wy - vy, rho * (turning - omega)) / hypot(vx, vy, rho * omega)
-    return {"time_error": abs(answer.time - right.time) / right.time, "twist_error": apart}
+    error = hypot(wx - vx, wy - vy, rho * (turning - omega)) / hypot(vx, vy, rho * omega)
+    return {"time_error": abs(answer.time - right.time) / right.time, "twist_error": error}
 
 
 USED: Final = ("next_touchdown", f"tolerance = {ACCURACY:g}")

@@ -1,7 +1,8 @@
-"""Answers, times and errors of methods, and which of them is chosen."""
+"""Answers, times and errors of methods, which of them is chosen, and a whole report of few problems."""
 
 from __future__ import annotations
 
+import json
 from math import inf
 from random import Random
 from time import process_time
@@ -9,16 +10,25 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from read_page import PageReader
 
-from impact_predictor.report.accuracy.measure import (
+from impact_predictor.report import accuracy
+from impact_predictor.report.accuracy import (
+    CUBE,
+    IMPACT,
+    RANDOM,
+    STABILITY,
     TOUCHDOWN,
     AccuracyScene,
-    choices_of,
+    conclusions,
     error_of,
+    impacts,
     row_of,
     rows_of,
-    used_of,
+    stability_rows,
+    touchdowns,
 )
+from impact_predictor.report.accuracy.page import accuracy_page
 
 SCENES = [AccuracyScene("one", TOUCHDOWN, "", "", ""), AccuracyScene("two", TOUCHDOWN, "", "", "")]
 
@@ -31,21 +41,21 @@ def busy(seconds: float) -> float:
 
 
 def test_a_method_answers_every_problem_or_as_many_as_there_is_time_for() -> None:
-    methods = {("exact", ""): lambda n: n, ("none", ""): lambda n: None, ("slow", ""): lambda n: busy(0.03)}
     question = SimpleNamespace(
         SCENES=dict.fromkeys(SCENES, Random.random),
+        METHODS={("exact", ""): lambda n: n, ("none", ""): lambda n: None, ("slow", ""): lambda n: busy(0.03)},
         reference_of=lambda problem: problem,
         errors_of=lambda problem, answer, right: {"time_error": abs(answer - right), "twist_error": 0.0},
     )
-    exact, none, few = list(rows_of(question, methods, 50, 0.05))[:3]
+    exact, none, few = list(rows_of(question, 50, 0.05))[:3]
     assert (exact["method"], exact["count"], exact["failed"], error_of(exact)) == ("exact", 50, 0, 0.0)
     assert (none["count"], none["failed"], error_of(none)) == (50, 50, inf)
     assert 1 <= few["count"] <= 3
     assert few["us"] == pytest.approx(3e4, rel=0.5)
 
 
-def row(scene: int, name: str, us: float, error: float, setting: str = "") -> dict[str, Any]:
-    return row_of(SCENES[scene], (name, name, setting), [us], [{"time_error": error, "twist_error": 0.0}])
+def row(scene: int, name: str, us: float, error: float) -> dict[str, Any]:
+    return row_of(SCENES[scene], (name, ""), [us], [{"time_error": error, "twist_error": 0.0}])
 
 
 ROWS = [
@@ -61,23 +71,44 @@ ROWS = [
 def test_a_row_has_quantiles_of_the_errors_and_null_for_what_is_endless() -> None:
     numbers = [float(k) for k in range(11)]
     errors = [{"time_error": one, "wrong_modes": one > 7.0} for one in (*numbers[:-1], inf)]
-    mine = row_of(SCENES[0], ("f", "m", "s"), numbers, errors)
+    mine = row_of(SCENES[0], ("m", "s"), numbers, errors)
     assert (mine["us"], mine["us_90"]) == (5.0, 9.0)
     assert (mine["time_error"], mine["time_error_90"], mine["time_error_worst"]) == (5.0, 9.0, None)
     assert (mine["count"], mine["failed"], mine["wrong_modes"]) == (11, 1, pytest.approx(3 / 11))
     assert error_of(mine) == inf  # no error of the twist
 
 
-def test_the_cheapest_that_is_good_enough_on_all_computed_scenes_is_chosen() -> None:
-    chosen = {one["accuracy"]: one for one in choices_of(ROWS, TOUCHDOWN)}
+def test_the_cheapest_that_is_good_enough_on_all_scenes_is_chosen_and_the_nodes_is_told_with_its_numbers() -> None:
+    used, choices = conclusions(ROWS, TOUCHDOWN, ("sharp", ""))
+    chosen = {one["accuracy"]: one for one in choices}
     assert (chosen[1e-2]["method"], chosen[1e-4]["method"]) == ("special", "sharp")
     assert (chosen[1e-9]["us"], chosen[1e-9]["error"]) == (25.0, 1e-11)
-    assert all(one["method"] is None for one in choices_of([row(0, "lost", 1.0, inf)], TOUCHDOWN))
+    assert (used["method"], used["setting"]) == ("sharp", "")
+    assert "within 1e-11; one takes 25 us" in used["why"]
+    _, choices = conclusions([row(0, "lost", 1.0, inf)], TOUCHDOWN, ("lost", ""))
+    assert all(one["method"] is None for one in choices)
 
 
-def test_what_the_node_uses_is_told_with_its_numbers() -> None:
-    rows = [*ROWS, row(0, "own", 10.0, 1e-15, "t = 1"), row(1, "own", 12.0, 1e-14, "t = 1")]
-    used = used_of(("own", "t = 1"), rows, TOUCHDOWN)
-    assert (used["method"], used["setting"]) == ("own", "t = 1")
-    assert "within 1e-14; one takes 11 us" in used["why"]
-    assert used_of(("other", ""), rows, TOUCHDOWN) == {}
+@pytest.mark.slow
+def test_a_small_report_has_a_row_for_each_method_on_each_scene_and_makes_a_page() -> None:
+    done = list[int]()
+    report = json.loads(json.dumps(accuracy.report(0.02, "a command", done.append), allow_nan=False))
+    assert done == list(range(1, accuracy.STEPS + 1))
+    rows = {(row["question"], row["scene"], row["method"], row["setting"]) for row in report["rows"]}
+    assert len(rows) == len(report["rows"])
+    for question, name in ((touchdowns, TOUCHDOWN), (impacts, IMPACT)):
+        for scene in question.SCENES:
+            assert {(name, scene.name, *method) for method in question.METHODS} <= rows
+    assert {(STABILITY, scene.name, "total law", "over arrays") for scene in RANDOM} <= rows
+    tosses = {row["method"]: row["twist_error"] for row in report["rows"] if row["scene"] == CUBE.name}
+    assert 0.03 < tosses["path law, slip across"] < tosses["path law"] < 0.1
+    assert set(report["node"]) == {TOUCHDOWN, IMPACT}
+    assert len(PageReader(accuracy_page(report, script="")).figures) == 4
+
+
+def test_random_impacts_of_all_kinds_keep_to_mechanics_and_what_is_not_answered_is_counted() -> None:
+    rows = list(stability_rows(200))
+    assert {row["scene"] for row in rows} == {scene.name for scene in RANDOM}
+    assert all(row["violation_90"] < 1e-14 and row["count"] == 200 for row in rows)
+    assert {row["scene"] for row in rows if row["failed"]} <= {"extreme", "extreme-apart"}
+    assert error_of(rows[0]) == rows[0]["violation_worst"] < 1e-12

@@ -12,9 +12,8 @@ import pytest
 
 from impact_predictor.mechanics.impact import solve_impact
 from impact_predictor.mechanics.types import Mode, Twist
-from impact_predictor.report.accuracy import impacts, touchdowns
+from impact_predictor.report.accuracy import impacts, problems, touchdowns
 from impact_predictor.report.accuracy.impacts import Aftermath, Struck
-from impact_predictor.report.accuracy.measure import problems
 from impact_predictor.report.accuracy.touchdowns import CRATE, FallingBody, PredictedTouchdown, falling
 
 COUNT = 36

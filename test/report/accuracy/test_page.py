@@ -10,9 +10,8 @@ from typing import Any
 import pytest
 from read_page import PageReader, traces
 
-from impact_predictor.errors import InputError
-from impact_predictor.report.accuracy.measure import ERRORS, error_of
-from impact_predictor.report.accuracy.page import accuracy_page, write_accuracy_page
+from impact_predictor.report.accuracy import ERRORS, error_of
+from impact_predictor.report.accuracy.page import accuracy_page
 
 REPORT: dict[str, Any] = json.loads((Path(__file__).parents[1] / "page_report.json").read_text())
 
@@ -67,8 +66,5 @@ def test_names_of_a_report_cannot_become_part_of_the_page() -> None:
     assert evil in PageReader(text).text
 
 
-def test_a_report_with_little_in_it_makes_a_page_too(tmp_path: Path) -> None:
-    report = REPORT | {"rows": [], "choices": [], "node": {}}
-    assert read(report).figures == {}
-    with pytest.raises(InputError, match="cannot be written: No such file or directory"):
-        write_accuracy_page(tmp_path / "nowhere" / "report.html", report)
+def test_a_report_with_little_in_it_makes_a_page_too() -> None:
+    assert read(REPORT | {"rows": [], "choices": [], "node": {}}).figures == {}
