@@ -88,7 +88,7 @@ def write(folder: Path, fields: dict[str, Any]) -> None:
         InputError: a file cannot be written.
     """
     from ..report.accuracy.page import accuracy_page
-    from ..report.page.document import script_inside, write_html
+    from ..report.page import script_inside, write_html
 
     with whole(folder / DATA) as partial:
         partial.write_text(json.dumps(fields, indent=1, allow_nan=False), encoding="utf-8")

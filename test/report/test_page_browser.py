@@ -14,7 +14,7 @@ from replay_answers import TOSSES, TRUE, UNREADABLE, WALK, answer, touchdown
 
 from impact_predictor.parameters.file import read_values
 from impact_predictor.report.accuracy.page import accuracy_page
-from impact_predictor.report.page.document import script_inside, write_html
+from impact_predictor.report.page import script_inside, write_html
 from impact_predictor.report.page.replay import write_replay_page
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")

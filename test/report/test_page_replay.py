@@ -14,10 +14,9 @@ from replay_answers import ahead as spans
 from impact_predictor.errors import InputError
 from impact_predictor.parameters.file import read_values
 from impact_predictor.prediction.types import Leftover
-from impact_predictor.report.page.document import part_words, time_words
-from impact_predictor.report.page.facts import BagAnswer, facts_of
-from impact_predictor.report.page.replay import page_of_replay, write_replay_page
-from impact_predictor.report.page.sections import DRAWN
+from impact_predictor.report.page import part_words, time_words
+from impact_predictor.report.page.facts import BagAnswer, ReplayFacts
+from impact_predictor.report.page.replay import DRAWN, page_of_replay, write_replay_page
 from impact_predictor.report.page.timeline import MANY
 from impact_predictor.report.summary import WHY
 
@@ -74,7 +73,7 @@ def test_all_text_of_a_bag_is_escaped_on_the_page_and_in_its_figures() -> None:
 
 
 def facts(*answers: BagAnswer) -> dict[str, str]:
-    return {fact.question: f"{fact.answer}: {fact.more}" for fact in facts_of(answers)}
+    return {fact.question: f"{fact.answer}: {fact.more}" for fact in ReplayFacts(answers).headlines()}
 
 
 def test_the_head_says_how_many_how_right_how_early_and_at_what_cost(page: PageReader) -> None:

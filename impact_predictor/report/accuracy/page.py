@@ -8,7 +8,7 @@ from typing import Any, Final
 
 from ...wording import duration
 from ..modes import PALETTE
-from ..page.document import Chart, Headline, PageTable, Section, marks, page
+from ..page import Chart, Headline, PageTable, Section, marks, page
 from . import ERRORS, IMPACT, STABILITY, TOSSES, TOUCHDOWN, error_of
 
 CLOSES: Final = (

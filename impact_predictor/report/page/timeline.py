@@ -10,7 +10,7 @@ from ...mechanics.types import Mode
 from ...stamps import NANOSECONDS
 from ...wording import words
 from ..modes import EDGE, MODES
-from .document import GREY, Chart, marks, part_words, points_of, safe, time_words
+from . import GREY, Chart, marks, part_words, safe, time_words
 from .facts import BagAnswer
 
 MISSED: Final = "missed"
@@ -66,7 +66,7 @@ def timeline(title: str, answer: BagAnswer, anchor: str) -> Chart:
             spans = [((first - begin) / NANOSECONDS, (last - begin) / NANOSECONDS) for first, last in lane.stances]
             points = [(last - first, -row, f"stands from {first:.3f} s to {last:.3f} s") for first, last in spans]
             look = {"base": [first for first, _ in spans], "width": 0.5, "marker": {"color": lane.colour}}
-            traces.append({"type": "bar", "orientation": "h", "showlegend": False, **points_of(points), **look})
+            traces.append(marks(lane.name, points, type="bar", orientation="h", showlegend=False, **look))
     kind = "scattergl" if sum(map(len, drawn.values())) > MANY else "scatter"
     # What is faint lies below what counts; the opacity is that of a trace: faint marks on each other are no darker.
     for faint, label, opacity in ((True, "{}, faint", 0.3), (False, "{}", 1.0)):
