@@ -96,10 +96,10 @@ def _flaw(parameter: Parameter, kind: str, item: Any) -> str:
     """What is wrong with one value, or one of a list, or ""."""
     is_whole = isinstance(item, int) and not isinstance(item, bool)
     if kind == "double" and is_whole:
-        return f"ROS takes no integer for a double, so write {float(item)} for {item}"
+        return f"ROS takes no integer for a double, so write {item}.0 for {item}"
     fits = is_whole if kind == "integer" else isinstance(item, _TYPES[kind])
     if fits and kind in ("integer", "double"):
-        fits = math.isfinite(item) and parameter.low <= item <= parameter.high
+        fits = parameter.low <= item <= parameter.high and abs(item) < math.inf
     elif fits and parameter.choices:
         fits = item in parameter.choices
     return "" if fits else f"it must be {allowed(parameter)}"

@@ -15,7 +15,7 @@ from typing import Any, Final
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
-from rclpy.qos_overriding_options import QoSOverridingOptions
+from rclpy.qos_overriding_options import QoSOverridingOptions, QoSPolicyKind
 
 from .process import message_class
 
@@ -24,15 +24,17 @@ QUEUE: Final = 1000
 middleware does not tell what it drops beyond them; what the node drops itself, it counts (`backlog`)."""
 
 
-def publisher(node: Node, topic: str, type_name: str, durability: Any = DurabilityPolicy.VOLATILE) -> Any:
-    """A publisher whose QoS the user can override."""
+def publisher(node: Node, topic: str, type_name: str, durability: Any = None) -> Any:
+    """A publisher whose QoS the user can override, also its durability where one is given."""
+    overridable = [QoSPolicyKind.HISTORY, QoSPolicyKind.DEPTH, QoSPolicyKind.RELIABILITY]
+    overridable += [] if durability is None else [QoSPolicyKind.DURABILITY]
     # Every event handler costs the executor about 25 us a round; QoS is looked at once a second instead.
     return node.create_publisher(
         message_class(type_name),
         topic,
-        QoSProfile(depth=QUEUE, durability=durability),
+        QoSProfile(depth=QUEUE, durability=durability or DurabilityPolicy.VOLATILE),
         event_callbacks=PublisherEventCallbacks(use_default_callbacks=False),
-        qos_overriding_options=QoSOverridingOptions.with_default_policies(),
+        qos_overriding_options=QoSOverridingOptions(overridable),
     )
 
 

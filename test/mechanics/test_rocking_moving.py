@@ -225,6 +225,21 @@ def test_what_a_body_feels_comes_from_polynomials_exact_to_rounding() -> None:
         assert fitted == pytest.approx(exact, abs=1e-12)
 
 
+def test_what_no_polynomial_fits_is_felt_as_it_is() -> None:
+    """A record whose stamps jitter, up to its end where it stops; a function of one time, faster than its period."""
+    rng = np.random.default_rng(1)
+    times = np.cumsum(rng.uniform(0.5, 1.5, 100) / 50.0)
+    angle = 0.1 * np.sin(0.8 * times) + 1e-4 * rng.standard_normal(100)
+    recorded = sampled_support(times, angle, 0.5 * np.sin(0.5 * times), np.cos(0.7 * times)).at(1.0, 0.5)
+
+    def shaken(time: float) -> SupportMotion:
+        return SupportMotion(0.0, 0.0, 0.0, math.sin(9.0 * time), 0.0, 9.0 * math.cos(9.0 * time), 0.0, *(2 * [0.0]))
+
+    for support, end in ((recorded, times[-1] + 0.2), (MovingSupport(shaken, 20.0), 5.0)):
+        for time in np.linspace(0.0, end, 701).tolist():
+            assert support.felt(time) == pytest.approx(support.felt_exactly(time), abs=1e-8)
+
+
 def test_supports_refuse_what_they_cannot_use() -> None:
     with pytest.raises(InputError):
         MovingSupport(lambda t: SupportMotion(*[0.0 * t] * 9), period=0.0)

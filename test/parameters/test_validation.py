@@ -88,6 +88,8 @@ def test_a_value_that_is_not_allowed_is_told_with_those_that_are(
     [
         ({"body.mass": 9}, "the parameter body.mass is 9, but ROS takes no integer for a double, so write 9.0 for 9"),
         ({"gravity": [0.0, 0.0, -10]}, "so write -10.0 for -10"),
+        ({"body.mass": 10**400}, "so write 1000"),
+        ({"uncertainty.samples": 10**400}, "but it must be a whole number from"),
         ({"support.normal": [0.0, 0.0, 0.0]}, "but it must have a direction"),
         ({"body.masss": 1.0}, "there is no parameter body.masss, did you mean body.mass?"),
         ({"friction": 1.0}, "there is no parameter friction, did you mean contact.friction?"),

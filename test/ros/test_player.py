@@ -1,3 +1,5 @@
+import pytest
+
 from impact_predictor.bags.read import BagMessage
 from impact_predictor.ros.messages import ODOMETRY, POLYGON
 from impact_predictor.ros.player import GEOMETRY_AHEAD, SHORTENED_GAP, _publish_all, timed
@@ -54,3 +56,23 @@ def test_contact_points_are_given_time_where_they_come_now_and_then_but_not_thos
     # More time only before what follows the first points, and the first after a pause.
     assert before == [1, 9]
     assert all(listening.waits[k] > 0.5 * GEOMETRY_AHEAD for k in before)
+
+
+def test_how_long_messages_are_kept_may_be_overridden_where_a_publisher_keeps_them():
+    rclpy = pytest.importorskip("rclpy", reason="the player needs ROS 2: source it, or install the extra `ros`")
+    from rclpy.qos import DurabilityPolicy
+
+    from impact_predictor.ros.endpoints import publisher
+
+    context = rclpy.Context()
+    rclpy.init(context=context, args=["--ros-args", "-p", "qos_overrides./points.publisher.durability:=volatile"])
+    node = rclpy.create_node("player", context=context)
+    try:
+        kept = [publisher(node, one, POLYGON, DurabilityPolicy.TRANSIENT_LOCAL) for one in ("/points", "/others")]
+        assert [one.qos_profile.durability for one in kept] == [
+            DurabilityPolicy.VOLATILE,
+            DurabilityPolicy.TRANSIENT_LOCAL,
+        ]
+    finally:
+        node.destroy_node()
+        context.shutdown()

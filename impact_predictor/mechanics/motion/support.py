@@ -27,6 +27,8 @@ _NODES = 10
 """Values that a polynomial of a moving support goes through: with `_PART` they are exact to rounding."""
 _PART = 1.0 / 24.0
 """Length of one polynomial, in shortest periods."""
+_FIT = 1e-12
+"""Where the last two terms of a polynomial are above this part of what is felt the motion is evaluated itself."""
 _MAX_PARTS = 4096
 """Polynomials that are kept."""
 
@@ -98,7 +100,8 @@ class FixedSupport(NamedTuple):
 class FeltPolynomials:
     """What is felt, from polynomials in time: a motion asks for it a hundred times, and a sum of waves takes long.
 
-    Each has a `length` in s and goes through the values that `exactly` gives at `nodes` Chebyshev nodes of it.
+    Each has a `length` in s and goes through the values that `exactly` gives at `nodes` Chebyshev nodes of it. Where
+    the last two terms of one are above `fit` of what is felt, `exactly` is asked itself.
     """
 
     period = math.inf
@@ -109,9 +112,10 @@ class FeltPolynomials:
         length: float,
         nodes: int,
         gravity: float = 9.81,
+        fit: float = math.inf,
     ) -> None:
         self._exactly, self._length, self._nodes = exactly, length, _nodes(nodes)
-        self.gravity = gravity
+        self.gravity, self._fit = gravity, fit
         self._parts: dict[int, list[tuple[float, Sequence[float]]]] = {}
 
     def felt(self, time: float) -> FrameAcceleration:
@@ -123,6 +127,9 @@ class FeltPolynomials:
             if len(self._parts) >= _MAX_PARTS:
                 self._parts.clear()
             part = self._parts[number] = self._polynomials(number)
+        if not part:
+            x, y, w, a = self._exactly([time])[0]
+            return x, y, w, a
         s = 2.0 * (place - number) - 1.0
         x = y = w = a = 0.0
         for node, (cx, cy, cw, ca) in part:
@@ -134,14 +141,19 @@ class FeltPolynomials:
         return x, y, w, a
 
     def _polynomials(self, number: int) -> list[tuple[float, Sequence[float]]]:
-        """Nodes and divided differences of one part (Newton's form), the highest first."""
+        """Nodes and divided differences of one part (Newton's form), the highest first; none where they do not fit."""
         nodes, length = self._nodes, self._length
         rows = list(self._exactly([(number + 0.5 + 0.5 * node) * length for node in nodes]))
+        x, y, w, a = [max(map(abs, column)) for column in zip(*rows, strict=True)]
+        sizes = max(x, y), max(x, y), w, max(a, w / length)
         for order in range(1, len(nodes)):
             for k in range(len(nodes) - 1, order - 1, -1):
                 gap = nodes[k] - nodes[k - order]
                 rows[k] = [(b - a) / gap for a, b in zip(rows[k - 1], rows[k], strict=True)]
-        return list(zip(nodes, rows, strict=True))[::-1]
+        # As terms of Chebyshev's series: those of the powers are so many times as large.
+        large = self._fit * 2.0 ** (len(nodes) - 3)
+        fits = all(abs(end) <= large * size for row in rows[-2:] for end, size in zip(row, sizes, strict=True))
+        return list(zip(nodes, rows, strict=True))[::-1] if fits else []
 
 
 @cache
@@ -158,10 +170,10 @@ def _nodes(count: int) -> list[float]:
 class MovingSupport:
     """A straight support that moves as `function` of time tells, about the point of it where its frame has its origin.
 
-    `function(time)` gives a SupportMotion with derivatives that belong together, for a time in s or an array of times.
-    `period` is the shortest time in s in which the motion swings to and fro: no shorter swing may be in it. `gravity`
-    in m/s^2 downwards; `origin` (x, y) in m is where the frame's origin lies in the frame of `function`. `felt(time)`
-    is what a body feels at rest at the origin. Not to be changed once it is made.
+    `function(time)` gives a SupportMotion with derivatives that belong together, for a time in s or, if it can, an
+    array of times. `period` is the shortest time in s in which the motion swings to and fro: no shorter swing may be in
+    it. `gravity` in m/s^2 downwards; `origin` (x, y) in m is where the frame's origin lies in the frame of `function`.
+    `felt(time)` is what a body feels at rest at the origin. Not to be changed once it is made.
 
     Raises:
         InputError: the period is not a finite time above 0.
@@ -177,7 +189,7 @@ class MovingSupport:
         if not 0.0 < period < math.inf:
             raise InputError(f"period of the moving support is {period}; give a finite number of seconds above 0")
         self.function, self.period, self.gravity, self.origin = function, period, gravity, origin
-        self.felt = FeltPolynomials(self._rows, _PART * period, _NODES).felt
+        self.felt = FeltPolynomials(self._rows, _PART * period, _NODES, fit=_FIT).felt
 
     def at(self, x: float, y: float) -> MovingSupport:
         """The same support, its frame's origin moved by (x, y) in m along its axes: to where a body stands."""
@@ -204,11 +216,14 @@ class MovingSupport:
         return -cosine * ax - sine * down, sine * ax - cosine * down, rate, acceleration
 
     def felt_at(self, times: Any) -> NDArray[np.float64]:
-        """As `felt_exactly` in the columns of an array (n, 4)."""
+        """As `felt_exactly` in the columns of an array (n, 4), also where the function takes one time only."""
         import numpy as np
 
         times = np.asarray(times, dtype=float)
-        return np.stack([np.broadcast_to(part, times.shape) for part in self.felt_exactly(times)], axis=1)
+        try:
+            return np.stack([np.broadcast_to(part, times.shape) for part in self.felt_exactly(times)], axis=1)
+        except (TypeError, ValueError):
+            return np.array([self.felt_exactly(time) for time in times.tolist()], dtype=float).reshape(-1, 4)
 
     def _rows(self, times: list[float]) -> list[list[float]]:
         return self.felt_at(times).tolist()  # type: ignore[no-any-return]

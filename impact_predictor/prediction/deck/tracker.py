@@ -76,6 +76,8 @@ class Deck:
 
     def update(self, sample: Sample) -> Status:
         """Take a message of the support's pose and twist, where the scene says so. A refused one tells nothing."""
+        if self._imu is not None:
+            return Status.MALFORMED
         position, linear, angular = sample.position, sample.linear, sample.angular
         # False for NaN as well.
         if not dot(position, position) + dot(linear, linear) + dot(angular, angular) < LARGEST:
@@ -104,7 +106,8 @@ class Deck:
     def update_imu(self, imu: Imu) -> Status:
         """Take a message of an inertial sensor on it, where the scene says so. A refused one tells nothing."""
         sensor = self._imu
-        assert sensor is not None
+        if sensor is None:
+            return Status.MALFORMED
         if not dot(imu.specific_force, imu.specific_force) + dot(imu.angular, imu.angular) < LARGEST:
             return Status.NOT_FINITE
         status = Status.ACCEPTED if imu.orientation is None else check_orientation(imu.orientation)

@@ -16,7 +16,7 @@ from impact_predictor.prediction.checks import PAUSE
 from impact_predictor.prediction.deck.motion import rotation_between
 from impact_predictor.prediction.deck.tracker import Deck
 from impact_predictor.prediction.scene import MovingDeck
-from impact_predictor.prediction.types import Felt, Moment, Quaternion, Sample, Status, Vector3
+from impact_predictor.prediction.types import Felt, Imu, Moment, Quaternion, Sample, Status, Vector3
 from impact_predictor.prediction.vectors import add, axes_of, times, to_body, turned
 
 GRAVITY = (0.0, 0.0, -9.81)
@@ -291,6 +291,12 @@ def test_a_deck_off_which_everything_would_fall_is_named(gravity: Vector3, orien
         answer = deck.at(k * 10_000_000)
         expected = Status.NO_SUPPORT if k < 20 else Status.GRAVITY_WRONG if wrong else None
         assert (None if isinstance(answer, Moment) else answer) is expected
+
+
+def test_messages_of_the_source_that_the_scene_does_not_name_are_refused() -> None:
+    assert Deck(MovingDeck(source="imu"), GRAVITY, UP).update(still()) is Status.MALFORMED
+    imu = Imu(0, "imu", None, (0.0, 0.0, 0.0), (0.0, 0.0, 9.81))
+    assert Deck(MovingDeck(), GRAVITY, UP).update_imu(imu) is Status.MALFORMED
 
 
 def row(forecast: tuple[Any, ...], index: int) -> Felt:
