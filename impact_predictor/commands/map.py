@@ -125,7 +125,7 @@ def command_of(name: str) -> click.Command:
 def help_of(parameter: MapParameter) -> str:
     """The help of an option: meaning, unit and what it is unless given."""
     unit = f", {parameter.unit}" if parameter.unit else ""
-    default = f"{parameter.default:g}" if parameter.default is not None else parameter.otherwise
+    default = parameter.default if isinstance(parameter.default, str) else f"{parameter.default:g}"
     meaning = parameter.meaning[0].upper() + parameter.meaning[1:]
     return f"{meaning}{unit}." + (f" [default: {default}]" if default else "")
 

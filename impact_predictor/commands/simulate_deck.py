@@ -112,17 +112,16 @@ def simulate_deck(
     sensors = Sensors(rate, deck_rate, noise, seed)
     products = Products(plot=plot, animate=animate, as_json=as_json, output=output)
     products.check()
-    motion = None
+    seen = {}
     if products.draws:
-        from ..report.deck_pictures import DeckMotion, deck_film, write_deck_figure
+        from ..report.deck_pictures import UnitMotion, deck_film, picture_times, write_deck_figure
 
-        motion = DeckMotion(duration)
-    seen = {} if motion is None else {"seen": motion.taking}
+        seen["times"] = picture_times(duration)
     seconds = round(duration) if duration < float("inf") else None
     with progress("simulated deck", "s", seconds) if output is None else writing(output, seconds) as tell:
         voyage = sail(scenes, deck, duration, contacts, output, sensors, tell, **seen)
-    if motion is not None:
-        units = motion.units
+    if products.draws:
+        units = [UnitMotion(one) for one in voyage.units]
         products.draw(lambda path: write_deck_figure(path, deck, units), lambda: deck_film(deck, units))
     from ..report.simulation import print_voyage, voyage_as_json
 

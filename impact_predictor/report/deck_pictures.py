@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from functools import partial
 from math import degrees, radians
 from typing import Final
@@ -17,8 +17,8 @@ from ..prediction.scene import Watching
 from ..prediction.watch.onset import Onset, motions
 from ..prediction.watch.standing import Standing
 from ..ros.markers.body import box_of
-from ..scenarios.deck.cargo import CargoUnit, Span
-from ..scenarios.truth import TrueImpact
+from ..scenarios.deck.cargo import CargoUnit
+from ..scenarios.deck.voyage import Followed
 from ..stamps import NANOSECONDS
 from ..wording import counted, words
 from . import plot
@@ -39,80 +39,37 @@ _SLID: Final = 0.005
 """A slide of so many m is shown."""
 
 
-class UnitMotion:
-    """The motion of one unit at `times` (s), seen from its foot; NaN where it is not followed.
+def picture_times(duration: float) -> NDArray[np.float64]:
+    """The moments in s at which units are followed for a picture."""
+    return np.linspace(0.0, duration, min(_MOST, max(2, round(duration / _MOMENT) + 1)))
 
-    `impacts` of it; `end` says how it ended, and `ended` when (s).
+
+class UnitMotion:
+    """What pictures show of a unit that has been followed, at its `times` in s; NaN where it is not followed any more.
+
+    `tilt` is the angle from how it stood (rad), `slid` the way along the deck of the lower one of its contacts from
+    where it stood (m; 0 for a cylinder on edges), and `struck` are the times of its impacts (s).
     """
 
-    def __init__(self, unit: CargoUnit, times: NDArray[np.float64]) -> None:
-        """Begin with nothing known."""
-        self.unit, self.times = unit, times
-        self.impacts: list[TrueImpact] = []
-        self.end, self.ended = End.TIME_UP, 0.0
-        self._states: NDArray[np.float64] = np.full((6, len(times)), np.nan)
-
-    def take(self, span: Span) -> None:
-        """Take a span of the motion."""
-        within = (self.times >= span.start) & (self.times <= span.time)
-        if within.any():
-            self._states[:, within] = np.array(span.state(self.times[within]))
-        self.impacts += span.impacts
-        self.end, self.ended = span.end, span.time
+    def __init__(self, followed: Followed) -> None:
+        self.unit, self.times, self.impacts, self.ended = followed.unit, followed.times, followed.impacts, followed.time
+        self.struck = [one.stamp / NANOSECONDS for one in self.impacts]
+        self.toppled = followed.end is End.OVERTURNED
+        self.states, start, body = followed.states, self.unit.start, self.unit.body
+        x, _, angle, speed, _, omega = self.states
+        self.tilt = angle - start.angle
+        self.speed = np.nan_to_num(np.abs(speed) + np.abs(omega))
+        c, s = np.cos(angle), np.sin(angle)
+        assert body.old is not None
+        ways = [(c - 1.0) * one.x - s * one.y for one in (body.old, body.new)]
+        old_is_lower = s * body.old.x + c * body.old.y < s * body.new.x + c * body.new.y
+        on_edges = self.unit.scene.radius > 0.0
+        self.slid = 0.0 * angle if on_edges else np.where(old_is_lower, *ways) + x - start.x
 
     def at(self, time: float) -> PlanarState:
         """The state at a time in s; the last one that is known where it is not followed any more."""
         known = max(1, int(np.searchsorted(self.times, self.ended, side="right")))
-        return PlanarState(*(float(np.interp(time, self.times[:known], part[:known])) for part in self._states))
-
-    @property
-    def struck(self) -> list[float]:
-        """Times of its impacts in s."""
-        return [one.stamp / NANOSECONDS for one in self.impacts]
-
-    @property
-    def toppled(self) -> bool:
-        """Whether it has overturned."""
-        return self.end is End.OVERTURNED
-
-    @property
-    def tilt(self) -> NDArray[np.float64]:
-        """Angles in rad from how it stood."""
-        return np.asarray(self._states[2] - self.unit.start.angle)
-
-    @property
-    def slid(self) -> NDArray[np.float64]:
-        """Ways in m along the deck of the lower one of its contacts from where it stood; 0 for a cylinder on edges."""
-        body, (x, _, angle, *_) = self.unit.body, self._states
-        assert body.old is not None
-        if self.unit.scene.radius > 0.0:
-            return np.asarray(0.0 * angle)
-        c, s = np.cos(angle), np.sin(angle)
-        ways = [(c - 1.0) * one.x - s * one.y for one in (body.old, body.new)]
-        old_is_lower = s * body.old.x + c * body.old.y < s * body.new.x + c * body.new.y
-        return np.asarray(np.where(old_is_lower, *ways) + x - self.unit.start.x)
-
-    @property
-    def speed(self) -> NDArray[np.float64]:
-        """How fast it moves on the deck, in m/s and rad/s together; 0 where it is not followed."""
-        return np.asarray(np.nan_to_num(np.abs(self._states[3]) + np.abs(self._states[5])))
-
-
-class DeckMotion:
-    """The motions of all units of a deck over `duration` (s), for its pictures, once its spans have passed `taking`."""
-
-    def __init__(self, duration: float) -> None:
-        """Begin with no unit."""
-        self.times = np.linspace(0.0, duration, min(_MOST, max(2, round(duration / _MOMENT) + 1)))
-        self.units: list[UnitMotion] = []
-
-    def taking(self, unit: CargoUnit, spans: Iterable[Span]) -> Iterator[Span]:
-        """The spans of a unit, taken up as they pass."""
-        motion = UnitMotion(unit, self.times)
-        self.units.append(motion)
-        for span in spans:
-            motion.take(span)
-            yield span
+        return PlanarState(*(float(np.interp(time, self.times[:known], part[:known])) for part in self.states))
 
 
 def margin_used(deck: MovingSupport, unit: CargoUnit, times: NDArray[np.float64]) -> NDArray[np.float64]:

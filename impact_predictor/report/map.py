@@ -26,13 +26,15 @@ OMEGA: Final = -1.0
 
 
 class MapParameter(NamedTuple):
-    """A parameter: its symbol in the picture, unit and meaning; its value, or what it follows, unless given."""
+    """A parameter: its symbol in the picture, unit and meaning; its value unless given, or the formula that it follows.
+
+    What has neither is given in the place of another.
+    """
 
     symbol: str
     unit: str
     meaning: str
-    default: float | None = None
-    otherwise: str = ""
+    default: float | str = ""
 
 
 class Axis(NamedTuple):
@@ -49,37 +51,30 @@ class Subject(NamedTuple):
     parameters: dict[str, MapParameter]
     x: Axis
     y: Axis
-    build: Callable[[Mapping[str, Any]], TwoPointBody]
+    build: Callable[..., TwoPointBody]
     title: str
 
 
-def plate_of(values: Mapping[str, Any]) -> TwoPointBody:
-    length = values["length"]
-    height = values["height"] if "height" in values else values["delta"] * length
-    inertia, a, b = (values.get(name) for name in ("inertia", "a", "b"))
-    return plate(length, height, 1.0, values.get("friction", 0.0), inertia, a, b, values["restitution"])
+def plate_of(delta: Any = 1.0, **values: Any) -> TwoPointBody:
+    return plate(**{"height": delta * values["length"], **values})
 
 
-def rod_of(values: Mapping[str, Any]) -> TwoPointBody:
-    length, thickness, a = (values[name] for name in ("length", "thickness", "a"))
-    inertia, b = values.get("inertia"), values.get("b", a)
-    return rod(length, thickness, a, b, 1.0, values.get("friction", 0.0), inertia, values["restitution"])
+def rod_of(a: Any, b: Any = None, **values: Any) -> TwoPointBody:
+    return rod(a=a, b=a if b is None else b, **values)
 
 
-def cylinder_of(values: Mapping[str, Any]) -> TwoPointBody:
-    gamma, inertia = values["gamma"], values.get("inertia")
-    ahead = values.get("gamma_new", gamma)
+def cylinder_of(gamma: Any, gamma_new: Any = None, **values: Any) -> TwoPointBody:
+    ahead = gamma if gamma_new is None else gamma_new
     between = "angles in degrees with a sum between 0 and 180"
     refuse({"gamma + gamma-new": gamma + ahead}, lambda value: (value > 0.0) & (value < 180.0), between)
-    old, new = gamma * (pi / 180.0), ahead * (pi / 180.0)
-    return cylinder(values["radius"], old, 1.0, values.get("friction", 0.0), new, inertia, values["restitution"])
+    return cylinder(gamma=gamma * (pi / 180.0), gamma_new=ahead * (pi / 180.0), **values)
 
 
 INERTIA: Final = "inertia about the mass centre by mass"
 CONTACTS: Final = {
     "friction": MapParameter("$f$", "", "friction coefficient of both contacts", 0.5),
-    "friction_old": MapParameter("$f_A$", "", "friction coefficient of the old contact A", None, "friction"),
-    "friction_new": MapParameter("$f_B$", "", "friction coefficient of the new contact B", None, "friction"),
+    "friction_old": MapParameter("$f_A$", "", "friction coefficient of the old contact A", "friction"),
+    "friction_new": MapParameter("$f_B$", "", "friction coefficient of the new contact B", "friction"),
     "restitution": MapParameter("$e$", "", "restitution at the new contact B", 0.0),
     "slip": MapParameter("$v_{tA}$", "m/s", "slip of the old contact A before the impact, at ω = −1 rad/s", 0.0),
 }
@@ -89,9 +84,9 @@ SUBJECTS: Final = {
             "delta": MapParameter("δ = H/L", "", "height by length", 1.0),
             "length": MapParameter("$L$", "m", "length", 1.0),
             "height": MapParameter("$H$", "m", "height, in the place of δ"),
-            "a": MapParameter("$a$", "m", "distance of the old contact A behind the mass centre", None, "L/2"),
-            "b": MapParameter("$b$", "m", "distance of the new contact B ahead of the mass centre", None, "L/2"),
-            "inertia": MapParameter("J/m", "m²", INERTIA, None, "(L² + H²)/12"),
+            "a": MapParameter("$a$", "m", "distance of the old contact A behind the mass centre", "L/2"),
+            "b": MapParameter("$b$", "m", "distance of the new contact B ahead of the mass centre", "L/2"),
+            "inertia": MapParameter("J/m", "m²", INERTIA, "(L² + H²)/12"),
             **CONTACTS,
         },
         Axis("delta", 0.0, 2.0),
@@ -104,8 +99,8 @@ SUBJECTS: Final = {
             "length": MapParameter("$l$", "m", "length", 0.4),
             "thickness": MapParameter("$h$", "m", "thickness", 0.005),
             "a": MapParameter("$a$", "m", "distance of the old support A behind the middle", 0.1),
-            "b": MapParameter("$b$", "m", "distance of the new support B ahead of the middle", None, "a"),
-            "inertia": MapParameter("J/m", "m²", INERTIA, None, "l²/12"),
+            "b": MapParameter("$b$", "m", "distance of the new support B ahead of the middle", "a"),
+            "inertia": MapParameter("J/m", "m²", INERTIA, "l²/12"),
             **CONTACTS,
         },
         Axis("a", 0.0, 0.2),
@@ -116,9 +111,9 @@ SUBJECTS: Final = {
     "cylinder": Subject(
         {
             "gamma": MapParameter("$γ_1$", "°", "central angle of the old edge A behind the vertical", 45.0),
-            "gamma_new": MapParameter("$γ_2$", "°", "central angle of the new edge B ahead of it", None, "gamma"),
+            "gamma_new": MapParameter("$γ_2$", "°", "central angle of the new edge B ahead of it", "gamma"),
             "radius": MapParameter("$R$", "m", "radius", 1.0),
-            "inertia": MapParameter("J/m", "m²", INERTIA, None, "R²/2"),
+            "inertia": MapParameter("J/m", "m²", INERTIA, "R²/2"),
             **CONTACTS,
         },
         Axis("gamma", 0.0, 90.0),
@@ -151,13 +146,14 @@ def fixed_values(subject: Subject, axes: tuple[Axis, Axis], given: Mapping[str, 
     chosen = {*names, *given}
     if {"delta", "height"} <= chosen:
         raise InputError("delta and height are one thing, height = delta length; leave one of them out")
-    replaced = {"delta"} if "height" in chosen else set()
+    if "height" in chosen:
+        chosen.add("delta")
     if {"friction_old", "friction_new"} <= chosen:
-        replaced.add("friction")  # it is the friction of none
+        chosen.add("friction")  # it is the friction of none
     defaults = {
-        name: parameter.default
-        for name, parameter in subject.parameters.items()
-        if parameter.default is not None and name not in chosen | replaced
+        name: one.default
+        for name, one in subject.parameters.items()
+        if isinstance(one.default, float) and name not in chosen
     }
     return {**defaults, **given}
 
@@ -168,18 +164,15 @@ def problem_at(subject: Subject, values: Mapping[str, Any]) -> tuple[TwoPointBod
     Raises:
         InputError: a parameter is out of its range.
     """
-    body = subject.build(values)
-    old, new = body.old, body.new
-    assert old is not None  # each of the bodies stands on one
-    for name in ("friction_old", "friction_new"):
-        if name in values:
-            refuse({name: values[name]}, lambda value: (value >= 0.0) & (value < inf), "a finite number, 0 or above")
-    body = body._replace(
-        old=old._replace(friction=values.get("friction_old", old.friction)),
-        new=new._replace(friction=values.get("friction_new", new.friction)),
-    )
-    (nx, ny), slip, turning = old.normal, values["slip"], body.turning(OMEGA)
+    values = {"friction": 0.0, **values}
+    frictions = {name: values.pop(name, values["friction"]) for name in ("friction_old", "friction_new")}
+    refuse(frictions, lambda value: (value >= 0.0) & (value < inf), "a finite number, 0 or above")
+    slip = values.pop("slip")
     refuse({"slip": slip}, lambda value: abs(value) <= 1e6, "a number of at most 1e6")
+    body = subject.build(mass=1.0, **values)
+    assert body.old is not None  # each of the bodies stands on one
+    (nx, ny), turning, old = body.old.normal, body.turning(OMEGA), body.old._replace(friction=frictions["friction_old"])
+    body = body._replace(old=old, new=body.new._replace(friction=frictions["friction_new"]))
     return body, Twist(turning.vx + slip * ny, turning.vy - slip * nx, turning.omega)
 
 
@@ -246,18 +239,19 @@ def map_modes(
         path, total = solve_impacts(body, twist, "path"), solve_impacts(body, twist, "total")
         outcomes = path if law == "path" else total
         energy = 0.5 * (body.mass * (twist.vx**2 + twist.vy**2) + body.inertia * twist.omega**2)
-        found: dict[str, Any] = {
-            "mode": outcomes.mode,
-            "segments": outcomes.segments,
-            "omega_ratio": outcomes.twist[..., 2] / OMEGA,
-            "energy_lost": outcomes.energy_lost / energy,
-            "jammed": (path.flags & np.uint16(Flag.JAMMED)) != 0,
-            "path_unique": path.unique,
-            "total_unique": total.unique,
-        }
-        blocks.append(found)
+        blocks.append(
+            {
+                "mode": outcomes.mode,
+                "segments": outcomes.segments,
+                "omega_ratio": outcomes.twist[..., 2] / OMEGA,
+                "energy_lost": outcomes.energy_lost / energy,
+                "jammed": (path.flags & np.uint16(Flag.JAMMED)) != 0,
+                "path_unique": path.unique,
+                "total_unique": total.unique,
+            }
+        )
         tell(min(start + step, resolution) * resolution)
-    fields = {key: np.concatenate([block[key] for block in blocks]) for key in blocks[0]}
+    fields: dict[str, Any] = {key: np.concatenate([block[key] for block in blocks]) for key in blocks[0]}
     return ModeMap(subject=name, x=x, y=y, fixed=fixed, law=law, **fields)
 
 
@@ -342,7 +336,7 @@ def conditions(modes: ModeMap) -> str:
     for name, one in parameters.items():
         if name in modes.fixed:
             said.append(f"{one.symbol} = {modes.fixed[name]:g} {one.unit}".rstrip())
-        elif one.otherwise not in ("", "friction") and name not in given_in(modes):
-            leader = parameters.get(one.otherwise)
-            said.append(f"{one.symbol} = {leader.symbol if leader else one.otherwise}")
+        elif isinstance(one.default, str) and one.default not in ("", "friction") and name not in given_in(modes):
+            leader = parameters.get(one.default)
+            said.append(f"{one.symbol} = {leader.symbol if leader else one.default}")
     return ", ".join((*said, f"{modes.law} law"))

@@ -31,8 +31,6 @@ _LOOKS: Final = 400
 """Moments of a motion at which its extent is looked at."""
 _HIGHEST: Final = 3.4
 """Inches of the film that a body may be high."""
-_SEEN: Final = 5.6
-"""Metres of slope, in lengths of a spoke, that the picture of a wheel shows."""
 
 
 def last_impact(impacts: Sequence[RockingImpact], time: float) -> str:
@@ -224,20 +222,13 @@ def write_wheel_figure(path: str | os.PathLike[str], rolling: Rolling) -> None:
     Raises:
         InputError: the file cannot be written, or is of another format.
     """
-    scene, leg = WheelScene(rolling), rolling.wheel.hub.leg
-    strobed = [0.0, *[one.strike.time for one in rolling.impacts], rolling.time]
-    begin = rolling.world(0.0).x
-    shown = [time for time in strobed if abs(rolling.world(time).x - begin) <= _SEEN * leg]
+    scene = WheelScene(rolling)
     with plot.picture(path, 9.0, 8.2) as figure:
         upper, rates, stands = figure.subplots(3, 1, height_ratios=(3.1, 2.4, 1.5))
         upper.set_aspect("equal")
         upper.set_axis_off()
-        more = "" if max(shown) == rolling.time else f", its first {max(shown):.2g} s"
-        upper.set_title(scene.title + more, fontweight="bold")
-        centres = np.array([scene.draw_wheel(upper, time)[:2] for time in shown])
-        scene.draw_way(upper, max(shown))
-        (left, bottom), (right, top) = centres.min(axis=0) - 1.1 * leg, centres.max(axis=0) + 1.1 * leg
-        upper.set(xlim=(left, right), ylim=(bottom, top))
+        upper.set_title(f"{scene.title}, after {rolling.time:.3g} s", fontweight="bold")
+        scene.draw(upper, rolling.time)
         draw_wheel_rate(rolling, rates)
         rates.set_xlabel("")
         draw_contacts(stands, [(tip, one.start, one.end, how) for one in rolling.stands for tip, how in one.tips])
@@ -266,29 +257,18 @@ class WheelScene:
         self._hub = np.array(rolling.world(self._times)[:2])
 
     def draw(self, axes: plot.Axes, time: float) -> str:
-        """Draw the wheel at a time in s with the hub in the middle; its last impact."""
-        leg = self._rolling.wheel.hub.leg
-        x, y, *_ = self.draw_wheel(axes, time)
-        self.draw_way(axes, time)
-        axes.set(xlim=(x - 2.6 * leg, x + 2.6 * leg), ylim=(y - 1.35 * leg, y + 1.15 * leg))
-        return last_impact([one.strike for one in self._rolling.impacts], time)
-
-    def draw_way(self, axes: plot.Axes, time: float) -> None:
-        """Draw the slope, and the way of the hub and the strikes of the spokes until a time in s."""
-        slope = -tan(self._rolling.wheel.hub.slope)
-        axes.axline((0.0, 0.0), slope=slope, color=plot.SUPPORT, linewidth=5.0, zorder=1.0)
-        axes.plot(*self._hub[:, self._times <= time], color=_HUB, label="way of the hub")
-        past = [one for one in self._rolling.impacts if one.strike.time <= time]
-        for one in past:
-            x, y = plot.placed(self._tips, self._rolling.world(one.strike.time))[one.new]
-            axes.plot(x, y, "o", color=plot.STRUCK, markersize=5, label="strike of a spoke")
-
-    def draw_wheel(self, axes: plot.Axes, time: float) -> PlanarState:
-        """Draw the spokes at a time in s, and the hub; its state."""
-        state, stood = self._rolling.world(time), dict(self._rolling.stood(time))
+        """Draw the wheel at a time in s with the way of the hub and what it struck; its last impact."""
+        state, stood, hub = self._rolling.world(time), dict(self._rolling.stood(time)), self._rolling.wheel.hub
         for k, (x, y) in enumerate(plot.placed(self._tips, state)):
             colour = CONTACT_COLOURS[stood[k]] if k in stood else _FIRST if k == 0 else plot.SPOKE
             width, label = 3.0 if k in stood else 1.5, "spoke 0" if colour == _FIRST else ""
             axes.plot([state.x, x], [state.y, y], color=colour, linewidth=width, label=label)
         axes.plot(state.x, state.y, "o", color=_HUB, markersize=6)
-        return state
+        axes.axline((0.0, 0.0), slope=-tan(hub.slope), color=plot.SUPPORT, linewidth=5.0, zorder=1.0)
+        axes.plot(*self._hub[:, self._times <= time], color=_HUB, label="way of the hub")
+        past = [one for one in self._rolling.impacts if one.strike.time <= time]
+        struck = [plot.placed(self._tips, self._rolling.world(one.strike.time))[one.new] for one in past]
+        axes.plot(*np.reshape(struck, (-1, 2)).T, "o", color=plot.STRUCK, markersize=5, label="strike of a spoke")
+        (x, y, *_), leg = state, hub.leg
+        axes.set(xlim=(x - 2.6 * leg, x + 2.6 * leg), ylim=(y - 1.35 * leg, y + 1.15 * leg))
+        return last_impact([one.strike for one in past], time)

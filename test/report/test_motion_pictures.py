@@ -96,8 +96,9 @@ def test_the_film_shows_how_contacts_stand_and_says_the_last_impact(rod: Rocking
 
 def test_the_spokes_that_are_drawn_end_where_the_standing_one_touches_the_slope(slips: Rolling) -> None:
     axes = Figure().add_subplot()
-    state = WheelScene(slips).draw_wheel(axes, 1.5)
-    tips = np.array([line.get_xydata()[1] for line in axes.lines if len(line.get_xydata()) == 2])
+    WheelScene(slips).draw(axes, 1.5)
+    state = slips.world(1.5)
+    tips = np.array([line.get_xydata()[1] for line in axes.lines[:8]])
     standing = slips.stood(1.5)[0][0]
     out = np.array([np.sin(radians(5.0)), np.cos(radians(5.0))])
     assert tips[standing] @ out == pytest.approx(0.0, abs=1e-12)

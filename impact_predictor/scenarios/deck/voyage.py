@@ -29,10 +29,13 @@ _CAPSIZED = 0.25 * pi
 
 
 class Followed:
-    """What happened to a unit, as far as it was followed."""
+    """What happened to a unit, as far as it was followed; its `states` (6, n) at `times` (n,) in s, else NaN."""
 
-    def __init__(self, unit: CargoUnit, support: MovingSupport, spans: Iterator[Span]) -> None:
-        self.unit, self.support = unit, support
+    def __init__(
+        self, unit: CargoUnit, support: MovingSupport, spans: Iterator[Span], times: NDArray[np.float64]
+    ) -> None:
+        self.unit, self.support, self.times = unit, support, times
+        self.states: NDArray[np.float64] = np.full((6, len(times)), np.nan)
         self.impacts: list[TrueImpact] = []
         self.onsets: list[TrueOnset] = []
         self.sums: list[float] = []
@@ -51,6 +54,9 @@ class Followed:
             self.onsets += span.onsets
             self.sums += span.sums
             self.end, self.time = span.end, span.time
+            within = (self.times >= span.start) & (self.times <= span.time)
+            if within.any():
+                self.states[:, within] = np.array(span.state(self.times[within]))
             seen = span.state(np.append(np.arange(span.start, span.time, 1.0 / LOOKS), span.time))
             turned = np.abs(seen.angle - start.angle)
             self.most_turned = max(self.most_turned, float(turned.max()))
@@ -107,12 +113,12 @@ def sail(
     bag: str | os.PathLike[str] | None = None,
     sensors: Sensors = Sensors(),  # noqa: B008 - it is immutable
     tell: Callable[[int], None] | None = None,
-    seen: Callable[[CargoUnit, Iterator[Span]], Iterator[Span]] = lambda unit, spans: spans,
+    times: NDArray[np.float64] = np.zeros(0),  # noqa: B008 - nothing is written into it
 ) -> Voyage:
     """Follow all units of the scenes for `duration` s, and write a `bag` with what their sensors told.
 
     `contacts` are rigid, by the impact law of each scene, or compliant (see `compliant`). `tell` takes now and
-    then how many seconds are done. The spans of each unit pass `seen`.
+    then how many seconds are done. The states of the units at `times` in s are kept.
 
     Raises:
         InputError: a unit cannot be simulated, a number is out of its range, or the bag cannot be written.
@@ -136,7 +142,7 @@ def sail(
     followed = []
     for unit in units_of(scenes):
         support = supports.setdefault(unit.foot, deck.at(*unit.foot))
-        followed.append(Followed(unit, support, seen(unit, motion_of(unit, support, duration, unit.scene.law))))
+        followed.append(Followed(unit, support, motion_of(unit, support, duration, unit.scene.law), times))
     if bag is None:
         done = 0.0
         for one in followed:
