@@ -206,7 +206,7 @@ def test_errors_ahead_and_costs_are_told_in_numbers(page: PageReader) -> None:
     )
     (steps,) = one.figures["Time for a sample"]["data"]
     assert [count for count in steps["y"] if count] == [1, 2, 1, 1]
-    assert steps["hovertext"][1] == "10 us to 12.6 us: 1 sample"
+    assert steps["hovertext"][1] == "about 11.2 us: 1 sample"
 
 
 def test_what_could_not_be_used_is_told_with_its_reason_and_its_remedy() -> None:

@@ -18,7 +18,7 @@ from ..modes import MODES, PALETTE
 from ..summary import PER_DECADE, WHY, quantile, without_bag
 from . import GREY, Cell, Chart, PageTable, Section, marks, page, part_words, script_inside, time_words, write_html
 from .facts import NOTHING, BagAnswer, ReplayFacts
-from .timeline import FALSE, MANY, MISSED, in_order, look_of, timeline
+from .timeline import FALSE, MANY, MISSED, ORDER, look_of, timeline
 
 DRAWN: Final = 8
 """Bags of which a timeline is drawn; of more the worst."""
@@ -98,28 +98,24 @@ def page_of_replay(
     charts = [timeline(facts.names[place], answers[place], f"bag-{place + 1}") for place in drawn]
     parts = (
         bags(facts, each, order, links or {place: f"#bag-{place + 1}" for place in drawn}),
-        Section("when", "When the touchdowns came", [READING], charts) if charts else None,
+        Section("when", "When the touchdowns came", [READING], charts),
         velocities(facts, each),
         modes(facts),
         lead_times(facts),
         cost(facts),
         unused(facts),
-        scene(values),
+        scene(values or {}),
     )
     known = [one for one in facts.headlines() if one.answer != "–"] if drawn else []
     title = ", ".join(f"{one.question} {one.answer}" for one in known[:-1]) or "No touchdown was predicted"
     what = facts.names[0] if len(answers) == 1 else f"{len(answers):,} records"
     samples = counted(sum(answer.get("samples", 0) for answer in answers), "sample")
     lead = f"{what}, {samples}, went through the predictor as if live."
-    return page(title, lead, known, [one for one in parts if one is not None], script)
+    return page(title, lead, known, [one for one in parts if one.parts or one.anchor == "unused"], script)
 
 
-def bags(
-    facts: ReplayFacts, each: Sequence[ReplayFacts], order: Sequence[int], links: Mapping[int, str]
-) -> Section | None:
-    """A row for each of several bags, the worst first; None where there is only one."""
-    if len(each) < 2:
-        return None
+def bags(facts: ReplayFacts, each: Sequence[ReplayFacts], order: Sequence[int], links: Mapping[int, str]) -> Section:
+    """A row for each of several bags, the worst first."""
     head, rows = ["bag", *(one.question for one in facts.headlines())], list[list[Cell | str]]()
     for place in order:
         answer = facts.answers[place]
@@ -131,50 +127,40 @@ def bags(
         "First those that could not be used, then by what was missed or announced in vain, then by the error. The "
         f"timelines of the first {DRAWN} with touchdowns are drawn."
     )
-    return Section("bags", "The bags", [said], [PageTable(head, rows)])
+    return Section("bags", "The bags", [said], [PageTable(head, rows)] if len(each) > 1 else [])
 
 
-def velocities(facts: ReplayFacts, each: Sequence[ReplayFacts]) -> Section | None:
-    """Predicted against measured velocities right after the touchdowns; None where none were measured."""
-    compared = [
-        (f"{name}, {(one['stamp'] - of.answers[0]['begin']) / NANOSECONDS:.3f} s, {one['body']}", one)
-        for name, of in zip(facts.names, each, strict=True)
-        for one in of.scored
-    ]
-    titles = {0: "Along the support: vx", 2: "From turning: ω times half the contacts' distance"}
-    charts = [_against(title, compared, part) for part, title in titles.items()] if compared else []
-    return Section("velocities", "Predicted against measured velocities", [AGAINST], charts) if charts else None
-
-
-def _against(title: str, compared: Sequence[tuple[str, BagAnswer]], part: int) -> Chart:
-    """The measured and the predicted velocity (m/s) of each touchdown, of one part of the twist."""
-    points: dict[str, list[tuple[float, float, str]]] = {}
-    for name, one in compared:
-        arm = one["half_distance"] if part == 2 else 1.0
-        measured, predicted = (round(arm * one[key][part], 6) for key in ("measured_twist", "predicted_twist"))
-        said = f"{name}\nrelative error {part_words(one['relative_error'])}"
-        points.setdefault(one["mode"], []).append((measured, predicted, said))
-    every = [point for of_mode in points.values() for point in of_mode]
-    values = [value for point in every for value in point[:2]]
-    ends = [min(values), max(values) + 1e-9]
-    line = {"type": "scatter", "mode": "lines", "x": ends, "y": ends, "line": {"color": GREY}}
-    traces: list[dict[str, Any]] = [line | {"hoverinfo": "skip", "showlegend": False}]
-    kind = "scattergl" if len(every) > MANY else "scatter"
+def velocities(facts: ReplayFacts, each: Sequence[ReplayFacts]) -> Section:
+    """Predicted against measured velocities (m/s) right after the touchdowns."""
+    kind, charts = "scattergl" if len(facts.scored) > MANY else "scatter", []
     hover = "measured %{x:.3f}, predicted %{y:.3f} m/s<br>%{hovertext}<extra></extra>"
-    for mode in in_order(points):
-        look = {"type": kind, "marker": look_of(mode) | {"size": 8}, "opacity": 0.75, "hovertemplate": hover}
-        traces.append(marks(f"{mode} ({len(points[mode]):,})", points[mode], **look))
     layout = {"height": 460, "xaxis": {"title": "measured, m/s"}}
     layout["yaxis"] = {"title": "predicted, m/s", "scaleanchor": "x"}
-    return Chart(title, traces, layout, wide=False)
+    for title, part in (("Along the support: vx", 0), ("From turning: ω times half the contacts' distance", 2)):
+        points: dict[str, list[tuple[float, float, str]]] = {}
+        for name, of in zip(facts.names, each, strict=True):
+            for one in of.scored:
+                arm = one["half_distance"] if part == 2 else 1.0
+                measured, predicted = (round(arm * one[key][part], 6) for key in ("measured_twist", "predicted_twist"))
+                said = f"{name}, {(one['stamp'] - of.answers[0]['begin']) / NANOSECONDS:.3f} s, {one['body']}"
+                said += f"\nrelative error {part_words(one['relative_error'])}"
+                points.setdefault(one["mode"], []).append((measured, predicted, said))
+        if points:
+            values = [value for of_mode in points.values() for point in of_mode for value in point[:2]]
+            ends = [min(values), max(values) + 1e-9]
+            line = {"type": "scatter", "mode": "lines", "x": ends, "y": ends, "line": {"color": GREY}}
+            traces: list[dict[str, Any]] = [line | {"hoverinfo": "skip", "showlegend": False}]
+            for mode in sorted(points, key=ORDER.index):
+                look = {"type": kind, "marker": look_of(mode) | {"size": 8}, "opacity": 0.75, "hovertemplate": hover}
+                traces.append(marks(f"{mode} ({len(points[mode]):,})", points[mode], **look))
+            charts.append(Chart(title, traces, layout, wide=False))
+    return Section("velocities", "Predicted against measured velocities", [AGAINST], charts)
 
 
-def modes(facts: ReplayFacts) -> Section | None:
+def modes(facts: ReplayFacts) -> Section:
     """The modes that were predicted against the true ones, or what can be told of them without a truth."""
     # Of a landing it is the mode of an impact with the speed of the foot in its last sample in the air.
     found = Counter(one.get("landing_mode") or one["mode"] for one in facts.touchdowns)
-    if not found:
-        return None
     looks = {mode.name: Cell(mode.name, look.meaning) for mode, look in MODES.items()}
     if counts := facts.confusion():
         true, predicted = ([one for one in (*looks, NOTHING) if one in kinds] for kinds in zip(*counts, strict=True))
@@ -187,16 +173,16 @@ def modes(facts: ReplayFacts) -> Section | None:
         table = PageTable(["true mode", *(MISSED if one == NOTHING else one for one in predicted)], rows, caption)
         return Section("modes", "Predicted against true modes", [facts.right_modes()], [table])
     rows = []
-    for mode in in_order(found):
+    for mode in sorted(found, key=ORDER.index):
         errors = [one["relative_error"] for one in facts.scored if one["mode"] == mode]
         parts = [part_words(quantile(errors, part) if errors else None) for part in (0.5, 0.9)]
         rows.append([looks[mode], f"{found[mode]:,}", f"{len(errors):,}", *parts])
     head = ["predicted mode", "touchdowns", "compared", "median error", "90 % below"]
-    return Section("modes", "Predicted modes", [UNTOLD], [PageTable(head, rows)])
+    return Section("modes", "Predicted modes", [UNTOLD], [PageTable(head, rows)] if rows else [])
 
 
-def lead_times(facts: ReplayFacts) -> Section | None:
-    """Errors over the time ahead at which a prediction is made; None where there are none."""
+def lead_times(facts: ReplayFacts) -> Section:
+    """Errors over the time ahead at which a prediction is made."""
     charts = []
     for key, title, axis, factor in (
         ("relative_errors_ahead", "Velocities after the impact, against measured ones", "relative error, %", 100.0),
@@ -217,30 +203,30 @@ def lead_times(facts: ReplayFacts) -> Section | None:
             layout = {"height": 320, "xaxis": across, "yaxis": {"title": axis, "rangemode": "tozero"}}
             charts.append(Chart(title, traces, layout, wide=False))
     said = "Every sample before a touchdown makes a prediction of it. Does one that is made earlier do as well?"
-    return Section("ahead", "Error against the time ahead", [said], charts) if charts else None
+    return Section("ahead", "Error against the time ahead", [said], charts)
 
 
-def cost(facts: ReplayFacts) -> Section | None:
-    """What the answer to a sample costs; None where nothing is known of it."""
-    spread = facts.costs
-    if not spread.number:
-        return None
+def cost(facts: ReplayFacts) -> Section:
+    """What the answer to a sample costs."""
+    spread, charts = facts.costs, []
     # Ten steps for each factor of ten.
     counts: Counter[int] = Counter()
     for place, count in spread.bins.items():
         counts[10 * place // PER_DECADE] += count
-    points = []
-    for place in range(min(counts) - 1, max(counts) + 2):
-        begin, middle, end = (10.0 ** (0.1 * (place + part)) for part in (0.0, 0.5, 1.0))
-        between = f"{time_words(1e-6 * begin)} to {time_words(1e-6 * end)}"
-        points.append((middle, counts[place], f"{between}: {counted(counts[place], 'sample')}"))
-    steps = marks("samples", points, mode="lines", line={"shape": "hvh", "color": PALETTE[0]}, fill="tozeroy")
-    across = {"title": "time for a sample, us", "type": "log", "dtick": 1}
-    layout = {"height": 300, "xaxis": across, "yaxis": {"title": "samples"}}
-    known = (time_words(1e-6 * (one or 0.0)) for one in (spread.p50, spread.p90, spread.p99, spread.most))
-    caption = "The median of {} is {}, 90 % are below {}, 99 % below {}, the longest is {}."
-    chart = Chart("Time for a sample", [steps], layout, caption.format(counted(spread.number, "sample"), *known))
-    return Section("cost", "What a sample costs", [COST], [chart])
+    if counts:
+        points = []
+        for place in range(min(counts) - 1, max(counts) + 2):
+            middle = 10.0 ** (0.1 * (place + 0.5))
+            said = f"about {time_words(1e-6 * middle)}: {counted(counts[place], 'sample')}"
+            points.append((middle, counts[place], said))
+        steps = marks("samples", points, mode="lines", line={"shape": "hvh", "color": PALETTE[0]}, fill="tozeroy")
+        across = {"title": "time for a sample, us", "type": "log", "dtick": 1}
+        layout = {"height": 300, "xaxis": across, "yaxis": {"title": "samples"}}
+        known = (time_words(1e-6 * (one or 0.0)) for one in (spread.p50, spread.p90, spread.p99, spread.most))
+        caption = "The median of {} is {}, 90 % are below {}, 99 % below {}, the longest is {}."
+        caption = caption.format(counted(spread.number, "sample"), *known)
+        charts.append(Chart("Time for a sample", [steps], layout, caption))
+    return Section("cost", "What a sample costs", [COST], charts)
 
 
 def unused(facts: ReplayFacts) -> Section:
@@ -269,23 +255,20 @@ def unused(facts: ReplayFacts) -> Section:
     for (kind, one), bags in said.items():
         more = f" and {counted(len(bags) - 1, 'more bag')}" if len(bags) > 1 else ""
         remarks.append([Cell(bags[0] + more, kind), one])
+    caption = "Messages that were refused, by input and reason."
     tables = (
-        PageTable(
-            ["input", "what is wrong", "messages"], refused, "Messages that were refused, by input and reason.", 2
-        ),
+        PageTable(["input", "what is wrong", "messages"], refused, caption, words=2),
         PageTable(["touchdowns that are not compared, for one or several reasons", "touchdowns"], reasons),
-        PageTable(["bag", "remark"], remarks, "What was said of the bags.", 2),
+        PageTable(["bag", "remark"], remarks, "What was said of the bags.", words=2),
     )
     there = [table for table in tables if table.rows]
     return Section("unused", "What could not be used", [] if there else ["Everything could be used."], there)
 
 
-def scene(values: Mapping[str, Any] | None) -> Section | None:
-    """What the scene has and leaves out, from all its parameters; None where these are not known."""
-    if values is None:
-        return None
+def scene(values: Mapping[str, Any]) -> Section:
+    """What the scene has and leaves out, from all its parameters, none where these are not known."""
     # The events executor is the node's.
-    features = [feature for feature in features_of(values) if feature.name != "events executor"]
+    features = [feature for feature in features_of(values) if feature.name != "events executor"] if values else []
     rows: list[list[Cell | str]] = []
     for one in sorted(features, key=lambda feature: not feature.on):
         css = "" if one.on else "none"
@@ -295,4 +278,6 @@ def scene(values: Mapping[str, Any] | None) -> Section | None:
         f"The predictor took in {len(features) - left_out} of its parts for this scene and left out {left_out}, in "
         "grey. What is left out costs nothing; where a body needs it, the parameter that is named switches it on."
     )
-    return Section("scene", "What the scene left out", [said], [PageTable(["part", "why"], rows, "", 2)])
+    return Section(
+        "scene", "What the scene left out", [said], [PageTable(["part", "why"], rows, "", 2)] if rows else []
+    )

@@ -19,6 +19,9 @@ MISSED: Final = "missed"
 FALSE: Final = "false alarm"
 """The mark of an announcement of a touchdown that never came."""
 
+ORDER: Final = [*(mode.name for mode in MODES), MISSED, FALSE]
+"""The marks in the order in which they are drawn and listed."""
+
 RED: Final = "#d02a3d"
 BLUE: Final = "#3d7fc4"
 
@@ -55,26 +58,24 @@ def timeline(title: str, answer: BagAnswer, anchor: str) -> Chart:
     for body in dict.fromkeys(one["body"] for one in both if "foot" not in one):
         lanes += _body(answer, body)
     begin, traces = answer["begin"], list[dict[str, Any]]()
-    drawn: dict[tuple[bool, str], list[tuple[float, float, str]]] = {}
-    ahead: dict[tuple[bool, str], list[float]] = {}
+    # What is faint lies below what counts; the opacity is that of a trace: faint marks on each other are no darker.
+    drawn: dict[tuple[bool, int], list[tuple[int, TimelineMark]]] = {}
     for row, lane in enumerate(lanes):
         for mark in lane.marks:
-            x, key = (mark.stamp - begin) / NANOSECONDS, (mark.faint, mark.mark)
-            drawn.setdefault(key, []).append((x, -row, f"{x:.3f} s: {mark.said}"))
-            ahead.setdefault(key, []).append(mark.ahead)
+            drawn.setdefault((not mark.faint, ORDER.index(mark.mark)), []).append((-row, mark))
         if lane.stances:
             spans = [((first - begin) / NANOSECONDS, (last - begin) / NANOSECONDS) for first, last in lane.stances]
             points = [(last - first, -row, f"stands from {first:.3f} s to {last:.3f} s") for first, last in spans]
             look = {"base": [first for first, _ in spans], "width": 0.5, "marker": {"color": lane.colour}}
             traces.append(marks(lane.name, points, type="bar", orientation="h", showlegend=False, **look))
     kind = "scattergl" if sum(map(len, drawn.values())) > MANY else "scatter"
-    # What is faint lies below what counts; the opacity is that of a trace: faint marks on each other are no darker.
-    for faint, label, opacity in ((True, "{}, faint", 0.3), (False, "{}", 1.0)):
-        for name in in_order(name for pale, name in drawn if pale == faint):
-            announced = {"type": "data", "symmetric": False, "array": [0.0], "arrayminus": ahead[faint, name]}
-            look = {"type": kind, "marker": look_of(name), "opacity": opacity}
-            look["error_x"] = announced | {"width": 0, "thickness": 1.5, "color": GREY}
-            traces.append(marks(label.format(name), drawn[faint, name], **look))
+    for (counts, place), there in sorted(drawn.items()):
+        name, x = ORDER[place], [(mark.stamp - begin) / NANOSECONDS for _, mark in there]
+        points = [(at, row, f"{at:.3f} s: {mark.said}") for at, (row, mark) in zip(x, there, strict=True)]
+        look = {"type": kind, "marker": look_of(name), "opacity": 1.0 if counts else 0.3}
+        ahead = {"type": "data", "symmetric": False, "array": [0.0], "arrayminus": [mark.ahead for _, mark in there]}
+        look["error_x"] = {**ahead, "width": 0, "thickness": 1.5, "color": GREY}
+        traces.append(marks(name if counts else f"{name}, faint", points, **look))
     end = (answer["end"] - begin) / NANOSECONDS
     lane_axis = {"tickvals": [-row for row in range(len(lanes))], "ticktext": [safe(lane.name) for lane in lanes]}
     lane_axis |= {"range": [0.6 - len(lanes), 0.6], "automargin": True, "fixedrange": True, "showgrid": False}
@@ -96,12 +97,6 @@ def look_of(mark: str) -> dict[str, Any]:
         return {"color": RED, "symbol": "star" if mark == MISSED else "x", "line": edge, "size": 12}
     look = MODES[Mode[mark]]
     return {"color": look.colour, "symbol": look.symbol, "line": edge, "size": 10}
-
-
-def in_order(marks: Iterable[str]) -> list[str]:
-    """Marks, each once: the modes in their order, then what was missed and what was false."""
-    order = [*(mode.name for mode in MODES), MISSED, FALSE]
-    return sorted(set(marks), key=order.index)
 
 
 def _feet(answer: BagAnswer, body: str) -> Iterable[Lane]:
