@@ -89,9 +89,9 @@ def test_people_read_the_impacts_when_they_accumulate_and_the_end() -> None:
     assert result.exit_code == 0
     lines = result.stdout.splitlines()
     assert lines[0] == "rod, a = b = 0.1 m"
-    assert any(line.split()[:4] == ["1", "0.166294", "B", "PIVOT"] for line in lines)
+    assert any(line.split()[:3] == ["0.166294", "B", "PIVOT"] for line in lines)
     assert "Impacts accumulate at 0.217703 s; then the body stays on both contacts." in lines
-    assert lines[-1] == "At 0.217703 s it rests on both contacts."
+    assert lines[-1] == "The motion ends at 0.217703 s: rests."
 
 
 @pytest.mark.parametrize("name", ["rocking_rod.yaml", "rocking_plate.yaml"])

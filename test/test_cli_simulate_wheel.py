@@ -66,7 +66,7 @@ def test_the_table_tells_the_impacts_and_the_closed_form() -> None:
     text = run().stdout
     assert "wheel, 8 spokes 1 m long, slope 5 degrees" in text
     assert "8 more impacts: read them with --json." in text
-    assert "it is over its last spoke (--steps), 20 steps and 15." in text
+    assert ": steps done, 20 steps and 15." in text
     assert (
         "Steady rolling without slip, closed form: 1.605412029 rad/s before each impact, 1.177944487 after it" in text
     )
