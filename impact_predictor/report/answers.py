@@ -14,15 +14,14 @@ from ..errors import need
 from ..prediction.types import Status
 from ..stamps import NANOSECONDS
 from .files import named, whole
-from .summary import SpanErrors, errors_ahead, errors_of, spread_of, to_json
+from .summary import SpanErrors, errors_ahead, errors_of, spread_of, to_json, velocity_errors_ahead, warnings_of
 from .touchdowns import FIELDS, TouchdownField, row_as_json, row_of
 
 if TYPE_CHECKING:
     from pyarrow.parquet import ParquetWriter
 
     from ..bags.replay import Result
-    from ..scenarios.comparison import BodyTruth
-    from ..scenarios.matching import Match
+    from ..scenarios.matching import Match, Truth
 
 _GROUP: Final = 10_000
 """Rows that are written at a time: few enough for any memory, many enough to be read fast."""
@@ -36,14 +35,12 @@ _PARTS: Final = {
 def as_json(result: Result) -> dict[str, Any]:
     """Everything that a replay found; what a bag does not have, its JSON has not."""
     rows = [row_of(*settled) for settled in result.settled]
-    errors = errors_of(rows)
-    ahead = errors_ahead(one for _, score, _ in result.settled if score.scored for one in score.history)
-    times = times_ahead(result)
+    errors, ahead, times = errors_of(rows), velocity_errors_ahead(result.settled), times_ahead(result)
     begin, end = result.extent or (None, None)
     known = {
         "inputs": {name: _counts(counts) for name, counts in result.inputs.items()},
         "damaged": result.damaged,
-        "truth": {} if result.truth is None else _truth(result),
+        "truth": {} if result.truth is None else _truth(result, result.truth),
         "time_errors_ahead": [_span(one) for one in errors_ahead(times)] if times else None,
         "true_touchdowns": [_match(match) for match in result.matches],
         "gaits": {
@@ -68,14 +65,21 @@ def as_json(result: Result) -> dict[str, Any]:
         "median_relative_error": errors.p50,
         "p90_relative_error": errors.p90,
         "error_by_lead_time": [
-            {"from": a, "to": b, "count": one.number, "median": one.p50, "p90": one.p90} for a, b, one in ahead
+            {
+                "from": one.begin,
+                "to": one.end,
+                "count": one.errors.number,
+                "median": one.errors.p50,
+                "p90": one.errors.p90,
+            }
+            for one in ahead
         ],
+        "relative_errors_ahead": [_span(one) for one in ahead],
         "statuses": _counts(result.statuses),
         "geometry_statuses": _counts(result.geometry_statuses),
         "begin": begin,
         "end": end,
         "cost_us": to_json(spread_of([1e6 * cost for cost in result.costs])),
-        "relative_errors_ahead": [_span(one) for one in ahead],
         **{key: value for key, value in known.items() if value},
     }
 
@@ -104,28 +108,14 @@ def times_ahead(result: Result) -> list[tuple[float, float]]:
     return [one for landing in landings if landing is not None for one in landing.history]
 
 
-def _truth(result: Result) -> dict[str, Any]:
+def _truth(result: Result, truth: Truth) -> dict[str, Any]:
     """The comparison with the truth, of all bodies and of each."""
-    assert result.truth is not None
-    answer: dict[str, Any] = result.truth._asdict()
-    warned = [one.warned for one in result.truths.values() if one.warned is not None]
-    if warned:
-        answers = [one.before_first_impact for one in warned if one.before_first_impact is not None]
-        answer |= {
-            "bodies_with_slide_or_impact": len(answers),
-            "warned_before_first_impact": sum(answers),
-            "events": sum(one.events for one in warned),
-            "events_warned": sum(one.events_warned for one in warned),
-        }
-    bodies = {body: _body_truth(one) for body, one in result.truths.items()}
-    return answer | ({"bodies": bodies} if bodies else {})
-
-
-def _body_truth(one: BodyTruth) -> dict[str, Any]:
-    truth = {} if one.truth is None else one.truth._asdict()
-    if one.warned is None:
-        return truth
-    return {**truth, **one.warned._asdict(), "warned_before_first_impact": one.warned.before_first_impact}
+    bodies: dict[str, dict[str, Any]] = {}
+    for body, one in result.truths.items():
+        bodies[body] = {} if one.truth is None else one.truth._asdict()
+        if one.warned is not None:
+            bodies[body] |= one.warned._asdict() | {"warned_before_first_impact": one.warned.before_first_impact}
+    return truth._asdict() | warnings_of(result.truths.values()) | ({"bodies": bodies} if bodies else {})
 
 
 def _match(match: Match) -> dict[str, Any]:
@@ -167,17 +157,16 @@ class TouchdownTable:
         """
         failure = answer.get("error") or answer.get("unpredictable")
         damage = answer.get("damaged")
-        bag = {
-            "bag": answer["bag"],
-            "bag_status": "failed" if failure else "damaged" if damage else "ok",
-            "bag_problem": failure or damage,
-            "bag_samples": answer.get("samples"),
-        }
         for touchdown in answer.get("touchdowns") or [{}]:
-            row = dict(bag)
+            row = {
+                "bag": answer["bag"],
+                "bag_status": "failed" if failure else "damaged" if damage else "ok",
+                "bag_problem": failure or damage,
+                "bag_samples": answer.get("samples"),
+            }
             for field in FIELDS:
                 value = touchdown.get(field.key)
-                values = (value,) if field.type not in _PARTS or value is None else value
+                values = value if field.type in _PARTS and value else (value,)
                 row |= zip(_columns_of(field), values, strict=False)
             self._rows.append(row)
         if len(self._rows) >= _GROUP:
@@ -206,16 +195,12 @@ def touchdown_table(path: str | Path) -> Iterator[TouchdownTable]:
     import pyarrow
     from pyarrow.parquet import ParquetWriter
 
-    def arrow_type(name: str) -> Any:
-        if name.startswith("list<"):
-            return pyarrow.list_(arrow_type(name[5:-1]))
-        return pyarrow.type_for_alias(name)
-
+    types = {"list<string>": pyarrow.list_(pyarrow.string()), "list<int32>": pyarrow.list_(pyarrow.int32())}
     columns = dict.fromkeys(("bag", "bag_status", "bag_problem"), ("string", "")) | {"bag_samples": ("int64", "")}
     for field in FIELDS:
         columns |= _columns_of(field)
     schema = pyarrow.schema(
-        pyarrow.field(name, arrow_type(kind), metadata={"unit": unit} if unit else {})
+        pyarrow.field(name, types.get(kind) or pyarrow.type_for_alias(kind), metadata={"unit": unit} if unit else {})
         for name, (kind, unit) in columns.items()
     )
     with whole(path) as partial, ParquetWriter(partial, schema, compression="zstd") as writer:

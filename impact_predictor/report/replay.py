@@ -6,7 +6,7 @@ from collections import Counter, defaultdict
 from collections.abc import Sequence
 from functools import partial
 from math import hypot
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final
 
 from rich.console import Console
 from rich.table import Table
@@ -16,7 +16,7 @@ from ..prediction.types import Status
 from ..scenarios.comparison import LEAD_TIMES, Truth, Warned
 from ..stamps import NANOSECONDS
 from ..wording import NONE, counted, duration, fixed, percent, words
-from .summary import SpanErrors, Tally, errors_ahead, errors_of
+from .summary import SpanErrors, Tally, errors_of, velocity_errors_ahead, warnings_of
 from .table import MOST_ROWS, Column, first_stamp, more, say, show, table_of
 from .touchdowns import TouchdownRow, rows_of
 
@@ -28,25 +28,16 @@ TOO_EARLY: Final = {
     Status.NO_GEOMETRY: "before the first contact points",
 }
 """Samples that came before something is known, which is no fault of theirs."""
-_NO_TRUTH: Final = Truth(
-    touchdowns=0,
-    missed=0,
-    false=0,
-    unresolved=0,
-    mode_accuracy=None,
-    median_velocity_error=None,
-    median_time_error=None,
-)
 
 
 def print_replay(console: Console, result: Result, every: bool = False) -> None:
     """Print the touchdowns (the first scored ones, or `every` one), the errors and what became of the samples."""
     rows = rows_of(result.settled)
     landings, others = [row for row in rows if row.foot], [row for row in rows if not row.foot]
-    errors = errors_ahead(one for _, score, _ in result.settled if score.scored for one in score.history)
+    errors = velocity_errors_ahead(result.settled)
     say(console, result.bag)
-    if bodies := bodies_of(result, rows):
-        _show(console, bodies_table(bodies, has_truth=result.truth is not None))
+    if (bodies := bodies_table(result, rows)) is not None:
+        _show(console, bodies)
     if landings:
         listed = landings if every else landings[:MOST_ROWS]
         _show(console, landings_table(listed), *more(len(landings) - len(listed), "landing"))
@@ -57,7 +48,7 @@ def print_replay(console: Console, result: Result, every: bool = False) -> None:
     say(console, *Tally(rows).sentences())
     if result.truth is not None:
         say(console, *truth_sentences(result.truth))
-    say(console, *_warnings([one.warned for one in result.truths.values() if one.warned is not None]), *_costs(result))
+    say(console, *_warnings(result), *_costs(result))
 
 
 def _show(console: Console, table: Table, *remarks: str) -> None:
@@ -76,22 +67,19 @@ def touchdown_table(rows: Sequence[TouchdownRow]) -> Table:
         Column("vy\nm/s", partial(_velocity, "vy", 3)),
         Column("omega\nrad/s", partial(_velocity, "omega", 2)),
         Column("error\n%", lambda row: percent(row.relative_error)),
+        Column("cost\nus", lambda row: fixed(row.cost and 1e6 * row.cost, 0), optional=True),
+        Column("notes", _notes, left=True, fold=11, optional=True),
     ]
-    if any(row.cost is not None for row in rows):
-        columns.append(Column("cost\nus", lambda row: fixed(None if row.cost is None else 1e6 * row.cost, 0)))
-    if any(map(_notes, rows)):
-        columns.append(Column("notes", _notes, left=True, fold=11))
     return table_of(columns, rows, lambda row: "" if row.scored else "dim")
 
 
 def _when(rows: Sequence[TouchdownRow]) -> Column:
     """The column of times, with bodies where there are several."""
-    start = first_stamp(row.stamp for row in rows)
-    several = len({row.body for row in rows}) > 1
-    header = ("body\n" if several else "") + ("since\nfirst\ns" if start else "time\ns")
-    return Column(
-        header, lambda row: (f"{row.body}\n" if several else "") + fixed((row.stamp - start) / NANOSECONDS, 3)
-    )
+    start, several = first_stamp(row.stamp for row in rows), len({row.body for row in rows}) > 1
+    header = "since\nfirst\ns" if start else "time\ns"
+    if several:
+        return Column(f"body\n{header}", lambda row: f"{row.body}\n{(row.stamp - start) / NANOSECONDS:.3f}")
+    return Column(header, lambda row: f"{(row.stamp - start) / NANOSECONDS:.3f}")
 
 
 def _ms(seconds: float | None, decimals: int = 1, sign: str = "") -> str:
@@ -99,13 +87,11 @@ def _ms(seconds: float | None, decimals: int = 1, sign: str = "") -> str:
 
 
 def _velocity(part: str, decimals: int, row: TouchdownRow) -> str:
-    twists = (row.predicted_twist, row.measured_twist)
-    return "\n".join(NONE if twist is None else fixed(getattr(twist, part), decimals) for twist in twists)
+    return "\n".join(fixed(getattr(one, part, None), decimals) for one in (row.predicted_twist, row.measured_twist))
 
 
 def _notes(row: TouchdownRow) -> str:
-    said = ", ".join(words(flag) for flag in row.flags)
-    return said if row.scored else f"not scored: {said}"
+    return ("" if row.scored else "not scored: ") + ", ".join(map(words, row.flags))
 
 
 def lead_time_table(errors: Sequence[SpanErrors]) -> Table:
@@ -129,118 +115,92 @@ def landings_table(landings: Sequence[TouchdownRow]) -> Table:
         Column("predicted\nmode", lambda row: row.mode.name, left=True),
         Column("foot's\nspeed\nm/s", lambda row: fixed(row.landing_speed, 3)),
         Column("N s at\nfoot,\nothers", _impulses),
-        Column("body's\nchange\nm/s", lambda row: fixed(_size(row.velocity_change), 3)),
+        Column("body's\nchange\nm/s", lambda row: fixed(row.velocity_change and hypot(*row.velocity_change[:2]), 3)),
+        Column("late\nms", lambda row: _ms(row.late, 1, "+"), optional=True),
+        Column("force\nagrees", lambda row: {True: "yes", False: "no"}.get(row.confirmed, NONE), optional=True),
     ]
-    if any(row.late is not None for row in landings):
-        columns.append(Column("late\nms", lambda row: _ms(row.late, 1, "+")))
-    if any(row.confirmed is not None for row in landings):
-        columns.append(Column("force\nagrees", lambda row: {True: "yes", False: "no", None: NONE}[row.confirmed]))
     return table_of(columns, landings)
 
 
 def _impulses(row: TouchdownRow) -> str:
     others = [row.others_impulse] if any(row.others_impulse or ()) else []
-    return "\n".join(fixed(_size(impulse), 2) for impulse in (row.impulse, *others))
+    return "\n".join(fixed(impulse and hypot(*impulse), 2) for impulse in (row.impulse, *others))
 
 
-def _size(vector: Sequence[float] | None) -> float | None:
-    """The magnitude of an impulse, or of the velocity of a twist."""
-    return None if vector is None else hypot(*vector[:2])
+def bodies_table(result: Result, rows: Sequence[TouchdownRow]) -> Table | None:
+    """One row for each body: its samples, and how its predictions compare with the truth, or else with the samples.
 
-
-class BodySummary(NamedTuple):
-    """A body of a replay: its samples and touchdowns, and how the truth compares, empty where the bag has none."""
-
-    name: str
-    samples: int
-    rows: Sequence[TouchdownRow]
-    truth: Truth
-    warned: Warned
-
-
-def bodies_of(result: Result, rows: Sequence[TouchdownRow]) -> list[BodySummary]:
-    """The bodies of a replay, in the order of its inputs; nothing where the only one has no name."""
-    inputs, found = result.inputs, []
-    names = dict.fromkeys([*(name.rpartition("/")[0] for name in inputs), *result.truths])
-    for body in () if "" in names else [name for name in names if name != "support"]:
-        truth, warned = result.truths.get(body, (None, None))
-        found.append(
-            BodySummary(
-                name=body,
-                samples=sum(sum(inputs.get(f"{body}/{kind}", {}).values()) for kind in STATES),
-                rows=[row for row in rows if row.body == body],
-                truth=truth or _NO_TRUTH,
-                warned=warned or Warned(None, None, None, None),
-            )
-        )
-    return found
-
-
-def bodies_table(bodies: Sequence[BodySummary], *, has_truth: bool) -> Table:
-    """One row for each body: its samples, and how its predictions compare with the truth, or else with the samples."""
-    columns = [
-        Column("body", lambda body: body.name, left=True),
-        Column("samples", lambda body: f"{body.samples:,}"),
-    ]
-    if has_truth:
+    None where the only one has no name.
+    """
+    samples: Counter[str] = Counter()
+    for name, counts in result.inputs.items():
+        body, _, kind = name.rpartition("/")
+        samples[body] += sum(counts.values()) if kind in STATES else 0
+    del samples["support"]
+    bodies = [*dict.fromkeys([*samples, *result.truths])]
+    if not bodies or "" in bodies:
+        return None
+    truths = defaultdict(Truth, {body: one.truth for body, one in result.truths.items() if one.truth})
+    warned = defaultdict(Warned, {body: one.warned for body, one in result.truths.items() if one.warned})
+    mine = {body: [row for row in rows if row.body == body] for body in bodies}
+    columns = [Column("body", str, left=True), Column("samples", lambda body: f"{samples[body]:,}")]
+    if result.truth is not None:
         columns += [
-            Column("touchdowns\nfound", lambda body: _of(body.truth.touchdowns, body.truth.missed), fold=10),
-            Column("false\nalarms", lambda body: f"{body.truth.false:,}"),
-            Column("right\nmode %", lambda body: percent(body.truth.mode_accuracy)),
-            Column("speed\nerror %", lambda body: percent(body.truth.median_velocity_error)),
+            Column("touchdowns\nfound", lambda body: _of(truths[body].found, truths[body].touchdowns), fold=10),
+            Column("false\nalarms", lambda body: f"{truths[body].false:,}"),
+            Column("right\nmode %", lambda body: percent(truths[body].mode_accuracy)),
+            Column("speed\nerror %", lambda body: percent(truths[body].median_velocity_error)),
         ]
     else:
         columns += [
             Column(
                 "touchdowns\nscored",
-                lambda body: _of(len(body.rows), sum(not row.scored for row in body.rows)),
+                lambda body: _of(sum(row.scored for row in mine[body]), len(mine[body])),
                 fold=10,
             ),
-            Column("median\nerror %", lambda body: percent(errors_of(body.rows).p50)),
+            Column("median\nerror %", lambda body: percent(errors_of(mine[body]).p50)),
         ]
-    if any(body.warned.events for body in bodies):
-        columns += [
-            Column(
-                "events\nwarned of",
-                lambda body: _of(body.warned.events, body.warned.events - body.warned.events_warned),
-                fold=9,
-            ),
-            Column("first\ns ahead", lambda body: fixed(body.warned.warned_ahead, 1)),
-        ]
+    columns += [
+        Column("events\nwarned of", lambda body: _of(warned[body].events_warned, warned[body].events), optional=True),
+        Column("first\ns ahead", lambda body: fixed(warned[body].warned_ahead, 1), optional=True),
+    ]
     return table_of(columns, bodies)
 
 
-def _of(whole: int, missing: int) -> str:
-    return f"{whole - missing:,} of {whole:,}" if whole else NONE
+def _of(part: int, whole: int) -> str:
+    return f"{part:,} of {whole:,}" if whole else NONE
 
 
 def truth_sentences(truth: Truth) -> list[str]:
     """How the predictions compare with the true impacts of the bag, one sentence each."""
-    found = truth.touchdowns - truth.missed
     touchdowns, alarms = counted(truth.touchdowns, "touchdown"), counted(truth.false, "false alarm")
-    said = [f"Against the truth in the bag: {found:,} of {touchdowns} found, {alarms}"]
+    said = [f"Against the truth in the bag: {truth.found:,} of {touchdowns} found, {alarms}."]
     if truth.mode_accuracy is not None:
         said.append(
             f"Of those found, {percent(truth.mode_accuracy)} % have the right mode; the velocities after them are "
-            f"within {percent(truth.median_velocity_error)} % of the true ones in the median"
+            f"within {percent(truth.median_velocity_error)} % of the true ones in the median."
         )
     if truth.median_time_error is not None:
         ahead = f"{1e3 * LEAD_TIMES[0]:.0f} ms ahead"
-        said.append(f"The time predicted {ahead} is {duration(truth.median_time_error)} wrong in the median")
+        said.append(f"The time predicted {ahead} is {duration(truth.median_time_error)} wrong in the median.")
     if truth.unresolved:
         said.append(
             f"{counted(truth.unresolved, 'more impact')} cannot be seen at this rate of samples: too soon after the "
-            "one before, or too slow"
+            "one before, or too slow."
         )
-    return [f"{sentence}." for sentence in said]
+    return said
 
 
-def _warnings(warned: Sequence[Warned]) -> list[str]:
-    events, stood = sum(one.events for one in warned), sum(one.events_warned for one in warned)
-    answers = [one.before_first_impact for one in warned if one.before_first_impact is not None]
-    of = f"{sum(answers):,} of {len(answers):,} bodies"
-    first = f", and before the first slide or impact of {of}" if answers else ""
-    return [f"A warning stood before {stood:,} of {counted(events, 'event')}{first}."] if events else []
+def _warnings(result: Result) -> list[str]:
+    counts = warnings_of(result.truths.values())
+    if not counts or not counts["events"]:
+        return []
+    said = f"A warning stood before {counts['events_warned']:,} of {counted(counts['events'], 'event')}"
+    if bodies := counts["bodies_with_slide_or_impact"]:
+        said += (
+            f", and before the first slide or impact of {counts['warned_before_first_impact']:,} of {bodies:,} bodies"
+        )
+    return [f"{said}."]
 
 
 def _costs(result: Result) -> list[str]:

@@ -13,20 +13,17 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 from ..wording import counted, percent, words
 
 if TYPE_CHECKING:
-    from ..mechanics.types import Mode
+    from ..bags.body import Settled
+    from ..scenarios.comparison import BodyTruth
     from .touchdowns import TouchdownRow
 
 LEAD_TIME_EDGES: Final = (0.0, 0.01, 0.02, 0.03, 0.04, 0.05, 0.06)
 """Borders in s between which the error is shown against the lead time."""
-
 PER_DECADE: Final = 100
 """Bins for each factor of ten: in each of them numbers differ by 2.3 % at most."""
-
-LEAST: Final = 1e-12
+_LEAST: Final = 1e-12
 """Smaller numbers, and 0, count as this one."""
-
 _PERCENTILES: Final = {"p50": 0.5, "p90": 0.9, "p99": 0.99}
-
 WHY: Final = {
     "ONE_POINT": "nothing stood on the support before",
     "OUT_OF_PLANE": "the body also turned off the plane of the impact, or its contacts lay beside it",
@@ -60,6 +57,20 @@ class SpanErrors(NamedTuple):
     errors: Distribution
 
 
+def warnings_of(truths: Iterable[BodyTruth]) -> dict[str, int]:
+    """How often what happened to bodies under watch was warned of, as the JSON has it; empty where none is watched."""
+    warned = [one.warned for one in truths if one.warned is not None]
+    answers = [one.before_first_impact for one in warned if one.before_first_impact is not None]
+    if not warned:
+        return {}
+    return {
+        "bodies_with_slide_or_impact": len(answers),
+        "warned_before_first_impact": sum(answers),
+        "events": sum(one.events for one in warned),
+        "events_warned": sum(one.events_warned for one in warned),
+    }
+
+
 def errors_of(rows: Iterable[TouchdownRow]) -> Distribution:
     """The relative errors of the scored rows."""
     return spread_of([row.error for row in rows if row.error is not None])
@@ -72,6 +83,11 @@ def errors_ahead(predictions: Iterable[tuple[float, float]]) -> tuple[SpanErrors
         SpanErrors(begin, end, spread_of([abs(error) for lead_time, error in made if begin <= lead_time < end]))
         for begin, end in pairwise(LEAD_TIME_EDGES)
     )
+
+
+def velocity_errors_ahead(settled: Iterable[Settled]) -> tuple[SpanErrors, ...]:
+    """How wrong the predicted velocities of scored touchdowns were, by how long before them they were predicted."""
+    return errors_ahead(one for _, score, _ in settled if score.scored for one in score.history)
 
 
 def reasons(rows: Iterable[TouchdownRow]) -> dict[str, int]:
@@ -96,7 +112,7 @@ def spread_of(numbers: Sequence[float]) -> Distribution:
     """The spread of some numbers, its percentiles exact."""
     if not numbers:
         return Distribution()
-    bins = Counter(floor(PER_DECADE * log10(max(number, LEAST))) for number in numbers)
+    bins = Counter(floor(PER_DECADE * log10(max(number, _LEAST))) for number in numbers)
     percentiles = {name: quantile(numbers, part) for name, part in _PERCENTILES.items()}
     return Distribution(number=len(numbers), most=max(numbers), bins=bins, **percentiles)
 
@@ -143,53 +159,47 @@ class Tally:
     """Touchdowns of one bag or of many: how wrong the scored ones are, why others are not, and landings of feet."""
 
     def __init__(self, rows: Iterable[TouchdownRow] = ()) -> None:
-        """Count some rows."""
         self._touchdowns = 0
-        self._errors = array("d")
         self._reasons: Counter[str] = Counter()
         self._feet: set[tuple[str, str]] = set()
-        self._modes: Counter[Mode] = Counter()
-        self._missed = 0
-        self._landings: dict[str, array[float]] = defaultdict(lambda: array("d"))
+        self._landings = 0
+        self._known: dict[str, array[float]] = defaultdict(lambda: array("d"))
+        """The numbers that rows have, by what they tell; of landings all but `relative`."""
         self.add(rows)
 
     def add(self, rows: Iterable[TouchdownRow]) -> None:
         """Count rows."""
         for row in rows:
             if row.foot:
-                self._add_landing(row)
-                continue
-            self._touchdowns += 1
-            self._reasons.update(reasons([row]))
-            if row.error is not None:
-                self._errors.append(row.error)
-
-    def _add_landing(self, row: TouchdownRow) -> None:
-        self._modes[row.mode] += 1
-        self._feet.add((row.body, row.foot))
-        self._missed += row.ahead is None
-        numbers = {
-            # What follows of a foot that stands already comes at once after its first part.
-            "ahead": None if row.is_second else row.ahead,
-            "error": row.time_errors[0] if row.time_errors else None,
-            "speed": row.landing_speed,
-            "impulse": row.impulse and hypot(*row.impulse),
-            "change": row.velocity_change and hypot(*row.velocity_change[:2]),
-            "late": row.late,
-        }
-        for name, number in numbers.items():
-            if number is not None:
-                self._landings[name].append(number)
+                self._landings += 1
+                self._feet.add((row.body, row.foot))
+                numbers = {
+                    "predicted": row.time_error,
+                    # What follows of a foot that stands already comes at once after its first part.
+                    "ahead": None if row.is_second else row.ahead,
+                    "error": row.time_errors[0] if row.time_errors else None,
+                    "speed": row.landing_speed,
+                    "impulse": row.impulse and hypot(*row.impulse),
+                    "change": row.velocity_change and hypot(*row.velocity_change[:2]),
+                    "late": row.late,
+                }
+            else:
+                self._touchdowns += 1
+                self._reasons.update(reasons([row]))
+                numbers = {"relative": row.error}
+            for name, number in numbers.items():
+                if number is not None:
+                    self._known[name].append(number)
 
     def sentences(self) -> list[str]:
         """What they say, one sentence each."""
-        said = self._of_landings() if self._modes else []
+        said = self._of_landings() if self._landings else []
         return said + (self._of_touchdowns() if self._touchdowns or not said else [])
 
     def _of_touchdowns(self) -> list[str]:
         if not self._touchdowns:
             return ["No touchdown was predicted."]
-        errors = spread_of(self._errors)
+        errors = spread_of(self._known["relative"])
         said = f"{errors.number:,} of {counted(self._touchdowns, 'touchdown')} scored"
         if errors.number:
             said += f": relative error {percent(errors.p50)} % in the median, 90 % below {percent(errors.p90)} %"
@@ -200,14 +210,13 @@ class Tally:
     def _of_landings(self) -> list[str]:
         from ..scenarios.comparison import LEAD_TIMES  # only where feet have landed
 
-        number, feet, known = self._modes.total(), len(self._feet), self._landings
-        of = f"{feet} {'foot' if feet == 1 else 'feet'}"
-        said = f"{counted(number, 'landing')} of {of}, {number - self._missed:,} predicted"
+        number, feet, known = self._landings, len(self._feet), self._known
+        predicted = len(known["predicted"])
+        said = f"{counted(number, 'landing')} of {feet} {'foot' if feet == 1 else 'feet'}, {predicted:,} predicted"
         said += f", {1e3 * min(known['ahead']):.0f} ms ahead or earlier." if known["ahead"] else "."
-        if self._missed:
+        if predicted < number:
             said += " The others came too suddenly, or the noise of base and feet hides how they come down."
-        modes = ", ".join(f"{self._modes[mode]:,} {mode.name}" for mode in sorted(self._modes))
-        told = [said, f"Predicted modes: {modes}."]
+        told = [said]
         if errors := [abs(error) for error in known["error"]]:
             wrong = f"{1e3 * quantile(errors, 0.5):.1f} ms wrong in the median, by when the foot's motion ends"
             told.append(f"The time predicted {1e3 * LEAD_TIMES[0]:.0f} ms ahead is {wrong}.")

@@ -9,7 +9,7 @@ from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 
-from ..wording import counted
+from ..wording import NONE, counted
 
 MOST_ROWS: Final = 20
 """Rows that are listed unless all are asked for."""
@@ -18,21 +18,26 @@ _DAY: Final = 10**17
 
 
 class Column(NamedTuple):
-    """A column: its header, and the text of a row in it; `left` is for words, which may break into lines of `fold`."""
+    """A column: its header, and the text of a row in it; `left` is for words, which may break into lines of `fold`.
+
+    An `optional` one is left out where it says nothing of any row.
+    """
 
     header: str
     cell: Callable[[Any], str]
     left: bool = False
     fold: int = 0
+    optional: bool = False
 
 
 def table_of(columns: Sequence[Column], rows: Iterable[Any], style: Callable[[Any], str] | None = None) -> Table:
     """A table of rows, each perhaps in a style of rich."""
     table, rows = plain_table(), list(rows)
+    texts = {column: [column.cell(row) for row in rows] for column in columns}
+    texts = {column: cells for column, cells in texts.items() if not column.optional or {*cells} - {"", NONE}}
     # Headers end on one line.
-    lines = max(column.header.count("\n") for column in columns)
-    texts = [[column.cell(row) for row in rows] for column in columns]
-    for column, cells in zip(columns, texts, strict=True):
+    lines = max(column.header.count("\n") for column in texts)
+    for column, cells in texts.items():
         table.add_column(
             "\n" * (lines - column.header.count("\n")) + column.header,
             justify="left" if column.left else "right",
@@ -41,7 +46,7 @@ def table_of(columns: Sequence[Column], rows: Iterable[Any], style: Callable[[An
             # rich narrows columns of a table that is too wide below their words.
             min_width=column.fold or max(len(line) for text in (column.header, *cells) for line in text.split("\n")),
         )
-    for row, *cells in zip(rows, *texts, strict=True):
+    for row, *cells in zip(rows, *texts.values(), strict=True):
         table.add_row(*cells, style="" if style is None else style(row))
     return table
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping
+from operator import sub
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from ..mechanics.types import Mode, Twist, Vector
@@ -15,21 +16,12 @@ if TYPE_CHECKING:
 
 
 class TouchdownRow(NamedTuple):
-    """One settled touchdown, which is a landing where it has a `foot`.
+    """One settled touchdown, which is a landing where it has a `foot`; docs/replay.md explains what files have of it.
 
-    `body` is the body's name or frame; `stamp` in ns, the predicted touchdown, or when the foot came to stand;
-    `announced_lead_time` how long before it, in s, the first prediction with its contacts was made; `lead_time` in s,
-    `before_twist` and `predicted_twist` of the last prediction; twists of the mass centre in the impact plane;
-    `half_distance` of the two contacts in m; `out_of_plane` the part of the angular velocity off the plane's axis
-    (0..1); `flags` say what a reader should know and, where it is not `scored`, why; `old` and `new` the points that
-    stood and that struck.
-
-    Of a landing: `point`, `late` (s) and `confirmed` as in `Landing`; `time_error` in s of the last prediction, None
-    where there was none; `landing_speed` in m/s in the last sample in the air, and what the impact with it makes: its
-    mode, the impulses (normal, tangential) in N s at the foot and at the others, which stand or land together with it,
-    and the change of the twist by both; `time_errors` of the predictions made `LEAD_TIMES` before.
-
-    `cost` of the last prediction in s, None where it is not known.
+    Times in s but `stamp` in ns, lengths in m, twists of the mass centre in the impact plane (m/s, rad/s), impulses
+    (normal, tangential) in N s; None is what is not known. `old` and `new` are the points that stood and that struck;
+    `flags` say what a reader should know and, where it is not `scored`, why. `time_errors` of a landing are those of
+    the predictions made `LEAD_TIMES` before it, and `cost` is that of the last prediction.
     """
 
     body: str
@@ -154,15 +146,13 @@ def row_of(body: str, score: Score, cost: float | None = None) -> TouchdownRow:
         landing_speed=landing.speed,
         time_errors=tuple(error_ahead(landing, lead_time) for lead_time in LEAD_TIMES),
     )
-    impact = landing.impact
-    if impact is None:
+    if (impact := landing.impact) is None:
         return row
-    (vx, vy, omega), before = impact.after, impact.before
     return row._replace(
         landing_mode=impact.mode,
         impulse=impact.impulses[1],
         others_impulse=impact.impulses[0] if impact.old else None,
-        velocity_change=Twist(vx - before.vx, vy - before.vy, omega - before.omega),
+        velocity_change=Twist(*map(sub, impact.after, impact.before)),
     )
 
 

@@ -50,10 +50,10 @@ class Warned(NamedTuple):
     found a warning standing when they began.
     """
 
-    first_known: int | None
-    first_warning: int | None
-    first_slide: int | None
-    first_impact: int | None
+    first_known: int | None = None
+    first_warning: int | None = None
+    first_slide: int | None = None
+    first_impact: int | None = None
     first_lift: int | None = None
     warned_ahead: float | None = None
     events: int = 0
@@ -231,7 +231,7 @@ class Comparison:
         """How a body was warned of, with what happened to it since something was known of it."""
         known, stood = self._known.get(name), self._stood[name]
         if known is None:
-            return Warned(None, None, None, None)
+            return Warned()
         slides = [onset.stamp for onset in onsets if onset.slides]
         lifts = [onset.stamp for onset in onsets if onset.lifts]
         struck = [impact.stamp for impact in impacts]

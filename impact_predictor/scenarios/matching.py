@@ -143,18 +143,23 @@ class Truth(NamedTuple):
     the same, with another mode than they had.
     """
 
-    touchdowns: int
-    missed: int
-    false: int
-    unresolved: int
-    mode_accuracy: float | None
-    median_velocity_error: float | None
-    median_time_error: float | None
+    touchdowns: int = 0
+    missed: int = 0
+    false: int = 0
+    unresolved: int = 0
+    mode_accuracy: float | None = None
+    median_velocity_error: float | None = None
+    median_time_error: float | None = None
     clear: int = 0
     clear_mode_accuracy: float | None = None
     unresolved_wrong: int = 0
     time_error_by_lead_time: Mapping[str, float | None] = {}
     least_lead_time: float | None = None
+
+    @property
+    def found(self) -> int:
+        """How many were not missed."""
+        return self.touchdowns - self.missed
 
 
 def truth_of(matches: Sequence[Match]) -> Truth:

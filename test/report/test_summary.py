@@ -82,10 +82,9 @@ def test_touchdowns_together_count_the_scored_and_explain_the_others() -> None:
 
 
 def test_landings_together_say_how_early_they_were_predicted_and_what_their_impacts_do() -> None:
-    predicted, modes, times, impacts = Tally([LANDED]).sentences()
+    predicted, times, impacts = Tally([LANDED]).sentences()
     assert predicted == "1 landing of 1 foot, 1 predicted, 100 ms ahead or earlier."
     assert times == "The time predicted 20 ms ahead is 2.0 ms wrong in the median, by when the foot's motion ends."
-    assert modes == "Predicted modes: 1 PIVOT_SLIDE."
     assert impacts.startswith("In its last sample in the air a foot has 0.123 m/s in the median, at most 0.123 m/s; ")
     assert impacts.endswith("gives it at most 5.00 N s, and the body at most 0.050 m/s.")
     weak = LANDED._replace(impulse=(0.0, 0.0), velocity_change=Twist(0.0, 0.0, 0.0), landing_speed=0.023)
