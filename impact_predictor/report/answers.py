@@ -14,7 +14,7 @@ from ..errors import need
 from ..prediction.types import Status
 from ..stamps import NANOSECONDS
 from .files import named, whole
-from .summary import SpanErrors, errors_ahead, errors_of, spread_of, to_json, velocity_errors_ahead, warnings_of
+from .summary import SpanErrors, errors_ahead, errors_of, spread_of, to_json, velocity_errors_ahead
 from .touchdowns import FIELDS, TouchdownField, row_as_json, row_of
 
 if TYPE_CHECKING:
@@ -30,12 +30,15 @@ _PARTS: Final = {
     "impulse": {"normal": "N s", "tangential": "N s"},
 }
 """What the JSON has as a list of numbers: the ends of the names of its columns, and their units."""
+_SHORT: Final = {"from": "from", "to": "to", "count": "count", "median": "p50", "p90": "p90"}
+"""What the JSON has of a spread under `error_by_lead_time`."""
 
 
 def as_json(result: Result) -> dict[str, Any]:
     """Everything that a replay found; what a bag does not have, its JSON has not."""
     rows = [row_of(*settled) for settled in result.settled]
-    errors, ahead, times = errors_of(rows), velocity_errors_ahead(result.settled), times_ahead(result)
+    errors, times = errors_of(rows), times_ahead(result)
+    ahead = [_span(one) for one in velocity_errors_ahead(result.settled)]
     begin, end = result.extent or (None, None)
     known = {
         "inputs": {name: _counts(counts) for name, counts in result.inputs.items()},
@@ -44,11 +47,7 @@ def as_json(result: Result) -> dict[str, Any]:
         "time_errors_ahead": [_span(one) for one in errors_ahead(times)] if times else None,
         "true_touchdowns": [_match(match) for match in result.matches],
         "gaits": {
-            body: {
-                "feet": list(gait.feet),
-                "stances": [list(one) for one in gait.stances],
-                "true_stances": [list(one) for one in gait.true_stances],
-            }
+            body: {key: getattr(gait, key) for key in ("feet", "stances", "true_stances")}
             for body, gait in result.gaits.items()
         },
         "notes": list(result.notes),
@@ -64,17 +63,8 @@ def as_json(result: Result) -> dict[str, Any]:
         "scored": errors.number,
         "median_relative_error": errors.p50,
         "p90_relative_error": errors.p90,
-        "error_by_lead_time": [
-            {
-                "from": one.begin,
-                "to": one.end,
-                "count": one.errors.number,
-                "median": one.errors.p50,
-                "p90": one.errors.p90,
-            }
-            for one in ahead
-        ],
-        "relative_errors_ahead": [_span(one) for one in ahead],
+        "error_by_lead_time": [{key: one[name] for key, name in _SHORT.items()} for one in ahead],
+        "relative_errors_ahead": ahead,
         "statuses": _counts(result.statuses),
         "geometry_statuses": _counts(result.geometry_statuses),
         "begin": begin,
@@ -110,12 +100,16 @@ def times_ahead(result: Result) -> list[tuple[float, float]]:
 
 def _truth(result: Result, truth: Truth) -> dict[str, Any]:
     """The comparison with the truth, of all bodies and of each."""
-    bodies: dict[str, dict[str, Any]] = {}
+    answer, bodies = truth._asdict(), dict[str, dict[str, Any]]()
     for body, one in result.truths.items():
         bodies[body] = {} if one.truth is None else one.truth._asdict()
         if one.warned is not None:
             bodies[body] |= one.warned._asdict() | {"warned_before_first_impact": one.warned.before_first_impact}
-    return truth._asdict() | warnings_of(result.truths.values()) | ({"bodies": bodies} if bodies else {})
+    if warned := [one for one in bodies.values() if "events" in one]:
+        answers = [one["warned_before_first_impact"] for one in warned if one["warned_before_first_impact"] is not None]
+        answer |= {"bodies_with_slide_or_impact": len(answers), "warned_before_first_impact": sum(answers)}
+        answer |= {key: sum(one[key] for one in warned) for key in ("events", "events_warned")}
+    return answer | ({"bodies": bodies} if bodies else {})
 
 
 def _match(match: Match) -> dict[str, Any]:

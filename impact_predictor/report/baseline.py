@@ -9,12 +9,14 @@ from __future__ import annotations
 
 import json
 import os
-from bisect import bisect_left
+from bisect import bisect_left, bisect_right
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from enum import Enum
+from functools import partial
 from itertools import takewhile
 from math import hypot
+from operator import sub
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
@@ -83,8 +85,7 @@ def chosen_run(bag: str | os.PathLike[str], name: str | os.PathLike[str], runs: 
     That is the run with the same path; else the one whose path agrees with the bag's farthest from its end on, and at
     least as far as the name does. None where there is none, or several.
     """
-    own, name = Path(bag).resolve(), PurePath(name)
-    agreeing: dict[tuple[int, bool], list[str]] = defaultdict(list)
+    own, name, agreeing = Path(bag).resolve(), PurePath(name), defaultdict[int, list[str]](list)
     for run in runs:
         if run == os.fspath(bag):
             return run
@@ -93,7 +94,7 @@ def chosen_run(bag: str | os.PathLike[str], name: str | os.PathLike[str], runs: 
         agreed = len([*takewhile(lambda parts: parts[0] == parts[1], backwards)])
         # A name keeps its suffix only where another bag has none but another suffix.
         if agreed >= len(name.parts) and name.name in (name_of(own), path.name):
-            agreeing[agreed, own.name == path.name].append(run)
+            agreeing[agreed].append(run)
     best = agreeing[max(agreeing)] if agreeing else []
     return best[0] if len(best) == 1 else None
 
@@ -191,20 +192,17 @@ def compare_runs(
 
 
 def _paired(was: Sequence[TouchdownRow], now: Sequence[TouchdownRow]) -> dict[int, int]:
-    """The places of touchdowns that are the same in both runs."""
-    places: dict[tuple[str, str], list[tuple[int, int]]] = defaultdict(list)
-    for k, one in enumerate(now):
-        places[one.body, one.foot].append((one.stamp, k))
-    near: list[tuple[bool, int, int, int, int]] = []
-    for i, one in enumerate(was):
-        others = places[one.body, one.foot]
-        for stamp, k in others[bisect_left(others, (one.stamp - NEAREST, -1)) :]:
-            if stamp > one.stamp + NEAREST:
-                break
-            # Where a bag was played in a loop, one stamp comes again and again, in the same order in both runs.
-            near.append((_points(one) != _points(now[k]), abs(stamp - one.stamp), abs(i - k), i, k))
+    """The places of touchdowns that are the same in both runs, of runs in the order of their stamps."""
+    stamps = [one.stamp for one in now]
+    near = [
+        (_points(one) != _points(now[k]), abs(now[k].stamp - one.stamp), i, k)
+        for i, one in enumerate(was)
+        for k in range(bisect_left(stamps, one.stamp - NEAREST), bisect_right(stamps, one.stamp + NEAREST))
+        if (now[k].body, now[k].foot) == (one.body, one.foot)
+    ]
     pairs: dict[int, int] = {}
     met = set[int]()
+    # Where a bag was played in a loop, one stamp comes again and again, in the same order in both runs.
     for *_, i, k in sorted(near):
         if i not in pairs and k not in met:
             pairs[i] = k
@@ -214,27 +212,27 @@ def _paired(was: Sequence[TouchdownRow], now: Sequence[TouchdownRow]) -> dict[in
 
 def _changes(was: TouchdownRow, now: TouchdownRow, time: float, error: float) -> Iterator[TouchdownChange]:
     """What has changed of one touchdown."""
+    changed = partial(TouchdownChange, now)
     if _points(was) != _points(now):
-        yield TouchdownChange(now, ChangeKind.CONTACTS, _points(was), _points(now))
+        yield changed(ChangeKind.CONTACTS, _points(was), _points(now))
     if was.mode != now.mode:
-        yield TouchdownChange(now, ChangeKind.MODE, was.mode.name, now.mode.name)
+        yield changed(ChangeKind.MODE, was.mode.name, now.mode.name)
     if abs(now.stamp - was.stamp) > time * NANOSECONDS:
-        yield TouchdownChange(now, ChangeKind.MOVED, was.stamp, now.stamp)
+        yield changed(ChangeKind.MOVED, was.stamp, now.stamp)
     if was.scored != now.scored:
-        yield TouchdownChange(now, ChangeKind.SCORED, *("scored" if one.scored else "not scored" for one in (was, now)))
+        yield changed(ChangeKind.SCORED, *("scored" if one.scored else "not scored" for one in (was, now)))
     # Of a landing the error is that of its time.
     old, new = (one.time_error if one.foot else one.error for one in (was, now))
-    limit = time if now.foot else error
-    if old is not None and new is not None and abs(abs(new) - abs(old)) > limit:
-        yield TouchdownChange(now, ChangeKind.WORSE if abs(new) > abs(old) else ChangeKind.BETTER, old, new)
+    if old is not None and new is not None and abs(abs(new) - abs(old)) > (time if now.foot else error):
+        yield changed(ChangeKind.WORSE if abs(new) > abs(old) else ChangeKind.BETTER, old, new)
     elif was.mode == now.mode and _turned(was, now, error):
-        yield TouchdownChange(now, ChangeKind.VELOCITIES, tuple(was.predicted_twist), tuple(now.predicted_twist))
+        yield changed(ChangeKind.VELOCITIES, tuple(was.predicted_twist), tuple(now.predicted_twist))
 
 
 def _turned(was: TouchdownRow, now: TouchdownRow, limit: float) -> bool:
     """Whether the velocities after a touchdown differ by more than a part of those before, as relative errors do."""
     arm, before = was.half_distance, was.before_twist
-    vx, vy, omega = (there - here for there, here in zip(now.predicted_twist, was.predicted_twist, strict=True))
+    vx, vy, omega = map(sub, now.predicted_twist, was.predicted_twist)
     return hypot(vx, vy, omega * arm) > limit * hypot(before.vx, before.vy, before.omega * arm)
 
 
@@ -264,10 +262,22 @@ def concluded(compared: RunComparison, baseline: str | os.PathLike[str]) -> str:
 def sentences(compared: RunComparison) -> list[str]:
     """The changes, one line each, in SI units but for the errors of landings, which are in ms."""
     return [
-        f"{(one.row.stamp - compared.start) / NANOSECONDS:.3f} s {f'{one.row.body} {one.row.foot}'.rstrip()}: "
-        f"{one.kind.value}, was {_text(one, one.was, compared.start)}, now {_text(one, one.now, compared.start)}"
-        for one in compared.changes
+        f"{(row.stamp - compared.start) / NANOSECONDS:.3f} s {f'{row.body} {row.foot}'.rstrip()}: {kind.value}, "
+        f"was {_text(kind, row, was, compared.start)}, now {_text(kind, row, now, compared.start)}"
+        for row, kind, was, now in compared.changes
     ]
+
+
+def _text(kind: ChangeKind, row: TouchdownRow, value: Any, start: int) -> str:
+    if value is None:
+        return NONE
+    if kind is ChangeKind.MOVED:
+        return f"{(value - start) / NANOSECONDS:.4f}"
+    if kind is ChangeKind.VELOCITIES:
+        return "{:.3f} {:.3f} {:.2f}".format(*value)
+    if kind in (ChangeKind.BETTER, ChangeKind.WORSE):
+        return f"{value * 1e3:+.1f} ms" if row.foot else f"{percent(value)} %"
+    return str(value)
 
 
 def comparison_as_json(compared: RunComparison, baseline: str | os.PathLike[str]) -> dict[str, Any]:
@@ -289,15 +299,3 @@ def comparison_as_json(compared: RunComparison, baseline: str | os.PathLike[str]
             for row, kind, was, now in compared.changes
         ],
     }
-
-
-def _text(change: TouchdownChange, value: Any, start: int) -> str:
-    if value is None:
-        return NONE
-    if change.kind is ChangeKind.MOVED:
-        return f"{(value - start) / NANOSECONDS:.4f}"
-    if change.kind is ChangeKind.VELOCITIES:
-        return f"{value[0]:.3f} {value[1]:.3f} {value[2]:.2f}"
-    if change.kind in (ChangeKind.BETTER, ChangeKind.WORSE):
-        return f"{value * 1e3:+.1f} ms" if change.row.foot else f"{percent(value)} %"
-    return str(value)

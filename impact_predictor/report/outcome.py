@@ -28,10 +28,6 @@ FLAGS: Final = {
     Flag.THIN_BODY: "so thin a body bends while it strikes and rebounds; rigid theory does not know that",
     Flag.SLOW_IMPACT: "so weak an impact that gravity matters while it lasts; rigid theory leaves gravity out",
 }
-LAWS: Final = {
-    "path": "growing impulse, Poisson restitution",
-    "total": "whole impulse at once, Newton restitution",
-}
 MARGINS: Final = {
     "friction": ("friction of the contacts", "friction", ""),
     "center": ("mass centre towards the new contact", "mass centre along the tangent", " m"),
@@ -70,10 +66,8 @@ def _rows(body: TwoPointBody, before: Twist, outcomes: Sequence[Outcome]) -> Ite
     for which, contact, index in contacts:
         motions = [approach(contact, twist) for twist in twists]
         impulses = [outcome.impulses[index] for outcome in outcomes]
-        limits = [contact.friction * normal for normal, _ in impulses]
-        used = [
-            abs(impulse[1]) / limit if limit > 0.0 else None for impulse, limit in zip(impulses, limits, strict=True)
-        ]
+        pairs = [(contact.friction * normal, tangent) for normal, tangent in impulses]
+        used = [abs(tangent) / limit if limit > 0.0 else None for limit, tangent in pairs]
         yield (which,)
         yield "  normal velocity, m/s", *(_number(normal, speed) for normal, _ in motions)
         yield "  slip, m/s", *(_number(slip, speed) for _, slip in motions)
@@ -96,7 +90,7 @@ def _sentences(outcome: Outcome, *, alone: bool) -> Iterator[str]:
     def meaning(mode: Mode) -> str:
         return MODES[mode].one_point if alone else MODES[mode].meaning
 
-    yield f"{outcome.mode.name} by the {outcome.law} law ({LAWS[outcome.law]}):"
+    yield f"{outcome.mode.name} by the {outcome.law} law:"
     yield f"  {meaning(outcome.mode)}."
     if outcome.segments:
         yield "  While the impulse grows:" if outcome.law == "path" else "  In all:"

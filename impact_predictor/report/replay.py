@@ -6,7 +6,7 @@ from collections import Counter, defaultdict
 from collections.abc import Sequence
 from functools import partial
 from math import hypot
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 from rich.console import Console
 from rich.table import Table
@@ -16,18 +16,12 @@ from ..prediction.types import Status
 from ..scenarios.comparison import LEAD_TIMES, Truth, Warned
 from ..stamps import NANOSECONDS
 from ..wording import NONE, counted, duration, fixed, percent, words
-from .summary import SpanErrors, Tally, errors_of, velocity_errors_ahead, warnings_of
+from .summary import SpanErrors, Tally, errors_of, velocity_errors_ahead
 from .table import MOST_ROWS, Column, first_stamp, more, say, show, table_of
 from .touchdowns import TouchdownRow, rows_of
 
 if TYPE_CHECKING:
     from ..bags.replay import Result
-
-TOO_EARLY: Final = {
-    Status.NO_SUPPORT: "before the deck's motion was known",
-    Status.NO_GEOMETRY: "before the first contact points",
-}
-"""Samples that came before something is known, which is no fault of theirs."""
 
 
 def print_replay(console: Console, result: Result, every: bool = False) -> None:
@@ -48,7 +42,11 @@ def print_replay(console: Console, result: Result, every: bool = False) -> None:
     say(console, *Tally(rows).sentences())
     if result.truth is not None:
         say(console, *truth_sentences(result.truth))
-    say(console, *_warnings(result), *_costs(result))
+    warned = [one.warned for one in result.truths.values() if one.warned is not None]
+    if events := sum(one.events for one in warned):
+        stood = sum(one.events_warned for one in warned)
+        say(console, f"A warning stood before {stood:,} of {counted(events, 'event')}.")
+    say(console, *_costs(result))
 
 
 def _show(console: Console, table: Table, *remarks: str) -> None:
@@ -140,9 +138,9 @@ def bodies_table(result: Result, rows: Sequence[TouchdownRow]) -> Table | None:
     bodies = [*dict.fromkeys([*samples, *result.truths])]
     if not bodies or "" in bodies:
         return None
+    mine = {body: [row for row in rows if row.body == body] for body in bodies}
     truths = defaultdict(Truth, {body: one.truth for body, one in result.truths.items() if one.truth})
     warned = defaultdict(Warned, {body: one.warned for body, one in result.truths.items() if one.warned})
-    mine = {body: [row for row in rows if row.body == body] for body in bodies}
     columns = [Column("body", str, left=True), Column("samples", lambda body: f"{samples[body]:,}")]
     if result.truth is not None:
         columns += [
@@ -176,31 +174,16 @@ def truth_sentences(truth: Truth) -> list[str]:
     touchdowns, alarms = counted(truth.touchdowns, "touchdown"), counted(truth.false, "false alarm")
     said = [f"Against the truth in the bag: {truth.found:,} of {touchdowns} found, {alarms}."]
     if truth.mode_accuracy is not None:
-        said.append(
-            f"Of those found, {percent(truth.mode_accuracy)} % have the right mode; the velocities after them are "
-            f"within {percent(truth.median_velocity_error)} % of the true ones in the median."
-        )
+        within = f"within {percent(truth.median_velocity_error)} % of the true ones in the median"
+        right = f"{percent(truth.mode_accuracy)} % have the right mode"
+        said.append(f"Of those found, {right}; the velocities after them are {within}.")
     if truth.median_time_error is not None:
         ahead = f"{1e3 * LEAD_TIMES[0]:.0f} ms ahead"
         said.append(f"The time predicted {ahead} is {duration(truth.median_time_error)} wrong in the median.")
     if truth.unresolved:
-        said.append(
-            f"{counted(truth.unresolved, 'more impact')} cannot be seen at this rate of samples: too soon after the "
-            "one before, or too slow."
-        )
+        hidden = counted(truth.unresolved, "more impact")
+        said.append(f"{hidden} cannot be seen at this rate of samples: too soon after the one before, or too slow.")
     return said
-
-
-def _warnings(result: Result) -> list[str]:
-    counts = warnings_of(result.truths.values())
-    if not counts or not counts["events"]:
-        return []
-    said = f"A warning stood before {counts['events_warned']:,} of {counted(counts['events'], 'event')}"
-    if bodies := counts["bodies_with_slide_or_impact"]:
-        said += (
-            f", and before the first slide or impact of {counts['warned_before_first_impact']:,} of {bodies:,} bodies"
-        )
-    return [f"{said}."]
 
 
 def _costs(result: Result) -> list[str]:
@@ -215,6 +198,6 @@ def _costs(result: Result) -> list[str]:
         refused[name if name.startswith("support/") else name.rpartition("/")[2]].update(counts)
     for name, all_counts in refused.items():
         del all_counts[Status.ACCEPTED]
-        faults = [f"{count:,} {TOO_EARLY.get(one, words(one.name))}" for one, count in all_counts.items()]
+        faults = [f"{count:,} {words(one.name)}" for one, count in all_counts.items()]
         said += [f"Refused messages of {name}: {', '.join(faults)}."] if faults else []
     return said

@@ -16,7 +16,7 @@ from ..scenarios.deck.voyage import Voyage
 from ..scenarios.rocking import Rocking
 from ..scenarios.truth import TrueImpact, TrueOnset
 from ..scenarios.wheel import Rolling
-from ..scenarios.wheel_closed_forms import Steady, downhill, impact_friction, least_friction, steady
+from ..scenarios.wheel_closed_forms import downhill, impact_friction, least_friction, steady
 from ..stamps import NANOSECONDS
 from ..wording import NONE, counted, fixed, words
 from .table import Column, more, say, show, table_of
@@ -95,22 +95,15 @@ def print_rocking(console: Console, rocking: Rocking) -> None:
     say(console, f"The motion ends at {run.time:.6f} s: {words(run.end.name)}.")
 
 
-def _steady(rolling: Rolling) -> tuple[Steady | None, float]:
-    """Rolling down the slope without slip in closed form, and the least friction coefficient for it, perhaps inf."""
-    down = downhill(rolling.wheel)
-    rolls = steady(down)
-    return rolls, inf if rolls is None else least_friction(down)
-
-
 def rolling_as_json(rolling: Rolling) -> dict[str, Any]:
     """A rolling motion as JSON: times in s, angular velocities as magnitudes in rad/s.
 
     `steps` and `speed` count ahead. `steady` is the closed form of rolling down the slope without slip, with the least
     friction coefficient for it; null where the wheel stops, or no friction is enough.
     """
-    known = None
-    rolls, needed = _steady(rolling)
-    if rolls is not None and needed < inf:
+    known, down = None, downhill(rolling.wheel)
+    rolls = steady(down)
+    if rolls is not None and (needed := least_friction(down)) < inf:
         known = {
             "omega_before": rolls.before,
             "omega_after": rolls.after,
@@ -141,23 +134,19 @@ def print_rolling(console: Console, rolling: Rolling) -> None:
 
 def rolling_sentences(rolling: Rolling) -> list[str]:
     """How the motion ended, and what steady rolling down the slope would be."""
+    answer = rolling_as_json(rolling)
     way = f"{counted(rolling.steps, 'step')} and {rolling.distance:.3f} m ahead"
-    said = [f"The motion ends at {rolling.time:.6f} s: {words(rolling.end.name)}, {way}."]
-    rolls, needed = _steady(rolling)
-    if rolls is None:
-        said.append("On this slope it does not keep rolling: each impact takes more than a step gives (closed form).")
-    elif needed == inf:
-        none = "no friction is enough, the ground would have to hold its spokes down (closed form)"
-        said.append(f"Without slip it cannot roll steadily: {none}.")
-    else:
-        hub = rolling.wheel.hub
-        rates = f"{rolls.before:.9f} rad/s before each impact, {rolls.after:.9f} after it"
-        struck = f"{impact_friction(hub, rolling.wheel.alpha):.6f} in the impacts"
-        said += [
-            f"Steady rolling without slip, closed form: {rates}, a step in {rolls.time:.6f} s, {rolls.speed:.4f} m/s.",
-            f"It needs a friction coefficient of {struck}, between them {needed:.6f}; the wheel has {hub.friction:g}.",
-        ]
-    return said
+    ended = f"The motion ends at {rolling.time:.6f} s: {words(rolling.end.name)}, {way}."
+    if (known := answer["steady"]) is None:
+        return [ended, "On this slope it cannot roll steadily without slip, with any friction (closed form)."]
+    rates = f"{known['omega_before']:.9f} rad/s before each impact, {known['omega_after']:.9f} after it"
+    steps = f"{known['step_time']:.6f} s a step, {known['speed']:.4f} m/s"
+    friction = f"{answer['impact_friction']:.6f} in the impacts, between them {known['friction']:.6f}"
+    return [
+        ended,
+        f"Steady rolling without slip, closed form: {rates}, {steps}.",
+        f"It needs a friction coefficient of {friction}; the wheel has {rolling.wheel.hub.friction:g}.",
+    ]
 
 
 def voyage_as_json(voyage: Voyage) -> dict[str, Any]:
@@ -166,7 +155,7 @@ def voyage_as_json(voyage: Voyage) -> dict[str, Any]:
     `impacts` are those of all units in order of time; `accumulation_time` is when impacts last accumulated so that a
     contact stayed closed, null if they never did. `units` has the same for each unit.
     """
-    units = {
+    units: dict[str, dict[str, Any]] = {
         one.unit.name: {
             "impacts": [_spatial(impact) for impact in one.impacts],
             "accumulation_time": one.sums[-1] if one.sums else None,

@@ -14,7 +14,6 @@ from ..wording import counted, percent, words
 
 if TYPE_CHECKING:
     from ..bags.body import Settled
-    from ..scenarios.comparison import BodyTruth
     from .touchdowns import TouchdownRow
 
 LEAD_TIME_EDGES: Final = (0.0, 0.01, 0.02, 0.03, 0.04, 0.05, 0.06)
@@ -55,20 +54,6 @@ class SpanErrors(NamedTuple):
     begin: float
     end: float
     errors: Distribution
-
-
-def warnings_of(truths: Iterable[BodyTruth]) -> dict[str, int]:
-    """How often what happened to bodies under watch was warned of, as the JSON has it; empty where none is watched."""
-    warned = [one.warned for one in truths if one.warned is not None]
-    answers = [one.before_first_impact for one in warned if one.before_first_impact is not None]
-    if not warned:
-        return {}
-    return {
-        "bodies_with_slide_or_impact": len(answers),
-        "warned_before_first_impact": sum(answers),
-        "events": sum(one.events for one in warned),
-        "events_warned": sum(one.events_warned for one in warned),
-    }
 
 
 def errors_of(rows: Iterable[TouchdownRow]) -> Distribution:
@@ -181,7 +166,6 @@ class Tally:
                     "speed": row.landing_speed,
                     "impulse": row.impulse and hypot(*row.impulse),
                     "change": row.velocity_change and hypot(*row.velocity_change[:2]),
-                    "late": row.late,
                 }
             else:
                 self._touchdowns += 1
@@ -222,11 +206,6 @@ class Tally:
             told.append(f"The time predicted {1e3 * LEAD_TIMES[0]:.0f} ms ahead is {wrong}.")
         if known["impulse"]:
             speeds = f"{quantile(known['speed'], 0.5):.3f} m/s in the median, at most {max(known['speed']):.3f} m/s"
-            told.append(
-                f"In its last sample in the air a foot has {speeds}; an impact with that speed gives it at most "
-                f"{max(known['impulse']):.2f} N s, and the body at most {max(known['change']):.3f} m/s."
-            )
-        if late := [1e3 * one for one in known["late"]]:
-            times = f"{quantile(late, 0.5):+.1f} ms late in the median, from {min(late):+.1f} to {max(late):+.1f} ms"
-            told.append(f"Against the plan {counted(len(late), 'landing')} came {times}.")
+            most = f"{max(known['impulse']):.2f} N s to a foot and {max(known['change']):.3f} m/s to the body"
+            told.append(f"Feet come down with {speeds}; that gives at most {most}.")
         return told

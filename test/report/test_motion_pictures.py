@@ -109,7 +109,7 @@ def test_titles_and_sentences_say_what_rolls_and_what_it_needs(slips: Rolling, s
     assert title_of(slips.wheel) == "A rimless wheel of 8 spokes on a slope of 5° with friction 0.35"
     assert "between them 0.375327; the wheel has 0.35" in rolling_sentences(slips)[-1]
     assert rolling_sentences(slips)[-2].startswith("Steady rolling without slip, closed form: 1.605412029 rad/s")
-    assert rolling_sentences(stops)[-1].startswith("On this slope it does not keep rolling")
+    assert rolling_sentences(stops)[-1].startswith("On this slope it cannot roll steadily")
     assert rolling_as_json(stops)["steady"] is None
 
 

@@ -85,15 +85,13 @@ def test_landings_together_say_how_early_they_were_predicted_and_what_their_impa
     predicted, times, impacts = Tally([LANDED]).sentences()
     assert predicted == "1 landing of 1 foot, 1 predicted, 100 ms ahead or earlier."
     assert times == "The time predicted 20 ms ahead is 2.0 ms wrong in the median, by when the foot's motion ends."
-    assert impacts.startswith("In its last sample in the air a foot has 0.123 m/s in the median, at most 0.123 m/s; ")
-    assert impacts.endswith("gives it at most 5.00 N s, and the body at most 0.050 m/s.")
+    assert impacts == (
+        "Feet come down with 0.123 m/s in the median, at most 0.123 m/s; "
+        "that gives at most 5.00 N s to a foot and 0.050 m/s to the body."
+    )
     weak = LANDED._replace(impulse=(0.0, 0.0), velocity_change=Twist(0.0, 0.0, 0.0), landing_speed=0.023)
     largest = Tally([weak, LANDED]).sentences()[-1]
-    assert all(said in largest for said in ("0.073 m/s in", "most 0.123 m/s", "most 5.00 N s", "most 0.050 m/s"))
-    late = [LANDED._replace(late=-0.012), LANDED._replace(foot="RF", late=0.02), LANDED]
-    assert Tally(late).sentences()[-1] == (
-        "Against the plan 2 landings came +4.0 ms late in the median, from -12.0 to +20.0 ms."
-    )
+    assert all(said in largest for said in ("0.073 m/s in", "most 0.123 m/s", "most 5.00 N s", "0.050 m/s to the body"))
     mixed = Tally([LANDED, SCORED]).sentences()
     assert any(one.startswith("1 landing") for one in mixed)
     assert any(one.startswith("1 of 1 touchdown scored") for one in mixed)
