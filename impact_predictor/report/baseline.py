@@ -40,15 +40,15 @@ _HINT: Final = "give what `impact-predictor replay` wrote with -o, or printed wi
 class Earlier:
     """An earlier run of one bag or of several.
 
-    That is the bag that the run wrote or a recording of the node's topics, or the JSON of the run; of a run of several
-    bags the folder of what was written, or the JSON with one object for each.
+    That is the bag that it wrote, a recording of the node's topics or its JSON; of several bags the folder of what was
+    written, or the JSON with one object for each.
     """
 
     def __init__(self, path: str | os.PathLike[str], bags: int = 1) -> None:
         """Look at it, to compare so many bags with it; JSON is read at once, bags when they are asked for.
 
         Raises:
-            InputError: it does not exist, is JSON that cannot be read, or none of a replay, or the run of one bag only.
+            InputError: it does not exist, cannot be read, or is the run of one bag only.
         """
         self.path = Path(path)
         # By the path of each bag, or by "" that of the only one: its touchdowns, or the file that has them.
@@ -104,10 +104,8 @@ def _runs_of_json(path: Path) -> dict[str, Sequence[TouchdownRow]]:
         answer = json.loads(path.read_bytes())
         runs = answer if isinstance(answer, list) else [answer | {"bag": ""}]
         return {run["bag"]: [*map(row_of_json, run["touchdowns"])] for run in runs if "error" not in run}
-    except OSError as error:
-        raise InputError(f"the baseline {path} cannot be read: {error.strerror}") from error
-    except (AttributeError, KeyError, TypeError, ValueError) as error:
-        raise InputError(f"the baseline {path} is not the JSON of a replay; {_HINT}") from error
+    except (AttributeError, KeyError, OSError, TypeError, ValueError) as error:
+        raise InputError(f"the baseline {path} cannot be read as the JSON of a replay; {_HINT}") from error
 
 
 def _read_bag(path: Path) -> list[TouchdownRow]:
@@ -200,8 +198,7 @@ def _paired(was: Sequence[TouchdownRow], now: Sequence[TouchdownRow]) -> dict[in
         for k in range(bisect_left(stamps, one.stamp - NEAREST), bisect_right(stamps, one.stamp + NEAREST))
         if (now[k].body, now[k].foot) == (one.body, one.foot)
     ]
-    pairs: dict[int, int] = {}
-    met = set[int]()
+    pairs, met = dict[int, int](), set[int]()
     # Where a bag was played in a loop, one stamp comes again and again, in the same order in both runs.
     for *_, i, k in sorted(near):
         if i not in pairs and k not in met:

@@ -12,7 +12,7 @@ from rich.console import Console
 
 from ..mechanics.motion import End, RockingImpact, Trajectory
 from ..mechanics.types import Mode
-from ..scenarios.deck.voyage import Voyage
+from ..scenarios.deck.voyage import Followed, Voyage
 from ..scenarios.rocking import Rocking
 from ..scenarios.truth import TrueImpact, TrueOnset
 from ..scenarios.wheel import Rolling
@@ -186,6 +186,10 @@ def _resolved(impacts: Iterable[TrueImpact]) -> list[TrueImpact]:
     return [impact for impact in impacts if impact.approach > RESOLVED]
 
 
+def _end(one: Followed) -> str:
+    return "stands" if one.end is End.TIME_UP else f"{words(one.end.name)}\nat {one.time:.1f} s"
+
+
 def _first(onsets: Iterable[TrueOnset]) -> str:
     return fixed(min((onset.stamp / NANOSECONDS for onset in onsets), default=None), 2)
 
@@ -205,7 +209,7 @@ def print_voyage(console: Console, voyage: Voyage) -> None:
         Column("fastest\nm/s", lambda one: fixed(max((hit.approach for hit in one.impacts), default=None), 2)),
         Column("turned\nup to\ndegrees", lambda one: f"{degrees(one.most_turned):.1f}"),
         Column("moved\nto port\nm", lambda one: f"{one.moved:+.2f}"),
-        Column("at the\nend", lambda one: "stands" if one.end is End.TIME_UP else words(one.end.name), left=True),
+        Column("at the\nend", _end, left=True),
     ]
     show(console, table_of(columns, voyage.units))
     impacts = [impact for one in voyage.units for impact in one.impacts]
@@ -213,5 +217,3 @@ def print_voyage(console: Console, voyage: Voyage) -> None:
     counts = ", ".join(f"{count} {mode}" for mode, count in modes.most_common()) or "none"
     every = f"{counted(len(impacts), 'impact')}, {60.0 * len(impacts) / voyage.duration:.3g} a minute"
     say(console, f"{every}, with more than {RESOLVED:g} m/s: {counts}.")
-    toppled = [f"{one.unit.name} at {one.time:.1f} s" for one in voyage.units if one.end is End.OVERTURNED]
-    say(console, *([f"Overturned, and not recorded after that: {', '.join(toppled)}."] if toppled else []))

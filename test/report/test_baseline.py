@@ -277,10 +277,10 @@ def test_of_several_bags_the_run_of_this_one_is_read(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("content", "said"),
     [
-        ("not json", "is not the JSON of a replay"),
-        ("3", "is not the JSON of a replay"),
-        ("[1, 2]", "is not the JSON of a replay"),
-        ('{"touchdowns": [{"stamp": 1}]}', "is not the JSON of a replay"),
+        ("not json", "cannot be read as the JSON of a replay"),
+        ("3", "cannot be read as the JSON of a replay"),
+        ("[1, 2]", "cannot be read as the JSON of a replay"),
+        ('{"touchdowns": [{"stamp": 1}]}', "cannot be read as the JSON of a replay"),
         ("[]", "has no run of bags/run.mcap"),
         ('[{"bag": "bags/run.mcap", "error": "damaged"}]', "has no run of bags/run.mcap"),
     ],
