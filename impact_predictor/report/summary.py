@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from array import array
+from bisect import bisect_left
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping, Sequence
-from itertools import pairwise
+from itertools import accumulate, pairwise
 from math import floor, hypot, log10
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
@@ -103,26 +104,18 @@ def spread_of(numbers: Sequence[float]) -> Distribution:
 
 
 def together(spreads: Iterable[Distribution]) -> Distribution:
-    """The spread of all the numbers of several spreads; with more than one its percentiles are right to 1 %."""
+    """The spread of all the numbers of several spreads; with more than one its percentiles are those of the bins."""
     known = [spread for spread in spreads if spread.number]
     if len(known) < 2:
         return known[0] if known else Distribution()
     bins: Counter[int] = Counter()
     for spread in known:
         bins.update(spread.bins)
-    percentiles = {name: _below(bins, part) for name, part in _PERCENTILES.items()}
-    most = max(spread.most or 0.0 for spread in known)
-    return Distribution(number=bins.total(), most=most, bins=bins, **percentiles)
-
-
-def _below(bins: Mapping[int, int], part: float) -> float:
-    """What a part of the numbers in bins stays below, as if they lay evenly in each bin."""
-    wanted, before, last = part * sum(bins.values()), 0, 0
-    for last in sorted(bins):  # the last bin counts where rounding misses every one
-        if before + bins[last] >= wanted:
-            break
-        before += bins[last]
-    return float(10.0 ** ((last + (wanted - before) / bins[last]) / PER_DECADE))
+    places = sorted(bins)
+    below = [*accumulate(bins[place] for place in places)]
+    middles = {name: places[bisect_left(below, part * below[-1])] + 0.5 for name, part in _PERCENTILES.items()}
+    percentiles = {name: 10.0 ** (middle / PER_DECADE) for name, middle in middles.items()}
+    return Distribution(number=below[-1], most=max(spread.most or 0.0 for spread in known), bins=bins, **percentiles)
 
 
 def to_json(spread: Distribution) -> dict[str, Any]:
