@@ -33,7 +33,7 @@ CELLS: Final = "report.csv"
     metavar="FOLDER",
     help=f"Folder for {PAGE}, {DATA} and {CELLS}; made if there is none. [default: report, with --json none]",
 )
-@click.option("--quick", is_flag=True, help="Fewer problems and repetitions: a minute instead of several.")
+@click.option("--quick", is_flag=True, help="A seventh of the problems.")
 @click.option("--json", "as_json", is_flag=True, help="Print the report as JSON.")
 def report(output: Path | None, quick: bool, as_json: bool) -> None:
     """Compare error and run time of many methods for touchdowns and impacts.

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from math import inf
 from random import Random
-from time import process_time
 from types import SimpleNamespace
 from typing import Any
 
@@ -25,6 +24,7 @@ from impact_predictor.report.accuracy import (
     impacts,
     row_of,
     rows_of,
+    seconds_of,
     stability_rows,
     touchdowns,
 )
@@ -33,25 +33,20 @@ from impact_predictor.report.accuracy.page import accuracy_page
 SCENES = [AccuracyScene("one", TOUCHDOWN, "", "", ""), AccuracyScene("two", TOUCHDOWN, "", "", "")]
 
 
-def busy(seconds: float) -> float:
-    until = process_time() + seconds
-    while process_time() < until:
-        pass
-    return seconds
-
-
-def test_a_method_answers_every_problem_or_as_many_as_there_is_time_for() -> None:
+def test_a_method_answers_every_problem_and_what_it_does_not_answer_is_infinitely_wrong() -> None:
     question = SimpleNamespace(
         SCENES=dict.fromkeys(SCENES, Random.random),
-        METHODS={("exact", ""): lambda n: n, ("none", ""): lambda n: None, ("slow", ""): lambda n: busy(0.03)},
+        METHODS={("exact", ""): lambda n: n, ("none", ""): lambda n: None},
         reference_of=lambda problem: problem,
         errors_of=lambda problem, answer, right: {"time_error": abs(answer - right), "twist_error": 0.0},
     )
-    exact, none, few = list(rows_of(question, 50, 0.05))[:3]
+    exact, none = list(rows_of(question, 50))[:2]
     assert (exact["method"], exact["count"], exact["failed"], error_of(exact)) == ("exact", 50, 0, 0.0)
     assert (none["count"], none["failed"], error_of(none)) == (50, 50, inf)
-    assert 1 <= few["count"] <= 3
-    assert few["us"] == pytest.approx(3e4, rel=0.5)
+
+
+def test_a_slow_call_is_timed_as_slow() -> None:
+    assert seconds_of(lambda: sum(range(100_000))) > 10.0 * seconds_of(lambda: sum(range(1000)))
 
 
 def row(scene: int, name: str, us: float, error: float) -> dict[str, Any]:

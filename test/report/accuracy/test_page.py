@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import json
 from pathlib import Path
 from typing import Any
@@ -22,8 +21,7 @@ def read(report: dict[str, Any]) -> PageReader:
 
 @pytest.mark.parametrize("question", ERRORS)
 def test_the_picture_of_a_question_has_a_point_for_each_method_on_each_scene(question: str) -> None:
-    report = copy.deepcopy(REPORT)
-    report["rows"] = [row for row in report["rows"] if row["question"] == question]
+    report = REPORT | {"rows": [row for row in REPORT["rows"] if row["question"] == question]}
     (figure,) = read(report).figures.values()
     names = {scene["name"]: scene["title"] for scene in report["scenes"]}
     drawn = {
@@ -54,16 +52,6 @@ def test_the_tables_have_the_choices_for_each_wanted_accuracy_and_the_errors_of_
             of = [row for row in REPORT["rows"] if (row["question"], row["method"]) == (rows, cells[1])]
             assert cells[2:5] in [[f"{row[error + end]:.2g}" for end in ("", "_90", "_worst")] for row in of]
     assert tosses[1][1] == "path law, slip across"
-
-
-def test_names_of_a_report_cannot_become_part_of_the_page() -> None:
-    report, evil = copy.deepcopy(REPORT), "<script>alert(1)</script>"
-    report["made"]["machine"] = report["scenes"][0]["title"] = evil
-    for row in report["rows"]:
-        row["method"] = row["setting"] = evil
-    text = accuracy_page(report, script="")
-    assert "<script>alert" not in text
-    assert evil in PageReader(text).text
 
 
 def test_a_report_with_little_in_it_makes_a_page_too() -> None:
