@@ -51,7 +51,7 @@ def report(output: Path | None, quick: bool, as_json: bool) -> None:
     from .progress import compiling_is_said, progress
 
     command = "impact-predictor report" + (" --quick" if quick else "") + (f" -o {folder}" if folder else " --json")
-    with compiling_is_said(), progress("report", "methods", accuracy.STEPS) as tell:
+    with compiling_is_said(), progress("report", "methods") as tell:
         fields = accuracy.report(accuracy.QUICK if quick else 1.0, command, tell)
     if folder is not None:
         write(folder, fields)

@@ -103,14 +103,11 @@ VARIANTS: Final[dict[str, dict[str, Any]]] = {
 QUICK: Final = 0.15
 """Part of the problems that a quick report has."""
 
-STEPS: Final = 62
-"""How many rows a report has."""
-
 
 def report(part: float, command: str, tell: Callable[[int], None] = lambda done: None) -> dict[str, Any]:
-    """Measure everything, on a part of the problems; the report as its JSON has it.
+    """Measure everything, on a part of the problems, for a command; the report as its JSON has it.
 
-    `command` is what asked for it; `tell` is told how many of the `STEPS` are done.
+    `tell` is told how many rows are done.
     """
     from . import impacts, touchdowns
 

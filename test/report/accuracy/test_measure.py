@@ -88,7 +88,7 @@ def test_the_cheapest_that_is_good_enough_on_all_scenes_is_chosen_and_the_nodes_
 def test_a_small_report_has_a_row_for_each_method_on_each_scene_and_makes_a_page() -> None:
     done = list[int]()
     report = json.loads(json.dumps(accuracy.report(0.02, "a command", done.append), allow_nan=False))
-    assert done == list(range(1, accuracy.STEPS + 1))
+    assert done == list(range(1, len(report["rows"]) + 1))
     rows = {(row["question"], row["scene"], row["method"], row["setting"]) for row in report["rows"]}
     assert len(rows) == len(report["rows"])
     for question, name in ((touchdowns, TOUCHDOWN), (impacts, IMPACT)):
