@@ -66,12 +66,6 @@ class ReplayFacts:
         counts = Counter((one["mode"] or NOTHING, one["predicted_mode"] or NOTHING) for one in seen)
         return counts if any(true != NOTHING for true, _ in counts) else Counter()
 
-    def right_modes(self) -> str:
-        """In how many of the true touchdowns that were found the mode is right; "" where none was found."""
-        both = {pair: count for pair, count in self.confusion().items() if NOTHING not in pair}
-        right = sum(count for (true, predicted), count in both.items() if true == predicted)
-        return f"The mode is right in {right:,} of {sum(both.values()):,}." if both else ""
-
     def errors_ahead(self, key: str) -> list[SpanErrors]:
         """The errors by lead time under a key of the answers, all together; the spans that have any."""
         spans: dict[tuple[float, float], list[Distribution]] = {}
@@ -103,6 +97,9 @@ class ReplayFacts:
             found = f"{sum(one['time_error'] is not None for one in feet):,} of {len(feet):,}"
             missed = "landings, as the feet's motion shows them"
         right = f"median against the {'true' if truth else 'measured'} ones; 90 % below {part_words(errors.p90)}. "
+        if both := {pair: count for pair, count in self.confusion().items() if NOTHING not in pair}:
+            same = sum(count for (true, predicted), count in both.items() if true == predicted)
+            right += f"The mode is right in {same:,} of {sum(both.values()):,}."
         late, span = Distribution(), ""
         for one in self.errors_ahead("time_errors_ahead"):
             if one.begin >= LEAST_LEAD_TIME:
@@ -115,7 +112,7 @@ class ReplayFacts:
         return [
             Headline("touchdowns", f"{len(self.touchdowns):,}", compared),
             Headline("found", found, missed),
-            Headline("velocity error", part_words(errors.p50), right + self.right_modes()),
+            Headline("velocity error", part_words(errors.p50), right),
             Headline("time error", time_words(late.p50), f"median {span}; 90 % below {time_words(late.p90)}"),
             Headline("first ahead", first, f"median; 90 % at least {early}, the latest {latest}"),
             Headline("cost of a sample", half, f"median; 99 % below {most}"),

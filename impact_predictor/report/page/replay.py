@@ -171,7 +171,7 @@ def modes(facts: ReplayFacts) -> Section:
             rows.append([looks[row], *cells])
         caption = "How many touchdowns of each true mode (a row) were predicted in which mode (a column)."
         table = PageTable(["true mode", *(MISSED if one == NOTHING else one for one in predicted)], rows, caption)
-        return Section("modes", "Predicted against true modes", [facts.right_modes()], [table])
+        return Section("modes", "Predicted against true modes", [], [table])
     rows = []
     for mode in sorted(found, key=ORDER.index):
         errors = [one["relative_error"] for one in facts.scored if one["mode"] == mode]
