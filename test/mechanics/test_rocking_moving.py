@@ -80,6 +80,20 @@ def test_every_phase_is_newtons_law_in_the_world() -> None:
     assert seen & {"++", "--"}
 
 
+@pytest.mark.parametrize("beyond", [1e-4, 1e-5, 1e-6, 1e-7, 1e-8])
+def test_a_slip_that_begins_as_slowly_as_rounding_ends_and_the_body_rests_again(beyond: float) -> None:
+    """The deck's acceleration passes that of friction by so much, for the time of sqrt(8 beyond) of its phase.
+
+    The slip goes on until its area is made up for, in cubics half as long again.
+    """
+    low = plate(length=0.8, height=0.3, mass=1.0, friction=0.3)
+    run = rock(low, standing(low, 0.0), harmonic_support(x=(Wave(0.3 * G * (1.0 + beyond) / 9.0, 3.0),)), duration=1.0)
+    assert run.end is End.TIME_UP
+    assert [phase.states for phase in run.phases] == ["SS", "++", "SS"]
+    _, slip, rest = run.phases
+    assert rest.start - slip.start == pytest.approx(1.5 * math.sqrt(8.0 * beyond) / 3.0, rel=0.01)
+
+
 def accelerated(ax: float, ay: float = 0.0) -> MovingSupport:
     def motion(t: Any) -> SupportMotion:
         zero = 0.0 * t
