@@ -178,10 +178,8 @@ def compare_runs(
     gone, new = {*range(len(was))} - pairs.keys(), {*range(len(now))} - {*pairs.values()}
     changes += [TouchdownChange(was[i], ChangeKind.VANISHED, was=was[i].mode.name) for i in gone]
     changes += [TouchdownChange(now[k], ChangeKind.APPEARED, now=now[k].mode.name) for k in new]
-    order = list(ChangeKind)
-    changes.sort(key=lambda one: (one.row.stamp, one.row.body, one.row.foot, order.index(one.kind)))
     return RunComparison(
-        changes=tuple(changes),
+        changes=tuple(sorted(changes, key=lambda one: (one.row.stamp, one.row.body, one.row.foot))),
         were=len(was),
         are=len(now),
         alike=sum(not one for one in found),

@@ -66,10 +66,6 @@ def _spatial(impact: TrueImpact) -> dict[str, Any]:
     return _impact(impact.stamp / NANOSECONDS, impact.mode, hypot(*impact.angular_before), hypot(*impact.angular_after))
 
 
-def _onset(onset: TrueOnset) -> dict[str, Any]:
-    return {"time": onset.stamp / NANOSECONDS, "slides": onset.slides, "lifts": onset.lifts}
-
-
 def rocking_as_json(run: Trajectory) -> dict[str, Any]:
     """A motion as JSON: times in s, angular velocities as magnitudes in rad/s.
 
@@ -162,7 +158,7 @@ def voyage_as_json(voyage: Voyage) -> dict[str, Any]:
             "end": one.end.name,
             "time": one.time,
             "resolved_impacts": len(_resolved(one.impacts)),
-            "onsets": [_onset(onset) for onset in one.onsets],
+            "onsets": [{"time": it.stamp / NANOSECONDS, "slides": it.slides, "lifts": it.lifts} for it in one.onsets],
             "most_turned": one.most_turned,
             "moved": one.moved,
         }

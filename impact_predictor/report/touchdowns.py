@@ -111,11 +111,15 @@ FIELDS: Final = (
 )
 
 
+_NO_LANDING: Final = Landing("", 0, None, None, ())
+
+
 def row_of(body: str, score: Score, cost: float | None = None) -> TouchdownRow:
     """The row of a score; `cost` in s."""
-    touchdown, landing = score.touchdown, score.landing
-    history = score.history if landing is None else landing.history
-    row = TouchdownRow(
+    touchdown, landing = score.touchdown, score.landing or _NO_LANDING
+    history, impact = landing.history if score.landing else score.history, landing.impact
+    flags = [flag for flags in (score.leftover, touchdown.flags) for flag in type(flags) if flag & flags]
+    return TouchdownRow(
         body=body,
         stamp=score.stamp,
         announced_lead_time=history[0][0] if history else touchdown.lead_time,
@@ -128,31 +132,21 @@ def row_of(body: str, score: Score, cost: float | None = None) -> TouchdownRow:
         relative_error=score.relative_error,
         out_of_plane=touchdown.off_axis,
         scored=score.scored,
-        flags=tuple(
-            flag.name or "" for flags in (score.leftover, touchdown.flags) for flag in type(flags) if flag & flags
-        ),
+        flags=tuple(flag.name or "" for flag in flags),
         old=tuple(touchdown.old),
         new=tuple(touchdown.new),
         cost=cost,
-    )
-    if landing is None:
-        return row
-    row = row._replace(
         foot=landing.foot,
         point=landing.point,
-        time_error=history[-1][1] if history else None,
+        time_error=landing.history[-1][1] if landing.history else None,
         late=landing.late,
         confirmed=landing.confirmed,
         landing_speed=landing.speed,
-        time_errors=tuple(error_ahead(landing, lead_time) for lead_time in LEAD_TIMES),
-    )
-    if (impact := landing.impact) is None:
-        return row
-    return row._replace(
-        landing_mode=impact.mode,
-        impulse=impact.impulses[1],
-        others_impulse=impact.impulses[0] if impact.old else None,
-        velocity_change=Twist(*map(sub, impact.after, impact.before)),
+        time_errors=tuple(error_ahead(landing, lead_time) for lead_time in LEAD_TIMES) if score.landing else (),
+        landing_mode=impact and impact.mode,
+        impulse=impact and impact.impulses[1],
+        others_impulse=impact.impulses[0] if impact and impact.old else None,
+        velocity_change=impact and Twist(*map(sub, impact.after, impact.before)),
     )
 
 
