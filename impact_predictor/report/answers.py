@@ -15,7 +15,7 @@ from ..prediction.types import Status
 from ..stamps import NANOSECONDS
 from .files import named, whole
 from .summary import SpanErrors, errors_ahead, errors_of, spread_of, to_json, velocity_errors_ahead
-from .touchdowns import FIELDS, TouchdownField, row_as_json, row_of
+from .touchdowns import FIELDS, row_as_json, row_of
 
 if TYPE_CHECKING:
     from pyarrow.parquet import ParquetWriter
@@ -128,12 +128,12 @@ def _match(match: Match) -> dict[str, Any]:
     }
 
 
-def _columns_of(field: TouchdownField) -> dict[str, tuple[str, str]]:
+def _columns_of(key: str) -> dict[str, tuple[str, str]]:
     """The columns of a field: for each name the type in Arrow, and the unit."""
-    stem, parts = field.key.removesuffix("_twist"), _PARTS.get(field.type)
-    if parts is None:
-        return {field.key: ("string" if field.type == "mode" else field.type, field.unit)}
-    return {f"{stem}_{part}": ("float64", unit) for part, unit in parts.items()}
+    field, stem = FIELDS[key], key.removesuffix("_twist")
+    if field.type in _PARTS:
+        return {f"{stem}_{part}": ("float64", unit) for part, unit in _PARTS[field.type].items()}
+    return {key: ("string" if field.type == "mode" else field.type, field.unit)}
 
 
 class TouchdownTable:
@@ -158,10 +158,9 @@ class TouchdownTable:
                 "bag_problem": failure or damage,
                 "bag_samples": answer.get("samples"),
             }
-            for field in FIELDS:
-                value = touchdown.get(field.key)
-                values = value if field.type in _PARTS and value else (value,)
-                row |= zip(_columns_of(field), values, strict=False)
+            for key, field in FIELDS.items():
+                value = touchdown.get(key)
+                row |= zip(_columns_of(key), value if field.type in _PARTS and value else (value,), strict=False)
             self._rows.append(row)
         if len(self._rows) >= _GROUP:
             self.flush()
@@ -191,8 +190,8 @@ def touchdown_table(path: str | Path) -> Iterator[TouchdownTable]:
 
     types = {"list<string>": pyarrow.list_(pyarrow.string()), "list<int32>": pyarrow.list_(pyarrow.int32())}
     columns = dict.fromkeys(("bag", "bag_status", "bag_problem"), ("string", "")) | {"bag_samples": ("int64", "")}
-    for field in FIELDS:
-        columns |= _columns_of(field)
+    for key in FIELDS:
+        columns |= _columns_of(key)
     schema = pyarrow.schema(
         pyarrow.field(name, types.get(kind) or pyarrow.type_for_alias(kind), metadata={"unit": unit} if unit else {})
         for name, (kind, unit) in columns.items()

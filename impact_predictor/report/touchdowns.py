@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Mapping
 from operator import sub
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, Final, NamedTuple, get_type_hints
 
 from ..mechanics.types import Mode, Twist, Vector
 from ..prediction.types import Landing, Score
@@ -13,6 +13,19 @@ from ..scenarios.comparison import LEAD_TIMES
 
 if TYPE_CHECKING:
     from ..bags.body import Settled
+
+
+class TouchdownField(NamedTuple):
+    """A field of a touchdown in files: its type and its unit.
+
+    Types are those of Arrow, and mode, twist (vx, vy, omega) and impulse (normal, tangential). `message` is its key in
+    `~/score` where that is another one; `of_foot` is for landings alone.
+    """
+
+    type: str
+    unit: str = ""
+    message: str = ""
+    of_foot: bool = False
 
 
 class TouchdownRow(NamedTuple):
@@ -24,31 +37,31 @@ class TouchdownRow(NamedTuple):
     the predictions made `LEAD_TIMES` before it, and `cost` is that of the last prediction.
     """
 
-    body: str
-    stamp: int
-    announced_lead_time: float
-    lead_time: float
-    mode: Mode
-    before_twist: Twist
-    predicted_twist: Twist
-    half_distance: float
-    out_of_plane: float
-    scored: bool
-    flags: tuple[str, ...]
-    old: tuple[int, ...]
-    new: tuple[int, ...]
-    measured_twist: Twist | None = None
-    relative_error: float | None = None
-    foot: str = ""
-    point: str | None = None
-    time_error: float | None = None
-    late: float | None = None
-    confirmed: bool | None = None
-    landing_speed: float | None = None
-    landing_mode: Mode | None = None
-    impulse: Vector | None = None
-    others_impulse: Vector | None = None
-    velocity_change: Twist | None = None
+    body: Annotated[str, TouchdownField("string")]
+    stamp: Annotated[int, TouchdownField("int64", "ns")]
+    announced_lead_time: Annotated[float, TouchdownField("float64", "s", message="announced")]
+    lead_time: Annotated[float, TouchdownField("float64", "s")]
+    mode: Annotated[Mode, TouchdownField("mode")]
+    before_twist: Annotated[Twist, TouchdownField("twist", message="before")]
+    predicted_twist: Annotated[Twist, TouchdownField("twist", message="predicted")]
+    half_distance: Annotated[float, TouchdownField("float64", "m")]
+    out_of_plane: Annotated[float, TouchdownField("float64", "1", message="off_axis")]
+    scored: Annotated[bool, TouchdownField("bool")]
+    flags: Annotated[tuple[str, ...], TouchdownField("list<string>")]
+    old: Annotated[tuple[int, ...], TouchdownField("list<int32>")]
+    new: Annotated[tuple[int, ...], TouchdownField("list<int32>")]
+    measured_twist: Annotated[Twist | None, TouchdownField("twist", message="measured")] = None
+    relative_error: Annotated[float | None, TouchdownField("float64", "1")] = None
+    foot: Annotated[str, TouchdownField("string", of_foot=True)] = ""
+    point: Annotated[str | None, TouchdownField("string", of_foot=True)] = None
+    time_error: Annotated[float | None, TouchdownField("float64", "s", of_foot=True)] = None
+    late: Annotated[float | None, TouchdownField("float64", "s", of_foot=True)] = None
+    confirmed: Annotated[bool | None, TouchdownField("bool", of_foot=True)] = None
+    landing_speed: Annotated[float | None, TouchdownField("float64", "m/s", message="speed", of_foot=True)] = None
+    landing_mode: Annotated[Mode | None, TouchdownField("mode", of_foot=True)] = None
+    impulse: Annotated[Vector | None, TouchdownField("impulse", "N s", of_foot=True)] = None
+    others_impulse: Annotated[Vector | None, TouchdownField("impulse", "N s", of_foot=True)] = None
+    velocity_change: Annotated[Twist | None, TouchdownField("twist", of_foot=True)] = None
     time_errors: tuple[float | None, ...] = ()
     cost: float | None = None
 
@@ -68,49 +81,12 @@ class TouchdownRow(NamedTuple):
         return self.point is not None and any(one // 2 == self.new[0] // 2 for one in self.old)
 
 
-class TouchdownField(NamedTuple):
-    """A field of a touchdown in files: its key in the record and in the JSON, its type and its unit.
-
-    Types are those of Arrow, and mode, twist (vx, vy, omega) and impulse (normal, tangential). `message` is its key in
-    `~/score` where that is another one; `of_foot` is for landings alone.
-    """
-
-    key: str
-    type: str
-    unit: str = ""
-    message: str = ""
-    of_foot: bool = False
-
-
-FIELDS: Final = (
-    TouchdownField("body", "string"),
-    TouchdownField("foot", "string", of_foot=True),
-    TouchdownField("point", "string", of_foot=True),
-    TouchdownField("stamp", "int64", "ns"),
-    TouchdownField("announced_lead_time", "float64", "s", message="announced"),
-    TouchdownField("lead_time", "float64", "s"),
-    TouchdownField("mode", "mode"),
-    TouchdownField("before_twist", "twist", message="before"),
-    TouchdownField("predicted_twist", "twist", message="predicted"),
-    TouchdownField("measured_twist", "twist", message="measured"),
-    TouchdownField("relative_error", "float64", "1"),
-    TouchdownField("half_distance", "float64", "m"),
-    TouchdownField("out_of_plane", "float64", "1", message="off_axis"),
-    TouchdownField("scored", "bool"),
-    TouchdownField("flags", "list<string>"),
-    TouchdownField("old", "list<int32>"),
-    TouchdownField("new", "list<int32>"),
-    TouchdownField("time_error", "float64", "s", of_foot=True),
-    TouchdownField("late", "float64", "s", of_foot=True),
-    TouchdownField("confirmed", "bool", of_foot=True),
-    TouchdownField("landing_speed", "float64", "m/s", message="speed", of_foot=True),
-    TouchdownField("landing_mode", "mode", of_foot=True),
-    TouchdownField("impulse", "impulse", "N s", of_foot=True),
-    TouchdownField("others_impulse", "impulse", "N s", of_foot=True),
-    TouchdownField("velocity_change", "twist", of_foot=True),
-)
-
-
+FIELDS: Final[dict[str, TouchdownField]] = {
+    name: hint.__metadata__[0]
+    for name, hint in get_type_hints(TouchdownRow, include_extras=True).items()
+    if hasattr(hint, "__metadata__")
+}
+"""Those of a row that files have, by their keys in the JSON."""
 _NO_LANDING: Final = Landing("", 0, None, None, ())
 
 
@@ -163,7 +139,7 @@ def rows_of(settled: Iterable[Settled]) -> list[TouchdownRow]:
 
 def row_as_json(row: TouchdownRow) -> dict[str, Any]:
     """A row as the JSON of a replay has it."""
-    values = {field.key: getattr(row, field.key) for field in FIELDS if row.foot or not field.of_foot}
+    values = {key: getattr(row, key) for key, field in FIELDS.items() if row.foot or not field.of_foot}
     return {key: value.name if isinstance(value, Mode) else value for key, value in values.items()}
 
 
@@ -174,13 +150,13 @@ def row_of_json(entry: Mapping[str, Any]) -> TouchdownRow:
         KeyError, TypeError: it is none.
     """
     values: dict[str, Any] = {}
-    for field in FIELDS:
-        if (value := entry.get(field.key)) is not None:
+    for key, field in FIELDS.items():
+        if (value := entry.get(key)) is not None:
             if field.type == "mode":
                 value = Mode[value]
             elif isinstance(value, list):
                 value = Twist(*value) if field.type == "twist" else tuple(value)
-            values[field.key] = value
+            values[key] = value
     return TouchdownRow(**values)
 
 
@@ -191,13 +167,13 @@ def row_of_message(body: str, values: Mapping[str, str], cost: float | None = No
         KeyError, TypeError, ValueError: it is none.
     """
     entry: dict[str, Any] = {"body": body}
-    for field in FIELDS:
-        key = field.message or field.key
-        if field.type == "twist" and f"{key}.vx" in values:
-            entry[field.key] = [float(values[f"{key}.{part}"]) for part in Twist._fields]
-        elif key in values:
+    for key, field in FIELDS.items():
+        sent = field.message or key
+        if field.type == "twist" and f"{sent}.vx" in values:
+            entry[key] = [float(values[f"{sent}.{part}"]) for part in Twist._fields]
+        elif sent in values:
             is_number = field.type in ("int64", "float64", "bool")
-            entry[field.key] = json.loads(values[key]) if is_number else values[key]
+            entry[key] = json.loads(values[sent]) if is_number else values[sent]
     for key in ("old", "new"):
         entry[key] = [*map(int, values[key].split())]
     entry["flags"] = [flag for key in ("leftover", "flags") for flag in values[key].split("|") if flag != "NONE"]

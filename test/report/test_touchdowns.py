@@ -10,8 +10,6 @@ from touchdowns import LANDED, LANDING, SAMPLE, SCORE, TOUCHDOWN, UNMEASURED, UN
 
 from impact_predictor.prediction.types import Landing, Prediction, Score, Status
 from impact_predictor.report.touchdowns import (
-    FIELDS,
-    TouchdownRow,
     error_ahead,
     row_as_json,
     row_of,
@@ -26,10 +24,6 @@ UNANNOUNCED = LANDED._replace(landing=Landing("left", 2_000_000_000, None, None,
 def json_of(score: Score) -> dict[str, Any]:
     entry: dict[str, Any] = json.loads(json.dumps(row_as_json(row_of("cube", score)), allow_nan=False))
     return entry
-
-
-def test_the_fields_are_those_of_the_row_but_for_what_no_file_has() -> None:
-    assert {field.key for field in FIELDS} == set(TouchdownRow._fields) - {"time_errors", "cost"}
 
 
 @pytest.mark.parametrize("score", [SCORE, UNSCORED, UNMEASURED])
