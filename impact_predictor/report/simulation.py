@@ -157,7 +157,7 @@ def voyage_as_json(voyage: Voyage) -> dict[str, Any]:
             "accumulation_time": one.sums[-1] if one.sums else None,
             "end": one.end.name,
             "time": one.time,
-            "resolved_impacts": len(_resolved(one.impacts)),
+            "resolved_impacts": sum(impact.approach > RESOLVED for impact in one.impacts),
             "onsets": [{"time": it.stamp / NANOSECONDS, "slides": it.slides, "lifts": it.lifts} for it in one.onsets],
             "most_turned": one.most_turned,
             "moved": one.moved,
@@ -176,10 +176,6 @@ def voyage_as_json(voyage: Voyage) -> dict[str, Any]:
         "deck": {"most_rolled": voyage.most_rolled, "most_lateral": voyage.most_lateral},
         "units": units,
     }
-
-
-def _resolved(impacts: Iterable[TrueImpact]) -> list[TrueImpact]:
-    return [impact for impact in impacts if impact.approach > RESOLVED]
 
 
 def _end(one: Followed) -> str:
@@ -209,7 +205,6 @@ def print_voyage(console: Console, voyage: Voyage) -> None:
     ]
     show(console, table_of(columns, voyage.units))
     impacts = [impact for one in voyage.units for impact in one.impacts]
-    modes = Counter(impact.mode.name for impact in _resolved(impacts))
-    counts = ", ".join(f"{count} {mode}" for mode, count in modes.most_common()) or "none"
-    every = f"{counted(len(impacts), 'impact')}, {60.0 * len(impacts) / voyage.duration:.3g} a minute"
-    say(console, f"{every}, with more than {RESOLVED:g} m/s: {counts}.")
+    modes = Counter(impact.mode.name for impact in impacts).most_common()
+    counts = ", ".join(f"{count:,} {mode}" for mode, count in modes) or "none"
+    say(console, f"{counted(len(impacts), 'impact')}, {60.0 * len(impacts) / voyage.duration:.3g} a minute: {counts}.")
