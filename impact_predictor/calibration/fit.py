@@ -40,8 +40,8 @@ _HALVINGS: Final = 3
 class Calibration(NamedTuple):
     """Coefficients fitted to touchdowns.
 
-    `blocks` is the block of each touchdown; `given_misses` and `held_out_misses` are what `Solver.misses` gives with
-    the given coefficients, and with those that were fitted to the blocks of the other folds, (n, 2) each. `map` has the
+    `blocks` is the block of each touchdown; `given_errors` and `held_out` are the relative errors with the given
+    coefficients, and with those that were fitted to the blocks of the other folds, (n,) each. `map` has the
     mean errors over a grid; `inertias` (factor, least mean error over friction and restitution), none where no inertia
     was looked for. `left_out` touchdowns are scored, but something else happens while they are measured.
     """
@@ -51,21 +51,11 @@ class Calibration(NamedTuple):
     friction: Estimate
     restitution: Estimate
     inertia: Estimate
-    given_misses: NDArray[np.float64]
-    held_out_misses: NDArray[np.float64]
+    given_errors: NDArray[np.float64]
+    held_out: NDArray[np.float64]
     map: tuple[Grid, NDArray[np.float64]]
     inertias: tuple[tuple[float, float], ...]
     left_out: int
-
-    @property
-    def given_errors(self) -> NDArray[np.float64]:
-        """The relative errors with the given coefficients, (n,)."""
-        return np.hypot(self.given_misses[:, 0], self.given_misses[:, 1])
-
-    @property
-    def held_out(self) -> NDArray[np.float64]:
-        """The relative errors with coefficients that were fitted to others, (n,)."""
-        return np.hypot(self.held_out_misses[:, 0], self.held_out_misses[:, 1])
 
 
 def calibrate(
@@ -120,8 +110,8 @@ def calibrate(
         friction=friction,
         restitution=restitution,
         inertia=inertia,
-        given_misses=Solver(touchdowns).misses(given),
-        held_out_misses=search.held_out(table),
+        given_errors=np.hypot(*Solver(touchdowns).misses(given).T),
+        held_out=np.hypot(*search.held_out(table).T),
         map=(coarse.grid, coarse.losses().reshape(coarse.grid.shape)),
         inertias=inertias,
         left_out=number - len(touchdowns),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from math import inf
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,13 +19,10 @@ from ..wording import counted, percent, words
 from .summary import spread_of
 from .table import Column, table_of
 
-PARAMETERS: Final = {"friction": "contact.friction", "restitution": "contact.restitution", "inertia": "body.inertia"}
-"""The coefficients, and their parameters in the file of the scene."""
-
 
 def estimates_of(calibration: Calibration) -> dict[str, Estimate]:
     """The estimates by the names of the coefficients."""
-    return {name: getattr(calibration, name) for name in PARAMETERS}
+    return {name: getattr(calibration, name) for name in ("friction", "restitution", "inertia")}
 
 
 def estimates_table(calibration: Calibration) -> Table:
@@ -101,7 +98,8 @@ def changes_of(calibration: Calibration) -> dict[str, NewValues]:
             given = (xx,) if xx == yy == zz and not (xy or xz or yz) else (xx, yy, zz, xy, xz, yz)
             values, of = tuple(one.value * part for part in given), "factor "
         remark = f"fitted to {len(calibration.touchdowns)} touchdowns; {of}{interval(one)} with 95 %"
-        changes[PARAMETERS[name]] = NewValues(values, remark, listed=name == "inertia")
+        parameter = "body.inertia" if name == "inertia" else f"contact.{name}"
+        changes[parameter] = NewValues(values, remark, listed=name == "inertia")
     return changes
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from functools import partial
-from math import degrees, radians
+from math import degrees
 from typing import Final
 
 import numpy as np
@@ -33,10 +33,8 @@ ROLL, SLID = PALETTE[0], PALETTE[2]
 
 _MOST, _MOMENT = 200_000, 0.05
 """A picture shows so many moments of a motion, or one each so many s if they are less."""
-_TILTS, _SLIDES = radians(0.1), 0.02
-"""A unit moves that is tilted by so many rad, or slides at so many m/s."""
-_SLID: Final = 0.005
-"""A slide of so many m is shown."""
+_TILTS, _SLIDES, _SLID = 0.1, 0.02, 0.005
+"""A unit moves that is tilted by so many degrees, or slides at so many m/s; a slide of so many m is shown."""
 
 
 def picture_times(duration: float) -> NDArray[np.float64]:
@@ -188,14 +186,14 @@ class UnitScene(BodyScene):
     def draw(self, axes: plot.Axes, time: float) -> str:
         """Draw the unit at a time in s, red while it moves, else by its margin; what it does, in words."""
         state, used = self._motion.at(time), float(np.interp(time, self._motion.times, self._used))
-        tilt = degrees(abs(state.angle - self._motion.unit.start.angle))
-        moves, says = True, f"rocks, tilted by {tilt:.2g}°"
+        tilt, speed = degrees(abs(state.angle - self._motion.unit.start.angle)), abs(state.vx)
         if self._motion.toppled and time >= self._motion.ended:
             says = "has toppled"
-        elif tilt <= degrees(_TILTS) and abs(state.vx) > _SLIDES:
-            says = f"slides at {abs(state.vx):.2g} m/s"
-        elif tilt <= degrees(_TILTS):
-            moves, says = False, f"stands, margin used: {min(used, 9.99):.0%}"
+        elif tilt > _TILTS:
+            says = f"rocks, tilted by {tilt:.2g}°"
+        else:
+            says = f"slides at {speed:.2g} m/s" if speed > _SLIDES else f"stands, margin used: {min(used, 9.99):.0%}"
+        moves = not says.startswith("stands")
         face = MARGINS[2 if moves or used >= 1.0 else 1 if used >= Watching().warn else 0]
         heights = plot.placed(self._contacts, state)[:, 1] - self._edges[:, 1]
         self.draw_body(axes, time, face, [STICKS if height < 1e-3 else OPEN for height in heights])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from array import array
 from collections.abc import Sequence
 from itertools import chain
 from pathlib import Path
@@ -47,7 +46,7 @@ class ReplayPicture:
         self._machines: list[list[FootLandings]] = []
         self._tally = Tally()
         self._scored: list[TouchdownRow] = []
-        self._ahead = array("d")  # lead time and error in turns
+        self._ahead: list[tuple[float, float]] = []  # lead time and error
 
     def add(self, result: Result) -> None:
         """Take a replay."""
@@ -59,8 +58,7 @@ class ReplayPicture:
             self._machines.append(feet_of(f"{bag} {body}".rstrip(), gait, mine))
         self._scored += [row for row in rows if row.scored]
         scores = [settled.score for settled in result.settled if settled.score.scored]
-        made = [(lead, error) for one in scores for lead, error in one.history if lead < LEAD_TIME_EDGES[-1]]
-        self._ahead.extend(chain.from_iterable(made))
+        self._ahead += [made for one in scores for made in one.history if made[0] < LEAD_TIME_EDGES[-1]]
 
     def write(self) -> None:
         """Draw it.
@@ -72,8 +70,9 @@ class ReplayPicture:
         if self._machines:
             write_gait(self.path, list(chain.from_iterable(self._machines)), names)
             return
-        errors = errors_ahead(zip(self._ahead[::2], self._ahead[1::2], strict=True))
-        write_touchdowns(self.path, self._scored, errors, f"{names}: {self._tally.sentences()[0].rstrip('.')}")
+        write_touchdowns(
+            self.path, self._scored, errors_ahead(self._ahead), f"{names}: {self._tally.sentences()[0].rstrip('.')}"
+        )
 
 
 def write_touchdowns(
@@ -99,18 +98,13 @@ def write_touchdowns(
             (turning, _VERMILION, "ω s, from turning"),
         ):
             left.plot(*pairs.T, "o", color=colour, alpha=0.6, markersize=5, markeredgewidth=0, label=label)
-        _finish_velocities(left)
+        left.axline((0.0, 0.0), slope=1.0, color="black", linewidth=1.0, zorder=1, label="exact")
+        left.set_title("Velocities right after the touchdown")
+        left.set(xlabel="measured (m/s); s: half the contacts' distance", ylabel="predicted (m/s)")
+        left.set_aspect("equal", adjustable="datalim")
+        left.legend(loc="upper left")
         _draw_errors(middle, scored)
         _draw_lead_times(right, errors)
-
-
-def _finish_velocities(axes: Axes) -> None:
-    """Say what is predicted against what is measured, with a line where they are the same."""
-    axes.set_title("Velocities right after the touchdown")
-    axes.set(xlabel="measured (m/s); s: half the contacts' distance", ylabel="predicted (m/s)")
-    axes.axline((0.0, 0.0), slope=1.0, color="black", linewidth=1.0, zorder=1, label="exact")
-    axes.set_aspect("equal", adjustable="datalim")
-    axes.legend(loc="upper left")
 
 
 def _draw_errors(axes: Axes, rows: Sequence[TouchdownRow]) -> None:
@@ -136,9 +130,7 @@ def _draw_lead_times(axes: Axes, errors: Sequence[SpanErrors]) -> None:
         values = [100.0 * getattr(one.errors, part) for one in known]
         axes.plot(middles, values, style, color=_VERMILION, label=label)
     axes.set_title("Relative error against lead time")
-    axes.set_xticks(
-        middles, [f"{middle:.0f}\n({one.errors.number})" for middle, one in zip(middles, known, strict=True)]
-    )
+    axes.set_xticks(middles, [f"{500.0 * (one.begin + one.end):.0f}\n({one.errors.number})" for one in known])
     axes.set(xlabel="lead time (ms), and number of predictions", ylabel="relative error (%)")
     axes.set(xlim=(1e3 * errors[-1].end, 1e3 * errors[0].begin))
     axes.set_ylim(bottom=0.0)
@@ -151,26 +143,16 @@ def write_calibration(path: str | os.PathLike[str], calibration: Calibration, na
     Raises:
         InputError: the file cannot be written, or is of another format.
     """
-    with picture(path, 14.0, 5.0) as figure:
-        left, middle, right = figure.subplots(1, 3, width_ratios=(1.25, 0.85, 1.0))
+    with picture(path, 10.5, 5.0) as figure:
+        left, right = figure.subplots(1, 2, width_ratios=(1.25, 0.85))
         given, held_out = (float(np.median(one)) for one in (calibration.given_errors, calibration.held_out))
         headline(
             figure,
             f"{name}: {len(calibration.touchdowns)} touchdowns. Error in the median: {percent(given)} % with the given "
-            f"values, {percent(held_out)} % with values fitted to other touchdowns",
+            f"values, {percent(held_out)} % with values\nfitted to other touchdowns",
         )
         _draw_map(figure, left, calibration)
-        _draw_inertia(middle, calibration)
-        speed = np.array([one.speed for one in calibration.touchdowns])[:, None]
-        twists = [(one.measured, one.half_distance) for one in calibration.touchdowns]
-        measured = np.array([(twist.vx, twist.omega * half_distance) for twist, half_distance in twists])
-        for missed, colour, marker, label in (
-            (calibration.given_misses, GREY, "x", "vx and ω s with the given values"),
-            (calibration.held_out_misses, _VERMILION, "o", "... fitted to other touchdowns"),
-        ):
-            predicted = (measured + missed * speed).ravel()
-            right.scatter(measured.ravel(), predicted, s=16.0, color=colour, marker=marker, alpha=0.6, label=label)
-        _finish_velocities(right)
+        _draw_inertia(right, calibration)
 
 
 def _draw_map(figure: Figure, axes: Axes, calibration: Calibration) -> None:
@@ -179,23 +161,19 @@ def _draw_map(figure: Figure, axes: Axes, calibration: Calibration) -> None:
     grid, losses = calibration.map
     friction, restitution = calibration.friction, calibration.restitution
     wide, high = _end(friction), _end(restitution)
-    shown = losses[np.ix_(grid.friction <= 1.5 * wide, grid.restitution <= 1.5 * high)]
-    shown = shown if min(shown.shape) > 1 else losses
-    levels = np.linspace(float(shown.min()), float(np.quantile(shown, 0.9)) + 1e-9, 14)
-    looks: Any = {"cmap": "cividis_r", "extend": "max", "zorder": 0}
-    drawn = axes.contourf(grid.friction, grid.restitution, losses.T, levels=levels, **looks)
+    levels = np.linspace(float(losses.min()), float(np.quantile(losses, 0.25)) + 1e-9, 14)
+    looks: Any = {"levels": levels, "cmap": "cividis_r", "extend": "max", "zorder": 0}
+    drawn = axes.contourf(grid.friction, grid.restitution, losses.T, **looks)
     bar = figure.colorbar(drawn, ax=axes, format=PercentFormatter(1.0, decimals=1), pad=0.02)
     bar.set_label("mean relative error (darker is worse)")
     across, upwards = (
-        np.clip([[one.value - (one.low or 0.0)], [(end if one.high is None else one.high) - one.value]], 0.0, None)
+        [[max(one.value - (one.low or 0.0), 0.0)], [max((end if one.high is None else one.high) - one.value, 0.0)]]
         for one, end in ((friction, wide), (restitution, high))
     )
     label = f"fitted, with 95 % interval:\nfriction {interval(friction)}\nrestitution {interval(restitution)}"
-    looks = {"color": _VERMILION, "marker": "o", "capsize": 4, "linewidth": 2, "zorder": 3}
-    axes.errorbar(friction.value, restitution.value, upwards, across, label=label, **looks)
+    axes.errorbar(friction.value, restitution.value, upwards, across, "o", color=_VERMILION, capsize=4, label=label)
     label = f"given: {friction.given:.3g} and {restitution.given:.3g}"
-    looks = {"color": "white", "markersize": 9, "markeredgecolor": "black", "clip_on": False, "zorder": 4}
-    axes.plot(friction.given, restitution.given, "s", label=label, **looks)
+    axes.plot(friction.given, restitution.given, "ws", markeredgecolor="black", clip_on=False, zorder=4, label=label)
     axes.set_title("Mean error over friction and restitution")
     axes.set(xlabel="friction", ylabel="restitution", xlim=(0.0, wide), ylim=(0.0, high))
     axes.legend(loc="upper right", frameon=True, framealpha=0.9)

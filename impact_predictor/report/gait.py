@@ -5,8 +5,9 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Sequence
 from math import hypot
-from statistics import median
 from typing import Final, NamedTuple
+
+import numpy as np
 
 from ..bags.body import Gait
 from ..scenarios.comparison import LEAD_TIMES
@@ -14,13 +15,11 @@ from ..stamps import NANOSECONDS
 from ..wording import counted
 from .modes import PALETTE
 from .plot import GREY, Axes, common_legend, headline, picture
-from .summary import quantile
+from .summary import spread_of
 from .touchdowns import TouchdownRow
 
 AHEAD: Final = LEAD_TIMES[-1]
 """Seconds before a landing at which the prediction is made that is shown."""
-_MANY: Final = 60
-"""Landings of a foot above which they are drawn as dots alone."""
 _TRUE: Final = "#d0d0d0"
 """Colour of the stances that a record has."""
 
@@ -50,12 +49,12 @@ def feet_of(machine: str, gait: Gait, rows: Iterable[TouchdownRow]) -> list[Foot
     """The feet of a machine of a name, from their stances and from all that touched down."""
     feet, length = [], (gait.end - gait.begin) / NANOSECONDS
     # What follows of a foot that stands already is no landing of its own.
-    all_landings = [(_seconds(gait, row.stamp), row) for row in rows if not row.is_second]
+    all_landings = [((row.stamp - gait.begin) / NANOSECONDS, row) for row in rows if not row.is_second]
     for number, name in enumerate(gait.feet):
         landings = [(time, row) for time, row in all_landings if row.foot == name]
         stances, true = (
-            [(_seconds(gait, one.begin), (one.end - one.begin) / NANOSECONDS) for one in ones if one.foot == number]
-            for ones in (gait.stances, gait.true_stances)
+            [((one.begin - gait.begin) / NANOSECONDS, (one.end - one.begin) / NANOSECONDS) for one in foot]
+            for foot in ([one for one in ones if one.foot == number] for ones in (gait.stances, gait.true_stances))
         )
         begun, errors = [begin for begin, _ in true if begin > 0.0], []
         for time, row in landings:
@@ -80,10 +79,6 @@ def feet_of(machine: str, gait: Gait, rows: Iterable[TouchdownRow]) -> list[Foot
     return feet
 
 
-def _seconds(gait: Gait, stamp: int) -> float:
-    return (stamp - gait.begin) / NANOSECONDS
-
-
 def write_gait(path: str | os.PathLike[str], feet: Sequence[FootLandings], title: str) -> None:
     """Draw when the feet of machines stand, and their landings as they were predicted `AHEAD`, into a PNG or SVG file.
 
@@ -104,12 +99,12 @@ def write_gait(path: str | os.PathLike[str], feet: Sequence[FootLandings], title
             errors.axhspan(-period, 0.0, color="#eeeeee", zorder=0, label=said)
         speeds.set_title("Speed of the foot in its last sample in the air")
         impulses.set_title("Impulse that it gets where it lands with that speed")
-        for foot in feet:
-            _draw_landings(errors, foot.errors, foot.colour)
-            _draw_landings(speeds, foot.speeds, foot.colour)
-            _draw_landings(impulses, foot.impulses, foot.colour)
-        for axes, unit in ((errors, "ms"), (speeds, "m/s"), (impulses, "N s")):
+        for axes, values, unit in ((errors, "errors", "ms"), (speeds, "speeds", "m/s"), (impulses, "impulses", "N s")):
             axes.set_ylabel(unit)
+            for foot in feet:
+                points = np.reshape(getattr(foot, values), (-1, 2)).T
+                axes.vlines(points[0], 0.0, points[1], color=foot.colour, linewidth=1.0, alpha=0.7)
+                axes.plot(*points, "o", color=foot.colour, markersize=4)
         impulses.set(xlabel="time (s)", xlim=(0.0, max((foot.length for foot in feet), default=0.0) or 1.0))
         common_legend(figure)
 
@@ -131,20 +126,12 @@ def _draw_stances(axes: Axes, feet: Sequence[FootLandings]) -> None:
     axes.grid(visible=False, axis="y")
 
 
-def _draw_landings(axes: Axes, points: Sequence[tuple[float, float]], colour: str) -> None:
-    times, values = [time for time, _ in points], [value for _, value in points]
-    if len(points) <= _MANY:
-        axes.vlines(times, 0.0, values, color=colour, linewidth=1.2, alpha=0.7)
-    axes.plot(times, values, "o", color=colour, markersize=5 if len(points) <= _MANY else 2)
-
-
 def conclusion(feet: Sequence[FootLandings]) -> str:
     """How well landings were predicted, in words."""
-    landings = counted(sum(foot.landings for foot in feet), "landing")
-    errors = [abs(error) for foot in feet for _, error in foot.errors]
-    if not errors:
-        return f"{landings}, none predicted {1e3 * AHEAD:.0f} ms ahead"
+    landings, ahead = counted(sum(foot.landings for foot in feet), "landing"), f"predicted {1e3 * AHEAD:.0f} ms ahead"
+    spread = spread_of([abs(error) for foot in feet for _, error in foot.errors])
+    if not spread.number:
+        return f"{landings}, none {ahead}"
     return (
-        f"{landings}, {len(errors)} predicted {1e3 * AHEAD:.0f} ms ahead, "
-        f"half of them within {median(errors):.1f} ms, 90 % within {quantile(errors, 0.9):.1f} ms"
+        f"{landings}, {spread.number} {ahead}, half of them within {spread.p50:.1f} ms, 90 % within {spread.p90:.1f} ms"
     )

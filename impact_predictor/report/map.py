@@ -130,7 +130,6 @@ def fixed_values(subject: Subject, axes: tuple[Axis, Axis], given: Mapping[str, 
     Raises:
         InputError: an axis is none of the parameters, or is given as a number too, or has no extent.
     """
-    names = [axis.name for axis in axes]
     for axis in axes:
         option = option_of(axis.name)
         if axis.name not in subject.parameters:
@@ -141,9 +140,9 @@ def fixed_values(subject: Subject, axes: tuple[Axis, Axis], given: Mapping[str, 
         if not -inf < axis.low < axis.high < inf:
             ends = f"{axis.low:g} to {axis.high:g}; give two finite numbers, the lower one first"
             raise InputError(f"the axis {option} goes from {ends}")
-    if names[0] == names[1]:
-        raise InputError(f"both axes, --x and --y, are {option_of(names[0])}; give two parameters")
-    chosen = {*names, *given}
+    if axes[0].name == axes[1].name:
+        raise InputError(f"both axes, --x and --y, are {option}; give two parameters")
+    chosen = {axes[0].name, axes[1].name, *given}
     if {"delta", "height"} <= chosen:
         raise InputError("delta and height are one thing, height = delta length; leave one of them out")
     if "height" in chosen:

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from functools import partial
-from math import atan2, cos, degrees, pi, radians, sin
+from math import atan2, degrees, pi, radians
 from pathlib import Path
-from textwrap import wrap
+from textwrap import fill
 from typing import Any, Final
 
 import contourpy
@@ -17,7 +16,7 @@ from matplotlib.colors import ListedColormap
 from numpy.typing import NDArray
 
 from ..mechanics.closed_forms import cylindrical, flat
-from ..mechanics.types import Mode
+from ..mechanics.types import Mode, TwoPointBody
 from ..scenarios.rocking import release, rocking_cylinder, rocking_plate, rocking_rod
 from .map import SUBJECTS, ModeMap, ambiguous, axis_label, conditions, given_in, problem_at, shares
 from .modes import MODES
@@ -54,34 +53,30 @@ def borders_of(modes: ModeMap) -> dict[str, list[NDArray[np.float64]]]:
     # At the very ends of an axis there may be no body, such as a plate without height.
     x, y = (axis.low + (axis.high - axis.low) * np.linspace(1e-9, 1.0 - 1e-9, NODES) for axis in (modes.x, modes.y))
     borders: dict[str, list[NDArray[np.float64]]] = {}
-    for formula, (residual, _) in _equations(modes, x, y[:, None]).items():
-        # The equation is smooth all over the map, the modes end within a cell of it: so it is cut point by point.
-        lines: Any = contourpy.contour_generator(x, y, np.broadcast_to(residual, (NODES, NODES))).lines(0.0)
-        for curve in lines:
-            _, parts = _equations(modes, *curve.T)[formula]
-            ends = np.flatnonzero(np.diff(np.broadcast_to(parts, len(curve)), prepend=False, append=False))
-            pieces = [curve[begin:end] for begin, end in ends.reshape(-1, 2) if end - begin > 1]
-            if pieces:
-                borders.setdefault(formula, []).extend(pieces)
+    equations = cylinder_equations if modes.subject == "cylinder" else flat_equations
+    with np.errstate(divide="ignore", invalid="ignore"):
+        for formula, (residual, _) in equations(modes, x, y[:, None]).items():
+            # The equation is smooth all over the map, the modes end within a cell of it: so it is cut point by point.
+            lines: Any = contourpy.contour_generator(x, y, np.broadcast_to(residual, (NODES, NODES))).lines(0.0)
+            for curve in lines:
+                _, parts = equations(modes, *curve.T)[formula]
+                ends = np.flatnonzero(np.diff(np.broadcast_to(parts, len(curve)), prepend=False, append=False))
+                pieces = [curve[begin:end] for begin, end in ends.reshape(-1, 2) if end - begin > 1]
+                if pieces:
+                    borders.setdefault(formula, []).extend(pieces)
     return borders
 
 
-def _equations(
-    modes: ModeMap, x: NDArray[np.float64], y: NDArray[np.float64]
-) -> dict[str, tuple[NDArray[np.float64], NDArray[np.bool_]]]:
-    """The formulas of the borders: what is 0 where one holds, and whether the modes that it parts meet there."""
-    values = {**modes.fixed, modes.x.name: x, modes.y.name: y}
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return cylinder_equations(values) if modes.subject == "cylinder" else flat_equations(modes.subject, values)
+def flat_equations(modes: ModeMap, x: NDArray[np.float64], y: NDArray[np.float64]) -> dict[str, Any]:
+    """The borders of the plate and the rod, in the form of Fig. 5 where the plate is that of Fig. 5.
 
-
-def flat_equations(subject: str, values: dict[str, Any]) -> dict[str, Any]:
-    """The borders of the plate and the rod, in the form of Fig. 5 where the plate is that of Fig. 5."""
-    body, _ = problem_at(SUBJECTS[subject], values)
+    By formula: what is 0 where it holds, and whether the modes that it parts meet there.
+    """
+    body, values = _body_at(modes, x, y)
     assert body.old is not None
     f, a, b, h, rho2 = body.new.friction, -body.old.x, body.new.x, -body.new.y, body.inertia / body.mass
     shape = flat.FlatBody(a, b, h, rho2)
-    high = "H" if subject == "plate" else "h"
+    high = "H" if modes.subject == "plate" else "h"
     formulas = [
         f"f = {high}/2a",
         f"f = 2(ab − ρ²) / {high}a",
@@ -98,12 +93,12 @@ def flat_equations(subject: str, values: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-def cylinder_equations(values: dict[str, Any]) -> dict[str, Any]:
-    """The borders of the cylinder; t is the tangent of the mean of both angles, k = J/mR².
+def cylinder_equations(modes: ModeMap, x: NDArray[np.float64], y: NDArray[np.float64]) -> dict[str, Any]:
+    """The borders of the cylinder, as `flat_equations`; t is the tangent of the mean of both angles, k = J/mR².
 
     Each equation is multiplied by the cosine of that angle or its square, which keeps it finite at 90 degrees.
     """
-    body, _ = problem_at(SUBJECTS["cylinder"], values)
+    body, values = _body_at(modes, x, y)
     f, gamma = body.new.friction, values["gamma"]
     angle = (gamma + values.get("gamma_new", gamma)) * (pi / 360.0)
     k = np.asarray(body.inertia / (body.mass * values["radius"] ** 2))
@@ -119,6 +114,11 @@ def cylinder_equations(values: dict[str, Any]) -> dict[str, Any]:
         "f = kt / (1 + k)": (k * sin - f * (1.0 + k) * cos, np.isfinite(turns)),
         "t² = (1 + k) / (1 − k)": ((1.0 - k) * sin * sin - (1.0 + k) * cos * cos, sticks),
     }
+
+
+def _body_at(modes: ModeMap, x: NDArray[np.float64], y: NDArray[np.float64]) -> tuple[TwoPointBody, dict[str, Any]]:
+    values = {**modes.fixed, modes.x.name: x, modes.y.name: y}
+    return problem_at(SUBJECTS[modes.subject], values)[0], values
 
 
 def write_map(path: Path, modes: ModeMap) -> None:
@@ -138,11 +138,14 @@ def write_map(path: Path, modes: ModeMap) -> None:
         falls = release(_SKETCHED[modes.subject](1.0, None, None, 0.0), radians(14.0), duration=1.0)
         RockingScene(falls).draw(sketch, 0.0)
         _draw_regions(axes, modes)
-        hatches = _draw_hatches(axes, modes)
         borders = borders_of(modes)
+        handles = _draw_hatches(axes, modes)
         side.set_axis_off()
-        side.legend(handles=_legend(modes, hatches, borders), loc="upper left", borderaxespad=0.0, labelspacing=0.8)
-        figure.draw_without_rendering()  # a text along a curve needs the final shape of the axes
+        if borders:
+            used = [said for symbol, said in SYMBOLS.items() if any(symbol in formula for formula in borders)]
+            label = ",\n".join(["border by the paper's formula", *used])
+            handles.append(Line2D([], [], color="black", linewidth=1.4, label=label))
+        side.legend(handles=handles, loc="upper left", borderaxespad=0.0, labelspacing=0.8)
         for formula, curves in borders.items():
             _draw_border(axes, formula, curves)
 
@@ -152,15 +155,12 @@ def _draw_border(axes: Axes, formula: str, curves: list[NDArray[np.float64]]) ->
     for curve in curves:
         axes.plot(*curve.T, color="white", linewidth=3.0)
         axes.plot(*curve.T, color="black", linewidth=1.4)
-    longest = axes.transData.transform(max(curves, key=len))
-    before, middle, after = (longest[len(longest) * k // 6] for k in (2, 3, 4))
-    (dx, dy), place = after - before, axes.transData.inverted().transform(middle)
-    angle = 0.5 * pi - (0.5 * pi - atan2(dy, dx)) % pi
-    look: Any = {"rotation": degrees(angle), "rotation_mode": "anchor", "ha": "center", "va": "bottom"}
-    look["path_effects"] = [patheffects.withStroke(linewidth=3, foreground="white")]
-    axes.annotate(
-        formula, (place[0], place[1]), (-4.0 * sin(angle), 4.0 * cos(angle)), textcoords="offset points", **look
-    )
+    longest = max(curves, key=len)
+    before, (x, y), after = (longest[len(longest) * k // 6] for k in (2, 3, 4))
+    slope = 90.0 - (90.0 - degrees(atan2(*(after - before)[::-1]))) % 180.0
+    edge = [patheffects.withStroke(linewidth=3, foreground="white")]
+    look: Any = {"rotation_mode": "anchor", "transform_rotates_text": True, "ha": "center", "path_effects": edge}
+    axes.text(x, y, f"{formula}\n", rotation=slope, va="bottom", linespacing=0.8, **look)  # a little above the curve
 
 
 def _draw_regions(axes: Axes, modes: ModeMap) -> None:
@@ -183,33 +183,19 @@ def _draw_regions(axes: Axes, modes: ModeMap) -> None:
             axes.text(x, y, mode.name, transform=axes.transAxes, ha="center", va="center", path_effects=edge, **look)
 
 
-def _draw_hatches(axes: Axes, modes: ModeMap) -> list[Patch]:
-    """Hatch where the laws have no single answer; the entries of the legend for it."""
+def _draw_hatches(axes: Axes, modes: ModeMap) -> list[Any]:
+    """Hatch where the laws have no single answer; the legend's entries for the modes that occur and for the hatches."""
+    handles: list[Any] = []
+    for mode, share in shares(modes).items():
+        label = f"{mode.name} ({share:.0%}):\n{fill(MODES[mode].meaning, _LINE_OF_LEGEND)}"
+        handles.append(Patch(facecolor=MODES[mode].colour, edgecolor="black", linewidth=0.5, label=label))
     dark = np.isin(modes.mode, [mode for mode in Mode if MODES[mode].is_dark])
     extent = (modes.x.low, modes.x.high, modes.y.low, modes.y.high)
-    handles = []
     for (meaning, region), hatch in zip(ambiguous(modes).items(), HATCHES, strict=False):
         for part, colour in ((region & dark, "white"), (region & ~dark, "black")):
             if part.any():
                 with matplotlib.rc_context({"hatch.color": colour}):
                     axes.contourf(part, levels=[0.5, 2.0], colors="none", hatches=[hatch], extent=extent)
-        handles.append(Patch(facecolor="white", edgecolor="black", hatch=hatch, label=_lines(meaning)))
+        label = fill(meaning, _LINE_OF_LEGEND)
+        handles.append(Patch(facecolor="white", edgecolor="black", hatch=hatch, label=label))
     return handles
-
-
-def _legend(modes: ModeMap, hatches: list[Patch], formulas: Iterable[str]) -> list[Any]:
-    """The modes that occur in the order of their numbers, the hatches and the borders."""
-    handles: list[Any] = []
-    for mode, share in shares(modes).items():
-        label = f"{mode.name} ({share:.0%}):\n{_lines(MODES[mode].meaning)}"
-        handles.append(Patch(facecolor=MODES[mode].colour, edgecolor="black", linewidth=0.5, label=label))
-    handles += hatches
-    if formulas:
-        used = [said for symbol, said in SYMBOLS.items() if any(symbol in formula for formula in formulas)]
-        label = ",\n".join(["border by the paper's formula", *used])
-        handles.append(Line2D([], [], color="black", linewidth=1.4, label=label))
-    return handles
-
-
-def _lines(text: str) -> str:
-    return "\n".join(wrap(text, _LINE_OF_LEGEND))

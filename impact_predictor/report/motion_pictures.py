@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
-from math import copysign, degrees, hypot, tan
+from math import copysign, degrees, hypot, pi, tan
 from typing import Final
 
 import numpy as np
@@ -15,7 +15,7 @@ from ..mechanics.motion import PlanarState, RockingImpact, standing
 from ..mechanics.motion.support import Support
 from ..mechanics.types import TwoPointBody
 from ..scenarios.rocking import Rocking
-from ..scenarios.wheel import Rolling, Wheel
+from ..scenarios.wheel import Rolling
 from . import plot
 from .modes import EDGE, MODES, PALETTE
 from .simulation import rolling_as_json
@@ -73,7 +73,7 @@ def write_rocking_figure(path: str | os.PathLike[str], rockings: Sequence[Rockin
             # After its end a motion stays as it is.
             ends = [*[phase.start for phase in one.phases[1:]], float(times[-1])]
             for phase, end in zip(one.phases, ends, strict=True):
-                closed += [(2 * k + i, phase.start, end, phase.states[i]) for i in range(2) if phase.states[i] != "O"]
+                closed += [(2 * k + i, phase.start, end, how) for i, how in enumerate(phase.states) if how != "O"]
         angles.set_ylabel("φ (degrees)")
         draw_contacts(contacts, closed)
         contacts.set_yticks(range(2 * len(rockings)), ["A", "B"] * len(rockings))
@@ -100,16 +100,15 @@ def draw_rates(rockings: Sequence[Rocking], axes: plot.Axes) -> None:
 
 def rocking_film(rockings: Sequence[Rocking]) -> plot.Film:
     """The film of motions side by side, all to one scale, with their angular velocities."""
-    longest = max(rocking.run.time for rocking in rockings)
     scenes = [RockingScene(rocking) for rocking in rockings]
-    width, height = np.max([scene.size for scene in scenes], axis=0)
+    width, height = size = np.max([scene.size for scene in scenes], axis=0)
     for scene in scenes:
-        scene.size = np.array([width, height])
+        scene.size = size
     return plot.Film(
         scenes=scenes,
         height=min(_HIGHEST, 7.0 / len(scenes) * height / width),
         draw_curves=partial(draw_rates, rockings),
-        times=plot.frames_of(longest),
+        times=plot.frames_of(max(rocking.run.time for rocking in rockings)),
     )
 
 
@@ -134,7 +133,9 @@ class BodyScene:
         self.title, self._support, self._state = title, support, state
         self._contacts = np.array([(body.old.x, body.old.y), (body.new.x, body.new.y)])
         self._is_disc = not len(outline)
-        self._outline = plot.circle(hypot(body.old.x, body.old.y)) if self._is_disc else outline
+        turns = np.linspace(0.0, 2.0 * pi, 73)
+        circle = hypot(body.old.x, body.old.y) * np.column_stack((np.cos(turns), np.sin(turns)))
+        self._outline = circle if self._is_disc else outline
         self._edges = plot.placed(self._contacts, start)
         bodies = [plot.placed(self._outline, state(time)) for time in times]
         seen = np.concatenate([self._seen(one, time) for one, time in zip(bodies, times, strict=True)])
@@ -189,15 +190,9 @@ class RockingScene(BodyScene):
     def draw(self, axes: plot.Axes, time: float) -> str:
         """Draw the body at a time in s; its last impact, in words."""
         places = self.draw_body(axes, time, BODY, [CONTACT_COLOURS[how] for how in self._run.states(time)])
-        for name, place in zip("AB", places, strict=True):
-            axes.annotate(name, (place[0], place[1]), (0.0, -15.0), textcoords="offset points", ha="center")
+        for name, (x, y) in zip("AB", places, strict=True):
+            axes.annotate(name, (x, y), (0.0, -15.0), textcoords="offset points", ha="center")
         return last_impact(self._run.impacts, time)
-
-
-def title_of(wheel: Wheel) -> str:
-    """The wheel in words."""
-    slope = f"{degrees(wheel.hub.slope):.3g}°"
-    return f"A rimless wheel of {wheel.spokes} spokes on a slope of {slope} with friction {wheel.hub.friction:g}"
 
 
 def draw_wheel_rate(rolling: Rolling, axes: plot.Axes) -> None:
@@ -252,7 +247,10 @@ class WheelScene:
 
     def __init__(self, rolling: Rolling) -> None:
         """Take a motion."""
-        self.title, self._rolling, self._tips = title_of(rolling.wheel), rolling, np.array(rolling.wheel.tips)
+        wheel, hub = rolling.wheel, rolling.wheel.hub
+        where = f"on a slope of {degrees(hub.slope):.3g}° with friction {hub.friction:g}"
+        self.title = f"A rimless wheel of {wheel.spokes} spokes {where}"
+        self._rolling, self._tips = rolling, np.array(rolling.wheel.tips)
         self._times = np.linspace(0.0, rolling.time, _POINTS)
         self._hub = np.array(rolling.world(self._times)[:2])
 

@@ -11,7 +11,7 @@ from rich.console import Console
 from ..mechanics.impact import approach
 from ..mechanics.types import Flag, Mode, Outcome, Twist, TwoPointBody
 from ..wording import fixed
-from .modes import MODES
+from .modes import MODES, ONE_CONTACT
 from .table import Column, show, table_of
 
 FLAGS: Final = {
@@ -88,7 +88,7 @@ def _rows(body: TwoPointBody, before: Twist, outcomes: Sequence[Outcome]) -> Ite
 
 def _sentences(outcome: Outcome, *, alone: bool) -> Iterator[str]:
     def meaning(mode: Mode) -> str:
-        return MODES[mode].one_point if alone else MODES[mode].meaning
+        return ONE_CONTACT[mode] if alone else MODES[mode].meaning
 
     yield f"{outcome.mode.name} by the {outcome.law} law:"
     yield f"  {meaning(outcome.mode)}."

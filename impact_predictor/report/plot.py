@@ -6,7 +6,7 @@ import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from io import BytesIO
-from math import cos, pi, sin
+from math import cos, sin
 from pathlib import Path
 from typing import Any, Final, NamedTuple, Protocol
 
@@ -169,12 +169,6 @@ def write_film(path: str | os.PathLike[str], film: Film, tell: Callable[[int], o
                 writer.grab_frame()
                 figure.set_layout_engine("none")  # what is seen does not jump
                 tell(done)
-
-
-def circle(radius: float) -> NDArray[np.float64]:
-    """The outline of a disc."""
-    turns = np.linspace(0.0, 2.0 * pi, 73)
-    return radius * np.column_stack((np.cos(turns), np.sin(turns)))
 
 
 def box(left: float, right: float, bottom: float, top: float) -> NDArray[np.float64]:

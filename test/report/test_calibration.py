@@ -22,7 +22,7 @@ class One:
 
 def calibration(friction: Estimate = TOLD, inertia: Estimate = AS_GIVEN, better: bool = True) -> Calibration:
     touchdowns: Any = (One(),) * 20
-    errors = np.full((20, 2), 0.1)
+    errors = np.full(20, 0.1)
     nothing: Any = None
     return Calibration(
         touchdowns,

@@ -17,7 +17,6 @@ from impact_predictor.report.motion_pictures import (
     draw_rates,
     draw_wheel_rate,
     rocking_film,
-    title_of,
     wheel_film,
     write_wheel_figure,
 )
@@ -106,7 +105,7 @@ def test_the_spokes_that_are_drawn_end_where_the_standing_one_touches_the_slope(
 
 
 def test_titles_and_sentences_say_what_rolls_and_what_it_needs(slips: Rolling, stops: Rolling) -> None:
-    assert title_of(slips.wheel) == "A rimless wheel of 8 spokes on a slope of 5° with friction 0.35"
+    assert WheelScene(slips).title == "A rimless wheel of 8 spokes on a slope of 5° with friction 0.35"
     assert "between them 0.375327; the wheel has 0.35" in rolling_sentences(slips)[-1]
     assert rolling_sentences(slips)[-2].startswith("Steady rolling without slip, closed form: 1.605412029 rad/s")
     assert rolling_sentences(stops)[-1].startswith("On this slope it cannot roll steadily")

@@ -9,7 +9,7 @@ from rich.console import Console
 
 from impact_predictor import Contact, Flag, Margins, Mode, Outcome, Twist, TwoPointBody, cylinder, plate, solve_impact
 from impact_predictor.mechanics.types import Alternative
-from impact_predictor.report.modes import MODES
+from impact_predictor.report.modes import ONE_CONTACT
 from impact_predictor.report.outcome import FLAGS, MARGINS, print_outcomes
 
 PLATE = plate(length=1.0, height=0.4, mass=10.0, friction=0.2)
@@ -79,7 +79,7 @@ def test_an_impact_of_one_contact_speaks_of_that_contact_only(restitution: float
     outcome = solve_impact(body, before)
     text = printed(body, before, outcome)
     assert outcome.mode is mode
-    assert MODES[mode].one_point in text
+    assert ONE_CONTACT[mode] in text
     assert "old contact" not in text
 
 
