@@ -97,6 +97,7 @@ VARIANTS: Final[dict[str, dict[str, Any]]] = {
     # The largest friction that is allowed holds any contact.
     "no slip": {"transverse_slip": False, "friction": 100.0, "restitution": 0.0},
     "total law": {"transverse_slip": False, "law": "total"},
+    "path law, plastic": {"transverse_slip": False, "restitution": 0.0},
 }
 """What differs of the predictor in each replay of the tosses."""
 
