@@ -100,15 +100,16 @@ def times_ahead(result: Result) -> list[tuple[float, float]]:
 
 def _truth(result: Result, truth: Truth) -> dict[str, Any]:
     """The comparison with the truth, of all bodies and of each."""
-    answer, bodies = truth._asdict(), dict[str, dict[str, Any]]()
+    bodies: dict[str, dict[str, Any]] = {}
     for body, one in result.truths.items():
         bodies[body] = {} if one.truth is None else one.truth._asdict()
         if one.warned is not None:
             bodies[body] |= one.warned._asdict() | {"warned_before_first_impact": one.warned.before_first_impact}
-    if warned := [one for one in bodies.values() if "events" in one]:
-        answers = [one["warned_before_first_impact"] for one in warned if one["warned_before_first_impact"] is not None]
+    answer, warned = truth._asdict(), [one.warned for one in result.truths.values() if one.warned is not None]
+    if warned:
+        answers = [one.before_first_impact for one in warned if one.before_first_impact is not None]
         answer |= {"bodies_with_slide_or_impact": len(answers), "warned_before_first_impact": sum(answers)}
-        answer |= {key: sum(one[key] for one in warned) for key in ("events", "events_warned")}
+        answer |= {key: sum(getattr(one, key) for one in warned) for key in ("events", "events_warned")}
     return answer | ({"bodies": bodies} if bodies else {})
 
 
@@ -140,7 +141,6 @@ class TouchdownTable:
     """Writes the touchdowns of bags in the order in which these are added; the bytes depend on the answers alone."""
 
     def __init__(self, writer: ParquetWriter) -> None:
-        """Write with a writer of pyarrow."""
         self._writer = writer
         self._rows: list[dict[str, Any]] = []
 

@@ -283,14 +283,8 @@ def comparison_as_json(compared: RunComparison, baseline: str | os.PathLike[str]
         "touchdowns": compared.are,
         "unchanged": compared.alike,
         "changes": [
-            {
-                "stamp": row.stamp,
-                "body": row.body,
-                "foot": row.foot or None,
-                "change": kind.name.lower(),
-                "was": was,
-                "now": now,
-            }
+            {"stamp": row.stamp, "body": row.body, "foot": row.foot or None}
+            | {"change": kind.name.lower(), "was": was, "now": now}
             for row, kind, was, now in compared.changes
         ],
     }
