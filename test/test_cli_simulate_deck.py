@@ -139,6 +139,14 @@ def test_compliant_contacts_tell_impacts_too() -> None:
     assert compliant["mode"] == rigid["mode"]
 
 
+def test_the_noise_is_that_of_the_options() -> None:
+    for name, options in (("one", []), ("two", ["--noise-position", "0.05"])):
+        assert run("--duration", "10", "-o", name, *options).exit_code == 0
+    places = [[sample.position[0] for sample in samples_of(name)] for name in ("one", "two")]
+    apart = [one - two for one, two in zip(*places, strict=True)]
+    assert (sum(part * part for part in apart) / len(apart)) ** 0.5 == pytest.approx(0.05, rel=0.15)
+
+
 @pytest.mark.slow
 def test_the_default_sea_gives_two_impacts_a_minute_and_topples_nothing() -> None:
     answer = simulated("--duration", "900")

@@ -125,6 +125,12 @@ def test_a_touchdown_is_found_or_missed_and_an_announcement_is_of_it_or_false(
     assert compare([impact(at) for at in happened], record(200, announced)) == truth
 
 
+def test_velocities_are_compared_at_the_mass_centre() -> None:
+    # The body frame lies 0.2 m behind the mass centre, which moves up by 0.2 m * 1 rad/s less there.
+    made = record(100, EARLY, SCENE._replace(center_of_mass=(0.2, 0.0, 0.0)), linear=(0.0, 0.0, 0.7))
+    assert compare([impact(60)], made).median_velocity_error == pytest.approx(0.0, abs=1e-15)
+
+
 def test_mode_and_velocity_are_those_of_the_last_prediction() -> None:
     made = record(100, EARLY, mode=Mode.STOP, linear=(0.3, 0.0, 0.5), angular=(0.0, 1.8, 0.0))
     truth = compare([impact(60)], made)
@@ -293,6 +299,12 @@ def test_a_foot_may_still_seem_to_come_down_when_the_plan_says_that_it_stands() 
     assert (truth.missed, truth.false, truth.time_error_by_lead_time["0.02"]) == (0, 0, 0.0)
     longer = {0: {at: max(60.0, at + 2.0) for at in range(20, 85)}}
     assert together_of(landings(200, {"left": (60,), "right": ()}, longer)).false == 1
+
+
+def test_two_feet_that_take_turns_to_be_the_soonest_are_not_mixed_up() -> None:
+    announced = {0: {at: 60.0 + at % 2 for at in range(20, 60)}, 1: {at: 61.0 - at % 2 for at in range(20, 60)}}
+    truth = together_of(landings(100, {"left": (60,), "right": (60,)}, announced))
+    assert (truth.touchdowns, truth.missed, truth.false) == (2, 0, 0)
 
 
 def test_the_toe_of_a_foot_that_stands_on_its_heel_lands_no_more() -> None:

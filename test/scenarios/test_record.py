@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from records import samples_of
+from records import impacts_of, samples_of
 
 from impact_predictor.bags.read import read_messages, topics
 from impact_predictor.prediction.vectors import axes_of, to_world
@@ -68,3 +68,20 @@ def test_the_states_are_those_of_the_motion_in_space_at_the_rate(tmp_path: Path)
     for before, now, after in zip(samples[40:90], samples[41:91], samples[42:92], strict=True):
         moved = (np.array(after.position) - before.position) / ((after.stamp - before.stamp) / 1e9)
         assert to_world(axes_of(now.orientation), now.linear) == pytest.approx(moved, abs=2e-5)
+
+
+def test_the_true_impacts_are_those_of_the_motion(tmp_path: Path) -> None:
+    slope = radians(5.0)
+    run = a_rod(slope=slope).run
+    path = recorded(tmp_path / "rod.mcap", rocking_actor("rod", run))
+    messages, impacts = list(read_messages(path, {TRUTH_TOPIC: DIAGNOSTIC_ARRAY})), impacts_of(path)
+    assert len(impacts) == len(run.impacts) > 5
+    for message, impact, strike in zip(messages, impacts, run.impacts, strict=True):
+        assert message.log_time == impact.stamp == round(strike.time * 1e9)
+        assert (impact.mode, impact.old, impact.new) == (strike.outcome.mode, (strike.old,), (strike.new,))
+        assert impact.half_distance == pytest.approx(0.1)
+        assert impact.approach == pytest.approx(0.2 * abs(strike.before.omega))
+        assert impact.angular_after == (0.0, -strike.outcome.twist.omega, 0.0)
+        vx, vy = strike.before.vx, strike.before.vy
+        in_world = vx * cos(slope) - vy * sin(slope), 0.0, vx * sin(slope) + vy * cos(slope)
+        assert impact.linear_before == pytest.approx(in_world, abs=1e-12)

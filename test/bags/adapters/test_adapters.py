@@ -211,6 +211,14 @@ def test_the_first_refusal_is_said_where_other_messages_are_used(tmp_path: Path)
     )
 
 
+def test_points_have_velocities_of_their_own_number_or_none() -> None:
+    still, level = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)
+    with pytest.raises(ValueError, match="shorter"):
+        known.of_world(1, still, level, still, still, [still, still], [still])
+    _, geometry = known.of_world(1, still, level, still, still, [(1.0, 2.0, 3.0)])
+    assert (geometry.points, geometry.velocities) == (((1.0, 2.0, 3.0),), ())
+
+
 @pytest.mark.usefixtures("documented")
 def test_flags_of_another_number_of_feet_are_a_fault_of_the_adapter(tmp_path: Path) -> None:
     store = typestore()

@@ -439,3 +439,42 @@ def test_edges_that_carry_no_cylinder_are_refused(edges: tuple[Vector3, Vector3]
     scene = Scene(40.0, ((1.8, 0, 0), (0, 3.0, 0), (0, 0, 3.0)), 0.5, radius=0.3, edges=edges)
     with pytest.raises(InputError, match="carry"):
         Predictor(scene)
+
+
+ANY = st.floats(-5.0, 5.0) | st.sampled_from([0.0, 1e-300, 1e-8, 1e3, -1e6, 1e11])
+TRIPLES = st.tuples(ANY, ANY, ANY)
+UNITS = st.integers(0, 100).map(lambda seed: quaternion(Rotation.random(random_state=seed)))
+PLACES = st.tuples(ANY, ANY, ANY | st.floats(-0.1, 1.0))
+FELT = st.builds(Felt, st.tuples(ANY, ANY, st.floats(-12.0, 0.0)), TRIPLES, TRIPLES)
+SAMPLES = st.builds(
+    partial(Sample, 0, child_frame_id="body", pose_covariance=ZEROS, twist_covariance=ZEROS),
+    st.sampled_from(["world", "deck"]),
+    position=PLACES,
+    orientation=UNITS | st.just((0.0, 0.0, 0.0, 1.0)),
+    linear=TRIPLES,
+    angular=TRIPLES,
+)
+
+
+def numbers_of(value: Any) -> list[float]:
+    """Every float of nested tuples."""
+    if isinstance(value, tuple):
+        return [number for part in value for number in numbers_of(part)]
+    return [value] if isinstance(value, float) else []
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.sampled_from([CRATE, DRUM]), FELT, UNITS, TRIPLES, st.lists(SAMPLES, min_size=1, max_size=4))
+def test_no_sample_over_any_support_raises_or_makes_a_nan(
+    body: TwoPointBody, felt: Felt, orientation: Any, place: Vector3, samples: list[Sample]
+) -> None:
+    upright, identity = Rotation.from_rotvec([0.5 * math.pi, 0.0, 0.0]), Rotation.identity()
+    placed = Placed(body, DECK, identity, np.zeros(3), upright, np.zeros(3), identity, np.zeros(3))
+    moment = Moment(0, "world", "deck", place, orientation, place, felt, partial(constant, *felt))
+    predictor = Predictor(placed.scene(), SimpleNamespace(at=lambda stamp: moment))
+    for count, sample in enumerate(samples):
+        prediction = predictor.update(sample._replace(stamp=10_000_000 * count))
+        if prediction.touchdown is not None:
+            assert prediction.status is Status.ACCEPTED
+            assert all(map(math.isfinite, numbers_of(prediction.touchdown))), prediction.touchdown
+            assert all(map(math.isfinite, numbers_of(post_impact(prediction))))

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from math import cos, hypot, inf, nan, pi, sin
+from math import cos, hypot, inf, isfinite, nan, pi, sin
 from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from impact_predictor.prediction.deck.motion import ahead, rotation_between
 from impact_predictor.prediction.deck.tracker import Deck
@@ -221,3 +223,25 @@ def test_a_sensor_may_lose_its_orientation_and_find_it_again() -> None:
             assert deck.last.felt.gravity == pytest.approx(GRAVITY, abs=1e-9)
     assert deck.last is not None
     assert deck.last.orientation == heading
+
+
+ANY = st.floats(width=64) | st.sampled_from([0.0, G, 1e12, 1e-300, 1e308])
+NUMBERS = st.tuples(ANY, ANY, ANY)
+
+
+@given(NUMBERS, NUMBERS, st.none() | st.tuples(ANY, ANY, ANY, ANY) | st.just(LEVEL), st.integers(1, 400_000_000))
+@settings(max_examples=300, deadline=None)
+def test_whatever_a_sensor_tells_there_is_a_status_or_numbers(
+    force: Vector3, angular: Vector3, orientation: Any, step: int
+) -> None:
+    deck = imu_deck(imu_position=PLACE, extrapolation="harmonic", harmonic_window=2.0)
+    for k in range(40):
+        odd = still(k * step, specific_force=force, angular=angular, orientation=orientation)
+        assert isinstance(deck.update_imu(odd if k != 20 else still(k * step)), Status)
+        answer = deck.at(k * step + 1)
+        if isinstance(answer, Moment):
+            numbers = (*answer.orientation, *(one for part in (*answer.felt, *answer.ahead(0.3)) for one in part))
+            assert all(map(isfinite, numbers))
+        else:
+            assert answer is not Status.ACCEPTED
+        assert all(np.isfinite(part).all() for part in deck.forecast(np.array([0.0, 5.0])))

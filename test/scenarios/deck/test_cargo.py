@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from math import asin, sqrt
+from math import asin, pi, sqrt
 from typing import Any
 
 import numpy as np
@@ -38,6 +38,14 @@ def test_a_box_stands_on_the_lower_edges_that_lie_along_the_deck() -> None:
     # About x, and turning off it is blocked by the edges.
     assert unit.body == plate(2 * B, 2 * H, MASS, FRICTION, inertia=200.0)
     assert unit.start[:3] == pytest.approx((5.0, H, 0.0), abs=1e-15)
+
+
+def test_a_turned_box_stands_on_its_other_edges() -> None:
+    unit = unit_of("box", box(yaw=0.5 * pi))
+    # Its own x axis points to port: the points with x > 0 are to port.
+    assert unit.contacts == ((0, 1), (2, 3))
+    assert unit.body.new.x == pytest.approx(0.7)
+    assert unit.body.inertia == pytest.approx(300.0)
 
 
 def test_the_mass_centre_stands_where_the_frame_and_its_offset_say() -> None:
@@ -119,6 +127,19 @@ def test_the_truth_is_that_of_the_motion_in_one_piece(monkeypatch: pytest.Monkey
         assert impact.linear_before == pytest.approx((0.0, strike.before.vx, strike.before.vy), abs=1e-5)
         assert impact.angular_after == pytest.approx((strike.after.omega, 0.0, 0.0), abs=1e-5)
         assert impact.energy_lost == pytest.approx(strike.outcome.energy_lost, rel=1e-3, abs=1e-6)
+
+
+@pytest.mark.parametrize("friction", [0.1, 0.6])
+def test_onsets_are_where_a_unit_at_rest_begins_to_move(friction: float) -> None:
+    unit = unit_of("box", box(friction=friction))
+    whole = rock(unit.body, unit.start, a_deck().at(*unit.foot), duration=20.0)
+    onsets = [onset for span in motion_of(unit, 20.0) for onset in span.onsets]
+    left = [then for now, then in itertools.pairwise(whole.phases) if now.states == "SS" != then.states]
+    assert len(onsets) == len(left) > 0
+    for onset, phase in zip(onsets, left, strict=True):
+        assert onset.stamp / 1e9 == pytest.approx(phase.start, abs=1e-6)
+        assert onset.lifts == ("O" in phase.states)
+        assert onset.slides == ("+" in phase.states or "-" in phase.states)
 
 
 def test_a_border_is_the_smallest_relative_change_to_another_mode() -> None:
