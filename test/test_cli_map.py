@@ -94,11 +94,11 @@ def test_json_is_all_that_is_printed_and_the_options_reach_the_law(folder: Path)
     [
         (["plate", "--x", "warp", "0", "1"], "there is no parameter 'warp' for an axis; give one of delta, length"),
         (["plate", "--friction", "0.3"], "friction is an axis of the map and --friction a number"),
+        (["rod", "--x", "a", "0.2", "0"], "the axis a goes from 0.2 to 0; give two finite numbers, the lower one"),
         (
-            ["rod", "--x", "a", "0.2", "0"],
-            "the axis a goes from 0.2 to 0; give two finite numbers, the lower one first",
+            ["cylinder", "--x", "gamma", "0", "180"],
+            "gamma + gamma-new is 180.1",
         ),
-        (["cylinder", "--x", "gamma", "0", "180"], "give angles in degrees with a sum between 0 and 180"),
         (["rod", "--x", "friction", "0", "1"], "both axes, --x and --y, are friction; give two parameters"),
         (["plate", "--x", "delta", "0", "nan"], "the axis delta goes from 0 to nan"),
         (["plate", "--height", "0.1"], "delta and height are one thing"),
@@ -106,11 +106,7 @@ def test_json_is_all_that_is_printed_and_the_options_reach_the_law(folder: Path)
         (["plate", "--slip", "inf"], "slip is inf; give a number of at most 1e6"),
         (["plate", "--friction-new", "-1"], "friction_new is -1.0; give a finite"),
         (["plate", "--restitution", "3"], "restitution is 3.0; give a number from 0 to 1"),
-        (["cylinder", "--x", "gamma", "0", "100"], "gamma + gamma-new is"),
-        (
-            ["plate", "-o", "map.pdf"],
-            "map.pdf is neither picture nor data; give a name that ends in .png, .svg or .csv",
-        ),
+        (["plate", "-o", "map.pdf"], "neither picture nor data; give a name that ends in .png, .svg or .csv"),
         (["plate", "-o", "no/map.png"], "the folder of no/map.png does not exist"),
         (["plate", "--resolution", "1"], "1 is not in the range 2<=x<=5000"),
         (["plate", "--x", "delta", "0"], "'--x' requires 3 arguments"),

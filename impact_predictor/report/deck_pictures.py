@@ -31,15 +31,13 @@ MARGINS: Final = ("#dfe6e1", "#f2a91a", "#d62728")
 """Colours of a margin that is used little, enough to warn, and up."""
 ROLL, SLID = PALETTE[0], PALETTE[2]
 
-_MOST, _MOMENT = 200_000, 0.05
-"""A picture shows so many moments of a motion, or one each so many s if they are less."""
 _TILTS, _SLIDES, _SLID = 0.1, 0.02, 0.005
 """A unit moves that is tilted by so many degrees, or slides at so many m/s; a slide of so many m is shown."""
 
 
 def picture_times(duration: float) -> NDArray[np.float64]:
-    """The moments in s at which units are followed for a picture."""
-    return np.linspace(0.0, duration, min(_MOST, max(2, round(duration / _MOMENT) + 1)))
+    """The moments in s at which units are followed for a picture: one each 0.05 s, and 200,000 at most."""
+    return np.linspace(0.0, duration, min(200_000, max(2, round(duration / 0.05) + 1)))
 
 
 class UnitMotion:

@@ -90,14 +90,13 @@ def write_touchdowns(
             figure.text(0.5, 0.5, "no touchdown was scored", ha="center", color=GREY)
             return
         left, middle, right = figure.subplots(1, 3, width_ratios=(1.1, 1.0, 1.0))
-        twists = [(row.measured_twist or row.predicted_twist, row.predicted_twist, row.half_distance) for row in scored]
-        along = np.array([(measured.vx, predicted.vx) for measured, predicted, _ in twists])
-        turning = np.array([(measured.omega * s, predicted.omega * s) for measured, predicted, s in twists])
-        for pairs, colour, label in (
-            (along, _BLUE, "vx, along the support"),
-            (turning, _VERMILION, "ω s, from turning"),
-        ):
-            left.plot(*pairs.T, "o", color=colour, alpha=0.6, markersize=5, markeredgewidth=0, label=label)
+        s = np.array([row.half_distance for row in scored])
+        measured, predicted = (
+            np.array([getattr(row, name) for row in scored]) for name in ("measured_twist", "predicted_twist")
+        )
+        look: Any = {"alpha": 0.6, "markersize": 5, "markeredgewidth": 0}
+        left.plot(measured[:, 0], predicted[:, 0], "o", color=_BLUE, label="vx, along the support", **look)
+        left.plot(s * measured[:, 2], s * predicted[:, 2], "o", color=_VERMILION, label="ω s, from turning", **look)
         left.axline((0.0, 0.0), slope=1.0, color="black", linewidth=1.0, zorder=1, label="exact")
         left.set_title("Velocities right after the touchdown")
         left.set(xlabel="measured (m/s); s: half the contacts' distance", ylabel="predicted (m/s)")

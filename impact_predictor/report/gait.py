@@ -20,8 +20,6 @@ from .touchdowns import TouchdownRow
 
 AHEAD: Final = LEAD_TIMES[-1]
 """Seconds before a landing at which the prediction is made that is shown."""
-_TRUE: Final = "#d0d0d0"
-"""Colour of the stances that a record has."""
 
 
 class FootLandings(NamedTuple):
@@ -113,7 +111,9 @@ def _draw_stances(axes: Axes, feet: Sequence[FootLandings]) -> None:
     axes.set_title("When each foot stands")
     for row, foot in enumerate(feet):
         if foot.true_stances:
-            axes.broken_barh(foot.true_stances, (row - 0.39, 0.78), color=_TRUE, label="stands, as the record tells")
+            axes.broken_barh(
+                foot.true_stances, (row - 0.39, 0.78), color="#d0d0d0", label="stands, as the record tells"
+            )
         label = "stands, as inferred from its motion"
         axes.broken_barh(foot.stances, (row - 0.21, 0.42), color=foot.colour, label=label)
         times = [time + 1e-3 * error for time, error in foot.errors]

@@ -29,8 +29,6 @@ SYMBOLS: Final = {"ρ": "ρ² = J/m", "t": "t = tan (γ₁ + γ₂)/2", "k": "k 
 NODES: Final = 401
 """Points along each axis between which a border is interpolated."""
 
-_NAMED: Final = 0.02
-"""A region is named inside if it takes this part of the map."""
 _LINE_OF_LEGEND: Final = 33
 """Letters that a line of the legend has room for."""
 _SKETCHED: Final = {
@@ -174,7 +172,7 @@ def _draw_regions(axes: Axes, modes: ModeMap) -> None:
     axes.set_ylabel(axis_label(modes.y, modes), fontsize=12)
     axes.set_title(conditions(modes), fontsize=10)
     for mode, share in shares(modes).items():
-        if share >= _NAMED:
+        if share >= 0.02:  # a smaller region has no room for its name
             places = np.argwhere(modes.mode == mode)
             inside = places[np.argmin(np.hypot(*(places - places.mean(axis=0)).T))]  # the centroid may be outside
             y, x = (inside + 0.5) / modes.mode.shape

@@ -27,10 +27,6 @@ BODY: Final = "#dbe4ee"
 _HUB, _FIRST = PALETTE[0], PALETTE[2]
 _POINTS: Final = 2000
 """Points of a curve that is as long as the picture."""
-_LOOKS: Final = 400
-"""Moments of a motion at which its extent is looked at."""
-_HIGHEST: Final = 3.4
-"""Inches of the film that a body may be high."""
 
 
 def last_impact(impacts: Sequence[RockingImpact], time: float) -> str:
@@ -41,12 +37,9 @@ def last_impact(impacts: Sequence[RockingImpact], time: float) -> str:
 
 def draw_contacts(axes: plot.Axes, closed: Iterable[tuple[int, float, float, str]]) -> None:
     """Draw bars while contacts are closed: the row of each, begin and end (s), and its state."""
-    bars = list(closed)
-    for colour, label in ((STICKS, "contact sticks"), (SLIPS, "contact slips")):
-        mine = [(row, begin, end - begin) for row, begin, end, how in bars if CONTACT_COLOURS[how] == colour]
-        if mine:
-            rows, begins, lengths = zip(*mine, strict=True)
-            axes.barh(rows, lengths, 0.6, begins, color=colour, label=label)
+    for row, begin, end, how in closed:
+        label = "contact sticks" if how == "S" else "contact slips"
+        axes.barh(row, end - begin, 0.6, begin, color=CONTACT_COLOURS[how], label=label)
     axes.grid(visible=False, axis="y")
     axes.invert_yaxis()
     axes.set_xlabel("time (s)")
@@ -106,7 +99,7 @@ def rocking_film(rockings: Sequence[Rocking]) -> plot.Film:
         scene.size = size
     return plot.Film(
         scenes=scenes,
-        height=min(_HIGHEST, 7.0 / len(scenes) * height / width),
+        height=min(3.4, 7.0 / len(scenes) * height / width),
         draw_curves=partial(draw_rates, rockings),
         times=plot.frames_of(max(rocking.run.time for rocking in rockings)),
     )
@@ -183,7 +176,7 @@ class RockingScene(BodyScene):
     def __init__(self, rocking: Rocking) -> None:
         """Take a motion."""
         rocker, self._run = rocking
-        times, outline = np.linspace(0.0, self._run.time, _LOOKS).tolist(), np.array(rocker.outline)
+        times, outline = np.linspace(0.0, self._run.time, 400).tolist(), np.array(rocker.outline)
         start = standing(rocker.body, 0.0)
         super().__init__(rocker.label, rocker.body, outline, self._run.support, start, self._run.state, times)
 

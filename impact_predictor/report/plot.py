@@ -49,9 +49,6 @@ STEP: Final = 0.08
 
 _LENGTH: Final = 10.0
 """Seconds that a film of a whole motion lasts, about."""
-_STILL: Final = 1.5
-"""Seconds for which the end is seen before it begins again."""
-_COLOURS: Final = 128
 
 
 class FilmScene(Protocol):
@@ -129,13 +126,13 @@ class GifWriter(AbstractMovieWriter):
         self.frames.append(Image.frombytes("RGBA", self.frame_size, pixels.getvalue()).convert("RGB"))
 
     def finish(self) -> None:
-        """Save the frames, if there are any; the last one is seen for longer."""
+        """Save the frames, if there are any; the last one is seen for 1.5 s before the film begins again."""
         if not self.frames:
             return
         some = self.frames[:: max(1, len(self.frames) // 24)]
-        colours = Image.fromarray(np.concatenate([np.asarray(one) for one in some])).quantize(_COLOURS)
+        colours = Image.fromarray(np.concatenate([np.asarray(one) for one in some])).quantize(128)
         first, *others = [one.quantize(palette=colours, dither=Image.Dither.NONE) for one in self.frames]
-        durations = [round(1000 * STEP)] * len(others) + [round(1000 * _STILL)]
+        durations = [round(1000 * STEP)] * len(others) + [1500]
         first.save(self.outfile, "GIF", save_all=True, append_images=others, duration=durations, loop=0, optimize=True)
 
 

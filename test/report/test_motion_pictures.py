@@ -110,24 +110,19 @@ def test_titles_and_sentences_say_what_rolls_and_what_it_needs(slips: Rolling, s
     assert rolling_sentences(slips)[-2].startswith("Steady rolling without slip, closed form: 1.605412029 rad/s")
     assert rolling_sentences(stops)[-1].startswith("On this slope it cannot roll steadily")
     assert rolling_as_json(stops)["steady"] is None
+    rests = rolling_sentences(roll(slips.wheel._replace(hub=slips.wheel.hub._replace(friction=0.2)), 0.0))
+    assert ": rests, 0 steps and 0.905 m ahead" in rests[0]
+    assert rests[1].startswith("Steady rolling without slip")
 
 
 @pytest.mark.parametrize(("slope", "lines"), [(5.0, 2), (-5.0, 2), (3.0, 0), (40.0, 0)])
 def test_steady_rolling_is_drawn_downhill_and_not_where_there_is_none(slope: float, lines: int) -> None:
     axes = Figure().add_subplot()
     draw_wheel_rate(roll(Wheel(Hub(inertia=0.1, slope=radians(slope))), steps=1), axes)
-    rates = [
-        float(np.asarray(one.get_ydata())[0]) for one in axes.lines if one.get_label() == "steady rolling without slip"
-    ]
+    steady = [one for one in axes.lines if one.get_label() == "steady rolling without slip"]
+    rates = [float(np.asarray(one.get_ydata())[0]) for one in steady]
     assert len(rates) == lines
     assert all(rate * slope > 0.0 for rate in rates)
-
-
-def test_a_wheel_that_came_to_rest_is_told_with_its_way() -> None:
-    wheel = Wheel(Hub(inertia=0.1, friction=0.0, slope=radians(5.0)))
-    rests = rolling_sentences(roll(wheel._replace(hub=wheel.hub._replace(friction=0.2)), 0.0))
-    assert ": rests, 0 steps and 0.905 m ahead" in rests[0]
-    assert rests[1].startswith("Steady rolling without slip")
 
 
 @pytest.mark.slow
