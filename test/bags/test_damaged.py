@@ -173,6 +173,19 @@ def test_where_one_checksum_guards_all_data_it_is_said_that_any_message_may_be_w
     assert "the checksum of all its data is wrong, so that any message may be" in said
 
 
+def test_a_chunk_that_is_damaged_does_not_matter_where_no_wanted_topic_is_in_it(tmp_path: Path) -> None:
+    polygons = [message for message in MESSAGES if message.topic != "/cube/odom"]
+    odometry = [message for message in MESSAGES if message.topic == "/cube/odom"]
+    whole = write_mcap(tmp_path / "a.mcap", [*polygons, *odometry], CompressionType.NONE)
+    data = bytearray(whole.read_bytes())
+    # In the last chunk, where there is only odometry.
+    data[data.index(odometry[-1].data) + 100] ^= 1
+    whole.write_bytes(data)
+    wanted = {topic: name for topic, name in WANTED.items() if topic != "/cube/odom"}
+    assert list(read_messages(whole, wanted)) == polygons
+    assert read_before(whole)[1]
+
+
 def test_a_damaged_page_of_sqlite_stops_the_reading_there(tmp_path: Path) -> None:
     whole = sqlite(tmp_path)
     data = bytearray(whole.read_bytes())

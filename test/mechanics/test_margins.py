@@ -89,6 +89,18 @@ def test_the_mode_beyond_a_friction_border_is_that_of_the_closed_form():
     assert margin == (pytest.approx(-1.0 / 15.0, abs=EXACT), Mode.SLIDE)  # (2 - delta^2) / (3 delta) = 1/3
 
 
+def test_frictions_that_differ_change_together_and_stop_at_zero():
+    body = plate(length=1.0, height=0.4, mass=10.0, friction=0.5)
+    body = body._replace(old=body.old._replace(friction=0.0))
+    margin = margins(body, body.turning(-1.0)).friction
+    edge = body._replace(
+        old=body.old._replace(friction=max(0.0, margin.change)), new=body.new._replace(friction=0.5 + margin.change)
+    )
+    assert abs(margin.change) > 0.01
+    # On the border the slip that is left is rounding.
+    assert abs(solve_impact(edge, edge.turning(-1.0)).twist.vx) < EXACT
+
+
 def test_a_plate_that_stops_stands_as_far_from_pivoting_as_its_mass_centre_may_shift():
     body = plate(length=1.0, height=0.4, mass=10.0, friction=5.0)
     a = b = 0.5

@@ -10,7 +10,7 @@ import sys
 import numpy as np
 import pytest
 
-from impact_predictor import Contact, Flag, Mode, Twist, TwoPointBody, solve_impact
+from impact_predictor import Contact, Flag, Mode, Twist, TwoPointBody, Validity, solve_impact
 from impact_predictor.mechanics import transverse_step
 from impact_predictor.mechanics.transverse import Transverse, TransverseOutcome
 from impact_predictor.mechanics.transverse import solve_transverse_impact as solve
@@ -339,6 +339,19 @@ def test_a_contact_at_rest_slips_when_the_other_pulls_it_across() -> None:
     assert (space.rows @ space.velocities)[2] == pytest.approx(0.0)
     assert abs((space.rows @ velocities(answer))[2]) > 0.01
     assert velocities(answer) == pytest.approx(space.stepped(2000), abs=5e-3)
+
+
+def test_where_rigid_theory_is_too_simple_the_outcome_says_so() -> None:
+    """Also where the planar law answers; the limits are those that are given."""
+    flat = Contact(-0.5, -0.004, 0.3), Contact(0.5, -0.004, 0.3)
+    rod = TwoPointBody(1.0, 1.0 / 12.0, *flat)
+    for across in (Transverse(0.5), Transverse(0.0)):
+        for omega, slow in ((-1.0, False), (-1e-3, True)):
+            flags = solve(rod, rod.turning(omega), across).outcome.flags
+            assert bool(flags & Flag.THIN_BODY)
+            assert bool(flags & Flag.SLOW_IMPACT) is slow
+        thick = solve(rod, rod.turning(-1e-3), across, FINE, Validity(slenderness=0.007, gravity=0.0)).outcome.flags
+        assert not thick & (Flag.THIN_BODY | Flag.SLOW_IMPACT)
 
 
 STILL = TwoPointBody(1.0, 0.1, Contact(-0.3, -0.2, 0.3), Contact(0.3, -0.2, 0.3))
