@@ -220,7 +220,7 @@ class Comparison:
         found, end = list[Match](), self._samples[body][-1]
         for foot, rows in self._rows[body].items():
             if foot:
-                stamps = [stamp for stamp in self._landings[body, foot] if stamp <= end]
+                stamps = sorted(stamp for stamp in self._landings[body, foot] if stamp <= end)
                 # A foot comes down softly: it may seem to come down still when the plan says that it stands.
                 matched, alarms = match(stamps, rows.all, end, late=NEAREST)
                 found += [Match(body, foot, stamp, None, matched.get(k, ())) for k, stamp in enumerate(stamps)]

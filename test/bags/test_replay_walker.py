@@ -78,6 +78,17 @@ def test_every_input_tells_what_became_of_its_messages(tmp_path: Path, messages:
     assert result.statuses[Status.ACCEPTED] == 400
 
 
+def test_landings_are_confirmed_by_the_sensors_of_a_bag_and_late_by_its_plan(
+    tmp_path: Path, messages: list[BagMessage]
+) -> None:
+    result = replay(write_bag(tmp_path / "walk.mcap", messages), SCENE)
+    landings = [settled.score.landing for settled in result.settled if settled.score.landing is not None]
+    assert {landing.foot for landing in landings} == {"left", "right"}
+    assert all(landing.confirmed for landing in landings)
+    assert all(landing.late is not None and abs(landing.late) < 0.02 for landing in landings)
+    assert result.notes == ()
+
+
 def test_without_points_of_its_feet_it_is_said_which_topic_to_give(tmp_path: Path, messages: list[BagMessage]) -> None:
     alone = write_bag(tmp_path / "walk.mcap", [one for one in messages if one.topic == "/odom"])
     result = replay(alone, SCENE)

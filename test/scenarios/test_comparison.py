@@ -301,12 +301,6 @@ def test_a_foot_may_still_seem_to_come_down_when_the_plan_says_that_it_stands() 
     assert together_of(landings(200, {"left": (60,), "right": ()}, longer)).false == 1
 
 
-def test_two_feet_that_take_turns_to_be_the_soonest_are_not_mixed_up() -> None:
-    announced = {0: {at: 60.0 + at % 2 for at in range(20, 60)}, 1: {at: 61.0 - at % 2 for at in range(20, 60)}}
-    truth = together_of(landings(100, {"left": (60,), "right": (60,)}, announced))
-    assert (truth.touchdowns, truth.missed, truth.false) == (2, 0, 0)
-
-
 def test_the_toe_of_a_foot_that_stands_on_its_heel_lands_no_more() -> None:
     soles = WALKER._replace(walking=Walking(("left", "right"), points=2))
     toe = {1: dict.fromkeys(range(20, 60), 60.0)}
