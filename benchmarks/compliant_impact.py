@@ -22,7 +22,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import solve_ivp
+from scipy import integrate
 
 from impact_predictor.mechanics.compliant import Compliance, damping_ratio, force
 from impact_predictor.mechanics.impact import see
@@ -204,18 +204,20 @@ def compliant_impact(
                 left = max(left, rate - moves)
         return left
 
-    remaining.terminal, remaining.direction = True, -1.0  # type: ignore[attr-defined]
+    end = LONGEST / sqrt(min(ratio, 1.0))
     with np.errstate(all="ignore"), warnings.catch_warnings(action="ignore"):
-        found: Any = solve_ivp(
-            equations.rates,
-            (0.0, LONGEST / sqrt(min(ratio, 1.0))),
-            start,
-            method,
-            events=remaining,
-            rtol=tolerance,
-            atol=tolerance,
-        )
-    state = found.y_events[0][0] if found.status == 1 else found.y[:, -1]
+        solver = getattr(integrate, method)(equations.rates, 0.0, start, end, rtol=tolerance, atol=tolerance)
+        while solver.status == "running" and remaining(solver.t, solver.y) > 0.0:
+            solver.step()
+        time, state = solver.t, solver.y
+        over = remaining(time, state) <= 0.0
+        if over and solver.t_old is not None:
+            # Halved, because what remains jumps: a contact that has left counts no more.
+            way, before_end = solver.dense_output(), solver.t_old
+            while time - before_end > 1e-12 * time:
+                middle = 0.5 * (before_end + time)
+                before_end, time = (middle, time) if remaining(middle, way(middle)) > 0.0 else (before_end, middle)
+            state = way(time)
     x, y, q = (speed * float(value) for value in state[3:6])
     after = Twist(x, y, q / units.rho)
     velocities = _velocities(body, after)
@@ -228,9 +230,9 @@ def compliant_impact(
         velocities=velocities,
         impulses=((na, ta), (nb, tb)),
         energy_lost=-0.5 * sum(impulse * (one + other) for impulse, one, other in pairs if impulse != 0.0),
-        duration=float(found.t[-1]) * units.time,
-        evaluations=int(found.nfev),
-        over=found.status == 1,
+        duration=float(time) * units.time,
+        evaluations=int(solver.nfev),
+        over=over,
     )
 
 
