@@ -19,9 +19,9 @@ from rich.table import Table
 
 from impact_predictor.bags.replay import replay
 from impact_predictor.calibration.fit import Calibration, calibrate
+from impact_predictor.calibration.search import interval
 from impact_predictor.calibration.touchdowns import ObservingMonitor
 from impact_predictor.prediction.scene import Scene, inertia_matrix
-from impact_predictor.report.calibration import interval
 from impact_predictor.scenarios.record import rocking_actor, write_record
 from impact_predictor.scenarios.rocking import Rocker, release, rocking_plate, rocking_rod
 

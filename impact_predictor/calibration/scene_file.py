@@ -1,12 +1,17 @@
-"""A parameter file with other values in it, and everything else as it was, comments too."""
+"""What a fit changes in a parameter file, and that file with other values, everything else as it was, comments too."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Final, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from ruamel.yaml import YAML
 from ruamel.yaml.nodes import MappingNode
+
+from .search import Estimate, interval
+
+if TYPE_CHECKING:
+    from .fit import Calibration
 
 _KEY: Final = "ros__parameters"
 
@@ -92,3 +97,26 @@ def _with_new(text: str, name: str, change: NewValues) -> str:
         return f"{text[: spot.at]}{entry}, {text[spot.at :]}"
     indent = text[text.rfind("\n", 0, spot.at) + 1 : spot.at]
     return f"{text[: spot.at]}{entry}  # {change.remark}\n{indent}{text[spot.at :]}"
+
+
+def estimates_of(calibration: Calibration) -> dict[str, Estimate]:
+    """The estimates by the names of the coefficients."""
+    return {name: getattr(calibration, name) for name in ("friction", "restitution", "inertia")}
+
+
+def changes_of(calibration: Calibration) -> dict[str, NewValues]:
+    """What the fit changes in the parameter file of the scene."""
+    changes = {}
+    for name, one in estimates_of(calibration).items():
+        if one.value == one.given:
+            continue
+        values: tuple[float, ...] = (one.value,)
+        of = ""
+        if name == "inertia":
+            (xx, xy, xz), (_, yy, yz), (_, _, zz) = calibration.touchdowns[0].scene.inertia
+            given = (xx,) if xx == yy == zz and not (xy or xz or yz) else (xx, yy, zz, xy, xz, yz)
+            values, of = tuple(one.value * part for part in given), "factor "
+        remark = f"fitted to {len(calibration.touchdowns)} touchdowns; {of}{interval(one)} with 95 %"
+        parameter = "body.inertia" if name == "inertia" else f"contact.{name}"
+        changes[parameter] = NewValues(values, remark, listed=name == "inertia")
+    return changes

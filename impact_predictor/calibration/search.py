@@ -50,6 +50,16 @@ class Estimate(NamedTuple):
     known: bool
 
 
+def interval(one: Estimate) -> str:
+    """An interval in words."""
+    if one.high is None:
+        return f"at least {one.low:.3g}" if one.low else "any"
+    if one.low is None:
+        return f"at most {one.high:.3g}"
+    digits = 3 if f"{one.low:.3g}" != f"{one.high:.3g}" else 6
+    return f"{one.low:.{digits}g} to {one.high:.{digits}g}"
+
+
 class Search:
     """Tables of the errors of some touchdowns, and what fits and resampled fits read from them."""
 

@@ -61,7 +61,7 @@ def calibrate(
     if output is not None and not Path(output).resolve().parent.is_dir():
         raise InputError(f"the folder of {output} does not exist; make it, or give another name")
     if figure is not None:
-        from ..report.files import named
+        from ..files import named
         from ..report.plot import PICTURE
 
         named(figure, *PICTURE)
@@ -77,9 +77,8 @@ def calibrate(
             raise InputError(f"{error}; not scored are {counts}") from None
         raise
     if output is not None:
-        from ..calibration.scene_file import changed
-        from ..report.calibration import changes_of
-        from ..report.files import whole
+        from ..calibration.scene_file import changed, changes_of
+        from ..files import whole
 
         given = Path(params).read_text(encoding="utf-8")
         with whole(Path(output)) as partial:

@@ -67,8 +67,8 @@ def demo(output: Path, tosses: int | None) -> None:
     """
     from rich.console import Console
 
+    from ..files import make_folder
     from ..report.figures import write_touchdowns
-    from ..report.files import make_folder
     from ..report.replay import lead_time_table, touchdown_table
     from ..report.summary import Tally
     from ..report.table import show

@@ -75,7 +75,7 @@ class ReplayReport:
 
             self._picture = ReplayPicture(wanted.figure)
         if wanted.report is not None:
-            from ..report.files import named
+            from ..files import named
 
             need("plotly", "jinja2")
             named(wanted.report, "page", (".html",) if Path(wanted.report).suffix else ("",))

@@ -10,7 +10,7 @@ from typing import Any, Final
 import click
 
 from ..errors import need
-from ..report.files import make_folder, whole
+from ..files import make_folder, whole
 from .options import examples
 
 PAGE: Final = "report.html"

@@ -149,7 +149,8 @@ def answer(
     material = [options.pop(name) for name in ("mass", "friction", "inertia", "restitution")]
     products = Products(**options)
     products.check()
-    from ..report.simulation import print_rocking, rocking_as_json
+    from ..report.simulation import print_rocking
+    from ..scenarios.as_json import rocking_as_json
     from ..scenarios.rocking import release
 
     rockings = [release(body(*material), radians(angle), radians(slope), gravity, law, duration) for body in bodies]
@@ -202,7 +203,8 @@ def simulate_wheel(
     It is let go with spoke 0 at right angles to the slope. Each spoke strikes without bouncing; where friction does not
     hold it, it slips. What is printed tells the steady rolling by its closed form, too.
     """
-    from ..report.simulation import print_rolling, rolling_as_json
+    from ..report.simulation import print_rolling
+    from ..scenarios.as_json import rolling_as_json
     from ..scenarios.wheel import Hub, RollEnd, Wheel, roll
 
     hub = Hub(slope=radians(slope), **{name: options.pop(name) for name in ("mass", "inertia", "leg", "gravity")})

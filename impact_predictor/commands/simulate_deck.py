@@ -123,7 +123,8 @@ def simulate_deck(
     if products.draws:
         units = [UnitMotion(one) for one in voyage.units]
         products.draw(lambda path: write_deck_figure(path, deck, units), lambda: deck_film(deck, units))
-    from ..report.simulation import print_voyage, voyage_as_json
+    from ..report.simulation import print_voyage
+    from ..scenarios.as_json import voyage_as_json
 
     products.say(lambda: voyage_as_json(voyage), lambda console: print_voyage(console, voyage))
     return 1 if voyage.broke_off else 0

@@ -69,7 +69,7 @@ class Products(NamedTuple):
             "a number above 0, up to 1e6",
         )
         if self.draws:
-            from ..report.files import named
+            from ..files import named
             from ..report.plot import FILM, PICTURE
 
             for path, what in ((self.plot, PICTURE), (self.animate, FILM)):

@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from ..errors import need
+from ..files import named, whole
 from ..prediction.types import Status
 from ..stamps import NANOSECONDS
-from .files import named, whole
 from .summary import SpanErrors, errors_ahead, errors_of, spread_of, to_json, velocity_errors_ahead
 from .touchdowns import FIELDS, row_as_json, row_of
 

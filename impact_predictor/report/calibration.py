@@ -12,17 +12,12 @@ from numpy.typing import NDArray
 from rich.table import Table
 
 from ..calibration.fit import Calibration
-from ..calibration.scene_file import NewValues, number_text
-from ..calibration.search import FOLDS, Estimate
+from ..calibration.scene_file import changes_of, estimates_of, number_text
+from ..calibration.search import FOLDS, interval
 from ..prediction.types import Leftover, Score
 from ..wording import counted, percent, words
 from .summary import spread_of
 from .table import Column, table_of
-
-
-def estimates_of(calibration: Calibration) -> dict[str, Estimate]:
-    """The estimates by the names of the coefficients."""
-    return {name: getattr(calibration, name) for name in ("friction", "restitution", "inertia")}
 
 
 def estimates_table(calibration: Calibration) -> Table:
@@ -34,16 +29,6 @@ def estimates_table(calibration: Calibration) -> Table:
         Column("95 % interval", lambda row: interval(row[1])),
     ]
     return table_of(columns, estimates_of(calibration).items())
-
-
-def interval(one: Estimate) -> str:
-    """An interval in words."""
-    if one.high is None:
-        return f"at least {one.low:.3g}" if one.low else "any"
-    if one.low is None:
-        return f"at most {one.high:.3g}"
-    digits = 3 if f"{one.low:.3g}" != f"{one.high:.3g}" else 6
-    return f"{one.low:.{digits}g} to {one.high:.{digits}g}"
 
 
 def sentences(calibration: Calibration, scores: Sequence[Score]) -> list[str]:
@@ -83,24 +68,6 @@ def unscored(scores: Sequence[Score]) -> dict[str, int]:
     """How many touchdowns are not scored for each reason, the commonest first."""
     flags = [flag.name or "" for score in scores if not score.scored for flag in Leftover if flag & score.leftover]
     return dict(Counter(flags).most_common())
-
-
-def changes_of(calibration: Calibration) -> dict[str, NewValues]:
-    """What the fit changes in the parameter file of the scene."""
-    changes = {}
-    for name, one in estimates_of(calibration).items():
-        if one.value == one.given:
-            continue
-        values: tuple[float, ...] = (one.value,)
-        of = ""
-        if name == "inertia":
-            (xx, xy, xz), (_, yy, yz), (_, _, zz) = calibration.touchdowns[0].scene.inertia
-            given = (xx,) if xx == yy == zz and not (xy or xz or yz) else (xx, yy, zz, xy, xz, yz)
-            values, of = tuple(one.value * part for part in given), "factor "
-        remark = f"fitted to {len(calibration.touchdowns)} touchdowns; {of}{interval(one)} with 95 %"
-        parameter = "body.inertia" if name == "inertia" else f"contact.{name}"
-        changes[parameter] = NewValues(values, remark, listed=name == "inertia")
-    return changes
 
 
 def as_json(calibration: Calibration, bags: Sequence[str], scores: Sequence[Score]) -> dict[str, Any]:

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from matplotlib.ticker import MaxNLocator, PercentFormatter
 
+from ..files import named
 from ..wording import listed, percent
-from .files import named
 from .gait import FootLandings, feet_of, write_gait
 from .modes import PALETTE
 from .plot import GREY, PICTURE, Axes, Figure, headline, picture
@@ -155,7 +155,7 @@ def write_calibration(path: str | os.PathLike[str], calibration: Calibration, na
 
 
 def _draw_map(figure: Figure, axes: Axes, calibration: Calibration) -> None:
-    from .calibration import interval  # which needs scipy, as no other picture here does
+    from ..calibration.search import interval  # which needs scipy, as no other picture here does
 
     grid, losses = calibration.map
     friction, restitution = calibration.friction, calibration.restitution

@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 from rich.table import Table
 
 from ..errors import InputError
+from ..files import whole
 from ..mechanics.bodies import cylinder, plate, refuse, rod
 from ..mechanics.impact import states_of
 from ..mechanics.impact.batch import solve_impacts
 from ..mechanics.types import Flag, Mode, Twist, TwoPointBody
-from .files import whole
 from .modes import MODES
 from .table import Column, table_of
 

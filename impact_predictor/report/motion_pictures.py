@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 from ..mechanics.motion import PlanarState, RockingImpact, standing
 from ..mechanics.motion.support import Support
 from ..mechanics.types import TwoPointBody
+from ..scenarios.as_json import rolling_as_json
 from ..scenarios.rocking import Rocking
 from ..scenarios.wheel import Rolling
 from . import plot
 from .modes import EDGE, MODES, PALETTE
-from .simulation import rolling_as_json
 
 STICKS, SLIPS, OPEN = "#1a1a1a", "#e69f00", "#ffffff"
 CONTACT_COLOURS: Final = {"S": STICKS, "+": SLIPS, "-": SLIPS, "O": OPEN}

@@ -21,8 +21,8 @@ from matplotlib.patches import Patch as Patch
 from numpy.typing import NDArray
 from PIL import Image
 
+from ..files import named, whole
 from ..mechanics.motion import PlanarState
-from .files import named, whole
 
 GREY: Final = "#666666"
 LINE, SPOKE, SUPPORT, STRUCK = "#33475b", "#b5c1cd", "#b5ada0", "#d62728"

@@ -4,27 +4,23 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from math import degrees, hypot, inf
-from operator import itemgetter
-from typing import Any, Final, NamedTuple
+from math import degrees
+from typing import Final, NamedTuple
 
 from rich.console import Console
 
-from ..mechanics.motion import End, RockingImpact, Trajectory
-from ..mechanics.types import Mode
+from ..mechanics.motion import End, RockingImpact
+from ..scenarios.as_json import rolling_as_json
 from ..scenarios.deck.voyage import Followed, Voyage
 from ..scenarios.rocking import Rocking
-from ..scenarios.truth import TrueImpact, TrueOnset
+from ..scenarios.truth import TrueOnset
 from ..scenarios.wheel import Rolling
-from ..scenarios.wheel_closed_forms import downhill, impact_friction, least_friction, steady
 from ..stamps import NANOSECONDS
 from ..wording import NONE, counted, fixed, words
 from .table import Column, more, say, show, table_of
 
 MOST_IMPACTS: Final = 12
 """Impacts that are listed; the others of an accumulation say no more."""
-RESOLVED: Final = 0.05
-"""Approach in m/s above which an impact is told from the last small ones of a unit that comes to rest."""
 
 
 class ListedImpact(NamedTuple):
@@ -54,31 +50,6 @@ def _ratio(strike: RockingImpact) -> str:
     return fixed(strike.after.omega / strike.before.omega if strike.before.omega else None, 4)
 
 
-def _impact(time: float, mode: Mode, before: float, after: float) -> dict[str, Any]:
-    return {"time": time, "mode": mode.name, "omega_before": abs(before), "omega_after": abs(after)}
-
-
-def _planar(strike: RockingImpact) -> dict[str, Any]:
-    return _impact(strike.time, strike.outcome.mode, strike.before.omega, strike.after.omega)
-
-
-def _spatial(impact: TrueImpact) -> dict[str, Any]:
-    return _impact(impact.stamp / NANOSECONDS, impact.mode, hypot(*impact.angular_before), hypot(*impact.angular_after))
-
-
-def rocking_as_json(run: Trajectory) -> dict[str, Any]:
-    """A motion as JSON: times in s, angular velocities as magnitudes in rad/s.
-
-    `accumulation_time` is when impacts last accumulated so that both contacts stayed closed; null if they never did.
-    """
-    times = [one.time for one in run.accumulations if len(one.contacts) == 2]
-    return {
-        "impacts": [_planar(strike) for strike in run.impacts],
-        "accumulation_time": times[-1] if times else None,
-        "end": run.end.name,
-    }
-
-
 def print_rocking(console: Console, rocking: Rocking) -> None:
     """Print the impacts of a motion and how it ended."""
     run = rocking.run
@@ -89,33 +60,6 @@ def print_rocking(console: Console, rocking: Rocking) -> None:
             then = "slides" if one.slides else "stays"
             say(console, f"Impacts accumulate at {one.time:.6f} s; then the body {then} on both contacts.")
     say(console, f"The motion ends at {run.time:.6f} s: {words(run.end.name)}.")
-
-
-def rolling_as_json(rolling: Rolling) -> dict[str, Any]:
-    """A rolling motion as JSON: times in s, angular velocities as magnitudes in rad/s.
-
-    `steps` and `speed` count ahead. `steady` is the closed form of rolling down the slope without slip, with the least
-    friction coefficient for it; null where the wheel stops, or no friction is enough.
-    """
-    known, down = None, downhill(rolling.wheel)
-    rolls = steady(down)
-    if rolls is not None and (needed := least_friction(down)) < inf:
-        known = {
-            "omega_before": rolls.before,
-            "omega_after": rolls.after,
-            "step_time": rolls.time,
-            "speed": rolls.speed,
-            "friction": needed,
-        }
-    return {
-        "impacts": [{**_planar(strike), "old": old, "new": new} for old, new, strike in rolling.impacts],
-        "steps": rolling.steps,
-        "speed": rolling.distance / rolling.time if rolling.time > 0.0 else 0.0,
-        "steady": known,
-        "impact_friction": impact_friction(rolling.wheel.hub, rolling.wheel.alpha),
-        "time": rolling.time,
-        "end": rolling.end.name,
-    }
 
 
 def print_rolling(console: Console, rolling: Rolling) -> None:
@@ -143,39 +87,6 @@ def rolling_sentences(rolling: Rolling) -> list[str]:
         f"Steady rolling without slip, closed form: {rates}, {steps}.",
         f"It needs a friction coefficient of {friction}; the wheel has {rolling.wheel.hub.friction:g}.",
     ]
-
-
-def voyage_as_json(voyage: Voyage) -> dict[str, Any]:
-    """A voyage as JSON: times in s, angular velocities as magnitudes in rad/s, angles in rad, displacements in m.
-
-    `impacts` are those of all units in order of time; `accumulation_time` is when impacts last accumulated so that a
-    contact stayed closed, null if they never did. `units` has the same for each unit.
-    """
-    units: dict[str, dict[str, Any]] = {
-        one.unit.name: {
-            "impacts": [_spatial(impact) for impact in one.impacts],
-            "accumulation_time": one.sums[-1] if one.sums else None,
-            "end": one.end.name,
-            "time": one.time,
-            "resolved_impacts": sum(impact.approach > RESOLVED for impact in one.impacts),
-            "onsets": [{"time": it.stamp / NANOSECONDS, "slides": it.slides, "lifts": it.lifts} for it in one.onsets],
-            "most_turned": one.most_turned,
-            "moved": one.moved,
-        }
-        for one in voyage.units
-    }
-    impacts = [{"unit": name, **impact} for name, unit in units.items() for impact in unit["impacts"]]
-    ends = [one.end for one in voyage.units]
-    # Of the only unit, of one that was lost, or TIME_UP.
-    end = max(ends) if len(ends) == 1 or voyage.broke_off else End.TIME_UP
-    return {
-        "duration": voyage.duration,
-        "impacts": sorted(impacts, key=itemgetter("time")),
-        "accumulation_time": max((one.sums[-1] for one in voyage.units if one.sums), default=None),
-        "end": end.name,
-        "deck": {"most_rolled": voyage.most_rolled, "most_lateral": voyage.most_lateral},
-        "units": units,
-    }
 
 
 def _end(one: Followed) -> str:

@@ -7,9 +7,10 @@ from typing import Any
 import numpy as np
 
 from impact_predictor.calibration.fit import Calibration
-from impact_predictor.calibration.search import Estimate
+from impact_predictor.calibration.scene_file import changes_of
+from impact_predictor.calibration.search import Estimate, interval
 from impact_predictor.prediction.scene import Scene, inertia_matrix
-from impact_predictor.report.calibration import changes_of, interval, sentences
+from impact_predictor.report.calibration import sentences
 
 TOLD = Estimate(0.4, 0.2, 0.15, 0.25, known=True)
 AS_GIVEN = Estimate(1.0, 1.0, None, None, known=False)

@@ -21,7 +21,8 @@ from impact_predictor.report.motion_pictures import (
     write_wheel_figure,
 )
 from impact_predictor.report.plot import STEP
-from impact_predictor.report.simulation import rolling_as_json, rolling_sentences
+from impact_predictor.report.simulation import rolling_sentences
+from impact_predictor.scenarios.as_json import rolling_as_json
 from impact_predictor.scenarios.rocking import Rocking, release, rocking_cylinder, rocking_rod
 from impact_predictor.scenarios.wheel import Hub, Rolling, Wheel, roll
 

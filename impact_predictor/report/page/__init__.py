@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any, Final, NamedTuple
 
 from ... import __version__
+from ...files import whole
 from ...wording import duration, percent
-from ..files import whole
 
 GREY: Final = "#808a95"
 """What is no data: grids, lines that lead to something. It can be seen on white and on black."""

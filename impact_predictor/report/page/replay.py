@@ -8,12 +8,12 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
+from ...files import make_folder
 from ...prediction.checks import REMEDIES
 from ...prediction.scene import features_of
 from ...prediction.types import Status
 from ...stamps import NANOSECONDS
 from ...wording import counted, words
-from ..files import make_folder
 from ..modes import MODES, PALETTE
 from ..summary import PER_DECADE, WHY, quantile, without_bag
 from . import GREY, Cell, Chart, PageTable, Section, marks, page, part_words, script_inside, time_words, write_html

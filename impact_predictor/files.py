@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
-from ..errors import InputError
+from .errors import InputError
 
 
 def named(path: str | os.PathLike[str], what: str, suffixes: Sequence[str]) -> Path:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from impact_predictor.errors import InputError
-from impact_predictor.report.files import named, whole
+from impact_predictor.files import named, whole
 
 
 @pytest.mark.parametrize(
