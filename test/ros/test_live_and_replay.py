@@ -87,8 +87,9 @@ def test_live_topics_give_what_the_replay_of_the_bag_gives_byte_for_byte(tmp_pat
 
     with peer_of_node() as peer, program("player", *played) as player, program("node", *arguments) as node:
         wait(lambda: PLAYED in player.said(), player, node)
-        # The player waits for the node and not for the peer, which may have missed the first ones.
-        peer.until(lambda: peer.heard["prediction"][-1:] == offline["prediction"][-1:])
+        # The player waits for the node and not for the peer, which hears the node's reports whenever it finds them.
+        samples = str(len(offline["mode"]))
+        peer.until_reported(lambda report: report.values.get("samples.accepted") == samples)
         node.end()
         player.end()
     assert all(offline.values())
