@@ -81,9 +81,9 @@ class ReplayReport:
             named(wanted.report, "page", (".html",) if Path(wanted.report).suffix else ("",))
             self._answers = []
         if wanted.table is not None:
-            from ..report.answers import touchdown_table
+            from ..report.answers import parquet_table
 
-            self._table = stack.enter_context(touchdown_table(wanted.table))
+            self._table = stack.enter_context(parquet_table(wanted.table))
         if not wanted.as_json:
             from ..report.summary import Tally
 

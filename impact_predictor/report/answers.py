@@ -176,7 +176,7 @@ class TouchdownTable:
 
 
 @contextmanager
-def touchdown_table(path: str | Path) -> Iterator[TouchdownTable]:
+def parquet_table(path: str | Path) -> Iterator[TouchdownTable]:
     """A table in a Parquet file; it has its name when it is whole, and after an exception an older one stays.
 
     Raises:

@@ -11,7 +11,7 @@ import pytest
 from touchdowns import LANDED, UNMEASURED
 
 from impact_predictor.errors import InputError
-from impact_predictor.report.answers import touchdown_table
+from impact_predictor.report.answers import parquet_table
 from impact_predictor.report.touchdowns import row_as_json, row_of
 
 parquet = pytest.importorskip("pyarrow.parquet", reason="needs the extra fleet (make test-extras)")
@@ -30,7 +30,7 @@ ANSWERS: list[dict[str, Any]] = [
 
 
 def written(path: Path) -> Any:
-    with touchdown_table(path) as table:
+    with parquet_table(path) as table:
         for answer in ANSWERS:
             table.add(answer)
     return parquet.read_table(path)
@@ -57,7 +57,7 @@ def test_the_documented_lines_read_the_table(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    with touchdown_table("results.parquet") as table:
+    with parquet_table("results.parquet") as table:
         for answer in ANSWERS:
             table.add(answer)
         for error in (0.1, 0.3):
@@ -93,7 +93,7 @@ def test_a_table_that_is_not_whole_leaves_the_older_one(tmp_path: Path) -> None:
     path = tmp_path / "t.parquet"
     written(path)
     before = path.read_bytes()
-    with pytest.raises(KeyError), touchdown_table(path) as table:
+    with pytest.raises(KeyError), parquet_table(path) as table:
         table.add(ANSWERS[0])
         raise KeyError
     assert path.read_bytes() == before
@@ -104,5 +104,5 @@ def test_a_table_that_is_not_whole_leaves_the_older_one(tmp_path: Path) -> None:
     ("name", "said"), [("t.csv", r"ends in \.parquet"), ("none/t.parquet", "folder of .* does not")]
 )
 def test_a_wrong_name_is_told_at_once(tmp_path: Path, name: str, said: str) -> None:
-    with pytest.raises(InputError, match=said), touchdown_table(tmp_path / name):
+    with pytest.raises(InputError, match=said), parquet_table(tmp_path / name):
         pass
