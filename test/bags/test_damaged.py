@@ -199,9 +199,10 @@ def test_a_damaged_page_of_sqlite_stops_the_reading_there(tmp_path: Path) -> Non
     assert "SQLite finds it damaged" in said
 
 
-def test_a_large_sqlite_file_is_read_up_to_the_cut_though_its_tree_is_lost(tmp_path: Path) -> None:
+@pytest.mark.parametrize("longer", [4, 16], ids=["messages within a page", "messages over several pages"])
+def test_a_large_sqlite_file_is_read_up_to_the_cut_though_its_tree_is_lost(tmp_path: Path, longer: int) -> None:
     # More than one page can point to, so that the root of the tree points to pages written late.
-    many = [BagMessage(one.topic, one.log_time + k, one.data * 4) for k in range(6) for one in MESSAGES]
+    many = [BagMessage(one.topic, one.log_time + k, one.data * longer) for k in range(6) for one in MESSAGES]
     many = sorted(many, key=lambda one: one.log_time)
     whole = write_ros2(tmp_path / "bag", many, StoragePlugin.SQLITE3) / "bag.db3"
     data = whole.read_bytes()
