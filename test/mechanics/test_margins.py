@@ -150,6 +150,23 @@ def test_no_mode_that_holds_for_long_lies_nearer_than_the_border(kind, monkeypat
                 assert longest <= max(way.unit / 32.0, 0.5 * end)
 
 
+def test_a_narrow_mode_is_found_where_the_contact_states_beyond_it_differ():
+    """A rod that slips: at hardly any other speed than that at which it sticks does it pivot without slip."""
+    body = rod(length=0.4, thickness=0.004, a=0.108, b=0.09, mass=1.0, friction=0.6)
+    twist = body.turning(-1.0)
+    twist = twist._replace(vx=twist.vx + 0.79)
+    margin = margins(body, twist).slip
+    assert margin.mode is Mode.PIVOT
+
+    def mode(change):
+        return solve_impact(body, twist._replace(vx=twist.vx + change)).mode
+
+    here = mode(0.0)
+    assert mode(margin.change + 1e-6) is here
+    assert mode(margin.change - 1e-6) is Mode.PIVOT
+    assert mode(margin.change - 0.2) is here
+
+
 def test_an_impact_on_a_border_has_no_room():
     body = plate(length=1.0, height=0.4, mass=10.0, friction=0.4)
     margin = margins(body, body.turning(-1.0)).friction
