@@ -257,6 +257,20 @@ def test_a_body_that_yaws_far_more_easily_than_it_moves_needs_no_more_steps(monk
     assert solve(*case).outcome.flags & Flag.LAST_RESORT
 
 
+@pytest.mark.parametrize("velocity", [0.9, 1e-7])
+def test_a_jam_ends_by_a_tangential_impact_at_the_old_contact(velocity: float) -> None:
+    """A plate that slips backwards; with hardly any slip across the plane it does what the planar law says."""
+    body = TwoPointBody(1.0, 1.81 / 12.0, Contact(-0.5, -0.45, 5.0), Contact(0.5, -0.45, 5.0))
+    twist = body.turning(-1.0)
+    twist = twist._replace(vx=twist.vx - 0.7)
+    outcome = solve_transverse_impact(body, twist, Transverse(velocity)).outcome
+    assert outcome.flags & Flag.JAMMED
+    assert not outcome.flags & Flag.LAST_RESORT
+    assert outcome.energy_lost > 0.0
+    if velocity < 1e-6:
+        assert outcome.twist == pytest.approx(solve_impact(body, twist).twist, abs=1e-6)
+
+
 def test_momentum_energy_and_friction_are_kept() -> None:
     for body, twist, across in cases(300, seed=4):
         space = Body(body, twist, across)
