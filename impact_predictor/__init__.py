@@ -8,6 +8,15 @@ if TYPE_CHECKING:
     from .mechanics.bodies import cylinder, plate, rod
     from .mechanics.impact import solve_impact
     from .mechanics.impact.batch import Outcomes, solve_impacts
+    from .mechanics.impact.spatial import (
+        Body,
+        ContactPoints,
+        ContactState,
+        SpatialOutcome,
+        SpatialOutcomes,
+        solve_spatial_impact,
+        solve_spatial_impacts,
+    )
     from .mechanics.margins import Margin, Margins
     from .mechanics.sensitivity import Sensitivity, sensitivity
     from .mechanics.transverse import Transverse, TransverseOutcome, solve_transverse_impact
@@ -15,7 +24,10 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Alternative",
+    "Body",
     "Contact",
+    "ContactPoints",
+    "ContactState",
     "Flag",
     "InputError",
     "Margin",
@@ -24,6 +36,8 @@ __all__ = [
     "Outcome",
     "Outcomes",
     "Sensitivity",
+    "SpatialOutcome",
+    "SpatialOutcomes",
     "Transverse",
     "TransverseOutcome",
     "Twist",
@@ -35,6 +49,8 @@ __all__ = [
     "sensitivity",
     "solve_impact",
     "solve_impacts",
+    "solve_spatial_impact",
+    "solve_spatial_impacts",
     "solve_transverse_impact",
 ]
 __version__ = "0.1.0"
@@ -44,6 +60,7 @@ LATER = {
     **dict.fromkeys(
         ("Alternative", "Contact", "Flag", "Mode", "Outcome", "Twist", "TwoPointBody", "Validity"), "types"
     ),
+    **dict.fromkeys(("Body", "ContactPoints", "ContactState", "SpatialOutcome", "SpatialOutcomes"), "impact.spatial"),
     "Margin": "margins",
     "Margins": "margins",
     "Outcomes": "impact.batch",
@@ -56,6 +73,8 @@ LATER = {
     "sensitivity": "sensitivity",
     "solve_impact": "impact",
     "solve_impacts": "impact.batch",
+    "solve_spatial_impact": "impact.spatial",
+    "solve_spatial_impacts": "impact.spatial",
     "solve_transverse_impact": "transverse",
 }
 """Names that are loaded when they are asked for, and their modules: every start of pytest loads this package for its

@@ -65,6 +65,8 @@ class Flag(IntFlag):
     """The body is so thin that it bends while it strikes: rigid theory says too little (`Validity.slenderness`)."""
     SLOW_IMPACT = 2048
     """The impact is so weak that gravity matters while it lasts (`Validity.gravity_share`)."""
+    NOT_CONVERGED = 4096
+    """The impulses of an impact in three dimensions still changed when the sweeps ended; the answer is near."""
 
 
 class Validity(NamedTuple):

@@ -8,14 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
-from hashlib import sha256
-from inspect import getmembers, getsource, isfunction
-from typing import Any, NamedTuple, cast
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .. import types
+from ..compiled import compiled
 from ..types import Contact, Twist, TwoPointBody, Validity
 from . import answer, contacts, path_law, rates, restitution, total_law
 from .solve import NOWHERE, number_of
@@ -108,23 +107,11 @@ def numbers_of(contact: Contact) -> tuple[Any, ...]:
 @cache
 def filler() -> Fill:
     """The function that solves a chunk, compiled if that can be."""
-    try:
-        from numba import njit
-        from numba.extending import register_jitable
-    except ImportError:
+    fill = compiled(make_fill, (types, *LAW_CODE), lambda function: function not in CALLED)
+    if fill is None:
         plain = make_fill("")
         return lambda columns, *rest: plain(tuple(column.tolist() for column in columns), *rest)
-
-    for module in LAW_CODE:
-        for _, function in getmembers(module, isfunction):
-            if function.__module__ == module.__name__:
-                register_jitable(forceinline=function not in CALLED)(function)
-    fill = make_fill(sha256("".join(map(getsource, (types, *LAW_CODE))).encode()).hexdigest())
-    # Divisions are as in C: law code never divides by zero.
-    try:
-        return cast(Fill, njit(fill, cache=True, error_model="numpy"))
-    except RuntimeError:  # no folder to keep the compiled code in
-        return cast(Fill, njit(fill, error_model="numpy"))
+    return fill
 
 
 def make_fill(law_code: str) -> Fill:

@@ -159,7 +159,7 @@ class ShownTouchdown(NamedTuple):
     error: float | None = None
 
 
-class Body:
+class BodyMarkers:
     """What is known of one body, the `number`th of all; `level` is None where nobody watches it."""
 
     def __init__(self, number: int, name: str, scene: Scene) -> None:

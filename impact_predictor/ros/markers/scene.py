@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 from ...prediction.scene import Scene
 from ...prediction.types import Geometry, Moment, Prediction, Quaternion, Status, Vector3
 from ...prediction.vectors import Axes, add, axes_of, combine, dot
-from .body import PAUSE, Body, turn_to
+from .body import PAUSE, BodyMarkers, turn_to
 from .message import DELETE, DELETE_ALL, NO_LOOK, NOWHERE, Marker, encode_markers
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ class MarkerScene:
 
     def __init__(self, scenes: Mapping[str, Scene]) -> None:
         """Draw the bodies of these names as their scenes describe them; "" is the name of a body alone."""
-        self._bodies = {name: Body(number, name, scene) for number, (name, scene) in enumerate(scenes.items())}
+        self._bodies = {name: BodyMarkers(number, name, scene) for number, (name, scene) in enumerate(scenes.items())}
         self._scene = next(iter(scenes.values()))
         self._slab = deck_of(self._scene)
         self._moment: Moment | None = None

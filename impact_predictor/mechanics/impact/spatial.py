@@ -1,0 +1,380 @@
+"""One impact on any number of contacts in three dimensions, `solve_spatial_impact`, and many at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from enum import IntEnum
+from functools import cache
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..compiled import compiled
+from ..types import Flag
+from . import spatial_body, spatial_path
+from .solve import number_of
+from .spatial_body import ANSWER, BODY, CONTACT, INVALID, RESULT, SYMMETRY
+from .spatial_path import BLENDED, LEAVES, NOT_CONVERGED, SLIPS, STICKS
+
+STEPS = 8
+"""Steps for a quarter of an oscillation: they err by a tenth of what measured impacts scatter."""
+
+SCRATCH = 12
+"""Sequences of 3 n numbers that the law code works with."""
+
+FLAGS = {NOT_CONVERGED: Flag.NOT_CONVERGED, BLENDED: Flag.ENERGY_GAINED, INVALID: Flag.INVALID_INPUT}
+"""The flags of the law code by their names."""
+
+UP = (0.0, 0.0, 1.0)
+AT_REST = (0.0, 0.0, 0.0)
+
+
+class ContactState(IntEnum):
+    """What a contact does right after an impact."""
+
+    LEAVES = LEAVES
+    SLIPS = SLIPS
+    STICKS = STICKS
+
+
+class Body(NamedTuple):
+    """A rigid body: `mass` in kg, `inertia` about the mass centre in kg m^2, along the axes of the twist.
+
+    The inertia is one number (the same about every axis), three (along the axes), six (ixx, iyy, izz, ixy, ixz, iyz),
+    or a tensor (3, 3).
+    """
+
+    mass: ArrayLike
+    inertia: ArrayLike
+
+
+class ContactPoints(NamedTuple):
+    """The n contacts that take part in an impact: those that strike, and those that rest.
+
+    `positions` (n, 3) in m from the mass centre; `friction` and `restitution` (0 to 1) one number, or (n,); unit
+    `normals` (n, 3) out of the supports; `velocities` (n, 3) of the supports at the contacts in m/s. One normal, or one
+    velocity, is that of all.
+    """
+
+    positions: ArrayLike
+    friction: ArrayLike
+    restitution: ArrayLike = 0.0
+    normals: ArrayLike = UP
+    velocities: ArrayLike = AT_REST
+
+
+class SpatialOutcome(NamedTuple):
+    """What an impact does to a body, or to a mechanism.
+
+    `twist` (6,) right after it: vx, vy, vz of the mass centre in m/s, wx, wy, wz in rad/s; None of a mechanism.
+    `impulses` (n, 3) in N s, and `velocities` (n, 3) of the contacts after it in m/s, relative to their supports: along
+    the axes of the twist, of a mechanism along t1, t2 and the normal of each contact. `states` of the contacts;
+    `energy_lost` in J, relative to the supports.
+    """
+
+    twist: NDArray[np.float64] | None
+    impulses: NDArray[np.float64]
+    velocities: NDArray[np.float64]
+    states: tuple[ContactState, ...]
+    flags: Flag
+    energy_lost: float
+    law: str
+
+
+class SpatialOutcomes(NamedTuple):
+    """What many impacts do: the fields of `SpatialOutcome`, each after the axes (...) of the problems.
+
+    `states` (..., n) are the numbers of `ContactState`, `flags` (...) the bits of `Flag`.
+    """
+
+    twist: NDArray[np.float64]
+    impulses: NDArray[np.float64]
+    velocities: NDArray[np.float64]
+    states: NDArray[np.uint8]
+    flags: NDArray[np.uint16]
+    energy_lost: NDArray[np.float64]
+
+
+def solve_spatial_impact(
+    body: Body | ArrayLike,
+    contacts: ContactPoints,
+    twist: ArrayLike,
+    law: str = "path",
+    threshold: float = 0.0,
+    steps: int = STEPS,
+) -> SpatialOutcome:
+    """What an impact on any number of contacts does to a body in three dimensions.
+
+    `body` is a `Body`, and `twist` (6,) its own right before: vx, vy, vz of the mass centre and wx, wy, wz. Or `body`
+    is the Delassus matrix W (3 n, 3 n) = G M^-1 G^T of any mechanism, and `twist` (3 n,) has its contact velocities,
+    both in the order t1, t2, normal of one contact after the other; of the contacts only friction and restitution are
+    read.
+
+    Contacts that approach faster than `threshold` (m/s) are struck, the others rest. `law` is "path" (Routh's path in
+    three dimensions with energetic restitution; its error falls with `steps`, those of a quarter of an oscillation of a
+    contact) or "total" (complementarity of the impulses of the whole impact, Newton's restitution).
+
+    Numbers that no body can have give Flag.INVALID_INPUT, never an exception; an unknown law and arrays of another
+    shape raise ValueError. Sources: Routh and Keller (path), Stronge (restitution).
+    """
+    if not isinstance(body, Body):
+        return _solve_mechanism(np.asarray(body, float), contacts, np.asarray(twist, float), law, threshold, steps)
+    found = solve_spatial_impacts(body, contacts, twist, law, threshold, steps)
+    if found.flags.shape:
+        raise ValueError(f"here are {found.flags.shape} problems; solve_spatial_impacts solves many")
+    return SpatialOutcome(
+        twist=found.twist,
+        impulses=found.impulses,
+        velocities=found.velocities,
+        states=tuple(map(ContactState, found.states.tolist())),
+        flags=Flag(int(found.flags)),
+        energy_lost=float(found.energy_lost),
+        law=law,
+    )
+
+
+def solve_spatial_impacts(
+    bodies: Body,
+    contacts: ContactPoints,
+    twist: ArrayLike,
+    law: str = "path",
+    threshold: float = 0.0,
+    steps: int = STEPS,
+) -> SpatialOutcomes:
+    """What many impacts do: `solve_spatial_impact` for each element of arrays that broadcast together.
+
+    Every field of `bodies` and `contacts`, and `twist`, may have more axes before its own; the number of contacts is
+    one for all. An inertia of one number for each of many bodies has the shape (..., 1).
+    """
+    number = number_of(law)
+    positions = _ending_in(3, contacts.positions, "the positions")
+    if positions.ndim < 2:
+        raise ValueError(f"the positions have the shape {positions.shape}; give (n, 3)")
+    n = positions.shape[-2]
+    of_contacts = _together(
+        positions,
+        _of_all(_ending_in(3, contacts.normals, "the normals")),
+        _for_each(n, contacts.friction, "friction")[..., None],
+        _for_each(n, contacts.restitution, "restitution")[..., None],
+        _of_all(_ending_in(3, contacts.velocities, "the velocities")),
+    )
+    if of_contacts.shape[-2] != n:
+        raise ValueError(f"there are {n} positions, and {of_contacts.shape[-2]} normals or velocities")
+    problems = _together(
+        np.asarray(bodies.mass, float)[..., None],
+        _six_numbers(np.asarray(bodies.inertia, float)),
+        _ending_in(6, twist, "a twist"),
+        of_contacts.reshape(*of_contacts.shape[:-2], n * CONTACT),
+    )
+    shape = problems.shape[:-1]
+    problems = problems.reshape(-1, BODY + n * CONTACT)
+    answers, notes = np.zeros((len(problems), ANSWER + RESULT * n)), np.zeros(len(problems), np.int64)
+    solvers().bodies(n, problems, bool(number), float(threshold), int(steps), answers, notes, *workspace(n))
+    answers = answers.reshape(*shape, ANSWER + RESULT * n)
+    of_each = answers[..., ANSWER:].reshape(*shape, n, RESULT)
+    return SpatialOutcomes(
+        twist=answers[..., :6],
+        impulses=of_each[..., :3],
+        velocities=of_each[..., 3:6],
+        states=of_each[..., 6].astype(np.uint8),
+        flags=_flags(notes).reshape(shape),
+        energy_lost=answers[..., 6],
+    )
+
+
+def _solve_mechanism(
+    W: NDArray[np.float64], contacts: ContactPoints, c: NDArray[np.float64], law: str, threshold: float, steps: int
+) -> SpatialOutcome:
+    number, m = number_of(law), c.size
+    if m % 3 or c.shape != (m,) or W.shape != (m, m):
+        raise ValueError(f"W has the shape {W.shape} and the velocities {c.shape}; give (3 n, 3 n) and (3 n,)")
+    n = m // 3
+    friction = np.array(_for_each(n, contacts.friction, "friction"))
+    restitution = np.array(_for_each(n, contacts.restitution, "restitution"))
+    is_known = np.isfinite(friction) & (friction >= 0.0) & (restitution >= 0.0) & (restitution <= 1.0)
+    impulse, after = np.zeros(m), np.where(np.isfinite(c), c, 0.0)
+    _, _, scratch, marks = workspace(n)
+    notes, work = INVALID, 0.0
+    if is_known.all() and np.isfinite(c).all() and _is_delassus(W):
+        rows = (0.5 * (W + W.T)).ravel()
+        notes = solvers().mechanism(
+            *(n, rows, friction, restitution, bool(number), float(threshold), int(steps)),
+            *(after, impulse, scratch[4:], marks),
+        )
+        work = float((0.5 * impulse * (c + after)).sum())
+    return SpatialOutcome(
+        twist=None,
+        impulses=impulse.reshape(n, 3),
+        velocities=after.reshape(n, 3),
+        states=tuple(ContactState(int(mark)) for mark in marks[0]),
+        flags=Flag(int(_flags(np.array(notes)))),
+        energy_lost=-work,
+        law=law,
+    )
+
+
+def _is_delassus(W: NDArray[np.float64]) -> bool:
+    """Whether W is finite, symmetric and positive semidefinite, up to rounding on its diagonal."""
+    if not np.isfinite(W).all():
+        return False
+    size = np.sqrt(np.abs(W.diagonal()))
+    size[size == 0.0] = 1.0
+    scaled = W / size / size[:, None]
+    is_symmetric = (np.abs(scaled - scaled.T) <= SYMMETRY).all()
+    return bool(is_symmetric and np.linalg.eigvalsh(scaled).min(initial=0.0) >= -SYMMETRY * len(W))
+
+
+def _ending_in(size: int, field: ArrayLike, name: str) -> NDArray[np.float64]:
+    array = np.asarray(field, float)
+    if array.shape[-1:] != (size,):
+        raise ValueError(f"{name} has the shape {array.shape}; the last axis has {size} numbers")
+    return array
+
+
+def _of_all(field: NDArray[np.float64]) -> NDArray[np.float64]:
+    """A vector for each contact, of one for all of them."""
+    return field if field.ndim > 1 else field[None]
+
+
+def _for_each(n: int, field: ArrayLike, name: str) -> NDArray[np.float64]:
+    """A number for each contact (..., n)."""
+    array = np.asarray(field, float)
+    if array.shape[-1:] not in ((), (1,), (n,)):
+        raise ValueError(f"{name} has the shape {array.shape}; give one number, or one for each of {n} contacts")
+    return np.broadcast_to(array, (*array.shape[:-1], n))
+
+
+def _together(*fields: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Arrays that broadcast together but for their last axis, one after the other along it."""
+    shape = np.broadcast_shapes(*(field.shape[:-1] for field in fields))
+    return np.concatenate([np.broadcast_to(field, shape + field.shape[-1:]) for field in fields], axis=-1)
+
+
+def _six_numbers(inertia: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Inertia as ixx, iyy, izz, ixy, ixz, iyz; a tensor that is not symmetric is no number."""
+    if inertia.ndim > 1 and inertia.shape[-2:] == (3, 3):
+        gap = np.abs(inertia - np.swapaxes(inertia, -1, -2)).max(axis=(-1, -2))
+        known = gap <= SYMMETRY * np.abs(inertia).max(axis=(-1, -2))
+        return np.where(known[..., None], inertia[..., (0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2)], np.nan)
+    if inertia.shape[-1:] not in ((), (1,), (3,), (6,)):
+        raise ValueError(f"an inertia has the shape {inertia.shape}; give one number, three, six, or (3, 3)")
+    if inertia.shape[-1:] == (6,):
+        return inertia
+    moments = np.broadcast_to(inertia, (*inertia.shape[:-1], 3))
+    return np.concatenate([moments, np.zeros_like(moments)], axis=-1)
+
+
+def _flags(notes: NDArray[np.int64]) -> NDArray[np.uint16]:
+    flags = np.zeros(notes.shape, np.uint16)
+    for note, flag in FLAGS.items():
+        flags |= np.where(notes & note, int(flag), 0).astype(np.uint16)
+    return flags
+
+
+def workspace(
+    n: int,
+) -> tuple[NDArray[np.float64], NDArray[np.float64], tuple[NDArray[np.float64], ...], tuple[NDArray[np.int64], ...]]:
+    """What the law code of n contacts works with: W, the rows of G, and sequences of numbers and of marks."""
+    return (
+        np.zeros(9 * n * n),
+        np.zeros(18 * n),
+        tuple(np.zeros(3 * n) for _ in range(SCRATCH)),
+        tuple(np.zeros(n, np.int64) for _ in range(2)),
+    )
+
+
+class Solvers(NamedTuple):
+    """The doors of the law code: many bodies with as many contacts, and one mechanism."""
+
+    bodies: Callable[..., None]
+    mechanism: Callable[..., int]
+
+
+@cache
+def solvers() -> Solvers:
+    """The doors, compiled if that can be; the first time on a machine this takes some seconds."""
+    bodies = compiled(make_bodies, LAW_CODE, never)
+    mechanism = compiled(make_mechanism, LAW_CODE, never)
+    if bodies is None or mechanism is None:
+        return Solvers(on_lists(make_bodies("")), on_lists(make_mechanism("")))
+    return Solvers(bodies, mechanism)
+
+
+LAW_CODE = (spatial_path, spatial_body)
+
+
+def never(function: object) -> bool:
+    return False
+
+
+def make_bodies(law_code: str) -> Callable[..., None]:
+    """The function that solves many problems; numba keeps what it compiled under the value of `law_code`."""
+
+    def bodies(
+        n: int,
+        problems: Sequence[Sequence[float]],
+        total: bool,
+        threshold: float,
+        steps: int,
+        answers: Sequence[Any],
+        notes: Any,
+        W: Any,
+        rows: Any,
+        scratch: Any,
+        marks: Any,
+    ) -> None:
+        law_code  # noqa: B018
+        for i in range(len(problems)):
+            notes[i] = spatial_body.strike(n, problems[i], total, threshold, steps, answers[i], W, rows, scratch, marks)
+
+    return bodies
+
+
+def make_mechanism(law_code: str) -> Callable[..., int]:
+    """The function that solves one mechanism."""
+
+    def mechanism(
+        n: int,
+        W: Any,
+        friction: Any,
+        restitution: Any,
+        total: bool,
+        threshold: float,
+        steps: int,
+        c: Any,
+        impulse: Any,
+        scratch: Any,
+        marks: Any,
+    ) -> int:
+        law_code  # noqa: B018
+        return spatial_path.solve(n, W, friction, restitution, total, threshold, steps, c, impulse, scratch, marks)
+
+    return mechanism
+
+
+def on_lists(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Law code that runs as Python on lists, which are faster there, and fills the arrays that it is given."""
+
+    def called(*given: Any) -> Any:
+        lists = [as_lists(one) for one in given]
+        result = function(*lists)
+        for array, values in zip(given, lists, strict=True):
+            fill(array, values)
+        return result
+
+    return called
+
+
+def as_lists(given: Any) -> Any:
+    if isinstance(given, tuple):
+        return tuple(map(as_lists, given))
+    return given.tolist() if isinstance(given, np.ndarray) else given
+
+
+def fill(given: Any, values: Any) -> None:
+    if isinstance(given, tuple):
+        for array, part in zip(given, values, strict=True):
+            fill(array, part)
+    elif isinstance(given, np.ndarray):
+        given[...] = values

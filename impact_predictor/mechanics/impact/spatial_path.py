@@ -1,0 +1,371 @@
+"""The impact of any number of contacts in three dimensions, in contact space: how the impulses grow.
+
+Everything here is law code on flat sequences: lists where it runs as Python, arrays where numba compiles it, with the
+same bits. Of n contacts the contact velocities are `c` (3 n): along t1, t2 and the normal of one after the other, `W`
+(9 n^2) is the Delassus matrix row by row, and impulses go like velocities.
+
+The path law: struck contacts are springs of one stiffness along a pseudo-time, with energetic restitution (Stronge); a
+contact that rests has 0 <= dN _|_ c_n >= 0 at each instant; friction opposes the whole slip, or sticks (Routh and
+Keller in three dimensions). A step is implicit, and takes the forces of springs and of slip at its middle: so neither
+of them gives energy, and the error falls with the square of the step.
+"""
+
+from __future__ import annotations
+
+from collections.abc import MutableSequence, Sequence
+from math import pi, sqrt
+
+Floats = Sequence[float]
+Scratch = MutableSequence[float]
+
+RESTING, LOADING, UNLOADING, OPEN = 0, 1, 2, 3
+
+HARDEST = 0.05
+"""Steps resolve the unloading of a spring down to this restitution; below it the spring is stiffer than they are."""
+
+SINGULAR = 1e-12
+"""Where the determinant of the tangential block is this part of its size, one direction alone moves."""
+
+TOLERANCE = 1e-3
+"""Of the sweeps, relative, for one step to a quarter; it falls with their cube, as the error of a step does."""
+
+SWEEPS = 60
+
+THOROUGH = 1000
+"""Sweeps that may be needed where what is left has to vanish."""
+
+ROUNDING = 1e-12
+
+UNBLENDED = 0.999
+
+STATE_ROUNDING = 1e-5
+"""A contact leaves, or slips, faster than this part of the fastest contact before the impact."""
+
+LEAVES, SLIPS, STICKS = 0, 1, 2
+
+NOT_CONVERGED, BLENDED = 1, 2
+
+LONGEST = 400
+"""Quarters of an oscillation after which a path that has not ended is ended plastically."""
+
+
+def sweep(
+    n: int,
+    W: Floats,
+    before: Floats,
+    friction: Floats,
+    softness: Floats,
+    bias: Floats,
+    capped: Sequence[int],
+    middle: float,
+    tolerance: float,
+    most: int,
+    c: Scratch,
+    p: Scratch,
+) -> int:
+    """Solve for the impulses p of one step by projected Gauss-Seidel; how many sweeps it took, `most` if it failed.
+
+    0 <= p_n _|_ c_n + softness p_n - bias >= 0 at each contact whose softness is not negative, and friction within
+    its cone: sticking where c_t = 0 can be had, else against the slip c_t + middle before_t. A `capped` contact is
+    not pushed faster than c_n = 0. `c` is `before` + W p all along; it ends when no velocity changes by more than the
+    tolerance.
+    """
+    m = 3 * n
+    for count in range(most):
+        change = 0.0
+        for i in range(n):
+            if softness[i] < 0.0:
+                continue
+            a = 3 * i
+            b = a + 1
+            z = a + 2
+            wzz = W[z * m + z]
+            new = p[z] - (c[z] + softness[i] * p[z] - bias[i]) / (wzz + softness[i])
+            if capped[i] == 1:
+                new = min(new, p[z] - c[z] / wzz)
+            if new < 0.0:
+                new = 0.0
+            step = new - p[z]
+            if step != 0.0:
+                p[z] = new
+                for j in range(m):
+                    c[j] += W[z * m + j] * step
+                change = max(change, abs(step) * wzz)
+            limit = friction[i] * new
+            if limit == 0.0:
+                x = y = 0.0
+            else:
+                waa = W[a * m + a]
+                wab = W[a * m + b]
+                wbb = W[b * m + b]
+                x = p[a]
+                y = p[b]
+                half = 0.5 * (waa + wbb)
+                det = waa * wbb - wab * wab
+                if det > SINGULAR * half * half:
+                    sx = x - (wbb * c[a] - wab * c[b]) / det
+                    sy = y - (waa * c[b] - wab * c[a]) / det
+                elif half > 0.0:
+                    # One direction alone moves: the inverse on it.
+                    sx = x - (waa * c[a] + wab * c[b]) / (4.0 * half * half)
+                    sy = y - (wab * c[a] + wbb * c[b]) / (4.0 * half * half)
+                else:
+                    sx = x
+                    sy = y
+                if sx * sx + sy * sy <= limit * limit:
+                    x = sx
+                    y = sy
+                elif half > 0.0:
+                    rest = 0.5 * (waa - wbb)
+                    w = half + sqrt(rest * rest + wab * wab)
+                    x -= (c[a] + middle * before[a]) / w
+                    y -= (c[b] + middle * before[b]) / w
+                    size = sqrt(x * x + y * y)
+                    if size > limit:
+                        x *= limit / size
+                        y *= limit / size
+            dx = x - p[a]
+            dy = y - p[b]
+            if dx != 0.0 or dy != 0.0:
+                p[a] = x
+                p[b] = y
+                for j in range(m):
+                    c[j] += W[a * m + j] * dx + W[b * m + j] * dy
+                change = max(change, abs(dx) * W[a * m + a], abs(dy) * W[b * m + b])
+        if change <= tolerance:
+            return count + 1
+    return most
+
+
+def follow(
+    n: int,
+    W: Floats,
+    friction: Floats,
+    restitution: Floats,
+    threshold: float,
+    steps: int,
+    scale: float,
+    c: Scratch,
+    impulse: Scratch,
+    before: Scratch,
+    p: Scratch,
+    depth: Scratch,
+    deepest: Scratch,
+    softness: Scratch,
+    bias: Scratch,
+    phase: MutableSequence[int],
+    capped: MutableSequence[int],
+) -> int:
+    """Follow the path: `c` becomes the velocities after it, `impulse` grows by what acted; whether it came to its end.
+
+    Contacts that approach faster than `threshold` are struck, the others rest. `scale` is the speed that errors are
+    measured by; `steps` resolve a quarter of an oscillation. The rest is scratch.
+    """
+    m = 3 * n
+    struck = 0
+    for i in range(n):
+        p[3 * i] = p[3 * i + 1] = p[3 * i + 2] = 0.0
+        depth[i] = deepest[i] = 0.0
+        phase[i] = RESTING
+        if c[3 * i + 2] < -threshold:
+            phase[i] = LOADING
+            struck += 1
+    tolerance = TOLERANCE * scale / (steps * steps * steps)
+    last = 0.0
+    for _ in range(LONGEST * steps):
+        if struck == 0:
+            return 1
+        stiffest = 0.0
+        for i in range(n):
+            if phase[i] == LOADING or phase[i] == UNLOADING:
+                e = 1.0 if phase[i] == LOADING else max(restitution[i], HARDEST)
+                stiffest = max(stiffest, W[(3 * i + 2) * (m + 1)] / (e * e))
+        if stiffest == 0.0:
+            return 0
+        h = 0.5 * pi / (steps * sqrt(stiffest))
+        ratio = h / last if last > 0.0 else 0.0
+        for i in range(n):
+            capped[i] = 0
+            if phase[i] == OPEN:
+                softness[i] = -1.0
+                p[3 * i] = p[3 * i + 1] = p[3 * i + 2] = 0.0
+            elif phase[i] == RESTING:
+                softness[i] = bias[i] = 0.0
+            else:
+                # The force at the middle of the step, k (d - h (c + c') / 4), times h, solved for c'.
+                e = restitution[i]
+                k = 1.0 / (e * e) if phase[i] == UNLOADING else 1.0
+                rest = (1.0 - e * e) * deepest[i] if phase[i] == UNLOADING else 0.0
+                softness[i] = 4.0 / (h * h * k)
+                bias[i] = 4.0 * (depth[i] - rest) / h - c[3 * i + 2]
+                if e == 0.0:
+                    capped[i] = 1
+        for j in range(m):
+            before[j] = c[j]
+            p[j] *= ratio
+        for j in range(m):
+            if p[j] != 0.0:
+                for k in range(m):
+                    c[k] += W[j * m + k] * p[j]
+        sweep(n, W, before, friction, softness, bias, capped, 1.0, tolerance, SWEEPS, c, p)
+        last = h
+        struck = 0
+        for i in range(n):
+            z = 3 * i + 2
+            impulse[z] += p[z]
+            impulse[z - 1] += p[z - 1]
+            impulse[z - 2] += p[z - 2]
+            if phase[i] == LOADING or phase[i] == UNLOADING:
+                e = restitution[i]
+                depth[i] -= 0.5 * h * (before[z] + c[z])
+                if phase[i] == LOADING:
+                    if depth[i] > deepest[i]:
+                        deepest[i] = depth[i]
+                    if c[z] >= 0.0 or (e == 0.0 and c[z] >= -tolerance):
+                        phase[i] = UNLOADING if e > 0.0 else RESTING
+                elif depth[i] > deepest[i]:
+                    phase[i] = LOADING
+                if phase[i] == UNLOADING and depth[i] <= (1.0 - e * e) * deepest[i]:
+                    phase[i] = OPEN
+            if phase[i] == OPEN and c[z] < -threshold:
+                phase[i] = LOADING
+                depth[i] = deepest[i] = 0.0
+            if phase[i] == LOADING or phase[i] == UNLOADING:
+                struck += 1
+    return 0
+
+
+def finish(
+    n: int,
+    W: Floats,
+    friction: Floats,
+    scale: float,
+    c: Scratch,
+    impulse: Scratch,
+    before: Scratch,
+    p: Scratch,
+    softness: Scratch,
+    bias: Scratch,
+    capped: MutableSequence[int],
+) -> int:
+    """Stop plastically what still approaches, so that nothing does: sweeps as those of `sweep`."""
+    lowest = 0.0
+    for i in range(n):
+        lowest = min(lowest, c[3 * i + 2])
+    if lowest >= -ROUNDING * scale:
+        return 0
+    m = 3 * n
+    for i in range(n):
+        softness[i] = bias[i] = 0.0
+        capped[i] = 0
+    for j in range(m):
+        before[j] = c[j]
+        p[j] = 0.0
+    used = sweep(n, W, before, friction, softness, bias, capped, 0.0, ROUNDING * scale, THOROUGH, c, p)
+    for j in range(m):
+        impulse[j] += p[j]
+    return used
+
+
+def solve(
+    n: int,
+    W: Floats,
+    friction: Floats,
+    restitution: Floats,
+    total: bool,
+    threshold: float,
+    steps: int,
+    c: Scratch,
+    impulse: Scratch,
+    scratch: Sequence[Scratch],
+    marks: Sequence[MutableSequence[int]],
+) -> int:
+    """Solve an impact: `c` becomes the velocities after it, `impulse` what acted, marks[0] the states of the contacts.
+
+    The flags are `NOT_CONVERGED`, and `BLENDED` where the answer would have gained energy, which Newton's restitution
+    can do, and the errors of steps.
+    """
+    before, p, depth, deepest, softness, bias, start, plastic = scratch
+    phase, capped = marks
+    m = 3 * n
+    scale = 0.0
+    for j in range(m):
+        start[j] = c[j]
+        impulse[j] = 0.0
+        scale = max(scale, abs(c[j]))
+    flags = 0
+    if total:
+        for i in range(n):
+            softness[i] = 0.0
+            bias[i] = max(0.0, -restitution[i] * c[3 * i + 2])
+            capped[i] = 0
+        for j in range(m):
+            p[j] = 0.0
+        if (
+            sweep(n, W, start, friction, softness, bias, capped, 0.0, ROUNDING * scale, THOROUGH, c, impulse)
+            == THOROUGH
+        ):
+            flags |= NOT_CONVERGED
+    elif not follow(
+        *(n, W, friction, restitution, max(threshold, ROUNDING * scale), steps, scale, c, impulse),
+        *(before, p, depth, deepest, softness, bias, phase, capped),
+    ):
+        flags |= NOT_CONVERGED
+    if finish(n, W, friction, scale, c, impulse, before, p, softness, bias, capped) == THOROUGH:
+        flags |= NOT_CONVERGED
+    work = 0.0
+    for j in range(m):
+        work += 0.5 * impulse[j] * (start[j] + c[j])
+    if work > 0.0:
+        flags |= lose(n, W, friction, scale, start, c, impulse, plastic, before, p, softness, bias, capped)
+    zero = STATE_ROUNDING * scale
+    for i in range(n):
+        a = 3 * i
+        if c[a + 2] > zero:
+            phase[i] = LEAVES
+        else:
+            phase[i] = SLIPS if c[a] * c[a] + c[a + 1] * c[a + 1] > zero * zero else STICKS
+    return flags
+
+
+def lose(
+    n: int,
+    W: Floats,
+    friction: Floats,
+    scale: float,
+    start: Floats,
+    c: Scratch,
+    impulse: Scratch,
+    plastic: Scratch,
+    before: Scratch,
+    p: Scratch,
+    softness: Scratch,
+    bias: Scratch,
+    capped: MutableSequence[int],
+) -> int:
+    """Draw an answer to the plastic one by so much that it gains no energy: both are in the same convex cones."""
+    m = 3 * n
+    for j in range(m):
+        plastic[j] = 0.0
+        c[j] = start[j]
+    finish(n, W, friction, scale, c, plastic, before, p, softness, bias, capped)
+    # Along P = plastic + s (impulse - plastic) the work is a + b s + q s^2, and a <= 0 < a + b + q.
+    a = b = q = 0.0
+    for j in range(m):
+        more = impulse[j] - plastic[j]
+        wp = wm = 0.0
+        for k in range(m):
+            wp += W[j * m + k] * plastic[k]
+            wm += W[j * m + k] * (impulse[k] - plastic[k])
+        a += plastic[j] * (start[j] + 0.5 * wp)
+        b += more * (start[j] + wp)
+        q += 0.5 * more * wm
+    root = sqrt(max(0.0, b * b - 4.0 * q * min(a, 0.0)))
+    s = -2.0 * min(a, 0.0) / (b + root) if b + root > 0.0 else 0.0
+    for j in range(m):
+        impulse[j] = plastic[j] + s * (impulse[j] - plastic[j])
+    for j in range(m):
+        c[j] = start[j]
+        for k in range(m):
+            c[j] += W[j * m + k] * impulse[k]
+    return BLENDED if s < UNBLENDED else 0
