@@ -49,7 +49,7 @@ class Compliance(NamedTuple):
     regularisation: float
 
 
-class ContactState(NamedTuple):
+class ContactSpring(NamedTuple):
     """A contact's gap (m), its rate and the slip (m/s), its arm from the mass centre (m), and the support's normal."""
 
     gap: float
@@ -97,7 +97,7 @@ class CompliantBody(NamedTuple):
     compliances: tuple[Compliance, ...]
     support: Support
 
-    def contacts(self, time: float, state: Any) -> list[ContactState]:
+    def contacts(self, time: float, state: Any) -> list[ContactSpring]:
         """The contacts at a time in s."""
         x, y, angle, vx, vy, omega = state
         c, s = cos(angle), sin(angle)
@@ -109,7 +109,7 @@ class CompliantBody(NamedTuple):
             dx, dy = x + ax - base.x, y + ay - base.y
             cx, cy = vx - omega * ay - base.vx + base.rate * dy, vy + omega * ax - base.vy - base.rate * dx
             found.append(
-                ContactState(nx * dx + ny * dy, nx * cx + ny * cy, ny * cx - nx * cy, arm=(ax, ay), normal=(nx, ny))
+                ContactSpring(nx * dx + ny * dy, nx * cx + ny * cy, ny * cx - nx * cy, arm=(ax, ay), normal=(nx, ny))
             )
         return found
 
