@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from .impact.answer import INVALID_INPUT, NOTHING, STAYS, mode_of, respond, speed_of
 from .impact.contacts import CANCELLED, NO_SOLUTION, ContactRows, Impact, NewRows, OldRows, Problem, Velocities
-from .impact.solve import LAWS, MODES, flags_of, number_of, others, states_of
+from .impact.solve import MODES, NAMES, flags_of, number_of, others, states_of
 from .types import Flag, Mode, Vector
 
 SPEED_ROUNDING = 1e-12
@@ -56,14 +56,15 @@ def solve(
     friction: Vector,
     restitution: Vector = (0.0, 0.0),
     law: str = "path",
+    rule: str = "poisson",
 ) -> ContactOutcome:
     """What the impact at the new contact B does to a mechanism that stands on the old one, A.
 
     `W` (4, 4) = G M^-1 G^T in 1/kg, symmetric and positive semidefinite, of any rank; `c` (4,) = G v less the
     supports' velocities in m/s before the impact; both in the order n_A, t_A, n_B, t_B, normals out of the supports.
-    `friction` and `restitution` are those of A and B. `law` is "path" or "total", as in `solve_impact`. Where there is
-    no old contact c_nA is inf and what belongs to A is not read. The generalized velocities change by M^-1 G^T P with
-    P the four impulses.
+    `friction` and `restitution` are those of A and B. `law` is "path" or "total" and `rule`, that of the restitution,
+    "poisson" or "energetic", as in `solve_impact`. Where there is no old contact c_nA is inf and what belongs to A is
+    not read. The generalized velocities change by M^-1 G^T P with P the four impulses.
 
     A contact velocity below 1e-12 of the largest counts as zero: make one zero yourself that is the sum of far larger
     terms. The velocities after keep the digits that W has: their error is about 1e-15 of the largest velocity, times
@@ -71,10 +72,10 @@ def solve(
     where friction all but jams. Where W, of rank 3, leaves open how two sticking contacts share their impulses, they
     have the least of them (Flag.SHARED_FRICTION); of a lower rank, some of them.
 
-    Numbers that no mechanism can have give Flag.INVALID_INPUT, never an exception; an unknown law and a W of another
-    shape raise ValueError. Source: the paper, sections 2 to 4, generalised.
+    Numbers that no mechanism can have give Flag.INVALID_INPUT, never an exception; an unknown law or rule and a W of
+    another shape raise ValueError. Source: the paper, sections 2 to 4, generalised.
     """
-    number = number_of(law)
+    number = number_of(law, rule)
     w = np.asarray(W, dtype=float)
     if w.shape != (4, 4):
         raise ValueError(f"W has the shape {w.shape}; give (4, 4)")
@@ -85,14 +86,14 @@ def solve(
         return unchanged(before, law, INVALID_INPUT)
     _, impact, notes, work, _, used = respond(read.problem, number)
     if impact == NOTHING:
-        return unchanged(before, LAWS[used], notes)
+        return unchanged(before, NAMES[used], notes)
     first = alternative(impact, read)
     na, ta, nb, tb, _, _, _, _, _, _, _, _, _, _ = impact
     push = read.mass * read.speed
     impulses = (na * push, ta * push), (nb * push, tb * push)
     energy_lost = -0.5 * work * push * read.speed
     if not all(map(isfinite, (energy_lost, *first.velocities[1:], *impulses[0], *impulses[1]))):
-        return unchanged(before, LAWS[used], notes | NO_SOLUTION)
+        return unchanged(before, NAMES[used], notes | NO_SOLUTION)
     found = [alternative(other, read) for other in others(read.problem, used, notes)]
     found = [other for other in found if all(map(isfinite, other.velocities[1:]))]
     return ContactOutcome(
@@ -104,7 +105,7 @@ def solve(
         energy_lost=energy_lost,
         unique=not found,
         alternatives=tuple(found),
-        law=LAWS[used],
+        law=NAMES[used],
     )
 
 

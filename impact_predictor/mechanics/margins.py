@@ -102,13 +102,14 @@ class Change(NamedTuple):
         return ChangedImpact(change=change, mode=mode, states=states, flags=flags)
 
 
-def margins(body: TwoPointBody, twist: Twist, law: str = "path") -> Margins:
+def margins(body: TwoPointBody, twist: Twist, law: str = "path", restitution: str = "poisson") -> Margins:
     """How far the impact of `solve_impact` with the same arguments is from another mode.
 
-    Where there is no impact, or none can be solved, there are no margins. An unknown law raises ValueError.
+    Where there is no impact, or none can be solved, there are no margins. An unknown law or rule raises
+    ValueError.
     """
     twist, stands, old, new = Twist(*twist), body.old is not None, body.old or NOWHERE, body.new
-    asked = body.mass, body.inertia, stands, old, new, twist, number_of(law)
+    asked = body.mass, body.inertia, stands, old, new, twist, number_of(law, restitution)
     here = Change(asked).at(0.0)
     if here.mode == NO_IMPACT or here.flags & UNSOLVED:
         return NO_MARGINS

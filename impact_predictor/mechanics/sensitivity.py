@@ -54,17 +54,18 @@ class Sensitivity(NamedTuple):
     one_sided: tuple[str, ...]
 
 
-def sensitivity(body: TwoPointBody, twist: Twist, law: str = "path") -> Sensitivity:
+def sensitivity(body: TwoPointBody, twist: Twist, law: str = "path", restitution: str = "poisson") -> Sensitivity:
     """Derivatives of the twist after `solve_impact`, exact up to rounding; the arguments are the same.
 
     The old contact stays as it is, at rest or slipping along its support: of a change of the twist before only the part
     counts that leaves it so (`allowed_changes`). A body that turns about A at rest has one such freedom, omega. Where
-    no impact happens, or none can be solved, the twist after is the one before. An unknown law raises ValueError.
+    no impact happens, or none can be solved, the twist after is the one before. An unknown law or rule raises
+    ValueError.
 
     The law code is differentiated as it runs (see `Dual`). The outcome is a piecewise rational function, with
     one-sided derivatives at its borders, which are taken a STEP away from them.
     """
-    number = number_of(law)
+    number = number_of(law, restitution)
     old, new = body.old or NOWHERE, body.new
     inputs = (old.friction, new.friction, new.restitution, *twist)
     states, flags = states_at(body, inputs, number)
@@ -88,9 +89,9 @@ def sensitivity(body: TwoPointBody, twist: Twist, law: str = "path") -> Sensitiv
         # A contact velocity of zero would count as zero whatever the change.
         if there != states or rests(body, side) != rests(body, inputs):
             columns[i] = derivatives(body, side, directions, number)[i]
-    friction_old, friction_new, restitution, vx, vy, omega = columns
+    friction_old, friction_new, bounce, vx, vy, omega = columns
     first, second, third = zip(vx, vy, omega, strict=True)
-    return Sensitivity(friction_old, friction_new, restitution, (first, second, third), tuple(one_sided))
+    return Sensitivity(friction_old, friction_new, bounce, (first, second, third), tuple(one_sided))
 
 
 def allowed_changes(body: TwoPointBody, twist: Twist) -> TwistMatrix:
@@ -234,7 +235,8 @@ def dual_answer() -> Callable[..., Any]:
     """`answer.answer` for Duals: the law code loaded a second time, with a square root that knows them."""
     restitution, path_law, answer = load("restitution"), load("path_law"), load("answer")
     restitution.sqrt = sqrt  # type: ignore[attr-defined]
-    path_law.span_of_work = restitution.span_of_work  # type: ignore[attr-defined]
+    for name in ("span_of_work", "span_to_give"):
+        setattr(path_law, name, getattr(restitution, name))
     answer.path_law = path_law  # type: ignore[attr-defined]
     return answer.answer  # type: ignore[no-any-return]
 

@@ -143,7 +143,7 @@ class Outcome(NamedTuple):
     `twist` right after it; `impulses` as ((N_old, T_old), (N_new, T_new)) in N s along normal and tangent;
     `segments` the contact states along the impulse path (old contact first; O open, S stick, + or - slip);
     `energy_lost` in J, relative to the supports; `unique` is False when `alternatives` exist. `body` and `before` are
-    what it was asked about, None where the body also moved across the impact plane.
+    what it was asked about, None where the body also moved across the impact plane; `restitution` is the rule of it.
     """
 
     mode: Mode
@@ -157,6 +157,7 @@ class Outcome(NamedTuple):
     law: str
     body: TwoPointBody | None = None
     before: Twist | None = None
+    restitution: str = "poisson"
 
     @property
     def margins(self) -> Margins:
@@ -173,4 +174,4 @@ class Outcome(NamedTuple):
             )
         # Where the total law answered for the path law, it was the path law that was asked.
         asked = "path" if self.flags & (Flag.BOTH_STRUCK | Flag.LAST_RESORT) else self.law
-        return margins(self.body, self.before, asked)
+        return margins(self.body, self.before, asked, self.restitution)

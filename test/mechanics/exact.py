@@ -4,8 +4,8 @@ Contact velocities c answer the impulses P = (N_A, T_A, N_B, T_B) as c + W P, wh
 the contacts. Every pair of contact states is tried; each is a linear system in fractions. A float is a fraction, so
 that any input of the package can be decided. Nothing is divided by a radius of gyration or by the length of a normal,
 which are roots: a normal of length L makes its contact's velocities L times and its impulses 1 / L times as large, and
-the friction cone and the work are the same. The one root that remains, in the work limit of restitution, is taken to 60
-digits.
+the friction cone and the work are the same. The one root that remains, where the work ends the restitution, is taken to
+60 digits.
 """
 
 from fractions import Fraction
@@ -208,13 +208,13 @@ def strike_old(problem, c):
     return [n + rise, ray * n + back * rise, ZERO, ZERO], (first + "O", ("S" if sticks else second) + "O")
 
 
-def rest_of_jams(before, after, target):
+def rest_of_jams(before, after, target, full=None):
     """Impulses that are still to come, and the stored work then, where jams after which A sticks have no end, or None.
 
     Each jam is told by the contact velocities, the impulses and the stored work after it. With A at rest all that
     follows is in proportion to the slip at B. If that is a part of what it was, the jams follow each other without end,
     and what changes from one to the next is a geometric series: unless the compression ends before it does, or the
-    expansion, by N_B (the target) or by the work.
+    expansion, by N_B (the target) or by the work; or the spring of B, `full` of work at most, is pressed or let go.
     """
     (c, p, work), (next_c, next_p, next_work) = before, after
     if c[TA] or next_c[TA] or not c[TB] or not 0 < next_c[TB] / c[TB] < 1:
@@ -226,17 +226,35 @@ def rest_of_jams(before, after, target):
     # The work of a steady approach of B goes with the impulses, the remainder with their squares.
     steady = -approach * (next_p[NB] - p[NB])
     left = next_work + times * steady + times_squares * (next_work - work - steady)
-    ends = next_p[NB] + rest[NB] > target or left < 0 if target else approach > 0
+    if full is not None:
+        ends = next_c[NB] * approach < 0 or not 0 <= left <= full
+    else:
+        ends = next_p[NB] + rest[NB] > target or left < 0 if target else approach > 0
     return None if ends else (rest, left)
 
 
-def path(problem, longest=60):
-    """The impulse-path law: Routh's hypothesis with Poisson's restitution at B, limited by the stored work."""
+def span_to(work, velocity, rate):
+    """The first impulse after which velocity s + rate s^2 / 2 has grown to `work`, or None."""
+    if work == 0:
+        return ZERO if velocity > 0 or (velocity == 0 and rate > 0) else None
+    square = velocity**2 + 2 * rate * work
+    spans = [work / velocity] if rate == 0 and velocity else []
+    if rate and square >= 0:
+        spans = [(sign * root(square) - velocity) / rate for sign in (1, -1)]
+    return min((span for span in spans if span > 0), default=None)
+
+
+def path(problem, longest=60, energetic=False):
+    """The impulse-path law: Routh's hypothesis with Poisson's restitution at B, limited by the stored work.
+
+    With the energetic one B is a spring, which keeps e^2 of the work of its compression and opens when that is given.
+    """
     if (problem.velocities[NA] or 0) < 0 or problem.velocities[NB] >= 0:
         raise Undecided("the path begins where the new contact is approached and the old one is not")
     history, spent, segments, jams = [problem.velocities], [ZERO] * 4, (), []
     restitution, work, target = problem.restitutions[1], ZERO, None
     choices, jammed, work_limited = 1, False, False
+    stored, full, opens = ZERO, None, None
 
     def add(impulse, span):
         history.append(changed(history[-1], [span * p for p in impulse], problem))
@@ -251,16 +269,21 @@ def path(problem, longest=60):
             choices = len(found) if choices == 1 else choices
             ends = [target - spent[NB]] if target else [-c[NB] / rates[NB]] if rates[NB] > 0 else []
             square = c[NB] ** 2 + 2 * rates[NB] * work
-            if target and square >= 0 and c[NB] + root(square) > 0:
+            if energetic and target:
+                opens, fills = span_to(work, c[NB], rates[NB]), span_to(full - work, -c[NB], -rates[NB])
+                ends = [span for span in (opens, fills) if span is not None]
+            elif target and square >= 0 and c[NB] + root(square) > 0:
                 ends.append(2 * work / (c[NB] + root(square)))
             closing = [NA] if c[NA] and rates[NA] < 0 else []
             slips = [t for t, state in zip((TA, TB), states, strict=True) if state in "+-" and c[t] * rates[t] < 0]
             spans = ends + [-c[k] / rates[k] for k in closing + slips]
+            if not spans and energetic and target and not c[NB]:
+                break  # locked at rest
             if not spans:
                 raise Undecided("the path has no end")
             span = min(spans)
             ended = span in ends
-            work_limited |= ended and span != ends[0]
+            work_limited |= ended and span != ends[0] and not energetic
             work -= span * (c[NB] + rates[NB] * span / 2)
             add(impulse, span)
         else:
@@ -268,12 +291,20 @@ def path(problem, longest=60):
             jammed, segments = True, segments + states
             add(impulse, ONE)
             jams.append((history[-1], list(spent), work))
-            rest = rest_of_jams(jams[-2], jams[-1], target) if len(jams) > 1 else None
+            rest = rest_of_jams(jams[-2], jams[-1], target, full if target else None) if len(jams) > 1 else None
             if rest:
                 impulse, work = rest
                 add(impulse, ONE)
             ended = compressing and history[-1][NB] >= 0
-        if ended:
+        if ended and energetic and restitution:
+            if compressing:
+                stored, work, target, jams = work, restitution**2 * work, ONE, []
+                full = work
+            elif span == opens:
+                break
+            else:  # the compression goes on
+                work, target, jams = stored, None, []
+        elif ended:
             if history[-1][NB] < 0:
                 # B was pressed again while it expanded: a plastic compression ends that.
                 restitution, target, jams = ZERO, None, []

@@ -37,11 +37,11 @@ def distance(problem, answer, change):
     return max(speeds(problem, velocities)) / largest
 
 
-def answers_of(problem, law):
+def answers_of(problem, law, rule):
     """The exact answers of the law that `solve_impact` uses, or []: the plastic total law is the last resort."""
     if law == "path" and not (problem.velocities[exact.NA] or 0) < 0:
         try:
-            return [exact.path(problem)]
+            return [exact.path(problem, energetic=rule == "energetic")]
         except exact.Undecided:
             found = []
     else:
@@ -76,24 +76,24 @@ def nudged(body, twist, problem, source):
     return exact.problem_of(near, twist)._replace(velocities=velocities, restitutions=restitutions)
 
 
-def conditioning(body, twist, problem, answer, law):
+def conditioning(body, twist, problem, answer, law, rule):
     source, largest = random.Random(1), 0.0
     for _ in range(8):
-        near = answers_of(nudged(body, twist, problem, source), law)
+        near = answers_of(nudged(body, twist, problem, source), law, rule)
         moved = min((distance(problem, answer, each.change) for each in near), default=math.inf)
         largest = max(largest, moved)
     return largest
 
 
-def error_of(body, twist, law):
+def error_of(body, twist, law, rule="poisson"):
     """Compare an impact with exact arithmetic and return its error."""
-    outcome = solve_impact(body, twist, law)
+    outcome = solve_impact(body, twist, law, restitution=rule)
     assert all(map(math.isfinite, (*outcome.twist, *outcome.impulses[0], *outcome.impulses[1], outcome.energy_lost)))
     problem = exact.problem_of(body, twist)
     if not any(problem.velocities[n] is not None and problem.velocities[n] < 0 for n in (exact.NA, exact.NB)):
         assert outcome.mode is Mode.NO_IMPACT
         return 0.0
-    answers = answers_of(problem, law)
+    answers = answers_of(problem, law, rule)
     if not answers:
         assert outcome.flags & Flag.NO_SOLUTION
         return 0.0
@@ -105,5 +105,5 @@ def error_of(body, twist, law):
             if (apart := distance(problem, answer, change)) < error:
                 error, nearest = apart, answer
     if error > CLOSE:
-        assert error <= conditioning(body, twist, problem, nearest, law), (body, twist)
+        assert error <= conditioning(body, twist, problem, nearest, law, rule), (body, twist)
     return error

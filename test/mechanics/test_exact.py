@@ -66,7 +66,7 @@ def test_jams_without_end_have_the_limit_that_more_and_more_of_them_come_near(mo
     assert limit.history[-1] == [0, 0, 0, 0]
 
     seen = []
-    monkeypatch.setattr(exact, "rest_of_jams", lambda before, after, target: seen.append(after[0]))
+    monkeypatch.setattr(exact, "rest_of_jams", lambda before, after, *_: seen.append(after[0]))
     with pytest.raises(exact.Undecided, match="too long"):
         exact.path(problem)
     factors = [float(after[NB] / before[NB]) for before, after in pairwise(seen)]

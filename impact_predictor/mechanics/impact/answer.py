@@ -11,8 +11,8 @@ from ..types import Contact, Flag, Mode, Twist, Validity
 from . import path_law, total_law
 from .contacts import NO_SOLUTION, ROUNDING, ContactRows, Impact, Problem, problem_of, twist_after
 
-PATH, TOTAL = 0, 1
-"""The laws."""
+PATH, TOTAL, ENERGETIC_PATH = 0, 1, 2
+"""The laws: the path law with Poisson's restitution, the total law, and the path law with energetic restitution."""
 
 STAYS = 1e-10
 """A contact velocity below this part of the contact speeds before the impact is zero for the mode."""
@@ -40,15 +40,22 @@ lost; whether the law allows no other answer; the law that answered."""
 NOTHING: Impact = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0, 0, 0)
 
 
+def follow(problem: Problem, law: int, choice: int) -> Impact:
+    """The answer of a law, the one of number `choice` where it allows several."""
+    if law == TOTAL:
+        return total_law.solve(problem, choice)
+    return path_law.solve(problem, choice, law == ENERGETIC_PATH)
+
+
 def respond(problem: Problem, law: int) -> Reaction:
     """What an impact does in contact space. Where there is none, or no law has an answer, nothing (NO_IMPACT)."""
     _, (restitution_old, _), (cna, cta, cnb, ctb), _ = problem
     if cnb >= 0.0 and cna >= 0.0:
         return NO_IMPACT, NOTHING, 0, 0.0, True, law
     notes = OLD_RESTITUTION_IGNORED if restitution_old > 0.0 and cna >= 0.0 else 0
-    if law == PATH and cna < 0.0:
+    if law != TOTAL and cna < 0.0:
         law, notes = TOTAL, notes | BOTH_STRUCK
-    impact = path_law.solve(problem, 0) if law == PATH else total_law.solve(problem, 0)
+    impact = follow(problem, law, 0)
     na, ta, nb, tb, vna, vta, vnb, vtb, _, _, _, _, flags, choices = impact
     if flags & NO_SOLUTION:
         law, notes, problem = TOTAL, notes | LAST_RESORT, without_restitution(problem)
@@ -147,13 +154,13 @@ def nearest(problem: Problem, law: int, first: Impact) -> tuple[Impact, bool]:
     _, _, (cna, _, _, _), _ = problem
     best, end, unique = first, first, True
     if law == TOTAL and cna >= 0.0:
-        path = path_law.solve(problem, 0)
+        path = follow(problem, PATH, 0)
         if solved(path):
             end = path
     least = distance(first, end)
     _, _, _, _, _, _, _, _, _, _, _, _, _, choices = first
     for choice in range(1, choices):
-        other = path_law.solve(problem, choice) if law == PATH else total_law.solve(problem, choice)
+        other = follow(problem, law, choice)
         if solved(other) and differ(problem, other, first):
             unique = False
             if distance(other, end) < least and differ(problem, other, best):

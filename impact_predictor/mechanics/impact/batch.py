@@ -52,16 +52,20 @@ class Outcomes(NamedTuple):
 
 
 def solve_impacts(
-    bodies: TwoPointBody, twist: Twist | NDArray[np.float64], law: str = "path", validity: Validity = answer.VALIDITY
+    bodies: TwoPointBody,
+    twist: Twist | NDArray[np.float64],
+    law: str = "path",
+    validity: Validity = answer.VALIDITY,
+    restitution: str = "poisson",
 ) -> Outcomes:
     """What many impacts do: `solve_impact` for each element of arrays that broadcast together.
 
     Any field of `bodies`, of its contacts (each part of a normal or a velocity on its own) and of `twist` may be an
-    array; `twist` may also be one array (..., 3). `old` is None for all or for none, and `validity` is one for all. Bad
-    numbers give Flag.INVALID_INPUT in their own element; an unknown law or shapes that do not broadcast raise
-    ValueError.
+    array; `twist` may also be one array (..., 3). `old` is None for all or for none; `validity` and `restitution` are
+    one for all. Bad numbers give Flag.INVALID_INPUT in their own element; an unknown law or rule and shapes that do not
+    broadcast raise ValueError.
     """
-    number = number_of(law)
+    number = number_of(law, restitution)
     limits = Validity(*map(float, validity))
     mass, inertia, old, new = bodies
     if isinstance(twist, np.ndarray):

@@ -1,8 +1,16 @@
-"""Impulse-path law: Routh's hypothesis with Poisson restitution.
+"""Impulse-path law: Routh's hypothesis with Poisson's or with energetic restitution.
 
 The contact states are followed along the growing normal impulse of the struck contact B. The *rates* of the contact
 velocities obey Coulomb's law at B and, while it is closed, at the old contact A; a segment ends when a slip or an open
-gap's velocity reaches zero, or with the compression of B. Law code (see `contacts`).
+gap's velocity reaches zero, with the compression of B, or with its expansion.
+
+By the energetic rule (Stronge) B is a spring, which stores the work -c_nB dN_B while it is compressed, keeps the part
+e^2 of it when that ends, and opens when it has given this part back. Along a segment c_nB is linear in N_B and so the
+work quadratic: the impulse at which B opens is exact. Where B is pressed again before it opens, the work goes back into
+the store as it came out of it. If the store is full before B leaves again, the compression goes on from where it ended,
+and the part e^2 is kept of all that it has stored by its next end. So B opens once, while it leaves, and gives no more
+than e^2 of the work that it took: no impact gains energy. Where the contacts lock the body before B opens, the rest of
+the work stays in B. Law code (see `contacts`).
 """
 
 from __future__ import annotations
@@ -27,7 +35,7 @@ from .contacts import (
     least_push,
 )
 from .rates import NOT_CONSISTENT, choose
-from .restitution import poisson, span_of_work
+from .restitution import energetic, poisson, span_of_work, span_to_give
 
 OldImpact = tuple[bool, float, float, float, float, float, float, float, float, int]
 """Whether a tangential impact at A is possible; N_A, T_A; c_tA afterwards; the changes of c_nB and c_tB and of the
@@ -52,7 +60,7 @@ class Jam(NamedTuple):
 NO_JAM = Jam(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 REST = 1e-10
-"""Below this part of the speeds before the impact an approach of B is none, where both contacts rest otherwise."""
+"""Below this part of the speeds before the impact B has no normal velocity, where both contacts rest otherwise."""
 
 LEFT = 1e-9
 """Below this part of its own size an approach that is left after endless jams is none."""
@@ -66,7 +74,7 @@ MAX_SEGMENTS = 600
 ROOM = 1 << 52
 """A code of segments below this has room for two more in 64 bits; later segments are not told."""
 
-ENDLESS, COMPRESSED, EXPANDED, WORK_RETURNED, OLD_CLOSES, OLD_SLIP_ENDS, NEW_SLIP_ENDS = 0, 1, 2, 3, 4, 5, 6
+ENDLESS, COMPRESSED, EXPANDED, WORK_RETURNED, OLD_CLOSES, OLD_SLIP_ENDS, NEW_SLIP_ENDS, FULL, OPENED = range(9)
 """What ends a segment."""
 
 
@@ -126,15 +134,21 @@ def rest_of_jams(before: Jam, after: Jam) -> tuple[float, float, float]:
     return part, left, returned
 
 
-def solve(problem: Problem, choice: int) -> Impact:
+def rests(problem: Problem, cnb: float) -> bool:
+    """Whether a normal velocity of B is rounding of the speeds before the impact."""
+    _, _, (_, cta, before, ctb), _ = problem
+    return abs(cnb) <= REST * (abs(cta) + abs(before) + abs(ctb))
+
+
+def solve(problem: Problem, choice: int, by_energy: bool) -> Impact:
     """Follow the impulse path from contact velocities with c_nB < 0 and c_nA >= 0.
 
-    The restitution at B is Poisson's; A does not approach, so that its own has no effect. `choice` picks among the
-    consistent states at the first instant that has several.
+    The restitution at B is the energetic one or Poisson's; A does not approach, so that its own has no effect. `choice`
+    picks among the consistent states at the first instant that has several.
     """
     contacts, (_, restitution), (cna, cta, cnb, ctb), (zero_na, zero_ta, zero_nb, zero_tb) = problem
     _, (_, _, _, _, _, _, extra, _), _, _, _ = contacts
-    na = ta = nb = tb = dx = dy = dq = work = 0.0
+    na = ta = nb = tb = dx = dy = dq = work = stored = 0.0
     target = inf
     compressing, decided = True, False
     segments, notes, choices = 0, 0, 1
@@ -151,9 +165,7 @@ def solve(problem: Problem, choice: int) -> Impact:
                 freed, n, t, after, dnb, dtb, ex, ey, eq, code = strike_old(contacts, cta)
                 if not freed:
                     # Where both contacts rest up to rounding nothing moves any more.
-                    _, _, (_, cta_before, cnb_before, ctb_before), _ = problem
-                    speed = abs(cta_before) + abs(cnb_before) + abs(ctb_before)
-                    if cta != 0.0 or ctb != 0.0 or cnb < -REST * speed:
+                    if cta != 0.0 or ctb != 0.0 or (cnb < 0.0 and not rests(problem, cnb)):
                         notes |= NO_SOLUTION
                     elif cnb < 0.0:
                         cnb = 0.0
@@ -165,7 +177,7 @@ def solve(problem: Problem, choice: int) -> Impact:
                 dx, dy, dq = dx + ex, dy + ey, dq + eq
                 if abs(ctb) <= zero_tb:
                     ctb = 0.0
-                if compressing and cnb > zero_nb:
+                if compressing and cnb > zero_nb and not (by_energy and restitution > 0.0):
                     break
                 if cta == 0.0 and not (compressing and cnb >= -zero_nb):
                     before = jam
@@ -175,8 +187,13 @@ def solve(problem: Problem, choice: int) -> Impact:
                         notes |= NO_SOLUTION
                         break
                     push = part * (nb - before.nb)
-                    # The impact may end before the series does.
-                    within = left <= 0.0 if compressing else nb + push <= target and work + returned >= 0.0
+                    # The impact may end before the series does, or be pressed again.
+                    if compressing:
+                        within = left <= 0.0
+                    elif by_energy:
+                        within = cnb * left >= 0.0 and 0.0 <= work + returned <= energetic(restitution, stored)
+                    else:
+                        within = nb + push <= target and work + returned >= 0.0
                     if part > 0.0 and within:
                         na, ta = na + part * (na - before.na), ta + part * (ta - before.ta)
                         nb, tb = nb + push, tb + part * (tb - before.tb)
@@ -184,10 +201,13 @@ def solve(problem: Problem, choice: int) -> Impact:
                         dq += part * (dq - before.dq)
                         cnb, ctb, work = left, 0.0, work + returned
                 if compressing and cnb >= -zero_nb:
-                    cnb = 0.0
+                    if cnb <= zero_nb:
+                        cnb = 0.0
                     if restitution == 0.0:
                         break
                     compressing, target, jam = False, poisson(restitution, nb), NO_JAM
+                    if by_energy:
+                        stored, work = work, energetic(restitution, work)
                 continue
             _, pna, pta, ptb, rna, rta, rnb, rtb, ex, ey, eq = rate
             if a >= PLUS:
@@ -209,6 +229,14 @@ def solve(problem: Problem, choice: int) -> Impact:
         if compressing:
             if rnb > 0.0:
                 span, event = -cnb / rnb, COMPRESSED
+        elif by_energy:
+            span, event = span_to_give(work, cnb, rnb), OPENED
+            room = energetic(restitution, stored) - work
+            filled = span_to_give(room if room > 0.0 else 0.0, -cnb, -rnb)
+            if filled < span:
+                span, event = filled, FULL
+            if span == inf or (rnb == 0.0 and rests(problem, cnb)):
+                span, event = inf, ENDLESS
         else:
             span, event = target - nb, EXPANDED
             returned = span_of_work(work, cnb, rnb)
@@ -228,7 +256,9 @@ def solve(problem: Problem, choice: int) -> Impact:
             if wait < span:
                 span, event = wait, NEW_SLIP_ENDS
         if event == ENDLESS:
-            notes |= NO_SOLUTION
+            # A body that is locked while B expands is at rest; one that is locked while it approaches has no answer.
+            if compressing:
+                notes |= NO_SOLUTION
             break
 
         na += pna * span
@@ -264,6 +294,8 @@ def solve(problem: Problem, choice: int) -> Impact:
             if restitution == 0.0:
                 break
             compressing, target, jam = False, poisson(restitution, nb), NO_JAM
+            if by_energy:
+                stored, work = work, energetic(restitution, work)
             decided = (cna > 0.0 if a == OPEN else a == STICK or cta != 0.0) and (b == STICK or ctb != 0.0)
         elif event == EXPANDED or event == WORK_RETURNED:
             if event == WORK_RETURNED:
@@ -272,6 +304,12 @@ def solve(problem: Problem, choice: int) -> Impact:
                 break
             # B was pressed again while it expanded: a plastic compression ends that.
             compressing, restitution, jam = True, 0.0, NO_JAM
+        elif event == OPENED:
+            break
+        elif event == FULL:
+            compressing, work, jam = True, stored, NO_JAM
+            if cnb > 0.0:
+                cnb = 0.0
     else:
         notes |= NO_SOLUTION
     if notes & SHARED_FRICTION:

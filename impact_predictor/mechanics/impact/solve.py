@@ -6,15 +6,17 @@ from functools import cache
 from math import isfinite
 
 from ..types import Alternative, Contact, Flag, Mode, Outcome, Twist, TwoPointBody, Validity
-from . import path_law, total_law
 from .answer import (
+    ENERGETIC_PATH,
     LAST_RESORT,
     PATH,
     STAYS,
+    TOTAL,
     VALIDITY,
     BodyAnswer,
     answer,
     differ,
+    follow,
     mode_of,
     nearest,
     solved,
@@ -22,8 +24,16 @@ from .answer import (
     without_restitution,
 )
 from .contacts import Impact, Problem, problem_of, twist_after
+from .restitution import RULES
 
 LAWS = ("path", "total")
+"""The names of the laws."""
+
+NUMBERS = {("path", "poisson"): PATH, ("total", "poisson"): TOTAL, ("path", "energetic"): ENERGETIC_PATH}
+"""The numbers of the laws, each with a rule of restitution; of the total law, which has its own, the rule that is the
+default."""
+
+NAMES = tuple([law for law, _ in NUMBERS])
 """The names of the laws, at their numbers."""
 
 MODES = tuple(Mode)
@@ -32,25 +42,35 @@ NOWHERE = Contact(0.0, 0.0, 0.0)
 """What a body without an old contact has in its place."""
 
 
-def solve_impact(body: TwoPointBody, twist: Twist, law: str = "path", validity: Validity = VALIDITY) -> Outcome:
+def solve_impact(
+    body: TwoPointBody,
+    twist: Twist,
+    law: str = "path",
+    validity: Validity = VALIDITY,
+    restitution: str = "poisson",
+) -> Outcome:
     """What the impact at the new contact does to a body that stands on the old one.
 
     `body` is a TwoPointBody in SI units; without an old contact the impact is a one-point impact. `twist` is
-    (vx, vy, omega) of the mass centre right before. `law` is "path" (Routh's impulse path, Poisson restitution at the
-    new contact) or "total" (the paper's impulses of the whole impact, Newton restitution). Where both contacts are
-    struck the total law answers; without restitution it is the last resort where a law has no answer. `validity` says
-    from where on an outcome is flagged because rigid theory is too simple for it.
+    (vx, vy, omega) of the mass centre right before. `law` is "path" (Routh's impulse path) or "total" (the paper's
+    impulses of the whole impact, with Newton's restitution). `restitution` is the path law's rule for the new contact:
+    "poisson", by impulses and limited by the work, or "energetic", by the work alone, as the law in three dimensions
+    has it. Where both contacts are struck the total law answers; without restitution it is the last resort where a law
+    has no answer. `validity` says from where on an outcome is flagged because rigid theory is too simple for it.
 
-    Input that no body can have gives Flag.INVALID_INPUT, never an exception; an unknown law raises ValueError.
-    Source: the paper, sections 2 to 4, generalised.
+    Input that no body can have gives Flag.INVALID_INPUT, never an exception; an unknown law or rule, and the total law
+    with another rule than its own, raise ValueError. Sources: the paper, sections 2 to 4, generalised; Stronge, Rigid
+    body collisions with friction (1990), for the energetic rule.
     """
-    number = number_of(law)
+    number = number_of(law, restitution)
     mass, inertia, old, new = body
     found = answer(mass, inertia, old is not None, old or NOWHERE, new, twist, number, validity)
-    return outcome_of(found, body, twist)
+    return outcome_of(found, body, twist, restitution)
 
 
-def outcome_of(found: BodyAnswer, body: TwoPointBody | None = None, before: Twist | None = None) -> Outcome:
+def outcome_of(
+    found: BodyAnswer, body: TwoPointBody | None = None, before: Twist | None = None, restitution: str = "poisson"
+) -> Outcome:
     """An answer by its names; with what it was asked about where its law may allow others too."""
     mode, after, na, ta, nb, tb, segments, flags, energy_lost, unique, used = found
     more = () if unique or body is None or before is None else alternatives(body, before, used, flags)
@@ -63,17 +83,22 @@ def outcome_of(found: BodyAnswer, body: TwoPointBody | None = None, before: Twis
         energy_lost=energy_lost,
         unique=unique,
         alternatives=more,
-        law=LAWS[used],
+        law=NAMES[used],
         body=body,
         before=before,
+        restitution=restitution,
     )
 
 
-def number_of(law: str) -> int:
-    """The number of a law; an unknown one raises ValueError."""
-    if law not in LAWS:
-        raise ValueError(f"law is {law!r}; use {' or '.join(map(repr, LAWS))}")
-    return LAWS.index(law)
+def number_of(law: str, restitution: str = "poisson") -> int:
+    """The number of a law with a rule of restitution; what is unknown, or not one of both, raises ValueError."""
+    number = NUMBERS.get((law, restitution))
+    if number is not None:
+        return number
+    for name, given, known in (("law", law, LAWS), ("restitution", restitution, RULES)):
+        if given not in known:
+            raise ValueError(f"{name} is {given!r}; use {' or '.join(map(repr, known))}")
+    raise ValueError(f"the law {law!r} has its own restitution, not the {restitution!r} one; use the law 'path'")
 
 
 def alternatives(body: TwoPointBody, twist: Twist, law: int, flags: int) -> tuple[Alternative, ...]:
@@ -94,12 +119,11 @@ def others(problem: Problem, law: int, flags: int) -> list[Impact]:
     """All answers of the law which answered, with these flags, that differ from the answer and from each other."""
     if flags & LAST_RESORT:
         problem = without_restitution(problem)
-    solve = path_law.solve if law == PATH else total_law.solve
-    first = solve(problem, 0)
+    first = follow(problem, law, 0)
     answers = [nearest(problem, law, first)[0]]
     _, _, _, _, _, _, _, _, _, _, _, _, _, choices = first
     for choice in range(choices):
-        other = solve(problem, choice)
+        other = follow(problem, law, choice)
         if solved(other) and all(differ(problem, other, one) for one in answers):
             answers.append(other)
     return answers[1:]
