@@ -2,8 +2,8 @@
 
 A problem is one flat sequence: mass; the inertia ixx, iyy, izz, ixy, ixz, iyz about the mass centre; the twist vx, vy,
 vz, wx, wy, wz of the mass centre; then of each contact its position x, y, z from the mass centre, its normal, friction,
-restitution, and the velocity of its support. An answer is the twist, the energy lost, and of each contact its impulse,
-its velocity relative to the support, and its state, all along the axes of the problem.
+restitution, the velocity of its support, and its gap. An answer is the twist, the energy lost, and of each contact its
+impulse, its velocity relative to the support, and its state, all along the axes of the problem.
 """
 
 from __future__ import annotations
@@ -16,13 +16,16 @@ from .spatial_path import Floats, Scratch, solve
 BODY = 13
 """Numbers of a problem that come before its contacts."""
 
-CONTACT = 11
+CONTACT = 12
 """Numbers of each contact of a problem."""
 
 ANSWER = 7
 """Numbers of an answer that come before its contacts; each of them has `RESULT`."""
 
 RESULT = 7
+
+START = 11
+"""Where the scratch has the velocities before the impact."""
 
 INVALID = 4
 """The flag of numbers that no body can have."""
@@ -67,6 +70,7 @@ def strike(
     n: int,
     problem: Floats,
     total: bool,
+    merge: float,
     threshold: float,
     steps: int,
     answer: Scratch,
@@ -92,7 +96,7 @@ def strike(
     ixz = (xy * yz - xz * yy) / det
     iyz = (xy * xz - xx * yz) / det
     vx, vy, vz, wx, wy, wz = problem[7], problem[8], problem[9], problem[10], problem[11], problem[12]
-    impulse, c, friction, restitution = scratch[0], scratch[1], scratch[2], scratch[3]
+    impulse, c, friction, restitution, gaps = scratch[0], scratch[1], scratch[2], scratch[3], scratch[4]
     m = 3 * n
     for i in range(n):
         k = BODY + i * CONTACT
@@ -100,6 +104,7 @@ def strike(
         nx, ny, nz = problem[k + 3], problem[k + 4], problem[k + 5]
         friction[i] = problem[k + 6]
         restitution[i] = problem[k + 7]
+        gaps[i] = problem[k + 11]
         # The tangents: t1 across the normal in the plane of x and z unless the normal is along y there.
         if abs(nx) + abs(nz) > 1e-3:
             size = sqrt(nx * nx + nz * nz)
@@ -140,7 +145,7 @@ def strike(
             w = linear / mass + hx * rows[q + 3] + hy * rows[q + 4] + hz * rows[q + 5]
             W[j * m + k] = w
             W[k * m + j] = w
-    flags = solve(n, W, friction, restitution, total, threshold, steps, c, impulse, scratch[4:], marks)
+    flags = solve(n, W, friction, restitution, gaps, total, merge, threshold, steps, c, impulse, scratch[5:], marks)
     fx = fy = fz = tx = ty = tz = lost = 0.0
     for j in range(m):
         g = 6 * j
@@ -151,7 +156,7 @@ def strike(
         tx += rows[g + 3] * p
         ty += rows[g + 4] * p
         tz += rows[g + 5] * p
-        lost -= 0.5 * p * (scratch[10][j] + c[j])
+        lost -= 0.5 * p * (scratch[START][j] + c[j])
         at = ANSWER + RESULT * (j // 3)
         for t in range(3):
             answer[at + t] += rows[g + t] * p

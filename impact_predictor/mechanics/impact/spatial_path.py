@@ -38,12 +38,27 @@ ROUNDING = 1e-12
 
 UNBLENDED = 0.999
 
+FAR = 1e9
+"""The distance, in speeds, of a contact that is open while the others strike."""
+
 STATE_ROUNDING = 1e-5
 """A contact leaves, or slips, faster than this part of the fastest contact before the impact."""
 
-LEAVES, SLIPS, STICKS = 0, 1, 2
+LEAVES, SLIPS, STICKS, NEARS = 0, 1, 2, 3
 
 NOT_CONVERGED, BLENDED = 1, 2
+
+CUTS = 4
+"""How often a step is cut, until compressions end where it does ..."""
+
+NEARLY = 0.9
+"""... up to this part of it; what is left of it then is lost to the contact alone."""
+
+SLOW = 0.4
+"""No step is cut for a contact that is slower than this part of the fastest one, for one step to a quarter."""
+
+LATEST = 4
+"""Quarters of its own oscillation after which a contact that has not closed is left to a later impact."""
 
 LONGEST = 400
 """Quarters of an oscillation after which a path that has not ended is ended plastically."""
@@ -142,6 +157,7 @@ def follow(
     W: Floats,
     friction: Floats,
     restitution: Floats,
+    distances: Floats,
     threshold: float,
     steps: int,
     scale: float,
@@ -158,18 +174,22 @@ def follow(
 ) -> int:
     """Follow the path: `c` becomes the velocities after it, `impulse` grows by what acted; whether it came to its end.
 
-    Contacts that approach faster than `threshold` are struck, the others rest. `scale` is the speed that errors are
-    measured by; `steps` resolve a quarter of an oscillation. The rest is scratch.
+    Contacts that approach faster than `threshold` are struck, the others rest; one that is struck closes once it has
+    come nearer by its distance, at speeds in the unit of the pseudo-time. `scale` is the speed that errors are measured
+    by; `steps` resolve a quarter of an oscillation. The rest is scratch.
     """
     m = 3 * n
     struck = 0
     for i in range(n):
         p[3 * i] = p[3 * i + 1] = p[3 * i + 2] = 0.0
-        depth[i] = deepest[i] = 0.0
+        deepest[i] = 0.0
+        depth[i] = -distances[i]
         phase[i] = RESTING
-        if c[3 * i + 2] < -threshold:
+        if c[3 * i + 2] < -threshold or depth[i] < 0.0:
             phase[i] = LOADING
             struck += 1
+    elapsed = 0.0
+    slow = SLOW * scale / steps
     tolerance = TOLERANCE * scale / (steps * steps * steps)
     last = 0.0
     for _ in range(LONGEST * steps):
@@ -183,55 +203,73 @@ def follow(
         if stiffest == 0.0:
             return 0
         h = 0.5 * pi / (steps * sqrt(stiffest))
-        ratio = h / last if last > 0.0 else 0.0
-        for i in range(n):
-            capped[i] = 0
-            if phase[i] == OPEN:
-                softness[i] = -1.0
-                p[3 * i] = p[3 * i + 1] = p[3 * i + 2] = 0.0
-            elif phase[i] == RESTING:
-                softness[i] = bias[i] = 0.0
-            else:
-                # The force at the middle of the step, k (d - h (c + c') / 4), times h, solved for c'.
-                e = restitution[i]
-                k = 1.0 / (e * e) if phase[i] == UNLOADING else 1.0
-                rest = (1.0 - e * e) * deepest[i] if phase[i] == UNLOADING else 0.0
-                softness[i] = 4.0 / (h * h * k)
-                bias[i] = 4.0 * (depth[i] - rest) / h - c[3 * i + 2]
-                if e == 0.0:
-                    capped[i] = 1
         for j in range(m):
             before[j] = c[j]
-            p[j] *= ratio
-        for j in range(m):
-            if p[j] != 0.0:
-                for k in range(m):
-                    c[k] += W[j * m + k] * p[j]
-        sweep(n, W, before, friction, softness, bias, capped, 1.0, tolerance, SWEEPS, c, p)
-        last = h
+        for _ in range(CUTS):
+            ratio = h / last if last > 0.0 else 0.0
+            last = h
+            for j in range(m):
+                c[j] = before[j]
+                p[j] *= ratio
+            for i in range(n):
+                capped[i] = 0
+                if phase[i] == OPEN:
+                    softness[i] = -1.0
+                    p[3 * i] = p[3 * i + 1] = p[3 * i + 2] = 0.0
+                elif phase[i] == RESTING:
+                    softness[i] = bias[i] = 0.0
+                else:
+                    # The force at the middle of the step, k (d - h (c + c') / 4), times h, solved for c'.
+                    e = restitution[i]
+                    stiffness = 1.0 / (e * e) if phase[i] == UNLOADING else 1.0
+                    rest = (1.0 - e * e) * deepest[i] if phase[i] == UNLOADING else 0.0
+                    softness[i] = 4.0 / (h * h * stiffness)
+                    bias[i] = 4.0 * (depth[i] - rest) / h - c[3 * i + 2]
+                    capped[i] = 1 if phase[i] == LOADING else 0
+            for j in range(m):
+                if p[j] != 0.0:
+                    for k in range(m):
+                        c[k] += W[j * m + k] * p[j]
+            sweep(n, W, before, friction, softness, bias, capped, 1.0, tolerance, SWEEPS, c, p)
+            # Where a compression ends within the step, the step ends there.
+            part = 1.0
+            for i in range(n):
+                z = 3 * i + 2
+                force = depth[i] - 0.25 * h * (before[z] + c[z])
+                if phase[i] == LOADING and before[z] < -slow and 0.0 < p[z] < h * force:
+                    part = min(part, p[z] / (h * force))
+            if part > NEARLY:
+                break
+            h *= part
+        elapsed += h
         struck = 0
         for i in range(n):
             z = 3 * i + 2
             impulse[z] += p[z]
             impulse[z - 1] += p[z - 1]
             impulse[z - 2] += p[z - 2]
-            if phase[i] == LOADING or phase[i] == UNLOADING:
-                e = restitution[i]
-                depth[i] -= 0.5 * h * (before[z] + c[z])
-                if phase[i] == LOADING:
-                    if depth[i] > deepest[i]:
-                        deepest[i] = depth[i]
-                    if c[z] >= 0.0 or (e == 0.0 and c[z] >= -tolerance):
-                        phase[i] = UNLOADING if e > 0.0 else RESTING
-                elif depth[i] > deepest[i]:
+            nearer = -0.5 * h * (before[z] + c[z])
+            if phase[i] == LOADING:
+                force = depth[i] + 0.5 * nearer
+                if p[z] < h * force:
+                    nearer *= p[z] / (h * force)
+                depth[i] += nearer
+                deepest[i] = max(deepest[i], depth[i])
+                if depth[i] > 0.0 and c[z] >= -tolerance:
+                    phase[i] = UNLOADING if restitution[i] > 0.0 else RESTING
+            elif phase[i] == UNLOADING:
+                depth[i] += nearer
+                if depth[i] > deepest[i]:
                     phase[i] = LOADING
-                if phase[i] == UNLOADING and depth[i] <= (1.0 - e * e) * deepest[i]:
+                elif depth[i] <= (1.0 - restitution[i] * restitution[i]) * deepest[i]:
                     phase[i] = OPEN
             if phase[i] == OPEN and c[z] < -threshold:
                 phase[i] = LOADING
                 depth[i] = deepest[i] = 0.0
-            if phase[i] == LOADING or phase[i] == UNLOADING:
+            if phase[i] == UNLOADING or (phase[i] == LOADING and depth[i] > 0.0):
                 struck += 1
+            elif phase[i] == LOADING and c[z] < 0.0:
+                struck += 1 if elapsed * sqrt(W[z * (m + 1)]) < LATEST * 0.5 * pi else 0
     return 0
 
 
@@ -244,20 +282,22 @@ def finish(
     impulse: Scratch,
     before: Scratch,
     p: Scratch,
+    depth: Floats,
     softness: Scratch,
     bias: Scratch,
     capped: MutableSequence[int],
 ) -> int:
-    """Stop plastically what still approaches, so that nothing does: sweeps as those of `sweep`."""
+    """Stop plastically what still approaches of the contacts that have closed: sweeps as those of `sweep`."""
     lowest = 0.0
     for i in range(n):
-        lowest = min(lowest, c[3 * i + 2])
+        bias[i] = 0.0
+        capped[i] = 0
+        softness[i] = -1.0 if depth[i] < 0.0 else 0.0
+        if depth[i] >= 0.0:
+            lowest = min(lowest, c[3 * i + 2])
     if lowest >= -ROUNDING * scale:
         return 0
     m = 3 * n
-    for i in range(n):
-        softness[i] = bias[i] = 0.0
-        capped[i] = 0
     for j in range(m):
         before[j] = c[j]
         p[j] = 0.0
@@ -272,7 +312,9 @@ def solve(
     W: Floats,
     friction: Floats,
     restitution: Floats,
+    gaps: Floats,
     total: bool,
+    merge: float,
     threshold: float,
     steps: int,
     c: Scratch,
@@ -285,7 +327,7 @@ def solve(
     The flags are `NOT_CONVERGED`, and `BLENDED` where the answer would have gained energy, which Newton's restitution
     can do, and the errors of steps.
     """
-    before, p, depth, deepest, softness, bias, start, plastic = scratch
+    before, p, depth, deepest, softness, bias, start, plastic, distances = scratch
     phase, capped = marks
     m = 3 * n
     scale = 0.0
@@ -294,11 +336,20 @@ def solve(
         impulse[j] = 0.0
         scale = max(scale, abs(c[j]))
     flags = 0
+    for i in range(n):
+        # A compression lasts `merge`, a quarter of an oscillation in the pseudo-time.
+        distances[i] = 0.0
+        if gaps[i] > 0.0:
+            w = W[(3 * i + 2) * (m + 1)]
+            distances[i] = gaps[i] / merge * 0.5 * pi / sqrt(w) if merge > 0.0 and w > 0.0 else FAR * scale
     if total:
         for i in range(n):
             softness[i] = 0.0
             bias[i] = max(0.0, -restitution[i] * c[3 * i + 2])
             capped[i] = 0
+            depth[i] = -distances[i]
+            if distances[i] > 0.0:
+                softness[i] = -1.0
         for j in range(m):
             p[j] = 0.0
         if (
@@ -307,21 +358,23 @@ def solve(
         ):
             flags |= NOT_CONVERGED
     elif not follow(
-        *(n, W, friction, restitution, max(threshold, ROUNDING * scale), steps, scale, c, impulse),
+        *(n, W, friction, restitution, distances, max(threshold, ROUNDING * scale), steps, scale, c, impulse),
         *(before, p, depth, deepest, softness, bias, phase, capped),
     ):
         flags |= NOT_CONVERGED
-    if finish(n, W, friction, scale, c, impulse, before, p, softness, bias, capped) == THOROUGH:
+    if finish(n, W, friction, scale, c, impulse, before, p, depth, softness, bias, capped) == THOROUGH:
         flags |= NOT_CONVERGED
     work = 0.0
     for j in range(m):
         work += 0.5 * impulse[j] * (start[j] + c[j])
     if work > 0.0:
-        flags |= lose(n, W, friction, scale, start, c, impulse, plastic, before, p, softness, bias, capped)
+        flags |= lose(n, W, friction, scale, start, c, impulse, plastic, before, p, depth, softness, bias, capped)
     zero = STATE_ROUNDING * scale
     for i in range(n):
         a = 3 * i
-        if c[a + 2] > zero:
+        if depth[i] < 0.0:
+            phase[i] = NEARS
+        elif c[a + 2] > zero:
             phase[i] = LEAVES
         else:
             phase[i] = SLIPS if c[a] * c[a] + c[a + 1] * c[a + 1] > zero * zero else STICKS
@@ -339,6 +392,7 @@ def lose(
     plastic: Scratch,
     before: Scratch,
     p: Scratch,
+    depth: Floats,
     softness: Scratch,
     bias: Scratch,
     capped: MutableSequence[int],
@@ -348,7 +402,7 @@ def lose(
     for j in range(m):
         plastic[j] = 0.0
         c[j] = start[j]
-    finish(n, W, friction, scale, c, plastic, before, p, softness, bias, capped)
+    finish(n, W, friction, scale, c, plastic, before, p, depth, softness, bias, capped)
     # Along P = plastic + s (impulse - plastic) the work is a + b s + q s^2, and a <= 0 < a + b + q.
     a = b = q = 0.0
     for j in range(m):
