@@ -1,0 +1,211 @@
+"""Impacts and free flights of a recorded body on contact points, found from the heights of its points alone."""
+
+from __future__ import annotations
+
+from enum import Enum
+from itertools import pairwise
+from math import ceil, inf
+from typing import Final, NamedTuple
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from ..prediction.planar import STANDING
+from ..prediction.scene import Scene
+from .motions import Floats, RecordedMotion
+
+DEVIATIONS: Final = 3.0
+"""A contact tolerance is so many standard deviations of the gap of a point that rests."""
+
+GAINS: Final = 1.5
+"""An approach slower than so many times what gravity adds from one pose to the next is not told from rest ..."""
+
+NOISES: Final = 5.0
+"""... nor one slower than so many standard deviations of a rate between two poses."""
+
+STOPPED: Final = 0.5
+"""A point has struck when more than this part of its approach is gone."""
+
+BEFORE: Final = 1
+"""An impact lies between the poses k and k + 1. The motion before it is that between the poses k - 1 and k, with none
+of the impact in it ..."""
+
+AFTER: Final = 2
+"""... and the motion after it that between the poses k + 2 and k + 3: the contact may last until the pose k + 2."""
+
+FLIGHT: Final = 6
+"""Poses of the shortest flight from which a straight line and gravity leave something to be told."""
+
+
+class ImpactKind(Enum):
+    """What stood, and what struck: a corner is one point, an edge two or more."""
+
+    FLIGHT_CORNER = "flight>corner"
+    FLIGHT_EDGE = "flight>edge"
+    CORNER_CORNER = "corner>corner"
+    CORNER_EDGE = "corner>edge+"
+    EDGE_CORNER = "edge>corner"
+    EDGE_FACE = "edge>face"
+
+
+_KINDS: Final = tuple(ImpactKind)
+
+
+class FrameMotion(NamedTuple):
+    """The mean motion of a body between two poses.
+
+    `time` in s midway, since the first pose of the motion; `rotation` (3, 3) midway; `linear` velocity of the body
+    frame's origin in m/s and `angular` velocity in rad/s, in world axes; `turning` (3, 3), the change of the rotation
+    in 1/s, so that a point c of the body frame moves by linear + turning @ c.
+    """
+
+    time: float
+    rotation: Floats
+    linear: Floats
+    angular: Floats
+    turning: Floats
+
+
+class RecordedImpact(NamedTuple):
+    """An impact between the poses `frame` and `frame` + `stride` of a motion.
+
+    `time` in s since the first pose; the points `new` strike, those in `old` stood; `approach` in m/s of the fastest
+    new point; `rotation` (3, 3) at the impact. It is `isolated` where no other impact lies in the frames from the
+    motion `before` it to that `after` it, over which all other points stay `clear` of the support by so many m.
+    """
+
+    frame: int
+    stride: int
+    time: float
+    new: tuple[int, ...]
+    old: tuple[int, ...]
+    approach: float
+    rotation: Floats
+    before: FrameMotion
+    after: FrameMotion
+    isolated: bool
+    clear: float
+
+    @property
+    def kind(self) -> ImpactKind:
+        """What stood, and what struck."""
+        return _KINDS[2 * min(len(self.old), 2) + (len(self.new) > 1)]
+
+
+class _Strike(NamedTuple):
+    """A point that strikes between the poses k and k + 1, at a time in s, with an approach in m/s."""
+
+    time: float
+    k: int
+    point: int
+    approach: float
+
+
+class MotionRecord:
+    """The impacts and the free flights of one recorded `motion` over the support of a scene.
+
+    Poses closer than the contact time are left out, so that an impact is over two frames later. A point strikes where
+    it falls to the support, within a standard deviation of its gap, before the next pose, loses half of its approach
+    by the frame after that, and comes from the support then. Points that strike within the contact time strike
+    together. A point stood that was within the tolerance and hardly moved.
+    """
+
+    def __init__(self, scene: Scene, motion: RecordedMotion) -> None:
+        steps = np.diff(motion.times)
+        self.stride = max(1, ceil(scene.contact_time / float(np.median(steps)) - 1e-9)) if len(steps) else 1
+        self.motion = motion.every(self.stride)
+        self._scene = scene
+        self._times, self._gaps = self.motion.times, self.motion.gaps(scene)
+        self._steps = np.diff(self._times)
+        self._rates = np.diff(self._gaps, axis=0) / self._steps[:, None]
+        self._step = float(np.median(self._steps)) if len(self._steps) else inf
+        self._events: list[list[_Strike]] = []
+        if len(self._times) < BEFORE + AFTER + 2:
+            return
+        self._fall = -float(np.dot(scene.gravity, scene.normal))
+        # Third differences hold hardly any motion. Of white noise they have 20 times its variance, a rate has twice.
+        thirds = np.abs(np.diff(self._gaps, n=3, axis=0))
+        noise = float(np.median(thirds)) / 0.6745 / np.sqrt(10.0) / self._step
+        self._slowest = max(GAINS * self._fall * self._step, NOISES * noise)
+        for strike in sorted(self._strikes()):
+            if self._events and strike.time - self._events[-1][0].time <= scene.contact_time:
+                self._events[-1].append(strike)
+            else:
+                self._events.append([strike])
+
+    def _strikes(self) -> list[_Strike]:
+        """The strikes of each point; the first of several frames in which it may be is that of the strike."""
+        scene, gain = self._scene, self._fall * self._steps[1:-1, None]
+        gaps, step = self._gaps[1:-2], self._steps[1:-1, None]
+        approach, away = -self._rates[:-2], self._rates[2:]
+        # At the pose k gravity has added half a frame's gain to the mean rate of the frame before it.
+        speed = approach + 0.5 * gain
+        rest = np.clip(gaps / np.maximum(speed, self._slowest), 0.0, step)
+        strikes = (
+            (approach > self._slowest)
+            & (gaps > -scene.tolerance)
+            & (gaps - (approach + gain) * step < scene.tolerance / DEVIATIONS)
+            & (away + approach > STOPPED * approach)
+            & (self._gaps[2:-1] - away * (step - rest) < scene.tolerance)
+        )
+        found, last = [], np.full(gaps.shape[1], -inf)
+        for row, point in np.argwhere(strikes).tolist():
+            if row - last[point] > AFTER:
+                last[point] = row
+                time = float(self._times[row + 1] + rest[row, point])
+                found.append(_Strike(time, row + 1, point, float(approach[row, point])))
+        return found
+
+    @property
+    def impacts(self) -> list[RecordedImpact]:
+        """The impacts in the order of time whose motions before and after are recorded without a pause."""
+        starts = [min(strike.k for strike in event) for event in self._events]
+        found = []
+        for event, k, last, following in zip(self._events, starts, [-inf, *starts], [*starts[1:], inf], strict=False):
+            begin, end = k - BEFORE, k + AFTER + 1
+            if begin < 0 or end >= len(self._times) or self._steps[begin:end].max() > 1.5 * self._step:
+                continue
+            new = sorted({strike.point for strike in event})
+            speeds = np.abs(self._rates[begin])
+            still = max(self._slowest, STANDING * float(speeds.max()))
+            others = [i for i in range(self._gaps.shape[1]) if i not in new]
+            before = self._frame(begin)
+            turn = Rotation.from_rotvec(before.angular * (event[0].time - self._times[k])).as_matrix()
+            found.append(
+                RecordedImpact(
+                    frame=k * self.stride,
+                    stride=self.stride,
+                    time=event[0].time,
+                    new=tuple(new),
+                    old=tuple(i for i in others if self._gaps[k, i] < self._scene.tolerance and speeds[i] < still),
+                    approach=max(strike.approach for strike in event),
+                    rotation=turn @ self.motion.rotations[k],
+                    before=before,
+                    after=self._frame(k + AFTER),
+                    isolated=last < begin and following > end,
+                    clear=float(self._gaps[begin : end + 1, others].min(initial=inf)),
+                )
+            )
+        return found
+
+    @property
+    def flights(self) -> list[slice]:
+        """The poses of `motion` in free flight: all points are farther from the support than the tolerance."""
+        free = self._gaps.min(axis=1) > self._scene.tolerance
+        breaks = {strike.k + 1 for event in self._events for strike in event}
+        breaks |= {int(k) + 1 for k in np.flatnonzero(self._steps > 1.5 * self._step)}
+        edges = [k for k in range(len(free) + 1) if k in (0, len(free)) or free[k] != free[k - 1] or k in breaks]
+        runs = [slice(begin, end) for begin, end in pairwise(edges) if free[begin]]
+        return [run for run in runs if run.stop - run.start >= FLIGHT]
+
+    def _frame(self, k: int) -> FrameMotion:
+        """The motion between the poses k and k + 1."""
+        (one, other), step = self.motion.rotations[k : k + 2], self._steps[k]
+        turn = Rotation.from_matrix(other @ one.T).as_rotvec()
+        return FrameMotion(
+            time=float(self._times[k] + 0.5 * step),
+            rotation=Rotation.from_rotvec(0.5 * turn).as_matrix() @ one,
+            linear=(self.motion.positions[k + 1] - self.motion.positions[k]) / step,
+            angular=turn / step,
+            turning=(other - one) / step,
+        )
