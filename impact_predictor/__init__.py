@@ -11,7 +11,6 @@ if TYPE_CHECKING:
     from .mechanics.impact.spatial import (
         Body,
         ContactPoints,
-        ContactState,
         SpatialOutcome,
         SpatialOutcomes,
         solve_spatial_impact,
@@ -20,7 +19,7 @@ if TYPE_CHECKING:
     from .mechanics.margins import Margin, Margins
     from .mechanics.sensitivity import Sensitivity, sensitivity
     from .mechanics.transverse import Transverse, TransverseOutcome, solve_transverse_impact
-    from .mechanics.types import Alternative, Contact, Flag, Mode, Outcome, Twist, TwoPointBody, Validity
+    from .mechanics.types import Alternative, Contact, ContactState, Flag, Mode, Outcome, Twist, TwoPointBody, Validity
 
 __all__ = [
     "Alternative",
@@ -58,9 +57,10 @@ __version__ = "0.1.0"
 
 LATER = {
     **dict.fromkeys(
-        ("Alternative", "Contact", "Flag", "Mode", "Outcome", "Twist", "TwoPointBody", "Validity"), "types"
+        ("Alternative", "Contact", "ContactState", "Flag", "Mode", "Outcome", "Twist", "TwoPointBody", "Validity"),
+        "types",
     ),
-    **dict.fromkeys(("Body", "ContactPoints", "ContactState", "SpatialOutcome", "SpatialOutcomes"), "impact.spatial"),
+    **dict.fromkeys(("Body", "ContactPoints", "SpatialOutcome", "SpatialOutcomes"), "impact.spatial"),
     "Margin": "margins",
     "Margins": "margins",
     "Outcomes": "impact.batch",

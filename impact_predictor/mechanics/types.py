@@ -36,6 +36,16 @@ class Mode(IntEnum):
     """Both contacts lift."""
 
 
+class ContactState(IntEnum):
+    """What a contact does right after an impact in three dimensions."""
+
+    LEAVES = 0
+    SLIPS = 1
+    STICKS = 2
+    NEARS = 3
+    """It had a gap and has not closed: it strikes later, or not."""
+
+
 class Flag(IntFlag):
     """What a reader of an outcome should know besides its mode."""
 

@@ -10,7 +10,7 @@ from ..mechanics.motion import Fall
 from ..mechanics.types import Outcome, Twist, TwoPointBody, Vector
 from .planar import GRAZES, ORIGIN, ActiveContacts, ImpactPlane, Posture, hardly, inertia_about
 from .scene import Scene
-from .types import Leftover, Sample, Touchdown
+from .types import Leftover, Sample, SpatialTwist, Touchdown
 from .vectors import add, axes_of, combine, cross, dot, to_body, to_world, total, turned
 
 if TYPE_CHECKING:
@@ -137,9 +137,14 @@ class ImpactModel:
         )
         orientation = turned(sample.orientation, rotation)
         now = axes_of(orientation)
-        vx, vy, omega = outcome.twist
-        angular = to_body(now, combine(-omega, along, after.roll, ahead, after.yaw, n))
-        linear = to_body(now, combine(vx, ahead, vy, n, after.velocity, along))
+        before_6d, after_6d = [
+            SpatialTwist(
+                combine(twist.vx, ahead, twist.vy, n, lateral.velocity, along),
+                combine(-twist.omega, along, lateral.roll, ahead, lateral.yaw, n),
+            )
+            for twist, lateral in ((before, across), (outcome.twist, after))
+        ]
+        linear, angular = to_body(now, after_6d.linear), to_body(now, after_6d.angular)
         pull = plane.gravity[2] if plane.old is None else 0.0
         x, y = collision.shift
         glide = combine(x, ahead, y, n, (across.velocity - 0.5 * pull * time) * time, along)
@@ -181,6 +186,8 @@ class ImpactModel:
             closing_spread=spread,
             offset=plane.offset,
             leftover=leftover_of(scene, collision, half_distance, spread),
+            before_6d=before_6d,
+            after_6d=after_6d,
             uncertainty=uncertainty,
             planar=planar,
         )

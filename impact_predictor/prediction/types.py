@@ -6,7 +6,7 @@ from collections.abc import Callable
 from enum import IntEnum, IntFlag
 from typing import NamedTuple
 
-from ..mechanics.types import Flag, Mode, Outcome, Twist, Vector
+from ..mechanics.types import ContactState, Flag, Mode, Outcome, Twist, Vector
 
 Vector3 = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
@@ -218,6 +218,30 @@ class Landing(NamedTuple):
     point: str | None = None
 
 
+class SpatialTwist(NamedTuple):
+    """Velocity of the mass centre (m/s) and angular velocity (rad/s) relative to the support, along the axes of the
+    frame in which the support is given.
+    """
+
+    linear: Vector3
+    angular: Vector3
+
+
+class PointOutcome(NamedTuple):
+    """What an impact does at a contact point, by its index in the geometry.
+
+    `is_new` tells that it strikes. `impulse` in N s, and `velocity` right after the impact in m/s relative to the
+    support, have the axes of a `SpatialTwist`. `lift_probability` is None where nobody asks for it.
+    """
+
+    point: int
+    is_new: bool
+    impulse: Vector3
+    velocity: Vector3
+    state: ContactState
+    lift_probability: float | None = None
+
+
 class Uncertainty(NamedTuple):
     """How sure the impact of a touchdown is, under the planar law.
 
@@ -243,7 +267,7 @@ class Touchdown(NamedTuple):
     `half_distance` between the two contacts in m; `off_axis` the part of the angular velocity off the axis (0..1);
     `lateral` the velocity along the axis in m/s; `closing_spread` the time in s between the closing of the two ends of
     the striking edge; `uncertainty` and `planar` where the scene asks for them, `planar` being the impact in the plane
-    whose margins can be read.
+    whose margins can be read. `before_6d` and `after_6d` are the whole twists, `contacts` the points that take part.
     """
 
     lead_time: float
@@ -269,8 +293,21 @@ class Touchdown(NamedTuple):
     closing_spread: float
     offset: float
     leftover: Leftover
+    before_6d: SpatialTwist
+    after_6d: SpatialTwist
+    contacts: tuple[PointOutcome, ...] = ()
     uncertainty: Uncertainty | None = None
     planar: Outcome | None = None
+
+    @property
+    def kind(self) -> str:
+        """What stood and what strikes: flight>corner, corner>edge+, edge>face and the like."""
+        old, new = len(self.old), len(self.new)
+        if old == 0:
+            return "flight>" + ("corner" if new == 1 else "edge")
+        if old == 1:
+            return "corner>" + ("corner" if new == 1 else "edge+")
+        return "edge>" + ("corner" if new == 1 else "face")
 
 
 class Score(NamedTuple):

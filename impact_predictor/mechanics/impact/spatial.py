@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from enum import IntEnum
 from functools import cache
 from typing import Any, NamedTuple
 
@@ -11,11 +10,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..compiled import compiled
-from ..types import Flag
+from ..types import ContactState, Flag
 from . import spatial_body, spatial_path
 from .solve import number_of
 from .spatial_body import ANSWER, BODY, CONTACT, INVALID, RESULT, SYMMETRY
-from .spatial_path import BLENDED, LEAVES, NEARS, NOT_CONVERGED, SLIPS, STICKS
+from .spatial_path import BLENDED, NOT_CONVERGED
 
 STEPS = 8
 """Steps for a quarter of an oscillation: they err by a tenth of what measured impacts scatter."""
@@ -31,16 +30,6 @@ FLAGS = {NOT_CONVERGED: Flag.NOT_CONVERGED, BLENDED: Flag.ENERGY_GAINED, INVALID
 
 UP = (0.0, 0.0, 1.0)
 AT_REST = (0.0, 0.0, 0.0)
-
-
-class ContactState(IntEnum):
-    """What a contact does right after an impact."""
-
-    LEAVES = LEAVES
-    SLIPS = SLIPS
-    STICKS = STICKS
-    NEARS = NEARS
-    """It had a gap and has not closed: it strikes later, or not."""
 
 
 STATES = tuple(ContactState)

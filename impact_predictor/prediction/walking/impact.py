@@ -10,8 +10,8 @@ from ...mechanics.impact.answer import is_slow
 from ...mechanics.types import Flag, Mode, Twist
 from ..planar import GRAZES, ORIGIN, ROUNDING, direction_of, edge_of, hardly, off_axis_of
 from ..scene import Scene
-from ..types import Leftover, Sample, Status, Touchdown, Vector3
-from ..vectors import add, axes_of, cross, dot, mean, to_body, to_world
+from ..types import Leftover, Sample, SpatialTwist, Status, Touchdown, Vector3
+from ..vectors import Axes, add, axes_of, cross, dot, mean, to_body, to_world
 from .mechanism import LeggedMachine
 
 USABLE = 0.2
@@ -115,6 +115,8 @@ def touchdown_of(
         closing_spread=(max(gaps) - min(gaps)) / -fall if fall < 0.0 else 0.0,
         offset=max([abs(dot(axis, arm)) for arm in arms]),
         leftover=leftover,
+        before_6d=spatial_twist(scene, axes, base.linear, base.angular),
+        after_6d=spatial_twist(scene, axes, linear, angular),
     )
 
 
@@ -138,6 +140,12 @@ def ahead_of(scene: Scene, normal: Vector3, stood: list[Vector3], struck: Vector
         if straight and dot(across, across) > (USABLE * length) ** 2 * square:
             ways.insert(0, (across, 0.0))
     return direction_of(normal, ways)
+
+
+def spatial_twist(scene: Scene, axes: Axes, linear: Vector3, angular: Vector3) -> SpatialTwist:
+    """The twist of the mass centre in the world frame, from that of the base in its own."""
+    velocity = add(linear, cross(angular, scene.center_of_mass))
+    return SpatialTwist(to_world(axes, velocity), to_world(axes, angular))
 
 
 def planar_twist(
