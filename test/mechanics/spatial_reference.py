@@ -235,6 +235,9 @@ class MovingBody(NamedTuple):
 
 LOADS, UNLOADS, OPEN = range(3)
 
+STEEP = 1e-4
+"""The restitution of a spring on which there is none."""
+
 
 class OnSprings(NamedTuple):
     """After an impact on springs: contact velocities (n, 3), the system's state, how often each contact closed again
@@ -276,7 +279,8 @@ def on_springs(
     slip_scale = regularisation * speed
     mobility = _mobility(system, state)
     unit = np.sqrt(1.0 / (np.min(stiffness) * mobility))
-    kept = 1.0 - restitutions**2
+    # Without restitution the way back is steep: the depth stays, and the force is what holds it there.
+    kept = 1.0 - np.maximum(restitutions, STEEP) ** 2
     modes, deepest, again = np.full(count, LOADS), np.zeros(count), np.zeros(count, int)
     y, time, end = np.concatenate([np.zeros(count), state]), 0.0, longest * unit
 
@@ -347,15 +351,10 @@ def on_springs(
                 continue
             if mode == UNLOADS:
                 deepest[number] = y[number]
-                mode = OPEN if kept[number] >= 1.0 else UNLOADS
             if mode == OPEN or modes[number] == OPEN:
                 y[number], deepest[number] = 0.0, 0.0
             again[number] += modes[number] == OPEN
             modes[number] = mode
-            # One that opens without speed may be pressed on at once.
-            if mode == OPEN and abs(speeds(y)[number]) < 1e-12 * speed:
-                later = y + 1e-9 * unit * rates(time, y)
-                modes[number] = LOADS if speeds(later)[number] < speeds(y)[number] else OPEN
     return OnSprings(system.velocities(y[count:]), y[count:], again, over)
 
 

@@ -1,0 +1,231 @@
+"""What holds for every impact in three dimensions, counted over many random problems of up to eight contacts.
+
+    python benchmarks/spatial_invariants.py --problems 10000000
+
+For each law and kind of problem it prints how many violate each invariant, and the worst violation: numbers that
+rounding alone keeps from being zero, relative to the terms that they are the sum of. The invariants are computed from
+the statements of mechanics, without the law's code.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from rich.console import Console
+from rich.progress import track
+from rich.table import Table
+
+from impact_predictor import Body, ContactPoints, solve_spatial_impacts
+from impact_predictor.mechanics.impact.spatial import ContactState, SpatialOutcomes
+from impact_predictor.mechanics.types import Flag
+
+Array = NDArray[np.float64]
+
+ROUNDED, SETTLED = 1e-9, 1e-5
+LIMITS: dict[str, float] = dict.fromkeys(("finite", "cone", "momentum", "velocities", "energy", "energy told"), ROUNDED)
+SURE = set(LIMITS)
+"""What holds without an answer, too."""
+
+LIMITS |= {
+    "approach": SETTLED,
+    "states": SETTLED,
+    "turned": SETTLED,
+    "mirrored": 1e-12,
+    "reordered": 1e-3,
+    "units": 1e-12,
+}
+"""Roundings of sums of some tens of terms where every digit counts; 1e-5 of the speeds where the iterations of the law
+end and where it calls a contact at rest. The contacts are solved one after the other in each step, so that their order
+counts as much as the steps do."""
+
+UNITS = 2.0**20, 2.0**-13, 2.0**7
+"""Units of mass, length and time: powers of two, which change no digit."""
+
+UNANSWERED = int(Flag.NO_SOLUTION | Flag.INVALID_INPUT | Flag.NOT_CONVERGED)
+
+
+OFTEN = 10
+"""One round of chunks in so many is seen otherwise, too: turned, mirrored, reordered and in other units."""
+
+
+class Problems(NamedTuple):
+    """Bodies (k) with n contacts each and their twists (k, 6)."""
+
+    body: Any
+    contacts: Any
+    twist: Array
+
+    def seen(self, twist: Array) -> Array:
+        """Velocities (k, n, 3) of the contacts relative to their supports."""
+        turning = np.cross(twist[:, None, 3:], self.contacts.positions)
+        return np.asarray(twist[:, None, :3] + turning - self.contacts.velocities)
+
+
+def problems_of(kind: str, n: int, source: np.random.Generator, k: int) -> Problems:
+    """`k` problems of one of the `KINDS` with n contacts, of which up to three rest and the others mostly approach."""
+
+    def some(low: float, high: float, *shape: int) -> Array:
+        return source.uniform(low, high, (k, *shape))
+
+    def directions(points: int) -> Array:
+        found = source.normal(size=(k, points, 3))
+        return np.asarray(found / np.linalg.norm(found, axis=-1, keepdims=True))
+
+    positions, normals = some(-1.0, 1.0, n, 3), np.tile([0.0, 0.0, 1.0], (k, n, 1))
+    positions[..., 2] = -some(0.05, 1.0, 1)
+    if kind == "box":
+        half = some(0.05, 1.0, 1, 3)
+        corner = np.argsort(source.random((k, 4)), axis=1)[:, np.arange(n) % 4]
+        signs = np.stack([np.where(corner & 1, 1, -1), np.where(corner & 2, 1, -1), -np.ones_like(corner)], axis=-1)
+        positions = half * signs
+    elif kind in ("any", "deck", "apart"):
+        positions, normals = some(-1.0, 1.0, n, 3), directions(n)
+    elif kind == "coincident":
+        positions[:, n // 2 :] = positions[:, : n - n // 2]
+        normals[:, n // 2 :] = directions(n - n // 2)
+    elif kind == "nearly flat":
+        positions[..., 2] += 10.0 ** some(-12.0, -2.0, 1) * some(-1.0, 1.0, n)
+        normals = normals + 10.0 ** some(-12.0, -2.0, 1, 1) * directions(n)
+        normals /= np.linalg.norm(normals, axis=-1, keepdims=True)
+    elif kind == "thin":
+        positions[..., 1:] *= 10.0 ** some(-4.0, -1.0, 1, 1)
+    # The inertia of masses at random places, or of one that is as thin as its points.
+    masses = some(-1.0, 1.0, 6, 3) * (np.abs(positions).max(1, keepdims=True) if kind in ("box", "thin") else 1.0)
+    mass = 10.0 ** some(-2.0, 2.0)
+    square = (masses * masses).sum((1, 2))[:, None, None] * np.eye(3) - np.einsum("kai,kaj->kij", masses, masses)
+    twist = some(-2.0, 2.0, 6)
+    twist[:, 2] -= some(0.0, 2.0)
+
+    # Of some contacts the speed along the normal goes: they rest.
+    rests = (source.random((k, n)) < 0.5) & (np.arange(n) < source.integers(0, 4, (k, 1)))
+    rows = np.concatenate([normals, np.cross(positions, normals)], axis=-1) * rests[..., None]
+    twist -= (np.linalg.pinv(rows, 1e-9) @ (rows @ twist[..., None]))[..., 0]
+    velocities = np.zeros((k, n, 3))
+    if kind == "apart":
+        velocities = some(-2.0, 2.0, n, 3)
+    elif kind == "deck":
+        deck = some(-2.0, 2.0, 6)
+        velocities, twist = deck[:, None, :3] + np.cross(deck[:, None, 3:], positions), twist + deck
+
+    friction = some(0.0, 1.0, n) * source.choice([0.0, 0.5, 1.0, 3.0], (k, 1))
+    friction = np.where(source.random((k, 1)) < 0.5, friction, friction[:, :1])
+    restitution = source.choice([0.0, 0.0, 0.1, 0.5, 1.0], (k, 1)) * np.ones((k, n))
+    restitution = np.where(source.random((k, 1)) < 0.7, restitution, some(0.0, 1.0, n))
+    body = Body(mass, mass[:, None, None] * square)
+    return Problems(body, ContactPoints(positions, friction, restitution, normals, velocities), twist)
+
+
+KINDS = ("box", "floor", "any", "deck", "apart", "coincident", "nearly flat", "thin")
+
+
+def turned(problems: Problems, turn: Array) -> Problems:
+    """The world turned about z, or mirrored: `turn` (3, 3)."""
+    (mass, inertia), contacts, twist = problems
+    axial = turn * np.linalg.det(turn)
+    vectors = {name: getattr(contacts, name) @ turn.T for name in ("positions", "normals", "velocities")}
+    moved = np.concatenate([twist[:, :3] @ turn.T, twist[:, 3:] @ axial.T], axis=1)
+    return Problems(Body(mass, turn @ np.asarray(inertia) @ turn.T), contacts._replace(**vectors), moved)
+
+
+def in_units(problems: Problems) -> Problems:
+    (mass, inertia), contacts, twist = problems
+    m, x, t = UNITS
+    return Problems(
+        Body(np.asarray(mass) * m, np.asarray(inertia) * (m * x * x)),
+        contacts._replace(positions=contacts.positions * x, velocities=contacts.velocities * (x / t)),
+        twist * np.repeat([x / t, 1.0 / t], 3),
+    )
+
+
+def violations(
+    problems: Problems, law: str, solve: Callable[..., Any] = solve_spatial_impacts, otherwise: bool = True
+) -> dict[str, Array]:
+    """By how much each problem violates each of the `LIMITS`, the last four of them only when seen `otherwise`, too.
+
+    Where the law says that it found no answer it may leave an approach or another state, but no other violation.
+    """
+    (mass, inertia), contacts, before = problems
+    outcome: SpatialOutcomes = solve(*problems, law)
+    twist, impulses, normals = outcome.twist, outcome.impulses, contacts.normals
+    c, after = problems.seen(before), problems.seen(twist)
+    lengths = np.linalg.norm(contacts.positions, axis=-1)
+    speed = np.linalg.norm(before[:, :3], axis=1)[:, None] + np.linalg.norm(before[:, 3:], axis=1)[:, None] * lengths
+    speed = (speed + np.linalg.norm(contacts.velocities, axis=-1)).max(1)
+    along, normal_after = (impulses * normals).sum(-1), (after * normals).sum(-1)
+    across = np.linalg.norm(impulses - along[..., None] * normals, axis=-1)
+    slip = np.linalg.norm(after - normal_after[..., None] * normals, axis=-1)
+    size = np.linalg.norm(impulses, axis=-1)
+    work = 0.5 * (impulses * (c + after)).sum((1, 2))
+    work_scale = 0.5 * (size * (np.linalg.norm(c, axis=-1) + np.linalg.norm(after, axis=-1))).sum(1) + 1e-300
+    moments = np.cross(contacts.positions, impulses)
+    left = np.abs(mass[:, None] * (twist - before)[:, :3] - impulses.sum(1)).max(1) / (size.sum(1) + mass * speed)
+    turns_left = np.abs((inertia @ (twist - before)[:, 3:, None])[..., 0] - moments.sum(1)).max(1)
+    turns_left /= np.linalg.norm(moments, axis=-1).sum(1) + np.linalg.norm(inertia, axis=(1, 2)) * speed / lengths.max(
+        1
+    )
+    slips, sticks = outcome.states == ContactState.SLIPS, outcome.states == ContactState.STICKS
+    state_error = np.maximum(np.where(slips | sticks, np.abs(normal_after), 0.0), np.where(sticks, slip, 0.0)).max(1)
+    finite = np.isfinite(twist).all(1) & np.isfinite(impulses).all((1, 2)) & np.isfinite(outcome.energy_lost)
+    may_gain = (law == "total") & (outcome.flags & int(Flag.ENERGY_GAINED) > 0)
+    found = {
+        "finite": np.where(finite, 0.0, 1.0),
+        "approach": np.maximum(-normal_after, 0.0).max(1) / speed,
+        "cone": np.maximum(np.maximum(across - contacts.friction * along, -along), 0.0).max(1) / (size.max(1) + 1e-300),
+        "momentum": np.maximum(left, turns_left),
+        "velocities": np.abs(outcome.velocities - after).max((1, 2)) / speed,
+        "energy": np.where(may_gain, 0.0, np.maximum(work, 0.0)) / work_scale,
+        "energy told": np.abs(outcome.energy_lost + work) / work_scale,
+        "states": state_error / speed,
+    }
+    answered = outcome.flags & UNANSWERED == 0
+    if otherwise:
+
+        def same(other: Problems, back: Callable[[Array], Array]) -> Array:
+            again = solve(*other, law)
+            difference = np.abs(back(again.velocities) - outcome.velocities).max((1, 2)) / speed
+            return np.where(again.flags & UNANSWERED == 0, difference, 0.0)
+
+        turn = np.array([[0.28, -0.96, 0.0], [0.96, 0.28, 0.0], [0.0, 0.0, 1.0]])
+        mirror = np.diag([1.0, -1.0, 1.0])
+        backwards = problems._replace(contacts=ContactPoints(*(each[:, ::-1] for each in contacts[:-1])))
+        found["turned"] = same(turned(problems, turn), lambda velocities: velocities @ turn)
+        found["mirrored"] = same(turned(problems, mirror), lambda velocities: velocities @ mirror)
+        found["reordered"] = same(backwards, lambda velocities: velocities[:, ::-1])
+        found["units"] = same(in_units(problems), lambda velocities: velocities * (UNITS[2] / UNITS[1]))
+    for name in found.keys() - SURE:
+        found[name] = np.where(answered, found[name], 0.0)
+    return {**found, "unanswered": np.where(answered, 0.0, 1.0)}
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
+    parser.add_argument("--problems", type=int, default=200_000)
+    parser.add_argument("--chunk", type=int, default=5_000)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--law", action="append", choices=["path", "total"])
+    given = parser.parse_args()
+    console, source = Console(width=200), np.random.default_rng(given.seed)
+    chunks = [(kind, n) for n in range(1, 9) for kind in KINDS]
+    for law in given.law or ["path", "total"]:
+        tallies = {kind: {name: np.zeros(3) for name in (*LIMITS, "unanswered")} for kind in KINDS}
+        for number in track(range(-(-given.problems // given.chunk)), law, console=Console(stderr=True)):
+            kind, n = chunks[number % len(chunks)]
+            problems = problems_of(kind, n, source, given.chunk)
+            found = violations(problems, law, otherwise=number // len(chunks) % OFTEN == 0)
+            for name, values in found.items():
+                tally = tallies[kind][name]
+                tally[:2] += len(values), np.count_nonzero(~(values <= LIMITS.get(name, 0.0)))
+                tally[2] = max(tally[2], np.nan_to_num(values, nan=np.inf).max())
+        table = Table("law " + law, "problems", *LIMITS, "unanswered")
+        for kind, row in tallies.items():
+            shown = [f"{bad:.0f}\n{worst:.0e}" if bad else f"{worst:.0e}" for _, bad, worst in row.values()]
+            table.add_row(kind, f"{row['finite'][0]:.0f}", *shown)
+        console.print(table)
+
+
+if __name__ == "__main__":
+    main()
