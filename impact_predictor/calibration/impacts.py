@@ -54,16 +54,29 @@ _KINDS: Final = tuple(ImpactKind)
 class FrameMotion(NamedTuple):
     """The mean motion of a body between two poses.
 
-    `time` in s midway, since the first pose of the motion; `rotation` (3, 3) midway; `linear` velocity of the body
-    frame's origin in m/s and `angular` velocity in rad/s, in world axes; `turning` (3, 3), the change of the rotation
-    in 1/s, so that a point c of the body frame moves by linear + turning @ c.
+    `time` in s midway, since the first pose of the motion; `position` (3,) of the body frame's origin in m and
+    `rotation` (3, 3) midway; `linear` velocity of that origin in m/s and `angular` velocity in rad/s, in world axes;
+    `turning` (3, 3), the change of the rotation in 1/s: a point c of the body frame moves by linear + turning c.
     """
 
     time: float
+    position: Floats
     rotation: Floats
     linear: Floats
     angular: Floats
     turning: Floats
+
+    def turned(self, time: float) -> Floats:
+        """The rotation at a time (s) in free flight, (3, 3)."""
+        turned: Floats = Rotation.from_rotvec((time - self.time) * self.angular).as_matrix() @ self.rotation
+        return turned
+
+    def place(self, point: Floats, center: Floats, gravity: Floats, time: float) -> Floats:
+        """Where a point of a body with a mass centre (m, body frame) is in the world at a time (s) in free flight."""
+        ahead = time - self.time
+        middle = self.position + self.rotation @ center + ahead * (self.linear + self.turning @ center)
+        place: Floats = middle + 0.5 * ahead**2 * gravity + self.turned(time) @ (point - center)
+        return place
 
 
 class RecordedImpact(NamedTuple):
@@ -90,6 +103,25 @@ class RecordedImpact(NamedTuple):
     def kind(self) -> ImpactKind:
         """What stood, and what struck."""
         return _KINDS[2 * min(len(self.old), 2) + (len(self.new) > 1)]
+
+    def meeting(self, scene: Scene, point: Floats) -> tuple[float, float]:
+        """The time (s) at which, and the height (m) above the support in which, the paths of a point before and after
+        the impact meet: where it truly turned back, whatever its shape.
+        """
+        normal, center, gravity = (np.array(one) for one in (scene.normal, scene.center_of_mass, scene.gravity))
+
+        def heights(time: float) -> tuple[float, float]:
+            before, after = (side.place(point, center, gravity, time) @ normal for side in (self.before, self.after))
+            return float(before) - scene.height, float(after - before)
+
+        time, step = self.time, 1e-3
+        for _ in range(3):
+            apart = heights(time)[1]
+            closing = (heights(time + step)[1] - apart) / step
+            if closing == 0.0:
+                break
+            time = min(max(time - apart / closing, self.before.time), self.after.time)
+        return time, heights(time)[0]
 
 
 class _Strike(NamedTuple):
@@ -201,11 +233,13 @@ class MotionRecord:
     def _frame(self, k: int) -> FrameMotion:
         """The motion between the poses k and k + 1."""
         (one, other), step = self.motion.rotations[k : k + 2], self._steps[k]
+        here, there = self.motion.positions[k : k + 2]
         turn = Rotation.from_matrix(other @ one.T).as_rotvec()
         return FrameMotion(
             time=float(self._times[k] + 0.5 * step),
+            position=0.5 * (here + there),
             rotation=Rotation.from_rotvec(0.5 * turn).as_matrix() @ one,
-            linear=(self.motion.positions[k + 1] - self.motion.positions[k]) / step,
+            linear=(there - here) / step,
             angular=turn / step,
             turning=(other - one) / step,
         )

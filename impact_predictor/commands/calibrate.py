@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import click
 
@@ -15,8 +16,11 @@ from .replay import read_scenes
 
 if TYPE_CHECKING:
     from ..bags.replay import Result
-    from ..calibration.touchdowns import ScoredTouchdown
+    from ..calibration.scene_file import NewValues
+    from ..prediction.monitor import Monitor
     from ..prediction.scene import Scene
+
+M = TypeVar("M", bound="Monitor")
 
 
 @click.command(
@@ -52,6 +56,7 @@ def calibrate(
     from ..bags.find import bags_of
     from ..bags.replay import remapping
     from ..calibration.fit import calibrate as fit
+    from ..calibration.touchdowns import ObservingMonitor
     from ..report.calibration import as_json as fields_of
     from ..report.calibration import unscored
     from ..wording import words
@@ -66,7 +71,8 @@ def calibrate(
 
         named(figure, *PICTURE)
     bags = tuple(bags_of(bags))
-    records, results = read_all(bags, scenes, topics)
+    monitors, results = read_all(bags, scenes, topics, ObservingMonitor)
+    records = [monitor.touchdowns for monitor in monitors]
     scores = [settled.score for result in results for settled in result.settled]
     try:
         with progress("fit", "impacts") as tell, compiling_is_said():
@@ -77,13 +83,9 @@ def calibrate(
             raise InputError(f"{error}; not scored are {counts}") from None
         raise
     if output is not None:
-        from ..calibration.scene_file import changed, changes_of
-        from ..files import whole
+        from ..calibration.scene_file import changes_of
 
-        given = Path(params).read_text(encoding="utf-8")
-        with whole(Path(output)) as partial:
-            partial.write_text(changed(given, changes_of(calibration)), encoding="utf-8")
-            read_scenes(str(partial))
+        write_scene(params, output, changes_of(calibration))
     if figure is not None:
         from ..report.figures import write_calibration
 
@@ -111,21 +113,31 @@ def calibrate(
     return DAMAGED if any(result.damaged for result in results) else 0
 
 
+def write_scene(params: str, output: str, changes: Mapping[str, NewValues]) -> None:
+    """Write a parameter file with other values in it, where it can still be read then."""
+    from ..calibration.scene_file import changed
+    from ..files import whole
+
+    given = Path(params).read_text(encoding="utf-8")
+    with whole(Path(output)) as partial:
+        partial.write_text(changed(given, changes), encoding="utf-8")
+        read_scenes(str(partial))
+
+
 def read_all(
-    bags: tuple[str, ...], scenes: dict[str, Scene], topics: dict[str, str]
-) -> tuple[list[list[ScoredTouchdown]], list[Result]]:
-    """The scored touchdowns of each bag that can be used, and its replay; what is wrong with others is said.
+    bags: tuple[str, ...], scenes: dict[str, Scene], topics: dict[str, str], monitor_of: Callable[[dict[str, Scene]], M]
+) -> tuple[list[M], list[Result]]:
+    """Each bag that can be used, read by a monitor of its own, and its replay; what is wrong with others is said.
 
     Raises:
         InputError: the only bag cannot be used.
     """
     from ..bags.replay import replay
-    from ..calibration.touchdowns import ObservingMonitor
     from .progress import progress
 
-    records, results = [], []
+    monitors, results = [], []
     for bag in bags:
-        monitor = ObservingMonitor(scenes)
+        monitor = monitor_of(scenes)
         try:
             with progress(Path(bag).name) as tell:
                 result = replay(bag, scenes, topics, progress=tell, monitor=monitor)
@@ -140,6 +152,6 @@ def read_all(
             click.echo(f"note: {note}", err=True)
         if result.damaged:
             click.echo(f"warning: {result.damaged}", err=True)
-        records.append(monitor.touchdowns)
+        monitors.append(monitor)
         results.append(result)
-    return records, results
+    return monitors, results

@@ -26,13 +26,19 @@ def test_the_first_impact_of_each_toss_is_found_at_its_corner_at_any_rate(rate: 
     for toss in tosses(NUMBER, rate):
         time, corner, approach = toss.strikes[0]
         first = MotionRecord(SCENE, toss.motion).impacts[0]
-        assert first.time == pytest.approx(time, abs=1e-3)
-        assert first.frame / rate <= time <= (first.frame + first.stride) / rate + 1e-3
+        assert first.time == pytest.approx(time, abs=2e-3)
+        assert first.frame / rate <= time <= (first.frame + first.stride) / rate + 2e-3
         assert corner in first.new
         assert not first.old
         if len(first.new) == 1:
             # Until then gravity adds to it, and the body turns.
             assert first.approach == pytest.approx(approach, rel=0.1)
+            scene = SCENE._replace(center_of_mass=tuple(CENTER.tolist()))
+            met, height = first.meeting(scene, toss.motion.points[corner])
+            if first.isolated:
+                # The strike itself is a step of the simulation long.
+                assert met == pytest.approx(time, abs=5e-4)
+                assert height == pytest.approx(0.0, abs=1e-3)
 
 
 def test_clear_impacts_that_are_alone_are_found_within_a_frame_and_hardly_any_besides() -> None:
@@ -53,7 +59,7 @@ def test_clear_impacts_that_are_alone_are_found_within_a_frame_and_hardly_any_be
                 missed += not any(abs(one.time - time) < 5e-3 and corner in one.new for one in impacts)
     assert alone > NUMBER
     assert missed <= 0.02 * alone
-    assert invented <= 0.02 * found
+    assert invented <= 0.04 * found
 
 
 def test_velocities_around_an_impact_are_those_of_the_poses_before_and_after_it() -> None:
