@@ -95,6 +95,8 @@ def sweep(
             b = a + 1
             z = a + 2
             wzz = W[z * m + z]
+            if wzz + softness[i] <= 0.0:
+                continue
             new = p[z] - (c[z] + softness[i] * p[z] - bias[i]) / (wzz + softness[i])
             if capped[i] == 1:
                 new = min(new, p[z] - c[z] / wzz)
@@ -189,6 +191,7 @@ def follow(
             phase[i] = LOADING
             struck += 1
     elapsed = 0.0
+    angle = 0.5 * pi / steps
     slow = SLOW * scale / steps
     tolerance = TOLERANCE * scale / (steps * steps * steps)
     last = 0.0
@@ -225,7 +228,7 @@ def follow(
                     rest = (1.0 - e * e) * deepest[i] if phase[i] == UNLOADING else 0.0
                     softness[i] = 4.0 / (h * h * stiffness)
                     bias[i] = 4.0 * (depth[i] - rest) / h - c[3 * i + 2]
-                    capped[i] = 1 if phase[i] == LOADING else 0
+                    capped[i] = 1 if phase[i] == LOADING and e < angle else 0
             for j in range(m):
                 if p[j] != 0.0:
                     for k in range(m):
@@ -236,8 +239,10 @@ def follow(
             for i in range(n):
                 z = 3 * i + 2
                 force = depth[i] - 0.25 * h * (before[z] + c[z])
-                if phase[i] == LOADING and before[z] < -slow and 0.0 < p[z] < h * force:
-                    part = min(part, p[z] / (h * force))
+                if capped[i] == 1 and before[z] < -slow and 0.0 < p[z] < h * force:
+                    # Without the cap it would leave; of two at one place the cap leaves one without impulse.
+                    leaves = c[z] + W[z * (m + 1)] * (h * force - p[z])
+                    part = min(part, before[z] / (before[z] - max(leaves, 0.0)))
             if part > NEARLY:
                 break
             h *= part
@@ -251,21 +256,28 @@ def follow(
             nearer = -0.5 * h * (before[z] + c[z])
             if phase[i] == LOADING:
                 force = depth[i] + 0.5 * nearer
-                if p[z] < h * force:
+                if capped[i] == 1 and p[z] < h * force:
                     nearer *= p[z] / (h * force)
+                elif before[z] < 0.0 < c[z]:
+                    # It was deepest within the step, where its speed was zero.
+                    deepest[i] = max(deepest[i], depth[i] + 0.5 * h * before[z] * before[z] / (c[z] - before[z]))
                 depth[i] += nearer
                 deepest[i] = max(deepest[i], depth[i])
                 if depth[i] > 0.0 and c[z] >= -tolerance:
                     phase[i] = UNLOADING if restitution[i] > 0.0 else RESTING
+                elif deepest[i] > 0.0 or distances[i] == 0.0:
+                    phase[i] = OPEN if c[z] >= 0.0 else LOADING
             elif phase[i] == UNLOADING:
                 depth[i] += nearer
                 if depth[i] > deepest[i]:
                     phase[i] = LOADING
                 elif depth[i] <= (1.0 - restitution[i] * restitution[i]) * deepest[i]:
                     phase[i] = OPEN
+            if phase[i] == OPEN:
+                depth[i] = 0.0
             if phase[i] == OPEN and c[z] < -threshold:
                 phase[i] = LOADING
-                depth[i] = deepest[i] = 0.0
+                deepest[i] = 0.0
             if phase[i] == UNLOADING or (phase[i] == LOADING and depth[i] > 0.0):
                 struck += 1
             elif phase[i] == LOADING and c[z] < 0.0:
@@ -378,6 +390,8 @@ def solve(
             phase[i] = LEAVES
         else:
             phase[i] = SLIPS if c[a] * c[a] + c[a + 1] * c[a + 1] > zero * zero else STICKS
+            if c[a + 2] < -zero:
+                flags |= NOT_CONVERGED
     return flags
 
 
