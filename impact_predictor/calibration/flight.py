@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 from ..prediction.scene import Scene
 from .impacts import MotionRecord
 from .impulses import Weights, momenta, parts_of
-from .motions import Floats
+from .motions import Reals
 from .search import LEVEL, RESAMPLES, Estimate
 
 NEEDED: Final = 10
@@ -42,7 +42,7 @@ def resamples(owner: NDArray[np.int64], seed: int) -> Iterator[NDArray[np.int64]
         yield np.bincount(drawn, minlength=owners)[owner]
 
 
-def estimates(given: Floats, values: Floats, draws: Floats, widths: Floats) -> list[Estimate]:
+def estimates(given: Reals, values: Reals, draws: Reals, widths: Reals) -> list[Estimate]:
     """Numbers with the intervals of their draws (resamples, n); known are those whose interval is not too wide."""
     low, high = np.quantile(draws, (0.5 - 0.5 * LEVEL, 0.5 + 0.5 * LEVEL), axis=0)
     columns = (each.tolist() for each in (given, values, low, high, high - low <= widths))
@@ -78,7 +78,7 @@ def flight_of(scene: Scene, records: Sequence[MotionRecord], lever: float, seed:
         return None
     fallen, turned = np.array(falls), np.array(turns)
 
-    def told(weights: Weights) -> Floats:
+    def told(weights: Weights) -> Reals:
         fall = np.tensordot(weights, fallen, 1)
         found = -np.linalg.lstsq(fall[:6, :6], fall[:6, 6], rcond=1e-12)[0]
         shape = np.linalg.lstsq(np.tensordot(weights, turned, 1), np.ones(3), rcond=1e-12)[0]

@@ -14,8 +14,8 @@ from ..prediction.scene import Scene
 from ..wording import counted
 from .flight import NEEDED, WIDE, Flight, estimates, flight_of, resamples
 from .impacts import DEVIATIONS, ImpactKind, MotionRecord
-from .impulses import AGAIN, Impulses, SinglePoint, Struck, Weights, is_solid, least_lengths, parts_of, rounded
-from .motions import Floats, RecordedMotion, distinct
+from .impulses import AGAIN, Impulses, SinglePoint, SinglePoints, Weights, is_solid, least_lengths, parts_of, rounded
+from .motions import Reals, RecordedMotion, distinct
 from .search import FOLDS, Estimate
 
 RADII: Final = (0.0, 0.02, 0.04, 0.06, 0.08, 0.1)
@@ -31,8 +31,8 @@ class Rounding(NamedTuple):
     """
 
     radius: float
-    inertia: Floats
-    center: Floats
+    inertia: Reals
+    center: Reals
     left: float
 
 
@@ -53,8 +53,8 @@ class Identification(NamedTuple):
     inertia: tuple[Estimate, ...]
     center: tuple[Estimate, ...]
     lever: float
-    given: Floats
-    held_out: Floats
+    given: Reals
+    held_out: Reals
     choices: dict[int, float]
     radius: Estimate | None
     roundings: tuple[Rounding, ...]
@@ -135,7 +135,7 @@ def six_of(scene: Scene, moments: Sequence[float]) -> tuple[float, ...]:
     return tuple(moments) if len(moments) == 1 else (*moments, *parts_of(scene.inertia)[len(moments) :])
 
 
-def _single_points(scene: Scene, records: Sequence[MotionRecord]) -> tuple[Struck, NDArray[np.int64]]:
+def _single_points(scene: Scene, records: Sequence[MotionRecord]) -> tuple[SinglePoints, NDArray[np.int64]]:
     """The impacts of a single point while nothing else touches, and which of their motions each is of (n,)."""
     found = [
         (number, record.motion, impact)
@@ -157,7 +157,7 @@ def _single_points(scene: Scene, records: Sequence[MotionRecord]) -> tuple[Struc
     return struck, owner
 
 
-def corner_radius(scene: Scene, struck: Struck, owner: NDArray[np.int64], lever: float, seed: int) -> Estimate:
+def corner_radius(scene: Scene, struck: SinglePoints, owner: NDArray[np.int64], lever: float, seed: int) -> Estimate:
     """The radius of the corners by the heights at which they turn back.
 
     The tip of the sharp corner lies R e outward of the centre of the sphere of radius R that touches its faces, and so
@@ -169,10 +169,10 @@ def corner_radius(scene: Scene, struck: Struck, owner: NDArray[np.int64], lever:
     slopes = np.array([[[each, 1.0, one.impact.approach]] for each, one in zip(lower, struck, strict=True)])
     heights = np.array([[one.height] for one in struck])
 
-    def linear(x: Floats) -> tuple[Floats, Floats]:
+    def linear(x: Reals) -> tuple[Reals, Reals]:
         return slopes @ x - heights, slopes
 
-    def told(weights: Weights, start: Floats) -> Floats:
+    def told(weights: Weights, start: Reals) -> Reals:
         return least_lengths(linear, weights, np.ones(3, dtype=bool), start, AGAIN)
 
     best = told(np.ones(len(owner)), np.zeros(3))

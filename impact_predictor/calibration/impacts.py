@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from ..prediction.planar import STANDING
 from ..prediction.scene import Scene
-from .motions import Floats, RecordedMotion
+from .motions import Reals, RecordedMotion
 
 DEVIATIONS: Final = 3.0
 """A contact tolerance is so many standard deviations of the gap of a point that rests."""
@@ -60,22 +60,22 @@ class FrameMotion(NamedTuple):
     """
 
     time: float
-    position: Floats
-    rotation: Floats
-    linear: Floats
-    angular: Floats
-    turning: Floats
+    position: Reals
+    rotation: Reals
+    linear: Reals
+    angular: Reals
+    turning: Reals
 
-    def turned(self, time: float) -> Floats:
+    def turned(self, time: float) -> Reals:
         """The rotation at a time (s) in free flight, (3, 3)."""
-        turned: Floats = Rotation.from_rotvec((time - self.time) * self.angular).as_matrix() @ self.rotation
+        turned: Reals = Rotation.from_rotvec((time - self.time) * self.angular).as_matrix() @ self.rotation
         return turned
 
-    def place(self, point: Floats, center: Floats, gravity: Floats, time: float) -> Floats:
+    def place(self, point: Reals, center: Reals, gravity: Reals, time: float) -> Reals:
         """Where a point of a body with a mass centre (m, body frame) is in the world at a time (s) in free flight."""
         ahead = time - self.time
         middle = self.position + self.rotation @ center + ahead * (self.linear + self.turning @ center)
-        place: Floats = middle + 0.5 * ahead**2 * gravity + self.turned(time) @ (point - center)
+        place: Reals = middle + 0.5 * ahead**2 * gravity + self.turned(time) @ (point - center)
         return place
 
 
@@ -93,7 +93,7 @@ class RecordedImpact(NamedTuple):
     new: tuple[int, ...]
     old: tuple[int, ...]
     approach: float
-    rotation: Floats
+    rotation: Reals
     before: FrameMotion
     after: FrameMotion
     isolated: bool
@@ -104,7 +104,7 @@ class RecordedImpact(NamedTuple):
         """What stood, and what struck."""
         return _KINDS[2 * min(len(self.old), 2) + (len(self.new) > 1)]
 
-    def meeting(self, scene: Scene, point: Floats) -> tuple[float, float]:
+    def meeting(self, scene: Scene, point: Reals) -> tuple[float, float]:
         """The time (s) at which, and the height (m) above the support in which, the paths of a point before and after
         the impact meet: where it truly turned back, whatever its shape.
         """

@@ -19,7 +19,7 @@ from scipy.spatial import ConvexHull
 
 from ..prediction.scene import InertiaTensor, Scene
 from .impacts import RecordedImpact
-from .motions import Floats
+from .motions import Reals
 
 Weights = NDArray[np.number]
 
@@ -38,23 +38,23 @@ class SinglePoint(NamedTuple):
     s, `height` above the support in m.
     """
 
-    points: Floats
+    points: Reals
     impact: RecordedImpact
     time: float
     height: float
 
     @property
-    def turn(self) -> Floats:
+    def turn(self) -> Reals:
         """The rotation when the point is struck (3, 3)."""
         return self.impact.before.turned(self.time)
 
-    def of_struck(self, values: Floats) -> Floats:
+    def of_struck(self, values: Reals) -> Reals:
         """What belongs to the struck point of values for each of them (m, 3)."""
-        struck: Floats = values[self.impact.new[0]]
+        struck: Reals = values[self.impact.new[0]]
         return struck
 
 
-Struck = Sequence[SinglePoint]
+SinglePoints = Sequence[SinglePoint]
 
 
 class Impulses:
@@ -63,7 +63,7 @@ class Impulses:
     The body frame moves over an impact: the angular momentum is that of the frames before and after it, in world axes.
     """
 
-    def __init__(self, scene: Scene, struck: Struck, moments: int, radius: float = 0.0) -> None:
+    def __init__(self, scene: Scene, struck: SinglePoints, moments: int, radius: float = 0.0) -> None:
         pairs = [(one.impact.before, one.impact.after) for one in struck]
         self._turns = np.array([one.turn for one in struck])
         points = np.array([one.of_struck(rounded(one.points, radius)) for one in struck])
@@ -82,10 +82,10 @@ class Impulses:
         self.start = np.array([*([given[:3].mean()] if moments == 1 else given[:moments]), *scene.center_of_mass])
         """The given body."""
 
-    def solve(self, weights: Weights, free: NDArray[np.bool_], start: Floats, steps: int = STEPS) -> Floats:
+    def solve(self, weights: Weights, free: NDArray[np.bool_], start: Reals, steps: int = STEPS) -> Reals:
         """The x of the least weighted sum of |J dw - (r - d) x m dv|, from a start, changed only where it is free."""
 
-        def linear(x: Floats) -> tuple[Floats, Floats]:
+        def linear(x: Reals) -> tuple[Reals, Reals]:
             missed, jumps, arms = self.misses(x)
             by_center = np.cross(self._turns.transpose(0, 2, 1), jumps[:, None])
             by_center -= np.cross(arms[:, None], self._turning.transpose(0, 2, 1))
@@ -93,13 +93,13 @@ class Impulses:
 
         return least_lengths(linear, weights, free, start, steps)
 
-    def inconsistency(self, x: Floats, lever: float) -> Floats:
+    def inconsistency(self, x: Reals, lever: float) -> Reals:
         """|J dw - (r - d) x m dv| / (m |dv| lever) of each impact (n,)."""
         missed, jumps, _ = self.misses(x)
-        errors: Floats = np.linalg.norm(missed, axis=1) / np.linalg.norm(jumps, axis=1) / lever
+        errors: Reals = np.linalg.norm(missed, axis=1) / np.linalg.norm(jumps, axis=1) / lever
         return errors
 
-    def misses(self, x: Floats) -> tuple[Floats, Floats, Floats]:
+    def misses(self, x: Reals) -> tuple[Reals, Reals, Reals]:
         """What the equations leave, the change of the mass centre's velocity, and its way to the point: (n, 3) each."""
         inertia, center = x[: self._moments], x[self._moments :]
         jumps, arms = self._jumps + self._turning @ center, self._arms - self._turns @ center
@@ -107,12 +107,12 @@ class Impulses:
 
 
 def least_lengths(
-    linear: Callable[[Floats], tuple[Floats, Floats]],
+    linear: Callable[[Reals], tuple[Reals, Reals]],
     weights: Weights,
     free: NDArray[np.bool_],
-    start: Floats,
+    start: Reals,
     steps: int = STEPS,
-) -> Floats:
+) -> Reals:
     """The x of the least weighted sum of the lengths of vectors (n, k) with slopes (n, k, p), changed where it is free.
 
     Lengths, not their squares: an impact that has something else in it pulls no more than any other.
@@ -133,13 +133,13 @@ def least_lengths(
     return x
 
 
-def momenta(rotations: Floats, rates: Floats) -> Floats:
+def momenta(rotations: Reals, rates: Reals) -> Reals:
     """The angular momenta in world axes (n, 3, 6) of each of ixx, iyy, izz, ixy, ixz, iyz, from rates there (n, 3)."""
     rates = np.einsum("nji,nj->ni", rotations, rates)
     columns = np.zeros((len(rates), 3, 6))
     for k, (i, j) in enumerate(_PLACES):
         columns[:, i, k], columns[:, j, k] = rates[:, j], rates[:, i]
-    momentum: Floats = rotations @ columns
+    momentum: Reals = rotations @ columns
     return momentum
 
 
@@ -147,12 +147,12 @@ def parts_of(inertia: InertiaTensor) -> tuple[float, ...]:
     return tuple(inertia[i][j] for i, j in _PLACES)
 
 
-def is_solid(points: Floats) -> bool:
+def is_solid(points: Reals) -> bool:
     """Whether points are the corners of a solid, which can be rounded."""
     return len(points) > 3 and np.linalg.matrix_rank(points - points[0], 1e-6 * np.abs(points).max()) == 3
 
 
-def rounded(points: Floats, radius: float) -> Floats:
+def rounded(points: Reals, radius: float) -> Reals:
     """The centres of the spheres of a radius that touch the faces at each corner of a solid."""
     if radius == 0.0:
         return points

@@ -17,7 +17,7 @@ from ..prediction.scene import Scene
 from ..prediction.types import ContactInput, Geometry, Moment, Sample, Status, Vector3
 from ..stamps import NANOSECONDS
 
-Floats = NDArray[np.float64]
+Reals = NDArray[np.float64]
 
 SAME: Final = 1e-6
 """m: motions whose heights agree to this are one, turned about the normal of the support."""
@@ -29,21 +29,21 @@ class RecordedMotion(NamedTuple):
     """
 
     stamps: NDArray[np.int64]
-    positions: Floats
-    rotations: Floats
-    points: Floats
+    positions: Reals
+    rotations: Reals
+    points: Reals
 
     @property
-    def times(self) -> Floats:
+    def times(self) -> Reals:
         """Seconds since the first pose (n,)."""
-        times: Floats = (self.stamps - self.stamps[0]) / NANOSECONDS
+        times: Reals = (self.stamps - self.stamps[0]) / NANOSECONDS
         return times
 
-    def gaps(self, scene: Scene) -> Floats:
+    def gaps(self, scene: Scene) -> Reals:
         """The heights of the points above the scene's support (n, m) in m."""
         normal = np.array(scene.normal)
         heights = self.positions @ normal - scene.height
-        gaps: Floats = heights[:, None] + np.einsum("i,tij,mj->tm", normal, self.rotations, self.points)
+        gaps: Reals = heights[:, None] + np.einsum("i,tij,mj->tm", normal, self.rotations, self.points)
         return gaps
 
     def every(self, stride: int) -> RecordedMotion:

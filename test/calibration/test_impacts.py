@@ -11,7 +11,7 @@ from tossed_bodies import CENTER, CORNERS, HALF, SCENE, tosses
 
 from impact_predictor.bags.replay import replay
 from impact_predictor.calibration.impacts import ImpactKind, MotionRecord
-from impact_predictor.calibration.motions import Floats, RecordedMotion, RecordingMonitor, distinct
+from impact_predictor.calibration.motions import Reals, RecordedMotion, RecordingMonitor, distinct
 from impact_predictor.commands.replay import read_scenes
 from impact_predictor.errors import InputError
 from impact_predictor.prediction.scene import MovingDeck
@@ -77,7 +77,7 @@ def test_velocities_around_an_impact_are_those_of_the_poses_before_and_after_it(
     assert first.rotation == pytest.approx(turn @ motion.rotations[k])
 
 
-def laid(tilts: Floats, axis: tuple[float, float, float]) -> RecordedMotion:
+def laid(tilts: Reals, axis: tuple[float, float, float]) -> RecordedMotion:
     """A box that turns by angles (rad) about an axis through a corner of its lower face, at 200 Hz."""
     turns = Rotation.from_rotvec(np.outer(tilts, axis)).as_matrix()
     return RecordedMotion(np.arange(len(tilts)) * 5_000_000, turns @ HALF, turns, CORNERS)

@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 from impact_predictor.calibration.motions import RecordedMotion
 from impact_predictor.prediction.scene import Scene, inertia_matrix
 
-Floats = NDArray[np.float64]
+Reals = NDArray[np.float64]
 
 MASS = 0.5
 HALF = np.array([0.06, 0.05, 0.04])
@@ -57,8 +57,8 @@ def tosses(number: int, rate: float = 200.0, noise: float = 0.0, kind: str = "bo
     poses = []
     strikes: list[list[tuple[float, int, float]]] = [[] for _ in range(number)]
 
-    def rates(turns: Floats) -> Floats:
-        rates: Floats = np.einsum("nij,nj->ni", turns @ inverse @ turns.transpose(0, 2, 1), momenta)
+    def rates(turns: Reals) -> Reals:
+        rates: Reals = np.einsum("nij,nj->ni", turns @ inverse @ turns.transpose(0, 2, 1), momenta)
         return rates
 
     for k in range(round(time / STEP) + 1):
