@@ -67,10 +67,11 @@ def sentences(found: Identification) -> list[str]:
                 f"{name} cannot be told ({interval(one)}): the impacts hardly turn that way; it stays as given."
             )
     if found.radius is not None:
-        round_by = interval(found.radius) if found.radius.known else "an unknown radius"
+        low, high = (1e3 * (end or 0.0) for end in (found.radius.low, found.radius.high))
+        round_by = f"{low:.1f} to {high:.1f} mm" if found.radius.known else "an unknown radius"
         said.append(
-            f"By the heights at which corners turn back they are round by {round_by} (m), or the body is smaller by "
-            "that; the identified inertia is the one for sharp corners, as the predictor has them."
+            f"By the heights at which corners turn back they are round by {round_by}, or the body is smaller by that; "
+            "the identified inertia is the one for sharp corners, as the predictor has them."
         )
     if found.flight is not None:
         fall, shape = found.flight.fall, ", ".join(map(interval, found.flight.shape))
