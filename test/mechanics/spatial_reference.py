@@ -258,6 +258,7 @@ def on_springs(
     damping=0.0,
     *,
     gaps=False,
+    distances=0.0,
     regularisation=1e-6,
     tolerance=1e-9,
     longest=1e3,
@@ -266,8 +267,9 @@ def on_springs(
 
     Contact i has the stiffness K_i: F = K d while d grows, and back along the line to (1 - e^2) of the deepest d.
     `damping` adds a dashpot. A contact that has opened closes again as soon as it approaches, with d from zero; with
-    `gaps`, only once it has come back. `regularisation` is a part of the greatest contact speed; `longest` counts in
-    sqrt(1 / (K W)).
+    `gaps`, only once it has come back. Contacts with `distances` are open at first, and close once they have come
+    nearer by them, in time as it counts here. `regularisation` is a part of the greatest contact speed; `longest`
+    counts in sqrt(1 / (K W)).
     """
     state = system.start()
     before = system.velocities(state)
@@ -281,8 +283,9 @@ def on_springs(
     unit = np.sqrt(1.0 / (np.min(stiffness) * mobility))
     # Without restitution the way back is steep: the depth stays, and the force is what holds it there.
     kept = 1.0 - np.maximum(restitutions, STEEP) ** 2
-    modes, deepest, again = np.full(count, LOADS), np.zeros(count), np.zeros(count, int)
-    y, time, end = np.concatenate([np.zeros(count), state]), 0.0, longest * unit
+    distances = np.broadcast_to(distances, count)
+    modes, deepest, again = np.where(distances > 0.0, OPEN, LOADS), np.zeros(count), np.zeros(count, int)
+    y, time, end = np.concatenate([-distances, state]), 0.0, longest * unit
 
     def normal_forces(y, c):
         depth = y[:count]

@@ -9,7 +9,7 @@ from spatial_reference import Mechanism, MovingBody, delassus, on_springs, one_c
 from test_spatial_reference import BALL, cases, chain
 
 from impact_predictor import Body, ContactPoints, Flag, solve_spatial_impact
-from impact_predictor.mechanics.impact.spatial import ContactState
+from impact_predictor.mechanics.types import ContactState
 
 MASS, INERTIA = 50.0, 50.0 / 12.0 * np.diag([0.6**2 + 0.5**2, 1.0 + 0.5**2, 1.0 + 0.6**2])
 CORNERS = np.array([[0.5, 0.3, -0.25], [0.5, -0.3, -0.25], [-0.5, 0.3, -0.25]])
@@ -105,6 +105,30 @@ def test_a_contact_at_rest_is_the_limit_of_a_stiff_spring(n):
             differences.append(np.abs(reference.velocities - found).max() / np.abs(c).max())
         assert differences[0] <= 5e-2
         assert differences[1] <= max(0.05 * differences[0], 1e-3)
+
+
+def test_a_contact_with_a_gap_closes_as_the_others_are_compressed():
+    source, merge, compared = np.random.default_rng(9), 1.5e-3, 0
+    for n in (2, 3) * 10:
+        place = np.column_stack([source.uniform(-1.0, 1.0, (n, 2)), np.full(n, -0.5)])
+        w = delassus(1.0, np.diag(source.uniform(0.1, 0.4, 3)), rows(place, [np.eye(3)] * n))
+        c = np.column_stack([source.normal(size=(n, 2)), -source.uniform(0.5, 2.0, n)]).ravel()
+        friction, restitution = source.choice([0.1, 0.4, 1.0]), source.choice([0.3, 0.5, 1.0])
+        gaps = source.uniform(0.0, 2e-3, n) * (np.arange(n) > 0)
+        # A quarter of an oscillation on the spring, of one stiffness for all, lasts `merge`.
+        distances = gaps / merge * 0.5 * np.pi / np.sqrt(np.diag(w)[2::3])
+        reference = on_springs(
+            Mechanism(w, c), friction, restitution, 1.0, gaps=True, distances=distances, longest=8.0, tolerance=1e-8
+        )
+        # A contact that closes a second time has its gap to come back through there, which the law does not know.
+        if reference.over and (reference.closed_again <= (gaps > 0.0)).all():
+            contacts = points(n, friction, restitution)._replace(gaps=gaps)
+            outcome = solve_spatial_impact(w, contacts, c, merge=merge, steps=256)
+            assert outcome.velocities == pytest.approx(reference.velocities, abs=1e-3 * np.abs(c).max())
+            nears = [state == ContactState.NEARS for state in outcome.states]
+            assert nears == ((gaps > 0.0) & (reference.closed_again == 0)).tolist()
+            compared += 1
+    assert compared >= 10
 
 
 @pytest.mark.parametrize("restitution", [0.0, 0.1, 0.3, 0.6, 1.0])
@@ -222,17 +246,18 @@ def test_mobilities_that_no_mechanism_has_are_flagged(w, flags, law):
 
 
 @pytest.mark.parametrize(
-    "given",
+    ("given", "says"),
     [
-        (np.eye(5), points(2, 0.4, 0.3), np.zeros(6)),
-        (Body(1.0, [1.0, 2.0]), ContactPoints(PLACES, 0.4), FALLS),
-        (GOOD[0], ContactPoints([1.0, 2.0, 3.0], 0.4), FALLS),
-        (GOOD[0], ContactPoints(PLACES, [0.4] * 3), FALLS),
-        (GOOD[0], ContactPoints(PLACES, 0.4), [1.0, 2.0]),
-        (*GOOD, "newton"),
+        ((np.eye(5), points(2, 0.4, 0.3), np.zeros(6)), "W has the shape"),
+        ((Body(1.0, [1.0, 2.0]), GOOD[1], FALLS), "an inertia has the shape"),
+        ((GOOD[0], ContactPoints([1.0, 2.0, 3.0], 0.4), FALLS), "the positions have the shape"),
+        ((GOOD[0], ContactPoints(PLACES, [0.4] * 3), FALLS), "friction has the shape"),
+        ((GOOD[0], GOOD[1], [1.0, 2.0]), "a twist has the shape"),
+        ((*GOOD, "newton"), "law is 'newton'"),
+        *[((*GOOD, "path", *each), "merge is") for each in ((NAN,), (-1.0,), (0.0, NAN), (0.0, 0.0, 0))],
     ],
-    ids=["W", "inertia", "positions", "friction", "twist", "law"],
+    ids=["W", "inertia", "positions", "friction", "twist", "law", "merge", "sign", "threshold", "steps"],
 )
-def test_arrays_of_another_shape_and_an_unknown_law_end_in_a_sentence(given):
-    with pytest.raises(ValueError, match=r"[a-z]"):
+def test_arrays_of_another_shape_and_odd_settings_end_in_a_sentence(given, says):
+    with pytest.raises(ValueError, match=says):
         solve_spatial_impact(*given)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import cache
+from math import inf
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -51,7 +52,7 @@ class ContactPoints(NamedTuple):
 
     `positions` (n, 3) in m from the mass centre; `friction` and `restitution` (0 to 1) one number, or (n,); unit
     `normals` (n, 3) out of the supports; `velocities` (n, 3) of the supports at the contacts in m/s; `gaps` (n,) in m
-    that are still open when the first contact closes. One normal, or one velocity, is that of all.
+    that are still open when the first contact closes (0 or below: none). One normal, or one velocity, is that of all.
     """
 
     positions: ArrayLike
@@ -115,8 +116,8 @@ def solve_spatial_impact(
     three dimensions with energetic restitution; its error falls with `steps`, those of a quarter of an oscillation of a
     contact) or "total" (complementarity of the impulses of the whole impact, Newton's restitution).
 
-    Numbers that no body can have give Flag.INVALID_INPUT, never an exception; an unknown law and arrays of another
-    shape raise ValueError. Sources: Routh and Keller (path), Stronge (restitution).
+    Numbers that no body can have give Flag.INVALID_INPUT, never an exception; an unknown law, settings that are no
+    numbers and arrays of another shape raise ValueError. Sources: Routh and Keller (path), Stronge (restitution).
     """
     if not isinstance(body, Body):
         return _solve_mechanism(
@@ -125,14 +126,17 @@ def solve_spatial_impact(
     positions = np.asarray(contacts.positions, float)
     if positions.ndim != 2:
         raise ValueError(f"the positions have the shape {positions.shape}; give (n, 3)")
-    number, n = number_of(law), len(positions)
+    how, n = _settings(law, merge, threshold, steps), len(positions)
     problem, answer, notes = np.empty(BODY + n * CONTACT), np.empty(ANSWER + n * RESULT), np.zeros(1, np.int64)
     # The same as `_together` for one problem, which takes a fifth of the time.
-    problem[0], problem[1:7], problem[7:BODY] = body.mass, _six_numbers(np.asarray(body.inertia, float)), twist
     of_each = problem[BODY:].reshape(n, CONTACT)
-    of_each[:, :3], of_each[:, 3:6], of_each[:, 6] = positions, contacts.normals, contacts.friction
-    of_each[:, 7], of_each[:, 8:11], of_each[:, 11] = contacts.restitution, contacts.velocities, contacts.gaps
-    how = bool(number), float(merge), float(threshold), int(steps)
+    try:
+        problem[0], problem[1:7], problem[7:BODY] = body.mass, _six_numbers(np.asarray(body.inertia, float)), twist
+        of_each[:, :3], of_each[:, 3:6], of_each[:, 6] = positions, contacts.normals, contacts.friction
+        of_each[:, 7], of_each[:, 8:11], of_each[:, 11] = contacts.restitution, contacts.velocities, contacts.gaps
+    except ValueError:
+        solve_spatial_impacts(body, contacts, twist)  # says which array has another shape
+        raise
     solvers().bodies(n, problem[None], *how, answer[None], notes, *workspace(n))
     of_each = answer[ANSWER:].reshape(n, RESULT)
     return SpatialOutcome(
@@ -160,7 +164,7 @@ def solve_spatial_impacts(
     Every field of `bodies` and `contacts`, and `twist`, may have more axes before its own; the number of contacts is
     one for all. An inertia of one number for each of many bodies has the shape (..., 1).
     """
-    number = number_of(law)
+    how = _settings(law, merge, threshold, steps)
     positions = _ending_in(3, contacts.positions, "the positions")
     if positions.ndim < 2:
         raise ValueError(f"the positions have the shape {positions.shape}; give (n, 3)")
@@ -184,9 +188,7 @@ def solve_spatial_impacts(
     shape = problems.shape[:-1]
     problems = problems.reshape(-1, BODY + n * CONTACT)
     answers, notes = np.zeros((len(problems), ANSWER + RESULT * n)), np.zeros(len(problems), np.int64)
-    solvers().bodies(
-        n, problems, bool(number), float(merge), float(threshold), int(steps), answers, notes, *workspace(n)
-    )
+    solvers().bodies(n, problems, *how, answers, notes, *workspace(n))
     answers = answers.reshape(*shape, ANSWER + RESULT * n)
     of_each = answers[..., ANSWER:].reshape(*shape, n, RESULT)
     return SpatialOutcomes(
@@ -208,7 +210,7 @@ def _solve_mechanism(
     threshold: float,
     steps: int,
 ) -> SpatialOutcome:
-    number, m = number_of(law), c.size
+    how, m = _settings(law, merge, threshold, steps), c.size
     if m % 3 or c.shape != (m,) or W.shape != (m, m):
         raise ValueError(f"W has the shape {W.shape} and the velocities {c.shape}; give (3 n, 3 n) and (3 n,)")
     n = m // 3
@@ -221,10 +223,7 @@ def _solve_mechanism(
     notes, work = INVALID, 0.0
     if is_known.all() and np.isfinite(c).all() and _is_delassus(W):
         rows = (0.5 * (W + W.T)).ravel()
-        notes = solvers().mechanism(
-            *(n, rows, friction, restitution, gaps, bool(number), float(merge), float(threshold), int(steps)),
-            *(after, impulse, scratch[5:], marks),
-        )
+        notes = solvers().mechanism(*(n, rows, friction, restitution, gaps, *how, after, impulse, scratch[5:], marks))
         work = float((0.5 * impulse * (c + after)).sum())
     return SpatialOutcome(
         twist=None,
@@ -235,6 +234,16 @@ def _solve_mechanism(
         energy_lost=-work,
         law=law,
     )
+
+
+def _settings(law: str, merge: float, threshold: float, steps: int) -> tuple[bool, float, float, int]:
+    """How the law code solves a problem."""
+    number = number_of(law)
+    if not (0.0 <= merge < inf and 0.0 <= threshold < inf and 1 <= steps < inf):
+        raise ValueError(
+            f"merge is {merge}, threshold {threshold} and steps {steps}; give finite numbers, 0 or above, and a step"
+        )
+    return bool(number), float(merge), float(threshold), int(steps)
 
 
 def _is_delassus(W: NDArray[np.float64]) -> bool:
