@@ -20,8 +20,8 @@ from rich.progress import track
 from rich.table import Table
 
 from impact_predictor import Body, ContactPoints, solve_spatial_impacts
-from impact_predictor.mechanics.impact.spatial import ContactState, SpatialOutcomes
-from impact_predictor.mechanics.types import Flag
+from impact_predictor.mechanics.impact.spatial import SpatialOutcomes
+from impact_predictor.mechanics.types import ContactState, Flag
 
 Array = NDArray[np.float64]
 

@@ -7,7 +7,7 @@ import pytest
 from spatial_invariants import KINDS, LIMITS, SETTLED, SURE, problems_of, violations
 
 from impact_predictor import ContactPoints, solve_spatial_impact, solve_spatial_impacts
-from impact_predictor.mechanics.impact.spatial import ContactState
+from impact_predictor.mechanics.types import ContactState
 
 SEED, EACH = 20, 320
 """Problems of each kind and number of contacts: 20,480 in all."""
