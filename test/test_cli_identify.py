@@ -97,10 +97,3 @@ def test_too_few_impacts_end_in_one_sentence(tmp_path: Path) -> None:
     assert result.exit_code == 2
     (said,) = [line for line in result.stderr.splitlines() if line.startswith("error: ")]
     assert "in 2 motions, cannot tell mass centre and inertia" in said
-
-
-def test_a_folder_that_is_not_there_is_named_before_a_bag_is_read(tmp_path: Path) -> None:
-    (tmp_path / "scene.yaml").write_text(SCENE)
-    result = run("none.mcap", "--params", str(tmp_path / "scene.yaml"), "-o", str(tmp_path / "none" / "out.yaml"))
-    assert result.exit_code == 2
-    assert "does not exist; make it, or give another name" in result.stderr

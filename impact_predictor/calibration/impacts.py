@@ -83,8 +83,8 @@ class RecordedImpact(NamedTuple):
     """An impact between the poses `frame` and `frame` + `stride` of a motion.
 
     `time` in s since the first pose; the points `new` strike, those in `old` stood; `approach` in m/s of the fastest
-    new point; `rotation` (3, 3) at the impact. It is `isolated` where no other impact lies in the frames from the
-    motion `before` it to that `after` it, over which all other points stay `clear` of the support by so many m.
+    new point. It is `isolated` where no other impact lies in the frames from the motion `before` it to that `after` it,
+    over which all other points stay `clear` of the support by so many m.
     """
 
     frame: int
@@ -93,7 +93,6 @@ class RecordedImpact(NamedTuple):
     new: tuple[int, ...]
     old: tuple[int, ...]
     approach: float
-    rotation: Reals
     before: FrameMotion
     after: FrameMotion
     isolated: bool
@@ -201,8 +200,6 @@ class MotionRecord:
             speeds = np.abs(self._rates[begin])
             still = max(self._slowest, STANDING * float(speeds.max()))
             others = [i for i in range(self._gaps.shape[1]) if i not in new]
-            before = self._frame(begin)
-            turn = Rotation.from_rotvec(before.angular * (event[0].time - self._times[k])).as_matrix()
             found.append(
                 RecordedImpact(
                     frame=k * self.stride,
@@ -211,8 +208,7 @@ class MotionRecord:
                     new=tuple(new),
                     old=tuple(i for i in others if self._gaps[k, i] < self._scene.tolerance and speeds[i] < still),
                     approach=max(strike.approach for strike in event),
-                    rotation=turn @ self.motion.rotations[k],
-                    before=before,
+                    before=self._frame(begin),
                     after=self._frame(k + AFTER),
                     isolated=last < begin and following > end,
                     clear=float(self._gaps[begin : end + 1, others].min(initial=inf)),

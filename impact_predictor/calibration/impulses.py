@@ -118,7 +118,7 @@ def least_lengths(
     Lengths, not their squares: an impact that has something else in it pulls no more than any other.
     """
     x = start.copy()
-    for _ in range(steps):
+    for _ in range(steps if free.any() else 0):
         missed, slopes = linear(x)
         lengths = np.linalg.norm(missed, axis=1)
         roots = np.sqrt(weights / np.maximum(lengths, 1e-12 + 1e-3 * np.median(lengths)))[:, None]

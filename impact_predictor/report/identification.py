@@ -100,34 +100,30 @@ def changes_of(found: Identification) -> dict[str, NewValues]:
 
 def as_json(found: Identification, bags: Sequence[str]) -> dict[str, Any]:
     """An identification as JSON: SI units, inconsistencies as fractions of 1."""
-    flight = found.flight
+    errors = {"given": found.given, "held_out": found.held_out}
     return {
         "bags": list(bags),
         "motions": found.motions,
         "repeated_motions": found.repeated,
         "impacts": found.impacts,
-        "body": {name.replace(" ", "_"): _estimate(one) for name, one in named(found).items()},
+        "body": {name.replace(" ", "_"): _plain(one) for name, one in named(found).items()},
         "lever": found.lever,
         "inconsistency": {
-            name: {"median": float(np.median(errors)), "p90": float(np.quantile(errors, 0.9))}
-            for name, errors in (("given", found.given), ("held_out", found.held_out))
+            name: {"median": float(np.median(one)), "p90": float(np.quantile(one, 0.9))} for name, one in errors.items()
         },
-        "held_out_by_moments": {str(number): median for number, median in found.choices.items()},
-        "corner_radius": None if found.radius is None else _estimate(found.radius),
-        "roundings": [
-            {**one._asdict(), "inertia": one.inertia.tolist(), "center": one.center.tolist()} for one in found.roundings
-        ],
-        "flight": None
-        if flight is None
-        else {
-            "flights": flight.flights,
-            "center": [_estimate(one) for one in flight.center],
-            "fall": _estimate(flight.fall),
-            "moments_over_mean": [_estimate(one) for one in flight.shape],
-        },
+        "held_out_by_moments": found.choices,
+        "corner_radius": _plain(found.radius),
+        "roundings": _plain(found.roundings),
+        "flight": _plain(found.flight),
         "parameters": {name: [float(number_text(one)) for one in to.values] for name, to in changes_of(found).items()},
     }
 
 
-def _estimate(one: Estimate) -> dict[str, Any]:
-    return {"given": one.given, "value": one.value, "low": one.low, "high": one.high, "told": one.known}
+def _plain(value: Any) -> Any:
+    """A record as JSON has it."""
+    if hasattr(value, "_asdict"):
+        names = {"known": "told"}
+        return {names.get(name, name): _plain(one) for name, one in value._asdict().items()}
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    return [_plain(one) for one in value] if isinstance(value, tuple) else value

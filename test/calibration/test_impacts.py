@@ -72,9 +72,6 @@ def test_velocities_around_an_impact_are_those_of_the_poses_before_and_after_it(
         assert seen.linear + seen.turning @ CENTER == pytest.approx((places[one + 1] - places[one]) * 200.0)
         turned = Rotation.from_rotvec(seen.angular / 200.0).as_matrix() @ motion.rotations[one]
         assert turned == pytest.approx(motion.rotations[one + 1])
-    # Nothing but gravity acts between the frame before it and the impact.
-    turn = Rotation.from_rotvec(first.before.angular * (first.time - k / 200.0)).as_matrix()
-    assert first.rotation == pytest.approx(turn @ motion.rotations[k])
 
 
 def laid(tilts: Reals, axis: tuple[float, float, float]) -> RecordedMotion:
@@ -90,7 +87,6 @@ TILTING = np.concatenate((np.linspace(0.1, 0.0, 11), np.zeros(9)))
     ("axis", "kind", "old", "new"),
     [
         ((0.0, -1.0, 0.0), ImpactKind.EDGE_FACE, 2, 2),
-        ((1.0, 0.0, 0.0), ImpactKind.EDGE_FACE, 2, 2),
         ((1.0, -1.0, 0.0), ImpactKind.CORNER_EDGE, 1, 3),
     ],
 )
