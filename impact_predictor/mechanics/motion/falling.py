@@ -1,0 +1,430 @@
+"""The motion of a rigid body on points over a plane support in three dimensions, up to its next touchdown.
+
+Written as `reactions` is. Each phase in which no point begins or ends to stick, slip or stand is smooth, and is
+integrated by the embedded method of Dormand and Prince (1980, RK5(4)7M); a step that goes beyond a change, or beyond a
+strike, is cut there.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+
+from .reactions import CREEPS, OPEN, SLIPS, STICKS, Floats, Ints, Model, Stance, hold, locate, rates
+from .stances import NONE, ROUNDING, change, creep, head, margins, near, settle, stand, stays, steady, stop, veers
+
+_TOLERANCE = 1e-6
+"""Error of a step, relative to the scales of the motion."""
+_TURN = 0.8
+"""rad in one step at most: a gap is a polynomial of degree 3 over it, up to `_BEND`."""
+_BEND = 1.0 / 192.0
+"""Twice the error of such a polynomial, relative to the size and to the fourth power of the turn."""
+_MAX_STEPS = 300
+_MAX_CUTS = 30
+"""More than the secant needs to find the events of a step."""
+_STUCK = 12
+"""Events without any time between them; more come only from rounding."""
+_BLEND = 0.5
+"""Of the speed that its friction takes in a step is blended with the slip of a creeping point."""
+_POOR = 4.0
+"""Error of a step that is cut, relative to the tolerance, that is too much."""
+_GAP = 1e-8
+"""How near to zero a gap is found to close, relative to the size."""
+_WILD = 1e6
+"""Error of the smallest step, relative to the tolerance, that tells a jam."""
+_STICKY = 1e6
+"""More friction makes no difference."""
+_LARGEST = 1e100
+
+
+INPUT = 32
+"""Numbers of a problem before those of its points: horizon, state, inertia over mass, pull; friction and points."""
+OUTPUT = 14
+"""Numbers of an answer before those of its points: time and state; gap and rate of each."""
+WORK = 175, 38, 9
+"""Numbers to work with: some, some for each point, and some for each pair of points."""
+INVALID = -2
+
+
+def step(
+    time: float, h: float, y: Floats, k: Floats, trial: Floats, middle: Floats, model: Model, stance: Stance
+) -> tuple[float, int]:
+    """One step from y, whose derivative is k[:13], to `trial`, whose derivative is k[78:]; error and jammed point."""
+    size, speed, _, _ = model[4]
+    for i in range(13):
+        middle[i] = y[i] + h * (0.2 * k[i])
+    jam = rates(time + 0.2 * h, middle, k, 13, False, model, stance)
+    for i in range(13):
+        middle[i] = y[i] + h * (3.0 / 40.0 * k[i] + 9.0 / 40.0 * k[13 + i])
+    jam = max(jam, rates(time + 0.3 * h, middle, k, 26, False, model, stance))
+    for i in range(13):
+        middle[i] = y[i] + h * (44.0 / 45.0 * k[i] - 56.0 / 15.0 * k[13 + i] + 32.0 / 9.0 * k[26 + i])
+    jam = max(jam, rates(time + 0.8 * h, middle, k, 39, False, model, stance))
+    for i in range(13):
+        middle[i] = y[i] + h * (
+            19372.0 / 6561.0 * k[i]
+            - 25360.0 / 2187.0 * k[13 + i]
+            + 64448.0 / 6561.0 * k[26 + i]
+            - 212.0 / 729.0 * k[39 + i]
+        )
+    jam = max(jam, rates(time + 8.0 / 9.0 * h, middle, k, 52, False, model, stance))
+    for i in range(13):
+        middle[i] = y[i] + h * (
+            9017.0 / 3168.0 * k[i]
+            - 355.0 / 33.0 * k[13 + i]
+            + 46732.0 / 5247.0 * k[26 + i]
+            + 49.0 / 176.0 * k[39 + i]
+            - 5103.0 / 18656.0 * k[52 + i]
+        )
+    jam = max(jam, rates(time + h, middle, k, 65, False, model, stance))
+    for i in range(13):
+        trial[i] = y[i] + h * (
+            35.0 / 384.0 * k[i]
+            + 500.0 / 1113.0 * k[26 + i]
+            + 125.0 / 192.0 * k[39 + i]
+            - 2187.0 / 6784.0 * k[52 + i]
+            + 11.0 / 84.0 * k[65 + i]
+        )
+    _normalise(trial)
+    jam = max(jam, rates(time + h, trial, k, 78, False, model, stance))
+    error = 0.0
+    for i in range(13):
+        part = h * abs(
+            71.0 / 57600.0 * k[i]
+            - 71.0 / 16695.0 * k[26 + i]
+            + 71.0 / 1920.0 * k[39 + i]
+            - 17253.0 / 339200.0 * k[52 + i]
+            + 22.0 / 525.0 * k[65 + i]
+            - 0.025 * k[78 + i]
+        )
+        part *= 1.0 / size if i < 3 else 1.0 if i < 7 else 1.0 / speed if i < 10 else size / speed
+        error = max(error, part)
+    return error / _TOLERANCE, jam
+
+
+def _normalise(y: Floats) -> None:
+    length = 1.0 / sqrt(y[3] * y[3] + y[4] * y[4] + y[5] * y[5] + y[6] * y[6])
+    y[3], y[4], y[5], y[6] = y[3] * length, y[4] * length, y[5] * length, y[6] * length
+
+
+def measure(y: Floats, k: Floats, at: int, points: Floats, frame: Floats, offsets: Floats, out: Floats) -> None:
+    """Gap, its rate and its second derivative of each point into `out` (3 n)."""
+    wx, wy, wz = y[10], y[11], y[12]
+    square, az, alx, aly = wx * wx + wy * wy + wz * wz, k[at + 9], k[at + 10], k[at + 11]
+    for i in range(len(offsets)):
+        px, py, pz = points[3 * i], points[3 * i + 1], points[3 * i + 2]
+        x = frame[0] * px + frame[1] * py + frame[2] * pz
+        y_ = frame[3] * px + frame[4] * py + frame[5] * pz
+        z = frame[6] * px + frame[7] * py + frame[8] * pz
+        out[3 * i] = y[2] + z - offsets[i]
+        out[3 * i + 1] = y[9] + wx * y_ - wy * x
+        out[3 * i + 2] = az + alx * y_ - aly * x + wz * (wx * x + wy * y_ + wz * z) - z * square
+
+
+def crossing(now: Floats, then: Floats, i: int, h: float, dip: float) -> float:
+    """Part of a step at which gap i first falls to 0 or below, or falls there; 2 for none.
+
+    Minus the part where the gap may have been there between: it is nearer to 0 than `dip`.
+    """
+    g0, g1, r0, r1 = now[3 * i], then[3 * i], h * now[3 * i + 1], h * then[3 * i + 1]
+    if g0 > 0.0 and g1 > dip and g0 + r0 / 3.0 > dip and g1 - r1 / 3.0 > dip:
+        return 2.0
+    c2, c3 = 3.0 * (g1 - g0) - 2.0 * r0 - r1, 2.0 * (g0 - g1) + r0 + r1
+    # The pieces on which the cubic falls lie between the zeros of its derivative r0 + 2 c2 s + 3 c3 s^2.
+    first, second, root = 2.0, 2.0, c2 * c2 - 3.0 * c3 * r0
+    if root > 0.0:
+        q = -c2 - sqrt(root) if c2 > 0.0 else -c2 + sqrt(root)
+        if q != 0.0:
+            first = r0 / q
+        if c3 != 0.0:
+            second = q / (3.0 * c3)
+        if first > second:
+            first, second = second, first
+    start: float = 0.0
+    found: float = 2.0
+    for piece in range(3):
+        end = first if piece == 0 else second if piece == 1 else 1.0
+        end = min(max(end, start), 1.0)
+        high = g0 + start * (r0 + start * (c2 + start * c3))
+        low = g0 + end * (r0 + end * (c2 + end * c3))
+        if end > start and low < high:
+            if high <= 0.0:
+                return start
+            if low <= 0.0:
+                s, lower, upper = start + (end - start) * high / (high - low), start, end
+                for _ in range(30):
+                    value = g0 + s * (r0 + s * (c2 + s * c3))
+                    if value > 0.0:
+                        lower = s
+                    else:
+                        upper = s
+                    slope = r0 + s * (2.0 * c2 + 3.0 * s * c3)
+                    shift = -value / slope if slope < 0.0 else 0.0
+                    s = s + shift if lower < s + shift < upper else 0.5 * (lower + upper)
+                    if abs(shift) <= 1e-9:
+                        break
+                # The second derivatives at both ends make it a polynomial of degree 5.
+                a0, a1, d = h * h * now[3 * i + 2], h * h * then[3 * i + 2], g1 - g0
+                b2, b3 = 0.5 * a0, 10.0 * d - 6.0 * r0 - 4.0 * r1 - 1.5 * a0 + 0.5 * a1
+                b4, b5 = -15.0 * d + 8.0 * r0 + 7.0 * r1 + 1.5 * a0 - a1, 6.0 * d - 3.0 * (r0 + r1) + 0.5 * (a1 - a0)
+                for _ in range(2):
+                    value = g0 + s * (r0 + s * (b2 + s * (b3 + s * (b4 + s * b5))))
+                    slope = r0 + s * (2.0 * b2 + s * (3.0 * b3 + s * (4.0 * b4 + s * 5.0 * b5)))
+                    if slope < 0.0:
+                        s = min(max(s - value / slope, start), 1.0)
+                return s
+            if found == 2.0 and low < dip and 0.02 < end < 0.98:
+                found = -end
+        start = end
+    return found
+
+
+def follow(
+    y: Floats, horizon: float, offsets: Floats, model: Model, stance: Stance, scratch: tuple[Floats, ...]
+) -> tuple[float, int]:
+    """Follow the state y up to the first strike: its time and point; -1 as point where there is none by the horizon.
+
+    y becomes the state there, `scratch[3]` (3 n) the gaps with their derivatives, and the stance what stands then.
+    """
+    points, scale = model[0], model[4]
+    held, label, toward, forces, _, _, frame, _ = stance
+    k, trial, middle, now, then, before, after = scratch
+    size, speed, weight = scale[0], scale[1], scale[2]
+    n, time, still = len(label), 0.0, 0
+    locate(y, model, stance)
+    for slot in range(held[n]):
+        label[held[slot]] = SLIPS
+        if head(y, held[slot], model, stance) <= NONE:
+            label[held[slot]] = STICKS
+    hold(y, stance, ROUNDING * speed)
+    rates(time, y, k, 0, False, model, stance)
+    measure(y, k, 0, points, frame, offsets, now)
+    struck, fastest = -1, -ROUNDING * speed
+    for i in range(n):
+        if label[i] == OPEN and now[3 * i] <= ROUNDING * size:
+            if now[3 * i + 1] < fastest:
+                struck, fastest = i, now[3 * i + 1]
+            elif now[3 * i] >= -ROUNDING * size and abs(now[3 * i + 1]) <= ROUNDING * speed:
+                stand(y, i, model, stance)
+    if struck >= 0:
+        return 0.0, struck
+    again, h = True, 0.3 * sqrt(size / weight)
+    for _ in range(_MAX_STEPS):
+        if again:
+            settle(time, y, k, model, stance)
+            if stays(time, horizon, y, k, trial, model, stance):
+                return horizon, -1
+            locate(y, model, stance)
+            measure(y, k, 0, points, frame, offsets, now)
+            margins(y, model, stance, before)
+            again = False
+        left, turn = horizon - time, sqrt(y[10] * y[10] + y[11] * y[11] + y[12] * y[12])
+        if left <= 0.0:
+            return horizon, -1
+        h = min(h, left, steady(y, model, stance))
+        if turn * h > _TURN:
+            h = _TURN / turn
+        for slot in range(held[n]):
+            if label[held[slot]] == CREEPS and scale[3] != _BLEND * h * weight:
+                scale[3] = _BLEND * h * weight
+                rates(time, y, k, 0, False, model, stance)
+        error, jam = step(time, h, y, k, trial, middle, model, stance)
+        small = h <= 1e-6 * sqrt(size / weight)
+        if not small and veers(trial, h, model, stance):
+            h *= 0.3
+            continue
+        if small and jam < 0 and not error < _WILD:
+            jam = 0
+        if jam >= 0 and small:
+            stop(y, model, stance, 2.0)
+            again = True
+            continue
+        if jam >= 0 or (not error <= 1.0 and not small):
+            h *= 0.2 if jam >= 0 or not error < 600.0 else 0.9 / sqrt(sqrt(error))
+            continue
+        root = sqrt(sqrt(sqrt(max(error, 1e-12))))  # error^(1/8)
+        longer = h * min(4.0, 0.9 / (root * sqrt(root)))
+        # Cut the step until it ends at the first event in it.
+        event, early = -1, False
+        low, high, low_value, high_value, target = 0.0, h, 0.0, 0.0, -1
+        for _ in range(_MAX_CUTS):
+            measure(trial, k, 78, points, frame, offsets, then)
+            margins(trial, model, stance, after)
+            bent, cut, event, reached = turn * h, 1.0, -1, -1
+            dip = _BEND * size * bent * bent * bent * bent
+            if target >= 0:
+                # The secant between both sides of a change, by the Illinois method.
+                value, close = after[target], near(target, label)
+                if value < -close:
+                    high_value, low_value = value, low_value * (1.0 if high_value == 0.0 else 0.5)
+                    high = h
+                elif value > close:
+                    low, low_value, high_value = h, value, 0.5 * high_value
+                if abs(value) > close:
+                    h = high - high_value * (high - low) / (high_value - low_value)
+                    error, jam = step(time, h, y, k, trial, middle, model, stance)
+                    continue
+                target = -1
+            for i in range(n):
+                if label[i] == OPEN:
+                    if abs(then[3 * i]) <= _GAP * size and then[3 * i + 1] < 0.0:
+                        reached = i
+                        continue
+                    s = crossing(now, then, i, h, dip)
+                    if abs(s) < cut:
+                        event, cut = i, abs(s)
+                elif still < _STUCK:
+                    for m in range(2 * i, 2 * i + 2):
+                        close = near(m, label)
+                        if after[m] >= -close:
+                            if after[m] <= close and after[m] < before[m]:
+                                reached = n + m
+                        elif before[m] > close:
+                            s = before[m] / (before[m] - after[m])
+                            if s < cut:
+                                event, cut = n + m, s
+                        else:
+                            early, reached = True, n + m
+            if early or event < 0:
+                event = reached
+                break
+            if cut == 0.0:
+                break
+            if event >= n:
+                target = event - n
+                low, low_value, high, high_value = 0.0, before[target], h, after[target]
+            h *= cut
+            error, jam = step(time, h, y, k, trial, middle, model, stance)
+        if (early or not error <= _POOR) and not small:
+            # What was at its border comes back to it, or leaves it at once.
+            h *= 0.25
+            continue
+        if cut > 0.0 and not early:
+            for i in range(13):
+                y[i], k[i] = trial[i], k[78 + i]
+            for i in range(3 * n):
+                now[i] = then[i]
+            for i in range(2 * n):
+                before[i] = after[i]
+            time += h
+            still = 0
+        else:
+            rates(time, y, k, 0, False, model, stance)
+        if event < 0:
+            # Points that stick may have crept by the errors of the step.
+            if creep(y, stance) > NONE * speed:
+                hold(y, stance, ROUNDING * speed)
+                rates(time, y, k, 0, False, model, stance)
+            for slot in range(held[n]):
+                if label[held[slot]] >= SLIPS:
+                    head(y, held[slot], model, stance)
+                    scale[3] = scale[1]
+            h = longer
+            margins(y, model, stance, before)
+            continue
+        locate(y, model, stance)
+        if event < n:
+            for _ in range(2):
+                shift = -now[3 * event] / now[3 * event + 1] if now[3 * event + 1] < 0.0 else 0.0
+                shift = max(min(max(shift, -1e-3 * h), 1e-3 * h), -time)
+                for i in range(13):
+                    y[i] += shift * k[i]
+                time += shift
+                locate(y, model, stance)
+                measure(y, k, 0, points, frame, offsets, now)
+            if now[3 * event + 1] < -ROUNDING * speed:
+                _normalise(y)
+                return time, event
+            stand(y, event, model, stance)
+        else:
+            change(event - n, y, before, model, stance)
+        hold(y, stance, ROUNDING * speed)
+        again, h, still = True, longer, still + 1
+    return horizon, -1
+
+
+def solve(n: int, numbers: Floats, marks: Ints, work: Floats, out: Floats) -> int:
+    """Solve one problem: the point that strikes, -1 for none, -2 for numbers that no body can have."""
+    out[0] = numbers[0]
+    for i in range(13):
+        out[1 + i] = numbers[1 + i]
+    y, body, pull, scale = work[0:13], work[13:26], work[26:39], work[39:43]
+    k, trial, middle, frame = work[43:134], work[134:147], work[147:160], work[160:175]
+    o = 175
+    points, friction, offsets = work[o : o + 3 * n], work[o + 3 * n : o + 4 * n], work[o + 4 * n : o + 5 * n]
+    o += 5 * n
+    toward, forces, arms = work[o : o + 2 * n], work[o + 2 * n : o + 5 * n], work[o + 5 * n : o + 8 * n]
+    blocks = work[o + 8 * n : o + 20 * n]
+    o += 20 * n
+    now, then = work[o : o + 3 * n], work[o + 3 * n : o + 6 * n]
+    before, after = work[o + 6 * n : o + 8 * n], work[o + 8 * n : o + 10 * n]
+    rows = work[o + 10 * n : o + 13 * n + 9 * n * n]
+    label, held = marks[0:n], marks[n : 2 * n + 1]
+    horizon = numbers[0]
+    for i in range(INPUT + 4 * n):
+        if not -_LARGEST <= numbers[i] <= _LARGEST:
+            return INVALID
+    for i in range(13):
+        y[i] = numbers[1 + i]
+    if not (
+        horizon >= 0.0 and fill_body(numbers, body) and y[3] * y[3] + y[4] * y[4] + y[5] * y[5] + y[6] * y[6] > 0.0
+    ):
+        return INVALID
+    _normalise(y)
+    for i in range(12):
+        pull[i] = numbers[20 + i]
+    pull[12] = 0.0
+    for i in range(6, 12):
+        if pull[i] != 0.0:
+            pull[12] = 1.0
+    size = 0.0
+    for i in range(n):
+        friction[i] = min(numbers[INPUT + i], _STICKY)
+        square = 0.0
+        if friction[i] < 0.0:
+            return INVALID
+        for j in range(3):
+            points[3 * i + j] = numbers[INPUT + n + 3 * i + j]
+            square += points[3 * i + j] * points[3 * i + j]
+        size = max(size, square)
+        offsets[i], toward[2 * i], toward[2 * i + 1] = 0.0, 1.0, 0.0
+        forces[3 * i] = forces[3 * i + 1] = forces[3 * i + 2] = 0.0
+        before[2 * i] = before[2 * i + 1] = after[2 * i] = after[2 * i + 1] = 0.0
+    size = sqrt(size) if size > 0.0 else 1.0
+    gravity = sqrt(pull[0] * pull[0] + pull[1] * pull[1] + pull[2] * pull[2])
+    turn = y[10] * y[10] + y[11] * y[11] + y[12] * y[12]
+    weight = gravity + turn * size
+    weight = weight if weight > 0.0 else 1.0
+    speed = sqrt(y[7] * y[7] + y[8] * y[8] + y[9] * y[9]) + size * sqrt(turn) + sqrt(weight * size)
+    scale[0], scale[1], scale[2], scale[3] = size, speed, weight, 0.0
+    model = (points, body, pull, friction, scale)
+    stance = (held, label, toward, forces, arms, blocks, frame, rows)
+    held[n] = 0
+    locate(y, model, stance)
+    for i in range(n):
+        if label[i] != OPEN:
+            x, y_, z = points[3 * i], points[3 * i + 1], points[3 * i + 2]
+            offsets[i] = y[2] + frame[6] * x + frame[7] * y_ + frame[8] * z
+            held[held[n]] = i
+            held[n] += 1
+    time, point = follow(y, horizon, offsets, model, stance, (k, trial, middle, now, then, before, after))
+    out[0] = time
+    for i in range(13):
+        out[1 + i] = y[i]
+    for i in range(n):
+        out[OUTPUT + 2 * i], out[OUTPUT + 2 * i + 1] = now[3 * i], now[3 * i + 1]
+        marks[i] = label[i]
+    return point
+
+
+def fill_body(numbers: Floats, body: Floats) -> bool:
+    """The inertia over the mass, its inverse, and whether it is the same about all axes; False where no body has it."""
+    xx, yy, zz, xy, xz, yz = numbers[14], numbers[15], numbers[16], numbers[17], numbers[18], numbers[19]
+    c0, c1, c2 = yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy
+    det, largest = xx * c0 + xy * c1 + xz * c2, max(xx, yy, zz)
+    if not (xx > 0.0 and xx * yy - xy * xy > 0.0 and det > 1e-12 * largest * largest * largest):
+        return False
+    body[0], body[1], body[2], body[3], body[4], body[5] = xx, yy, zz, xy, xz, yz
+    body[6], body[7], body[8] = c0 / det, (xx * zz - xz * xz) / det, (xx * yy - xy * xy) / det
+    body[9], body[10], body[11] = c1 / det, c2 / det, (xy * xz - xx * yz) / det
+    body[12] = 1.0 if xx == yy == zz and xy == xz == yz == 0.0 else 0.0
+    return True

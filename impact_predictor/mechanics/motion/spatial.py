@@ -1,0 +1,152 @@
+"""The next touchdown of a rigid body on points over a plane support in three dimensions: `fall`.
+
+A free body turns by Euler's equations. Points that stand hold the body, slip with Coulomb's friction against their
+whole slip, begin to slip where they leave the cone of friction, and lift where the support would have to pull. Time,
+place and twist at a touchdown are right to about 1e-6 of the motion's scales, and to 1e-4 of its speed where a slip
+that turned came to its end on the way.
+
+The same code runs compiled, where numba is installed, and as plain Python, and gives the same bits.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Sequence
+from functools import cache
+from math import inf
+from typing import Any, NamedTuple
+
+from ..compiled import compiled
+from . import falling, reactions, stances
+from .falling import OUTPUT, WORK
+from .reactions import OPEN
+
+Vector3 = tuple[float, float, float]
+Quaternion = tuple[float, float, float, float]
+
+AT_REST = (0.0, 0.0, 0.0)
+
+
+class SpatialState(NamedTuple):
+    """A rigid body in its support's frame: the support is the plane z = 0, and z points out of it.
+
+    `position` of the mass centre in m, `orientation` as a quaternion (x, y, z, w) that turns the body's axes to the
+    frame's, `velocity` of the mass centre in m/s and `angular_velocity` in rad/s, relative to the frame, along its
+    axes.
+    """
+
+    position: Vector3
+    orientation: Quaternion
+    velocity: Vector3
+    angular_velocity: Vector3
+
+
+class Pull(NamedTuple):
+    """What a free body feels in the support's frame, along its axes.
+
+    `gravity` in m/s^2 at rest at the frame's origin now, and its `growth` in m/s^3. Where the frame turns: its angular
+    velocity `spin` in rad/s now, and its angular acceleration `turning` in rad/s^2.
+    """
+
+    gravity: Vector3 = (0.0, 0.0, -9.81)
+    growth: Vector3 = AT_REST
+    spin: Vector3 = AT_REST
+    turning: Vector3 = AT_REST
+
+
+class SpatialFall(NamedTuple):
+    """The next touchdown of a body.
+
+    `time` in s from the given state, inf when there is none within the horizon, or when the numbers are none that a
+    body can have; `point` is the index of the one that strikes, or -1; `state` right before the touchdown (the given
+    one when there is none); `gaps` in m and `rates` in m/s of all points then; `standing`, the points that still stand.
+    """
+
+    time: float
+    point: int
+    state: SpatialState
+    gaps: tuple[float, ...]
+    rates: tuple[float, ...]
+    standing: tuple[int, ...]
+
+
+def fall(
+    state: SpatialState,
+    inertia: Sequence[float],
+    points: Sequence[Vector3],
+    standing: Collection[int] = (),
+    friction: float | Sequence[float] = 0.0,
+    pull: Pull = Pull(),  # noqa: B008
+    horizon: float = 1.0,
+) -> SpatialFall:
+    """When, where and with which velocities the body touches its support next.
+
+    `inertia` about the mass centre over the mass in m^2, as ixx, iyy, izz, ixy, ixz, iyz along the body's axes;
+    `points` (n, 3) in m from the mass centre along the body's axes; `standing` are the indices of those that rest on
+    the support: their gaps count as zero from then on, and what moves them out of it or into it is taken from the twist
+    by the least impulse; `friction` coefficient, one number or (n,); `horizon` in s. Never raises for bad numbers, and
+    never returns NaN.
+    """
+    n = len(points)
+    frictions = [friction] * n if isinstance(friction, float | int) else friction
+    numbers: Any = [horizon, *state.position, *state.orientation, *state.velocity, *state.angular_velocity]
+    numbers += [*inertia, *pull.gravity, *pull.growth, *pull.spin, *pull.turning, *frictions]
+    for place in points:
+        numbers += place
+    marks: Any = [0] * (2 * n + 1)
+    for i in standing:
+        marks[i] = 1
+    struck, out, marks = solver()(n, numbers, marks)
+    if struck < 0:
+        return SpatialFall(inf, -1, state, (), (), tuple(standing))
+    time, px, py, pz, qx, qy, qz, qw, vx, vy, vz, wx, wy, wz = out[:OUTPUT]
+    return SpatialFall(
+        time=time,
+        point=struck,
+        state=SpatialState((px, py, pz), (qx, qy, qz, qw), (vx, vy, vz), (wx, wy, wz)),
+        gaps=tuple(out[OUTPUT::2]),
+        rates=tuple(out[OUTPUT + 1 :: 2]),
+        standing=tuple(i for i in range(n) if marks[i] != OPEN),
+    )
+
+
+Solver = Callable[[int, list[float], list[int]], tuple[int, list[float], list[int]]]
+
+
+@cache
+def solver() -> Solver:
+    """The law code that solves one problem, compiled if that can be; the first time on a machine this takes seconds."""
+    solve = compiled(make_solve, (reactions, stances, falling), lambda function: False)
+    if solve is None:
+        return on_lists(make_solve(""))
+    import numpy as np
+
+    def on_arrays(n: int, numbers: list[float], marks: list[int]) -> tuple[int, list[float], list[int]]:
+        work, out = np.empty(sizes(n)), np.empty(OUTPUT + 2 * n)
+        mark = np.array(marks)
+        point = solve(n, np.array(numbers), mark, work, out)
+        return point, out.tolist(), mark.tolist()
+
+    return on_arrays
+
+
+def on_lists(solve: Callable[..., int]) -> Solver:
+    def on_lists(n: int, numbers: list[float], marks: list[int]) -> tuple[int, list[float], list[int]]:
+        out = [0.0] * (OUTPUT + 2 * n)
+        return solve(n, numbers, marks, [0.0] * sizes(n), out), out, marks
+
+    return on_lists
+
+
+def sizes(n: int) -> int:
+    """Numbers that the law code of n points works with."""
+    return WORK[0] + WORK[1] * n + WORK[2] * n * n
+
+
+def make_solve(law_code: str) -> Callable[..., int]:
+    """The function that solves one problem; numba keeps what it compiled under the value of `law_code`."""
+
+    def solve(n: int, numbers: Any, marks: Any, work: Any, out: Any) -> int:
+        law_code  # noqa: B018
+        return falling.solve(n, numbers, marks, work, out)
+
+    return solve

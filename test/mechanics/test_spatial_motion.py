@@ -1,0 +1,305 @@
+"""The next touchdown in three dimensions: against closed forms, Newton's and Euler's laws, and the planar engine.
+
+golden/motion.json: falls of a body that turns about a fixed point, from the energy integral in 40-digit arithmetic.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import random
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from newton_in_space import Newton, numbers_of, tensor
+from scipy.spatial.transform import Rotation
+
+from impact_predictor.mechanics.motion import Fall, PlanarState, next_touchdown
+from impact_predictor.mechanics.motion.spatial import (
+    Pull,
+    SpatialFall,
+    SpatialState,
+    fall,
+    make_solve,
+    on_lists,
+    solver,
+)
+
+GOLDEN = json.loads((Path(__file__).parent / "golden" / "motion.json").read_text())
+TIME, TWIST = 1e-6, 1e-5
+"""What a touchdown is right to, relative to the scales of the motion: the method's tolerance over some ten steps."""
+EDGE = 0.1
+CUBE = tuple((x, y, z) for x, y, z in product((-0.5 * EDGE, 0.5 * EDGE), repeat=3))
+ALIKE = (EDGE * EDGE / 6.0,) * 3 + (0.0,) * 3
+GENERAL = tuple(ALIKE[0] * part for part in (1.0, 1.2, 1.4, 0.05, 0.02, -0.1))
+DECK = Pull(gravity=(0.5, -0.3, -9.0), growth=(1.0, 0.5, -2.0), spin=(0.2, -0.1, 0.3), turning=(0.3, 0.2, -0.4))
+FLAT = (0.0, 0.0, 0.0, 1.0)
+
+
+def in_flight(draw: random.Random) -> SpatialState:
+    v = draw.gauss(0.0, 1.0), draw.gauss(0.0, 1.0), draw.uniform(-1.0, 0.5)
+    return SpatialState((0.0, 0.0, draw.uniform(0.1, 0.2)), quaternion(draw), v, vector(draw, 6.0))
+
+
+def on_corner(draw: random.Random, slip: float) -> tuple[SpatialState, int]:
+    """A cube on its lowest corner."""
+    pose, w = quaternion(draw), vector(draw, 4.0)
+    corners = Rotation.from_quat(pose).apply(CUBE)
+    lowest = int(corners[:, 2].argmin())
+    v = -np.cross(w, corners[lowest]) + [draw.gauss(0.0, slip), draw.gauss(0.0, slip), 0.0]
+    return SpatialState((0.3, -0.2, -corners[lowest, 2]), pose, tuple(v), w), lowest
+
+
+def quaternion(draw: random.Random) -> tuple[float, float, float, float]:
+    return draw.gauss(0.0, 1.0), draw.gauss(0.0, 1.0), draw.gauss(0.0, 1.0), draw.gauss(0.0, 1.0)
+
+
+def vector(draw: random.Random, size: float) -> tuple[float, float, float]:
+    return draw.gauss(0.0, size), draw.gauss(0.0, size), draw.gauss(0.0, size)
+
+
+def assert_agrees(found: SpatialFall, point: int, time: float, state: Any) -> None:
+    speed = 1.0 + float(np.linalg.norm(state[7:10]))
+    assert found.point == point
+    assert found.time == pytest.approx(time, abs=TIME)
+    ours = numbers_of(found.state)
+    ours[3:7] *= np.sign(ours[3:7] @ state[3:7])
+    state[3:7] /= np.linalg.norm(state[3:7])
+    assert ours[:7] == pytest.approx(state[:7], abs=5.0 * TIME)
+    assert ours[7:10] == pytest.approx(state[7:10], abs=TWIST * speed)
+    assert EDGE * ours[10:] == pytest.approx(EDGE * state[10:], abs=TWIST * speed)
+    assert min(found.gaps) > -1e-8 * EDGE or found.standing
+    assert found.gaps[found.point] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_free_body_alike_about_all_axes_keeps_its_twist_but_for_gravity() -> None:
+    draw = random.Random(1)
+    for _ in range(100):
+        start = in_flight(draw)
+        found = fall(start, ALIKE, CUBE)
+        t = found.time
+        turned = Rotation.from_rotvec(np.array(start.angular_velocity) * t) * Rotation.from_quat(start.orientation)
+        x, v = np.array(start.position), np.array(start.velocity)
+        g = np.array([0.0, 0.0, -9.81])
+        end = np.concatenate([x + (v + 0.5 * g * t) * t, turned.as_quat(), v + g * t, start.angular_velocity])
+        gaps = end[2] + turned.apply(CUBE)[:, 2]
+        assert_agrees(found, int(gaps.argmin()), t, end)
+        assert min(gaps) == pytest.approx(0.0, abs=EDGE * TIME)
+        before = np.linspace(0.0, t, 200)[1:-1]
+        turns = Rotation.from_rotvec(np.outer(before, start.angular_velocity)) * Rotation.from_quat(start.orientation)
+        lows = np.array([turn.apply(CUBE)[:, 2].min() for turn in turns])
+        assert (x[2] + (v[2] + 0.5 * g[2] * before) * before + lows).min() > 0.0
+
+
+@pytest.mark.parametrize("pull", [Pull(), DECK], ids=["fixed", "deck"])
+@pytest.mark.parametrize("inertia", [ALIKE, GENERAL], ids=["alike", "general"])
+def test_free_bodies_touch_down_by_eulers_equations(inertia: tuple[float, ...], pull: Pull) -> None:
+    draw = random.Random(2)
+    for _ in range(10):
+        start = in_flight(draw)
+        course = Newton(inertia, CUBE, {}, 0.0, pull).strike(start, 1.0)
+        assert_agrees(fall(start, inertia, CUBE, (), 0.0, pull), course.point, course.time, course.state)
+
+
+def test_a_body_that_flips_over_keeps_energy_and_angular_momentum() -> None:
+    inertia = tuple(ALIKE[0] * part for part in (0.6, 1.0, 1.4, 0.0, 0.0, 0.0))
+    start = SpatialState((0.0, 0.0, 10.0), FLAT, (0.0, 0.0, -1.0), (1e-2, 15.0, 1e-2))
+    found = fall(start, inertia, CUBE, horizon=10.0)
+    parts = []
+    for state in (start, found.state):
+        turn = Rotation.from_quat(state.orientation).as_matrix()
+        momentum = turn @ tensor(inertia) @ turn.T @ state.angular_velocity
+        parts.append([*momentum, momentum @ state.angular_velocity / 2.0])
+    assert abs(turn[1, 1]) < 0.9 or turn[1, 1] < 0.0  # it has left its unstable axis
+    assert parts[1] == pytest.approx(parts[0], rel=1e-4, abs=1e-4 * max(parts[0]))
+
+
+@pytest.mark.parametrize("pull", [Pull(), DECK], ids=["fixed", "deck"])
+@pytest.mark.parametrize("inertia", [ALIKE, GENERAL], ids=["alike", "general"])
+@pytest.mark.parametrize(("friction", "slip"), [(3.0, 0.0), (0.2, 1.0)], ids=["sticks", "slips"])
+def test_a_body_on_one_corner_turns_about_it_or_slips_on_it(
+    friction: float, slip: float, inertia: tuple[float, ...], pull: Pull
+) -> None:
+    draw, compared = random.Random(3), 0
+    while compared < 5:
+        start, corner = on_corner(draw, slip)
+        newton = Newton(inertia, CUBE, {corner: "+" if slip else "S"}, friction, pull)
+        if (
+            slip
+            and np.hypot(
+                *(
+                    np.cross(start.angular_velocity, Rotation.from_quat(start.orientation).apply(CUBE[corner]))
+                    + start.velocity
+                )[:2]
+            )
+            < 0.7
+        ):
+            continue  # its slip may stop on the way
+        course = newton.strike(start, 0.25)
+        if course.margin < 0.0 or course.point < 0:
+            continue
+        compared += 1
+        found = fall(start, inertia, CUBE, (corner,), friction, pull)
+        assert_agrees(found, course.point, course.time, course.state)
+        assert found.standing == (corner,)
+
+
+def planar(draw: random.Random, friction: float) -> tuple[Fall, SpatialState, tuple[Any, ...]]:
+    """A body on its edge, and its touchdown by the planar engine."""
+    a, h, angle, omega = 0.05, draw.uniform(0.02, 0.08), draw.uniform(0.02, 0.75), draw.uniform(-6.0, 2.0)
+    slip = draw.choice([0.0, draw.uniform(-1.0, 1.0)])
+    corners = ((-a, -h), (a, -h), (a, h), (-a, h))
+    c, s = math.cos(angle), math.sin(angle)
+    x, y = c * a - s * h, s * a + c * h
+    start = PlanarState(x=x, y=y, angle=angle, vx=slip - omega * y, vy=omega * x, omega=omega)
+    found = next_touchdown(start, corners, 0, ALIKE[0], friction, (0.0, -9.81), 0.4)
+    pose = (0.0, -math.sin(0.5 * angle), 0.0, math.cos(0.5 * angle))
+    state = SpatialState((x, 0.0, y), pose, (start.vx, 0.0, start.vy), (0.0, -omega, 0.0))
+    return found, state, tuple((x, depth, z) for depth in (-0.05, 0.05) for x, z in corners)
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.1, 0.18, 0.5, 1.0])
+def test_a_body_on_an_edge_in_its_plane_moves_as_the_planar_engine_says(friction: float) -> None:
+    draw = random.Random(4)
+    for _ in range(40):
+        expected, state, points = planar(draw, friction)
+        found = fall(state, ALIKE, points, (0, 4), friction, horizon=0.4)
+        if expected.point < 0:
+            assert found.point < 0
+            continue
+        end = expected.state
+        assert found.point % 4 == expected.point
+        assert found.time == pytest.approx(expected.time, abs=TIME)
+        twist = [end.vx, 0.0, end.vy, 0.0, -EDGE * end.omega, 0.0]
+        ours = [*found.state.velocity, *(EDGE * w for w in found.state.angular_velocity)]
+        assert ours == pytest.approx(twist, abs=TWIST)
+
+
+SEEN = [case for case in GOLDEN["falls"] if float(case["phi0"]) > 1e-6 and abs(float(case["omega0"])) < 100.0]
+"""A lower gap counts as none, and a faster body leaves an edge that is no hinge."""
+
+
+@pytest.mark.parametrize("case", SEEN, ids=lambda case: f"phi0={case['phi0']} omega0={case['omega0']}")
+def test_golden_falls_come_out_on_an_edge(case: dict[str, str]) -> None:
+    a, h, rho_squared, gravity, angle, omega, time, rate = (float(value) for value in case.values())
+    c, s = math.cos(angle), math.sin(angle)
+    x, z = c * a - s * h, s * a + c * h
+    pose = (0.0, -math.sin(0.5 * angle), 0.0, math.cos(0.5 * angle))
+    state = SpatialState((x, 0.0, z), pose, (-omega * z, 0.0, omega * x), (0.0, -omega, 0.0))
+    points = [(side, depth, -h) for depth in (-0.1, 0.1) for side in (-a, 2.0 * a)]
+    pull = Pull(gravity=(0.0, 0.0, -gravity))
+    found = fall(state, (rho_squared,) * 3 + (0.0,) * 3, points, (0, 2), 1e6, pull, 2.0 * time)
+    assert found.point % 2 == 1
+    assert found.time == pytest.approx(time, rel=TIME)
+    assert found.state.angular_velocity[1] == pytest.approx(-rate, rel=TIME)
+
+
+def test_turning_the_scene_about_the_normal_and_mirroring_it_turns_and_mirrors_the_touchdown() -> None:
+    draw = random.Random(5)
+    for _ in range(20):
+        start, corner = on_corner(draw, 0.5)
+        found = fall(start, GENERAL, CUBE, (corner,), 0.3)
+        if found.point < 0:
+            continue
+        turn = Rotation.from_rotvec([0.0, 0.0, draw.uniform(-3.0, 3.0)])
+        position, velocity, spin = (
+            turn.apply(part) for part in (start.position, start.velocity, start.angular_velocity)
+        )
+        pose = (turn * Rotation.from_quat(start.orientation)).as_quat()
+        turned = fall(SpatialState(position, pose, velocity, spin), GENERAL, CUBE, (corner,), 0.3)
+        assert turned.point == found.point
+        assert turned.time == pytest.approx(found.time, abs=TIME)
+        assert turned.state.velocity == pytest.approx(turn.apply(found.state.velocity), abs=TWIST)
+        # Mirrored in y: places and velocities change the sign of y, turns those of x and z.
+        mirror = np.array([1.0, -1.0, 1.0])
+        x, y, z, w = start.orientation
+        mirrored = fall(
+            SpatialState(
+                mirror * start.position, (-x, y, -z, w), mirror * start.velocity, -mirror * start.angular_velocity
+            ),
+            tuple(np.array(GENERAL) * [1, 1, 1, -1, 1, -1]),
+            [(x, -y, z) for x, y, z in CUBE],
+            (corner,),
+            0.3,
+        )
+        assert mirrored.point == found.point
+        assert mirrored.time == pytest.approx(found.time, abs=TIME)
+        assert mirrored.state.velocity == pytest.approx(mirror * found.state.velocity, abs=TWIST)
+
+
+def test_a_body_that_lies_on_a_face_has_no_touchdown_and_what_it_takes_is_short() -> None:
+    for velocity, spin in (((0.0, 0.0, 0.0), 0.0), ((0.5, 0.2, 0.0), 2.0)):
+        state = SpatialState((0.0, 0.0, 0.5 * EDGE), FLAT, velocity, (0.0, 0.0, spin))
+        for standing in ((0, 2, 4, 6), (0, 2, 4), (2, 4, 0, 6)):
+            assert fall(state, ALIKE, CUBE, standing, 0.3).point < 0
+
+
+def test_a_tall_body_that_slides_on_a_rough_support_tips_over_and_strikes() -> None:
+    tall = [(x, y, 4.0 * z) for x, y, z in CUBE]
+    state = SpatialState((0.0, 0.0, 2.0 * EDGE), FLAT, (2.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    found = fall(state, (0.0142, 0.0142, 0.00167, 0.0, 0.0, 0.0), tall, (0, 2, 4, 6), 0.8, horizon=2.0)
+    assert found.point in (5, 7)
+    assert max(found.rates[5], found.rates[7]) < -0.5
+
+
+def test_a_point_beside_those_that_stand_strikes_at_once_where_it_is_on_the_support_and_approaches() -> None:
+    state = SpatialState((0.0, 0.0, 0.5 * EDGE), FLAT, (0.0, 0.0, -0.2), (0.0, 4.0, 0.0))
+    found = fall(state, ALIKE, CUBE, (0, 2), 0.3)
+    assert found.time == 0.0
+    assert found.point in (4, 6)
+
+
+def test_odd_numbers_have_no_touchdown_and_raise_nothing() -> None:
+    good = SpatialState((0.0, 0.0, 0.2), FLAT, (0.0, 0.0, -1.0), (1.0, 2.0, 3.0))
+    bad = [
+        fall(good._replace(position=(0.0, math.nan, 0.2)), ALIKE, CUBE),
+        fall(good._replace(velocity=(0.0, math.inf, 0.2)), ALIKE, CUBE),
+        fall(good._replace(orientation=(0.0, 0.0, 0.0, 0.0)), ALIKE, CUBE),
+        fall(good, (1.0, -1.0, 1.0, 0.0, 0.0, 0.0), CUBE),
+        fall(good, (1.0, 1.0, 1.0, 5.0, 0.0, 0.0), CUBE),
+        fall(good, (0.0,) * 6, CUBE),
+        fall(good, ALIKE, CUBE, (), -0.1),
+        fall(good, ALIKE, CUBE, (), math.nan),
+        fall(good, ALIKE, CUBE, (), 0.1, Pull(gravity=(0.0, 0.0, math.nan))),
+        fall(good, ALIKE, CUBE, (), 0.1, horizon=-1.0),
+        fall(good, ALIKE, ()),
+    ]
+    assert {(found.time, found.point) for found in bad} == {(math.inf, -1)}
+    assert fall(good, ALIKE, [(0.0, 0.0, 0.0)]).point == 0
+    assert fall(good, ALIKE, [(0.0, 0.0, 0.0)] * 3, (0, 1, 2), 1e4).point == -1
+    weightless = fall(good, ALIKE, CUBE, (0, 1), 0.5, Pull(gravity=(0.0, 0.0, 0.0)))
+    assert all(math.isfinite(number) for number in numbers_of(weightless.state))
+
+
+def test_random_stances_give_finite_touchdowns_above_the_support() -> None:
+    draw = random.Random(6)
+    for _ in range(400):
+        start, corner = on_corner(draw, draw.choice([0.0, 0.5]))
+        others = [i for i in range(8) if i != corner and draw.random() < 0.2]
+        friction = draw.choice([0.0, 0.2, 0.7, 1.5, 1e4])
+        found = fall(start, draw.choice([ALIKE, GENERAL]), CUBE, (corner, *others), friction, horizon=0.3)
+        assert np.isfinite(numbers_of(found.state)).all()
+        if found.point >= 0:
+            assert 0.0 <= found.time <= 0.3
+            assert found.rates[found.point] < 0.0
+            free = [gap for i, gap in enumerate(found.gaps) if i not in (corner, *others)]
+            assert min(free) > -1e-6 * EDGE or found.time == 0.0
+
+
+@pytest.mark.extras
+def test_compiled_and_plain_code_give_the_same_bits() -> None:
+    pytest.importorskip("numba")
+    plain, draw = on_lists(make_solve("")), random.Random(7)
+    for k in range(30):
+        start, corner = on_corner(draw, 0.5 * (k % 2))
+        numbers = [0.3, *numbers_of(start).tolist(), *GENERAL, *(part for parts in DECK for part in parts)]
+        numbers += [0.2] * 8 + [part for point in CUBE for part in point]
+        marks = [int(i == corner or (k % 3 == 0 and i == corner ^ 1)) for i in range(8)] + [0] * 9
+        point, out, labels = solver()(8, numbers, list(marks))
+        point_plain, out_plain, labels_plain = plain(8, numbers, list(marks))
+        assert (point, labels[:8]) == (point_plain, labels_plain[:8])
+        if point >= 0:
+            assert out == out_plain
