@@ -37,11 +37,10 @@ from impact_predictor.parameters.file import read_parameters
 from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction.scene import Robot, Scene, inertia_matrix
 from impact_predictor.prediction.types import Joints, Sample, Touchdown, Vector3
-from impact_predictor.prediction.vectors import add, axes_of, cross, to_body, to_world
-from impact_predictor.prediction.walking.impact import touchdown_of
+from impact_predictor.prediction.vectors import add, axes_of, cross, to_world
+from impact_predictor.prediction.walking.impact import LandingPoint, touchdown_of
 from impact_predictor.prediction.walking.mechanism import (
     ArticulatedMachine,
-    ImpulseResponse,
     LeggedMachine,
     RigidMachine,
 )
@@ -160,17 +159,18 @@ def locked(scene: Scene, inertia: Array) -> Scene:
 def impact(scene: Scene, mechanism: LeggedMachine, case: Case) -> Impact:
     """The impact of a landing, and how it changes the base."""
     found = touchdown(scene, mechanism, case)
-    axes = axes_of(case.base.orientation)
-    normal, ahead = to_body(axes, scene.normal), to_body(axes, cross(found.axis, scene.normal))
-    response = mechanism.response((), found.new, normal, ahead, case.points)
-    assert isinstance(response, ImpulseResponse)
+    # What stops the foot alone, were it not for friction.
+    alone = touchdown(scene._replace(friction=0.0), mechanism, case._replace(old=(), velocity=(0.0, 0.0, -1.0)))
     linear, angular = add(found.linear, case.base.linear, -1.0), add(found.angular, case.base.angular, -1.0)
-    mass, impulse = 1.0 / response.W[2][2], found.impulses[1][0]
+    mass, impulse = alone.impulses[1][0], found.impulses[1][0]
     return Impact(mass, impulse, 1e3 * hypot(*linear), 1e3 * hypot(*angular), found.energy_lost, found.mode)
 
 
 def touchdown(scene: Scene, mechanism: LeggedMachine, case: Case) -> Touchdown:
-    found = touchdown_of(scene, mechanism, case.base, case.points, case.old, (case.new,), 0.0, case.velocity)
+    axes = axes_of(case.base.orientation)
+    places = [add(case.base.position, to_world(axes, point)) for point in case.points]
+    landing = {case.new: LandingPoint(case.velocity)}
+    found = touchdown_of(scene, mechanism, case.base, places, case.old, (case.new,), landing, 0.0)
     assert isinstance(found, Touchdown)
     return found
 

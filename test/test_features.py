@@ -43,6 +43,8 @@ WITHOUT_AND_WITH: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "feet": (BODY, WALKER),
     "force sensors": (WALKER, {**WALKER, "feet.force": 30.0}),
     "schedule": (WALKER, {**WALKER, "feet.has_schedule": True}),
+    "friction of feet": (WALKER, {**WALKER, "feet.friction": [0.5, 0.6]}),
+    "restitution of feet": (WALKER, {**WALKER, "feet.restitution": [0.1]}),
     "margins": (CRATE, {**CRATE, "margins": True}),
     "uncertainty": (CRATE, {**CRATE, **SURE}),
     "several bodies": (CRATE, {**CRATE, "bodies": ["crate"]}),
@@ -54,7 +56,12 @@ HEAVY = {"matplotlib", "numba", "pinocchio", "plotly", "rich", "scipy"}
 """Packages whose import takes long, and that a running predictor needs for some features at most."""
 LONGEST = 4 * NANOSECONDS
 """Stamps of the last messages: some falls, after a support has been watched for a while."""
-NEEDED = {"numba": "uncertainty", "scipy": "uncertainty", "pinocchio": "articulated inertia"}
+NEEDED = {
+    "numba": {"uncertainty", "feet"},
+    "scipy": {"uncertainty", "feet"},
+    "pinocchio": {"articulated inertia"},
+}
+"""... and the features of which one needs them."""
 
 PROBE = """
 import os, pickle, sys
@@ -179,4 +186,4 @@ def test_no_shipped_scene_loads_or_subscribes_to_what_only_features_need_that_it
         needed = set().union(bare.modules, bare.topics, *(added[name] for name in on & added.keys()))
         left_out = set().union(*(added[name] for name in added.keys() - on)) - needed
         assert not left_out & (one.modules | one.topics), scene
-        assert one.packages & HEAVY <= {package for package, feature in NEEDED.items() if feature in on}, scene
+        assert one.packages & HEAVY <= {package for package, features in NEEDED.items() if features & on}, scene

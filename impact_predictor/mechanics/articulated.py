@@ -80,20 +80,17 @@ class WholeBody:
         return moved
 
     def mobility(
-        self, contacts: Sequence[Sequence[int]], ways: Sequence[Sequence[float]]
+        self, points: Sequence[int], ways: NDArray[np.float64]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """W = G M^-1 G^T in 1/kg, and M^-1 G^T, the change of the generalized velocities by each unit impulse.
 
-        A row of G is the velocity along one of the `ways`, unit vectors, of one of the `contacts`: of the mean of its
-        points, given by their indices. Rows of one contact follow each other; a contact without points has rows of 0.
+        A row of G is the velocity of one of the `points`, given by their indices, along one of the `ways` (k, 3), unit
+        vectors; rows of one point follow each other.
         """
-        means = [
-            self.jacobians[list(those)].mean(axis=0) if those else np.zeros((3, len(self.inertia)))
-            for those in contacts
-        ]
-        rows = np.concatenate([np.asarray(ways) @ mean for mean in means])
-        moved = np.linalg.solve(self.inertia, rows.T)
-        return rows @ moved, moved
+        rows = (ways @ self.jacobians[list(points)]).reshape(-1, len(self.inertia))
+        root = np.linalg.inv(np.linalg.cholesky(self.inertia))
+        half = root @ rows.T
+        return half.T @ half, root.T @ half
 
 
 def _pinocchio() -> Any:

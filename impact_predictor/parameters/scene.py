@@ -126,6 +126,12 @@ def _check_feet(one: _Given) -> None:
         raise InputError(
             f"{one.named(points)} and {one.named(feet)} are both given: feet move, so their points come with messages"
         )
+    for name in ("feet.friction", "feet.restitution"):
+        if len(values[name]) not in (0, 1, len(values[feet])):
+            raise InputError(
+                f"{one.named(name)} has {len(values[name])} numbers{one.of}, but feet.names has {len(values[feet])}: "
+                "give one number for each foot, or one for all of them"
+            )
     frames, named = len(values["robot.frames"]), one.named("robot.frames")
     if frames and not values["robot.urdf"] and one.is_own("robot.frames"):
         raise InputError(f"{named} are frames of a model: give its file as robot.urdf")

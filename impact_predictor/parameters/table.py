@@ -324,6 +324,24 @@ _TABLE: Final = (
         high=1e9,
         fixed=TOPICS,
     ),
+    doubles(
+        "feet.friction",
+        (),
+        "Coulomb friction coefficient between each foot and the ground, in the order of feet.names, or one for all of "
+        "them. Left out, it is contact.friction.",
+        unit="1",
+        low=0.0,
+        high=100.0,
+    ),
+    doubles(
+        "feet.restitution",
+        (),
+        "Coefficient of restitution of each foot that lands, in the order of feet.names, or one for all of them. Left "
+        "out, it is contact.restitution.",
+        unit="1",
+        low=0.0,
+        high=1.0,
+    ),
     boolean(
         "feet.has_schedule",
         False,

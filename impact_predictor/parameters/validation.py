@@ -107,5 +107,6 @@ def _hint(name: str, bodies: Sequence[str]) -> str:
     if common in PARAMETERS and body not in _TAKEN:
         return f", for {body} is not among the bodies: {', '.join(bodies)}" if bodies else ", for bodies is not given"
     of_bodies = [f"{body}.{one.name}" for body in bodies for one in PARAMETERS.values() if not one.shared]
-    close = difflib.get_close_matches(name, [*PARAMETERS, *of_bodies], n=1, cutoff=0.5)
+    known = [one for one in PARAMETERS if one.endswith(f".{name}")]
+    close = known or difflib.get_close_matches(name, [*PARAMETERS, *of_bodies], n=1, cutoff=0.5)
     return f", did you mean {close[0]}?" if close else f"; there are {', '.join(PARAMETERS)}"

@@ -40,6 +40,8 @@ SWITCHES: Final = {
     "articulated inertia": "feet.names robot.urdf",
     "force sensors": "feet.names feet.force",
     "schedule": "feet.names feet.has_schedule",
+    "friction of feet": "feet.names feet.friction",
+    "restitution of feet": "feet.names feet.restitution",
     "margins": "margins",
     "uncertainty": "uncertainty.samples",
     "several bodies": "bodies",
@@ -103,7 +105,7 @@ class Walking(NamedTuple):
     the geometry in this order. A change of stance is believed after `dead_time` s; contact points older than `timeout`
     s tell nothing any more. From `force` (N) on a force sensor says that its foot stands; 0 where there are none.
     `has_schedule` tells that a planner does publish when the feet are to stand. Without a `robot` the legs have no mass
-    and the body is rigid.
+    and the body is rigid. `friction` and `restitution` of each foot, or one for all; empty where they are the scene's.
     """
 
     feet: tuple[str, ...]
@@ -113,6 +115,12 @@ class Walking(NamedTuple):
     force: float = 0.0
     has_schedule: bool = False
     robot: Robot | None = None
+    friction: tuple[float, ...] = ()
+    restitution: tuple[float, ...] = ()
+
+    def at_points(self, told: tuple[float, ...], points: list[int]) -> list[float]:
+        """What is `told` of each foot, or of all, at some points of theirs, by the indices of these."""
+        return [told[i // self.points] if len(told) > 1 else told[0] for i in points]
 
 
 class Scene(NamedTuple):

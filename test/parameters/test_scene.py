@@ -131,6 +131,22 @@ REFUSED: list[tuple[dict[str, Any], str]] = [
     ({"feet.points": 2}, "feet.points is for a machine that walks: give the names of its feet as feet.names"),
     ({"feet.force": 30.0}, "feet.force is for a machine that walks: give the names of its feet as feet.names"),
     ({"feet.has_schedule": True}, "feet.has_schedule is for a machine that walks: give the names of its feet as feet"),
+    (
+        {**FEET, "feet.friction": [0.4, -0.1]},
+        "feet.friction is [0.4, -0.1], but it must be a list of finite doubles",
+    ),
+    (
+        {**FEET, "feet.restitution": [1.2]},
+        "feet.restitution is [1.2], but it must be a list of finite doubles",
+    ),
+    (
+        {**FEET, "feet.friction": [0.4, 0.5, 0.6]},
+        "feet.friction has 3 numbers, but feet.names has 2: give one number for each foot, or one for all of them",
+    ),
+    (
+        {"feet.restitution": [0.1]},
+        "feet.restitution is for a machine that walks: give the names of its feet",
+    ),
     ({"robot.urdf": "a.urdf"}, "robot.urdf is for a machine that walks: give the names of its feet as feet.names"),
     # Models
     ({**FEET, "robot.urdf": "a.urdf", "robot.frames": ["a", "a"]}, "but 'a' is there twice"),

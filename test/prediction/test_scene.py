@@ -82,12 +82,14 @@ def test_the_feet_of_a_machine_and_its_model_reach_the_scene() -> None:
         "feet.timeout": 0.2,
         "feet.force": 30.0,
         "feet.has_schedule": True,
+        "feet.friction": [0.4, 0.5],
+        "feet.restitution": [0.1],
         "robot.urdf": "robot.urdf",
         "robot.frames": ["left_heel", "left_toe", "right_heel", "right_toe"],
     }
     scene = Scene.from_parameters(validate({**BODY, **given}))
     robot = Robot("robot.urdf", ("left_heel", "left_toe", "right_heel", "right_toe"))
-    assert scene.walking == Walking(("left", "right"), 2, 0.01, 0.2, 30.0, True, robot)
+    assert scene.walking == Walking(("left", "right"), 2, 0.01, 0.2, 30.0, True, robot, (0.4, 0.5), (0.1,))
     assert not scene.needs_geometry  # the joints tell where the feet are
     without = {name: value for name, value in given.items() if not name.startswith("robot.")}
     assert Scene.from_parameters(validate({**BODY, **without})).needs_geometry

@@ -272,6 +272,8 @@ def _of_all(field: NDArray[np.float64]) -> NDArray[np.float64]:
 def _for_each(n: int, field: ArrayLike, name: str) -> NDArray[np.float64]:
     """A number for each contact (..., n)."""
     array = np.asarray(field, float)
+    if array.shape == (n,):
+        return array
     if array.shape[-1:] not in ((), (1,), (n,)):
         raise ValueError(f"{name} has the shape {array.shape}; give one number, or one for each of {n} contacts")
     return np.broadcast_to(array, (*array.shape[:-1], n))

@@ -1,134 +1,170 @@
-"""The impact that a landing foot makes, through contact space: `touchdown_of`."""
+"""The impact that landing feet make, each of their points a contact beside those that stand: `touchdown_of`."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from math import hypot, inf
+from collections.abc import Mapping, Sequence
+from math import hypot, sqrt
+from typing import NamedTuple
 
-from ...mechanics.contact_space import solve, unchanged
 from ...mechanics.impact.answer import is_slow
-from ...mechanics.types import Flag, Mode, Twist
+from ...mechanics.types import ContactState, Flag, Mode, Twist, Vector
+from ..mode import mode_of
 from ..planar import GRAZES, ORIGIN, ROUNDING, direction_of, edge_of, hardly, off_axis_of
 from ..scene import Scene
-from ..types import Leftover, Sample, SpatialTwist, Status, Touchdown, Vector3
-from ..vectors import Axes, add, axes_of, cross, dot, mean, to_body, to_world
-from .mechanism import LeggedMachine
+from ..types import Leftover, PointOutcome, Sample, SpatialTwist, Status, Touchdown, Vector3
+from ..vectors import add, axes_of, cross, dot, mean, to_body, to_world, total
+from .mechanism import FootStrike, LeggedMachine
 
 USABLE = 0.2
 """The machine turns about the line of its standing points where the landing one is further from it than this part of
 their distance: else that line says nothing of where the machine goes."""
 
+LIFTS = 1e-3
+"""Contacts lift together when they do so faster than this part of the fastest one before: steps of the law err so."""
+
 COLLINEAR = 0.05
 """Standing points no further from a line than this part of its length stand on it."""
+
+
+class LandingPoint(NamedTuple):
+    """A point that lands: its `velocity` (m/s) relative to the support, along the axes of the frame that the pose is
+    in, and how many s it lands after the first one.
+    """
+
+    velocity: Vector3
+    delay: float = 0.0
+
+
+AT_REST = LandingPoint(ORIGIN)
 
 
 def touchdown_of(
     scene: Scene,
     machine: LeggedMachine,
     base: Sample,
-    points: tuple[Vector3, ...],
-    old: tuple[int, ...],
+    places: Sequence[Vector3],
+    stood: tuple[int, ...],
     new: tuple[int, ...],
+    landing: Mapping[int, LandingPoint],
     lead_time: float,
-    velocity: Vector3,
-    together: Mapping[int, Vector3] | None = None,
 ) -> Touchdown | Status:
-    """The touchdown of the `new` points of one foot while the `old` ones stand, with its impact.
+    """The touchdown of the `new` points of one foot, with its impact.
 
     `base` is the sample with the pose and the twist that the base has at the touchdown, `lead_time` s after its stamp;
-    `points` (m, in its frame) are those of then, and `velocity` (m/s) is that of the new contact relative to the
-    support, along the axes of the frame that the pose is in. The old contact is the mean of the points of other feet
-    that land `together` with this one, and strikes with the mean of their velocities (Flag.BOTH_STRUCK). Else it rests:
-    it is that of the same foot where other points of it stand, else the mean of all standing points. Joints are free
-    during an impact, or held by a `machine` that has none. Leftover.OUT_OF_PLANE where a foot of a rigid machine
-    would be pressed into the ground that these two contacts leave out. Feet that have braked before they land make no
-    impact (Mode.NO_IMPACT). A status, where the machine has no response.
+    the points are then at `places` (m, in the world). Those that are `landing` are the new ones, and those of feet that
+    land together with them; those that `stood` rest on the support. Each is a contact of the law in three dimensions.
+    The old contacts, which give the impact plane and the mode, are those that land together with the new ones, else
+    those that stood of the same foot, else all that stood. Joints are free during an impact, or held by a `machine`
+    that has none. Feet that have braked before they land make no impact (Mode.NO_IMPACT). A status, where the machine
+    has no response.
     """
-    together = together or {}
+    walking, normal, those = scene.walking, scene.normal, sorted({*stood, *landing})
+    assert walking is not None
     axes = axes_of(base.orientation)
-    normal, striking = to_body(axes, scene.normal), to_body(axes, velocity)
-    beside = to_body(axes, mean(list(together.values()))) if together else ORIGIN
-    struck = mean([points[i] for i in new])
-    first = tuple(together)
-    if not together:
-        each = 1 if scene.walking is None else scene.walking.points
-        same_foot = [i for i in old if each > 1 and i // each == new[0] // each]
-        first = tuple(same_foot) or old
-    leftover = Leftover.DRIVEN if first else Leftover.DRIVEN | Leftover.ONE_POINT
-    # Negative; 0 where a contact only grazes, or leaves.
-    fall, other = [rate if rate < -GRAZES else 0.0 for rate in (dot(normal, striking), dot(normal, beside))]
-    # Of feet that land together the total law says the same whichever is the new one, also where one has braked.
-    law = "total" if together and not other else scene.law
-    kick = spin = ORIGIN
-    while True:
-        stood = [points[i] for i in first]
-        ahead = ahead_of(scene, normal, stood, struck, striking)
-        c = other if first else inf, dot(ahead, beside), fall, dot(ahead, striking)
-        if fall == 0.0 and other == 0.0:
-            outcome = unchanged(c, scene.law, 0)
-            break
-        response = machine.response(first, new, normal, ahead, points)
-        if isinstance(response, Status):
-            return response
-        restitution = (scene.restitution if other else 0.0), scene.restitution
-        outcome = solve(response.W, c, (scene.friction, scene.friction), restitution, law)
-        (na, ta), (nb, tb) = outcome.impulses
-        x, y, z, p, q, r = [row[0] * na + row[1] * ta + row[2] * nb + row[3] * tb for row in response.twist]
-        kick, spin = (x, y, z), (p, q, r)
-        # The mean of several feet rolls freely, into the ground on one side: those that are pressed prevent it alone.
-        rates = dict.fromkeys(old, 0.0) | {i: dot(scene.normal, moves) for i, moves in together.items()}
-        pressed = [i for i in rates if rates[i] + dot(normal, add(kick, cross(spin, points[i]))) < -GRAZES]
-        if not (machine.is_rigid and pressed):
-            break
-        held = tuple([i for i in pressed if i in first])
-        if together or len(held) in (0, len(first)):
-            leftover |= Leftover.OUT_OF_PLANE
-            break
-        first = held
+    moves, gaps, fastest, strikes = [], [], 0.0, False
+    for i in those:
+        velocity, delay = landing.get(i, AT_REST)
+        rate = dot(normal, velocity)
+        # What only grazes the support, or leaves it, rests.
+        approach = rate if rate < -GRAZES else 0.0
+        velocity = add(velocity, normal, approach - rate)
+        moves.append(velocity)
+        gaps.append(-approach * delay)
+        fastest, strikes = max(fastest, dot(velocity, velocity)), strikes or approach < 0.0
+    strike = FootStrike(
+        points=those,
+        arms=[add(places[i], base.position, -1.0) for i in those],
+        velocities=moves,
+        axes=axes,
+        normal=normal,
+        friction=walking.at_points(walking.friction or (scene.friction,), those),
+        restitution=walking.at_points(walking.restitution or (scene.restitution,), those),
+        gaps=gaps,
+    )
+    found = machine.struck(strike, scene.law)
+    if isinstance(found, Status):
+        return found
+    contacts = tuple(
+        [
+            PointOutcome(i, i in landing, impulse, velocity, state)
+            for i, impulse, velocity, state in zip(those, found.impulses, found.velocities, found.states, strict=True)
+        ]
+    )
+    same_foot = [i for i in stood if i // walking.points == new[0] // walking.points]
+    old = tuple([i for i in landing if i not in new] or same_foot or stood)
+    others, struck = ([contact for contact in contacts if contact.point in group] for group in (old, new))
+    striking, middle = mean([moves[those.index(i)] for i in new]), mean([places[i] for i in new])
+    center, (kick, spin) = to_world(axes, scene.center_of_mass), found.change
+    masses = add(base.position, center)
+    feet = [places[i] for i in old]
+    ahead = ahead_of(scene, feet, middle, striking, masses)
     axis = cross(normal, ahead)
-    linear, angular = add(base.linear, kick), add(base.angular, spin)
-    arms = [add(point, scene.center_of_mass, -1.0) for point in ((mean(stood), struck) if first else (struck,))]
-    span = add(arms[-1], arms[0], -1.0)
-    gaps = [dot(normal, points[i]) for i in new]
-    slow = outcome.mode is not Mode.NO_IMPACT and is_slow(outcome.impulses[1][0] / scene.mass, scene.validity)
+    impulses = together(others, normal, ahead), together(struck, normal, ahead)
+    mode = mode_of(others, struck, normal, LIFTS * sqrt(fastest)) if strikes else Mode.NO_IMPACT
+    flags = found.flags
+    if strikes and is_slow(impulses[1][0] / scene.mass, scene.validity):
+        flags |= Flag.SLOW_IMPACT
+    if machine.is_rigid and shares_freely(contacts, normal):
+        flags |= Flag.SHARED_FRICTION
+    delays = [landing[i].delay for i in new]
+    stance = mean(feet) if feet else middle
+    span = add(middle, stance, -1.0)
+    linear, angular = to_world(axes, base.linear), to_world(axes, base.angular)
+    before = SpatialTwist(add(linear, cross(angular, center)), angular)
+    after = SpatialTwist(add(add(before.linear, kick), cross(spin, center)), add(angular, spin))
     return Touchdown(
         lead_time=lead_time,
-        mode=outcome.mode,
-        before=planar_twist(scene, base.linear, base.angular, ahead, normal, axis),
-        after=planar_twist(scene, linear, angular, ahead, normal, axis),
-        impulses=outcome.impulses,
-        segments=outcome.segments,
-        energy_lost=outcome.energy_lost,
-        flags=outcome.flags | (Flag.SLOW_IMPACT if slow else Flag.NONE),
-        unique=outcome.unique,
-        law=outcome.law,
-        old=first,
+        mode=mode,
+        before=in_plane(before, ahead, normal, axis),
+        after=in_plane(after, ahead, normal, axis),
+        impulses=impulses,
+        segments=(),
+        energy_lost=found.energy_lost,
+        flags=flags,
+        unique=True,
+        law=scene.law,
+        old=old,
         new=new,
-        axis=to_world(axes, axis),
+        axis=axis,
         position=base.position,
         orientation=base.orientation,
-        linear=linear,
-        angular=angular,
+        linear=add(base.linear, to_body(axes, kick)),
+        angular=add(base.angular, to_body(axes, spin)),
         half_distance=0.5 * hypot(dot(span, ahead), dot(span, normal)),
-        off_axis=off_axis_of(base.angular, axis, dot(axis, base.angular)),
+        off_axis=off_axis_of(angular, axis, dot(axis, angular)),
         lateral=dot(axis, striking),
-        closing_spread=(max(gaps) - min(gaps)) / -fall if fall < 0.0 else 0.0,
-        offset=max([abs(dot(axis, arm)) for arm in arms]),
-        leftover=leftover,
-        before_6d=spatial_twist(scene, axes, base.linear, base.angular),
-        after_6d=spatial_twist(scene, axes, linear, angular),
+        closing_spread=max(delays) - min(delays),
+        offset=max([abs(dot(axis, add(place, masses, -1.0))) for place in (stance, middle)]),
+        leftover=Leftover.DRIVEN if old else Leftover.DRIVEN | Leftover.ONE_POINT,
+        before_6d=before,
+        after_6d=after,
+        contacts=contacts,
     )
 
 
-def ahead_of(scene: Scene, normal: Vector3, stood: list[Vector3], struck: Vector3, velocity: Vector3) -> Vector3:
-    """The unit vector in the support along which the impact plane lies, in the body frame.
+def together(contacts: list[PointOutcome], normal: Vector3, ahead: Vector3) -> Vector:
+    """The impulses of some contacts together, along the normal and in the impact plane."""
+    return total([dot(normal, one.impulse) for one in contacts]), total([dot(ahead, one.impulse) for one in contacts])
 
-    It leads from the old contact to the new one, across the line of standing points about which the machine turns.
-    Where nothing stands it is the direction of the slip, which friction opposes.
+
+def shares_freely(contacts: tuple[PointOutcome, ...], normal: Vector3) -> bool:
+    """Whether the contacts of a rigid body may share their impulses otherwise, with the same twist after them.
+
+    Two that stick may push each other along their line, and on four that hold the normal impulses have no one answer.
     """
-    slow = hardly(scene) ** 2
+    holding = [one.state for one in contacts if dot(normal, one.impulse) > 0.0]
+    return len(holding) > 3 or holding.count(ContactState.STICKS) > 1
+
+
+def ahead_of(scene: Scene, stood: list[Vector3], struck: Vector3, velocity: Vector3, center: Vector3) -> Vector3:
+    """The unit vector in the support along which the impact plane lies.
+
+    It leads from the old contacts to the new one, across the line of standing points about which the machine turns.
+    Where nothing stands it is the direction of the slip, which friction opposes; `center` is the mass centre's place.
+    """
+    normal, slow = scene.normal, hardly(scene) ** 2
     if not stood:
-        return direction_of(normal, [(velocity, slow), (add(struck, scene.center_of_mass, -1.0), 0.0)])
+        return direction_of(normal, [(velocity, slow), (add(struck, center, -1.0), 0.0)])
     arm = add(struck, mean(stood), -1.0)
     square = dot(arm, arm)
     ways = [(arm, ROUNDING * square), (velocity, slow)]
@@ -142,15 +178,6 @@ def ahead_of(scene: Scene, normal: Vector3, stood: list[Vector3], struck: Vector
     return direction_of(normal, ways)
 
 
-def spatial_twist(scene: Scene, axes: Axes, linear: Vector3, angular: Vector3) -> SpatialTwist:
-    """The twist of the mass centre in the world frame, from that of the base in its own."""
-    velocity = add(linear, cross(angular, scene.center_of_mass))
-    return SpatialTwist(to_world(axes, velocity), to_world(axes, angular))
-
-
-def planar_twist(
-    scene: Scene, linear: Vector3, angular: Vector3, ahead: Vector3, normal: Vector3, axis: Vector3
-) -> Twist:
-    """The twist of the mass centre in the impact plane, from that of the base."""
-    velocity = add(linear, cross(angular, scene.center_of_mass))
-    return Twist(dot(ahead, velocity), dot(normal, velocity), -dot(axis, angular))
+def in_plane(twist: SpatialTwist, ahead: Vector3, normal: Vector3, axis: Vector3) -> Twist:
+    """A twist of the mass centre in the impact plane."""
+    return Twist(dot(ahead, twist.linear), dot(normal, twist.linear), -dot(axis, twist.angular))

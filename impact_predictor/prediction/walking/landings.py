@@ -18,8 +18,8 @@ from ..planar import posture_of
 from ..scene import Scene, Walking
 from ..score import LONGEST, MEASURED, Pending, Track
 from ..types import Landing, Sample, Schedule, Score, Status, Touchdown, Vector3, Wrench
-from ..vectors import add, axes_of, dot, mean, to_body
-from .impact import touchdown_of
+from ..vectors import dot, mean
+from .impact import LandingPoint, touchdown_of
 from .mechanism import BaseMotion, LeggedMachine, TwistLine, extrapolated
 from .stance import ExpectedLanding, FootPoint
 
@@ -30,9 +30,9 @@ FURTHEST = 1_000_000_000  # ns from a planned landing beyond which a landing is 
 class FootCollision(NamedTuple):
     """What the impact of a landing is computed from, when somebody wants it.
 
-    The base of a `sample` goes on along a `line` for `time` s; points are then at `places` (m, in the world), the `new`
-    ones of a foot with a mean `velocity` (m/s), those of other feet that land `together` with theirs, and the `old`
-    ones stand. `lead_time` in s is that of the foot itself.
+    The base of a `sample` goes on along a `line` for `time` s; points are then at `places` (m, in the world). The `old`
+    ones stand, and those that are `landing` are the `new` ones of a foot, with those of other feet that land together
+    with it. `lead_time` in s is that of the foot itself.
     """
 
     sample: Sample
@@ -42,8 +42,12 @@ class FootCollision(NamedTuple):
     places: Sequence[Vector3]
     old: tuple[int, ...]
     new: tuple[int, ...]
-    velocity: Vector3
-    together: dict[int, Vector3]
+    landing: dict[int, LandingPoint]
+
+    @property
+    def velocity(self) -> Vector3:
+        """Mean velocity of the foot in m/s."""
+        return mean([self.landing[i].velocity for i in self.new])
 
 
 class PendingLanding:
@@ -84,7 +88,7 @@ class LandingTracker:
     def soonest(self, sample: Sample, dues: list[ExpectedLanding | None]) -> Touchdown | Status | None:
         """The touchdown of the foot that lands next; None where none does.
 
-        Feet that land within the contact time of each other strike together. Each is the old contact of the other.
+        Feet that land within the contact time of each other make one impact.
         """
         points, now = self._points, sample.stamp
         feet = [range(first, first + self._each) for first in range(0, len(points), self._each)]
@@ -103,7 +107,8 @@ class LandingTracker:
         while landings:
             begin = landings[0][0]
             group = [one for one in landings if one[0] <= begin + self._contact_time]
-            struck = sorted([(i, due.velocity) for _, own in group for i, due in own.items()])
+            struck = sorted([one for _, own in group for one in own.items()])
+            landing = {i: LandingPoint(due.velocity, (due.stamp - begin) / NANOSECONDS) for i, due in struck}
             for stamp, own in group:
                 collision = FootCollision(
                     sample=sample,
@@ -113,8 +118,7 @@ class LandingTracker:
                     places=places,
                     old=tuple(standing),
                     new=tuple(own),
-                    velocity=mean([due.velocity for due in own.values()]),
-                    together={i: velocity for i, velocity in struck if i not in own},
+                    landing=landing,
                 )
                 known = [one for i in own if (one := self._announced.get(i)) and one.landing is None]
                 pending = known[0] if known else PendingLanding()
@@ -179,18 +183,15 @@ class LandingTracker:
         return [score for pending in self._landed if (score := self._score(pending)) is not None]
 
     def _impact(self, collision: FootCollision) -> Touchdown | Status:
-        base = extrapolated(collision.sample, collision.line, collision.time)
-        axes, position = axes_of(base.orientation), base.position
         return touchdown_of(
             self._scene,
             self._machine,
-            base,
-            points=tuple([to_body(axes, add(place, position, -1.0)) for place in collision.places]),
-            old=collision.old,
+            base=extrapolated(collision.sample, collision.line, collision.time),
+            places=collision.places,
+            stood=collision.old,
             new=collision.new,
+            landing=collision.landing,
             lead_time=collision.lead_time,
-            velocity=collision.velocity,
-            together=collision.together,
         )
 
     def _measure(self, after: Pending) -> None:
@@ -238,6 +239,7 @@ class LandingTracker:
             known = {j: points[j].due or points[j].arrival for j in together}
             moves = dict.fromkeys(new, arrival.velocity)
             moves |= {j: one.velocity for j, one in known.items() if one is not None and one.velocity is not None}
+        delays = {j: max(0, landed.get(j, begin) - begin) / NANOSECONDS for j in (*new, *together)}
         stamp = frames[i].stamp
         others = [j for j in range(len(points)) if j not in new and j not in together]
         return FootCollision(
@@ -248,8 +250,7 @@ class LandingTracker:
             places=[frame.position for frame in frames],
             old=tuple([j for j in others if points[j].stood(stamp)]),
             new=new,
-            velocity=mean([moves[j] for j in new]),
-            together={j: moves[j] for j in together if j in moves},
+            landing={j: LandingPoint(moves[j], delays[j]) for j in sorted(delays) if j in moves},
         )
 
     def _own(self, foot: range, dues: list[ExpectedLanding | None]) -> dict[int, ExpectedLanding]:

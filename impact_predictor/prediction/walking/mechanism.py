@@ -12,10 +12,13 @@ from typing import NamedTuple
 import numpy as np
 
 from ...errors import InputError
+from ...mechanics.impact.spatial import Body, ContactPoints, solve_spatial_impact
+from ...mechanics.types import ContactState, Flag
 from ...stamps import NANOSECONDS
-from ..scene import Robot, Scene
+from ..planar import GRAZES, ORIGIN, direction_of
+from ..scene import InertiaTensor, Robot, Scene
 from ..types import Geometry, Joints, Sample, Status, Vector3
-from ..vectors import add, axes_of, cross, lines, mean, times, to_body, to_world, turned
+from ..vectors import Axes, add, axes_of, cross, lines, times, to_body, to_world, turned
 
 SINGULAR = 1e-12  # a principal moment of inertia below this part of the largest one is rounding
 NOTHING = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -100,16 +103,35 @@ def extrapolated(sample: Sample, line: TwistLine | None, time: float) -> Sample:
     )
 
 
-class ImpulseResponse(NamedTuple):
-    """What unit impulses at two contacts do, in the order n_old, t_old, n_new, t_new.
+class FootStrike(NamedTuple):
+    """What the feet of a machine bring to an impact, along the axes of the world.
 
-    `W` (4, 4) = G M^-1 G^T in 1/kg gives the change of the contact velocities; `twist` (6, 4), the base's rows of
-    M^-1 G^T, that of the velocity of the base's origin in m/s and of its angular velocity in rad/s, along its axes.
-    What belongs to an old contact that there is not is 0.
+    `points` are the indices of the contacts, `arms` (m) lead there from the base's origin, and `velocities` (m/s) are
+    those relative to the support with its unit `normal`; `axes` of the base; `friction` and `restitution` of each
+    contact, and its `gaps` in m that are still open when the first one closes.
     """
 
-    W: tuple[tuple[float, ...], ...]
-    twist: tuple[tuple[float, ...], ...]
+    points: list[int]
+    arms: list[Vector3]
+    velocities: list[Vector3]
+    axes: Axes
+    normal: Vector3
+    friction: list[float]
+    restitution: list[float]
+    gaps: list[float]
+
+
+class FootResponse(NamedTuple):
+    """What an impact does to a machine: the `change` of the twist of its base, at its origin in m/s and rad/s; of each
+    contact the impulse (N s), the velocity after it (m/s) and the state. All along the axes of the world.
+    """
+
+    change: tuple[Vector3, Vector3]
+    impulses: list[Vector3]
+    velocities: list[Vector3]
+    states: tuple[ContactState, ...]
+    flags: Flag
+    energy_lost: float
 
 
 class RigidMachine:
@@ -123,39 +145,55 @@ class RigidMachine:
     """Whether the feet move with the base alone."""
 
     def __init__(self, scene: Scene) -> None:
-        inertia = np.array(scene.inertia)
-        moments = np.linalg.eigvalsh(inertia)
+        moments = np.linalg.eigvalsh(np.array(scene.inertia))
         if not moments[0] > SINGULAR * moments[-1]:
             raise InputError(
                 f"the inertia {scene.inertia} of the body has no inverse: give one that is positive about every axis"
             )
-        inverse = np.linalg.inv(inertia)
-        x, y, z = scene.center_of_mass
-        center = np.array(((0.0, -z, y), (z, 0.0, -x), (-y, x, 0.0)))
-        # An impulse moves the mass centre, whose velocity is that of the base's origin and omega x center.
-        moved = center @ inverse
-        rows = np.block([[np.eye(3) / scene.mass - moved @ center, moved], [-inverse @ center, inverse]])
-        self._inverse_mass: list[list[float]] = rows.tolist()
+        self._scene = scene
+        # What can be compiled is compiled before the first landing.
+        axes = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+        self.struck(FootStrike([0], [ORIGIN], [ORIGIN], axes, scene.normal, [0.0], [0.0], [0.0]), scene.law)
 
-    def response(
-        self, old: tuple[int, ...], new: tuple[int, ...], normal: Vector3, ahead: Vector3, points: tuple[Vector3, ...]
-    ) -> ImpulseResponse | Status:
-        """The response at the mean of the `old` and at the mean of the `new` points, by their indices.
+    def struck(self, strike: FootStrike, law: str) -> FootResponse | Status:
+        """What an impact does to the machine; a status where it has no response."""
+        scene, axes = self._scene, strike.axes
+        center, body = to_world(axes, scene.center_of_mass), Body(scene.mass, turned_inertia(axes, scene.inertia))
+        # The machine counts as at rest, and the support comes with the velocities of the feet.
+        contacts = ContactPoints(
+            positions=[add(arm, center, -1.0) for arm in strike.arms],
+            friction=strike.friction,
+            restitution=strike.restitution,
+            normals=strike.normal,
+            velocities=[times(velocity, -1.0) for velocity in strike.velocities],
+            gaps=strike.gaps,
+        )
+        found = solve_spatial_impact(body, contacts, NOTHING, law, threshold=GRAZES)
+        assert found.twist is not None
+        x, y, z, p, q, r = found.twist.tolist()
+        spin = p, q, r
+        return FootResponse(
+            (add((x, y, z), cross(spin, center), -1.0), spin),
+            found.impulses.tolist(),
+            found.velocities.tolist(),
+            found.states,
+            found.flags,
+            found.energy_lost,
+        )
 
-        `points` are in m in the base's frame, as are the unit vectors `normal` of the support and `ahead`, the
-        tangent. Where the machine has none a status says why.
-        """
-        rows: list[tuple[float, ...]] = []
-        for those in (old, new):
-            place = mean([points[i] for i in those]) if those else (0.0, 0.0, 0.0)
-            rows += [(*way, *cross(place, way)) if those else NOTHING for way in (normal, ahead)]
-        changes = [[_product(line, row) for line in self._inverse_mass] for row in rows]
-        W = tuple([tuple([_product(row, change) for change in changes]) for row in rows])
-        return ImpulseResponse(W, tuple(zip(*changes, strict=True)))
 
-
-def _product(u: list[float] | tuple[float, ...], v: list[float] | tuple[float, ...]) -> float:
-    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2] + u[3] * v[3] + u[4] * v[4] + u[5] * v[5]
+def turned_inertia(axes: Axes, inertia: InertiaTensor) -> tuple[float, ...]:
+    """The inertia ixx, iyy, izz, ixy, ixz, iyz along the axes of the world, of a body with those axes."""
+    (ax, ay, az), (bx, by, bz), (cx, cy, cz) = axes
+    (px, py, pz), (qx, qy, qz), (rx, ry, rz) = (to_world(axes, row) for row in inertia)
+    return (
+        ax * px + bx * qx + cx * rx,
+        ay * py + by * qy + cy * ry,
+        az * pz + bz * qz + cz * rz,
+        ax * py + bx * qy + cx * ry,
+        ax * pz + bx * qz + cx * rz,
+        ay * pz + by * qz + cy * rz,
+    )
 
 
 class ArticulatedMachine:
@@ -176,6 +214,7 @@ class ArticulatedMachine:
         self._names: tuple[str, ...] = ()
         self._order: list[int] = []
         self._status = Status.NO_GEOMETRY
+        solve_spatial_impact(np.eye(3), ContactPoints([ORIGIN], 0.0), NOTHING[:3])  # compiled as that of RigidMachine
 
     def geometry_of(self, joints: Joints) -> Geometry | Status:
         """The contact points of the robot with such joints, and their velocities where the joints have theirs.
@@ -197,14 +236,25 @@ class ArticulatedMachine:
         moving = body.velocities(np.array(rates)).tolist() if velocities else ()
         return Geometry(joints.stamp, "", tuple(map(tuple, body.points.tolist())), tuple(map(tuple, moving)))
 
-    def response(
-        self, old: tuple[int, ...], new: tuple[int, ...], normal: Vector3, ahead: Vector3, points: tuple[Vector3, ...]
-    ) -> ImpulseResponse | Status:
-        """See `RigidMachine`; the `points` are the model's own, at the last joint positions."""
+    def struck(self, strike: FootStrike, law: str) -> FootResponse | Status:
+        """See `RigidMachine`; the contacts are where the model has them, at the last joint positions."""
         if self._status is not Status.ACCEPTED:
             return self._status
-        W, moved = self.body.mobility((old, new), (normal, ahead))
-        return ImpulseResponse(tuple(map(tuple, W.tolist())), tuple(map(tuple, moved[:6].tolist())))
+        axes, first = strike.axes, direction_of(strike.normal, [])
+        frame = first, cross(strike.normal, first), strike.normal
+        W, moved = self.body.mobility(strike.points, np.array([to_body(axes, way) for way in frame]))
+        contacts, ways = ContactPoints((), strike.friction, strike.restitution, gaps=strike.gaps), np.array(frame)
+        c = (np.array(strike.velocities) @ ways.T).ravel()
+        found = solve_spatial_impact(W, contacts, c, law, threshold=GRAZES)
+        x, y, z, p, q, r = (moved[:6] @ found.impulses.ravel()).tolist()
+        return FootResponse(
+            (to_world(axes, (x, y, z)), to_world(axes, (p, q, r))),
+            (found.impulses @ ways).tolist(),
+            (found.velocities @ ways).tolist(),
+            found.states,
+            found.flags,
+            found.energy_lost,
+        )
 
     def _know(self, names: tuple[str, ...]) -> bool:
         """Whether each joint of the model is once among the names; then their order is known."""

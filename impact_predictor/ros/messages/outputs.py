@@ -61,11 +61,15 @@ def encode_mode(prediction: Prediction) -> bytes:
     return _MODES[Mode.NO_IMPACT if touchdown is None else touchdown.mode]
 
 
-_DOUBTFUL_ON_FEET: Final = int(
-    Flag.JAMMED | Flag.ENERGY_GAINED | Flag.LAST_RESORT | Flag.NO_SOLUTION | Flag.INVALID_INPUT
+_DOUBTFUL_FLAGS: Final = int(
+    Flag.JAMMED
+    | Flag.ENERGY_GAINED
+    | Flag.BOTH_STRUCK
+    | Flag.LAST_RESORT
+    | Flag.NO_SOLUTION
+    | Flag.INVALID_INPUT
+    | Flag.NOT_CONVERGED
 )
-"""Feet that land together are how a machine trots; any other body has its reasons to strike twice at once."""
-_DOUBTFUL_FLAGS: Final = _DOUBTFUL_ON_FEET | int(Flag.BOTH_STRUCK)
 _DOUBTFUL_LEFTOVERS: Final = int(Leftover.OUT_OF_PLANE | Leftover.ONE_CORNER_FIRST | Leftover.TOO_SLOW)
 
 
@@ -84,9 +88,8 @@ def encode_prediction(prediction: Prediction) -> bytes:
         level = OK if accepted else WARN
         message = "no touchdown within the horizon" if accepted else f"sample refused: {text(prediction.status)}"
     else:
-        flags = _DOUBTFUL_ON_FEET if prediction.feet else _DOUBTFUL_FLAGS
         # As integers: what & makes of two flags is a flag again, which takes longer.
-        is_odd = int(touchdown.flags) & flags or int(touchdown.leftover) & _DOUBTFUL_LEFTOVERS
+        is_odd = int(touchdown.flags) & _DOUBTFUL_FLAGS or int(touchdown.leftover) & _DOUBTFUL_LEFTOVERS
         level = WARN if is_odd or not touchdown.unique else OK
         message = f"{text(touchdown.mode)} in {touchdown.lead_time * 1e3:.1f} ms"
         TOUCHDOWN.add_to(pairs, touchdown)

@@ -1,20 +1,25 @@
-"""The impact of a landing foot: the laws of mechanics, in any frame, and the planar impact where it is one."""
+"""The impact of landing feet: the laws of mechanics, in any frame, and the planar impact where it is one."""
 
+import sys
 from math import cos, sin
 
 import numpy as np
 import pytest
 
 from impact_predictor import Mode, solve_impact
-from impact_predictor.mechanics.types import Contact, Flag, TwoPointBody
+from impact_predictor.mechanics.impact import spatial
+from impact_predictor.mechanics.types import Contact, ContactState, Flag, Twist, TwoPointBody
 from impact_predictor.prediction.scene import Scene, Walking
 from impact_predictor.prediction.types import Leftover, Sample, Status
-from impact_predictor.prediction.vectors import axes_of, cross
-from impact_predictor.prediction.walking.impact import touchdown_of
+from impact_predictor.prediction.vectors import add, axes_of, cross, to_world
+from impact_predictor.prediction.walking.impact import LandingPoint, touchdown_of
 from impact_predictor.prediction.walking.mechanism import RigidMachine
 
 FEET = ((0.31, 0.29, -0.58), (0.31, -0.29, -0.58), (-0.31, 0.29, -0.58), (-0.31, -0.29, -0.58))
 LEVEL = (0.0, 0.0, 0.0, 1.0)
+STEPS = 1e-3
+"""The law follows a plastic impact in steps, which err by less than this part of its speeds; an elastic one ..."""
+OF_RESTITUTION = 2e-2
 
 
 def scene_of(**changes):
@@ -54,19 +59,30 @@ def random_landing(source, **changes):
     return scene, base, feet, old, (new,), tuple((velocity @ axes).tolist())
 
 
-def landing(scene, base, feet, old, new, velocity, **together):
-    return touchdown_of(scene, RigidMachine(scene), base, feet, old, new, 0.05, velocity, **together)
+def landing(scene, base, feet, stood, new, velocity, together=None, delays=None, machine=None):
+    """The touchdown of feet in the base's frame; those that land `together` with the new one have their velocities."""
+    delays, axes = delays or {}, axes_of(base.orientation)
+    struck = {**dict.fromkeys(new, velocity), **(together or {})}
+    return touchdown_of(
+        scene,
+        machine or RigidMachine(scene),
+        base,
+        places=[add(base.position, to_world(axes, foot)) for foot in feet],
+        stood=stood,
+        new=new,
+        landing={i: LandingPoint(one, delays.get(i, 0.0)) for i, one in struck.items()},
+        lead_time=0.05,
+    )
 
 
 def motion_of_mass_centre(scene, linear, angular):
     return np.array(linear) + np.cross(angular, scene.center_of_mass), np.array(angular)
 
 
-def impulse_vectors(scene, base, touchdown):
-    """The impulses (old, new) as vectors of the body frame."""
+def in_base(base, touchdown):
+    """Of each contact the foot, and its impulse and its velocity after the impact as vectors of the base's frame."""
     axes = np.array(axes_of(base.orientation))
-    ahead = np.cross(touchdown.axis, scene.normal)
-    return [axes @ (n * np.array(scene.normal) + t * ahead) for n, t in touchdown.impulses]
+    return [(one.point, axes @ one.impulse, axes @ one.velocity) for one in touchdown.contacts]
 
 
 def landings(count, seed, **changes):
@@ -78,32 +94,31 @@ def landings(count, seed, **changes):
 
 def test_a_landing_keeps_the_momentum_balance_about_any_point():
     source = np.random.default_rng(1)
-    for (scene, base, feet, _, new, _), touchdown in landings(200, seed=2):
+    for (scene, base, feet, *_), touchdown in landings(200, seed=2):
         before = motion_of_mass_centre(scene, base.linear, base.angular)
         after = motion_of_mass_centre(scene, touchdown.linear, touchdown.angular)
-        pushes = impulse_vectors(scene, base, touchdown)
-        places = [np.mean([feet[i] for i in those], axis=0) if those else np.zeros(3) for those in (touchdown.old, new)]
+        pushes = [(feet[i], push) for i, push, _ in in_base(base, touchdown)]
         momentum = scene.mass * (after[0] - before[0])
-        assert momentum == pytest.approx(sum(pushes), abs=1e-11)  # rounding of momenta of about 100 N s
+        assert momentum == pytest.approx(sum(push for _, push in pushes), abs=1e-11)  # rounding of about 100 N s
         about = source.normal(size=3)
         turned = np.array(scene.inertia) @ (after[1] - before[1])
         turned += np.cross(np.array(scene.center_of_mass) - about, momentum)
-        assert turned == pytest.approx(
-            sum(np.cross(place - about, push) for place, push in zip(places, pushes, strict=True)), abs=1e-11
-        )
+        assert turned == pytest.approx(sum(np.cross(place - about, push) for place, push in pushes), abs=1e-11)
 
 
-def test_a_landing_leaves_no_approach_and_its_impulses_are_in_their_cones():
+def test_no_foot_is_driven_into_the_ground_and_impulses_are_in_their_cones():
     modes = set()
-    for (scene, _, feet, old, new, _), touchdown in landings(400, seed=3):
-        for normal, tangent in touchdown.impulses:
+    for (scene, base, feet, old, new, velocity), touchdown in landings(400, seed=3):
+        before = np.array(axes_of(base.orientation)) @ velocity
+        for i, (x, y, normal), after in in_base(base, touchdown):
+            assert np.hypot(x, y) <= scene.friction * normal + 1e-10
             assert normal >= 0.0
-            assert abs(tangent) <= scene.friction * normal + 1e-10
-        for those in (old, new):
-            if those:
-                place = np.mean([feet[i] for i in those], axis=0)
-                rate = touchdown.linear[2] + np.cross(touchdown.angular, place)[2]
-                assert rate >= -1e-12
+            assert after[2] >= -1e-9
+            # Legs without mass move on: a foot gets what the twist of the base changes where it is.
+            change = np.subtract(touchdown.linear, base.linear)
+            change += np.cross(np.subtract(touchdown.angular, base.angular), feet[i])
+            assert after == pytest.approx(change + (before if i in new else 0.0), abs=1e-11)
+        assert [(one.point, one.is_new) for one in touchdown.contacts] == sorted((i, i in new) for i in old + new)
         modes.add(touchdown.mode)
     assert {Mode.SLIDE, Mode.PIVOT, Mode.PIVOT_SLIDE} <= modes
 
@@ -111,7 +126,7 @@ def test_a_landing_leaves_no_approach_and_its_impulses_are_in_their_cones():
 @pytest.mark.parametrize("restitution", [0.0, 0.5])
 def test_a_landing_loses_the_kinetic_energy_that_it_says_it_loses(restitution):
     for (scene, base, _, old, *_), touchdown in landings(200, seed=4, restitution=restitution):
-        if touchdown.old != old:
+        if len(old) > 1:
             continue  # Here the mean of the standing feet is at rest, and a single one of them is not.
         energies = []
         for state in (base, touchdown):
@@ -141,11 +156,14 @@ def test_a_wheel_in_its_plane_lands_as_the_planar_body(friction, law):
     touchdown = landing(scene, base, ((x, 0.0, y), (-x, 0.0, y)), (1,), (0,), velocity)
     assert touchdown.mode is expected.mode
     assert touchdown.before == pytest.approx(twist, abs=1e-15)
-    assert touchdown.after == pytest.approx(expected.twist, abs=1e-13)
-    assert touchdown.energy_lost == pytest.approx(expected.energy_lost, abs=1e-13)
+    # The path law errs by its steps, the other one by its sweeps.
+    near = {"path": 1e-5, "total": 1e-10}[law]
+    assert touchdown.after == pytest.approx(expected.twist, abs=near)
+    assert touchdown.energy_lost == pytest.approx(expected.energy_lost, abs=near)
+    assert np.array(touchdown.impulses) == pytest.approx(np.array(expected.impulses), abs=near)
     assert touchdown.axis == pytest.approx((0.0, 1.0, 0.0))
-    assert touchdown.linear == pytest.approx((expected.twist.vx, 0.0, expected.twist.vy), abs=1e-13)
-    assert touchdown.angular == pytest.approx((0.0, -expected.twist.omega, 0.0), abs=1e-13)
+    assert touchdown.linear == pytest.approx((expected.twist.vx, 0.0, expected.twist.vy), abs=near)
+    assert touchdown.angular == pytest.approx((0.0, -expected.twist.omega, 0.0), abs=near)
     assert (touchdown.old, touchdown.new, touchdown.lead_time) == ((1,), (0,), 0.05)
 
 
@@ -165,51 +183,69 @@ def test_otherwise_it_turns_across_the_arm_from_the_middle_of_the_standing_feet(
     assert touchdown.old == old
 
 
-def test_a_toe_strikes_about_the_heel_of_its_own_foot_whatever_else_stands():
+def test_a_toe_strikes_about_the_heel_of_its_own_foot_while_every_foot_that_stands_is_a_contact():
     scene = scene_of(walking=Walking(("left", "right"), points=2))
     touchdown = landing(scene, base_of(), FEET, (0, 1, 2), (3,), (0.0, 0.0, -0.2))
     assert touchdown.old == (2,)
-    # The impulses at the right foot, behind the mass centre, press the left one, ahead of it, into the ground.
-    turn = np.subtract(touchdown.angular, base_of().angular)
-    rise = touchdown.linear[2] - base_of().linear[2]
-    assert min(rise + np.cross(turn, FEET[i])[2] for i in (0, 1)) < 0.0
-    assert Leftover.OUT_OF_PLANE in touchdown.leftover
-    touchdown = landing(scene, base_of(), FEET, (0, 1), (3,), (0.0, 0.0, -0.2))
-    assert set(touchdown.old) <= {0, 1}
-    assert touchdown.old
+    assert [one.point for one in touchdown.contacts] == [0, 1, 2, 3]
+    assert min(one.velocity[2] for one in touchdown.contacts) > -1e-9
+    assert touchdown.leftover == Leftover.DRIVEN
 
 
-@pytest.mark.parametrize("standing", [1, 2, 3])
-def test_no_standing_foot_of_a_rigid_machine_is_driven_into_the_ground(standing):
-    source = np.random.default_rng(standing)
-    scene, dropped = scene_of(), 0
-    for _ in range(100):
-        feet = [tuple(np.add(foot, (*source.uniform(-0.1, 0.1, 2), 0.0))) for foot in FEET]
-        old = tuple(sorted(source.choice([1, 2, 3], standing, replace=False).tolist()))
-        slip = source.uniform(-0.3, 0.3, 2)
-        touchdown = landing(scene, base_of((0.0, 0.0, 0.0), (0.0, 0.0, 0.0)), tuple(feet), old, (0,), (*slip, -1.0))
-        # What the legs do else does not change while the impact lasts: a standing foot gets the change of the twist.
-        rates = [touchdown.linear[2] + np.cross(touchdown.angular, feet[i])[2] for i in old]
-        assert min(rates) > -1e-9
-        dropped += touchdown.old != old
-    assert dropped > 0 or standing == 1
+def test_a_body_with_next_to_no_inertia_is_answered_or_flagged():
+    for inertia in (1e-9, 1e-6, 1e-3):
+        tensor = (inertia, 0.0, 0.0), (0.0, inertia, 0.0), (0.0, 0.0, inertia)
+        scene = scene_of(mass=20.0, inertia=tensor, friction=0.405, walking=Walking(("left", "right")))
+        feet = (3e-17, 0.5, -0.49999999999887373), (-9e-17, -0.5, -0.5)
+        rest = base_of((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.5))
+        touchdown = landing(scene, rest, feet, (1,), (0,), (0.0, 0.0, -0.6666655474983967))
+        sinks = min(one.velocity[2] for one in touchdown.contacts) < -1e-9
+        assert bool(touchdown.flags & Flag.NOT_CONVERGED) is sinks
+        assert np.all(np.isfinite((touchdown.linear, touchdown.angular)))
 
 
-def test_a_body_with_next_to_no_inertia_is_answered_although_its_standing_foot_is_pressed_by_rounding():
-    scene = scene_of(mass=20.0, inertia=((1e-9, 0.0, 0.0), (0.0, 1e-9, 0.0), (0.0, 0.0, 1e-9)), friction=0.405)
-    scene = scene._replace(center_of_mass=(0.0, 0.0, 0.0), walking=Walking(("left", "right")))
-    feet = (3e-17, 0.5, -0.49999999999887373), (-9e-17, -0.5, -0.5)
-    rest = base_of((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.5))
-    touchdown = landing(scene, rest, feet, (1,), (0,), (0.0, 0.0, -0.6666655474983967))
-    assert touchdown.old == (1,)
-    assert touchdown.leftover & Leftover.OUT_OF_PLANE
+def test_a_trunk_with_four_feet_on_the_ground_shares_its_impulses_as_the_solver_chooses():
+    scene, rest = scene_of(**SYMMETRIC, friction=2.0), base_of((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    falling = dict.fromkeys((1, 2, 3), DOWN)
+    for feet, shares in ((FEET, True), (((0.02, 0.01, -0.58), *FEET[1:]), False)):
+        touchdown = landing(scene, rest, feet, (), (0,), DOWN, together=falling if shares else None)
+        assert bool(touchdown.flags & Flag.SHARED_FRICTION) is shares
+
+
+@pytest.mark.parametrize(("told", "expected"), [((0.1, 0.2, 0.3, 0.4), (0.1, 0.2, 0.3, 0.4)), ((0.25,), (0.25,) * 4)])
+def test_each_foot_has_its_own_friction_and_restitution(told, expected):
+    walking = Walking(("LF", "RF", "LH", "RH"), friction=told, restitution=told)
+    scene, touching = scene_of(walking=walking), ((0.0, 0.0, -0.58),) * 4
+    for foot, number in enumerate(expected):
+        slips = (3.0, 0.0, -1.0)
+        (one,) = landing(scene_of(**SYMMETRIC, walking=walking), base_of(), touching, (), (foot,), slips).contacts
+        assert one.state is ContactState.LEAVES
+        assert one.velocity[2] == pytest.approx(number, abs=OF_RESTITUTION)
+        assert one.impulse[0] == pytest.approx(-number * one.impulse[2])
+        # Where nothing is told of the feet, they are as every other contact.
+        plain = scene._replace(walking=Walking(walking.feet), friction=number, restitution=number)
+        same = [landing(one, base_of(), FEET, (), (foot,), slips) for one in (scene, plain)]
+        assert same[0] == same[1]
+
+
+def test_a_foot_that_lands_a_little_later_strikes_what_the_first_one_has_left():
+    def strike(delay):
+        return landing(scene_of(**SYMMETRIC), base_of(), FEET, (), (0,), DOWN, {3: DOWN}, {3: delay})
+
+    at_once, soon, later = (strike(delay) for delay in (0.0, 1e-6, 4e-3))
+    assert soon.linear == pytest.approx(at_once.linear, abs=2e-3)
+    assert soon.angular == pytest.approx(at_once.angular, abs=2e-3)
+    # The first one stops before the other strikes, and is lifted by that.
+    first, second = later.contacts
+    assert first.velocity[2] > 0.1
+    assert second.velocity[2] == pytest.approx(0.0, abs=STEPS)
+    assert later.mode is Mode.BACK_PIVOT
 
 
 def test_the_corners_of_a_sole_that_strike_together_tell_how_far_apart_they_close():
     scene = scene_of(walking=Walking(("left", "right"), points=2))
-    feet = (*FEET[:2], (-0.2, 0.3, -0.58), (-0.4, 0.3, -0.579))
-    touchdown = landing(scene, base_of(), feet, (0, 1), (2, 3), (0.0, 0.0, -0.2))
-    assert touchdown.closing_spread == pytest.approx(0.001 / 0.2)
+    touchdown = landing(scene, base_of(), FEET, (0, 1), (2, 3), (0.0, 0.0, -0.2), delays={3: 0.004})
+    assert touchdown.closing_spread == pytest.approx(0.004)
 
 
 def test_where_nothing_stands_one_foot_is_struck_in_the_plane_of_its_slip():
@@ -238,10 +274,10 @@ def test_a_landing_that_gravity_matters_in_is_flagged():
 
 def test_what_a_mechanism_cannot_answer_is_handed_on():
     class Unknown:
-        def response(self, old, new, normal, ahead, points):
+        def struck(self, strike, law):
             return Status.SINGULAR_INERTIA
 
-    found = touchdown_of(scene_of(), Unknown(), base_of(), FEET, (1, 2), (0,), 0.05, (0.0, 0.0, -0.2))
+    found = landing(scene_of(), base_of(), FEET, (1, 2), (0,), (0.0, 0.0, -0.2), machine=Unknown())
     assert found is Status.SINGULAR_INERTIA
 
 
@@ -270,16 +306,18 @@ def falls(feet, struck, **changes):
     )
 
 
-@pytest.mark.parametrize("restitution", [0.0, 0.4])
-def test_two_front_feet_that_land_together_pitch_the_machine_by_newton_and_euler(restitution):
-    touchdown = falls(FEET, (0, 1), restitution=restitution)
-    ahead, side = FEET[0][:2]
-    # Both together push with one impulse at (ahead, 0): what it takes to turn the speed of the feet round.
-    push = (1.0 + restitution) * -DOWN[2] / (1.0 / 83.0 + ahead**2 / 9.0)
-    assert touchdown.impulses == (pytest.approx((0.5 * push, 0.0)), pytest.approx((0.5 * push, 0.0)))
-    assert touchdown.linear == pytest.approx((0.0, 0.0, DOWN[2] + push / 83.0), abs=1e-12)
-    assert touchdown.angular == pytest.approx((0.0, -ahead * push / 9.0, 0.0), abs=1e-12)
-    assert Flag.BOTH_STRUCK in touchdown.flags
+@pytest.mark.parametrize("friction", [0.0, 0.2, 0.6])
+def test_two_front_feet_that_land_together_pitch_the_machine_as_one_contact_of_its_plane(friction):
+    touchdown = falls(FEET, (0, 1), friction=friction)
+    ahead, side, down = FEET[0]
+    body = TwoPointBody(83.0, 9.0, None, Contact(ahead, down, friction))
+    expected = solve_impact(body, Twist(0.0, DOWN[2], 0.0))
+    assert touchdown.linear == pytest.approx((expected.twist.vx, 0.0, expected.twist.vy), abs=STEPS)
+    assert touchdown.angular == pytest.approx((0.0, -expected.twist.omega, 0.0), abs=STEPS)
+    pushes = np.sum([one.impulse for one in touchdown.contacts], axis=0)
+    normal, tangent = expected.impulses[1]
+    assert pushes == pytest.approx((tangent, 0.0, normal), rel=STEPS, abs=STEPS)
+    assert [one.is_new for one in touchdown.contacts] == [True, True]
     assert touchdown.leftover == Leftover.DRIVEN
     assert (touchdown.old, touchdown.new) == ((1,), (0,))
     assert touchdown.half_distance == pytest.approx(side)
@@ -288,10 +326,13 @@ def test_two_front_feet_that_land_together_pitch_the_machine_by_newton_and_euler
 @pytest.mark.parametrize("struck", [(0, 3), (3, 0), (1, 2), (0, 1, 2, 3), (2, 3, 0, 1)])
 def test_feet_that_land_together_around_the_mass_centre_stop_the_machine(struck):
     touchdown = falls(FEET, struck)
-    assert touchdown.linear == pytest.approx((0.0, 0.0, 0.0), abs=1e-12)
-    assert touchdown.angular == pytest.approx((0.0, 0.0, 0.0), abs=1e-12)
-    assert touchdown.impulses[1][0] == pytest.approx(83.0 * 0.7 / len(struck))
-    assert touchdown.energy_lost == pytest.approx(0.5 * 83.0 * 0.7**2)
+    assert touchdown.mode is Mode.STOP
+    assert touchdown.linear == pytest.approx((0.0, 0.0, 0.0), abs=STEPS)
+    assert touchdown.angular == pytest.approx((0.0, 0.0, 0.0), abs=STEPS)
+    # How four feet share it is the solver's choice.
+    assert sum(one.impulse[2] for one in touchdown.contacts) == pytest.approx(83.0 * 0.7, rel=STEPS)
+    assert touchdown.impulses[1][0] == pytest.approx(83.0 * 0.7 / len(struck), rel=0.01)
+    assert touchdown.energy_lost == pytest.approx(0.5 * 83.0 * 0.7**2, rel=STEPS)
 
 
 def test_feet_that_land_together_make_one_impact_whichever_is_looked_at():
@@ -300,40 +341,30 @@ def test_feet_that_land_together_make_one_impact_whichever_is_looked_at():
         base = base_of(tuple(source.normal(size=3)), tuple(source.normal(size=3)))
         one, other = ((*source.normal(size=2), -source.uniform(0.1, 1.0)) for _ in range(2))
         scene = scene_of(friction=source.uniform(0.1, 1.0))
-        here = landing(scene, base, FEET, (), (0,), one, together={3: other})
-        there = landing(scene, base, FEET, (), (3,), other, together={0: one})
-        if not (here.unique and there.unique):
-            continue
-        assert here.linear == pytest.approx(there.linear, abs=1e-11)
-        assert here.angular == pytest.approx(there.angular, abs=1e-11)
-        assert here.energy_lost == pytest.approx(there.energy_lost, abs=1e-10)
-        assert here.impulses[0] == pytest.approx((there.impulses[1][0], -there.impulses[1][1]), abs=1e-10)
-        before, after = (motion_of_mass_centre(scene, state.linear, state.angular) for state in (base, here))
-        pushes = impulse_vectors(scene, base, here)
-        assert scene.mass * (after[0] - before[0]) == pytest.approx(sum(pushes), abs=1e-10)
-        arms = np.subtract([FEET[3], FEET[0]], scene.center_of_mass)
-        turned = np.cross(arms, pushes).sum(axis=0)
-        assert np.array(scene.inertia) @ (after[1] - before[1]) == pytest.approx(turned, abs=1e-10)
-        for i, before in ((0, one), (3, other)):
-            change = np.subtract(here.linear, base.linear) + np.cross(np.subtract(here.angular, base.angular), FEET[i])
-            assert before[2] + change[2] > -1e-12
-
-
-def test_standing_feet_that_the_others_press_into_the_ground_are_told_to_be_left_out():
-    turns = {**SYMMETRIC, "inertia": ((4.3, 0, 0), (0, 4.0, 0), (0, 0, 8.3))}
-    base = base_of(linear=DOWN, angular=(0.0, 0.0, 0.0))
-    for inertia, pressed in ((turns, True), (SYMMETRIC, False)):
-        touchdown = landing(scene_of(**inertia), base, FEET, (2, 3), (0,), DOWN, together={1: DOWN})
-        assert (Leftover.OUT_OF_PLANE in touchdown.leftover) is pressed
-        assert touchdown.old == (1,)
+        here = landing(scene, base, FEET, (1,), (0,), one, together={3: other})
+        there = landing(scene, base, FEET, (1,), (3,), other, together={0: one})
+        assert here.contacts == there.contacts
+        assert (here.old, here.new) == (there.new, there.old) == ((3,), (0,))
+        assert (here.linear, here.angular, here.energy_lost) == (there.linear, there.angular, there.energy_lost)
+        assert here.impulses[0] == pytest.approx((there.impulses[1][0], -there.impulses[1][1]), abs=1e-12)
 
 
 @pytest.mark.parametrize("restitution", [0.0, 0.5])
 def test_a_foot_that_lands_with_one_that_has_braked_turns_the_machine_about_it(restitution):
     scene, rest = scene_of(restitution=restitution), (0.0, 0.0, 0.0)
     touchdown = landing(scene, base_of(), FEET, (), (0,), DOWN, together={3: rest})
-    assert touchdown == landing(scene._replace(law="total"), base_of(), FEET, (3,), (0,), DOWN)
-    assert Flag.BOTH_STRUCK not in touchdown.flags
+    stands = landing(scene, base_of(), FEET, (3,), (0,), DOWN)
+    assert (touchdown.linear, touchdown.angular, touchdown.mode) == (stands.linear, stands.angular, stands.mode)
     other = landing(scene, base_of(), FEET, (), (3,), rest, together={0: DOWN})
-    assert other.linear == pytest.approx(touchdown.linear, abs=1e-12)
-    assert other.angular == pytest.approx(touchdown.angular, abs=1e-12)
+    assert (other.linear, other.angular) == (touchdown.linear, touchdown.angular)
+    assert other.impulses[0][0] == pytest.approx(touchdown.impulses[1][0])
+
+
+def test_every_landing_has_the_same_bits_with_numba_and_without(monkeypatch):
+    here = [touchdown for _, touchdown in landings(20, seed=11, restitution=0.3)]
+    monkeypatch.setitem(sys.modules, "numba", None)  # an import of it fails
+    spatial.solvers.cache_clear()
+    try:
+        assert [touchdown for _, touchdown in landings(20, seed=11, restitution=0.3)] == here
+    finally:
+        spatial.solvers.cache_clear()

@@ -7,6 +7,7 @@ import pytest
 
 from impact_predictor.prediction.scene import Robot
 from impact_predictor.prediction.types import Joints, Status
+from impact_predictor.prediction.walking.mechanism import FootStrike
 
 pytestmark = pytest.mark.extras
 
@@ -23,7 +24,17 @@ URDF = """<robot name="frog">
 """
 LIMIT = '<limit lower="-1" upper="1" effort="1" velocity="1"/>'
 NAMES = ("left_hip", "right_hip")
-UP, AHEAD = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
+AXES = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+STRIKE = FootStrike(
+    points=[0, 1],
+    arms=[],
+    velocities=[(0.0, 0.0, 0.0), (0.1, 0.2, -1.0)],
+    axes=AXES,
+    normal=AXES[2],
+    friction=[0.6, 0.6],
+    restitution=[0.0, 0.0],
+    gaps=[0.0, 0.0],
+)
 
 
 @pytest.fixture
@@ -71,9 +82,9 @@ def test_joints_that_are_not_the_models_are_a_status_and_leave_the_last_ones(
     frog, names, positions, velocities, status
 ):
     frog.geometry_of(Joints(0, NAMES, (0.3, -0.2), ()))
-    before = frog.response((0,), (1,), UP, AHEAD, ())
+    before = frog.struck(STRIKE, "path")
     assert frog.geometry_of(Joints(1, names, positions, velocities)) is status
-    assert frog.response((0,), (1,), UP, AHEAD, ()) == before
+    assert frog.struck(STRIKE, "path") == before
     assert frog.geometry_of(Joints(2, NAMES, (0.3, -0.2), ())).stamp == 2
 
 
@@ -86,10 +97,10 @@ def test_joints_that_the_model_does_not_know_are_left_out_whatever_they_are(frog
 
 
 def test_before_any_joints_there_is_no_response_but_a_status(frog):
-    assert frog.response((0,), (1,), UP, AHEAD, ()) is Status.NO_GEOMETRY
+    assert frog.struck(STRIKE, "path") is Status.NO_GEOMETRY
 
 
 def test_a_leg_without_mass_is_a_status_and_never_a_number(tmp_path):
     frog = articulated(tmp_path, massless=True)
     assert frog.geometry_of(Joints(0, NAMES, (0.3, -0.2), ())) is Status.SINGULAR_INERTIA
-    assert frog.response((0,), (1,), UP, AHEAD, ()) is Status.SINGULAR_INERTIA
+    assert frog.struck(STRIKE, "path") is Status.SINGULAR_INERTIA
