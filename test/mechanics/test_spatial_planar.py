@@ -4,11 +4,12 @@ from functools import cache
 
 import numpy as np
 import pytest
+from alone import random_impacts
 from golden_impacts import CASES, body_of
 from seen_by_contacts import velocities
 
-from impact_predictor import Flag, Twist, solve_impact
-from impact_predictor.mechanics.impact.spatial import Body, ContactPoints, solve_spatial_impact
+from impact_predictor import Flag, Mode, Twist, cylinder, solve_impact
+from impact_predictor.mechanics.impact.spatial import Body, ContactPoints, ContactState, solve_spatial_impact
 
 THIN = 1e-6
 """Below this square of the radius of gyration over the distance of the contacts one contact's impulse is lost beside
@@ -17,12 +18,13 @@ the other's: steps with a tolerance do not resolve it."""
 COARSE, FINE = 8, 128
 """Steps for a quarter of an oscillation, the first as usual."""
 
-NOT_REACHED = {12: 0.0, 341: 0.5, 421: 0.0}
-"""Rough floors under tall bodies, where the sweeps of a step do not converge; with the restitution that shows it."""
+
+SLOW = 421
+"""A rough floor under a tall body: while the compression ends there the sweeps of a step do not converge."""
 
 
-def spatial_twist(body, twist, steps):
-    """The planar twist after the impact in three dimensions of the same body: x forward, z up, points in one plane."""
+def spatial_outcome(body, twist, steps):
+    """The impact in three dimensions of the same body: x forward, z up, points in one plane."""
     contacts = [contact for contact in (body.old, body.new) if contact is not None]
     points = ContactPoints(
         positions=[(contact.x, 0.0, contact.y) for contact in contacts],
@@ -32,7 +34,12 @@ def spatial_twist(body, twist, steps):
         velocities=[(contact.velocity[0], 0.0, contact.velocity[1]) for contact in contacts],
     )
     vx, vy, omega = twist
-    outcome = solve_spatial_impact(Body(body.mass, body.inertia), points, (vx, 0.0, vy, 0.0, -omega, 0.0), steps=steps)
+    return solve_spatial_impact(Body(body.mass, body.inertia), points, (vx, 0.0, vy, 0.0, -omega, 0.0), steps=steps)
+
+
+def spatial_twist(body, twist, steps):
+    """The planar twist after it."""
+    outcome = spatial_outcome(body, twist, steps)
     assert np.abs(outcome.twist[[1, 3, 5]]).max() <= 1e-12 * np.abs(outcome.twist).max()  # it stays in the plane
     return outcome.twist[0], outcome.twist[2], -outcome.twist[4]
 
@@ -59,15 +66,15 @@ def compared(restitution):
 @cache
 def errors(restitution, steps):
     """The errors of the golden geometries by their numbers."""
-    problems = compared(restitution)
-    return {number: error_of(body, twist, steps) for number, body, twist in problems if number not in NOT_REACHED}
+    return {number: error_of(body, twist, steps) for number, body, twist in compared(restitution)}
 
 
 @pytest.mark.parametrize("restitution", [0.0, 0.5])
 def test_every_golden_geometry_ends_where_the_planar_path_ends(restitution):
     assert len(errors(restitution, FINE)) > 390
     assert max(errors(restitution, COARSE).values()) < 0.04
-    assert max(errors(restitution, FINE).values()) < 0.003
+    assert max(error for number, error in errors(restitution, FINE).items() if number != SLOW) < 0.003
+    assert errors(restitution, FINE)[SLOW] < 0.02
 
 
 def test_the_error_falls_with_the_steps():
@@ -78,8 +85,30 @@ def test_the_error_falls_with_the_steps():
     assert np.quantile(coarse, 0.9) / np.quantile(fine, 0.9) > ratio / 2.0
 
 
-@pytest.mark.xfail(reason="the sweeps of a step do not converge where friction couples normal and slip strongly")
-@pytest.mark.parametrize(("number", "restitution"), NOT_REACHED.items())
-def test_a_rough_floor_under_a_tall_body_is_no_exception(number, restitution):
-    body, twist = body_of(CASES[number], restitution), Twist(*CASES[number]["twist"])
-    assert error_of(body, twist, FINE) < 0.003
+@pytest.mark.parametrize("kind", ["plate", "cylinder", "floor", "wedge", "one-point"])
+def test_random_impacts_of_any_friction_and_restitution_end_where_the_planar_path_ends(kind):
+    far = compared = 0
+    for body, twist in random_impacts(kind, 500, seed=6):
+        old = body.old and body.old._replace(restitution=0.0)
+        outcome = solve_impact(body._replace(old=old), twist, restitution="energetic")
+        if outcome.mode is Mode.NO_IMPACT or outcome.flags & Flag.JAMMED or not outcome.unique:
+            continue
+        compared += 1
+        far += error_of(body._replace(old=old), twist, 64) > 0.01
+    assert compared > 300
+    assert far <= 0.004 * compared  # a slip or a gap that ends at a border within a step
+
+
+@pytest.mark.parametrize("restitution", [0.5, 0.99, 1.0])
+def test_a_contact_that_gives_all_its_work_back_leaves(restitution):
+    points = ContactPoints(positions=[(0.0, 0.0, -0.3)], friction=0.3, restitution=restitution)
+    outcome = solve_spatial_impact(Body(1.0, 0.1), points, (0.1, 0.0, -1.0, 0.0, 0.0, 0.0), steps=FINE)
+    assert outcome.states == (ContactState.LEAVES,)
+    assert outcome.twist[2] == pytest.approx(restitution, abs=1e-6)
+
+
+def test_a_body_that_locks_in_its_wedge_comes_to_its_end():
+    body = cylinder(radius=1.0, gamma=1.3, mass=2.0, friction=2.0, restitution=0.5)
+    outcome = spatial_outcome(body, body.turning(-1.0), COARSE)
+    assert outcome.flags == Flag.NONE
+    assert np.abs(outcome.twist).max() < 1e-4

@@ -26,10 +26,19 @@ HARDEST = 0.05
 SINGULAR = 1e-12
 """Where the determinant of the tangential block is this part of its size, one direction alone moves."""
 
+SLIDING = 1.0 - 1e-9
+"""A contact whose friction is more than this part of its greatest slides."""
+
+PRESSED = 0.1
+"""A contact that answers to a push by less than this part, because its own friction presses it, is swept without."""
+
 TOLERANCE = 1e-3
 """Of the sweeps, relative, for one step to a quarter; it falls with their cube, as the error of a step does."""
 
 SWEEPS = 60
+
+LOOSE = 1e5
+"""Sweeps that still change a velocity by so many tolerances have failed."""
 
 THOROUGH = 1000
 """Sweeps that may be needed where what is left has to vanish."""
@@ -86,9 +95,12 @@ def sweep(
     tolerance.
     """
     m = 3 * n
+    change = 0.0
     for count in range(most):
         change = 0.0
-        for i in range(n):
+        for k in range(n):
+            # Forth and back, so that the order of the contacts matters less.
+            i = k if count % 2 == 0 else n - 1 - k
             if softness[i] < 0.0:
                 continue
             a = 3 * i
@@ -97,6 +109,17 @@ def sweep(
             wzz = W[z * m + z]
             if wzz + softness[i] <= 0.0:
                 continue
+            # While the contact slides its friction grows with the normal impulse: both change at once.
+            ua = ub = 0.0
+            size = sqrt(p[a] * p[a] + p[b] * p[b])
+            if size > 0.0 and size >= SLIDING * friction[i] * p[z]:
+                ua = friction[i] * p[a] / size
+                ub = friction[i] * p[b] / size
+                both = wzz + W[z * m + a] * ua + W[z * m + b] * ub
+                if both >= PRESSED * wzz:
+                    wzz = both
+                else:
+                    ua = ub = 0.0
             new = p[z] - (c[z] + softness[i] * p[z] - bias[i]) / (wzz + softness[i])
             if capped[i] == 1:
                 new = min(new, p[z] - c[z] / wzz)
@@ -105,8 +128,10 @@ def sweep(
             step = new - p[z]
             if step != 0.0:
                 p[z] = new
+                p[a] += ua * step
+                p[b] += ub * step
                 for j in range(m):
-                    c[j] += W[z * m + j] * step
+                    c[j] += (W[z * m + j] + ua * W[a * m + j] + ub * W[b * m + j]) * step
                 change = max(change, abs(step) * wzz)
             limit = friction[i] * new
             if limit == 0.0:
@@ -151,7 +176,7 @@ def sweep(
                 change = max(change, abs(dx) * W[a * m + a], abs(dy) * W[b * m + b])
         if change <= tolerance:
             return count + 1
-    return most
+    return most if change > LOOSE * tolerance else most - 1
 
 
 def follow(
@@ -246,7 +271,23 @@ def follow(
             if part > NEARLY:
                 break
             h *= part
+        pushed = 0.0
+        for i in range(n):
+            if phase[i] != RESTING:
+                pushed += p[3 * i + 2]
+        if pushed == 0.0:
+            # Without a push of springs the contacts that rest do nothing of themselves, though they could lock.
+            for j in range(m):
+                c[j] = before[j]
+                p[j] = 0.0
+            sweep(n, W, before, friction, softness, bias, capped, 1.0, tolerance, SWEEPS, c, p)
         elapsed += h
+        moves = 0.0
+        for j in range(m):
+            moves = max(moves, abs(before[j]), abs(c[j]))
+        if moves <= tolerance:
+            # The contacts lock the body, and the springs keep their work.
+            return 1
         struck = 0
         for i in range(n):
             z = 3 * i + 2
@@ -374,6 +415,13 @@ def solve(
         *(before, p, depth, deepest, softness, bias, phase, capped),
     ):
         flags |= NOT_CONVERGED
+    for j in range(m):
+        # Without the roundings of the steps.
+        c[j] = start[j]
+    for k in range(m):
+        if impulse[k] != 0.0:
+            for j in range(m):
+                c[j] += W[k * m + j] * impulse[k]
     if finish(n, W, friction, scale, c, impulse, before, p, depth, softness, bias, capped) == THOROUGH:
         flags |= NOT_CONVERGED
     work = 0.0
