@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..mechanics.impact.batch import numbers_of, solve_impacts
 from ..mechanics.types import Contact, Twist, TwoPointBody, Validity
-from .touchdowns import Coefficients, ScoredTouchdown, solve_across, with_coefficients
+from .touchdowns import Coefficients, ScoredTouchdown, with_coefficients
 
 ROUGH: Final = Coefficients(1.0, 0.0)
 """With friction; how much does not matter for whether an impact slips across its plane."""
@@ -33,7 +33,6 @@ class Solver:
     def __init__(self, touchdowns: Sequence[ScoredTouchdown]) -> None:
         """Sort the touchdowns by the ways in which they are solved."""
         self._touchdowns = touchdowns
-        self._across = [k for k, one in enumerate(touchdowns) if solve_across(one.scene, one.impact, ROUGH) is not None]
         kinds: dict[tuple[str, Validity, bool], list[int]] = defaultdict(list)
         for k, one in enumerate(touchdowns):
             kinds[one.scene.law, one.scene.validity, one.impact.body.old is None].append(k)
@@ -50,9 +49,6 @@ class Solver:
         after = np.empty((len(self._touchdowns), 3))
         for law, validity, places, bodies, before in self._batches:
             after[places] = solve_impacts(with_coefficients(bodies, coefficients), before, law, validity).twist
-        for k in self._across:
-            slipped = solve_across(self._touchdowns[k].scene, self._touchdowns[k].impact, coefficients)
-            after[k] = after[k] if slipped is None else slipped
         return after
 
     def misses(self, coefficients: Coefficients) -> NDArray[np.float64]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from ..mechanics.types import Twist, TwoPointBody
-from ..prediction.impact import Collision, impact_across
+from ..prediction.impact import Collision
 from ..prediction.monitor import Monitor
 from ..prediction.planar import Posture
 from ..prediction.points import PointContacts, collision_of
@@ -77,23 +77,10 @@ class ScoredTouchdown(NamedTuple):
         sample, posture, points = self.start
         approach = collision_of(scene, points, sample, posture)
         body = self.impact.body
-        if approach is None or (approach.body.old is None) != (body.old is None):
+        if not isinstance(approach, Collision) or (approach.body.old is None) != (body.old is None):
             return self
         # The inertia is that of the scene as it was given: `Solver` scales it.
         return self._replace(impact=approach._replace(body=approach.body._replace(inertia=body.inertia)))
-
-
-def solve_across(scene: Scene, impact: Collision, coefficients: Coefficients) -> Twist | None:
-    """The twist after an impact that slips across its plane; None where it hardly does, or the scene leaves that out.
-
-    Which of them slip does not depend on the coefficients, as long as there is friction.
-    """
-    if not scene.transverse_slip or scene.law != "path" or scene.radius or coefficients.friction == 0.0:
-        return None
-    impact = impact._replace(body=with_coefficients(impact.body, coefficients))
-    scene = scene._replace(inertia=scaled(scene.inertia, coefficients.inertia))
-    slipped = impact_across(scene, impact)
-    return None if slipped is None else slipped[0].twist
 
 
 def with_coefficients(body: TwoPointBody, coefficients: Coefficients) -> TwoPointBody:
@@ -130,7 +117,8 @@ class Observer(Predictor):
             seen, posture, collision = contacts.collision
             fixed = self.scene.deck is None and not self.scene.radius
             start = Start(seen, posture, contacts.points) if fixed else None
-            self._impacts.append((collision, start))
+            if isinstance(collision, Collision):
+                self._impacts.append((collision, start))
         self._samples.append(sample)
         if prediction.score is not None:
             self._collect(prediction.score)

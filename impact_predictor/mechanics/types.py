@@ -12,6 +12,9 @@ if TYPE_CHECKING:
     from .margins import Margins
 
 Vector = tuple[float, float]
+Vector3 = tuple[float, float, float]
+Quaternion = tuple[float, float, float, float]
+"""As (x, y, z, w)."""
 
 
 class Mode(IntEnum):

@@ -68,7 +68,13 @@ _TABLE: Final = (
         high=1.0,
     ),
     seconds(
-        "contact.time", 0.005, "Duration of a contact: an edge strikes as one when its ends close within it.", high=1.0
+        "contact.time", 0.005, "Duration of a contact, in which gravity acts: slower approaches are rest.", high=1.0
+    ),
+    seconds(
+        "contact.merge",
+        0.0015,
+        "How long a contact is compressed: impacts on points that close within it overlap; 0 keeps them apart.",
+        high=1.0,
     ),
     text("support.frame", "", "frame_id that odom must have; empty accepts any.", shared=True, fixed=SUPPORT),
     doubles(
@@ -88,6 +94,12 @@ _TABLE: Final = (
         unit="m",
         low=-FURTHEST,
         high=FURTHEST,
+    ),
+    text(
+        "odom.twist",
+        "message",
+        "Where the twist comes from: the message, or the difference to the pose before, over odom.twist_window.",
+        choices=("message", "poses"),
     ),
     seconds(
         "odom.twist_window",
@@ -128,6 +140,22 @@ _TABLE: Final = (
     ),
     ratio("uncertainty.friction", 0.0, "Standard deviation of contact.friction.", high=100.0),
     ratio("uncertainty.restitution", 0.0, "Standard deviation of contact.restitution.", high=1.0),
+    double(
+        "uncertainty.gap",
+        -1.0,
+        "Standard deviation of the gaps of points; negative takes the scatter of points that stand, and a tenth of "
+        "contact.tolerance until it is known.",
+        unit="m",
+        low=-1.0,
+        high=1.0,
+    ),
+    ratio(
+        "uncertainty.law",
+        0.15,
+        "Standard deviation of what a contact does after an impact against what the law says, as a part of the speed "
+        "before it.",
+        high=1.0,
+    ),
     boolean(
         "margins",
         False,

@@ -30,7 +30,7 @@ still balance over an edge of a support that leans by 30 degrees."""
 class CylinderContacts(PointContacts):
     """The contacts of the cylinder of a scene with its edges."""
 
-    slips_across = False
+    is_spatial = False
 
     def __init__(self, scene: Scene) -> None:
         """Take the cylinder with `scene.radius` on `scene.edges`.

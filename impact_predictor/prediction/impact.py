@@ -2,26 +2,19 @@
 
 from __future__ import annotations
 
-from math import cos, hypot, inf, sin
+from math import hypot
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..mechanics.impact import solve_impact
 from ..mechanics.motion import Fall
-from ..mechanics.types import Outcome, Twist, TwoPointBody, Vector
-from .planar import GRAZES, ORIGIN, ActiveContacts, ImpactPlane, Posture, hardly, inertia_about
+from ..mechanics.types import Twist, TwoPointBody, Vector
+from .planar import GRAZES, ORIGIN, ActiveContacts, ImpactPlane, Posture, hardly
 from .scene import Scene
 from .types import Leftover, Sample, SpatialTwist, Touchdown
 from .vectors import add, axes_of, combine, cross, dot, to_body, to_world, total, turned
 
 if TYPE_CHECKING:
     from .uncertainty import Sampler
-
-SLIPS = 0.05
-"""A body slips across its plane from this part of the speed of its new contact in the plane: less changes the twist of
-a landing cube by less than 0.006 of that speed, and poses measure it to 0.01."""
-
-TOLERANCE = 5e-3
-"""Of each step of the path along the impulse: half of what poses measure twists to. Most steps err by far less."""
 
 OFF_AXIS = 0.3
 """A touchdown is planar up to this part of the angular velocity off the axis: 9 % of the turning energy."""
@@ -106,15 +99,12 @@ def collision_after(
 
 
 class ImpactModel:
-    """How the body of a scene is struck; `slips_across` where friction may also oppose slip across the plane."""
+    """How the body of a scene is struck."""
 
-    def __init__(self, scene: Scene, slips_across: bool) -> None:
+    def __init__(self, scene: Scene) -> None:
         self._scene = scene
-        self._slips_across = slips_across and scene.transverse_slip and scene.law == "path" and scene.friction > 0.0
         self._sampler: Sampler | None = None
         # What is loaded for some scenes only is loaded now, not with the first touchdown.
-        if self._slips_across:
-            from ..mechanics import transverse  # noqa: F401
         if scene.margins:
             from ..mechanics import margins  # noqa: F401
         if scene.samples:
@@ -127,8 +117,7 @@ class ImpactModel:
         scene, contacts, plane, body = self._scene, collision.contacts, collision.plane, collision.body
         before, across, time = collision.before, collision.across, collision.lead_time
         n, center = scene.normal, scene.center_of_mass
-        slipped = impact_across(scene, collision) if self._slips_across else None
-        outcome, after = slipped or (solve_impact(body, before, scene.law, scene.validity), across)
+        outcome = solve_impact(body, before, scene.law, scene.validity)
         # From the plane to space: the pose then, and the twist of the body frame after the impact.
         along = to_world(posture.axes, plane.axis)
         ahead = cross(along, n)
@@ -139,10 +128,10 @@ class ImpactModel:
         now = axes_of(orientation)
         before_6d, after_6d = [
             SpatialTwist(
-                combine(twist.vx, ahead, twist.vy, n, lateral.velocity, along),
-                combine(-twist.omega, along, lateral.roll, ahead, lateral.yaw, n),
+                combine(twist.vx, ahead, twist.vy, n, across.velocity, along),
+                combine(-twist.omega, along, across.roll, ahead, across.yaw, n),
             )
-            for twist, lateral in ((before, across), (outcome.twist, after))
+            for twist in (before, outcome.twist)
         ]
         linear, angular = to_body(now, after_6d.linear), to_body(now, after_6d.angular)
         pull = plane.gravity[2] if plane.old is None else 0.0
@@ -154,14 +143,12 @@ class ImpactModel:
             position = add(add(position, to_world(posture.axes, center)), to_world(now, center), -1.0)
         gaps = [posture.gaps[i] for i in contacts.new]
         spread = (max(gaps) - min(gaps)) / collision.speed
-        half_distance = 0.0
+        half_distance, width = 0.0, hypot(body.new.x, body.new.y)
         if body.old is not None:
-            half_distance = 0.5 * hypot(body.new.x - body.old.x, body.new.y - body.old.y)
-        uncertainty = planar = None
+            half_distance = width = 0.5 * hypot(body.new.x - body.old.x, body.new.y - body.old.y)
+        uncertainty = None
         if self._sampler is not None:
             uncertainty = self._sampler.uncertainty(sample, posture, plane, body, before, orientation)
-        if scene.margins:
-            planar = outcome if slipped is None else solve_impact(body, before, scene.law, scene.validity)
         return Touchdown(
             lead_time=collision.lead_time,
             mode=outcome.mode,
@@ -185,55 +172,35 @@ class ImpactModel:
             lateral=plane.lateral,
             closing_spread=spread,
             offset=plane.offset,
-            leftover=leftover_of(scene, collision, half_distance, spread),
+            leftover=leftover_of(
+                scene,
+                stands=body.old is not None,
+                strays=plane.off_axis > OFF_AXIS or plane.offset > OFFSET * width,
+                apart=spread > scene.contact_time
+                or (body.old is not None and len(contacts.old) > 1 and len(contacts.new) == 1),
+                speed=collision.speed,
+            ),
             before_6d=before_6d,
             after_6d=after_6d,
             uncertainty=uncertainty,
-            planar=planar,
+            planar=outcome if scene.margins else None,
         )
 
 
-def impact_across(scene: Scene, collision: Collision) -> tuple[Outcome, LateralMotion] | None:
-    """The impact of a body that also moves across its plane, and how it does so after it; None where it hardly slips.
+def leftover_of(scene: Scene, *, stands: bool, strays: bool, apart: bool, speed: float) -> Leftover:
+    """Why a touchdown is no planar two-point impact that can be scored, from the state before it alone.
 
-    Where its contacts are edges its roll is blocked.
+    Of it are told: whether anything stands, whether the motion or the contacts stray from the impact plane, whether the
+    ends of the striking edge close apart from each other, and how fast it approaches (m/s).
     """
-    plane, body, before, blocked = collision.plane, collision.body, collision.before, collision.blocked
-    # z = ahead cross normal is against the axis.
-    velocity, yaw = -collision.across.velocity, collision.across.yaw
-    roll = 0.0 if blocked else collision.across.roll
-    new, old = body.new, body.old
-    slip = abs(velocity + roll * new.y - yaw * new.x)
-    if old is not None:
-        slip = max(slip, abs(velocity + roll * old.y - yaw * old.x))
-    vx, vy, omega = before
-    if slip <= SLIPS * hypot(vx - omega * new.y, vy + omega * new.x):
-        return None
-    from ..mechanics.transverse import Transverse, solve_transverse_impact  # only where a scene may need it
-
-    c, s = cos(collision.angle), sin(collision.angle)
-    upright = combine(c, plane.normal, s, plane.ahead, 0.0, plane.axis)
-    yaw_inertia = inertia_about(scene, upright, blocked)
-    roll_inertia = inf
-    if not blocked:
-        roll_inertia = inertia_about(scene, combine(c, plane.ahead, -s, plane.normal, 0.0, plane.axis), blocked)
-    motion = Transverse(velocity, roll, yaw, roll_inertia, yaw_inertia)
-    outcome, after, _ = solve_transverse_impact(body, before, motion, TOLERANCE, scene.validity)
-    return outcome, LateralMotion(-after.velocity, collision.across.roll if blocked else after.roll, after.yaw)
-
-
-def leftover_of(scene: Scene, collision: Collision, half_distance: float, spread: float) -> Leftover:
-    """Why a touchdown is no planar two-point impact that can be scored, from the state before it alone."""
-    contacts, plane, body = collision.contacts, collision.plane, collision.body
-    width = half_distance if body.old is not None else hypot(body.new.x, body.new.y)
     leftover = 0
-    if body.old is None:
+    if not stands:
         leftover |= ONE_POINT
-    if plane.off_axis > OFF_AXIS or plane.offset > OFFSET * width:
+    if strays:
         leftover |= OUT_OF_PLANE
-    if spread > scene.contact_time or (body.old is not None and len(contacts.old) > 1 and len(contacts.new) == 1):
+    if apart:
         leftover |= ONE_CORNER_FIRST
-    if collision.speed < SLOWEST * hardly(scene):
+    if speed < SLOWEST * hardly(scene):
         leftover |= TOO_SLOW
     return Leftover(leftover)
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 from math import copysign, hypot, sqrt
 from typing import NamedTuple
 
-from ..mechanics.types import Twist, Vector
+from ..mechanics.types import Mode, Twist, Vector
 from .scene import Scene
 from .types import Sample, Vector3
 from .vectors import add, any_across, axes_of, cross, dot, mean, times, to_body, to_world, total
@@ -109,6 +109,15 @@ def contacts_of(scene: Scene, posture: Posture) -> ActiveContacts | None:
     if min([rates[i] for i in new]) >= slowest:
         return None
     return ActiveContacts(tuple(old), tuple(new))
+
+
+def mode_of(old_lifts: bool, new_lifts: bool, old_slips: bool, new_slips: bool) -> Mode:
+    """The mode of an impact by what its groups of contacts do; an old contact that is not there counts as lifted."""
+    if new_lifts:
+        return Mode.FLIGHT if old_lifts else Mode.BACK_PIVOT
+    if old_lifts:
+        return Mode.PIVOT_SLIDE if new_slips else Mode.PIVOT
+    return Mode.SLIDE if old_slips or new_slips else Mode.STOP
 
 
 def hardly(scene: Scene) -> float:

@@ -3,24 +3,31 @@
 from __future__ import annotations
 
 from collections import deque
-from math import cos, hypot, sin
+from math import atan2, cos, hypot, sin, sqrt
 
 from ..mechanics.motion import Fall, PlanarState, next_touchdown
 from ..mechanics.types import Contact, TwoPointBody, Vector
 from ..stamps import NANOSECONDS
-from .checks import check_points
+from .checks import PAUSE, check_points
 from .impact import Collision, ImpactModel, collision_after
 from .planar import ImpactPlane, Posture, center_of, contacts_of, edge_of, inertia_about, plane_of, posture_of
 from .predictor import DEEP, DEEP_TOLERANCES, Contacts
 from .scene import Scene
 from .score import Pending, Track
+from .spatial import SpatialCollision, SpatialModel
 from .types import ContactInput, Geometry, Moment, Sample, Status, Touchdown, Vector3
-from .vectors import total
+from .vectors import add, axes_of, composed, conjugate, times, to_body, total
 
 ACCURACY = 1e-6  # of the motion before the touchdown, relative: a thousandth of what poses and twists are measured to
 SETTLED = 0.5
 """A touchdown has happened when less than this part of the approach is left, within the contact tolerance, that the
 predicting sample measured: the approach predicted for the touchdown has gravity's gain on the way added to it."""
+
+BEGUN = 0.0
+"""An impact may have begun when less than this part of the twist window is left until it is predicted."""
+
+PLANE = 2
+"""A body on so many points moves in a plane, as those of the paper do: nothing more is prepared for it."""
 
 HIGH = 1.0
 """A body is off its moving support when all of it is farther above than this part of its size. No impact throws it
@@ -30,23 +37,28 @@ there: for a body of 1 m that takes 4.4 m/s, and one that topples keeps a contac
 class PointContacts(Contacts):
     """The contacts of a rigid body on points."""
 
-    slips_across = True
-    """Whether friction may oppose slip across the impact plane."""
+    is_spatial = True
+    """Whether touchdowns may be in three dimensions."""
 
     def __init__(self, scene: Scene) -> None:
         super().__init__(scene)
         self.points: tuple[Vector3, ...] = scene.points
         self.size = 0.0
         """Distance in m of the contact points that are furthest apart, where the support moves."""
-        self.collision: tuple[Sample, Posture, Collision] | None = None
+        self.collision: tuple[Sample, Posture, Collision | SpatialCollision] | None = None
         """The last collision whose impact was computed, with the sample that shows it."""
-        self._impact = ImpactModel(scene, self.slips_across)
+        self._impact = ImpactModel(scene)
+        self._spatial: SpatialModel | None = None
         self._moment: Moment | None = None
         self._track: Track | None = None
         self._landed: Pending | None = None
         self._pending: list[Pending] = []
         self._recent: deque[tuple[Sample, Posture]] = deque(maxlen=4)
-        self._measure_size()
+        self._last: Sample | None = None
+        self._measure_points()
+        # What is compiled for the first touchdown is compiled now.
+        if self._spatial is None and self.is_spatial and not self.points:
+            SpatialModel(scene, ((0.0, 0.0, 0.0),))
 
     def tell(self, message: ContactInput) -> Status:
         assert isinstance(message, Geometry)
@@ -55,7 +67,7 @@ class PointContacts(Contacts):
             if message.points != self.points:
                 self.points = message.points
                 self._track = None
-                self._measure_size()
+                self._measure_points()
             self.geometry = message
             self.frame_id = message.frame_id
         return status
@@ -68,11 +80,15 @@ class PointContacts(Contacts):
             self.tell(other.geometry)
 
     def take(self, sample: Sample, moment: Moment | None) -> Status:
+        if self.scene.poses:
+            sample, self._last = differenced(self._last, sample), sample
         posture = self.posture_of(sample)
         if moment is not None:
             status = self._place_of(sample, posture)
             if status is not Status.ACCEPTED:
                 return status
+        if self._spatial is not None and self._spatial.learns_gaps:
+            self._spatial.watch(posture)
         self.stamp = sample.stamp
         self._moment = moment
         self._measure(sample, posture)
@@ -81,14 +97,15 @@ class PointContacts(Contacts):
 
     def touchdown(self) -> Touchdown | Status | None:
         sample, posture = self._recent[-1]
-        collision = self.collision_of(sample, posture, self._moment)
-        track = self._track
-        landed = self._landed
-        if collision is not None and landed is not None:
+        track, collision = self._track, self.collision_of(sample, posture, self._moment)
+        if self._landed is not None:
             # What an averaged twist still has of the approach before the last touchdown is no approach.
-            fresh = sample.stamp - landed.stamp < self.scene.twist_window * NANOSECONDS
-            if fresh and not set(collision.contacts.new).isdisjoint(landed.track.last.new):
+            last, since = self._landed.track.last, (sample.stamp - self._landed.stamp) / NANOSECONDS
+            fresh = since < self.scene.twist_window
+            if fresh and not (collision and set(collision.contacts.new).isdisjoint(last.new)):
                 collision = None
+                if self._spatial is not None and last.contacts:
+                    collision = self._spatial.collision_after(last, since, posture, self._moment)
         if collision is None:
             self._track = None
             return None
@@ -96,13 +113,14 @@ class PointContacts(Contacts):
             track = None
         if track is None:
             track = self._track = Track()
-        elif (
-            min(collision.lead_time, abs(track.lead_time(sample.stamp))) < self.scene.twist_window
-            or self._recent[-2][0].stamp <= track.stamp < sample.stamp
-        ):
+        elif track.stamp <= sample.stamp + round(BEGUN * self.scene.twist_window * NANOSECONDS):
             # The impact itself may be in this twist, averaged or just begun: the last prediction stands.
             return track.hold(sample.stamp)
-        touchdown = self._impact.touchdown(sample, posture, collision)
+        if isinstance(collision, Collision):
+            touchdown = self._impact.touchdown(sample, posture, collision)
+        else:
+            assert self._spatial is not None
+            touchdown = self._spatial.touchdown(sample, posture, collision)
         self.collision = sample, posture, collision
         track.add(sample.stamp, touchdown, collision.measured)
         return touchdown
@@ -111,19 +129,25 @@ class PointContacts(Contacts):
         self.settled.extend([pending.score(self.scene) for pending in self._pending])
         self._pending.clear()
         self._recent.clear()
-        self._track = self._landed = None
+        self._track = self._landed = self._last = None
         self.stamp = None
 
     def posture_of(self, sample: Sample) -> Posture:
         return posture_of(self.scene, self.points, sample)
 
-    def collision_of(self, sample: Sample, posture: Posture, moment: Moment | None) -> Collision | None:
+    def collision_of(
+        self, sample: Sample, posture: Posture, moment: Moment | None
+    ) -> Collision | SpatialCollision | None:
         """The collision that a sample shows to be ahead; None where there is none within the horizon."""
-        return collision_of(self.scene, self.points, sample, posture, moment)
+        return collision_of(self.scene, self.points, sample, posture, moment, self._spatial)
 
-    def _measure_size(self) -> None:
-        if self.scene.deck is not None and self.points:
+    def _measure_points(self) -> None:
+        if not self.points:
+            return
+        if self.scene.deck is not None:
             self.size = hypot(*edge_of(list(self.points)))
+        if self.is_spatial and len(self.points) > PLANE:
+            self._spatial = SpatialModel(self.scene, self.points)
 
     def _place_of(self, sample: Sample, posture: Posture) -> Status:
         """Whether a body can be where it is seen on a moving support."""
@@ -170,15 +194,23 @@ class PointContacts(Contacts):
 
 
 def collision_of(
-    scene: Scene, points: tuple[Vector3, ...], sample: Sample, posture: Posture, moment: Moment | None = None
-) -> Collision | None:
+    scene: Scene,
+    points: tuple[Vector3, ...],
+    sample: Sample,
+    posture: Posture,
+    moment: Moment | None = None,
+    spatial: SpatialModel | None = None,
+) -> Collision | SpatialCollision | None:
     """The collision that a sample shows to be ahead; None where there is none within the horizon.
 
-    Over a moving support the sample is seen from there, and `moment` is the support at its stamp.
+    Over a moving support the sample is seen from there, and `moment` is the support at its stamp. Without a `spatial`
+    model the collision is one in the impact plane, which leaves out what goes across it.
     """
     contacts = contacts_of(scene, posture)
     if contacts is None:
         return None
+    if spatial is not None and not spatial.is_planar(sample, posture, contacts):
+        return spatial.collision(sample, posture, moment)
     gravity = scene.gravity
     if moment is not None:
         from .deck.frame import fall_over, gravity_over, is_uniform  # only where the support moves
@@ -237,3 +269,18 @@ def body_at(scene: Scene, plane: ImpactPlane, inertia: float, angle: float) -> T
         return TwoPointBody(scene.mass, inertia, None, new)  # it has lifted on the way
     # Where it stands both are on one level up to rounding; made exact, so that rounding does not make it a step.
     return TwoPointBody(scene.mass, inertia, Contact(c * x - s * y, new.y, scene.friction), new)
+
+
+def differenced(last: Sample | None, sample: Sample) -> Sample:
+    """A sample whose twist is the difference to the pose of the one before; without that as it is."""
+    if last is None or not 0 < sample.stamp - last.stamp <= PAUSE:
+        return sample
+    rate = NANOSECONDS / (sample.stamp - last.stamp)
+    axes = axes_of(sample.orientation)
+    x, y, z, w = composed(conjugate(last.orientation), sample.orientation)
+    # The rotation vector of a unit quaternion; over one sample a body turns by less than half a turn.
+    sine = sqrt(x * x + y * y + z * z)
+    angle = 2.0 * atan2(sine, abs(w))
+    scale = (angle / sine if sine > 0.0 else 2.0) * (rate if w >= 0.0 else -rate)
+    linear = times(to_body(axes, add(sample.position, last.position, -1.0)), rate)
+    return sample._replace(linear=linear, angular=(x * scale, y * scale, z * scale))

@@ -128,7 +128,8 @@ class Scene(NamedTuple):
 
     `inertia` is about the mass centre; `points` are the contact points, empty where they come with the samples;
     `normal` is the support's unit normal and `height` its distance from the origin along it, in the frame of the
-    samples; `tolerance` the gap in m below which a point touches; `contact_time` in s how long a contact lasts;
+    samples; `tolerance` the gap in m below which a point touches; `contact_time` in s how long a contact lasts, and
+    `merge` its compression;
     `twist_window` in s the time over which the source averages its twist, 0 for a twist of the very instant;
     `horizon` in s how far ahead a touchdown is announced; `transverse_slip` whether friction also opposes slip across
     the impact plane, which only the path law knows; `samples` how many points carry uncertainty through an impact, 0
@@ -156,6 +157,10 @@ class Scene(NamedTuple):
     gravity: Vector3 = (0.0, 0.0, -9.81)
     tolerance: float = 0.005
     contact_time: float = 0.005
+    merge: float = 0.0015
+    poses: bool = False
+    gap_deviation: float = -1.0
+    law_deviation: float = 0.15
     twist_window: float = 0.0
     horizon: float = 0.25
     law: str = "path"
@@ -195,6 +200,10 @@ class Scene(NamedTuple):
             gravity=triple(values["gravity"]),
             tolerance=values["contact.tolerance"],
             contact_time=values["contact.time"],
+            merge=values["contact.merge"],
+            poses=values["odom.twist"] == "poses",
+            gap_deviation=values["uncertainty.gap"],
+            law_deviation=values["uncertainty.law"],
             twist_window=values["odom.twist_window"],
             horizon=values["horizon"],
             law=values["law"],

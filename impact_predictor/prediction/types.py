@@ -7,9 +7,8 @@ from enum import IntEnum, IntFlag
 from typing import NamedTuple
 
 from ..mechanics.types import ContactState, Flag, Mode, Outcome, Twist, Vector
-
-Vector3 = tuple[float, float, float]
-Quaternion = tuple[float, float, float, float]
+from ..mechanics.types import Quaternion as Quaternion
+from ..mechanics.types import Vector3 as Vector3
 
 
 class Status(IntEnum):

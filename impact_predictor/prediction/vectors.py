@@ -132,3 +132,9 @@ def composed(first: Quaternion, second: Quaternion) -> Quaternion:
         pw * qz + px * qy - py * qx + pz * qw,
         pw * qw - px * qx - py * qy - pz * qz,
     )
+
+
+def conjugate(rotation: Quaternion) -> Quaternion:
+    """The rotation back."""
+    x, y, z, w = rotation
+    return -x, -y, -z, w

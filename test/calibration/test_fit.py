@@ -13,7 +13,6 @@ from impact_predictor.calibration.touchdowns import (
     Coefficients,
     ScoredTouchdown,
     scaled,
-    solve_across,
     with_coefficients,
 )
 from impact_predictor.errors import InputError
@@ -210,8 +209,7 @@ def of_all_kinds() -> list[ScoredTouchdown]:
 def after(one: ScoredTouchdown, coefficients: Coefficients) -> Twist:
     """The twist after one touchdown, solved by itself."""
     body = with_coefficients(one.impact.body, coefficients)
-    twist = solve_impact(body, one.impact.before, one.scene.law, one.scene.validity).twist
-    return solve_across(one.scene, one.impact, coefficients) or twist
+    return solve_impact(body, one.impact.before, one.scene.law, one.scene.validity).twist
 
 
 @pytest.mark.parametrize(
@@ -222,10 +220,6 @@ def test_all_at_once_is_each_by_itself(coefficients: Coefficients) -> None:
     solver = Solver(some)
     alone = [after(one, coefficients) for one in some]
     assert solver.after(coefficients).tolist() == [list(one) for one in alone]
-    plane = [after(one._replace(scene=one.scene._replace(transverse_slip=False)), coefficients) for one in some]
-    # Without friction nothing that happens across the plane matters.
-    slipped = sum(one != other for one, other in zip(alone, plane, strict=True))
-    assert (0 < slipped <= 8) == (coefficients.friction > 0.0)
     missed = solver.misses(coefficients)
     for one, twist, (along, turning) in zip(some, alone, missed.tolist(), strict=True):
         assert along == (twist.vx - one.measured.vx) / one.speed

@@ -1,11 +1,12 @@
 """A sample, a touchdown with every field and its score, of which a test replaces what it is about."""
 
 from impact_predictor.mechanics.types import Flag, Mode, Twist
-from impact_predictor.prediction.types import Landing, Leftover, Sample, Score, Touchdown
+from impact_predictor.prediction.types import Landing, Leftover, Sample, Score, SpatialTwist, Touchdown
 
 SAMPLE = Sample(
     10**9, "world", "cube", (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), (0.0,) * 3, (0.0,) * 3, (0.0,) * 36, (0.0,) * 36
 )
+AT_REST = SpatialTwist((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 TOUCHDOWN = Touchdown(
     lead_time=0.004,
     mode=Mode.PIVOT_SLIDE,
@@ -30,6 +31,8 @@ TOUCHDOWN = Touchdown(
     closing_spread=0.001,
     offset=0.0,
     leftover=Leftover.NONE,
+    before_6d=AT_REST,
+    after_6d=AT_REST,
 )
 SCORE = Score(
     stamp=1_004_000_000,

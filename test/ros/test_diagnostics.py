@@ -2,7 +2,7 @@ import pytest
 
 from impact_predictor.mechanics.types import Flag, Mode, Twist
 from impact_predictor.prediction.checks import REMEDIES
-from impact_predictor.prediction.types import Leftover, Score, Status, Touchdown
+from impact_predictor.prediction.types import Leftover, Score, SpatialTwist, Status, Touchdown
 from impact_predictor.ros.cdr import ERROR, OK, WARN, decode_diagnostic_array, diagnostic_array
 from impact_predictor.ros.diagnostics import STALE_AFTER, Diagnostics, Refusal
 
@@ -30,6 +30,7 @@ def scored(error, is_scored=True):
     touchdown = Touchdown(
         *(0.0, Mode.STOP, twist, twist, ((0.0, 0.0), (0.0, 0.0)), (), 0.0, Flag.NONE, True, "path", (), (0,)),
         *(zero, zero, (0.0, 0.0, 0.0, 1.0), zero, zero, 0.0, 0.0, 0.0, 0.0, 0.0, Leftover.NONE),
+        *(SpatialTwist(zero, zero), SpatialTwist(zero, zero)),
     )
     return Score(0, touchdown, twist, error, is_scored, Leftover.NONE, ())
 

@@ -15,7 +15,16 @@ from messages_of_rosbags import TYPES, TYPESTORE, header, odometry, padded, rand
 from impact_predictor.mechanics.bodies import plate
 from impact_predictor.mechanics.impact import solve_impact
 from impact_predictor.mechanics.types import Flag, Mode, Twist
-from impact_predictor.prediction.types import Covariance, Leftover, Prediction, Score, Status, Touchdown, Uncertainty
+from impact_predictor.prediction.types import (
+    Covariance,
+    Leftover,
+    Prediction,
+    Score,
+    SpatialTwist,
+    Status,
+    Touchdown,
+    Uncertainty,
+)
 from impact_predictor.prediction.watch.watch import Level, Report
 from impact_predictor.ros.messages import (
     DIAGNOSTIC_ARRAY,
@@ -64,6 +73,8 @@ def random_touchdown(rng: random.Random, mode: Mode = Mode.PIVOT_SLIDE) -> Touch
         closing_spread=rng.random(),
         offset=rng.gauss(0.0, 0.1),
         leftover=Leftover.NONE,
+        before_6d=SpatialTwist((0.0, 0.0, 0.0), (0.0, 0.0, 0.0)),
+        after_6d=SpatialTwist((0.0, 0.0, 0.0), (0.0, 0.0, 0.0)),
     )
 
 

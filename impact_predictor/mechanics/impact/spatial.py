@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..compiled import compiled
+from ..compiled import door
 from ..types import ContactState, Flag
 from . import spatial_body, spatial_path
 from .solve import number_of
@@ -144,7 +144,7 @@ def solve_spatial_impact(
         impulses=of_each[:, :3],
         velocities=of_each[:, 3:6],
         states=tuple([STATES[int(number)] for number in of_each[:, 6].tolist()]),
-        flags=_named(int(notes[0])),
+        flags=flags_named(int(notes[0])),
         energy_lost=float(answer[6]),
         law=law,
     )
@@ -230,7 +230,7 @@ def _solve_mechanism(
         impulses=impulse.reshape(n, 3),
         velocities=after.reshape(n, 3),
         states=tuple([STATES[int(mark)] for mark in marks[0]]),
-        flags=_named(notes),
+        flags=flags_named(notes),
         energy_lost=-work,
         law=law,
     )
@@ -300,7 +300,7 @@ def _six_numbers(inertia: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 @cache
-def _named(notes: int) -> Flag:
+def flags_named(notes: int) -> Flag:
     return Flag(sum(int(flag) for note, flag in FLAGS.items() if notes & note))
 
 
@@ -333,18 +333,10 @@ class Solvers(NamedTuple):
 @cache
 def solvers() -> Solvers:
     """The doors, compiled if that can be; the first time on a machine this takes some seconds."""
-    bodies = compiled(make_bodies, LAW_CODE, never)
-    mechanism = compiled(make_mechanism, LAW_CODE, never)
-    if bodies is None or mechanism is None:
-        return Solvers(on_lists(make_bodies("")), on_lists(make_mechanism("")))
-    return Solvers(bodies, mechanism)
+    return Solvers(door(make_bodies, LAW_CODE), door(make_mechanism, LAW_CODE))
 
 
 LAW_CODE = (spatial_path, spatial_body)
-
-
-def never(function: object) -> bool:
-    return False
 
 
 def make_bodies(law_code: str) -> Callable[..., None]:
@@ -397,30 +389,3 @@ def make_mechanism(law_code: str) -> Callable[..., int]:
         )
 
     return mechanism
-
-
-def on_lists(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Law code that runs as Python on lists, which are faster there, and fills the arrays that it is given."""
-
-    def called(*given: Any) -> Any:
-        lists = [as_lists(one) for one in given]
-        result = function(*lists)
-        for array, values in zip(given, lists, strict=True):
-            fill(array, values)
-        return result
-
-    return called
-
-
-def as_lists(given: Any) -> Any:
-    if isinstance(given, tuple):
-        return tuple(map(as_lists, given))
-    return given.tolist() if isinstance(given, np.ndarray) else given
-
-
-def fill(given: Any, values: Any) -> None:
-    if isinstance(given, tuple):
-        for array, part in zip(given, values, strict=True):
-            fill(array, part)
-    elif isinstance(given, np.ndarray):
-        given[...] = values

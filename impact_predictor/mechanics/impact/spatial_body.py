@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import MutableSequence, Sequence
 from math import sqrt
 
-from .spatial_path import Floats, Scratch, solve
+from .spatial_path import Given, Scratch, solve
 
 BODY = 13
 """Numbers of a problem that come before its contacts."""
@@ -34,7 +34,7 @@ LARGEST = 1e100
 SYMMETRY = 1e-9
 
 
-def is_valid(n: int, problem: Floats) -> bool:
+def is_valid(n: int, problem: Given) -> bool:
     """Whether a body can have these numbers: finite, with moments of inertia that a distribution of mass can have."""
     for j in range(BODY + n * CONTACT):
         if not -LARGEST <= problem[j] <= LARGEST:
@@ -57,7 +57,9 @@ def is_valid(n: int, problem: Floats) -> bool:
     for i in range(n):
         k = BODY + i * CONTACT
         size = problem[k + 3] ** 2 + problem[k + 4] ** 2 + problem[k + 5] ** 2
-        if not (abs(size - 1.0) <= SYMMETRY and problem[k + 6] >= 0.0 and 0.0 <= problem[k + 7] <= 1.0):
+        if not (abs(size - 1.0) <= SYMMETRY and min(problem[k + 6], problem[k + 11]) >= 0.0):
+            return False
+        if not 0.0 <= problem[k + 7] <= 1.0:
             return False
     return True
 
@@ -68,7 +70,7 @@ def determinant(xx: float, yy: float, zz: float, xy: float, xz: float, yz: float
 
 def strike(
     n: int,
-    problem: Floats,
+    problem: Given,
     total: bool,
     merge: float,
     threshold: float,

@@ -15,7 +15,7 @@ from __future__ import annotations
 from collections.abc import MutableSequence, Sequence
 from math import pi, sqrt
 
-Floats = Sequence[float]
+Given = Sequence[float]
 Scratch = MutableSequence[float]
 
 RESTING, LOADING, UNLOADING, OPEN = 0, 1, 2, 3
@@ -75,11 +75,11 @@ LONGEST = 400
 
 def sweep(
     n: int,
-    W: Floats,
-    before: Floats,
-    friction: Floats,
-    softness: Floats,
-    bias: Floats,
+    W: Given,
+    before: Given,
+    friction: Given,
+    softness: Given,
+    bias: Given,
     capped: Sequence[int],
     middle: float,
     tolerance: float,
@@ -181,10 +181,10 @@ def sweep(
 
 def follow(
     n: int,
-    W: Floats,
-    friction: Floats,
-    restitution: Floats,
-    distances: Floats,
+    W: Given,
+    friction: Given,
+    restitution: Given,
+    distances: Given,
     threshold: float,
     steps: int,
     scale: float,
@@ -328,14 +328,14 @@ def follow(
 
 def finish(
     n: int,
-    W: Floats,
-    friction: Floats,
+    W: Given,
+    friction: Given,
     scale: float,
     c: Scratch,
     impulse: Scratch,
     before: Scratch,
     p: Scratch,
-    depth: Floats,
+    depth: Given,
     softness: Scratch,
     bias: Scratch,
     capped: MutableSequence[int],
@@ -362,10 +362,10 @@ def finish(
 
 def solve(
     n: int,
-    W: Floats,
-    friction: Floats,
-    restitution: Floats,
-    gaps: Floats,
+    W: Given,
+    friction: Given,
+    restitution: Given,
+    gaps: Given,
     total: bool,
     merge: float,
     threshold: float,
@@ -445,16 +445,16 @@ def solve(
 
 def lose(
     n: int,
-    W: Floats,
-    friction: Floats,
+    W: Given,
+    friction: Given,
     scale: float,
-    start: Floats,
+    start: Given,
     c: Scratch,
     impulse: Scratch,
     plastic: Scratch,
     before: Scratch,
     p: Scratch,
-    depth: Floats,
+    depth: Given,
     softness: Scratch,
     bias: Scratch,
     capped: MutableSequence[int],

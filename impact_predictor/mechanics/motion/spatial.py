@@ -16,12 +16,10 @@ from math import inf
 from typing import Any, NamedTuple
 
 from ..compiled import compiled
+from ..types import Quaternion, Vector3
 from . import falling, reactions, stances
 from .falling import OUTPUT, WORK
 from .reactions import OPEN
-
-Vector3 = tuple[float, float, float]
-Quaternion = tuple[float, float, float, float]
 
 AT_REST = (0.0, 0.0, 0.0)
 
@@ -109,11 +107,11 @@ def fall(
     )
 
 
-Solver = Callable[[int, list[float], list[int]], tuple[int, list[float], list[int]]]
+FallSolver = Callable[[int, list[float], list[int]], tuple[int, list[float], list[int]]]
 
 
 @cache
-def solver() -> Solver:
+def solver() -> FallSolver:
     """The law code that solves one problem, compiled if that can be; the first time on a machine this takes seconds."""
     solve = compiled(make_solve, (reactions, stances, falling), lambda function: False)
     if solve is None:
@@ -129,7 +127,7 @@ def solver() -> Solver:
     return on_arrays
 
 
-def on_lists(solve: Callable[..., int]) -> Solver:
+def on_lists(solve: Callable[..., int]) -> FallSolver:
     def on_lists(n: int, numbers: list[float], marks: list[int]) -> tuple[int, list[float], list[int]]:
         out = [0.0] * (OUTPUT + 2 * n)
         return solve(n, numbers, marks, [0.0] * sizes(n), out), out, marks

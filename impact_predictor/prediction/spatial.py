@@ -1,0 +1,459 @@
+"""Touchdowns in three dimensions: a body on points falls on those that come first, and is struck there.
+
+What a body over a plane support does is computed along the support's axes: z out of it, the origin on it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import hypot, sqrt
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..mechanics.impact.solve import number_of
+from ..mechanics.impact.spatial import STEPS, flags_named, solvers, workspace
+from ..mechanics.impact.spatial_body import ANSWER, BODY, CONTACT, RESULT
+from ..mechanics.motion.spatial import Pull, SpatialState, fall
+from ..mechanics.motion.spatial import solver as prepare_fall
+from ..mechanics.types import ContactState, Mode, Twist, Vector
+from .impact import OFF_AXIS, OFFSET, leftover_of
+from .planar import (
+    ORIGIN,
+    STANDING,
+    ActiveContacts,
+    Posture,
+    axis_of,
+    center_of,
+    edge_of,
+    hardly,
+    mode_of,
+    off_axis_of,
+    plane_of,
+)
+from .scene import InertiaTensor, Scene
+from .types import (
+    Covariance,
+    Moment,
+    PointOutcome,
+    Quaternion,
+    Sample,
+    SpatialTwist,
+    Touchdown,
+    Uncertainty,
+    Vector3,
+)
+from .uncertainty import moments, product
+from .vectors import Axes, add, axes_of, composed, conjugate, cross, dot, mean, times, to_body, to_world, total
+
+if TYPE_CHECKING:
+    from .draws import DrawnImpact, Draws
+
+WINDOW = 2.0
+"""Points take part in an impact that close within so many compressions after the first one."""
+
+SLACK = 3.0
+"""... and those whose gap may be so much less by this many standard deviations."""
+
+ENOUGH = 100
+"""Gaps of standing points from which on their scatter is known."""
+
+PLANAR = 1e-3
+"""A touchdown is planar whose motion across its plane is below this part of the new contact's approach, and whose
+contacts and inertia lie as near to the plane: there both laws agree to that."""
+
+STATES = tuple(ContactState)
+
+
+class SpatialCollision(NamedTuple):
+    """The collision that a sample shows to be ahead, before its impact, in the frame in which the support is given.
+
+    `position` in m is that of the mass centre, and `before` its twist; of each of the `points`, those of `contacts`,
+    `arms` lead there from the mass centre, `gaps` in m are still open when the first one closes, and `rates`
+    in m/s are those of the gaps. The rest is as in `Collision`.
+    """
+
+    contacts: ActiveContacts
+    lead_time: float
+    position: Vector3
+    orientation: Quaternion
+    before: SpatialTwist
+    points: tuple[int, ...]
+    arms: tuple[Vector3, ...]
+    gaps: tuple[float, ...]
+    rates: tuple[float, ...]
+    measured: float
+    speed: float
+
+
+class NearestPlane(NamedTuple):
+    """The impact plane of a touchdown in three dimensions: fields as those of `Touchdown`.
+
+    `width` in m is what the offset is measured by: half the distance of the contacts, in flight that of the new one
+    from the mass centre.
+    """
+
+    axis: Vector3
+    half_distance: float
+    width: float
+    off_axis: float
+    lateral: float
+    offset: float
+
+
+class SpatialModel:
+    """How the body of a scene, on some points, falls and is struck; everything that can be prepared is."""
+
+    def __init__(self, scene: Scene, points: tuple[Vector3, ...]) -> None:
+        self._scene, self._points = scene, points
+        (xx, xy, xz), (_, yy, yz), (_, _, zz) = scene.inertia
+        self._inertia = [part / scene.mass for part in (xx, yy, zz, xy, xz, yz)]
+        self._arms = [add(point, scene.center_of_mass, -1.0) for point in points]
+        self._frame = frame_of(scene.normal)
+        self._axes = axes_of(self._frame)
+        self._solver = solvers().bodies
+        prepare_fall()
+        self._law = number_of(scene.law)
+        self.gap_deviation = scene.gap_deviation if scene.gap_deviation >= 0.0 else 0.1 * scene.tolerance
+        """Standard deviation of the gaps in m, as far as it is known."""
+        self.learns_gaps = scene.samples > 0 and scene.gap_deviation < 0.0
+        self._seen, self._mean, self._squares = 0, 0.0, 0.0
+        self._draws: Draws | None = None
+        if scene.samples:
+            from .draws import Draws
+
+            self._draws = Draws(scene, self._solve)
+
+    def watch(self, posture: Posture) -> None:
+        """Learn how far the gaps of points that stand scatter: so far are those of the others uncertain."""
+        slow, tolerance = hardly(self._scene), self._scene.tolerance
+        for gap, rate in zip(posture.gaps, posture.rates, strict=True):
+            if -tolerance <= gap <= tolerance and -slow <= rate <= slow:
+                self._seen += 1
+                change = gap - self._mean
+                self._mean += change / self._seen
+                self._squares += change * (gap - self._mean)
+        if self._seen >= ENOUGH:
+            self.gap_deviation = sqrt(self._squares / self._seen)
+
+    def is_planar(self, sample: Sample, posture: Posture, contacts: ActiveContacts) -> bool:
+        """Whether a touchdown that a sample shows on some contacts is one in the impact plane."""
+        scene, old, new = self._scene, contacts.old, contacts.new
+        gaps = [posture.gaps[i] for i in new]
+        approach = -total([posture.rates[i] for i in new]) / len(new)
+        least = PLANAR * approach
+        if max(gaps) - min(gaps) > least * scene.merge or (len(old) > 1 and len(new) == 1):
+            return False
+        plane = plane_of(scene, self._points, sample, posture, contacts)
+        reach = sqrt(plane.new[0] * plane.new[0] + plane.new[1] * plane.new[1])
+        spin = sqrt(dot(sample.angular, sample.angular))
+        if plane.offset > PLANAR * reach or max(abs(plane.lateral), plane.off_axis * spin * reach) > least:
+            return False
+        turned = along(scene.inertia, plane.axis)
+        across = add(turned, plane.axis, -dot(plane.axis, turned))
+        return dot(across, across) <= PLANAR * PLANAR * dot(turned, turned)
+
+    def collision(self, sample: Sample, posture: Posture, moment: Moment | None) -> SpatialCollision | None:
+        """The collision that a sample shows to be ahead; None where there is none within the horizon."""
+        scene, gaps, rates = self._scene, posture.gaps, posture.rates
+        limit = max(2.0 * hardly(scene), STANDING * max(max(rates), -min(rates)))
+        stands = [gap <= scene.tolerance and -limit <= rate <= limit for gap, rate in zip(gaps, rates, strict=True)]
+        # An averaged twist is that of half its window ago: the motion is followed from there.
+        age = 0.5 * scene.twist_window
+        velocity, spin = to_world(posture.axes, posture.velocity), to_world(posture.axes, sample.angular)
+        center = add(center_of(scene, sample, posture), velocity, -age)
+        if True not in stands:
+            pull = scene.gravity if moment is None else moment.felt.gravity
+            center = add(center, pull, -0.5 * age * age)
+        return self._followed(
+            center=center,
+            orientation=rotated(sample.orientation, spin, -age),
+            twist=SpatialTwist(velocity, spin),
+            stands=stands,
+            age=age,
+            rates=rates,
+            moment=moment,
+        )
+
+    def collision_after(
+        self, last: Touchdown, age: float, posture: Posture, moment: Moment | None
+    ) -> SpatialCollision | None:
+        """The collision ahead of a body that was struck `age` s ago, as the touchdown tells: no twist shows it yet."""
+        axes, stands = axes_of(last.orientation), [False] * len(self._points)
+        for contact in last.contacts:
+            stands[contact.point] = contact.state in (ContactState.SLIPS, ContactState.STICKS)
+        return self._followed(
+            center=add(last.position, to_world(axes, self._scene.center_of_mass)),
+            orientation=last.orientation,
+            twist=last.after_6d,
+            stands=stands,
+            age=age,
+            rates=posture.rates,
+            moment=moment,
+        )
+
+    def _followed(
+        self,
+        *,
+        center: Vector3,
+        orientation: Quaternion,
+        twist: SpatialTwist,
+        stands: list[bool],
+        age: float,
+        rates: list[float],
+        moment: Moment | None,
+    ) -> SpatialCollision | None:
+        """The collision at the end of a motion that began `age` s before the sample, with the rates that this shows."""
+        scene, n, frame = self._scene, len(self._points), self._axes
+        x, y, z = to_body(frame, center)
+        start = SpatialState(
+            position=(x, y, z - scene.height),
+            orientation=composed(conjugate(self._frame), orientation),
+            velocity=to_body(frame, twist.linear),
+            angular_velocity=to_body(frame, twist.angular),
+        )
+        standing = [i for i in range(n) if stands[i]]
+        end = fall(
+            start, self._inertia, self._arms, standing, scene.friction, self._pull(moment, age), scene.horizon + age
+        )
+        if end.point < 0:
+            return None
+        old, state = end.standing, end.state
+        window = WINDOW * scene.merge
+        slack = 0.0 if self._draws is None else SLACK * self.gap_deviation
+        new = tuple(
+            [
+                i
+                for i, (gap, rate) in enumerate(zip(end.gaps, end.rates, strict=True))
+                if i == end.point or (i not in old and rate < 0.0 and gap <= slack - window * rate)
+            ]
+        )
+        orientation = composed(self._frame, state.orientation)
+        axes, points = axes_of(orientation), old + new
+        return SpatialCollision(
+            contacts=ActiveContacts(old, new),
+            lead_time=max(0.0, end.time - age),
+            position=add(to_world(frame, state.position), scene.normal, scene.height),
+            orientation=orientation,
+            before=SpatialTwist(to_world(frame, state.velocity), to_world(frame, state.angular_velocity)),
+            points=points,
+            arms=tuple([to_world(axes, self._arms[i]) for i in points]),
+            gaps=tuple([0.0 if i in old else max(0.0, end.gaps[i]) for i in points]),
+            rates=tuple([end.rates[i] for i in points]),
+            measured=-total([rates[i] for i in new]) / len(new),
+            speed=-end.rates[end.point],
+        )
+
+    def touchdown(self, sample: Sample, posture: Posture, collision: SpatialCollision) -> Touchdown:
+        """The touchdown at the end of an approach, with its impact."""
+        scene, (old, new) = self._scene, collision.contacts
+        before, speed = collision.before, collision.speed
+        problem, n = self._problem(collision), len(collision.points)
+        answer, notes = np.zeros(ANSWER + RESULT * n), np.zeros(1, np.int64)
+        self._solve(problem[None], answer[None], notes)
+        numbers, contacts = answer.tolist(), []
+        for k, point in enumerate(collision.points):
+            a, b, c, u, v, w, state = numbers[ANSWER + RESULT * k : ANSWER + RESULT * (k + 1)]
+            found = PointOutcome(
+                point=point, is_new=k >= len(old), impulse=(a, b, c), velocity=(u, v, w), state=STATES[int(state)]
+            )
+            contacts.append(found)
+        vx, vy, vz, wx, wy, wz, lost = numbers[:ANSWER]
+        after, drawn = SpatialTwist((vx, vy, vz), (wx, wy, wz)), None
+        if self._draws is not None:
+            rates = list(collision.rates[len(old) :])
+            drawn = self._draws.drawn(sample, posture.axes, problem, len(old), rates, self.gap_deviation)
+            mode, after = drawn.mode, drawn.after
+            contacts = [
+                contact._replace(lift_probability=chance) for contact, chance in zip(contacts, drawn.lifts, strict=True)
+            ]
+        else:
+            mode = mode_of_contacts(contacts, scene.normal, RESTS * speed)
+        plane = self._plane(collision)
+        now, axis, ahead = axes_of(collision.orientation), plane.axis, cross(plane.axis, scene.normal)
+        angular, center = to_body(now, after.angular), scene.center_of_mass
+        spread = max(collision.gaps[len(old) :]) / speed
+        uncertainty = None if drawn is None else self._uncertainty(sample, drawn, plane.axis, now)
+        return Touchdown(
+            lead_time=collision.lead_time,
+            mode=mode,
+            before=planar_twist(before, ahead, scene.normal, axis),
+            after=planar_twist(after, ahead, scene.normal, axis),
+            impulses=(
+                along_plane([contact.impulse for contact in contacts[: len(old)]], ahead, scene.normal),
+                along_plane([contact.impulse for contact in contacts[len(old) :]], ahead, scene.normal),
+            ),
+            segments=(),
+            energy_lost=lost,
+            flags=flags_named(int(notes[0])),
+            unique=True,
+            law=scene.law,
+            old=old,
+            new=new,
+            axis=axis,
+            position=add(collision.position, to_world(now, center), -1.0),
+            orientation=collision.orientation,
+            linear=add(to_body(now, after.linear), cross(angular, center), -1.0),
+            angular=angular,
+            half_distance=plane.half_distance,
+            off_axis=plane.off_axis,
+            lateral=plane.lateral,
+            closing_spread=spread,
+            offset=plane.offset,
+            leftover=leftover_of(
+                scene,
+                stands=bool(old),
+                strays=plane.off_axis > OFF_AXIS or plane.offset > OFFSET * plane.width,
+                apart=spread > scene.contact_time or (len(old) > 1 and len(new) == 1),
+                speed=speed,
+            ),
+            before_6d=before,
+            after_6d=after,
+            contacts=tuple(contacts),
+            uncertainty=uncertainty,
+        )
+
+    def _solve(self, problems: NDArray[np.float64], answers: NDArray[np.float64], notes: NDArray[np.int64]) -> None:
+        """Fill in the answers to problems with as many contacts each."""
+        scene, n = self._scene, (problems.shape[1] - BODY) // CONTACT
+        how = bool(self._law), scene.merge, hardly(scene), STEPS
+        self._solver(n, problems, *how, answers, notes, *workspace(n))
+
+    def _uncertainty(self, sample: Sample, drawn: DrawnImpact, axis: Vector3, now: Axes) -> Uncertainty:
+        from .draws import in_body
+
+        ahead, normal = cross(axis, self._scene.normal), self._scene.normal
+        to_plane = np.array([(*ahead, *ORIGIN), (*normal, *ORIGIN), (*ORIGIN, *times(axis, -1.0))])
+        mean, spread = moments(product(to_plane, drawn.twists))
+        _, covariance = moments(product(in_body(now, self._scene.center_of_mass), drawn.twists))
+        used = drawn.given is Covariance.USED
+        return Uncertainty(
+            given=drawn.given,
+            probabilities=drawn.probabilities,
+            mean=Twist(*mean.tolist()),
+            deviation=Twist(*np.sqrt(spread.diagonal()).tolist()),
+            twist_covariance=tuple(covariance.ravel().tolist()) if used else sample.twist_covariance,
+        )
+
+    def _plane(self, collision: SpatialCollision) -> NearestPlane:
+        """The impact plane that is nearest to a collision, and what it leaves over."""
+        scene, before, count = self._scene, collision.before, len(collision.contacts.old)
+        stood, struck = collision.arms[:count], mean(list(collision.arms[count:]))
+        arm = add(struck, mean(list(stood)), -1.0) if stood else struck
+        edge = edge_of(list(stood)) if count > 1 else None
+        axis = axis_of(scene.normal, before.angular, before.linear, edge, arm, hardly(scene))
+        ahead, rate = cross(axis, scene.normal), dot(axis, before.angular)
+        lateral, offset = dot(axis, before.linear), abs(dot(axis, struck))
+        half, width = 0.0, hypot(dot(ahead, struck), dot(scene.normal, struck))
+        if stood:
+            middle = mean(list(stood))
+            offset = max(offset, abs(dot(axis, middle)))
+            lateral += dot(axis, cross(before.angular, middle))
+            half = width = 0.5 * hypot(dot(ahead, arm), dot(scene.normal, arm))
+        return NearestPlane(
+            axis=axis,
+            half_distance=half,
+            width=width,
+            off_axis=off_axis_of(before.angular, axis, rate),
+            lateral=lateral,
+            offset=offset,
+        )
+
+    def _problem(self, collision: SpatialCollision) -> np.ndarray:
+        """The numbers of a collision as the law takes them (see `mechanics.impact.spatial_body`)."""
+        scene = self._scene
+        (linear, angular), normal, n = collision.before, scene.normal, len(collision.points)
+        problem = np.zeros(BODY + CONTACT * n)
+        problem[:BODY] = (scene.mass, *inertia_in(axes_of(collision.orientation), scene), *linear, *angular)
+        friction, restitution = scene.friction, scene.restitution
+        problem[BODY:] = [
+            number
+            for arm, gap in zip(collision.arms, collision.gaps, strict=True)
+            for number in (*arm, *normal, friction, restitution, 0.0, 0.0, 0.0, gap)
+        ]
+        return problem
+
+    def _pull(self, moment: Moment | None, age: float) -> Pull:
+        """What pulls the body from `age` s ago on."""
+        scene, frame = self._scene, self._axes
+        if moment is None:
+            return Pull(to_body(frame, scene.gravity))
+        from .deck.frame import pull_at  # only where the support moves
+
+        felt, later = moment.felt, moment.ahead(scene.horizon)
+        origin = times(scene.normal, scene.height)
+        now, then = pull_at(felt, origin, ORIGIN), pull_at(later, origin, ORIGIN)
+        growth = times(add(then, now, -1.0), 1.0 / scene.horizon)
+        return Pull(
+            gravity=to_body(frame, add(now, growth, -age)),
+            growth=to_body(frame, growth),
+            spin=to_body(frame, felt.angular),
+            turning=to_body(frame, felt.turning),
+        )
+
+
+RESTS = 1e-5
+"""A group of contacts holds that leaves more slowly than this part of the approach."""
+
+
+def planar_twist(twist: SpatialTwist, ahead: Vector3, normal: Vector3, axis: Vector3) -> Twist:
+    """The part of a twist in the impact plane."""
+    return Twist(dot(ahead, twist.linear), dot(normal, twist.linear), -dot(axis, twist.angular))
+
+
+def along_plane(impulses: list[Vector3], ahead: Vector3, normal: Vector3) -> Vector:
+    """Normal and tangential part of the sum of some impulses."""
+    return total([dot(normal, one) for one in impulses]), total([dot(ahead, one) for one in impulses])
+
+
+def mode_of_contacts(contacts: Sequence[PointOutcome], normal: Vector3, least: float) -> Mode:
+    """The mode of an impact, from its groups of contacts: one lifts when the mean of its gap rates does."""
+    found = []
+    for is_new in (False, True):
+        group = [contact for contact in contacts if contact.is_new == is_new]
+        lifts = not group or total([dot(normal, contact.velocity) for contact in group]) > least * len(group)
+        found.append((lifts, any(contact.state is ContactState.SLIPS for contact in group)))
+    (old_lifts, old_slips), (new_lifts, new_slips) = found
+    return mode_of(old_lifts, new_lifts, old_slips, new_slips)
+
+
+def frame_of(normal: Vector3) -> Quaternion:
+    """The shortest rotation that takes z to a unit normal."""
+    x, y, z = normal
+    if z < -1.0 + 1e-12:
+        return 1.0, 0.0, 0.0, 0.0
+    scale = 1.0 / sqrt(2.0 * (1.0 + z))
+    return -y * scale, x * scale, 0.0, (1.0 + z) * scale
+
+
+def rotated(orientation: Quaternion, spin: Vector3, time: float) -> Quaternion:
+    """An orientation after it has turned for a short time (s) with an angular velocity in the world, to third order."""
+    half = 0.5 * time
+    x, y, z = spin[0] * half, spin[1] * half, spin[2] * half
+    square = x * x + y * y + z * z
+    sine, cosine = 1.0 - square / 6.0, 1.0 - 0.5 * square
+    a, b, c, d = composed((x * sine, y * sine, z * sine, cosine), orientation)
+    unit = 1.0 / sqrt(a * a + b * b + c * c + d * d)
+    return a * unit, b * unit, c * unit, d * unit
+
+
+def along(inertia: InertiaTensor, axis: Vector3) -> Vector3:
+    return dot(inertia[0], axis), dot(inertia[1], axis), dot(inertia[2], axis)
+
+
+def inertia_in(axes: tuple[Vector3, Vector3, Vector3], scene: Scene) -> tuple[float, ...]:
+    """The inertia ixx, iyy, izz, ixy, ixz, iyz of a body whose axes are these, along the axes of the world."""
+    first, second, third = scene.inertia
+    (ax, ay, az), (bx, by, bz), (cx, cy, cz) = axes
+    # Rows of R I: the columns of R are the axes.
+    rows = [
+        (
+            a * first[0] + b * second[0] + c * third[0],
+            a * first[1] + b * second[1] + c * third[1],
+            a * first[2] + b * second[2] + c * third[2],
+        )
+        for a, b, c in ((ax, bx, cx), (ay, by, cy), (az, bz, cz))
+    ]
+    x, y, z = (ax, bx, cx), (ay, by, cy), (az, bz, cz)
+    return dot(rows[0], x), dot(rows[1], y), dot(rows[2], z), dot(rows[0], y), dot(rows[0], z), dot(rows[1], z)
