@@ -27,6 +27,7 @@ from .write import BagWriter
 
 if TYPE_CHECKING:
     from ..prediction.monitor import Monitor
+    from ..prediction.recorded import Announced
     from ..scenarios.comparison import BodyTruth, Truth
     from ..scenarios.matching import Match
     from .body import Gait
@@ -61,6 +62,7 @@ class Result(NamedTuple):
     extent: tuple[int, int] | None = None
     costs: Sequence[float] = ()
     matches: Sequence[Match] = ()
+    recorded: Mapping[str, Announced] = MappingProxyType({})
 
 
 def replay(
@@ -137,6 +139,7 @@ def replay(
         extent=run.extent,
         costs=run.costs,
         matches=() if compared is None else compared.matches,
+        recorded=run.recorded,
     )
 
 

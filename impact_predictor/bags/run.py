@@ -6,11 +6,13 @@ from array import array
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from functools import partial
+from operator import add
 from time import perf_counter
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
 from ..prediction.monitor import Monitor
+from ..prediction.recorded import Announced
 from ..prediction.scene import CONTACT_GEOMETRY, IMU, JOINTS, ODOM, SCHEDULE, WRENCH, Input, Scene
 from ..prediction.types import Geometry, Imu, Joints, Sample, Schedule, Status, Wrench
 from ..ros.messages import DIAGNOSTIC_ARRAY, INPUT_TYPES, MARKER_ARRAY, MalformedMessage, encode_reports
@@ -115,6 +117,15 @@ class Run:
         firsts = [one.first.stamp for one in self.bodies.values() if one.first is not None]
         lasts = [one.last.stamp for one in self.bodies.values() if one.last is not None]
         return (min(firsts), max(lasts)) if firsts else None
+
+    @property
+    def recorded(self) -> dict[str, Announced]:
+        """The touchdowns that the samples of all bodies show, by kind."""
+        found: dict[str, Announced] = {}
+        for predictor in self.monitor.predictors.values():
+            for kind, counts in predictor.contacts.recorded.items():
+                found[kind] = Announced(*map(add, found.get(kind, (0, 0)), counts))
+        return found
 
     def _take_of(self, one: Input) -> Take:
         """What takes a message on an input."""

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Mapping
 from math import atan2, cos, hypot, sin, sqrt
 
 from ..mechanics.motion import Fall, PlanarState, next_touchdown
 from ..mechanics.types import Contact, TwoPointBody, Vector
 from ..stamps import NANOSECONDS
 from .checks import PAUSE, check_points
-from .impact import Collision, ImpactModel, collision_after
-from .planar import ImpactPlane, Posture, center_of, contacts_of, edge_of, inertia_about, plane_of, posture_of
+from .impact import SLOWEST, Collision, ImpactModel, collision_after
+from .planar import ImpactPlane, Posture, center_of, contacts_of, edge_of, hardly, inertia_about, plane_of, posture_of
 from .predictor import DEEP, DEEP_TOLERANCES, Contacts
+from .recorded import AFTER, BEFORE, Announced, RecordedTouchdown, TouchdownRecorder
 from .scene import Scene
-from .score import Pending, Track
+from .score import Pending, PointRecord, Track
 from .spatial import SpatialCollision, SpatialModel
-from .types import ContactInput, Geometry, Moment, Sample, Status, Touchdown, Vector3
+from .types import ContactInput, Geometry, Leftover, Moment, Sample, Status, Touchdown, Vector3
 from .vectors import add, axes_of, composed, conjugate, times, to_body, total
 
 ACCURACY = 1e-6  # of the motion before the touchdown, relative: a thousandth of what poses and twists are measured to
@@ -55,6 +57,9 @@ class PointContacts(Contacts):
         self._pending: list[Pending] = []
         self._recent: deque[tuple[Sample, Posture]] = deque(maxlen=4)
         self._last: Sample | None = None
+        self._told: deque[tuple[int, Track]] = deque(maxlen=64)
+        """What the last samples announced, by their stamps in ns."""
+        self._recorder = TouchdownRecorder(scene, SLOWEST * hardly(scene))
         self._measure_points()
         # What is compiled for the first touchdown is compiled now.
         if self._spatial is None and self.is_spatial and not self.points:
@@ -67,6 +72,7 @@ class PointContacts(Contacts):
             if message.points != self.points:
                 self.points = message.points
                 self._track = None
+                self._recorder.forget()
                 self._measure_points()
             self.geometry = message
             self.frame_id = message.frame_id
@@ -115,6 +121,7 @@ class PointContacts(Contacts):
             track = self._track = Track()
         elif track.stamp <= sample.stamp + round(BEGUN * self.scene.twist_window * NANOSECONDS):
             # The impact itself may be in this twist, averaged or just begun: the last prediction stands.
+            self._told.append((sample.stamp, track))
             return track.hold(sample.stamp)
         if isinstance(collision, Collision):
             touchdown = self._impact.touchdown(sample, posture, collision)
@@ -123,14 +130,21 @@ class PointContacts(Contacts):
             touchdown = self._spatial.touchdown(sample, posture, collision)
         self.collision = sample, posture, collision
         track.add(sample.stamp, touchdown, collision.measured)
+        self._told.append((sample.stamp, track))
         return touchdown
 
     def forget(self) -> None:
         self.settled.extend([pending.score(self.scene) for pending in self._pending])
         self._pending.clear()
         self._recent.clear()
+        self._told.clear()
+        self._recorder.forget()
         self._track = self._landed = self._last = None
         self.stamp = None
+
+    @property
+    def recorded(self) -> Mapping[str, Announced]:
+        return self._recorder.counts
 
     def posture_of(self, sample: Sample) -> Posture:
         return posture_of(self.scene, self.points, sample)
@@ -168,20 +182,53 @@ class PointContacts(Contacts):
 
     def _measure(self, sample: Sample, posture: Posture) -> None:
         """Hand the sample to the touchdowns that wait for it, and settle the tracked one if it has happened."""
+        if self.is_spatial:
+            self._recorder.take(sample, posture)
+            for recorded in self._recorder.found:
+                if recorded.is_complete and not recorded.is_matched:
+                    self._match(recorded)
         for pending in self._pending:
             pending.add(sample, posture)
         while self._pending and self._pending[0].complete:
             self.settled.append(self._pending.pop(0).score(self.scene))
         track = self._track
         if track is not None and self._has_landed(track, posture):
-            self._track = None
-            pending = Pending(track, min(track.stamp, sample.stamp))
+            self._track, track.has_landed = None, True
+            pending = Pending(track, min(track.stamp, sample.stamp), self._record)
             for earlier in self._recent:
                 if earlier[0].stamp > pending.stamp:
                     pending.add(*earlier)
             pending.add(sample, posture)
             self._pending.append(pending)
             self._landed = pending
+
+    @property
+    def _record(self) -> PointRecord | None:
+        gravity = self.scene.gravity if self._moment is None else self._moment.felt.gravity
+        return PointRecord(self.points, gravity, self._recorder) if self.is_spatial else None
+
+    def _match(self, recorded: RecordedTouchdown) -> None:
+        """Find the prediction of a touchdown that the record shows: one that waits, or what was told last before it."""
+        waiting = [one for one in self._pending if one.recorded is None and recorded.is_near(one.stamp)]
+        if waiting:
+            pending = min(waiting, key=lambda one: abs(one.stamp - recorded.stamp))
+        else:
+            told = [track for stamp, track in self._told if recorded.frames[1].stamp <= stamp <= recorded.stamp]
+            track = told[-1].until(recorded.stamp) if told else None
+            if track is None or not recorded.is_near(track.stamp):
+                return
+            recorded.is_announced = True
+            others = [one for one in (*self._pending, self._landed) if one is not None and recorded.is_near(one.stamp)]
+            is_told = told[-1].has_landed or any({*one.track.last.new} & {*track.last.new} for one in others)
+            # What is still ahead may yet land.
+            if is_told or (told[-1] is self._track and not recorded.is_last):
+                return
+            told[-1].has_landed = True
+            pending = Pending(track, track.stamp, self._record, Leftover.OTHER_POINTS)
+            for frame in recorded.frames[BEFORE : BEFORE + AFTER]:
+                pending.add(*frame)
+            self._pending.append(pending)
+        pending.recorded, recorded.is_announced, recorded.is_matched = recorded, True, True
 
     def _has_landed(self, track: Track, posture: Posture) -> bool:
         gaps, rates = posture.gaps, posture.rates

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections import deque
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from .checks import PAUSE, check_numbers, order_of
@@ -15,6 +16,7 @@ from .types import ContactInput, Foot, Geometry, Moment, Prediction, Sample, Sco
 
 if TYPE_CHECKING:
     from .deck.tracker import Deck
+    from .recorded import Announced
 
 
 DEEP = 0.05
@@ -63,6 +65,11 @@ class Contacts(ABC):
     @abstractmethod
     def touchdown(self) -> Touchdown | Status | None:
         """The touchdown that the last sample shows to be next; None where none lies within the horizon."""
+
+    @property
+    def recorded(self) -> Mapping[str, Announced]:
+        """The touchdowns that the samples show, by kind, of a body on points."""
+        return {}
 
     def feet(self) -> tuple[Foot, ...]:
         """The feet as the last sample shows them, of a body that has feet."""

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from enum import IntEnum, IntFlag
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from ..mechanics.types import ContactState, Flag, Mode, Outcome, Twist, Vector
 from ..mechanics.types import Quaternion as Quaternion
 from ..mechanics.types import Vector3 as Vector3
+
+if TYPE_CHECKING:
+    from .score import SpatialScore
 
 
 class Status(IntEnum):
@@ -59,6 +62,14 @@ class Leftover(IntFlag):
     """The approach is too slow against gravity for an impact to be told from rest."""
     DRIVEN = 32
     """The feet are driven: what a record shows after the touchdown is not the impact alone."""
+    OTHER_POINTS = 64
+    """The points that were predicted to strike did not come to the support, others did."""
+    UNSEEN = 128
+    """The record shows no point that comes to the support then."""
+    NOT_ISOLATED = 256
+    """Another touchdown is too near for the twist between them to be told."""
+    MOVING_CONTACTS = 512
+    """The contacts move over the body, so that it does not go on as one on points."""
 
 
 class Covariance(IntEnum):
@@ -256,6 +267,15 @@ class Uncertainty(NamedTuple):
     twist_covariance: tuple[float, ...]
 
 
+KINDS: Final = ("flight>corner", "flight>edge", "corner>corner", "corner>edge+", "edge>corner", "edge>face")
+"""The kinds of touchdowns: what stood and what strikes, a corner being one point, an edge two or more."""
+
+
+def kind_of(old: tuple[int, ...], new: tuple[int, ...]) -> str:
+    """The kind of a touchdown, from the points that stood and those that strike."""
+    return KINDS[2 * min(len(old), 2) + (len(new) > 1)]
+
+
 class Touchdown(NamedTuple):
     """The touchdown that a sample announces, with the impact it makes.
 
@@ -300,13 +320,8 @@ class Touchdown(NamedTuple):
 
     @property
     def kind(self) -> str:
-        """What stood and what strikes: flight>corner, corner>edge+, edge>face and the like."""
-        old, new = len(self.old), len(self.new)
-        if old == 0:
-            return "flight>" + ("corner" if new == 1 else "edge")
-        if old == 1:
-            return "corner>" + ("corner" if new == 1 else "edge+")
-        return "edge>" + ("corner" if new == 1 else "face")
+        """What stands and what strikes (`kind_of`)."""
+        return kind_of(self.old, self.new)
 
 
 class Score(NamedTuple):
@@ -314,7 +329,9 @@ class Score(NamedTuple):
 
     `stamp` in ns, the predicted touchdown; `measured` None when the record ends too early; `relative_error` None
     when there is nothing to compare; `history` the (lead time in s, relative error) of every prediction of it that had
-    the same contacts. Of a walking machine `stamp` is when its foot came to stand, and `landing` tells of that.
+    the same contacts. Of a walking machine `stamp` is when its foot came to stand, and `landing` tells of that. All
+    this is in the impact plane; `spatial` compares the whole twists, where the record shows the touchdown, and counts
+    where `leftover_6d` does not say why not.
     """
 
     stamp: int
@@ -325,6 +342,18 @@ class Score(NamedTuple):
     leftover: Leftover
     history: tuple[tuple[float, float], ...]
     landing: Landing | None = None
+    leftover_6d: Leftover = Leftover.MOVING_CONTACTS
+    spatial: SpatialScore | None = None
+
+    @property
+    def kind(self) -> str:
+        """What stood and what struck, as the record shows it, or else as it was predicted."""
+        return self.touchdown.kind if self.spatial is None else self.spatial.kind
+
+    @property
+    def before_6d(self) -> SpatialTwist:
+        """The whole twist before the touchdown, as it was predicted."""
+        return (self.touchdown if self.spatial is None else self.spatial.told).before_6d
 
 
 class Prediction(NamedTuple):

@@ -14,8 +14,9 @@ from ..errors import need
 from ..files import named, whole
 from ..prediction.types import Status
 from ..stamps import NANOSECONDS
+from .skill import skill_as_json
 from .summary import SpanErrors, errors_ahead, errors_of, spread_of, to_json, velocity_errors_ahead
-from .touchdowns import FIELDS, row_as_json, row_of
+from .touchdowns import FIELDS, PARTS, row_as_json, row_of
 
 if TYPE_CHECKING:
     from pyarrow.parquet import ParquetWriter
@@ -25,11 +26,8 @@ if TYPE_CHECKING:
 
 _GROUP: Final = 10_000
 """Rows that are written at a time: few enough for any memory, many enough to be read fast."""
-_PARTS: Final = {
-    "twist": {"vx": "m/s", "vy": "m/s", "omega": "rad/s"},
-    "impulse": {"normal": "N s", "tangential": "N s"},
-}
-"""What the JSON has as a list of numbers: the ends of the names of its columns, and their units."""
+_UNITS: Final = {"v": "m/s", "w": "rad/s", "o": "rad/s", "n": "N s", "t": "N s"}
+"""Of the parts of twists and impulses, by their first letters."""
 _SHORT: Final = {"from": "from", "to": "to", "count": "count", "median": "p50", "p90": "p90"}
 """What the JSON has of a spread under `error_by_lead_time`."""
 
@@ -70,6 +68,7 @@ def as_json(result: Result) -> dict[str, Any]:
         "begin": begin,
         "end": end,
         "cost_us": to_json(spread_of([1e6 * cost for cost in result.costs])),
+        **skill_as_json(rows, result.recorded),
         **{key: value for key, value in known.items() if value},
     }
 
@@ -131,10 +130,13 @@ def _match(match: Match) -> dict[str, Any]:
 
 def _columns_of(key: str) -> dict[str, tuple[str, str]]:
     """The columns of a field: for each name the type in Arrow, and the unit."""
-    field, stem = FIELDS[key], key.removesuffix("_twist")
-    if field.type in _PARTS:
-        return {f"{stem}_{part}": ("float64", unit) for part, unit in _PARTS[field.type].items()}
-    return {key: ("string" if field.type == "mode" else field.type, field.unit)}
+    field, stem = FIELDS[key], key.removesuffix("_twist").replace("_twist_6d", "_6d")
+    if field.type == "lift":
+        types = ("bool", ""), ("bool", ""), ("float64", "1")
+        return {f"{key}_{part}": of for part, of in zip(PARTS["lift"], types, strict=True)}
+    if field.type in PARTS:
+        return {f"{stem}_{part}": ("float64", field.unit or _UNITS[part[0]]) for part in PARTS[field.type]}
+    return {} if field.type == "json" else {key: ("string" if field.type == "mode" else field.type, field.unit)}
 
 
 class TouchdownTable:
@@ -160,7 +162,7 @@ class TouchdownTable:
             }
             for key, field in FIELDS.items():
                 value = touchdown.get(key)
-                row |= zip(_columns_of(key), value if field.type in _PARTS and value else (value,), strict=False)
+                row |= zip(_columns_of(key), value if field.type in PARTS and value else (value,), strict=False)
             self._rows.append(row)
         if len(self._rows) >= _GROUP:
             self.flush()

@@ -31,6 +31,10 @@ WHY: Final = {
     "TOO_SHORT": "the record ended, or paused, too soon after",
     "TOO_SLOW": "the approach was too slow to be told from rest",
     "DRIVEN": "the feet are driven: what follows is not the impact alone",
+    "OTHER_POINTS": "other points came to the support than was predicted",
+    "UNSEEN": "the record shows no point that came to the support then",
+    "NOT_ISOLATED": "another touchdown was too near",
+    "MOVING_CONTACTS": "the contacts move over the body",
 }
 """Why a touchdown is not compared with what was measured, by the names of `Leftover`."""
 

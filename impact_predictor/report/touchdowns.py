@@ -8,18 +8,24 @@ from operator import sub
 from typing import TYPE_CHECKING, Annotated, Any, Final, NamedTuple, get_type_hints
 
 from ..mechanics.types import Mode, Twist, Vector
-from ..prediction.types import Landing, Score
+from ..prediction.score import Lift
+from ..prediction.skill import SIMPLE
+from ..prediction.types import Landing, Leftover, PointOutcome, Score
 from ..scenarios.comparison import LEAD_TIMES
 
 if TYPE_CHECKING:
     from ..bags.body import Settled
 
 
+Numbers = tuple[float, ...]
+
+
 class TouchdownField(NamedTuple):
     """A field of a touchdown in files: its type and its unit.
 
-    Types are those of Arrow, and mode, twist (vx, vy, omega) and impulse (normal, tangential). `message` is its key in
-    `~/score` where that is another one; `of_foot` is for landings alone.
+    Types are those of Arrow, and mode, twist (vx, vy, omega), twist_6d (vx, vy, vz, wx, wy, wz), impulse (normal,
+    tangential), lift (told, measured, probability), simple (the errors of `SIMPLE` answers), and json, which only the
+    JSON has. `message` is its key in `~/score` where that is another one; `of_foot` is for landings alone.
     """
 
     type: str
@@ -34,7 +40,8 @@ class TouchdownRow(NamedTuple):
     Times in s but `stamp` in ns, lengths in m, twists of the mass centre in the impact plane (m/s, rad/s), impulses
     (normal, tangential) in N s; None is what is not known. `old` and `new` are the points that stood and that struck;
     `flags` say what a reader should know and, where it is not `scored`, why. `time_errors` of a landing are those of
-    the predictions made `LEAD_TIMES` before it, and `cost` is that of the last prediction.
+    the predictions made `LEAD_TIMES` before it, and `cost` is that of the last prediction. Whole twists, in the
+    support's frame, are scored unless `not_scored_6d` says why not.
     """
 
     body: Annotated[str, TouchdownField("string")]
@@ -52,9 +59,20 @@ class TouchdownRow(NamedTuple):
     new: Annotated[tuple[int, ...], TouchdownField("list<int32>")]
     measured_twist: Annotated[Twist | None, TouchdownField("twist", message="measured")] = None
     relative_error: Annotated[float | None, TouchdownField("float64", "1")] = None
+    kind: Annotated[str, TouchdownField("string")] = ""
+    before_twist_6d: Annotated[Numbers | None, TouchdownField("twist_6d", message="before_6d")] = None
+    predicted_twist_6d: Annotated[Numbers | None, TouchdownField("twist_6d", message="predicted_6d")] = None
+    measured_twist_6d: Annotated[Numbers | None, TouchdownField("twist_6d", message="measured_6d")] = None
+    relative_error_6d: Annotated[float | None, TouchdownField("float64", "1")] = None
+    not_scored_6d: Annotated[tuple[str, ...], TouchdownField("list<string>", message="leftover_6d")] = ()
+    simple_errors_6d: Annotated[Numbers | None, TouchdownField("simple", "1")] = None
+    lift_old: Annotated[tuple[Any, ...] | None, TouchdownField("lift", message="lift.old")] = None
+    lift_new: Annotated[tuple[Any, ...] | None, TouchdownField("lift", message="lift.new")] = None
+    contacts: Annotated[tuple[dict[str, Any], ...], TouchdownField("json")] = ()
+    mode_probabilities: Annotated[dict[str, float] | None, TouchdownField("json")] = None
+    time_error: Annotated[float | None, TouchdownField("float64", "s")] = None
     foot: Annotated[str, TouchdownField("string", of_foot=True)] = ""
     point: Annotated[str | None, TouchdownField("string", of_foot=True)] = None
-    time_error: Annotated[float | None, TouchdownField("float64", "s", of_foot=True)] = None
     late: Annotated[float | None, TouchdownField("float64", "s", of_foot=True)] = None
     confirmed: Annotated[bool | None, TouchdownField("bool", of_foot=True)] = None
     landing_speed: Annotated[float | None, TouchdownField("float64", "m/s", message="speed", of_foot=True)] = None
@@ -67,8 +85,13 @@ class TouchdownRow(NamedTuple):
 
     @property
     def error(self) -> float | None:
-        """The relative error of what is scored."""
+        """The relative error of what is scored in the impact plane."""
         return self.relative_error if self.scored else None
+
+    @property
+    def error_6d(self) -> float | None:
+        """The relative error of what is scored as a whole twist."""
+        return None if self.not_scored_6d else self.relative_error_6d
 
     @property
     def ahead(self) -> float | None:
@@ -87,6 +110,14 @@ FIELDS: Final[dict[str, TouchdownField]] = {
     if hasattr(hint, "__metadata__")
 }
 """Those of a row that files have, by their keys in the JSON."""
+PARTS: Final[dict[str, tuple[str, ...]]] = {
+    "twist": Twist._fields,
+    "twist_6d": ("vx", "vy", "vz", "wx", "wy", "wz"),
+    "impulse": ("normal", "tangential"),
+    "lift": Lift._fields,
+    "simple": tuple(SIMPLE),
+}
+"""What the JSON has as a list: what each element is, by the type of the field."""
 _NO_LANDING: Final = Landing("", 0, None, None, ())
 
 
@@ -95,6 +126,12 @@ def row_of(body: str, score: Score, cost: float | None = None) -> TouchdownRow:
     touchdown, landing = score.touchdown, score.landing or _NO_LANDING
     history, impact = landing.history if score.landing else score.history, landing.impact
     flags = [flag for flags in (score.leftover, touchdown.flags) for flag in type(flags) if flag & flags]
+    spatial, sure = score.spatial, touchdown.uncertainty
+    before, predicted, measured = [
+        None if twist is None else (*twist.linear, *twist.angular)
+        for twist in (score.before_6d, getattr(spatial, "predicted", None), getattr(spatial, "measured", None))
+    ]
+    lifts = (None, None) if spatial is None else spatial.lifts
     return TouchdownRow(
         body=body,
         stamp=score.stamp,
@@ -114,7 +151,18 @@ def row_of(body: str, score: Score, cost: float | None = None) -> TouchdownRow:
         cost=cost,
         foot=landing.foot,
         point=landing.point,
-        time_error=landing.history[-1][1] if landing.history else None,
+        kind=score.kind,
+        before_twist_6d=before,
+        predicted_twist_6d=predicted,
+        measured_twist_6d=measured,
+        relative_error_6d=getattr(spatial, "error", None),
+        not_scored_6d=tuple(flag.name or "" for flag in Leftover if flag & score.leftover_6d),
+        simple_errors_6d=spatial.simple_errors if spatial and not score.leftover_6d else None,
+        lift_old=lifts[0] and tuple(lifts[0]),
+        lift_new=lifts[1] and tuple(lifts[1]),
+        contacts=tuple(map(_contact, touchdown.contacts)),
+        mode_probabilities=sure and {mode.name: sure.probabilities[mode] for mode in Mode if sure.probabilities[mode]},
+        time_error=landing.history[-1][1] if landing.history else getattr(spatial, "late", None),
         late=landing.late,
         confirmed=landing.confirmed,
         landing_speed=landing.speed,
@@ -124,6 +172,16 @@ def row_of(body: str, score: Score, cost: float | None = None) -> TouchdownRow:
         others_impulse=impact.impulses[0] if impact and impact.old else None,
         velocity_change=impact and Twist(*map(sub, impact.after, impact.before)),
     )
+
+
+def _contact(point: PointOutcome) -> dict[str, Any]:
+    return {
+        "point": point.point,
+        "role": "new" if point.is_new else "old",
+        "impulse": [*map(float, point.impulse)],
+        "state": point.state.name,
+        "lift_probability": point.lift_probability,
+    }
 
 
 def error_ahead(landing: Landing, lead_time: float) -> float | None:
@@ -168,13 +226,14 @@ def row_of_message(body: str, values: Mapping[str, str], cost: float | None = No
     """
     entry: dict[str, Any] = {"body": body}
     for key, field in FIELDS.items():
-        sent = field.message or key
-        if field.type == "twist" and f"{sent}.vx" in values:
-            entry[key] = [float(values[f"{sent}.{part}"]) for part in Twist._fields]
+        sent, parts = field.message or key, PARTS.get(field.type, ())
+        if parts and f"{sent}.{parts[0]}" in values:
+            entry[key] = [json.loads(values.get(f"{sent}.{part}", "null")) for part in parts]
         elif sent in values:
             is_number = field.type in ("int64", "float64", "bool")
             entry[key] = json.loads(values[sent]) if is_number else values[sent]
     for key in ("old", "new"):
         entry[key] = [*map(int, values[key].split())]
     entry["flags"] = [flag for key in ("leftover", "flags") for flag in values[key].split("|") if flag != "NONE"]
+    entry["not_scored_6d"] = [flag for flag in values["leftover_6d"].split("|") if flag != "NONE"]
     return row_of_json(entry)._replace(cost=cost)

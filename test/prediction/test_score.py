@@ -201,7 +201,7 @@ def test_a_touchdown_that_does_not_come_is_not_held_for_ever() -> None:
 def test_the_stamp_is_that_of_the_prediction_and_not_after_the_sample_that_settles() -> None:
     assert only_score(SCENE, before() + after(4)).stamp == pytest.approx(TOUCH, abs=10)
     # It lands before its time, on something that lies there.
-    early = [*before()[:-2], *after(4, BEFORE_SAMPLES - 2)]
+    early = [*before()[:-2], *after(5, BEFORE_SAMPLES - 2)]
     assert only_score(SCENE, early).stamp == (BEFORE_SAMPLES - 2) * PERIOD
 
 
@@ -316,8 +316,8 @@ def test_touchdowns_shortly_after_one_another_are_both_scored() -> None:
     answers = run(predictor, samples + [samples[-1]._replace(stamp=k * period) for k in range(12, 20)])
     scores = {k: answer.score for k, answer in enumerate(answers) if answer.score is not None}
     assert [score.touchdown.new for score in scores.values()] == [(2, 3), (4, 5)]
-    # The first after 0 is sample 6, the first after 10 ms sample 11; the fourth of each has the score.
-    assert list(scores) == [9, 14]
+    # Every second pose measures them: the fourth of these after 0 is sample 12, the fourth after 10 ms sample 18.
+    assert list(scores) == [12, 18]
     assert all(score.scored for score in scores.values())
 
 
@@ -325,7 +325,7 @@ def test_the_memory_of_a_touchdown_that_never_comes_is_bounded() -> None:
     predictor = Predictor(SCENE)
     hover = [falling(30_000_000)._replace(stamp=k * PERIOD) for k in range(LONGEST + 50)]
     run(predictor, hover)
-    answers = run(predictor, after(4, LONGEST + 50))
+    answers = run(predictor, after(5, LONGEST + 50))
     score = answers[-1].score
     assert score is not None
     assert 0 < len(score.history) <= LONGEST

@@ -71,6 +71,18 @@ def test_the_json_of_a_touchdown_has_the_promised_keys() -> None:
         "flags": ["REVERSED_SLIP"],
         "old": [0, 1],
         "new": [2, 3],
+        "kind": "edge>face",
+        "before_twist_6d": [0.0] * 6,
+        "predicted_twist_6d": None,
+        "measured_twist_6d": None,
+        "relative_error_6d": None,
+        "not_scored_6d": ["MOVING_CONTACTS"],
+        "simple_errors_6d": None,
+        "lift_old": None,
+        "lift_new": None,
+        "contacts": [],
+        "mode_probabilities": None,
+        "time_error": None,
     }
     unmeasured = json_of(UNMEASURED)
     assert (unmeasured["measured_twist"], unmeasured["relative_error"], unmeasured["scored"]) == (None, None, False)
@@ -84,13 +96,13 @@ def test_the_json_of_a_landing_has_its_foot_its_impact_and_how_late_it_was() -> 
         "point": None,
         "late": -0.015,
         "confirmed": True,
-        "time_error": -0.001,
         "landing_speed": 0.25,
         "landing_mode": TOUCHDOWN.mode.name,
         "impulse": [0.5, -0.125],
         "others_impulse": [0.0, 0.0],
         "velocity_change": [-0.25, 0.75, 1.0],
     }
+    assert entry["time_error"] == -0.001
     unknown = json_of(UNANNOUNCED)
     names = ("late", "confirmed", "time_error", "landing_speed", "landing_mode", "impulse", "velocity_change")
     assert {unknown[name] for name in names} == {None}

@@ -5,7 +5,7 @@ A field is added by a line in its table, at its place in the message; docs/predi
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from operator import attrgetter
@@ -17,6 +17,7 @@ from ..cdr import LENGTHS, PADDING, add_pair, string
 
 if TYPE_CHECKING:
     from ...mechanics.margins import Margin, Margins
+    from ...prediction.types import SpatialTwist
 
 Source = TypeVar("Source")
 
@@ -200,6 +201,35 @@ def _of_score(field: Field[Touchdown], key: str) -> Field[Score]:
     return Field(key, field.unit, field.meaning, lambda score: field.get(score.touchdown))
 
 
+def _twist_6d(prefix: str, meaning: str, get: Callable[[Score], SpatialTwist | None]) -> Iterator[Field[Score]]:
+    """The fields of a whole twist."""
+    for part, unit in enumerate(("m/s", "rad/s")):
+        for k, axis in enumerate("xyz"):
+
+            def value(score: Score, part: int = part, k: int = k) -> object:
+                twist = get(score)
+                return twist and float(twist[part][k])
+
+            yield Field(f"{prefix}.{'vw'[part]}{axis}", unit, f"{meaning}: {axis}", value)
+
+
+def _lift(which: int, name: str) -> Iterator[Field[Score]]:
+    """The fields of whether a contact lifts."""
+    for key, meaning in (
+        ("told", "whether it was predicted to lift"),
+        ("measured", "whether it has lifted"),
+        ("probability", "that it lifts, as predicted"),
+    ):
+
+        def value(score: Score, key: str = key) -> object:
+            lift = score.spatial and score.spatial.lifts[which]
+            return lift and getattr(lift, key)
+
+        yield Field(
+            f"lift.{name}.{key}", "1" if key == "probability" else "", f"of the {name} contact: {meaning}", value
+        )
+
+
 SCORE: Final = Table[Score](
     Field("stamp", "ns", "of the predicted touchdown; of a foot, when it came to stand", lambda it: it.stamp),
     Field("mode", "", "that was predicted", lambda it: it.touchdown.mode),
@@ -221,8 +251,25 @@ SCORE: Final = Table[Score](
         "of the predicted twist; left out where there is nothing to compare",
         lambda it: it.relative_error,
     ),
+    Field("kind", "", "what stood and what struck", lambda it: it.kind),
+    Field("leftover_6d", "", "why the whole twist is not scored, or NONE", lambda it: it.leftover_6d),
+    Field(
+        "time_error", "s", "by which the touchdown was predicted too late", lambda it: getattr(it.spatial, "late", None)
+    ),
+    *_twist_6d("before_6d", "the whole twist before, in the support's frame", lambda it: it.before_6d),
+    *_twist_6d(
+        "predicted_6d",
+        "as predicted, when it is measured",
+        lambda it: getattr(it.spatial, "predicted", None),
+    ),
+    *_twist_6d(
+        "measured_6d", "between the second and the third frame after", lambda it: getattr(it.spatial, "measured", None)
+    ),
+    Field("relative_error_6d", "1", "of the whole predicted twist", lambda it: getattr(it.spatial, "error", None)),
+    *_lift(0, "old"),
+    *_lift(1, "new"),
 )
-"""Of a touchdown that has happened."""
+"""Of a touchdown that has happened; first in the impact plane."""
 
 LANDING: Final = Table[Landing](
     Field("foot", "", "that has landed", lambda it: it.foot),

@@ -1,0 +1,176 @@
+"""How right whole twists are: by kind of touchdown beside simple answers, by component, and whether contacts lift."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from math import hypot
+from typing import Any, Final, NamedTuple
+
+from ..prediction.recorded import Announced
+from ..prediction.skill import SIMPLE
+from ..prediction.types import KINDS
+from .summary import Distribution, spread_of
+from .touchdowns import TouchdownRow
+
+ALL: Final = "all"
+COMPONENTS: Final = {
+    "v along": "m/s",
+    "v across": "m/s",
+    "v up": "m/s",
+    "w along": "rad/s",
+    "w across": "rad/s",
+    "w up": "rad/s",
+}
+"""Components of a whole twist and their units: along the velocity before the touchdown in the plane x y, across it to
+the left, and along z.
+"""
+
+
+class KindScore(NamedTuple):
+    """The touchdowns of a kind: how many the record shows, how many of these were announced by the last sample before
+    them, and of those that are scored the `errors`, those of `SIMPLE` answers, and of the time in s.
+    """
+
+    kind: str
+    touchdowns: int
+    announced: int
+    errors: Distribution
+    simple: tuple[Distribution, ...]
+    times: Distribution
+
+
+class ComponentScore(NamedTuple):
+    """A component of the twists after touchdowns: the mean of predicted less measured ones, the slope of the straight
+    line of measured over predicted ones, and the part of the variance of measured ones that is predicted.
+    """
+
+    name: str
+    bias: float
+    slope: float
+    r2: float
+
+
+class LiftScore(NamedTuple):
+    """Whether a group of contacts lifts: `counts` by (measured, told), and where probabilities are told the mean square
+    of their errors (Brier), beside that of the base rate.
+    """
+
+    name: str
+    counts: Mapping[tuple[bool, bool], int]
+    brier: float | None
+    base: float | None
+
+    @property
+    def balanced(self) -> float | None:
+        """The mean of the shares of right answers among those that lifted and those that did not."""
+        shares = []
+        for measured in (True, False):
+            number = self.counts[measured, True] + self.counts[measured, False]
+            shares += [self.counts[measured, measured] / number] if number else []
+        return sum(shares) / 2 if len(shares) == 2 else None
+
+
+def kind_scores(rows: Iterable[TouchdownRow], recorded: Mapping[str, Announced]) -> list[KindScore]:
+    """Of each kind that there is, and of all; `recorded` counts the touchdowns that records show, by kind."""
+    scored = [row for row in rows if row.error_6d is not None]
+    found = []
+    for kind in (*KINDS, ALL):
+        of_kind = [row for row in scored if kind in (row.kind, ALL)]
+        counts = [count for name, count in recorded.items() if kind in (name, ALL)]
+        simple = [row.simple_errors_6d for row in of_kind if row.simple_errors_6d is not None]
+        if of_kind or counts:
+            one = KindScore(
+                kind=kind,
+                touchdowns=sum(count.touchdowns for count in counts),
+                announced=sum(count.announced for count in counts),
+                errors=spread_of([row.error_6d for row in of_kind if row.error_6d is not None]),
+                simple=tuple(spread_of([errors[k] for errors in simple]) for k in range(len(SIMPLE))),
+                times=spread_of([abs(row.time_error) for row in of_kind if row.time_error is not None]),
+            )
+            found.append(one)
+    return found
+
+
+def component_scores(rows: Iterable[TouchdownRow]) -> list[ComponentScore]:
+    """Of each of `COMPONENTS`, over the scored touchdowns; none of fewer than three."""
+    pairs = [
+        (_turned(row.predicted_twist_6d, row.before_twist_6d), _turned(row.measured_twist_6d, row.before_twist_6d))
+        for row in rows
+        if row.error_6d is not None and row.predicted_twist_6d and row.measured_twist_6d and row.before_twist_6d
+    ]
+    found = []
+    for k, name in enumerate(COMPONENTS if len(pairs) > 2 else ()):
+        told, seen = [one[k] for one, _ in pairs], [other[k] for _, other in pairs]
+        middle, mean = sum(told) / len(pairs), sum(seen) / len(pairs)
+        spread, variance = (sum((x - m) ** 2 for x in xs) for xs, m in ((told, middle), (seen, mean)))
+        both = sum((x - middle) * (y - mean) for x, y in zip(told, seen, strict=True))
+        wrong = sum((x - y) ** 2 for x, y in zip(told, seen, strict=True))
+        if spread and variance:
+            found.append(ComponentScore(name, middle - mean, both / spread, 1.0 - wrong / variance))
+    return found
+
+
+def _turned(twist: Sequence[float], before: Sequence[float]) -> tuple[float, ...]:
+    x, y = before[:2]
+    length = hypot(x, y)
+    c, s = (x / length, y / length) if length else (1.0, 0.0)
+    vx, vy, vz, wx, wy, wz = twist
+    return c * vx + s * vy, c * vy - s * vx, vz, c * wx + s * wy, c * wy - s * wx, wz
+
+
+def lift_scores(rows: Iterable[TouchdownRow]) -> list[LiftScore]:
+    """Of old and of new contacts, over the scored touchdowns; those that there are."""
+    scored, found = [row for row in rows if row.error_6d is not None], []
+    for name in ("old", "new"):
+        lifts = [lift for row in scored if (lift := getattr(row, f"lift_{name}")) is not None]
+        sure = [(measured, chance) for _, measured, chance in lifts if chance is not None]
+        rate = sum(measured for measured, _ in sure) / len(sure) if sure else 0.0
+        brier, base = [
+            sum((measured - chance) ** 2 for measured, chance in pairs) / len(sure) if sure else None
+            for pairs in (sure, [(measured, rate) for measured, _ in sure])
+        ]
+        if lifts:
+            counts = Counter((measured, told) for told, measured, _ in lifts)
+            found.append(LiftScore(name, counts, brier, base))
+    return found
+
+
+def unscored(rows: Iterable[TouchdownRow]) -> dict[str, int]:
+    """How many touchdowns are not scored for each reason, the commonest first; a touchdown may have several."""
+    return dict(Counter(flag for row in rows if not row.foot for flag in row.not_scored_6d).most_common())
+
+
+def skill_as_json(rows: Sequence[TouchdownRow], recorded: Mapping[str, Announced]) -> dict[str, Any]:
+    """All of this for the JSON of a replay; nothing where no touchdown was seen."""
+    kinds = kind_scores(rows, recorded)
+    if not kinds:
+        return {}
+    names = ("prediction", *SIMPLE)
+    return {
+        "skill": {name: _short(one) for name, one in zip(names, (kinds[-1].errors, *kinds[-1].simple), strict=True)},
+        "kinds": {
+            one.kind: {"touchdowns": one.touchdowns, "announced": one.announced}
+            | {name: _short(of) for name, of in zip(names, (one.errors, *one.simple), strict=True)}
+            | {"time_error": _short(one.times)}
+            for one in kinds
+        },
+        "components": {
+            one.name: {"bias": one.bias, "slope": one.slope, "r2": one.r2} for one in component_scores(rows)
+        },
+        "lifts": {
+            one.name: {
+                "lifted": {"told": one.counts[True, True], "not_told": one.counts[True, False]},
+                "stayed": {"told": one.counts[False, True], "not_told": one.counts[False, False]},
+                "balanced": one.balanced,
+                "brier": one.brier,
+                "brier_of_base_rate": one.base,
+            }
+            for one in lift_scores(rows)
+        },
+        "not_scored_6d": unscored(rows),
+    }
+
+
+def _short(spread: Distribution) -> dict[str, Any]:
+    return {"count": spread.number, "median": spread.p50, "p90": spread.p90}
