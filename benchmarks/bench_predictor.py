@@ -26,7 +26,6 @@ from rich.console import Console
 from rich.table import Table
 
 from impact_predictor.bags.read import BagMessage, read_messages
-from impact_predictor.mechanics import transverse
 from impact_predictor.parameters.file import read_parameters
 from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction import impact, points
@@ -53,7 +52,6 @@ class Part(NamedTuple):
 
 PARTS = (
     Part("the motion until the touchdown", points, "next_touchdown"),
-    Part("impacts with slip across the plane", transverse, "solve_transverse_impact"),
     Part("impacts in the plane", impact, "solve_impact"),
 )
 
@@ -152,14 +150,11 @@ def main() -> int:
     record = list(read_messages(TOSSES, {"/cube/odom": ODOMETRY, "/cube/contact_geometry": POLYGON}))
     kinds = run(scene, record)[1]
     whole = fastest(scene, record, runs)
-    in_plane = fastest(scene._replace(transverse_slip=False), record, runs)
     parts = Table("part, as shipped", "us per sample")
     for part in PARTS:
         parts.add_row(part.name, f"{np.mean(whole - fastest(scene, record, runs, part)):.1f}")
     parts.add_row("all else", f"{np.mean(fastest(scene, record, runs, *PARTS)):.1f}")
-    Console(width=120).print(
-        by_kind("as shipped", whole, kinds), by_kind("transverse_slip off", in_plane, kinds), parts, deck_table(runs)
-    )
+    Console(width=120).print(by_kind("as shipped", whole, kinds), parts, deck_table(runs))
     return 0
 
 

@@ -52,7 +52,6 @@ def fitted(rocker: Rocker, folder: Path) -> Calibration:
         friction=0.4,
         tolerance=1e-3,
         contact_time=1e-3,
-        transverse_slip=False,
     )
     records = []
     for angle in ANGLES:

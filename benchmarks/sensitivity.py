@@ -46,8 +46,6 @@ CONSTANTS: tuple[tuple[ModuleType, str], ...] = (
     (impact, "OFF_AXIS"),
     (impact, "OFFSET"),
     (impact, "SLOWEST"),
-    (impact, "SLIPS"),
-    (impact, "TOLERANCE"),
 )
 
 
@@ -122,7 +120,6 @@ def variations(scene: Scene) -> list[Variation]:
     changed.append(Variation("restitution (plastic)", 0.0, scene._replace(restitution=0.0)))
     changed.append(Variation("friction (no slip)", 1e3, scene._replace(friction=1e3)))
     changed.append(Variation("twist_window (none)", 0.0, scene._replace(twist_window=0.0)))
-    changed.append(Variation("transverse_slip (off)", 0.0, scene._replace(transverse_slip=False)))
     changed.append(Variation("law (total)", 0.0, scene._replace(law="total")))
     return changed
 

@@ -76,7 +76,6 @@ def scene_of(rocking: Rocking, case: Case) -> Scene:
         normal=(-sin(radians(case.slope)), 0.0, cos(radians(case.slope))),
         tolerance=1e-6,
         contact_time=case.contact_time,
-        transverse_slip=False,
     )
 
 

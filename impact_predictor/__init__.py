@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     )
     from .mechanics.margins import Margin, Margins
     from .mechanics.sensitivity import Sensitivity, sensitivity
-    from .mechanics.transverse import Transverse, TransverseOutcome, solve_transverse_impact
     from .mechanics.types import Alternative, Contact, ContactState, Flag, Mode, Outcome, Twist, TwoPointBody, Validity
 
 __all__ = [
@@ -37,8 +36,6 @@ __all__ = [
     "Sensitivity",
     "SpatialOutcome",
     "SpatialOutcomes",
-    "Transverse",
-    "TransverseOutcome",
     "Twist",
     "TwoPointBody",
     "Validity",
@@ -50,7 +47,6 @@ __all__ = [
     "solve_impacts",
     "solve_spatial_impact",
     "solve_spatial_impacts",
-    "solve_transverse_impact",
 ]
 __version__ = "0.1.0"
 
@@ -65,8 +61,6 @@ LATER = {
     "Margins": "margins",
     "Outcomes": "impact.batch",
     "Sensitivity": "sensitivity",
-    "Transverse": "transverse",
-    "TransverseOutcome": "transverse",
     "cylinder": "bodies",
     "plate": "bodies",
     "rod": "bodies",
@@ -75,10 +69,12 @@ LATER = {
     "solve_impacts": "impact.batch",
     "solve_spatial_impact": "impact.spatial",
     "solve_spatial_impacts": "impact.spatial",
-    "solve_transverse_impact": "transverse",
 }
 """Names that are loaded when they are asked for, and their modules: every start of pytest loads this package for its
 plugin, the node needs none of them, and some need numpy."""
+
+RETIRED = "Transverse", "TransverseOutcome", "solve_transverse_impact"
+"""Names that there were, for impacts of bodies that also slip across their plane."""
 
 
 def __getattr__(name: str) -> object:
@@ -87,4 +83,10 @@ def __getattr__(name: str) -> object:
 
         globals()[name] = found = getattr(import_module(f".mechanics.{LATER[name]}", __name__), name)
         return found
+    if name in RETIRED:
+        # Of an AttributeError `from impact_predictor import` would not say the reason.
+        raise ImportError(
+            f"there is no {__name__}.{name} any more: use solve_spatial_impact, which takes the whole twist of a body",
+            name=__name__,
+        )
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

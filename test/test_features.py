@@ -30,10 +30,9 @@ DECK = {**CRATE, "support.motion": "odom"}
 WATCHED = {**DECK, "onset.watch": True, "place.position": [0.0, 0.0, 0.2]}
 SURE = {"uncertainty.samples": 16, "uncertainty.friction": 0.02}
 WITHOUT_AND_WITH: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
-    "friction": (CRATE, {**CRATE, "contact.friction": 0.4, "transverse_slip": False}),
+    "friction": (CRATE, {**CRATE, "contact.friction": 0.4}),
     "restitution": (CRATE, {**CRATE, "contact.restitution": 0.3}),
     "twist window": (CRATE, {**CRATE, "odom.twist_window": 0.01}),
-    "transverse slip": ({**CRATE, "contact.friction": 0.4, "law": "total"}, {**CRATE, "contact.friction": 0.4}),
     "geometry topic": (CRATE, BODY),
     "moving support": (CRATE, DECK),
     "harmonic extrapolation": (DECK, {**DECK, "support.extrapolation": "harmonic"}),
@@ -179,7 +178,7 @@ def test_no_shipped_scene_loads_or_subscribes_to_what_only_features_need_that_it
         assert "contact_geometry" in added["geometry topic"]
         assert added["force sensors"] == {"contact_wrench"}
     # Else what all scenes load would be left out by none.
-    assert all(added[name] for name in ("feet", "moving support", "onset watch", "transverse slip", "uncertainty"))
+    assert all(added[name] for name in ("feet", "moving support", "onset watch", "uncertainty"))
     bare = found[different.index(CRATE)]
     for (scene, values), one in zip(SHIPPED.items(), found[len(different) :], strict=True):
         on = names_on(validate(values))

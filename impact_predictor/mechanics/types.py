@@ -156,7 +156,7 @@ class Outcome(NamedTuple):
     `twist` right after it; `impulses` as ((N_old, T_old), (N_new, T_new)) in N s along normal and tangent;
     `segments` the contact states along the impulse path (old contact first; O open, S stick, + or - slip);
     `energy_lost` in J, relative to the supports; `unique` is False when `alternatives` exist. `body` and `before` are
-    what it was asked about, None where the body also moved across the impact plane; `restitution` is the rule of it.
+    what it was asked about; `restitution` is the rule of it.
     """
 
     mode: Mode
@@ -168,23 +168,15 @@ class Outcome(NamedTuple):
     unique: bool
     alternatives: tuple[Alternative, ...]
     law: str
-    body: TwoPointBody | None = None
-    before: Twist | None = None
-    restitution: str = "poisson"
+    body: TwoPointBody
+    before: Twist
+    restitution: str
 
     @property
     def margins(self) -> Margins:
-        """How far the impact is from another mode, computed when it is asked for.
-
-        Raises:
-            ValueError: the body also moved across the impact plane; only the plane has margins.
-        """
+        """How far the impact is from another mode, computed when it is asked for."""
         from .margins import margins
 
-        if self.body is None or self.before is None:
-            raise ValueError(
-                "an impact with slip across the plane has no margins; ask solve_impact for those of the plane"
-            )
         # Where the total law answered for the path law, it was the path law that was asked.
         asked = "path" if self.flags & (Flag.BOTH_STRUCK | Flag.LAST_RESORT) else self.law
         return margins(self.body, self.before, asked, self.restitution)

@@ -124,12 +124,6 @@ _TABLE: Final = (
         "Impact law: path follows the growing impulse (Routh), total solves for the whole impulse at once.",
         choices=("path", "total"),
     ),
-    boolean(
-        "transverse_slip",
-        True,
-        "Whether friction also opposes slip across the impact plane, so that a body that slips there too has less "
-        "friction left in the plane. Only the law path knows it.",
-    ),
     integer(
         "uncertainty.samples",
         0,
@@ -393,6 +387,9 @@ _TABLE: Final = (
         fixed=TOPICS,
     ),
 )
+
+RETIRED: Final = {"transverse_slip": "friction opposes the whole slip of every touchdown now, so delete the line"}
+"""Parameters that there were, and what to do about them."""
 
 PARAMETERS: Final[dict[str, Parameter]] = {parameter.name: parameter for parameter in _TABLE}
 """Every parameter by its name."""

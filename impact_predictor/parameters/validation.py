@@ -9,6 +9,7 @@ from typing import Any, Final
 from ..errors import InputError
 from .scene import check_body
 from .table import PARAMETERS as PARAMETERS
+from .table import RETIRED
 from .types import Parameter as Parameter
 from .types import Value as Value
 from .types import allowed, check, values_of
@@ -98,6 +99,9 @@ def _parameter_of(name: str, bodies: Sequence[str]) -> Parameter:
         if PARAMETERS[common].shared:
             raise InputError(f"the parameter {common} holds for all bodies: give {common} in the place of {name}")
         return PARAMETERS[common]
+    for one in (name, common):
+        if one in RETIRED:
+            raise InputError(f"there is no parameter {one} any more: {RETIRED[one]}")
     shown = name if name.isprintable() and name else repr(name)
     raise InputError(f"there is no parameter {shown}{_hint(name, bodies)}")
 

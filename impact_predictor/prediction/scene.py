@@ -29,7 +29,6 @@ SWITCHES: Final = {
     "friction": "contact.friction",
     "restitution": "contact.restitution",
     "twist window": "odom.twist_window",
-    "transverse slip": "transverse_slip law contact.friction !body.radius !feet.names",
     "geometry topic": "!body.contact_points !body.radius !robot.urdf",
     "moving support": "support.motion",
     "harmonic extrapolation": "support.motion support.extrapolation",
@@ -50,7 +49,6 @@ SWITCHES: Final = {
 """For each feature the parameters that must all switch it on; those with a ! switch it off where they are given."""
 
 ON: Final = {
-    "law": {"path"},
     "support.motion": {"odom", "imu"},
     "support.extrapolation": {"harmonic"},
     "source": {"imu"},
@@ -131,10 +129,9 @@ class Scene(NamedTuple):
     samples; `tolerance` the gap in m below which a point touches; `contact_time` in s how long a contact lasts, and
     `merge` its compression;
     `twist_window` in s the time over which the source averages its twist, 0 for a twist of the very instant;
-    `horizon` in s how far ahead a touchdown is announced; `transverse_slip` whether friction also opposes slip across
-    the impact plane, which only the path law knows; `samples` how many points carry uncertainty through an impact, 0
-    for none, with the standard deviations of friction and restitution; `margins` whether a touchdown keeps the impact
-    whose margins can be read; `validity` from where on rigid theory is too simple.
+    `horizon` in s how far ahead a touchdown is announced; `samples` how many points carry uncertainty through an
+    impact, 0 for none, with the standard deviations of friction and restitution; `margins` whether a touchdown keeps
+    the impact whose margins can be read; `validity` from where on rigid theory is too simple.
 
     `deck` tells that the support moves: then `normal`, `height` and the predicted impacts are in its frame, while
     `gravity` stays in the world's. `source` of the body's state is "odom", "imu" (its tilt alone) or "none"; it stands
@@ -164,7 +161,6 @@ class Scene(NamedTuple):
     twist_window: float = 0.0
     horizon: float = 0.25
     law: str = "path"
-    transverse_slip: bool = True
     samples: int = 0
     friction_deviation: float = 0.0
     restitution_deviation: float = 0.0
@@ -207,7 +203,6 @@ class Scene(NamedTuple):
             twist_window=values["odom.twist_window"],
             horizon=values["horizon"],
             law=values["law"],
-            transverse_slip=values["transverse_slip"],
             samples=values["uncertainty.samples"],
             friction_deviation=values["uncertainty.friction"],
             restitution_deviation=values["uncertainty.restitution"],

@@ -29,9 +29,9 @@ PLANE = ImpactPlane(
 )
 
 
-def collision(body: TwoPointBody, before: Twist, across: float = 0.0, spread: float = 0.0) -> Collision:
-    """An impact of a body that slips across its plane, too, whose edge takes some time to close."""
-    lateral = LateralMotion(across, 0.0, 0.0)
+def collision(body: TwoPointBody, before: Twist, spread: float = 0.0) -> Collision:
+    """An impact of a body whose edge takes some time to close."""
+    lateral = LateralMotion(0.0, 0.0, 0.0)
     contacts = ActiveContacts((0,), (1,))
     return Collision(contacts, PLANE, body, before, lateral, (0.0, 0.0), spread, 0.0, True, 1.0, 1.0)
 
@@ -51,7 +51,7 @@ def touchdowns(
     """
     rng = np.random.default_rng(seed)
     inertia = MASS * (LENGTH**2 + height**2) / 12.0
-    scene = Scene(MASS, inertia_matrix([inertia]), friction=given[0], restitution=given[1], transverse_slip=False)
+    scene = Scene(MASS, inertia_matrix([inertia]), friction=given[0], restitution=given[1])
     made = []
     for k in range(number):
         ahead = rng.uniform(0.3, 0.7)
@@ -190,7 +190,7 @@ def test_touchdowns_that_hold_something_else_are_left_out(bend: float, spoilt: i
 
 
 def of_all_kinds() -> list[ScoredTouchdown]:
-    """Plates by both laws, with and without a contact that stands, some of which slip across their planes too."""
+    """Plates by both laws, with and without a contact that stands."""
     rng = np.random.default_rng(1)
     made = []
     for k in range(24):
@@ -198,10 +198,9 @@ def of_all_kinds() -> list[ScoredTouchdown]:
         if k % 3 == 0:
             body = body._replace(old=None)
         before = plate(length=1.0, height=0.4, mass=1.0, friction=0.3).turning(omega=-rng.uniform(1.0, 3.0))
-        across = rng.uniform(0.2, 0.5) if k % 2 else 0.0
-        law, slips = "total" if k % 5 == 0 else "path", k % 7 != 0
-        scene = Scene(1.0, inertia_matrix([0.1]), friction=0.3, restitution=0.1, law=law, transverse_slip=slips)
-        impact = collision(body, before, across, 0.1)
+        law = "total" if k % 5 == 0 else "path"
+        scene = Scene(1.0, inertia_matrix([0.1]), friction=0.3, restitution=0.1, law=law)
+        impact = collision(body, before, 0.1)
         made.append(ScoredTouchdown("", k, scene, impact, Twist(0.1 * k, 0.0, -0.2), rng.uniform(0.3, 0.6)))
     return made
 
@@ -226,7 +225,7 @@ def test_all_at_once_is_each_by_itself(coefficients: Coefficients) -> None:
         assert turning == (twist.omega - one.measured.omega) * one.half_distance / one.speed
 
 
-def test_another_inertia_is_that_of_a_body_that_has_it_in_its_plane_and_across_it() -> None:
+def test_another_inertia_is_that_of_a_body_that_has_it() -> None:
     for one in of_all_kinds():
         body = one.impact.body
         heavy = one._replace(

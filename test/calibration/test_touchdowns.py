@@ -25,7 +25,6 @@ SCENE = Scene(
     RESTITUTION,
     tolerance=1e-3,
     contact_time=1e-3,
-    transverse_slip=False,
 )
 
 

@@ -68,7 +68,7 @@ OUT_OF_RANGE: list[tuple[str, tuple[object, ...], str]] = [
     ("contact.restitution", (-0.1, 1.01), "a finite double from 0 to 1"),
     ("horizon", (0.0,), "a finite double from 0.001 to 60 s"),
     ("uncertainty.samples", (-1, 4097, 64.0, True, *NEITHER), "a whole number from 0 to 4096"),
-    ("transverse_slip", (1, 0.0, "true", [True], None), "true or false"),
+    ("margins", (1, 0.0, "true", [True], None), "true or false"),
     ("law", ("pth", 1), "'path' or 'total'"),
     ("executor", ("multi",), "'single' or 'events'"),
     ("source", ("lidar",), "'odom', 'imu' or 'none'"),
@@ -94,6 +94,7 @@ def test_a_value_that_is_not_allowed_is_told_with_those_that_are(
         ({"support.normal": [0.0, 0.0, 0.0]}, "but it must have a direction"),
         ({"body.masss": 1.0}, "there is no parameter body.masss, did you mean body.mass?"),
         ({"friction": 1.0}, "there is no parameter friction, did you mean contact.friction?"),
+        ({"transverse_slip": False}, "there is no parameter transverse_slip any more: friction opposes the whole slip"),
         ({"zzz": 1.0}, f"there is no parameter zzz; there are {', '.join(PARAMETERS)}"),
         # One line, whatever the name is.
         *[({name: 1.0}, f"there is no parameter {name!r}") for name in ("a\nb", "", "a\0b")],
@@ -158,7 +159,7 @@ def test_contact_points_are_at_least_two_and_apart(value: list[float], why: str)
     ("name", "value"),
     [
         *(("contact.friction", 0.0), ("contact.restitution", 1.0), ("support.normal", (0.0, 3.0, 4.0))),
-        *(("transverse_slip", False), ("uncertainty.samples", 64)),
+        *(("margins", False), ("uncertainty.samples", 64)),
     ],
 )
 def test_the_ends_of_a_range_and_what_has_a_direction_are_allowed(name: str, value: object) -> None:

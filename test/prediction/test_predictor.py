@@ -170,7 +170,6 @@ class Placed(NamedTuple):
             height=float(normal @ self.place),
             gravity=triple(self.plane.apply([*body.gravity, 0.0])),
             horizon=1.0,
-            transverse_slip=False,
         )
         return scene._replace(**changes)
 

@@ -32,7 +32,6 @@ FIELDS: list[tuple[str, Any, str, Any]] = [
     ("odom.twist_window", 0.01, "twist_window", 0.01),
     ("gravity", [0.1, 0.0, -1.6], "gravity", (0.1, 0.0, -1.6)),
     ("law", "total", "law", "total"),
-    ("transverse_slip", False, "transverse_slip", False),
     ("uncertainty.samples", 64, "samples", 64),
     ("uncertainty.friction", 0.03, "friction_deviation", 0.03),
     ("uncertainty.restitution", 0.05, "restitution_deviation", 0.05),

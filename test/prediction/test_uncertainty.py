@@ -209,7 +209,6 @@ def scene(**changes):
         restitution=0.3,
         center_of_mass=(0.01, 0.0, 0.02),
         points=POINTS,
-        transverse_slip=False,
     )
     return standing._replace(**changes)
 

@@ -2,7 +2,7 @@
 
 from .answer import VALIDITY
 from .contacts import approach, see
-from .solve import LAWS, MODES, NOWHERE, flags_of, number_of, outcome_of, solve_impact, states_of
+from .solve import LAWS, MODES, NOWHERE, flags_of, number_of, solve_impact, states_of
 
 __all__ = [
     "LAWS",
@@ -12,7 +12,6 @@ __all__ = [
     "approach",
     "flags_of",
     "number_of",
-    "outcome_of",
     "see",
     "solve_impact",
     "states_of",

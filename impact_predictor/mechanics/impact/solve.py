@@ -13,7 +13,6 @@ from .answer import (
     STAYS,
     TOTAL,
     VALIDITY,
-    BodyAnswer,
     answer,
     differ,
     follow,
@@ -64,16 +63,9 @@ def solve_impact(
     """
     number = number_of(law, restitution)
     mass, inertia, old, new = body
-    found = answer(mass, inertia, old is not None, old or NOWHERE, new, twist, number, validity)
-    return outcome_of(found, body, twist, restitution)
-
-
-def outcome_of(
-    found: BodyAnswer, body: TwoPointBody | None = None, before: Twist | None = None, restitution: str = "poisson"
-) -> Outcome:
-    """An answer by its names; with what it was asked about where its law may allow others too."""
-    mode, after, na, ta, nb, tb, segments, flags, energy_lost, unique, used = found
-    more = () if unique or body is None or before is None else alternatives(body, before, used, flags)
+    mode, after, na, ta, nb, tb, segments, flags, energy_lost, unique, used = answer(
+        mass, inertia, old is not None, old or NOWHERE, new, twist, number, validity
+    )
     return Outcome(
         mode=MODES[mode],
         twist=Twist(*after),
@@ -82,10 +74,10 @@ def outcome_of(
         flags=flags_of(flags),
         energy_lost=energy_lost,
         unique=unique,
-        alternatives=more,
+        alternatives=() if unique else alternatives(body, twist, used, flags),
         law=NAMES[used],
         body=body,
-        before=before,
+        before=twist,
         restitution=restitution,
     )
 

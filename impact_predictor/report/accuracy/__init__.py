@@ -92,12 +92,11 @@ CUBE: Final = AccuracyScene(
 )
 
 VARIANTS: Final[dict[str, dict[str, Any]]] = {
-    "path law, slip across": {},
-    "path law": {"transverse_slip": False},
+    "path law": {},
     # The largest friction that is allowed holds any contact.
-    "no slip": {"transverse_slip": False, "friction": 100.0, "restitution": 0.0},
-    "total law": {"transverse_slip": False, "law": "total"},
-    "path law, plastic": {"transverse_slip": False, "restitution": 0.0},
+    "no slip": {"friction": 100.0, "restitution": 0.0},
+    "total law": {"law": "total"},
+    "path law, plastic": {"restitution": 0.0},
 }
 """What differs of the predictor in each replay of the tosses."""
 

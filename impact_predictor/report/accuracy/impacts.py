@@ -17,12 +17,8 @@ from ...mechanics import bodies, closed_forms
 from ...mechanics.impact import LAWS, solve_impact
 from ...mechanics.invariants import problem_at
 from ...mechanics.random_problems import problems_of
-from ...mechanics.transverse import Transverse, solve_transverse_impact
 from ...mechanics.types import Mode, Twist, TwoPointBody
 from . import IMPACT, AccuracyScene, Methods
-
-FINEST: Final = 1e-7
-"""Tolerance of the reference where a body slips across the plane, too."""
 
 
 class Aftermath(NamedTuple):
@@ -33,11 +29,10 @@ class Aftermath(NamedTuple):
 
 
 class Struck(NamedTuple):
-    """A body and its twist right before the impact, its slip across the plane in m/s, and what follows if known."""
+    """A body and its twist right before the impact, and what follows if known."""
 
     body: TwoPointBody
     twist: Twist
-    across: float = 0.0
     known: Aftermath | None = None
 
 
@@ -67,18 +62,8 @@ def drawn(source: Random, kind: str) -> Struck:
     return Struck(problem_at(body, 0), problem_at(twist, 0))
 
 
-def crossing(source: Random) -> Struck:
-    """A cube that strikes with an edge and slips along it, too, as tossed ones do."""
-    side, friction = source.uniform(0.05, 0.2), source.uniform(0.05, 0.5)
-    body = bodies.plate(side, side, 1.0, friction, restitution=source.choice((0.0, 0.125, 0.3)))
-    twist = body.turning(-source.uniform(2.0, 20.0))
-    slip, across = (source.choice((-1.0, 1.0)) * source.uniform(0.05, 1.0) * twist.omega * side for _ in range(2))
-    return Struck(body, twist._replace(vx=twist.vx + slip), across=across)
-
-
 FORMULA: Final = "the paper's closed forms, which share no code with the laws"
 LONG: Final = "the path law with the longest floats of the machine: its own error is rounding"
-FINE: Final = f"the path law at its finest tolerance, {FINEST:g}: no exact solution is known"
 PAPER: Final = "Rods, plates and cylinders of 1e-6 to 1e6 m, to 1e8 times as long as high, friction of 0.001 to 1000."
 SCENES: Final[dict[AccuracyScene, Callable[[Random], Struck]]] = {
     AccuracyScene(name, IMPACT, title, description, reference): draw
@@ -86,7 +71,6 @@ SCENES: Final[dict[AccuracyScene, Callable[[Random], Struck]]] = {
         ("paper", "Bodies of the paper, also stiff ones", PAPER, FORMULA, of_paper),
         ("floor", "Any body on a floor", "Half of them slip at A, half bounce.", LONG, partial(drawn, kind="floor")),
         ("slender", "Slender bodies", "Lengths, friction over 8 decades.", LONG, partial(drawn, kind="slender")),
-        ("across", "Slip across the plane", "Cubes that also slip along the edge that strikes.", FINE, crossing),
     )
 }
 """What the laws are compared on, and what draws a body."""
@@ -94,8 +78,8 @@ SCENES: Final[dict[AccuracyScene, Callable[[Random], Struck]]] = {
 
 def reference_of(strike: Struck) -> Aftermath:
     """What is held to be right."""
-    if strike.known is not None or strike.across:
-        return strike.known or across(strike, FINEST)
+    if strike.known is not None:
+        return strike.known
     return law(strike._replace(body=with_long_floats(strike.body), twist=with_long_floats(strike.twist)), "path")
 
 
@@ -110,12 +94,6 @@ def with_long_floats(value: Any) -> Any:
 def law(strike: Struck, name: str) -> Aftermath:
     """One impact by one of the laws."""
     outcome = solve_impact(strike.body, strike.twist, name)
-    return Aftermath(outcome.twist, outcome.mode)
-
-
-def across(strike: Struck, tolerance: float) -> Aftermath:
-    """One impact by the path law, with slip across the plane where there is any."""
-    outcome = solve_transverse_impact(strike.body, strike.twist, Transverse(strike.across), tolerance).outcome
     return Aftermath(outcome.twist, outcome.mode)
 
 
@@ -135,14 +113,8 @@ def errors_of(strike: Struck, after: Aftermath, right: Aftermath) -> dict[str, f
     return {"twist_error": error} | ({} if after.mode is None else {"wrong_modes": after.mode != right.mode})
 
 
-ACROSS: Final = "path law with slip across"
-
-# Without slip across the plane this is the path law, to the bit.
-TOLERANCE: Final = 5e-3
-USED: Final = (ACROSS, f"tolerance = {TOLERANCE:g}")
+USED: Final = ("path law", "")
 METHODS: Final[Methods] = {
     **{(f"{name} law", ""): partial(law, name=name) for name in LAWS},
-    USED: partial(across, tolerance=TOLERANCE),
-    (ACROSS, "tolerance = 1e-06"): partial(across, tolerance=1e-6),
     ("no slip", ""): no_slip,
 }

@@ -18,7 +18,7 @@ CLOSES: Final = (
 )
 GOES_ON: Final = (
     "With which twist, and in which mode, does the body go on? The path law is the impulse path (Routh's hypothesis), "
-    "the node's with slip across the plane, too, within a tolerance; the total law is the paper's on the impulses of "
+    "the node's where a touchdown is planar; the total law is the paper's on the impulses of "
     "the whole impact; no slip is Housner's rocking model, in which the old contact leaves and the new one sticks."
 )
 VIOLATED: Final = (

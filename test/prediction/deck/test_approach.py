@@ -247,7 +247,7 @@ def test_a_touchdown_over_a_support_with_constant_accelerations_is_foreseen(
         sample = placed.sample(stamp, state(stamp))
         if in_deck:
             sample = placed.relative(stamp, from_world(placed.support.motion(stamp), state(stamp)))
-        prediction = Predictor(placed.scene(transverse_slip=False), placed).update(sample)
+        prediction = Predictor(placed.scene(), placed).update(sample)
         touchdown = prediction.touchdown
         assert touchdown is not None
         assert touchdown.lead_time == pytest.approx(end - stamp, abs=AGREES)
@@ -285,7 +285,7 @@ def rocking(body: TwoPointBody, start: PlanarState, exactly: bool) -> list[tuple
     support = swell.at(3.0, 2.0)
     placed = anywhere(body, support, 3)._replace(origin=np.array([-3.0, -2.0, 0.4]), support=support)
     run = rock(body, start, support, duration=4.0)
-    predictor = Predictor(placed.scene(transverse_slip=False), placed if exactly else Known(placed))
+    predictor = Predictor(placed.scene(), placed if exactly else Known(placed))
     found = []
     for strike in run.impacts[:4]:
         earlier = max((one.time for one in run.impacts if one.time < strike.time), default=0.0)
@@ -370,7 +370,7 @@ def test_a_score_compares_velocities_relative_to_the_support() -> None:
     support = harmonic_support(angle=(Wave(0.1, 0.9, 0.4),), x=(Wave(0.8, 0.7, 1.0),), y=(Wave(1.2, 0.8, 0.2),))
     placed = anywhere(CRATE, support, 7)
     run = rock(CRATE, start, placed.support, duration=1.5)
-    predictor = Predictor(placed.scene(transverse_slip=False), placed)
+    predictor = Predictor(placed.scene(), placed)
     scores = []
     for count in range(150):
         answer = predictor.update(placed.sample(0.01 * count, run.world(0.01 * count)))

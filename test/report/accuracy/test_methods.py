@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 from importlib.util import find_spec
-from statistics import median
 
 import bench_peers
 import pytest
@@ -78,13 +77,6 @@ def test_no_slip_is_what_much_friction_gives_without_restitution() -> None:
             compared += 1
             assert impacts.no_slip(Struck(strike.body, turning)).twist == pytest.approx(outcome.twist, rel=1e-12)
     assert compared > 3
-
-
-def test_slip_across_the_plane_settles_with_its_tolerance_and_is_the_path_law_without_any() -> None:
-    for tolerance in (1e-2, 1e-4, 1e-6):
-        assert median(errors("across", lambda strike, t=tolerance: impacts.across(strike, t))) < tolerance  # type: ignore[misc]
-    for strike in problems(STRIKES["paper"], "paper", 4):
-        assert impacts.across(strike, 1e-1) == impacts.law(strike, "path")
 
 
 def test_an_error_is_relative_to_the_twist_before() -> None:
