@@ -38,9 +38,10 @@ CELLS: Final = "report.csv"
 def report(output: Path | None, quick: bool, as_json: bool) -> None:
     """Compare error and run time of many methods for touchdowns and impacts.
 
-    Every method meets the same problems: extrapolation, integration by scipy, the laws of this program one at a time
-    and over arrays. The recorded tosses of a cube are scored by what was measured. One page shows error over run time,
-    and which method to choose for a wanted accuracy; the same stands in a JSON and a CSV file.
+    Every method meets the same problems: extrapolation, integration by scipy, the laws of this program in the plane and
+    in three dimensions, one at a time and over arrays, and MuJoCo where it is installed. The recorded tosses of a cube
+    are scored by what was measured. One page shows error over run time, and which method to choose for a wanted
+    accuracy; the same stands in a JSON and a CSV file.
     """
     folder = output or (None if as_json else Path("report"))
     if folder is not None:
@@ -77,6 +78,8 @@ def report(output: Path | None, quick: bool, as_json: bool) -> None:
     for question, used in fields["node"].items():
         click.echo(f"The node answers the {question} by {', '.join(filter(None, (used['method'], used['setting'])))}:")
         click.echo(used["why"])
+    powers = ", ".join(f"{scene} {power:.1f}" for scene, power in fields["orders"].items())
+    click.echo(f"In three dimensions the error of the path law falls with this power of its steps: {powers}.")
     assert folder is not None
     click.echo(f"Page: {folder / PAGE}")
 

@@ -41,11 +41,15 @@ ACCURACIES: Final = (1e-2, 1e-4, 1e-6, 1e-9)
 
 TOUCHDOWN: Final = "touchdown"
 IMPACT: Final = "impact"
+SPATIAL: Final = "spatial impact"
+GAPS: Final = "uncertain gaps"
 STABILITY: Final = "stability"
 TOSSES: Final = "tosses"
 ERRORS: Final = {
     TOUCHDOWN: ("time_error", "twist_error"),
     IMPACT: ("twist_error",),
+    SPATIAL: ("twist_error",),
+    GAPS: ("twist_error",),
     STABILITY: ("violation",),
     TOSSES: ("twist_error",),
 }
@@ -55,7 +59,8 @@ SPAN: Final = 2e-4
 """s of calls that are timed together, far above the resolution of the clock."""
 
 TIMING: Final = (
-    "CPU time of one prediction in plain Python unless the method says otherwise, of three runs the quickest."
+    "CPU time of one prediction, of three runs the quickest: in plain Python unless the method says otherwise, but the "
+    "law in three dimensions is compiled where numba is installed."
 )
 
 
@@ -109,12 +114,14 @@ def report(part: float, command: str, tell: Callable[[int], None] = lambda done:
 
     `tell` is told how many rows are done.
     """
-    from . import impacts, touchdowns
+    from . import impacts, spatial, touchdowns
 
     rows: list[AccuracyRow] = []
     for work in (
         rows_of(touchdowns, round(32 * part)),
         rows_of(impacts, round(200 * part)),
+        rows_of(spatial, round(60 * part)),
+        rows_of(spatial.UNCERTAIN, round(20 * part)),
         stability_rows(round(20_000 * part)),
         toss_rows(),
     ):
@@ -125,13 +132,16 @@ def report(part: float, command: str, tell: Callable[[int], None] = lambda done:
     made |= {name: version(name) if find_spec(name) else "not installed" for name in ("numpy", "scipy", "numba")}
     made["machine"] = f"{platform.processor() or platform.machine()}, {os.cpu_count()} cores"
     made["date"] = datetime.now(timezone.utc).date().isoformat()
-    found = {TOUCHDOWN: conclusions(rows, TOUCHDOWN, touchdowns.USED), IMPACT: conclusions(rows, IMPACT, impacts.USED)}
+    asked: Any = {TOUCHDOWN: touchdowns, IMPACT: impacts, SPATIAL: spatial}
+    found = {name: conclusions(rows, name, question.USED) for name, question in asked.items()}
+    drawn = [scene for question in (*asked.values(), spatial.UNCERTAIN) for scene in question.SCENES]
     return {
         "made": made | {"command": command, "timing": TIMING},
         "node": {question: used for question, (used, _) in found.items()},
-        "scenes": [scene._asdict() for scene in (*touchdowns.SCENES, *impacts.SCENES, *RANDOM, CUBE)],
+        "scenes": [scene._asdict() for scene in (*drawn, *RANDOM, CUBE)],
         "rows": rows,
         "choices": [choice for _, choices in found.values() for choice in choices],
+        "orders": spatial.orders(rows),
     }
 
 
@@ -144,7 +154,7 @@ def problems(draw: Callable[[Random], Any], name: str, count: int) -> list[Any]:
 def rows_of(question: Any, count: int) -> Iterator[AccuracyRow]:
     """The methods of a question on `count` problems of each scene.
 
-    `touchdowns` and `impacts` are the questions: their `SCENES` draw problems, their `METHODS` answer them,
+    `touchdowns`, `impacts` and `spatial` are the questions: their `SCENES` draw problems, their `METHODS` answer them,
     `reference_of` answers one rightly, and `errors_of` gives the errors of an answer by their names in `ERRORS`, and
     whether the mode is wrong.
     """

@@ -14,8 +14,10 @@ from read_page import PageReader
 from impact_predictor.report import accuracy
 from impact_predictor.report.accuracy import (
     CUBE,
+    GAPS,
     IMPACT,
     RANDOM,
+    SPATIAL,
     STABILITY,
     TOUCHDOWN,
     AccuracyScene,
@@ -25,6 +27,7 @@ from impact_predictor.report.accuracy import (
     row_of,
     rows_of,
     seconds_of,
+    spatial,
     stability_rows,
     touchdowns,
 )
@@ -91,14 +94,16 @@ def test_a_small_report_has_a_row_for_each_method_on_each_scene_and_makes_a_page
     assert done == list(range(1, len(report["rows"]) + 1))
     rows = {(row["question"], row["scene"], row["method"], row["setting"]) for row in report["rows"]}
     assert len(rows) == len(report["rows"])
-    for question, name in ((touchdowns, TOUCHDOWN), (impacts, IMPACT)):
+    questions: Any = (touchdowns, TOUCHDOWN), (impacts, IMPACT), (spatial, SPATIAL), (spatial.UNCERTAIN, GAPS)
+    for question, name in questions:
         for scene in question.SCENES:
             assert {(name, scene.name, *method) for method in question.METHODS} <= rows
     assert {(STABILITY, scene.name, "total law", "over arrays") for scene in RANDOM} <= rows
     tosses = {row["method"]: row["twist_error"] for row in report["rows"] if row["scene"] == CUBE.name}
     assert 0.03 < tosses["path law"] < tosses["no slip"]
-    assert set(report["node"]) == {TOUCHDOWN, IMPACT}
-    assert len(PageReader(accuracy_page(report, script="")).figures) == 4
+    assert set(report["node"]) == {TOUCHDOWN, IMPACT, SPATIAL}
+    assert report["orders"].keys() == {scene.name for scene in spatial.SCENES}
+    assert len(PageReader(accuracy_page(report, script="")).figures) == 6
 
 
 def test_random_impacts_of_all_kinds_keep_to_mechanics_and_what_is_not_answered_is_counted() -> None:

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from importlib.util import find_spec
+from statistics import median
 
 import bench_peers
 import pytest
 
 from impact_predictor.mechanics.impact import solve_impact
 from impact_predictor.mechanics.types import Mode, Twist
-from impact_predictor.report.accuracy import impacts, problems, touchdowns
+from impact_predictor.report.accuracy import impacts, problems, spatial, touchdowns
 from impact_predictor.report.accuracy.impacts import Aftermath, Struck
+from impact_predictor.report.accuracy.spatial import SpatialAftermath, StruckBox
 from impact_predictor.report.accuracy.touchdowns import CRATE, FallingBody, PredictedTouchdown, falling
 
 COUNT = 36
@@ -77,6 +80,41 @@ def test_no_slip_is_what_much_friction_gives_without_restitution() -> None:
             compared += 1
             assert impacts.no_slip(Struck(strike.body, turning)).twist == pytest.approx(outcome.twist, rel=1e-12)
     assert compared > 3
+
+
+def spatial_errors(name: str, solve: Callable[[StruckBox], SpatialAftermath]) -> list[float]:
+    """The errors of a method on boxes that strike as they are called, in ascending order."""
+    boxes = problems({scene.name: draw for scene, draw in spatial.SCENES.items()}[name], name, 12)
+    return sorted(spatial.errors_of(one, solve(one), spatial.reference_of(one))["twist_error"] for one in boxes)
+
+
+@pytest.mark.parametrize("name", [scene.name for scene in spatial.SCENES])
+def test_more_steps_of_the_law_in_three_dimensions_err_less_and_newtons_complementarity_errs_more(name: str) -> None:
+    few, more, many = (spatial_errors(name, partial(spatial.solved, steps=steps)) for steps in (4, 16, 64))
+    assert many[6] < more[6] < few[6] < spatial_errors(name, partial(spatial.solved, law="total"))[6]
+    assert many[-1] < 5e-3
+
+
+@pytest.mark.parametrize("stand", [0, 2])
+def test_draws_over_gaps_come_to_the_mean_and_one_solution_does_not(stand: int) -> None:
+    boxes = problems(partial(spatial.box, tilt=0, stand=stand, strike=4 - stand, bounces=True), "gaps", 8)
+    right = [spatial.drawn(one, spatial.ALL) for one in boxes]
+    for key in ("twist_error", "wrong_modes"):
+        found = [
+            median(spatial.errors_of(one, solve(one), mean)[key] for one, mean in zip(boxes, right, strict=True))
+            for solve in (spatial.solved, partial(spatial.drawn, draws=16), partial(spatial.drawn, draws=256))
+        ]
+        assert found[2] < found[1] < 0.5 * found[0], key
+
+
+@pytest.mark.extras
+@pytest.mark.skipif(not find_spec("mujoco"), reason="MuJoCo is missing: make test-extras installs it")
+@pytest.mark.parametrize("name", [scene.name for scene in spatial.SCENES])
+def test_mujoco_meets_newtons_complementarity_without_friction_and_restitution(name: str) -> None:
+    for one in problems({scene.name: draw for scene, draw in spatial.SCENES.items()}[name], name, 6):
+        smooth = replace(one, contacts=one.contacts._replace(friction=0.0, restitution=0.0))
+        total = spatial.solved(smooth, law="total")
+        assert spatial.errors_of(smooth, spatial.mujoco(smooth), total)["twist_error"] < 1e-3
 
 
 def test_an_error_is_relative_to_the_twist_before() -> None:

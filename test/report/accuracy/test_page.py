@@ -15,6 +15,10 @@ from impact_predictor.report.accuracy.page import accuracy_page
 REPORT: dict[str, Any] = json.loads((Path(__file__).parents[1] / "page_report.json").read_text())
 
 
+def name_of(row: dict[str, Any]) -> str:
+    return ", ".join(filter(None, (row["method"], row["setting"])))
+
+
 def read(report: dict[str, Any]) -> PageReader:
     return PageReader(accuracy_page(report, script=""))
 
@@ -32,8 +36,7 @@ def test_the_picture_of_a_question_has_a_point_for_each_method_on_each_scene(que
     expected = {}
     for row in report["rows"]:
         if row["scene"] in names and error_of(row) < float("inf"):
-            name = ", ".join(filter(None, (row["method"], row["setting"])))
-            expected[row["method"], f"{name}<br>{names[row['scene']]}"] = (row["us"], max(error_of(row), 1e-16))
+            expected[row["method"], f"{name_of(row)}<br>{names[row['scene']]}"] = (row["us"], max(error_of(row), 1e-16))
     assert drawn == expected
     assert figure["layout"]["yaxis"]["type"] == figure["layout"]["xaxis"]["type"] == "log"
 
@@ -45,11 +48,15 @@ def test_the_tables_have_the_choices_for_each_wanted_accuracy_and_the_errors_of_
     assert {row[1] for row in choices[1:]} == {"next_touchdown, tolerance = 1e-06"}
     assert page.tables["impact"][0][-1][1] == "none"
     for used in REPORT["node"].values():
-        assert f"{', '.join(filter(None, (used['method'], used['setting'])))} {used['why']}" in page.text
+        assert f"{name_of(used)} {used['why']}" in page.text
+    assert page.tables["spatial-impact"][1][1:] == [["Corner beside an edge", "1.9"], ["Edge beside an edge", "2.0"]]
+    (gaps,) = page.tables["uncertain-gaps"]
+    drawn = [row for row in REPORT["rows"] if row["question"] == "uncertain gaps"]
+    assert [row[5] for row in gaps] == ["contacts that leave", *(f"{row['wrong_modes']:.2g}" for row in drawn)]
     (stability,), (tosses,) = page.tables["stability"], page.tables["tosses"]
     for table, error, rows in ((stability, "violation", "stability"), (tosses, "twist_error", "tosses")):
         for cells in table[1:]:
-            of = [row for row in REPORT["rows"] if (row["question"], row["method"]) == (rows, cells[1])]
+            of = [row for row in REPORT["rows"] if (row["question"], name_of(row)) == (rows, cells[1])]
             assert cells[2:5] in [[f"{row[error + end]:.2g}" for end in ("", "_90", "_worst")] for row in of]
     assert tosses[1][1] == "path law"
 
