@@ -175,16 +175,8 @@ def planar_contact(w, c, friction, restitution):
             return np.array([ct, 0.0, cn]), np.array([tangential, 0.0, normal])
 
 
-def frame(normal):
-    """Rows t1, t2, n of a contact frame."""
-    normal = np.asarray(normal, float) / np.linalg.norm(normal)
-    first = np.cross(np.eye(3)[np.argmin(np.abs(normal))], normal)
-    first /= np.linalg.norm(first)
-    return np.array([first, np.cross(normal, first), normal])
-
-
 def rows(positions, frames):
-    """G, (3n, 6): contact velocities (t1, t2, n) of a body's twist (velocity, angular velocity)."""
+    """G, (3n, 6): contact velocities (t1, t2, n), the rows of frames, of a twist (velocity, angular velocity)."""
     found = [np.hstack([axes, np.cross(position, axes)]) for position, axes in zip(positions, frames, strict=True)]
     return np.vstack(found)
 
@@ -199,6 +191,9 @@ class Mechanism(NamedTuple):
 
     w: np.ndarray
     c: np.ndarray
+
+    def mobility(self):
+        return self.w.diagonal()[2::3].max()
 
     def start(self):
         return np.zeros(len(self.c))
@@ -217,6 +212,10 @@ class MovingBody(NamedTuple):
     inertia: np.ndarray
     positions: np.ndarray
     twist: np.ndarray
+
+    def mobility(self):
+        g = rows(self.positions, [np.eye(3)] * len(self.positions))
+        return delassus(self.mass, self.inertia, g).diagonal()[2::3].max()
 
     def start(self):
         return np.concatenate([self.twist, np.eye(3).ravel()])
@@ -279,7 +278,7 @@ def on_springs(
     )
     speed = np.linalg.norm(before, axis=1).max()
     slip_scale = regularisation * speed
-    mobility = _mobility(system, state)
+    mobility = system.mobility()
     unit = np.sqrt(1.0 / (np.min(stiffness) * mobility))
     # Without restitution the way back is steep: the depth stays, and the force is what holds it there.
     kept = 1.0 - np.maximum(restitutions, STEEP) ** 2
@@ -359,17 +358,3 @@ def on_springs(
             again[number] += modes[number] == OPEN
             modes[number] = mode
     return OnSprings(system.velocities(y[count:]), y[count:], again, over)
-
-
-def _mobility(system, state):
-    """The greatest normal mobility of a contact, by a unit force at each."""
-    count = len(system.velocities(state))
-    push = np.zeros((count, count, 3))
-    push[range(count), range(count), 2] = 1.0
-    small = 1e-6
-    rest = system.velocities(state)
-    changes = [
-        (system.velocities(state + small * system.rates(state, each)) - rest)[number, 2] / small
-        for number, each in enumerate(push)
-    ]
-    return max(changes)

@@ -145,6 +145,16 @@ def test_a_crate_on_three_corners_moves_on_as_on_stiff_springs(restitution):
     assert outcome.flags == Flag.NONE
 
 
+def test_contacts_without_restitution_are_the_limit_of_little():
+    w, c = (
+        delassus(MASS, INERTIA, rows(CORNERS, [np.eye(3)] * 3)),
+        np.array([0.1, 0.2, -1.2, 0.3, 0.0, -0.7, 0.1, -0.2, 0]),
+    )
+    for friction in (0.0, 0.4, 1.0):
+        plastic = struck(w, c, friction, 0.0, steps=512)
+        assert struck(w, c, friction, 1e-3, steps=4096) == pytest.approx(plastic, abs=2e-3 * np.abs(c).max())
+
+
 def test_a_body_is_the_mechanism_of_its_mobilities():
     g = rows(CORNERS, [np.eye(3)] * 3)
     body = solve_spatial_impact(Body(MASS, INERTIA), ContactPoints(CORNERS, 0.4, 0.3), TWIST)

@@ -7,7 +7,6 @@ from spatial_reference import (
     Mechanism,
     MovingBody,
     delassus,
-    frame,
     on_springs,
     one_contact,
     planar_contact,
@@ -128,13 +127,6 @@ def test_slip_that_starts_from_rest_keeps_its_direction():
         assert found.velocity[:2] == pytest.approx(u * np.linalg.norm(found.velocity[:2]), abs=1e-12)
         seen += found.phases == "r"
     assert seen == 50
-
-
-def test_a_body_and_its_support_turned_together_have_the_same_mobilities():
-    inertia, place, turn = np.diag([0.2, 0.3, 0.4]), np.array([0.3, 0.2, -0.1]), frame([0.3, -0.5, 0.8])
-    assert turn @ turn.T == pytest.approx(np.eye(3), abs=1e-15)
-    turned = delassus(1.0, turn @ inertia @ turn.T, rows([turn @ place], [turn.T]))
-    assert turned == pytest.approx(delassus(1.0, inertia, rows([place], [np.eye(3)])), abs=1e-14)
 
 
 @pytest.mark.parametrize("case", list(cases(5, 8)))
