@@ -109,6 +109,13 @@ def to_body(axes: Axes, vector: Vector3) -> Vector3:
     return dot(axes[0], vector), dot(axes[1], vector), dot(axes[2], vector)
 
 
+def tensor_to_world(axes: Axes, tensor: Axes) -> Axes:
+    """A tensor of the body frame, row by row, in the world frame: R I R^T."""
+    columns = [to_world(axes, row) for row in tensor]
+    rows = [to_world(axes, (columns[0][i], columns[1][i], columns[2][i])) for i in range(3)]
+    return rows[0], rows[1], rows[2]
+
+
 def turned(orientation: Quaternion, rotation: Vector3) -> Quaternion:
     """The unit quaternion after a rotation about a vector of the body frame, by its length in rad."""
     angle = sqrt(dot(rotation, rotation))

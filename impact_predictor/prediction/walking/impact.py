@@ -7,13 +7,14 @@ from math import hypot, sqrt
 from typing import NamedTuple
 
 from ...mechanics.impact.answer import is_slow
+from ...mechanics.impact.spatial import ContactPoints
 from ...mechanics.types import ContactState, Flag, Mode, Twist, Vector
 from ..mode import mode_of
 from ..planar import GRAZES, ORIGIN, ROUNDING, direction_of, edge_of, hardly, off_axis_of
 from ..scene import Scene
 from ..types import Leftover, PointOutcome, Sample, SpatialTwist, Status, Touchdown, Vector3
-from ..vectors import add, axes_of, cross, dot, mean, to_body, to_world, total
-from .mechanism import FootStrike, LeggedMachine
+from ..vectors import add, axes_of, cross, dot, mean, times, to_body, to_world, total
+from .mechanism import LeggedMachine
 
 USABLE = 0.2
 """The machine turns about the line of its standing points where the landing one is further from it than this part of
@@ -71,32 +72,27 @@ def touchdown_of(
         moves.append(velocity)
         gaps.append(-approach * delay)
         fastest, strikes = max(fastest, dot(velocity, velocity)), strikes or approach < 0.0
-    strike = FootStrike(
-        points=those,
-        arms=[add(places[i], base.position, -1.0) for i in those],
-        velocities=moves,
-        axes=axes,
-        normal=normal,
+    met = ContactPoints(
+        positions=[add(places[i], base.position, -1.0) for i in those],
         friction=walking.at_points(walking.friction or (scene.friction,), those),
         restitution=walking.at_points(walking.restitution or (scene.restitution,), those),
+        normals=normal,
+        velocities=[times(velocity, -1.0) for velocity in moves],
         gaps=gaps,
     )
-    found = machine.struck(strike, scene.law)
+    found = machine.struck(those, met, axes, normal, scene.law)
     if isinstance(found, Status):
         return found
-    contacts = tuple(
-        [
-            PointOutcome(i, i in landing, impulse, velocity, state)
-            for i, impulse, velocity, state in zip(those, found.impulses, found.velocities, found.states, strict=True)
-        ]
-    )
+    assert found.twist is not None
+    x, y, z, p, q, r = found.twist.tolist()
+    kick, spin, center = (x, y, z), (p, q, r), to_world(axes, scene.center_of_mass)
+    told = zip(those, found.impulses.tolist(), found.velocities.tolist(), found.states, strict=True)
+    contacts = tuple([PointOutcome(i, i in landing, tuple(u), tuple(v), state) for i, u, v, state in told])
     same_foot = [i for i in stood if i // walking.points == new[0] // walking.points]
     old = tuple([i for i in landing if i not in new] or same_foot or stood)
     others, struck = ([contact for contact in contacts if contact.point in group] for group in (old, new))
     striking, middle = mean([moves[those.index(i)] for i in new]), mean([places[i] for i in new])
-    center, (kick, spin) = to_world(axes, scene.center_of_mass), found.change
-    masses = add(base.position, center)
-    feet = [places[i] for i in old]
+    feet, delays, masses = [places[i] for i in old], [landing[i].delay for i in new], add(base.position, center)
     ahead = ahead_of(scene, feet, middle, striking, masses)
     axis = cross(normal, ahead)
     impulses = together(others, normal, ahead), together(struck, normal, ahead)
@@ -106,7 +102,6 @@ def touchdown_of(
         flags |= Flag.SLOW_IMPACT
     if machine.is_rigid and shares_freely(contacts, normal):
         flags |= Flag.SHARED_FRICTION
-    delays = [landing[i].delay for i in new]
     stance = mean(feet) if feet else middle
     span = add(middle, stance, -1.0)
     linear, angular = to_world(axes, base.linear), to_world(axes, base.angular)

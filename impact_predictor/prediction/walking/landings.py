@@ -44,11 +44,6 @@ class FootCollision(NamedTuple):
     new: tuple[int, ...]
     landing: dict[int, LandingPoint]
 
-    @property
-    def velocity(self) -> Vector3:
-        """Mean velocity of the foot in m/s."""
-        return mean([self.landing[i].velocity for i in self.new])
-
 
 class PendingLanding:
     """A landing that was announced or has happened, until it is scored.
@@ -205,7 +200,8 @@ class LandingTracker:
         seen, pending.seen = pending.seen, None
         impact = None if seen is None else self._impact(seen)
         if seen is not None and pending.landing is not None and isinstance(impact, Touchdown):
-            pending.landing = pending.landing._replace(speed=hypot(*seen.velocity), impact=impact)
+            speed = hypot(*mean([seen.landing[i].velocity for i in seen.new]))
+            pending.landing = pending.landing._replace(speed=speed, impact=impact)
 
     def _score(self, pending: PendingLanding) -> Score | None:
         """The score of a landing, as announced last, or else with the velocity that was seen; None without both."""

@@ -7,18 +7,16 @@ from __future__ import annotations
 
 from collections import deque
 from math import isfinite
-from typing import NamedTuple
 
 import numpy as np
 
 from ...errors import InputError
-from ...mechanics.impact.spatial import Body, ContactPoints, solve_spatial_impact
-from ...mechanics.types import ContactState, Flag
+from ...mechanics.impact.spatial import Body, ContactPoints, SpatialOutcome, solve_spatial_impact
 from ...stamps import NANOSECONDS
 from ..planar import GRAZES, ORIGIN, direction_of
-from ..scene import InertiaTensor, Robot, Scene
+from ..scene import Robot, Scene
 from ..types import Geometry, Joints, Sample, Status, Vector3
-from ..vectors import Axes, add, axes_of, cross, lines, times, to_body, to_world, turned
+from ..vectors import Axes, add, axes_of, cross, lines, tensor_to_world, times, to_body, to_world, turned
 
 SINGULAR = 1e-12  # a principal moment of inertia below this part of the largest one is rounding
 NOTHING = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -103,37 +101,6 @@ def extrapolated(sample: Sample, line: TwistLine | None, time: float) -> Sample:
     )
 
 
-class FootStrike(NamedTuple):
-    """What the feet of a machine bring to an impact, along the axes of the world.
-
-    `points` are the indices of the contacts, `arms` (m) lead there from the base's origin, and `velocities` (m/s) are
-    those relative to the support with its unit `normal`; `axes` of the base; `friction` and `restitution` of each
-    contact, and its `gaps` in m that are still open when the first one closes.
-    """
-
-    points: list[int]
-    arms: list[Vector3]
-    velocities: list[Vector3]
-    axes: Axes
-    normal: Vector3
-    friction: list[float]
-    restitution: list[float]
-    gaps: list[float]
-
-
-class FootResponse(NamedTuple):
-    """What an impact does to a machine: the `change` of the twist of its base, at its origin in m/s and rad/s; of each
-    contact the impulse (N s), the velocity after it (m/s) and the state. All along the axes of the world.
-    """
-
-    change: tuple[Vector3, Vector3]
-    impulses: list[Vector3]
-    velocities: list[Vector3]
-    states: tuple[ContactState, ...]
-    flags: Flag
-    energy_lost: float
-
-
 class RigidMachine:
     """One rigid body, the scene's, with its whole inertia tensor; its legs have no mass and are held by their joints.
 
@@ -153,47 +120,26 @@ class RigidMachine:
         self._scene = scene
         # What can be compiled is compiled before the first landing.
         axes = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
-        self.struck(FootStrike([0], [ORIGIN], [ORIGIN], axes, scene.normal, [0.0], [0.0], [0.0]), scene.law)
+        self.struck([0], ContactPoints([ORIGIN], 0.0), axes, scene.normal, scene.law)
 
-    def struck(self, strike: FootStrike, law: str) -> FootResponse | Status:
-        """What an impact does to the machine; a status where it has no response."""
-        scene, axes = self._scene, strike.axes
-        center, body = to_world(axes, scene.center_of_mass), Body(scene.mass, turned_inertia(axes, scene.inertia))
-        # The machine counts as at rest, and the support comes with the velocities of the feet.
-        contacts = ContactPoints(
-            positions=[add(arm, center, -1.0) for arm in strike.arms],
-            friction=strike.friction,
-            restitution=strike.restitution,
-            normals=strike.normal,
-            velocities=[times(velocity, -1.0) for velocity in strike.velocities],
-            gaps=strike.gaps,
-        )
+    def struck(
+        self, points: list[int], contacts: ContactPoints, axes: Axes, normal: Vector3, law: str
+    ) -> SpatialOutcome | Status:
+        """What an impact at some points of the feet does to the machine; a status where it has no response.
+
+        The `contacts` are told from the base's origin, as if the machine were at rest and the support came with the
+        velocities of the feet; they and the outcome are along the axes of the world, those of the base are `axes`.
+        The twist of the outcome is the change of that of the base, at its origin.
+        """
+        center = to_world(axes, self._scene.center_of_mass)
+        (xx, xy, xz), (_, yy, yz), (_, _, zz) = tensor_to_world(axes, self._scene.inertia)
+        body = Body(self._scene.mass, (xx, yy, zz, xy, xz, yz))
+        contacts = contacts._replace(positions=np.subtract(contacts.positions, center))
         found = solve_spatial_impact(body, contacts, NOTHING, law, threshold=GRAZES)
         assert found.twist is not None
         x, y, z, p, q, r = found.twist.tolist()
-        spin = p, q, r
-        return FootResponse(
-            (add((x, y, z), cross(spin, center), -1.0), spin),
-            found.impulses.tolist(),
-            found.velocities.tolist(),
-            found.states,
-            found.flags,
-            found.energy_lost,
-        )
-
-
-def turned_inertia(axes: Axes, inertia: InertiaTensor) -> tuple[float, ...]:
-    """The inertia ixx, iyy, izz, ixy, ixz, iyz along the axes of the world, of a body with those axes."""
-    (ax, ay, az), (bx, by, bz), (cx, cy, cz) = axes
-    (px, py, pz), (qx, qy, qz), (rx, ry, rz) = (to_world(axes, row) for row in inertia)
-    return (
-        ax * px + bx * qx + cx * rx,
-        ay * py + by * qy + cy * ry,
-        az * pz + bz * qz + cz * rz,
-        ax * py + bx * qy + cx * ry,
-        ax * pz + bx * qz + cx * rz,
-        ay * pz + by * qz + cy * rz,
-    )
+        found.twist[:3] = add((x, y, z), cross((p, q, r), center), -1.0)
+        return found
 
 
 class ArticulatedMachine:
@@ -236,25 +182,20 @@ class ArticulatedMachine:
         moving = body.velocities(np.array(rates)).tolist() if velocities else ()
         return Geometry(joints.stamp, "", tuple(map(tuple, body.points.tolist())), tuple(map(tuple, moving)))
 
-    def struck(self, strike: FootStrike, law: str) -> FootResponse | Status:
+    def struck(
+        self, points: list[int], contacts: ContactPoints, axes: Axes, normal: Vector3, law: str
+    ) -> SpatialOutcome | Status:
         """See `RigidMachine`; the contacts are where the model has them, at the last joint positions."""
         if self._status is not Status.ACCEPTED:
             return self._status
-        axes, first = strike.axes, direction_of(strike.normal, [])
-        frame = first, cross(strike.normal, first), strike.normal
-        W, moved = self.body.mobility(strike.points, np.array([to_body(axes, way) for way in frame]))
-        contacts, ways = ContactPoints((), strike.friction, strike.restitution, gaps=strike.gaps), np.array(frame)
-        c = (np.array(strike.velocities) @ ways.T).ravel()
+        first = direction_of(normal, [])
+        frame = first, cross(normal, first), normal
+        W, moved = self.body.mobility(points, np.array([to_body(axes, way) for way in frame]))
+        ways = np.array(frame)
+        c = -(np.asarray(contacts.velocities, float) @ ways.T).ravel()
         found = solve_spatial_impact(W, contacts, c, law, threshold=GRAZES)
-        x, y, z, p, q, r = (moved[:6] @ found.impulses.ravel()).tolist()
-        return FootResponse(
-            (to_world(axes, (x, y, z)), to_world(axes, (p, q, r))),
-            (found.impulses @ ways).tolist(),
-            (found.velocities @ ways).tolist(),
-            found.states,
-            found.flags,
-            found.energy_lost,
-        )
+        change = (moved[:6] @ found.impulses.ravel()).reshape(2, 3) @ np.array(axes)
+        return found._replace(twist=change.ravel(), impulses=found.impulses @ ways, velocities=found.velocities @ ways)
 
     def _know(self, names: tuple[str, ...]) -> bool:
         """Whether each joint of the model is once among the names; then their order is known."""

@@ -125,13 +125,6 @@ def side(outward: Vector3, normal: Vector3) -> str:
     return "-".join(name for name in (along, across) if name)
 
 
-def inertia_in_support(inertia: InertiaTensor, axes: Axes) -> InertiaTensor:
-    """A tensor of the body frame along the support's axes: R I R^T."""
-    columns = [to_world(axes, row) for row in inertia]
-    rows = [to_world(axes, (columns[0][i], columns[1][i], columns[2][i])) for i in range(3)]
-    return rows[0], rows[1], rows[2]
-
-
 _DIAGONAL = 0.4142135623730951  # tan 22.5 degrees: the eight directions are 45 degrees wide
 
 _Corner = tuple[float, float, Vector3]

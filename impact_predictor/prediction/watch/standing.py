@@ -9,8 +9,8 @@ from typing import Final
 from ..planar import edge_of
 from ..scene import Scene
 from ..types import Quaternion, Sample, Vector3
-from ..vectors import add, axes_of, cross, dot, times, to_body, to_world, total
-from .stance import BodyPose, StandingBody, edges_of, inertia_in_support, outline, placed, side
+from ..vectors import add, axes_of, cross, dot, tensor_to_world, times, to_body, to_world, total
+from .stance import BodyPose, StandingBody, edges_of, outline, placed, side
 
 COARSE: Final = 5e-4
 """Part of a body's size below which no gap counts, however fine the contact tolerance: neither cargo nor decks are so
@@ -222,7 +222,7 @@ class Standing:
             friction=scene.friction,
             normal=normal,
             center=center,
-            inertia=inertia_in_support(scene.inertia, pose.axes),
+            inertia=tensor_to_world(pose.axes, scene.inertia),
             edges=tuple([edge for edge, _ in found]),
             radius=scene.radius,
         )

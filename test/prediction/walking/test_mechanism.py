@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from impact_predictor.errors import InputError
+from impact_predictor.mechanics.impact.spatial import ContactPoints
 from impact_predictor.prediction.scene import Robot, Scene, inertia_matrix
 from impact_predictor.prediction.types import Joints
-from impact_predictor.prediction.walking.mechanism import FootStrike, RigidMachine
+from impact_predictor.prediction.walking.mechanism import RigidMachine
 
 URDF = """<robot name="block">
   <link name="body"><inertial><origin xyz="{place}"/><mass value="{mass:.17g}"/>
@@ -63,19 +64,19 @@ def test_a_machine_without_joints_is_a_trunk(tmp_path):
         geometry = machine.geometry_of(Joints(0, (), (), ()))
         assert np.array(geometry.points) == pytest.approx(np.array(points), abs=1e-15)
         for old in ([0], [0, 2], []):
-            strike = FootStrike(
-                points=[*old, 1],
-                arms=[points[i] for i in (*old, 1)],
-                velocities=[*[(0.0, 0.0, 0.0)] * len(old), tuple((-np.array(normal) + 0.3 * np.array(ahead)).tolist())],
-                axes=((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
-                normal=normal,
-                friction=[0.6] * (len(old) + 1),
-                restitution=[0.2] * (len(old) + 1),
-                gaps=[0.0] * (len(old) + 1),
+            strikes = np.array(normal) - 0.3 * np.array(ahead)
+            contacts = ContactPoints(
+                positions=[points[i] for i in (*old, 1)],
+                friction=0.6,
+                restitution=0.2,
+                normals=normal,
+                velocities=[*[(0.0, 0.0, 0.0)] * len(old), strikes],
             )
-            one, other = RigidMachine(scene).struck(strike, "path"), machine.struck(strike, "path")
+            axes = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+            told = [*old, 1], contacts, axes, normal, "path"
+            one, other = RigidMachine(scene).struck(*told), machine.struck(*told)
             assert one.states == other.states
-            for field in ("change", "impulses", "velocities"):
+            for field in ("twist", "impulses", "velocities"):
                 # The tangents of the two differ, and so do the last sweeps of a step.
                 same = np.array(getattr(one, field))
                 assert np.array(getattr(other, field)) == pytest.approx(same, abs=1e-3 * np.abs(same).max())
