@@ -20,6 +20,7 @@ OF_FEET = {
     "margins": (False, "the margins of its impacts are not known"),
     "uncertainty.samples": (0, "no uncertainty is carried through its impacts"),
     "odom.twist_window": (0.0, "its twist must be that of the very instant"),
+    "odom.twist": ("message", "its twist must be that of the very instant"),
 }
 """What a parameter must be for a machine that walks, and why."""
 

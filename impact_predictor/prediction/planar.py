@@ -7,12 +7,13 @@ contact points and the inertia do not move.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import copysign, hypot, sqrt
 from typing import NamedTuple
 
-from ..mechanics.types import Mode, Twist, Vector
+from ..mechanics.types import ContactState, Mode, Twist, Vector
 from .scene import Scene
-from .types import Sample, Vector3
+from .types import PointOutcome, Sample, SpatialTwist, Vector3
 from .vectors import add, any_across, axes_of, cross, dot, mean, times, to_body, to_world, total
 
 STANDING = 0.2
@@ -118,6 +119,29 @@ def mode_of(old_lifts: bool, new_lifts: bool, old_slips: bool, new_slips: bool) 
     if old_lifts:
         return Mode.PIVOT_SLIDE if new_slips else Mode.PIVOT
     return Mode.SLIDE if old_slips or new_slips else Mode.STOP
+
+
+def mode_of_contacts(old: Sequence[PointOutcome], new: Sequence[PointOutcome], normal: Vector3, least: float) -> Mode:
+    """The mode of an impact, from its groups of contacts: one lifts when the mean of its gap rates exceeds `least`."""
+    found = [
+        (
+            not group or total([dot(normal, contact.velocity) for contact in group]) > least * len(group),
+            any(contact.state is ContactState.SLIPS for contact in group),
+        )
+        for group in (old, new)
+    ]
+    (old_lifts, old_slips), (new_lifts, new_slips) = found
+    return mode_of(old_lifts, new_lifts, old_slips, new_slips)
+
+
+def planar_twist(twist: SpatialTwist, ahead: Vector3, normal: Vector3, axis: Vector3) -> Twist:
+    """The part of a twist in the impact plane."""
+    return Twist(dot(ahead, twist.linear), dot(normal, twist.linear), -dot(axis, twist.angular))
+
+
+def along_plane(contacts: Sequence[PointOutcome], ahead: Vector3, normal: Vector3) -> Vector:
+    """Normal and tangential part of the impulses of some contacts together."""
+    return total([dot(normal, one.impulse) for one in contacts]), total([dot(ahead, one.impulse) for one in contacts])
 
 
 def hardly(scene: Scene) -> float:

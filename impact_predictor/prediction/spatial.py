@@ -5,7 +5,6 @@ What a body over a plane support does is computed along the support's axes: z ou
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from math import hypot, sqrt
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -17,22 +16,24 @@ from ..mechanics.impact.spatial import STEPS, flags_named, solvers, workspace
 from ..mechanics.impact.spatial_body import ANSWER, BODY, CONTACT, RESULT
 from ..mechanics.motion.spatial import Pull, SpatialState, fall
 from ..mechanics.motion.spatial import solver as prepare_fall
-from ..mechanics.types import ContactState, Mode, Twist, Vector
+from ..mechanics.types import ContactState, Twist
 from .impact import OFF_AXIS, OFFSET, leftover_of
 from .planar import (
     ORIGIN,
     STANDING,
     ActiveContacts,
     Posture,
+    along_plane,
     axis_of,
     center_of,
     edge_of,
     hardly,
-    mode_of,
+    mode_of_contacts,
     off_axis_of,
+    planar_twist,
     plane_of,
 )
-from .scene import InertiaTensor, Scene
+from .scene import InertiaTensor, Scene, six_numbers
 from .types import (
     Covariance,
     Moment,
@@ -45,7 +46,21 @@ from .types import (
     Vector3,
 )
 from .uncertainty import moments, product
-from .vectors import Axes, add, axes_of, composed, conjugate, cross, dot, mean, times, to_body, to_world, total
+from .vectors import (
+    Axes,
+    add,
+    axes_of,
+    composed,
+    conjugate,
+    cross,
+    dot,
+    mean,
+    tensor_to_world,
+    times,
+    to_body,
+    to_world,
+    total,
+)
 
 if TYPE_CHECKING:
     from .draws import DrawnImpact, Draws
@@ -269,7 +284,7 @@ class SpatialModel:
                 contact._replace(lift_probability=chance) for contact, chance in zip(contacts, drawn.lifts, strict=True)
             ]
         else:
-            mode = mode_of_contacts(contacts, scene.normal, RESTS * speed)
+            mode = mode_of_contacts(contacts[: len(old)], contacts[len(old) :], scene.normal, RESTS * speed)
         plane = self._plane(collision)
         now, axis, ahead = axes_of(collision.orientation), plane.axis, cross(plane.axis, scene.normal)
         angular, center = to_body(now, after.angular), scene.center_of_mass
@@ -281,8 +296,8 @@ class SpatialModel:
             before=planar_twist(before, ahead, scene.normal, axis),
             after=planar_twist(after, ahead, scene.normal, axis),
             impulses=(
-                along_plane([contact.impulse for contact in contacts[: len(old)]], ahead, scene.normal),
-                along_plane([contact.impulse for contact in contacts[len(old) :]], ahead, scene.normal),
+                along_plane(contacts[: len(old)], ahead, scene.normal),
+                along_plane(contacts[len(old) :], ahead, scene.normal),
             ),
             segments=(),
             energy_lost=lost,
@@ -365,7 +380,8 @@ class SpatialModel:
         scene = self._scene
         (linear, angular), normal, n = collision.before, scene.normal, len(collision.points)
         problem = np.zeros(BODY + CONTACT * n)
-        problem[:BODY] = (scene.mass, *inertia_in(axes_of(collision.orientation), scene), *linear, *angular)
+        moments = six_numbers(tensor_to_world(axes_of(collision.orientation), scene.inertia))
+        problem[:BODY] = (scene.mass, *moments, *linear, *angular)
         friction, restitution = scene.friction, scene.restitution
         problem[BODY:] = [
             number
@@ -397,27 +413,6 @@ RESTS = 1e-5
 """A group of contacts holds that leaves more slowly than this part of the approach."""
 
 
-def planar_twist(twist: SpatialTwist, ahead: Vector3, normal: Vector3, axis: Vector3) -> Twist:
-    """The part of a twist in the impact plane."""
-    return Twist(dot(ahead, twist.linear), dot(normal, twist.linear), -dot(axis, twist.angular))
-
-
-def along_plane(impulses: list[Vector3], ahead: Vector3, normal: Vector3) -> Vector:
-    """Normal and tangential part of the sum of some impulses."""
-    return total([dot(normal, one) for one in impulses]), total([dot(ahead, one) for one in impulses])
-
-
-def mode_of_contacts(contacts: Sequence[PointOutcome], normal: Vector3, least: float) -> Mode:
-    """The mode of an impact, from its groups of contacts: one lifts when the mean of its gap rates does."""
-    found = []
-    for is_new in (False, True):
-        group = [contact for contact in contacts if contact.is_new == is_new]
-        lifts = not group or total([dot(normal, contact.velocity) for contact in group]) > least * len(group)
-        found.append((lifts, any(contact.state is ContactState.SLIPS for contact in group)))
-    (old_lifts, old_slips), (new_lifts, new_slips) = found
-    return mode_of(old_lifts, new_lifts, old_slips, new_slips)
-
-
 def frame_of(normal: Vector3) -> Quaternion:
     """The shortest rotation that takes z to a unit normal."""
     x, y, z = normal
@@ -440,20 +435,3 @@ def rotated(orientation: Quaternion, spin: Vector3, time: float) -> Quaternion:
 
 def along(inertia: InertiaTensor, axis: Vector3) -> Vector3:
     return dot(inertia[0], axis), dot(inertia[1], axis), dot(inertia[2], axis)
-
-
-def inertia_in(axes: tuple[Vector3, Vector3, Vector3], scene: Scene) -> tuple[float, ...]:
-    """The inertia ixx, iyy, izz, ixy, ixz, iyz of a body whose axes are these, along the axes of the world."""
-    first, second, third = scene.inertia
-    (ax, ay, az), (bx, by, bz), (cx, cy, cz) = axes
-    # Rows of R I: the columns of R are the axes.
-    rows = [
-        (
-            a * first[0] + b * second[0] + c * third[0],
-            a * first[1] + b * second[1] + c * third[1],
-            a * first[2] + b * second[2] + c * third[2],
-        )
-        for a, b, c in ((ax, bx, cx), (ay, by, cy), (az, bz, cz))
-    ]
-    x, y, z = (ax, bx, cx), (ay, by, cy), (az, bz, cz)
-    return dot(rows[0], x), dot(rows[1], y), dot(rows[2], z), dot(rows[0], y), dot(rows[0], z), dot(rows[1], z)

@@ -8,12 +8,22 @@ from typing import NamedTuple
 
 from ...mechanics.impact.answer import is_slow
 from ...mechanics.impact.spatial import ContactPoints
-from ...mechanics.types import ContactState, Flag, Mode, Twist, Vector
-from ..mode import mode_of
-from ..planar import GRAZES, ORIGIN, ROUNDING, direction_of, edge_of, hardly, off_axis_of
+from ...mechanics.types import ContactState, Flag, Mode
+from ..planar import (
+    GRAZES,
+    ORIGIN,
+    ROUNDING,
+    along_plane,
+    direction_of,
+    edge_of,
+    hardly,
+    mode_of_contacts,
+    off_axis_of,
+    planar_twist,
+)
 from ..scene import Scene
 from ..types import Leftover, PointOutcome, Sample, SpatialTwist, Status, Touchdown, Vector3
-from ..vectors import add, axes_of, cross, dot, mean, times, to_body, to_world, total
+from ..vectors import add, axes_of, cross, dot, mean, times, to_body, to_world
 from .mechanism import LeggedMachine
 
 USABLE = 0.2
@@ -80,7 +90,7 @@ def touchdown_of(
         velocities=[times(velocity, -1.0) for velocity in moves],
         gaps=gaps,
     )
-    found = machine.struck(those, met, axes, normal, scene.law)
+    found = machine.struck(those, met, axes, scene)
     if isinstance(found, Status):
         return found
     assert found.twist is not None
@@ -95,8 +105,8 @@ def touchdown_of(
     feet, delays, masses = [places[i] for i in old], [landing[i].delay for i in new], add(base.position, center)
     ahead = ahead_of(scene, feet, middle, striking, masses)
     axis = cross(normal, ahead)
-    impulses = together(others, normal, ahead), together(struck, normal, ahead)
-    mode = mode_of(others, struck, normal, LIFTS * sqrt(fastest)) if strikes else Mode.NO_IMPACT
+    impulses = along_plane(others, ahead, normal), along_plane(struck, ahead, normal)
+    mode = mode_of_contacts(others, struck, normal, LIFTS * sqrt(fastest)) if strikes else Mode.NO_IMPACT
     flags = found.flags
     if strikes and is_slow(impulses[1][0] / scene.mass, scene.validity):
         flags |= Flag.SLOW_IMPACT
@@ -110,8 +120,8 @@ def touchdown_of(
     return Touchdown(
         lead_time=lead_time,
         mode=mode,
-        before=in_plane(before, ahead, normal, axis),
-        after=in_plane(after, ahead, normal, axis),
+        before=planar_twist(before, ahead, normal, axis),
+        after=planar_twist(after, ahead, normal, axis),
         impulses=impulses,
         segments=(),
         energy_lost=found.energy_lost,
@@ -135,11 +145,6 @@ def touchdown_of(
         after_6d=after,
         contacts=contacts,
     )
-
-
-def together(contacts: list[PointOutcome], normal: Vector3, ahead: Vector3) -> Vector:
-    """The impulses of some contacts together, along the normal and in the impact plane."""
-    return total([dot(normal, one.impulse) for one in contacts]), total([dot(ahead, one.impulse) for one in contacts])
 
 
 def shares_freely(contacts: tuple[PointOutcome, ...], normal: Vector3) -> bool:
@@ -171,8 +176,3 @@ def ahead_of(scene: Scene, stood: list[Vector3], struck: Vector3, velocity: Vect
         if straight and dot(across, across) > (USABLE * length) ** 2 * square:
             ways.insert(0, (across, 0.0))
     return direction_of(normal, ways)
-
-
-def in_plane(twist: SpatialTwist, ahead: Vector3, normal: Vector3, axis: Vector3) -> Twist:
-    """A twist of the mass centre in the impact plane."""
-    return Twist(dot(ahead, twist.linear), dot(normal, twist.linear), -dot(axis, twist.angular))

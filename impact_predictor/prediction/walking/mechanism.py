@@ -14,8 +14,8 @@ from ...errors import InputError
 from ...mechanics.impact.spatial import Body, ContactPoints, SpatialOutcome, solve_spatial_impact
 from ...stamps import NANOSECONDS
 from ..planar import GRAZES, ORIGIN, direction_of
-from ..scene import Robot, Scene
-from ..types import Geometry, Joints, Sample, Status, Vector3
+from ..scene import Robot, Scene, six_numbers
+from ..types import Geometry, Joints, Sample, Status
 from ..vectors import Axes, add, axes_of, cross, lines, tensor_to_world, times, to_body, to_world, turned
 
 SINGULAR = 1e-12  # a principal moment of inertia below this part of the largest one is rounding
@@ -120,22 +120,19 @@ class RigidMachine:
         self._scene = scene
         # What can be compiled is compiled before the first landing.
         axes = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
-        self.struck([0], ContactPoints([ORIGIN], 0.0), axes, scene.normal, scene.law)
+        self.struck([0], ContactPoints([ORIGIN], 0.0), axes, scene)
 
-    def struck(
-        self, points: list[int], contacts: ContactPoints, axes: Axes, normal: Vector3, law: str
-    ) -> SpatialOutcome | Status:
+    def struck(self, points: list[int], contacts: ContactPoints, axes: Axes, scene: Scene) -> SpatialOutcome | Status:
         """What an impact at some points of the feet does to the machine; a status where it has no response.
 
         The `contacts` are told from the base's origin, as if the machine were at rest and the support came with the
         velocities of the feet; they and the outcome are along the axes of the world, those of the base are `axes`.
-        The twist of the outcome is the change of that of the base, at its origin.
+        The twist of the outcome is the change of that of the base, at its origin. The `scene` has normal and law.
         """
         center = to_world(axes, self._scene.center_of_mass)
-        (xx, xy, xz), (_, yy, yz), (_, _, zz) = tensor_to_world(axes, self._scene.inertia)
-        body = Body(self._scene.mass, (xx, yy, zz, xy, xz, yz))
+        body = Body(self._scene.mass, six_numbers(tensor_to_world(axes, self._scene.inertia)))
         contacts = contacts._replace(positions=np.subtract(contacts.positions, center))
-        found = solve_spatial_impact(body, contacts, NOTHING, law, threshold=GRAZES)
+        found = solve_spatial_impact(body, contacts, NOTHING, scene.law, scene.merge, GRAZES)
         assert found.twist is not None
         x, y, z, p, q, r = found.twist.tolist()
         found.twist[:3] = add((x, y, z), cross((p, q, r), center), -1.0)
@@ -182,18 +179,16 @@ class ArticulatedMachine:
         moving = body.velocities(np.array(rates)).tolist() if velocities else ()
         return Geometry(joints.stamp, "", tuple(map(tuple, body.points.tolist())), tuple(map(tuple, moving)))
 
-    def struck(
-        self, points: list[int], contacts: ContactPoints, axes: Axes, normal: Vector3, law: str
-    ) -> SpatialOutcome | Status:
+    def struck(self, points: list[int], contacts: ContactPoints, axes: Axes, scene: Scene) -> SpatialOutcome | Status:
         """See `RigidMachine`; the contacts are where the model has them, at the last joint positions."""
         if self._status is not Status.ACCEPTED:
             return self._status
-        first = direction_of(normal, [])
-        frame = first, cross(normal, first), normal
+        first = direction_of(scene.normal, [])
+        frame = first, cross(scene.normal, first), scene.normal
         W, moved = self.body.mobility(points, np.array([to_body(axes, way) for way in frame]))
         ways = np.array(frame)
         c = -(np.asarray(contacts.velocities, float) @ ways.T).ravel()
-        found = solve_spatial_impact(W, contacts, c, law, threshold=GRAZES)
+        found = solve_spatial_impact(W, contacts, c, scene.law, scene.merge, GRAZES)
         change = (moved[:6] @ found.impulses.ravel()).reshape(2, 3) @ np.array(axes)
         return found._replace(twist=change.ravel(), impulses=found.impulses @ ways, velocities=found.velocities @ ways)
 

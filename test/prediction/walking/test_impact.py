@@ -274,7 +274,7 @@ def test_a_landing_that_gravity_matters_in_is_flagged():
 
 def test_what_a_mechanism_cannot_answer_is_handed_on():
     class Unknown:
-        def struck(self, points, contacts, axes, normal, law):
+        def struck(self, points, contacts, axes, scene):
             return Status.SINGULAR_INERTIA
 
     found = landing(scene_of(), base_of(), FEET, (1, 2), (0,), (0.0, 0.0, -0.2), machine=Unknown())

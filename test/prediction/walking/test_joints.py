@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from impact_predictor.mechanics.impact.spatial import ContactPoints
-from impact_predictor.prediction.scene import Robot
+from impact_predictor.prediction.scene import Robot, Scene
 from impact_predictor.prediction.types import Joints, Status
 
 pytestmark = pytest.mark.extras
@@ -29,7 +29,7 @@ CONTACTS = ContactPoints((), 0.6, velocities=((0.0, 0.0, 0.0), (-0.1, -0.2, 1.0)
 
 
 def struck(machine):
-    return machine.struck([0, 1], CONTACTS, AXES, AXES[2], "path")
+    return machine.struck([0, 1], CONTACTS, AXES, Scene(1.0, AXES, 0.6))
 
 
 def outcome(machine):

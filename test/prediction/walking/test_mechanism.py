@@ -73,7 +73,7 @@ def test_a_machine_without_joints_is_a_trunk(tmp_path):
                 velocities=[*[(0.0, 0.0, 0.0)] * len(old), strikes],
             )
             axes = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
-            told = [*old, 1], contacts, axes, normal, "path"
+            told = [*old, 1], contacts, axes, scene._replace(normal=normal)
             one, other = RigidMachine(scene).struck(*told), machine.struck(*told)
             assert one.states == other.states
             for field in ("twist", "impulses", "velocities"):
