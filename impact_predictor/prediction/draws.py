@@ -7,7 +7,6 @@ through the law, all of them at once; the last one blurs what each contact does 
 
 from __future__ import annotations
 
-from itertools import product as product_of
 from math import erf, inf, sqrt
 from typing import Any, NamedTuple
 
@@ -15,17 +14,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..mechanics.impact.spatial_body import ANSWER, BODY, CONTACT, RESULT, determinant
-from ..mechanics.types import Mode
+from ..mechanics.types import ContactState, Mode
 from .planar import mode_of
 from .scene import Scene
 from .types import Covariance, Sample, SpatialTwist, Vector3
-from .uncertainty import factor_of, moments, normal_points, product
-from .vectors import Axes, cross
+from .uncertainty import factor_of, normal_points, product
+from .vectors import Axes, cross, total
 
 RESTS = 1e-5
 """A group of contacts holds that leaves more slowly than this part of the approach."""
 
 ROUNDING = 1e-9
+DRAW_STEPS = 5
+"""Steps of the law for a draw: its error is small beside what the draws differ by."""
+
+ROOT = sqrt(2.0)
+SLIPS = float(ContactState.SLIPS)
 
 UNITS: tuple[Vector3, Vector3, Vector3] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
@@ -50,85 +54,104 @@ class Draws:
 
     def __init__(self, scene: Scene, solve: Any) -> None:
         self._scene, self._solve = scene, solve
+        self._normal = np.array(scene.normal)
         self._coefficients = bool(scene.friction_deviation or scene.restitution_deviation)
 
     def drawn(
-        self, sample: Sample, axes: Axes, problem: NDArray[np.float64], standing: int, rates: list[float], gap: float
+        self,
+        sample: Sample,
+        axes: Axes,
+        problem: NDArray[np.float64],
+        answer: NDArray[np.float64],
+        standing: int,
+        rates: list[float],
+        gap: float,
     ) -> DrawnImpact:
         """The draws of an impact.
 
-        `problem` is as `SpatialModel` makes it, and the first `standing` of its contacts stand; the axes of the sample
-        turn the covariance of its twist; `rates` in m/s are those of the other gaps, whose standard deviation is `gap`.
+        `problem` and `answer` are as `SpatialModel` makes them, and the first `standing` of the contacts stand; the
+        axes of the sample turn the covariance of its twist; `rates` in m/s are those of the other gaps, whose standard
+        deviation is `gap`.
         """
-        scene, n = self._scene, (len(problem) - BODY) // CONTACT
-        approach = -min(rates)
+        scene, n, approach = self._scene, (len(problem) - BODY) // CONTACT, -min(rates)
         factor, given = factor_of(sample.twist_covariance)
-        turns = bool(factor.any())
+        turns = given is Covariance.USED and any(sample.twist_covariance)
         striking = n - standing if gap > 0.0 and n - standing > 1 else 0
         dimensions = (6 if turns else 0) + (2 if self._coefficients else 0) + striking
-        points = normal_points(scene.samples, dimensions) if dimensions else np.zeros((0, 1))
-        count = points.shape[1]
-        problems = np.repeat(problem[None], count, axis=0)
-        contacts = problems[:, BODY:].reshape(count, n, CONTACT)
-        if turns:
-            problems[:, 7:13] += product(product(into_world(axes, scene.center_of_mass), factor), points[:6]).T
-            points = points[6:]
-        if self._coefficients:
-            contacts[:, :, 6] = np.maximum(0.0, contacts[:, :, 6] + scene.friction_deviation * points[0][:, None])
-            bounces = contacts[:, :, 7] + scene.restitution_deviation * points[1][:, None]
-            contacts[:, :, 7] = np.minimum(1.0, np.maximum(0.0, bounces))
-            points = points[2:]
-        if striking:
-            contacts[:, standing:, 11] = gaps_of(contacts[:, standing:], rates, gap * points.T)
-        answers, notes = np.zeros((count, ANSWER + RESULT * n)), np.zeros(count, np.int64)
-        self._solve(problems, answers, notes)
+        answers = answer[None]
+        if dimensions:
+            points = normal_points(scene.samples, dimensions)
+            count = points.shape[1]
+            problems = np.repeat(problem[None], count, axis=0)
+            contacts = problems[:, BODY:].reshape(count, n, CONTACT)
+            if turns:
+                problems[:, 7:13] += product(product(into_world(axes, scene.center_of_mass), factor), points[:6]).T
+                points = points[6:]
+            if self._coefficients:
+                contacts[:, :, 6] = np.maximum(0.0, contacts[:, :, 6] + scene.friction_deviation * points[0][:, None])
+                bounces = contacts[:, :, 7] + scene.restitution_deviation * points[1][:, None]
+                contacts[:, :, 7] = np.minimum(1.0, np.maximum(0.0, bounces))
+                points = points[2:]
+            if striking:
+                contacts[:, standing:, 11] = gaps_of(contacts[:, standing:], rates, gap * points.T)
+            answers = np.zeros((count, len(answer)))
+            self._solve(problems, answers, np.zeros(count, np.int64), DRAW_STEPS)
+        return self._read(given, problem, answers, standing, RESTS * approach)
+
+    def _read(
+        self, given: Covariance, problem: NDArray[np.float64], answers: NDArray[np.float64], standing: int, least: float
+    ) -> DrawnImpact:
+        """What the answers of all draws say; a group holds that leaves more slowly than `least`, in m/s."""
+        count, n = len(answers), (len(problem) - BODY) // CONTACT
         of_each = answers[:, ANSWER:].reshape(count, n, RESULT)
-        normals = contacts[:, :, 3:6]
-        leaving = (of_each[:, :, 3:6] * normals).sum(axis=2)
-        # What holds would go into its support by as much as its impulse takes it back.
-        pressed = (of_each[:, :, :3] * normals).sum(axis=2) * mobilities(problem, n)
-        slips = of_each[:, :, 6] == 1.0
-        groups = slice(0, standing), slice(standing, n)
-        margins, lifts, slides = [], [], []
-        for group in groups:
-            rate = leaving[:, group].sum(axis=1) / max(1, group.stop - group.start)
-            press = pressed[:, group].sum(axis=1) / max(1, group.stop - group.start)
-            lifts.append((rate > RESTS * approach).tolist())
-            margins.append(np.where(rate > RESTS * approach, rate, -press).tolist())
-            slides.append(slips[:, group].any(axis=1).tolist())
-        if not standing:
-            lifts[0], margins[0] = [True] * count, [inf] * count
-        modes = [mode_of(*one) for one in zip(*lifts, *slides, strict=True)]
-        blur = self._blur(problem, n)
-        weights = [0.0] * len(Mode)
-        for k in range(count):
-            old, new = over(margins[0][k], blur), over(margins[1][k], blur)
-            for old_lifts, new_lifts in product_of((True, False), (True, False)):
-                share = (old if old_lifts else 1.0 - old) * (new if new_lifts else 1.0 - new)
-                weights[mode_of(old_lifts, new_lifts, slides[0][k], slides[1][k])] += share / count
+        # Along the normal: impulse and velocity of each contact of each draw.
+        normals = (of_each[:, :, :6].reshape(count, n, 2, 3) * self._normal).sum(axis=3).tolist()
+        slips = (of_each[:, :, 6] == SLIPS).tolist()
+        numbers = problem.tolist()
+        soft, blur = mobilities(numbers, n), self._blur(numbers, n)
+        modes, weights, lifts = [], [0.0] * len(Mode), [0.0] * n
+        for along, slipping in zip(normals, slips, strict=True):
+            # What holds would go into its support by as much as its impulse takes it back.
+            rates = [rate for _, rate in along]
+            margins = [
+                rate if rate > least else -mobility * push for (push, rate), mobility in zip(along, soft, strict=True)
+            ]
+            for i in range(n):
+                lifts[i] += over(margins[i], blur) / count
+            found = []
+            for begin, end in ((0, standing), (standing, n)):
+                rate = total(rates[begin:end]) / (end - begin) if end > begin else inf
+                margin = rate if rate > least else total([min(0.0, one) for one in margins[begin:end]]) / (end - begin)
+                found.append((rate > least, True in slipping[begin:end], over(margin, blur)))
+            (old_lifts, old_slips, old), (new_lifts, new_slips, new) = found
+            modes.append(mode_of(old_lifts, new_lifts, old_slips, new_slips))
+            weights[Mode.FLIGHT] += old * new / count
+            weights[Mode.BACK_PIVOT] += (1.0 - old) * new / count
+            weights[mode_of(True, False, old_slips, new_slips)] += old * (1.0 - new) / count
+            weights[mode_of(False, False, old_slips, new_slips)] += (1.0 - old) * (1.0 - new) / count
         mode = max(sorted(set(modes)), key=lambda one: weights[one])
-        mean = moments(answers[[one == mode for one in modes], :6].T)[0].tolist()
-        of_contacts = np.where(leaving > RESTS * approach, leaving, -pressed).T.tolist()
+        columns = np.ascontiguousarray(answers[:, :6].T)
+        mean = (columns[:, [one == mode for one in modes]].sum(axis=1) / modes.count(mode)).tolist()
         return DrawnImpact(
             given=given,
             probabilities=tuple(weights),
-            lifts=tuple([sum([over(one, blur) for one in each]) / count for each in of_contacts]),
+            lifts=tuple(lifts),
             mode=mode,
             after=SpatialTwist((mean[0], mean[1], mean[2]), (mean[3], mean[4], mean[5])),
-            twists=np.ascontiguousarray(answers[:, :6].T),
+            twists=columns,
         )
 
-    def _blur(self, problem: NDArray[np.float64], n: int) -> float:
+    def _blur(self, problem: list[float], n: int) -> float:
         """The standard deviation in m/s of what a contact does after the impact against what the law says."""
-        arms, v, w = problem[BODY:].reshape(n, CONTACT)[:, :3], problem[7:10], problem[10:13]
-        reach = sqrt(float((arms * arms).sum()) / n)
-        speed = sqrt(float((v * v).sum())) + reach * sqrt(float((w * w).sum()))
+        square = total([part * part for i in range(n) for part in problem[BODY + CONTACT * i : BODY + CONTACT * i + 3]])
+        vx, vy, vz, wx, wy, wz = problem[7:13]
+        speed = sqrt(vx * vx + vy * vy + vz * vz) + sqrt((wx * wx + wy * wy + wz * wz) * square / n)
         return max(self._scene.law_deviation, ROUNDING) * speed
 
 
 def over(margin: float, blur: float) -> float:
     """The probability that a quantity of a mean and a standard deviation is above zero."""
-    return 0.5 * (1.0 + erf(margin / (blur * sqrt(2.0))))
+    return 0.5 * (1.0 + erf(margin / (blur * ROOT)))
 
 
 def gaps_of(contacts: NDArray[np.float64], rates: list[float], changes: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -138,19 +161,25 @@ def gaps_of(contacts: NDArray[np.float64], rates: list[float], changes: NDArray[
     return np.asarray(np.maximum(0.0, gaps - first[:, None] * speeds))
 
 
-def mobilities(problem: NDArray[np.float64], n: int) -> NDArray[np.float64]:
-    """How fast each contact (n) goes along its normal by an impulse there, in 1/kg."""
-    mass, xx, yy, zz, xy, xz, yz = problem[:7].tolist()
+def mobilities(problem: list[float], n: int) -> list[float]:
+    """How fast each contact goes along its normal by an impulse there, in 1/kg."""
+    mass, xx, yy, zz, xy, xz, yz = problem[:7]
     det = determinant(xx, yy, zz, xy, xz, yz)
-    inverse = [
-        [yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy],
-        [xz * yz - xy * zz, xx * zz - xz * xz, xy * xz - xx * yz],
-        [xy * yz - xz * yy, xy * xz - xx * yz, xx * yy - xy * xy],
-    ]
-    contacts = problem[BODY:].reshape(n, CONTACT)
-    levers = np.cross(contacts[:, :3], contacts[:, 3:6])
-    turned = (levers[:, None, :] * np.array(inverse)).sum(axis=2) / det
-    return np.asarray((levers * turned).sum(axis=1) + 1.0 / mass)
+    found = []
+    for i in range(n):
+        x, y, z, nx, ny, nz = problem[BODY + CONTACT * i : BODY + CONTACT * i + 6]
+        a, b, c = y * nz - z * ny, z * nx - x * nz, x * ny - y * nx
+        found.append(
+            1.0 / mass
+            + (
+                (yy * zz - yz * yz) * a * a
+                + (xx * zz - xz * xz) * b * b
+                + (xx * yy - xy * xy) * c * c
+                + 2.0 * ((xz * yz - xy * zz) * a * b + (xy * yz - xz * yy) * a * c + (xy * xz - xx * yz) * b * c)
+            )
+            / det
+        )
+    return found
 
 
 def into_world(axes: Axes, center: Vector3) -> NDArray[np.float64]:

@@ -278,7 +278,7 @@ class SpatialModel:
         after, drawn = SpatialTwist((vx, vy, vz), (wx, wy, wz)), None
         if self._draws is not None:
             rates = list(collision.rates[len(old) :])
-            drawn = self._draws.drawn(sample, posture.axes, problem, len(old), rates, self.gap_deviation)
+            drawn = self._draws.drawn(sample, posture.axes, problem, answer, len(old), rates, self.gap_deviation)
             mode, after = drawn.mode, drawn.after
             contacts = [
                 contact._replace(lift_probability=chance) for contact, chance in zip(contacts, drawn.lifts, strict=True)
@@ -329,10 +329,16 @@ class SpatialModel:
             uncertainty=uncertainty,
         )
 
-    def _solve(self, problems: NDArray[np.float64], answers: NDArray[np.float64], notes: NDArray[np.int64]) -> None:
+    def _solve(
+        self,
+        problems: NDArray[np.float64],
+        answers: NDArray[np.float64],
+        notes: NDArray[np.int64],
+        steps: int = STEPS,
+    ) -> None:
         """Fill in the answers to problems with as many contacts each."""
         scene, n = self._scene, (problems.shape[1] - BODY) // CONTACT
-        how = bool(self._law), scene.merge, hardly(scene), STEPS
+        how = bool(self._law), scene.merge, hardly(scene), steps
         self._solver(n, problems, *how, answers, notes, *workspace(n))
 
     def _uncertainty(self, sample: Sample, drawn: DrawnImpact, axis: Vector3, now: Axes) -> Uncertainty:
