@@ -14,10 +14,11 @@ from messages_of_rosbags import TYPES, TYPESTORE, header, odometry, padded, rand
 
 from impact_predictor.mechanics.bodies import plate
 from impact_predictor.mechanics.impact import solve_impact
-from impact_predictor.mechanics.types import Flag, Mode, Twist
+from impact_predictor.mechanics.types import ContactState, Flag, Mode, Twist
 from impact_predictor.prediction.types import (
     Covariance,
     Leftover,
+    PointOutcome,
     Prediction,
     Score,
     SpatialTwist,
@@ -150,6 +151,7 @@ def test_a_prediction_holds_every_number_of_its_touchdown_exactly() -> None:
         "segments": "-- O+",
         "old": "0 4",
         "new": "1 5",
+        "kind": "edge>face",
         "stamp": str(prediction.sample.stamp),
     }
     assert {key: ours.values[key] for key in texts} == texts
@@ -161,7 +163,30 @@ def test_a_prediction_holds_every_number_of_its_touchdown_exactly() -> None:
         **{f"{name}.{part}": one[k] for name, one in pairs.items() for k, part in enumerate(("normal", "tangent"))},
         **dict(zip(("axis.x", "axis.y", "axis.z"), touchdown.axis, strict=True)),
         **{name: getattr(touchdown, name) for name in alone},
+        **{
+            f"{name}_6d.{'vw'[part]}{axis}": twist[part][k]
+            for name, twist in (("before", touchdown.before_6d), ("after", touchdown.after_6d))
+            for part in range(2)
+            for k, axis in enumerate("xyz")
+        },
     }
+
+
+def test_a_prediction_tells_of_each_contact_what_it_does() -> None:
+    contacts = (
+        PointOutcome(4, is_new=False, impulse=(0.0, 0.5, 0.25), velocity=(0.0,) * 3, state=ContactState.LEAVES),
+        PointOutcome(1, is_new=True, impulse=(1.0, -0.5, 2.0), velocity=(0.0,) * 3, state=ContactState.STICKS),
+    )
+    prediction = a_prediction()
+    touchdown = prediction.touchdown
+    assert touchdown is not None
+    values = read(encode_prediction(prediction._replace(touchdown=touchdown._replace(contacts=contacts)))).values
+    told = {"contacts": "4 1", "states": "LEAVES STICKS", "impulses": "0.0 0.5 0.25 1.0 -0.5 2.0"}
+    assert {key: values[key] for key in told} == told
+    assert "lifts" not in values
+    likely = tuple(one._replace(lift_probability=0.75) for one in contacts)
+    values = read(encode_prediction(prediction._replace(touchdown=touchdown._replace(contacts=likely)))).values
+    assert values["lifts"] == "0.75 0.75"
 
 
 def test_the_documentation_has_every_field_of_the_messages_with_its_unit_and_meaning() -> None:

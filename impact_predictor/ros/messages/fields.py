@@ -17,7 +17,7 @@ from ..cdr import LENGTHS, PADDING, add_pair, string
 
 if TYPE_CHECKING:
     from ...mechanics.margins import Margin, Margins
-    from ...prediction.types import SpatialTwist
+    from ...prediction.types import PointOutcome, SpatialTwist
 
 Source = TypeVar("Source")
 
@@ -90,6 +90,36 @@ PREDICTION: Final = Table[Prediction](
 )
 """Of each sample; without a touchdown there is no more."""
 
+
+def _each(touchdown: Touchdown, get: Callable[[PointOutcome], object]) -> tuple[object, ...] | None:
+    return tuple(map(get, touchdown.contacts)) or None
+
+
+def _state(contact: PointOutcome) -> str:
+    return contact.state.name
+
+
+def _impulses(touchdown: Touchdown) -> tuple[float, ...] | None:
+    return tuple([part for one in touchdown.contacts for part in one.impulse]) or None
+
+
+def _lifts(touchdown: Touchdown) -> tuple[object, ...] | None:
+    chances = _each(touchdown, lambda one: one.lift_probability)
+    return None if chances is None or None in chances else chances
+
+
+def _twist_6d(prefix: str, meaning: str, get: Callable[[Source], SpatialTwist | None]) -> Iterator[Field[Source]]:
+    """The fields of a whole twist."""
+    for part, unit in enumerate(("m/s", "rad/s")):
+        for k, axis in enumerate("xyz"):
+
+            def value(record: Source, part: int = part, k: int = k) -> object:
+                twist = get(record)
+                return twist and float(twist[part][k])
+
+            yield Field(f"{prefix}.{'vw'[part]}{axis}", unit, f"{meaning}: {axis}", value)
+
+
 TOUCHDOWN: Final = Table[Touchdown](
     Field("law", "", "path or total", lambda it: it.law),
     Field("unique", "", "whether the law has one answer", lambda it: it.unique),
@@ -120,6 +150,13 @@ TOUCHDOWN: Final = Table[Touchdown](
         "closing_spread", "s", "between the closing of the two ends of the striking edge", lambda it: it.closing_spread
     ),
     Field("offset", "m", "of the contacts from the plane of the mass centre", lambda it: it.offset),
+    Field("kind", "", "what stands and what strikes", lambda it: it.kind),
+    Field("contacts", "", "indices of the points that take part", lambda it: _each(it, lambda one: one.point)),
+    Field("states", "", "what each of them does: LEAVES, SLIPS, STICKS or NEARS", lambda it: _each(it, _state)),
+    Field("impulses", "N s", "on each of them: x y z in the world", _impulses),
+    Field("lifts", "1", "probability that each of them leaves, with uncertainty.samples", _lifts),
+    *_twist_6d("before_6d", "whole twist right before, in the support's frame", lambda it: it.before_6d),
+    *_twist_6d("after_6d", "whole twist right after, in the support's frame", lambda it: it.after_6d),
 )
 """Of the touchdown ahead."""
 
@@ -199,18 +236,6 @@ def _of_touchdown(*keys: str, new: tuple[str, ...] = ()) -> tuple[Field[Score], 
 
 def _of_score(field: Field[Touchdown], key: str) -> Field[Score]:
     return Field(key, field.unit, field.meaning, lambda score: field.get(score.touchdown))
-
-
-def _twist_6d(prefix: str, meaning: str, get: Callable[[Score], SpatialTwist | None]) -> Iterator[Field[Score]]:
-    """The fields of a whole twist."""
-    for part, unit in enumerate(("m/s", "rad/s")):
-        for k, axis in enumerate("xyz"):
-
-            def value(score: Score, part: int = part, k: int = k) -> object:
-                twist = get(score)
-                return twist and float(twist[part][k])
-
-            yield Field(f"{prefix}.{'vw'[part]}{axis}", unit, f"{meaning}: {axis}", value)
 
 
 def _lift(which: int, name: str) -> Iterator[Field[Score]]:
