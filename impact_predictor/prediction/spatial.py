@@ -5,6 +5,7 @@ What a body over a plane support does is computed along the support's axes: z ou
 
 from __future__ import annotations
 
+from functools import cache
 from math import hypot, sqrt
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -15,7 +16,6 @@ from ..mechanics.impact.solve import number_of
 from ..mechanics.impact.spatial import STEPS, flags_named, solvers, workspace
 from ..mechanics.impact.spatial_body import ANSWER, BODY, CONTACT, RESULT
 from ..mechanics.motion.spatial import Pull, SpatialState, fall
-from ..mechanics.motion.spatial import solver as prepare_fall
 from ..mechanics.types import ContactState, Twist
 from .impact import OFF_AXIS, OFFSET, leftover_of
 from .planar import (
@@ -128,7 +128,7 @@ class SpatialModel:
         self._frame = frame_of(scene.normal)
         self._axes = axes_of(self._frame)
         self._solver = solvers().bodies
-        prepare_fall()
+        prepare()
         self._law = number_of(scene.law)
         self.gap_deviation = scene.gap_deviation if scene.gap_deviation >= 0.0 else 0.1 * scene.tolerance
         """Standard deviation of the gaps in m, as far as it is known."""
@@ -417,6 +417,15 @@ class SpatialModel:
 
 RESTS = 1e-5
 """A group of contacts holds that leaves more slowly than this part of the approach."""
+
+
+@cache
+def prepare() -> None:
+    """Have the law code compiled, where it can be, or loaded: for the first touchdown that would take too long."""
+    still = SpatialState((0.0, 0.0, 1.0), (0.0, 0.0, 0.0, 1.0), ORIGIN, ORIGIN)
+    fall(still, (1.0, 1.0, 1.0, 0.0, 0.0, 0.0), [ORIGIN], horizon=1e-3)
+    problem, answer = np.zeros((1, BODY + CONTACT)), np.zeros((1, ANSWER + RESULT))
+    solvers().bodies(1, problem, False, 0.0, 0.0, 1, answer, np.zeros(1, np.int64), *workspace(1))
 
 
 def frame_of(normal: Vector3) -> Quaternion:

@@ -51,8 +51,8 @@ class PredictorNode(Node):
             raise InputError(f"ROS refuses to make the node: {sentence(error)}") from error
 
     def _connect(self, scenes: dict[str, Scene]) -> None:
-        if any(scene.samples for scene in scenes.values()):
-            self.get_logger().info("preparing the uncertainty samples; numba compiles once for a machine, about 15 s")
+        if any(scene.samples or not scene.radius for scene in scenes.values()):
+            self.get_logger().info("preparing the impact laws; where numba is, it compiles them once, about 20 s")
         self._monitor = Monitor(scenes)
         # Each subscription that tells what was lost costs the single-threaded executor as much as another topic.
         counts_losses = self.executor_kind == "events" or len(scenes) == 1
