@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from math import sqrt
 
-from .reactions import CREEPS, OPEN, SLIPS, STICKS, Floats, Ints, Model, Stance, hold, locate, rates
+from .reactions import CREEPS, OPEN, SLIPS, STICKS, Floats, Model, Stance, hold, locate, rates
 from .stances import NONE, ROUNDING, change, creep, head, margins, near, settle, stand, stays, steady, stop, veers
 
 _TOLERANCE = 1e-6
@@ -31,18 +31,6 @@ _GAP = 1e-8
 """How near to zero a gap is found to close, relative to the size."""
 _WILD = 1e6
 """Error of the smallest step, relative to the tolerance, that tells a jam."""
-_STICKY = 1e6
-"""More friction makes no difference."""
-_LARGEST = 1e100
-
-
-INPUT = 32
-"""Numbers of a problem before those of its points: horizon, state, inertia over mass, pull; friction and points."""
-OUTPUT = 14
-"""Numbers of an answer before those of its points: time and state; gap and rate of each."""
-WORK = 175, 38, 9
-"""Numbers to work with: some, some for each point, and some for each pair of points."""
-INVALID = -2
 
 
 def step(
@@ -84,7 +72,7 @@ def step(
             - 2187.0 / 6784.0 * k[52 + i]
             + 11.0 / 84.0 * k[65 + i]
         )
-    _normalise(trial)
+    normalise(trial)
     jam = max(jam, rates(time + h, trial, k, 78, False, model, stance))
     error = 0.0
     for i in range(13):
@@ -101,7 +89,7 @@ def step(
     return error / _TOLERANCE, jam
 
 
-def _normalise(y: Floats) -> None:
+def normalise(y: Floats) -> None:
     length = 1.0 / sqrt(y[3] * y[3] + y[4] * y[4] + y[5] * y[5] + y[6] * y[6])
     y[3], y[4], y[5], y[6] = y[3] * length, y[4] * length, y[5] * length, y[6] * length
 
@@ -332,7 +320,7 @@ def follow(
                 locate(y, model, stance)
                 measure(y, k, 0, points, frame, offsets, now)
             if now[3 * event + 1] < -ROUNDING * speed:
-                _normalise(y)
+                normalise(y)
                 return time, event
             stand(y, event, model, stance)
         else:
@@ -340,91 +328,3 @@ def follow(
         hold(y, stance, ROUNDING * speed)
         again, h, still = True, longer, still + 1
     return horizon, -1
-
-
-def solve(n: int, numbers: Floats, marks: Ints, work: Floats, out: Floats) -> int:
-    """Solve one problem: the point that strikes, -1 for none, -2 for numbers that no body can have."""
-    out[0] = numbers[0]
-    for i in range(13):
-        out[1 + i] = numbers[1 + i]
-    y, body, pull, scale = work[0:13], work[13:26], work[26:39], work[39:43]
-    k, trial, middle, frame = work[43:134], work[134:147], work[147:160], work[160:175]
-    o = 175
-    points, friction, offsets = work[o : o + 3 * n], work[o + 3 * n : o + 4 * n], work[o + 4 * n : o + 5 * n]
-    o += 5 * n
-    toward, forces, arms = work[o : o + 2 * n], work[o + 2 * n : o + 5 * n], work[o + 5 * n : o + 8 * n]
-    blocks = work[o + 8 * n : o + 20 * n]
-    o += 20 * n
-    now, then = work[o : o + 3 * n], work[o + 3 * n : o + 6 * n]
-    before, after = work[o + 6 * n : o + 8 * n], work[o + 8 * n : o + 10 * n]
-    rows = work[o + 10 * n : o + 13 * n + 9 * n * n]
-    label, held = marks[0:n], marks[n : 2 * n + 1]
-    horizon = numbers[0]
-    for i in range(INPUT + 4 * n):
-        if not -_LARGEST <= numbers[i] <= _LARGEST:
-            return INVALID
-    for i in range(13):
-        y[i] = numbers[1 + i]
-    if not (
-        horizon >= 0.0 and fill_body(numbers, body) and y[3] * y[3] + y[4] * y[4] + y[5] * y[5] + y[6] * y[6] > 0.0
-    ):
-        return INVALID
-    _normalise(y)
-    for i in range(12):
-        pull[i] = numbers[20 + i]
-    pull[12] = 0.0
-    for i in range(6, 12):
-        if pull[i] != 0.0:
-            pull[12] = 1.0
-    size = 0.0
-    for i in range(n):
-        friction[i] = min(numbers[INPUT + i], _STICKY)
-        square = 0.0
-        if friction[i] < 0.0:
-            return INVALID
-        for j in range(3):
-            points[3 * i + j] = numbers[INPUT + n + 3 * i + j]
-            square += points[3 * i + j] * points[3 * i + j]
-        size = max(size, square)
-        offsets[i], toward[2 * i], toward[2 * i + 1] = 0.0, 1.0, 0.0
-        forces[3 * i] = forces[3 * i + 1] = forces[3 * i + 2] = 0.0
-        before[2 * i] = before[2 * i + 1] = after[2 * i] = after[2 * i + 1] = 0.0
-    size = sqrt(size) if size > 0.0 else 1.0
-    gravity = sqrt(pull[0] * pull[0] + pull[1] * pull[1] + pull[2] * pull[2])
-    turn = y[10] * y[10] + y[11] * y[11] + y[12] * y[12]
-    weight = gravity + turn * size
-    weight = weight if weight > 0.0 else 1.0
-    speed = sqrt(y[7] * y[7] + y[8] * y[8] + y[9] * y[9]) + size * sqrt(turn) + sqrt(weight * size)
-    scale[0], scale[1], scale[2], scale[3] = size, speed, weight, 0.0
-    model = (points, body, pull, friction, scale)
-    stance = (held, label, toward, forces, arms, blocks, frame, rows)
-    held[n] = 0
-    locate(y, model, stance)
-    for i in range(n):
-        if label[i] != OPEN:
-            x, y_, z = points[3 * i], points[3 * i + 1], points[3 * i + 2]
-            offsets[i] = y[2] + frame[6] * x + frame[7] * y_ + frame[8] * z
-            held[held[n]] = i
-            held[n] += 1
-    time, point = follow(y, horizon, offsets, model, stance, (k, trial, middle, now, then, before, after))
-    out[0] = time
-    for i in range(13):
-        out[1 + i] = y[i]
-    for i in range(n):
-        out[OUTPUT + 2 * i], out[OUTPUT + 2 * i + 1] = now[3 * i], now[3 * i + 1]
-        marks[i] = label[i]
-    return point
-
-
-def fill_body(numbers: Floats, body: Floats) -> bool:
-    """The inertia over the mass, its inverse, and whether it is the same about all axes; False where no body has it."""
-    xx, yy, zz, xy, xz, yz = numbers[14], numbers[15], numbers[16], numbers[17], numbers[18], numbers[19]
-    c0, c1, c2 = yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy
-    det, largest = xx * c0 + xy * c1 + xz * c2, max(xx, yy, zz)
-    if not (xx > 0.0 and xx * yy - xy * xy > 0.0 and det > 1e-12 * largest * largest * largest):
-        return False
-    body[0], body[1], body[2], body[3], body[4], body[5] = xx, yy, zz, xy, xz, yz
-    body[6], body[7], body[8] = c0 / det, (xx * zz - xz * xz) / det, (xx * yy - xy * xy) / det
-    body[9], body[10], body[11] = c1 / det, c2 / det, (xy * xz - xx * yz) / det
-    body[12] = 1.0 if xx == yy == zz and xy == xz == yz == 0.0 else 0.0
-    return True

@@ -1,4 +1,6 @@
-"""The next touchdown of a rigid body on points over a plane support in three dimensions: `fall`.
+"""The motion of a rigid body on points over a plane support in three dimensions.
+
+`fall` finds its next touchdown, `go_on` follows it after one, through plastic contacts.
 
 A free body turns by Euler's equations. Points that stand hold the body, slip with Coulomb's friction against their
 whole slip, begin to slip where they leave the cone of friction, and lift where the support would have to pull. Time,
@@ -17,9 +19,9 @@ from typing import Any, NamedTuple
 
 from ..compiled import compiled
 from ..types import Quaternion, Vector3
-from . import falling, reactions, stances
-from .falling import OUTPUT, WORK
+from . import contact_steps, falling, reactions, spatial_problem, stances
 from .reactions import OPEN
+from .spatial_problem import OUTPUT, WORK
 
 AT_REST = (0.0, 0.0, 0.0)
 
@@ -84,55 +86,114 @@ def fall(
     by the least impulse; `friction` coefficient, one number or (n,); `horizon` in s. Never raises for bad numbers, and
     never returns NaN.
     """
-    n = len(points)
-    frictions = [friction] * n if isinstance(friction, float | int) else friction
-    numbers: Any = [horizon, *state.position, *state.orientation, *state.velocity, *state.angular_velocity]
-    numbers += [*inertia, *pull.gravity, *pull.growth, *pull.spin, *pull.turning, *frictions]
-    for place in points:
-        numbers += place
-    marks: Any = [0] * (2 * n + 1)
-    for i in standing:
-        marks[i] = 1
+    n, numbers, marks = problem(horizon, state, inertia, points, standing, friction, pull)
     struck, out, marks = solver()(n, numbers, marks)
     if struck < 0:
         return SpatialFall(inf, -1, state, (), (), tuple(standing))
-    time, px, py, pz, qx, qy, qz, qw, vx, vy, vz, wx, wy, wz = out[:OUTPUT]
     return SpatialFall(
-        time=time,
+        time=out[0],
         point=struck,
-        state=SpatialState((px, py, pz), (qx, qy, qz, qw), (vx, vy, vz), (wx, wy, wz)),
+        state=state_of(out[1:OUTPUT]),
         gaps=tuple(out[OUTPUT::2]),
         rates=tuple(out[OUTPUT + 1 :: 2]),
         standing=tuple(i for i in range(n) if marks[i] != OPEN),
     )
 
 
+def go_on(
+    state: SpatialState,
+    inertia: Sequence[float],
+    points: Sequence[Vector3],
+    times: Sequence[float],
+    standing: Collection[int] = (),
+    friction: float | Sequence[float] = 0.0,
+    pull: Pull = Pull(),  # noqa: B008
+    step: float = 2.5e-4,
+) -> tuple[SpatialState, ...]:
+    """The states of the body at `times` in s, which do not fall, with plastic contacts.
+
+    As `fall`, but the points that stand may leave the support, the others come to stand on it, and what strikes it ends
+    its approach at once. Steps are `step` s long at most, and errors are of their order. Empty where the numbers are
+    none that a body can have.
+    """
+    n, numbers, marks = problem(step, state, inertia, points, standing, friction, pull)
+    found = stepper()(n, numbers, marks, list(map(float, times)))
+    return tuple(state_of(found[13 * k : 13 * k + 13]) for k in range(len(found) // 13))
+
+
+def problem(
+    first: float,
+    state: SpatialState,
+    inertia: Sequence[float],
+    points: Sequence[Vector3],
+    standing: Collection[int],
+    friction: float | Sequence[float],
+    pull: Pull,
+) -> tuple[int, list[float], list[int]]:
+    """A problem as the law code takes it: how many points, numbers and marks."""
+    n = len(points)
+    frictions = [friction] * n if isinstance(friction, float | int) else friction
+    numbers = [first, *state.position, *state.orientation, *state.velocity, *state.angular_velocity]
+    numbers += [*inertia, *pull.gravity, *pull.growth, *pull.spin, *pull.turning, *frictions]
+    for point in points:
+        numbers += point
+    marks = [0] * (2 * n + 1)
+    for i in standing:
+        marks[i] = 1
+    return n, numbers, marks
+
+
+def state_of(numbers: Sequence[float]) -> SpatialState:
+    px, py, pz, qx, qy, qz, qw, vx, vy, vz, wx, wy, wz = numbers
+    return SpatialState((px, py, pz), (qx, qy, qz, qw), (vx, vy, vz), (wx, wy, wz))
+
+
 FallSolver = Callable[[int, list[float], list[int]], tuple[int, list[float], list[int]]]
+Stepper = Callable[[int, list[float], list[int], list[float]], list[float]]
+
+LAW_CODE = (reactions, stances, falling, contact_steps, spatial_problem)
 
 
 @cache
 def solver() -> FallSolver:
-    """The law code that solves one problem, compiled if that can be; the first time on a machine this takes seconds."""
-    solve = compiled(make_solve, (reactions, stances, falling), lambda function: False)
+    """The law code that finds a touchdown, compiled if that can be; the first time on a machine this takes seconds."""
+    solve = compiled(make_fall, LAW_CODE, never)
     if solve is None:
-        return on_lists(make_solve(""))
+        return fall_on_lists
     import numpy as np
 
     def on_arrays(n: int, numbers: list[float], marks: list[int]) -> tuple[int, list[float], list[int]]:
-        work, out = np.empty(sizes(n)), np.empty(OUTPUT + 2 * n)
-        mark = np.array(marks)
-        point = solve(n, np.array(numbers), mark, work, out)
-        return point, out.tolist(), mark.tolist()
+        out, mark = np.empty(OUTPUT + 2 * n), np.array(marks)
+        struck = solve(n, np.array(numbers), mark, np.empty(sizes(n)), out)
+        return struck, out.tolist(), mark.tolist()
 
     return on_arrays
 
 
-def on_lists(solve: Callable[..., int]) -> FallSolver:
-    def on_lists(n: int, numbers: list[float], marks: list[int]) -> tuple[int, list[float], list[int]]:
-        out = [0.0] * (OUTPUT + 2 * n)
-        return solve(n, numbers, marks, [0.0] * sizes(n), out), out, marks
+def fall_on_lists(n: int, numbers: list[float], marks: list[int]) -> tuple[int, list[float], list[int]]:
+    out = [0.0] * (OUTPUT + 2 * n)
+    return spatial_problem.fall(n, numbers, marks, [0.0] * sizes(n), out), out, marks
 
-    return on_lists
+
+@cache
+def stepper() -> Stepper:
+    """The law code that goes on in steps, compiled if that can be."""
+    steps = compiled(make_go_on, LAW_CODE, never)
+    if steps is None:
+        return go_on_lists
+    import numpy as np
+
+    def on_arrays(n: int, numbers: list[float], marks: list[int], times: list[float]) -> list[float]:
+        out = np.empty(13 * len(times))
+        status = steps(n, np.array(numbers), np.array(marks), np.empty(sizes(n)), np.array(times), out)
+        return out.tolist() if status == 0 else []
+
+    return on_arrays
+
+
+def go_on_lists(n: int, numbers: list[float], marks: list[int], times: list[float]) -> list[float]:
+    out = [0.0] * (13 * len(times))
+    return out if spatial_problem.go_on(n, numbers, marks, [0.0] * sizes(n), times, out) == 0 else []
 
 
 def sizes(n: int) -> int:
@@ -140,11 +201,25 @@ def sizes(n: int) -> int:
     return WORK[0] + WORK[1] * n + WORK[2] * n * n
 
 
-def make_solve(law_code: str) -> Callable[..., int]:
-    """The function that solves one problem; numba keeps what it compiled under the value of `law_code`."""
+def never(function: object) -> bool:
+    return False
 
-    def solve(n: int, numbers: Any, marks: Any, work: Any, out: Any) -> int:
+
+def make_fall(law_code: str) -> Callable[..., int]:
+    """The function that finds a touchdown; numba keeps what it compiled under the value of `law_code`."""
+
+    def fall(n: int, numbers: Any, marks: Any, work: Any, out: Any) -> int:
         law_code  # noqa: B018
-        return falling.solve(n, numbers, marks, work, out)
+        return spatial_problem.fall(n, numbers, marks, work, out)
 
-    return solve
+    return fall
+
+
+def make_go_on(law_code: str) -> Callable[..., int]:
+    """The function that goes on in steps."""
+
+    def go_on(n: int, numbers: Any, marks: Any, work: Any, times: Any, out: Any) -> int:
+        law_code  # noqa: B018
+        return spatial_problem.go_on(n, numbers, marks, work, times, out)
+
+    return go_on
