@@ -368,3 +368,10 @@ def test_every_landing_has_the_same_bits_with_numba_and_without(monkeypatch):
         assert [touchdown for _, touchdown in landings(20, seed=11, restitution=0.3)] == here
     finally:
         spatial.solvers.cache_clear()
+
+
+def test_a_thin_plate_whose_inertia_was_rounded_is_struck_as_any_other_body():
+    for zz, flag in ((0.2, False), (0.202, False), (0.22, True)):
+        scene = scene_of(mass=5.0, inertia=((0.1, 0.0, 0.0), (0.0, 0.1, 0.0), (0.0, 0.0, zz)))
+        touchdown = landing(scene, base_of(), FEET, (1, 2, 3), (0,), (0.0, 0.0, -0.5))
+        assert bool(touchdown.flags & Flag.INVALID_INPUT) is flag
