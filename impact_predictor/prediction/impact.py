@@ -23,6 +23,9 @@ OFFSET = 0.2
 """... and up to this part of the contacts' half distance between their plane and the mass centre (in flight of the
 distance between contact and mass centre)."""
 
+RESTITUTION = {"path": "energetic", "total": "poisson"}
+"""The rule of each law's restitution: that of the law in three dimensions, which answers beside the planar one."""
+
 SLOWEST = 4.0
 """An impact can be told from rest when it approaches this many times faster than gravity moves it in a contact time."""
 
@@ -117,7 +120,7 @@ class ImpactModel:
         scene, contacts, plane, body = self._scene, collision.contacts, collision.plane, collision.body
         before, across, time = collision.before, collision.across, collision.lead_time
         n, center = scene.normal, scene.center_of_mass
-        outcome = solve_impact(body, before, scene.law, scene.validity)
+        outcome = solve_impact(body, before, scene.law, scene.validity, RESTITUTION[scene.law])
         # From the plane to space: the pose then, and the twist of the body frame after the impact.
         along = to_world(posture.axes, plane.axis)
         ahead = cross(along, n)

@@ -25,9 +25,6 @@ SETTLED = 0.5
 """A touchdown has happened when less than this part of the approach is left, within the contact tolerance, that the
 predicting sample measured: the approach predicted for the touchdown has gravity's gain on the way added to it."""
 
-BEGUN = 0.0
-"""An impact may have begun when less than this part of the twist window is left until it is predicted."""
-
 PLANE = 2
 """A body on so many points moves in a plane, as those of the paper do: nothing more is prepared for it."""
 
@@ -119,7 +116,9 @@ class PointContacts(Contacts):
             track = None
         if track is None:
             track = self._track = Track()
-        elif track.stamp <= sample.stamp + round(BEGUN * self.scene.twist_window * NANOSECONDS):
+        elif 0 <= sample.stamp - track.stamp < self.scene.twist_window * NANOSECONDS or (
+            self._recent[-2][0].stamp <= track.stamp <= sample.stamp
+        ):
             # The impact itself may be in this twist, averaged or just begun: the last prediction stands.
             self._told.append((sample.stamp, track))
             return track.hold(sample.stamp)
@@ -256,15 +255,16 @@ def collision_of(
     contacts = contacts_of(scene, posture)
     if contacts is None:
         return None
-    if spatial is not None and not spatial.is_planar(sample, posture, contacts):
-        return spatial.collision(sample, posture, moment)
-    gravity = scene.gravity
+    gravity, uniform = scene.gravity, True
     if moment is not None:
         from .deck.frame import fall_over, gravity_over, is_uniform  # only where the support moves
 
         gravity = gravity_over(scene, moment, sample, posture)
-        if is_uniform(moment, scene.horizon):
-            moment = None
+        uniform = is_uniform(moment, scene.horizon)
+    if spatial is not None and not spatial.is_planar(sample, posture, contacts, gravity):
+        return spatial.collision(sample, posture, moment)
+    if uniform:
+        moment = None
     plane = plane_of(scene, points, sample, posture, contacts, gravity)
     on_edge = len(contacts.old) > 1
     inertia = inertia_about(scene, plane.axis, blocked=on_edge)

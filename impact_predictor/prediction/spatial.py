@@ -75,8 +75,8 @@ ENOUGH = 100
 """Gaps of standing points from which on their scatter is known."""
 
 PLANAR = 1e-3
-"""A touchdown is planar whose motion across its plane is below this part of the new contact's approach, and whose
-contacts and inertia lie as near to the plane: there both laws agree to that."""
+"""A touchdown is planar whose motion across its plane is below this part of the new contact's approach, the pull there
+below this part of the whole, and whose contacts and inertia lie as near to the plane: there both laws agree to that."""
 
 STATES = tuple(ContactState)
 
@@ -152,16 +152,25 @@ class SpatialModel:
         if self._seen >= ENOUGH:
             self.gap_deviation = sqrt(self._squares / self._seen)
 
-    def is_planar(self, sample: Sample, posture: Posture, contacts: ActiveContacts) -> bool:
-        """Whether a touchdown that a sample shows on some contacts is one in the impact plane."""
+    def is_planar(self, sample: Sample, posture: Posture, contacts: ActiveContacts, gravity: Vector3) -> bool:
+        """Whether a touchdown that a sample shows on some contacts is one in the impact plane.
+
+        `gravity` in the frame of the sample, in m/s^2, is what the body would be accelerated by without contacts.
+        """
         scene, old, new = self._scene, contacts.old, contacts.new
         gaps = [posture.gaps[i] for i in new]
         approach = -total([posture.rates[i] for i in new]) / len(new)
         least = PLANAR * approach
         if max(gaps) - min(gaps) > least * scene.merge or (len(old) > 1 and len(new) == 1):
             return False
-        plane = plane_of(scene, self._points, sample, posture, contacts)
+        plane = plane_of(scene, self._points, sample, posture, contacts, gravity)
+        if abs(plane.gravity[2]) > PLANAR * sqrt(dot(gravity, gravity)):
+            return False
         reach = sqrt(plane.new[0] * plane.new[0] + plane.new[1] * plane.new[1])
+        for group in (old, new):
+            places = [dot(plane.ahead, self._points[i]) for i in group]
+            if places and max(places) - min(places) > PLANAR * reach:
+                return False
         spin = sqrt(dot(sample.angular, sample.angular))
         if plane.offset > PLANAR * reach or max(abs(plane.lateral), plane.off_axis * spin * reach) > least:
             return False

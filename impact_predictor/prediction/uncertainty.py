@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from ..mechanics.impact.batch import Outcomes, solve_impacts
 from ..mechanics.sensitivity import allowed_changes
 from ..mechanics.types import Contact, Mode, Twist, TwoPointBody
+from .impact import RESTITUTION
 from .planar import ORIGIN, ImpactPlane, Posture
 from .scene import Scene
 from .types import Covariance, Quaternion, Sample, Uncertainty, Vector3
@@ -138,7 +139,7 @@ def impacts(
     bounces: Any = np.minimum(1.0, np.maximum(0.0, new.restitution + restitution))
     changed: Any = [part + change for part, change in zip(twist, changes, strict=True)]
     changed_body = body._replace(old=old, new=new._replace(friction=grips, restitution=bounces))
-    return solve_impacts(changed_body, Twist(*changed), law)
+    return solve_impacts(changed_body, Twist(*changed), law, restitution=RESTITUTION[law])
 
 
 def product(matrix: NDArray[np.float64], columns: NDArray[np.float64]) -> NDArray[np.float64]:

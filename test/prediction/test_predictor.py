@@ -17,6 +17,7 @@ from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
 from impact_predictor.mechanics.impact import solve_impact
+from impact_predictor.mechanics.impact.spatial import Body, ContactPoints, solve_spatial_impact
 from impact_predictor.mechanics.types import Contact, Mode, Outcome, Twist, TwoPointBody
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene
@@ -136,7 +137,8 @@ class PlanarBody(NamedTuple):
         new = turn(angle, self.new)
         struck = Contact(new[0], new[1], self.friction, restitution=restitution)
         stood = None if self.old is None else Contact(turn(angle, self.old)[0], new[1], self.friction)
-        return before, solve_impact(TwoPointBody(self.mass, self.inertia, stood, struck), before, law)
+        rule = "energetic" if law == "path" else "poisson"
+        return before, solve_impact(TwoPointBody(self.mass, self.inertia, stood, struck), before, law, restitution=rule)
 
 
 class Placed(NamedTuple):
@@ -225,14 +227,12 @@ def anywhere(body: PlanarBody, seed: int) -> Placed:
     """The body over a random support, seen in a random frame of its own."""
     rng = np.random.default_rng(seed)
     plane, mount = Rotation.random(2, random_state=rng)
-    half = rng.normal(size=(3, 3))
-    # Between edges nothing but the inertia about the axis counts; a body that flies must spin about a principal axis.
-    tensor = half @ half.T * body.inertia + 0.2 * body.inertia * np.eye(3)
-    if body.old is None:
-        tensor[2, :2] = tensor[:2, 2] = 0.0
-    tensor *= body.inertia / tensor[2, 2]
-    lateral = 0.3 if body.slip or body.old is None else 0.0
-    return Placed(body, plane, rng.normal(size=3), mount, triple(0.1 * rng.normal(size=3)), lateral, 0.1, tensor)
+    # What stays in its plane turns about a principal axis: any ellipse of inertia across it, with room for mass.
+    half = rng.normal(size=(2, 2))
+    tensor = np.diag([0.0, 0.0, body.inertia])
+    across = half @ half.T
+    tensor[:2, :2] = body.inertia * (0.6 * np.eye(2) + 0.6 * across / np.trace(across))
+    return Placed(body, plane, rng.normal(size=3), mount, triple(0.1 * rng.normal(size=3)), 0.0, 0.1, tensor)
 
 
 def announced(placed: Placed, time: float, **changes: Any) -> Touchdown:
@@ -312,17 +312,21 @@ def test_a_touchdown_is_announced_up_to_the_horizon(kind: str) -> None:
 
 
 def test_gravity_across_the_plane_moves_a_body_in_flight_only() -> None:
-    placed = anywhere(FLYING, 2)
+    alike = np.eye(3) * FLYING.inertia
+    placed = anywhere(FLYING, 2)._replace(tensor=alike)
     end, at = placed.body.motion()
     sideways = placed.plane.apply([0.0, 0.0, 2.0])
     gravity = triple(np.add(placed.scene().gravity, sideways))
     level, tilted = announced(placed, 0.0), announced(placed, 0.0, gravity=gravity)
     assert np.subtract(tilted.position, level.position) == pytest.approx(0.5 * sideways * end**2, abs=CLOSE)
-    now = Rotation.from_quat(tilted.orientation)
-    assert now.apply(np.subtract(tilted.linear, level.linear)) == pytest.approx(sideways * end, abs=CLOSE)
+    moved = np.subtract(tilted.before_6d.linear, level.before_6d.linear)
+    assert moved == pytest.approx(sideways * end, abs=CLOSE)
+    # Friction opposes the whole slip.
+    across = placed.plane.apply([0.0, 0.0, 1.0])
+    assert 0.0 < np.dot(tilted.after_6d.linear, across) < 2.0 * end - 0.01
 
     stands = anywhere(STICKING, 2)
-    sideways = stands.plane.apply([0.0, 0.0, 2.0])
+    sideways = stands.plane.apply([0.0, 0.0, 0.5])
     gravity = triple(np.add(stands.scene().gravity, sideways))
     level, tilted = announced(stands, 0.0), announced(stands, 0.0, gravity=gravity)
     assert tilted.position == pytest.approx(level.position, abs=CLOSE)
@@ -343,22 +347,22 @@ def test_an_edge_a_little_askew_strikes_as_one_and_says_how_askew() -> None:
 
 
 def test_a_body_that_turns_off_its_axis_is_out_of_plane() -> None:
-    placed = anywhere(STICKING, 7)
-    _, at = placed.body.motion()
-    sample = placed.sample(0.05, at)
+    placed = anywhere(FLYING, 7)._replace(tensor=np.eye(3) * FLYING.inertia, width=0.0)
+    end, at = placed.body.motion()
+    sample = placed.sample(end - 0.01, at)
     spin = np.linalg.norm(sample.angular)
     up = Rotation.from_quat(sample.orientation).inv().apply(placed.plane.apply([0.0, 1.0, 0.0]))
-    for part, leftover in ((0.2, Leftover.NONE), (0.4, Leftover.OUT_OF_PLANE)):
+    for part, leftover in ((0.2, Leftover.ONE_POINT), (0.4, Leftover.ONE_POINT | Leftover.OUT_OF_PLANE)):
         spun = sample._replace(angular=triple(np.array(sample.angular) + part * spin * up))
-        touchdown = Predictor(placed.scene()).update(spun).touchdown
+        touchdown = Predictor(placed.scene(center_of_mass=placed.center)).update(spun).touchdown
         assert touchdown is not None
         assert touchdown.off_axis == pytest.approx(part / math.hypot(1.0, part), abs=CLOSE)
         assert touchdown.leftover == leftover
-        # What the plane leaves over goes on as it was.
-        normal, yaw = placed.plane.apply([0.0, 1.0, 0.0]), part * spin
+        # A body alike about all its axes turns on as it did, up to the impact.
+        assert np.linalg.norm(touchdown.before_6d.angular) == pytest.approx(spin * math.hypot(1.0, part), abs=CLOSE)
         now, then = (Rotation.from_quat(one.orientation) for one in (sample, touchdown))
-        assert then.apply(touchdown.angular) @ normal == pytest.approx(yaw, abs=CLOSE)
-        assert (then * now.inv()).as_rotvec() @ normal == pytest.approx(yaw * touchdown.lead_time, abs=CLOSE)
+        turned = np.array(touchdown.before_6d.angular) * touchdown.lead_time
+        assert (then * now.inv()).as_rotvec() == pytest.approx(turned, abs=CLOSE)
 
 
 def test_contacts_beside_the_mass_centre_are_out_of_plane() -> None:
@@ -406,23 +410,28 @@ def test_a_body_that_hops_on_its_old_contact_has_no_touchdown_of_the_new_one_ahe
 
 
 def test_one_corner_of_an_edge_strikes_a_body_that_nothing_guides() -> None:
-    """Up to the touchdown the stance edge holds the axis; the impact at one point may turn the body off it."""
+    """Up to the touchdown the stance edge holds the axis; the impact at one point turns the body off it."""
     placed = anywhere(STICKING, 13)
     body = placed.body
     tensor = placed.tensor
     assert tensor is not None
-    assert body.old is not None
-    free = 1.0 / np.linalg.inv(tensor)[2, 2]
-    assert free < 0.95 * body.inertia
     points = tuple(point for i, point in enumerate(placed.points()) if i != 3)
+    end, at = body.motion()
     touchdown = announced(placed, 0.05, points=points)
     before, _ = body.impact("path", 0.2)
-    contacts = Contact(*body.old, body.friction), Contact(*body.new, body.friction, restitution=0.2)
-    outcome = solve_impact(TwoPointBody(body.mass, float(free), *contacts), before)
-    assert touchdown.new == (2,)
+    turned = placed.plane * Rotation.from_rotvec([0.0, 0.0, at(end)[1]])
+    struck = [turned.apply(place) for place in ([-0.12, -0.05, -0.1], [-0.12, -0.05, 0.1], [0.1, -0.05, -0.1])]
+    twist = [*placed.plane.apply([before.vx, before.vy, 0.0]), *placed.plane.apply([0.0, 0.0, before.omega])]
+    contacts = ContactPoints(struck, body.friction, 0.2, placed.plane.apply([0.0, 1.0, 0.0]))
+    inertia = turned.as_matrix() @ tensor @ turned.as_matrix().T
+    slow = 0.005 * math.hypot(*body.gravity)
+    outcome = solve_spatial_impact(Body(body.mass, inertia), contacts, twist, threshold=slow)
+    assert (touchdown.old, touchdown.new) == ((0, 1), (2,))
     assert touchdown.leftover & Leftover.ONE_CORNER_FIRST
     assert touchdown.before == pytest.approx(before, abs=CLOSE)
-    assert touchdown.after == pytest.approx(outcome.twist, abs=CLOSE)
+    assert np.concatenate(touchdown.after_6d) == pytest.approx(outcome.twist, abs=10.0 * CLOSE)
+    assert [contact.state for contact in touchdown.contacts] == list(outcome.states)
+    assert np.linalg.norm(np.cross(touchdown.after_6d.angular, touchdown.axis)) > 0.1
 
 
 def test_a_body_that_lifts_off_its_stance_strikes_with_one_point() -> None:
@@ -445,7 +454,7 @@ def test_a_body_that_lifts_off_its_stance_strikes_with_one_point() -> None:
     struck = Contact(float(x), float(y), body.friction, restitution=0.2)
     before = Twist(float(at(end)[2][0]), float(at(end)[2][1]), body.omega)
     free = TwoPointBody(body.mass, 1.0 / np.linalg.inv(tensor)[2, 2], None, struck)
-    assert touchdown.after == pytest.approx(solve_impact(free, before).twist, abs=CLOSE)
+    assert touchdown.after == pytest.approx(solve_impact(free, before, restitution="energetic").twist, abs=CLOSE)
     assert touchdown.leftover & Leftover.ONE_POINT
 
 
