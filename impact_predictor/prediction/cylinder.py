@@ -124,7 +124,7 @@ class CylinderContacts(PointContacts):
         if not contacts.old or hypot(place[0] - other[0], place[1] - other[1]) - scene.radius > scene.tolerance:
             body = body._replace(old=None, new=self._contact(edges[fall.point], place))
         contacts = ActiveContacts(contacts.old, (abs(behind - fall.point),))
-        return collision_after(sample, posture, contacts, plane, body, fall, (x, y), age, blocked=True)
+        return collision_after(sample, posture, contacts, plane, body, fall, (x, y), age)
 
     def _contact(self, edge: Vector, center: Vector) -> Contact:
         scene, (x, y) = self.scene, (edge[0] - center[0], edge[1] - center[1])

@@ -45,8 +45,7 @@ class Collision(NamedTuple):
 
     `body` and its twist `before` are those of the impact, in the impact plane, and `across` is the motion across it;
     `shift` (m) is how far the mass centre moves there until then, and `angle` how far the body turns; `lead_time` in s;
-    `blocked` whether its contacts are edges, off whose line it cannot turn. `measured` is the speed in m/s at which the
-    sample shows the new points to approach, `speed` that of the touchdown.
+    `measured` is the speed in m/s at which the sample shows the new points to approach, `speed` that of the touchdown.
     """
 
     contacts: ActiveContacts
@@ -57,7 +56,6 @@ class Collision(NamedTuple):
     shift: Vector
     angle: float
     lead_time: float
-    blocked: bool
     measured: float
     speed: float
 
@@ -71,7 +69,6 @@ def collision_after(
     fall: Fall,
     start: Vector,
     age: float,
-    blocked: bool,
 ) -> Collision | None:
     """The collision of a body after a fall; None where it only grazes its support.
 
@@ -95,7 +92,6 @@ def collision_after(
         shift=(x - start[0], y - start[1]),
         angle=angle,
         lead_time=time,
-        blocked=blocked,
         measured=-total([posture.rates[i] for i in contacts.new]) / len(contacts.new),
         speed=speed,
     )

@@ -296,12 +296,11 @@ def collision_of(
     if fall is None or fall.point != len(striking) - 1:
         return None
     body = body_at(scene, plane, inertia, fall.state.angle)
-    blocked = on_edge and body.old is not None and len(contacts.new) > 1
-    if on_edge and not blocked:
+    if on_edge and (body.old is None or len(contacts.new) == 1):
         body = TwoPointBody(body.mass, inertia_about(scene, plane.axis, blocked=False), body.old, body.new)
     if body.old is not None and body.old.x >= body.new.x:
         return None  # it falls back, and other points strike before
-    return collision_after(sample, posture, contacts, plane, body, fall, (0.0, height), age, blocked)
+    return collision_after(sample, posture, contacts, plane, body, fall, (0.0, height), age)
 
 
 def body_at(scene: Scene, plane: ImpactPlane, inertia: float, angle: float) -> TwoPointBody:

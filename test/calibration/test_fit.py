@@ -33,7 +33,7 @@ def collision(body: TwoPointBody, before: Twist, spread: float = 0.0) -> Collisi
     """An impact of a body whose edge takes some time to close."""
     lateral = LateralMotion(0.0, 0.0, 0.0)
     contacts = ActiveContacts((0,), (1,))
-    return Collision(contacts, PLANE, body, before, lateral, (0.0, 0.0), spread, 0.0, True, 1.0, 1.0)
+    return Collision(contacts, PLANE, body, before, lateral, (0.0, 0.0), spread, 0.0, 1.0, 1.0)
 
 
 def touchdowns(
