@@ -20,7 +20,7 @@ from rich.table import Table
 from impact_predictor.bags.replay import replay
 from impact_predictor.calibration.fit import Calibration, calibrate
 from impact_predictor.calibration.search import interval
-from impact_predictor.calibration.touchdowns import ObservingMonitor
+from impact_predictor.calibration.touchdowns import touchdowns_of
 from impact_predictor.prediction.scene import Scene, inertia_matrix
 from impact_predictor.scenarios.record import rocking_actor, write_record
 from impact_predictor.scenarios.rocking import Rocker, release, rocking_plate, rocking_rod
@@ -57,20 +57,18 @@ def fitted(rocker: Rocker, folder: Path) -> Calibration:
     for angle in ANGLES:
         path = folder / f"{angle}.mcap"
         write_record(path, [rocking_actor(rocker.name, release(rocker, radians(angle)).run)], RATE)
-        monitor = ObservingMonitor({"": scene})
-        replay(path, scene, monitor=monitor)
-        records.append(monitor.touchdowns)
+        records.append(touchdowns_of(replay(path, scene).settled, {"": scene}))
     return calibrate(records)
 
 
 def main() -> int:
     """Print the table."""
-    table = Table("body", "friction", "told", "restitution", "told", "inertia, told as a factor", "touchdowns")
+    table = Table("body", "friction", "told", "restitution", "told", "touchdowns")
     for name, friction, restitution, rocker in track(cases(), "simulating", console=Console(stderr=True)):
         with TemporaryDirectory() as folder:
             one = fitted(rocker, Path(folder))
-        told = [interval(estimate) for estimate in (one.friction, one.restitution, one.inertia)]
-        table.add_row(name, friction, told[0], f"{restitution}", told[1], told[2], str(len(one.touchdowns)))
+        told = [interval(one.estimates[name]) for name in ("friction", "restitution")]
+        table.add_row(name, friction, told[0], f"{restitution}", told[1], str(len(one.touchdowns)))
     Console(width=120).print(table)
     return 0
 

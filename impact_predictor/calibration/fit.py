@@ -1,219 +1,309 @@
-"""Which friction, restitution and inertia predict recorded touchdowns best, how sure that is, and what it is worth."""
+"""Which coefficients predict recorded touchdowns best, how sure that is, and what it is worth."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from itertools import pairwise
+from itertools import product
 from math import inf
 from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize
 
 from ..errors import InputError
-from .search import COARSE, Estimate, Search
-from .solver import Solver
-from .table import Blocks, Grid, blocks_of
-from .touchdowns import Coefficients, ScoredTouchdown
+from .blocks import Blocks, blocks_of
+from .flight import resamples
+from .impulses import AGAIN, Weights, least_lengths
+from .motions import Reals
+from .search import FOLDS, LEVEL, Estimate
+from .solver import Coefficients, Solver, lengths
+from .touchdowns import ScoredTouchdown
 
 NEEDED: Final = 10
 """Scored touchdowns below which an interval would say nothing."""
 
-BENT: Final = 0.01
-"""Twists after a touchdown that leave a straight line by more, relative to the speed before, have another impact in
-them; or by more than three times what is usual, where they are noisy."""
+FITTED: Final = ("friction", "restitution", "merge")
+"""What is fitted whether it is asked for or not."""
 
-FACTORS: Final = (1 / 3, 0.5, 0.7, 0.84, 1.0, 1.2, 1.45, 2.0, 3.0)
-"""Of the given inertia, between a body with its mass at the middle and one with it all outside."""
 
-KNOWN: Final = 1.2
-"""An inertia is known when the ends of its interval differ by less than this factor: a drawing tells it as well."""
+class Range(NamedTuple):
+    """Of a coefficient: its least and greatest value, a step that changes it little, and the width of an interval
+    beyond which it is not known: a book tells it as well.
+    """
+
+    least: float
+    most: float
+    step: float
+    wide: float
+
+
+class Profile(NamedTuple):
+    """Of a coefficient that others may stand in for: the values with each of which these are fitted anew, and the
+    factor between the ends of an interval beyond which it is not known.
+    """
+
+    values: tuple[float, ...]
+    wide: float
+
+
+PROFILES: Final = {
+    "merge": Profile(tuple(1e-3 * 2.0 ** (k / 3.0) for k in range(-6, 10)), 5.0),
+    "inertia": Profile(tuple(1.08**k for k in range(-12, 13)), 1.25),
+}
+
+RANGES: Final = {
+    "friction": Range(0.0, 100.0, 5e-3, 0.2),
+    "restitution": Range(0.0, 1.0, 5e-3, 0.3),
+    "exponent": Range(-1.0, 1.0, 1e-2, 0.4),
+    "radius": Range(0.0, 2e-2, 2e-4, 5e-3),
+}
+
+COARSE: Final = (0.0, 0.05, 0.1, 0.16, 0.24, 0.32, 0.44, 0.64, 1.0, 2.0, 100.0), (0.0, 0.1, 0.25, 0.5, 1.0)
+"""Where the search begins: friction and restitution. The gaps grow where less depends on them."""
 
 ALIKE: Final = 1e-3
-"""Mean errors that differ by less are alike for an inertia, which friction and restitution stand in for: a thousandth
-of the speed is less than any record or rigid theory holds."""
+"""Mean errors that differ by less are alike: a thousandth of the speed is less than records or rigid theory hold."""
 
-_HALVINGS: Final = 3
+_STEPS: Final = 12
+_FEW: Final = 2
+_SOME: Final = 200
+_HALVINGS: Final = 12
+_MAP: Final = 13
+"""Nodes of the map of errors along each side."""
 
 
 class Calibration(NamedTuple):
     """Coefficients fitted to touchdowns.
 
-    `blocks` is the block of each touchdown; `given_errors` and `held_out` are the relative errors with the given
-    coefficients, and with those that were fitted to the blocks of the other folds, (n,) each. `map` has the
-    mean errors over a grid; `inertias` (factor, least mean error over friction and restitution), none where no inertia
-    was looked for. `left_out` touchdowns are scored, but something else happens while they are measured.
+    `blocks` is the block of each touchdown, `estimates` what is told of each coefficient by its name, and `fitted` all
+    of them together. Errors are relative, |(dv, s dw)| / |(v, s w) before|, (n,) each: with the `given` coefficients;
+    `held_out` with those that were fitted to the blocks of the other folds; and of the `simple` answers by their names.
+    `map` has values of friction and of restitution, and the mean errors over both.
     """
 
     touchdowns: tuple[ScoredTouchdown, ...]
     blocks: Blocks
-    friction: Estimate
-    restitution: Estimate
-    inertia: Estimate
-    given_errors: NDArray[np.float64]
-    held_out: NDArray[np.float64]
-    map: tuple[Grid, NDArray[np.float64]]
-    inertias: tuple[tuple[float, float], ...]
-    left_out: int
+    estimates: dict[str, Estimate]
+    fitted: Coefficients
+    given: Reals
+    held_out: Reals
+    simple: dict[str, Reals]
+    map: tuple[Reals, Reals, Reals]
 
 
 def calibrate(
-    records: Sequence[Sequence[ScoredTouchdown]], seed: int = 0, tell: Callable[[int], None] = lambda done: None
+    records: Sequence[Sequence[ScoredTouchdown]],
+    asked: Sequence[str] = (),
+    seed: int = 0,
+    tell: Callable[[int], None] = lambda done: None,
 ) -> Calibration:
     """Fit coefficients to the touchdowns of some records by the least mean of their relative errors.
 
-    The mean of lengths is the loss of the spatial median: a touchdown that rigid theory does not explain pulls no more
-    than any other. Intervals are those of the bootstrap over blocks (percentiles), the same for the same `seed`. A
-    coefficient that the touchdowns do not tell stays as it was, and so does the inertia of bodies that have several.
+    Fitted are friction, restitution, merge time and what is `asked` for, fields of `Coefficients`. The mean of lengths
+    is the loss of the spatial median: a touchdown that rigid theory does not explain pulls no more than any other.
+    Intervals are those of the bootstrap over blocks (percentiles), the same for the same `seed`; each is wider by what
+    changes the mean error by a thousandth of the speed. A coefficient that the touchdowns do not tell stays as it was.
     `tell` takes now and then how many impacts are solved.
 
     Raises:
-        InputError: there are too few touchdowns, or their bodies have several frictions or restitutions.
+        InputError: there are too few touchdowns, or their bodies have several frictions, restitutions or merge times.
     """
-    number = sum(map(len, records))
-    records = straight(records)
     touchdowns = tuple(one for record in records for one in record)
-    if (fit := len(touchdowns)) < NEEDED:
-        there = "1 touchdown" if fit == 1 else f"{fit or 'no'} touchdowns"
-        more = f" ({number} are scored, some too slow for the rate of the samples)" if number > fit else ""
-        raise InputError(f"{there} can be fitted to{more}, but {NEEDED} are needed; give more bags")
-    scenes = [one.scene for one in touchdowns]
-    if len({(scene.friction, scene.restitution) for scene in scenes}) > 1:
+    if (number := len(touchdowns)) < NEEDED:
+        there = "1 touchdown" if number == 1 else f"{number or 'no'} touchdowns"
+        raise InputError(f"{there} can be fitted to, but {NEEDED} are needed; give more bags")
+    known = {(one.scene.friction, one.scene.restitution, one.scene.merge) for one in touchdowns}
+    if len(known) > 1:
         bodies = " and ".join(sorted({one.body for one in touchdowns}))
-        raise InputError(f"{bodies} have frictions or restitutions of their own; calibrate with a scene for each")
-    given = Coefficients(scenes[0].friction, scenes[0].restitution)
-    blocks = blocks_of(records)
-    search = Search(touchdowns, blocks, given, seed, tell)
-
-    rough = search.table()
-    start = rough.grid.at(search.best(rough))
-    inertia = Estimate(1.0, 1.0, None, None, known=False)
-    inertias: tuple[tuple[float, float], ...] = ()
-    if len({scene.inertia for scene in scenes}) == 1:
-        profile = Profile(search, start)
-        inertia, inertias = profile.estimate(), profile.points
-        start = profile.at(inertia.value)
-    # Friction also acts before the touchdown, since the last sample.
-    search = search.approached(start)
-    coarse = search.table(inertia=inertia.value)
-    table = search.zoomed(coarse)
-    friction, restitution = search.estimate(table, 0), search.estimate(table, 1)
-    if not friction.known:
-        table = search.zoomed(search.table(np.array([friction.value]), inertia=inertia.value))
-        restitution = search.estimate(table, 1)
-    if not restitution.known:
-        table = search.table(table.nodes.friction, np.array([restitution.value]), inertia.value)
+        raise InputError(
+            f"{bodies} have frictions, restitutions or merge times of their own; calibrate with a scene for each"
+        )
+    given = Coefficients(*known.pop())
+    wanted = [*FITTED, *asked]
+    fit = Fit(touchdowns, blocks_of(records), given, [name for name in wanted if name in RANGES], seed, tell)
+    given_errors = lengths(fit.solver.misses(given))
+    fit.search(fit.rough(given))
+    profiles = {name: fit.profile(name) for name in wanted if name in PROFILES}
+    estimates = fit.estimates()
+    unknown = {name: one.value for name, one in estimates.items() if not one.known}
+    if unknown:
+        # Those that are told are fitted once more, with the others as they stay.
+        fit.free &= ~np.isin(fit.names, list(unknown))
+        fit.search(fit.best._replace(**unknown))
+        estimates |= {name: one for name, one in fit.estimates().items() if name not in unknown}
     return Calibration(
         touchdowns=touchdowns,
-        blocks=blocks,
-        friction=friction,
-        restitution=restitution,
-        inertia=inertia,
-        given_errors=np.hypot(*Solver(touchdowns).misses(given).T),
-        held_out=np.hypot(*search.held_out(table).T),
-        map=(coarse.grid, coarse.losses().reshape(coarse.grid.shape)),
-        inertias=inertias,
-        left_out=number - len(touchdowns),
+        blocks=fit.blocks,
+        estimates={name: (estimates | profiles)[name] for name in wanted},
+        fitted=fit.best,
+        given=given_errors,
+        held_out=fit.held_out(),
+        simple=fit.solver.simple_errors(),
+        map=fit.map(given),
     )
 
 
-def straight(records: Sequence[Sequence[ScoredTouchdown]]) -> list[list[ScoredTouchdown]]:
-    """The touchdowns after which nothing else happens while they are measured: their twists change in a straight line.
+class Fit:
+    """The search for the coefficients `names`; `best` are the best so far, of which those change that are `free`."""
 
-    Noise bends all of them, another impact one of them.
-    """
-    bends = [one.bend for record in records for one in record if one.bend < inf]
-    limit = max(BENT, 3.0 * float(np.median(bends))) if bends else BENT
-    return [[one for one in record if one.bend <= limit] for record in records]
+    def __init__(
+        self,
+        touchdowns: Sequence[ScoredTouchdown],
+        blocks: Blocks,
+        given: Coefficients,
+        names: list[str],
+        seed: int,
+        tell: Callable[[int], None],
+    ) -> None:
+        self.solver, self.blocks, self.names, self.best = Solver(touchdowns), blocks, names, given
+        self.free: NDArray[np.bool_] = np.ones(len(names), bool)
+        self._given, self._seed, self._tell, self._done = given, seed, tell, 0
+        self._missed = self._slopes = np.zeros(0)
 
+    def rough(self, given: Coefficients) -> Coefficients:
+        """The best friction and restitution of a coarse grid, by some of the touchdowns."""
+        grid = [given._replace(friction=one, restitution=other) for one, other in product(*COARSE)]
+        some = Solver(self.solver.touchdowns[:: 1 + len(self.blocks) // _SOME])
+        return min((given, *grid), key=lambda one: float(lengths(some.misses(one)).mean()))
 
-class _Fit(NamedTuple):
-    """The least mean error at one factor: the coefficients there, and the errors summed in blocks."""
+    def search(self, start: Coefficients, steps: int = _STEPS) -> None:
+        """Find the best coefficients from a start; with few steps, by slopes that are not exact."""
+        self.best = start
+        exact, every = steps > _FEW, np.ones(len(self.blocks))
+        begun = self._missed, self._slopes = self.linear(self._numbers(start), exact)
+        if self.free.any():
+            found = least_lengths(lambda x: self.linear(x, exact), every, self.free, self._numbers(start), steps)
+            self.best = self._coefficients(found)
+            self._missed, self._slopes = self.linear(self._numbers(self.best), exact)
+        if lengths(begun[0]).mean() < lengths(self._missed).mean():
+            # It has gone over a ridge.
+            self.best, (self._missed, self._slopes) = start, begun
 
-    coefficients: Coefficients
-    errors: NDArray[np.float64]
+    def profile(self, name: str) -> Estimate:
+        """What the touchdowns tell of a coefficient of `PROFILES`; the others become the best with its value.
 
-    @property
-    def factor(self) -> float:
-        return self.coefficients.inertia
+        Its interval has the values that do not surely predict worse than the best one. A value in it stays as given;
+        else it is the best one, of merge times the shortest: longer ones make one impact of two.
+        """
+        given, start, (values, wide) = getattr(self._given, name), self.best, PROFILES[name]
+        if given == 0.0:
+            return Estimate(given, given, None, None, known=False)
+        fits: list[tuple[float, Coefficients, Reals]] = []
+        for value in sorted({given, *values}):
+            self.search(start._replace(**{name: value}), _FEW)
+            fits.append((value, self.best, lengths(self._missed)))
+        place = int(np.argmin([errors.mean() for *_, errors in fits]))
+        alike = [not self._surely_more(errors - fits[place][2]) for *_, errors in fits]
+        first = place - next((k for k, one in enumerate(alike[place::-1]) if not one), place + 1) + 1
+        last = place + next((k for k, one in enumerate(alike[place:]) if not one), len(fits) - place) - 1
+        # Between the values it may be anywhere.
+        low = (fits[first - 1][0] * fits[first][0]) ** 0.5 if first else None
+        high = (fits[last][0] * fits[last + 1][0]) ** 0.5 if last < len(fits) - 1 else None
+        known = low is not None and high is not None and high <= wide * low
+        value = given
+        if known and not (low or 0.0) <= given <= (high or inf):
+            value = fits[first if name == "merge" else place][0]
+        self.search(next(best for one, best, _ in fits if one == value))
+        return Estimate(given, value, low, high, known)
 
+    def linear(self, numbers: Reals, exact: bool = True) -> tuple[Reals, Reals]:
+        """By what predictions miss the measured twists (n, 6), and their slopes (n, 6, names), exact or those of the
+        impacts alone; beyond the ends of the ranges both go on in straight lines.
+        """
+        at = self._coefficients(numbers)
+        missed, slopes = self.solver.misses(at), np.zeros((len(self.blocks), 6, len(self.names)))
+        self._said()
+        for k, name in enumerate(self.names):
+            value, (_, most, step, _) = getattr(at, name), RANGES[name]
+            if self.free[k]:
+                step = step if value + step <= most else -step
+                beside = at._replace(**{name: value + step})
+                slopes[:, :, k] = ((self.solver.misses if exact else self.solver.near)(beside) - missed) / step
+                self._said()
+        return missed + slopes @ (numbers - self._numbers(at)), slopes
 
-class Profile:
-    """The best friction and restitution at several factors on the inertia; the search begins at `start`."""
+    def estimates(self) -> dict[str, Estimate]:
+        """What the touchdowns tell of each coefficient, near the best ones."""
+        best = self._numbers(self.best)
+        draws = np.array([self._refitted(weights, best) for weights in resamples(self.blocks, self._seed)])
+        ends = np.quantile(draws, (0.5 - 0.5 * LEVEL, 0.5 + 0.5 * LEVEL), axis=0).T
+        found = {}
+        for k, (name, (low, high)) in enumerate(zip(self.names, ends.tolist(), strict=True)):
+            least, most, _, wide = RANGES[name]
+            others = self.free & (np.arange(len(self.names)) != k)
+            rows = self._slopes.reshape(-1, len(self.names))
+            own = rows[:, k] - rows[:, others] @ np.linalg.lstsq(rows[:, others], rows[:, k], rcond=1e-10)[0]
+            alike = ALIKE / max(float(lengths(own.reshape(-1, 6)).mean()), 1e-9)
+            low, high = max(least, low - alike), min(most, high + alike)
+            given, value = getattr(self._given, name), getattr(self.best, name)
+            known = high - low <= wide and not (name == "friction" and self._end(name, most) == most)
+            if not known:
+                # Far from the best value the slopes there tell nothing.
+                low, high = self._end(name, least), self._end(name, most)
+                known = high - low <= wide
+            if not known:
+                value = min(max(given, low), high)
+            found[name] = Estimate(given, value, low, high if known or high < most else None, known)
+        return found
 
-    def __init__(self, search: Search, start: Coefficients) -> None:
-        self._search = search
-        self._fits = [self._fit(start, 1.0)]
-        for factor in sorted(FACTORS, key=lambda factor: max(factor, 1.0 / factor)):
-            if factor != 1.0:
-                self._add(factor)
+    def held_out(self) -> Reals:
+        """The error of each touchdown with what is best for the blocks of the other folds (n,)."""
+        number = int(self.blocks.max()) + 1
+        folds = np.random.default_rng(self._seed).permutation(number) % min(FOLDS, number)
+        best, errors = self._numbers(self.best), np.empty(len(self.blocks))
+        for fold in range(int(folds.max()) + 1):
+            out = folds[self.blocks] == fold
+            others = self._coefficients(self._refitted(1.0 - out, best))
+            some = Solver([one for one, left in zip(self.solver.touchdowns, out, strict=True) if left])
+            errors[out] = lengths(some.misses(others))
+        return errors
 
-    @property
-    def points(self) -> tuple[tuple[float, float], ...]:
-        """Each factor with its least mean error."""
-        count = self._search.number
-        return tuple((fit.factor, float(fit.errors.sum()) / count) for fit in self._fits)
+    def map(self, given: Coefficients) -> tuple[Reals, Reals, Reals]:
+        """Values of friction and restitution about the best and the given ones, and the mean errors there."""
+        most = [min(max(2.0 * one, 1.2 * other, 0.1), 1.0) for one, other in zip(self.best[:2], given[:2], strict=True)]
+        sides = [np.linspace(0.0, end, _MAP) for end in most]
+        grid = [self.best._replace(friction=float(one), restitution=float(other)) for one, other in product(*sides)]
+        means = np.array([self._near(one).mean() for one in grid])
+        return sides[0], sides[1], means.reshape(_MAP, _MAP)
 
-    def at(self, factor: float) -> Coefficients:
-        """The best coefficients with one of the factors."""
-        return next(fit.coefficients for fit in self._fits if fit.factor == factor)
+    def _near(self, coefficients: Coefficients) -> Reals:
+        self._said()
+        return lengths(self.solver.near(coefficients))
 
-    def estimate(self) -> Estimate:
-        """What the touchdowns tell of the inertia; one within its interval stays as given."""
-        for _ in range(_HALVINGS):
-            edges = self._edges()
-            if len(edges) == 2:
-                place = [fit.factor for fit in self._fits].index(self._best.factor)
-                edges += pairwise(self._fits[place - 1 : place + 2])
-            for factor in sorted({(one.factor * other.factor) ** 0.5 for one, other in edges}):
-                self._add(factor)
-        ends = self._edges()
-        below = next((one.factor for one, other in ends if self._alike(other)), None)
-        above = next((other.factor for one, other in ends if self._alike(one)), None)
-        known = below is not None and above is not None and above <= KNOWN * below
-        value = 1.0
-        if known and not (below or 0.0) <= 1.0 <= (above or 0.0):
-            value = self._best.factor
-        return Estimate(1.0, value, below, above, known)
-
-    @property
-    def _best(self) -> _Fit:
-        return min(self._fits, key=lambda fit: float(fit.errors.sum()))
-
-    def _edges(self) -> list[tuple[_Fit, _Fit]]:
-        """The neighbours of which one predicts as well as the best and the other worse: the outermost of each side."""
-        alike = [self._alike(fit) for fit in self._fits]
-        pairs = list(zip(pairwise(self._fits), pairwise(alike), strict=True))
-        rising = [] if alike[0] else [pair for pair, same in pairs if same == (False, True)]
-        falling = [] if alike[-1] else [pair for pair, same in pairs if same == (True, False)]
-        return rising[:1] + falling[-1:]
-
-    def _alike(self, fit: _Fit) -> bool:
-        return not self._search.surely_more(fit.errors - self._best.errors, ALIKE)
-
-    def _add(self, factor: float) -> None:
-        nearest = min(self._fits, key=lambda fit: max(fit.factor / factor, factor / fit.factor))
-        self._fits = sorted([*self._fits, self._fit(nearest.coefficients, factor)], key=lambda fit: fit.factor)
-
-    def _fit(self, start: Coefficients, factor: float) -> _Fit:
-        def loss(point: NDArray[np.float64]) -> float:
-            return float(self._search.block_errors(Coefficients(float(point[0]), float(point[1]), factor)).sum())
-
-        friction, restitution, _ = start
-        step = 0.05 if restitution < 0.5 else -0.05
-        simplex = (friction, restitution), (1.1 * friction + 0.02, restitution), (friction, restitution + step)
-        found = minimize(
-            loss,
-            (friction, restitution),
-            method="Nelder-Mead",
-            bounds=[(axis[0], axis[-1]) for axis in COARSE],
-            options={
-                "initial_simplex": simplex,
-                "xatol": 5e-3,
-                "fatol": 0.1 * ALIKE * self._search.number,
-                "maxfev": 60,
-            },
+    def _refitted(self, weights: Weights, best: Reals) -> Reals:
+        """The best coefficients for other weights of the touchdowns, as far as the slopes tell."""
+        if not self.free.any():
+            return best
+        return least_lengths(
+            lambda x: (self._missed + self._slopes @ (x - best), self._slopes), weights, self.free, best, AGAIN
         )
-        best = Coefficients(float(found.x[0]), float(found.x[1]), factor)
-        return _Fit(best, self._search.block_errors(best))
+
+    def _surely_more(self, more: Reals) -> bool:
+        """Whether errors are more in the mean than others, by differences (n,), whichever blocks are drawn."""
+        means = [float(np.average(more, weights=weights)) for weights in resamples(self.blocks, self._seed)]
+        return float(np.quantile(means, 0.5 - 0.5 * LEVEL)) > ALIKE
+
+    def _end(self, name: str, outside: float) -> float:
+        """How far a coefficient can go from the best one towards an end before it surely predicts worse."""
+        inside, errors = getattr(self.best, name), lengths(self._missed)
+        middle = outside
+        for _ in range(_HALVINGS):
+            if self._surely_more(lengths(self.solver.misses(self.best._replace(**{name: middle}))) - errors):
+                outside = middle
+            else:
+                inside = middle
+            if inside == outside:
+                break
+            middle = 0.5 * (inside + outside)
+        return float(inside)
+
+    def _numbers(self, coefficients: Coefficients) -> Reals:
+        return np.array([getattr(coefficients, name) for name in self.names])
+
+    def _coefficients(self, numbers: Reals) -> Coefficients:
+        pairs = zip(self.names, numbers.tolist(), strict=True)
+        return self.best._replace(**{name: min(max(x, RANGES[name].least), RANGES[name].most) for name, x in pairs})
+
+    def _said(self) -> None:
+        self._done += len(self.blocks)
+        self._tell(self._done)

@@ -8,10 +8,19 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 from ruamel.yaml import YAML
 from ruamel.yaml.nodes import MappingNode
 
-from .search import Estimate, interval
+from .impulses import parts_of
+from .search import interval
 
 if TYPE_CHECKING:
     from .fit import Calibration
+
+PARAMETERS: Final = {
+    "friction": "contact.friction",
+    "restitution": "contact.restitution",
+    "merge": "contact.merge",
+    "inertia": "body.inertia",
+}
+"""Where the fitted coefficients stand in a parameter file."""
 
 _KEY: Final = "ros__parameters"
 
@@ -99,24 +108,18 @@ def _with_new(text: str, name: str, change: NewValues) -> str:
     return f"{text[: spot.at]}{entry}  # {change.remark}\n{indent}{text[spot.at :]}"
 
 
-def estimates_of(calibration: Calibration) -> dict[str, Estimate]:
-    """The estimates by the names of the coefficients."""
-    return {name: getattr(calibration, name) for name in ("friction", "restitution", "inertia")}
-
-
 def changes_of(calibration: Calibration) -> dict[str, NewValues]:
-    """What the fit changes in the parameter file of the scene."""
+    """What the fit changes in the parameter file of the scene, which has a parameter for each of `PARAMETERS`."""
     changes = {}
-    for name, one in estimates_of(calibration).items():
-        if one.value == one.given:
+    for name, one in calibration.estimates.items():
+        if name not in PARAMETERS or one.value == one.given:
             continue
         values: tuple[float, ...] = (one.value,)
         of = ""
         if name == "inertia":
-            (xx, xy, xz), (_, yy, yz), (_, _, zz) = calibration.touchdowns[0].scene.inertia
-            given = (xx,) if xx == yy == zz and not (xy or xz or yz) else (xx, yy, zz, xy, xz, yz)
+            parts = parts_of(calibration.touchdowns[0].scene.inertia)
+            given = parts[:1] if len(set(parts[:3])) == 1 and not any(parts[3:]) else parts
             values, of = tuple(one.value * part for part in given), "factor "
         remark = f"fitted to {len(calibration.touchdowns)} touchdowns; {of}{interval(one)} with 95 %"
-        parameter = "body.inertia" if name == "inertia" else f"contact.{name}"
-        changes[parameter] = NewValues(values, remark, listed=name == "inertia")
+        changes[PARAMETERS[name]] = NewValues(values, remark, listed=name == "inertia")
     return changes

@@ -1,78 +1,133 @@
-"""The impacts of touchdowns, solved again and again with other coefficients, those in their planes all at once."""
+"""The impacts of touchdowns, solved again and again with other coefficients, many at once."""
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Sequence
-from typing import Any, Final, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..mechanics.impact.batch import numbers_of, solve_impacts
-from ..mechanics.types import Contact, Twist, TwoPointBody, Validity
-from .touchdowns import Coefficients, ScoredTouchdown, with_coefficients
+from ..mechanics.impact.spatial import Body, ContactPoints, solve_spatial_impacts
+from ..prediction.planar import hardly
+from ..prediction.skill import SIMPLE
+from ..prediction.spatial import WINDOW
+from .motions import Reals
+from .touchdowns import ScoredTouchdown
 
-ROUGH: Final = Coefficients(1.0, 0.0)
-"""With friction; how much does not matter for whether an impact slips across its plane."""
+
+class Coefficients(NamedTuple):
+    """What is fitted.
+
+    `friction`, `restitution` and the time `merge` (s) of a compression are those of the scene. `inertia` is a factor on
+    the given one. A contact that approaches with v m/s has the restitution `restitution` v^-`exponent`. Corners of a
+    `radius` in m are spheres that touch the faces there: each strikes with its lowest point.
+    """
+
+    friction: float
+    restitution: float
+    merge: float
+    inertia: float = 1.0
+    exponent: float = 0.0
+    radius: float = 0.0
 
 
-class _Batch(NamedTuple):
-    """Impacts that are solved at once: the places of their touchdowns, bodies and twists before as arrays."""
+LATEST = 1e9
+"""s: when the first contact closes of a body that has none."""
 
-    law: str
-    validity: Validity
-    places: list[int]
-    bodies: TwoPointBody
-    before: Twist
+SLOWEST = 1e-3
+"""m/s: contacts that approach more slowly have the restitution at this speed."""
 
 
 class Solver:
     """The twists after some touchdowns with other coefficients, and by what they miss the measured."""
 
     def __init__(self, touchdowns: Sequence[ScoredTouchdown]) -> None:
-        """Sort the touchdowns by the ways in which they are solved."""
-        self._touchdowns = touchdowns
-        kinds: dict[tuple[str, Validity, bool], list[int]] = defaultdict(list)
-        for k, one in enumerate(touchdowns):
-            kinds[one.scene.law, one.scene.validity, one.impact.body.old is None].append(k)
-        self._batches = [
-            _Batch(law, validity, places, *_stacked([touchdowns[k] for k in places]))
-            for (law, validity, _), places in kinds.items()
-        ]
-        self._measured = np.array([(one.measured.vx, one.measured.omega) for one in touchdowns])
-        self._half_distances = np.array([one.half_distance for one in touchdowns])
-        self._speeds = np.array([one.speed for one in touchdowns])
+        """Put what is known of the touchdowns into arrays; bodies of fewer points get some that take no part."""
+        self.touchdowns = touchdowns
+        most = max((len(one.arms) for one in touchdowns), default=0)
 
-    def after(self, coefficients: Coefficients) -> NDArray[np.float64]:
-        """The twists after the impacts, (n, 3)."""
-        after = np.empty((len(self._touchdowns), 3))
-        for law, validity, places, bodies, before in self._batches:
-            after[places] = solve_impacts(with_coefficients(bodies, coefficients), before, law, validity).twist
+        def padded(arrays: Sequence[Reals], fill: float = 0.0) -> Reals:
+            rows = [np.concatenate((one, np.full((most - len(one), *one.shape[1:]), fill))) for one in arrays]
+            return np.array(rows)
+
+        self._arms = padded([one.arms for one in touchdowns])
+        self._normals = padded([one.normals for one in touchdowns])
+        self._corners = padded([one.corners for one in touchdowns])
+        self._gaps = padded([one.gaps for one in touchdowns], np.inf)
+        self._stood = padded([one.stood.astype(float) for one in touchdowns]) > 0.0
+        self._masses = np.array([one.scene.mass for one in touchdowns])
+        self._inertias = np.array([one.inertia for one in touchdowns])
+        self._before = np.array([one.twist for one in touchdowns])
+        self._measured = np.array([one.measured for one in touchdowns])
+        self._scales = np.array([one.scales / one.speed for one in touchdowns])
+        laws = [(one.scene.law, hardly(one.scene)) for one in touchdowns]
+        self._laws = {law: np.array([law == other for other in laws]) for law in laws}
+        self._later = np.zeros_like(self._before)
+
+    def after(self, coefficients: Coefficients) -> Reals:
+        """The twists right after the impacts (n, 6)."""
+        friction, restitution, merge, factor, exponent, radius = coefficients
+        arms = self._arms - radius * (self._corners + self._normals)
+        gaps = self._gaps - radius * (1.0 + np.einsum("nki,nki->nk", self._normals, self._corners))
+        moving = self._before[:, None, :3] + np.cross(self._before[:, None, 3:], arms)
+        speeds = -np.einsum("nki,nki->nk", self._normals, moving)
+        closing = (speeds > 0.0) & ~self._stood & np.isfinite(gaps)
+        due = np.where(closing, gaps / np.where(closing, speeds, 1.0), np.inf)
+        first = np.minimum(due.min(axis=1, keepdims=True), LATEST)
+        strikes = closing & (due - first <= WINDOW * merge)
+        open_gaps = np.where(strikes, np.where(closing, due - first, 0.0) * speeds, 0.0)
+        bounces = np.clip(restitution * np.maximum(speeds, SLOWEST) ** -exponent, 0.0, 1.0)
+        # Those that stood come first, and those that take no part last.
+        order = np.argsort(np.where(self._stood, 0, np.where(strikes, 1, 2)), axis=1, kind="stable")
+        counts = (self._stood | strikes).sum(axis=1)
+        after = self._before.copy()
+        for (law, threshold), of_law in self._laws.items():
+            for count in np.unique(counts[of_law & (counts > 0)]).tolist():
+                some = np.flatnonzero(of_law & (counts == count))
+                rows, which = some[:, None], order[some, :count]
+                contacts = ContactPoints(
+                    positions=arms[rows, which],
+                    friction=friction,
+                    restitution=bounces[rows, which],
+                    normals=self._normals[rows, which],
+                    gaps=open_gaps[rows, which],
+                )
+                bodies = Body(self._masses[some], factor * self._inertias[some])
+                after[some] = solve_spatial_impacts(bodies, contacts, self._before[some], law, merge, threshold).twist
         return after
 
-    def misses(self, coefficients: Coefficients) -> NDArray[np.float64]:
-        """By what the predictions miss the measured (vx, omega s), relative to the speed before: (n, 2)."""
-        misses: NDArray[np.float64] = self.after(coefficients)[:, (0, 2)] - self._measured
-        misses[:, 1] *= self._half_distances
-        misses /= self._speeds[:, None]
-        return misses
+    def misses(self, coefficients: Coefficients) -> Reals:
+        """By what the predictions miss the measured twist, relative to the speed before (n, 6)."""
+        after = self.after(coefficients)
+        later = self.continued(after, coefficients)
+        self._later = later - after
+        return self.of(later)
+
+    def near(self, coefficients: Coefficients) -> Reals:
+        """What `misses` gives if the bodies go on as they did with the last coefficients of `misses`, in less time."""
+        return self.of(self.after(coefficients) + self._later)
+
+    def continued(self, after: Reals, coefficients: Coefficients) -> Reals:
+        """What twists right after the impacts have become where they are measured (n, 6)."""
+        friction, factor = coefficients.friction, coefficients.inertia
+        pairs = zip(self.touchdowns, after, strict=True)
+        return np.array([one.continued(twist, friction, factor) for one, twist in pairs])
+
+    def simple_errors(self) -> dict[str, Reals]:
+        """The errors of simple answers, by what they say; none where a body does not go on as one on points."""
+        scores = [one.score for one in self.touchdowns if one.score is not None]
+        if len(scores) < len(self.touchdowns):
+            return {}
+        errors = np.array([score.simple_errors for score in scores]).T
+        return dict(zip(SIMPLE.values(), errors, strict=True))
+
+    def of(self, twists: Reals) -> Reals:
+        """By what twists miss the measured, relative to the speed before (n, 6)."""
+        missed: Reals = (twists - self._measured) * self._scales
+        return missed
 
 
-def _stacked(touchdowns: Sequence[ScoredTouchdown]) -> tuple[TwoPointBody, Twist]:
-    """Bodies and twists before the impacts, their fields as arrays (n,)."""
-    bodies = [one.impact.body for one in touchdowns]
-    old = [body.old for body in bodies if body.old is not None]
-    mass, inertia = _columns([(body.mass, body.inertia) for body in bodies])
-    before = Twist(*_columns([one.impact.before for one in touchdowns]))
-    return TwoPointBody(mass, inertia, _contact(old) if old else None, _contact([one.new for one in bodies])), before
-
-
-def _contact(contacts: Sequence[Contact]) -> Contact:
-    """Contacts as one whose fields are arrays."""
-    x, y, friction, nx, ny, restitution, ux, uy = _columns([numbers_of(one) for one in contacts])
-    return Contact(x, y, friction, (nx, ny), restitution, (ux, uy))
-
-
-def _columns(rows: Sequence[Sequence[float]]) -> Any:
-    return np.array(rows).T
+def lengths(misses: Reals) -> Reals:
+    """The lengths of rows."""
+    found: Reals = np.linalg.norm(misses, axis=1)
+    return found

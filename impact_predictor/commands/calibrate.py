@@ -1,4 +1,4 @@
-"""`impact-predictor calibrate`: friction, restitution and inertia from the touchdowns of recorded bags."""
+"""`impact-predictor calibrate`: friction, restitution and merge time from the touchdowns of recorded bags."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ M = TypeVar("M", bound="Monitor")
 
 
 @click.command(
-    short_help="Fit friction, restitution and inertia to recorded touchdowns.",
+    short_help="Fit friction, restitution and merge time to recorded touchdowns.",
     epilog=examples(
         "impact-predictor calibrate examples/cube_tosses --params config/cube_tosses.yaml -o fitted.yaml",
-        "impact-predictor calibrate monday.mcap tuesday.mcap --params scene.yaml --figure fit.png",
+        "impact-predictor calibrate monday.mcap tuesday.mcap --params scene.yaml --inertia --figure fit.png",
         "impact-predictor calibrate run.mcap --params scene.yaml --remap odom:=/cube/odom --json",
     ),
 )
@@ -36,6 +36,13 @@ M = TypeVar("M", bound="Monitor")
 @remap_option("Topic of an input, as for replay; may be repeated.")
 @text("-o", "--output", "FILE", "Write the parameter file with the fitted values in it.")
 @text("--figure", "FILE", "Draw the fit into a .png or .svg file.")
+@click.option(
+    "--inertia",
+    is_flag=True,
+    help="Fit a factor on the inertia, too; where single corners strike, identify tells it better.",
+)
+@click.option("--speed-dependent", is_flag=True, help="Fit e(v) = e v^-k, too, with v in m/s; k is told, not written.")
+@click.option("--rounding", is_flag=True, help="Fit the radius of the corners, too; it is told, not written.")
 @seed_option("Which resamples and folds.")
 @json_flag()
 def calibrate(
@@ -44,19 +51,23 @@ def calibrate(
     remap: tuple[str, ...],
     output: str | None,
     figure: str | None,
+    inertia: bool,
+    speed_dependent: bool,
+    rounding: bool,
     seed: int,
     as_json: bool,
 ) -> int:
-    """Fit friction, restitution and inertia to the scored touchdowns of recorded bags, all together.
+    """Fit friction, restitution and merge time to the touchdowns of recorded bags, all together.
 
-    The fit makes the mean relative error of the predicted velocities least. It comes with intervals, and with an error
-    on touchdowns that it was not fitted to. What the touchdowns cannot tell stays as the parameter file gives it. The
+    The fit makes the mean relative error of the predicted twists least. It comes with intervals, and with an error
+    on motions that it was not fitted to. What the touchdowns cannot tell stays as the parameter file gives it. The
     exit status is 3 where only a part of a bag could be read.
     """
     from ..bags.find import bags_of
     from ..bags.replay import remapping
     from ..calibration.fit import calibrate as fit
-    from ..calibration.touchdowns import ObservingMonitor
+    from ..calibration.touchdowns import touchdowns_of
+    from ..prediction.monitor import Monitor
     from ..report.calibration import as_json as fields_of
     from ..report.calibration import unscored
     from ..wording import words
@@ -71,12 +82,15 @@ def calibrate(
 
         named(figure, *PICTURE)
     bags = tuple(bags_of(bags))
-    monitors, results = read_all(bags, scenes, topics, ObservingMonitor)
-    records = [monitor.touchdowns for monitor in monitors]
+    # How sure a prediction is matters to no fit.
+    scenes = {body: scene._replace(samples=0, margins=False) for body, scene in scenes.items()}
+    _, results = read_all(bags, scenes, topics, Monitor)
+    records = [touchdowns_of(result.settled, scenes) for result in results]
+    asked = {"inertia": inertia, "exponent": speed_dependent, "radius": rounding}
     scores = [settled.score for result in results for settled in result.settled]
     try:
         with progress("fit", "impacts") as tell, compiling_is_said():
-            calibration = fit(records, seed, tell)
+            calibration = fit(records, [name for name, wanted in asked.items() if wanted], seed, tell)
     except InputError as error:
         if reasons := unscored(scores):
             counts = ", ".join(f"{count:,} {words(reason)}" for reason, count in reasons.items())
@@ -97,14 +111,14 @@ def calibrate(
     else:
         from rich.console import Console
 
-        from ..report.calibration import estimates_table, sentences
-        from ..report.table import show
+        from ..report.calibration import sentences, tables
+        from ..report.table import say, show
 
         console = Console()
-        show(console, estimates_table(calibration))
-        console.print()
-        for sentence in sentences(calibration, scores):
-            console.print(sentence, markup=False, highlight=False, soft_wrap=True)
+        for table in tables(calibration):
+            show(console, table)
+            console.print()
+        say(console, *sentences(calibration, scores))
         for label, name in (("Scene", output), ("Picture", figure)):
             if name is not None:
                 click.echo(f"{label}: {name}")

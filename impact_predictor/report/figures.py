@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from itertools import chain
+from itertools import chain, cycle
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -22,7 +22,6 @@ from .touchdowns import TouchdownRow, rows_of
 if TYPE_CHECKING:
     from ..bags.replay import Result
     from ..calibration.fit import Calibration
-    from ..calibration.search import Estimate
 
 _BLUE, _VERMILION = PALETTE[:2]
 MOST: Final = 3
@@ -144,25 +143,25 @@ def write_calibration(path: str | os.PathLike[str], calibration: Calibration, na
     """
     with picture(path, 10.5, 5.0) as figure:
         left, right = figure.subplots(1, 2, width_ratios=(1.25, 0.85))
-        given, held_out = (float(np.median(one)) for one in (calibration.given_errors, calibration.held_out))
+        given, held_out = (float(np.median(one)) for one in (calibration.given, calibration.held_out))
         headline(
             figure,
             f"{name}: {len(calibration.touchdowns)} touchdowns. Error in the median: {percent(given)} % with the given "
             f"values, {percent(held_out)} % with values\nfitted to other touchdowns",
         )
         _draw_map(figure, left, calibration)
-        _draw_inertia(right, calibration)
+        _draw_parts(right, calibration)
 
 
 def _draw_map(figure: Figure, axes: Axes, calibration: Calibration) -> None:
     from ..calibration.search import interval  # which needs scipy, as no other picture here does
 
-    grid, losses = calibration.map
-    friction, restitution = calibration.friction, calibration.restitution
-    wide, high = _end(friction), _end(restitution)
-    levels = np.linspace(float(losses.min()), float(np.quantile(losses, 0.25)) + 1e-9, 14)
+    frictions, restitutions, losses = calibration.map
+    friction, restitution = (calibration.estimates[name] for name in ("friction", "restitution"))
+    wide, high = float(frictions[-1]), float(restitutions[-1])
+    levels = np.linspace(float(losses.min()), float(np.quantile(losses, 0.5)) + 1e-9, 14)
     looks: Any = {"levels": levels, "cmap": "cividis_r", "extend": "max", "zorder": 0}
-    drawn = axes.contourf(grid.friction, grid.restitution, losses.T, **looks)
+    drawn = axes.contourf(frictions, restitutions, losses.T, **looks)
     bar = figure.colorbar(drawn, ax=axes, format=PercentFormatter(1.0, decimals=1), pad=0.02)
     bar.set_label("mean relative error (darker is worse)")
     across, upwards = (
@@ -179,26 +178,15 @@ def _draw_map(figure: Figure, axes: Axes, calibration: Calibration) -> None:
     axes.grid(visible=False)
 
 
-def _end(one: Estimate) -> float:
-    """The end of an axis that shows a coefficient."""
-    return min(max(1.5 * one.given, 2.0 * one.value, 1.2 * (one.high or 0.0), 0.1), max(1.0, 1.2 * one.given))
-
-
-def _draw_inertia(axes: Axes, calibration: Calibration) -> None:
-    one = calibration.inertia
-    axes.set_title("Inertia: " + ("told" if one.known else "not told by these touchdowns"))
-    axes.set(xlabel="times the given inertia", ylabel="least mean error with it", xscale="log")
-    if not calibration.inertias:
-        axes.text(0.5, 0.5, "several bodies of different inertia", transform=axes.transAxes, ha="center", color=GREY)
-        return
-    factors, losses = np.array(calibration.inertias).T
-    axes.axvspan(one.low or factors[0], one.high or factors[-1], color=_BLUE, alpha=0.12, label="predict as well")
-    axes.plot(factors, losses, "o-", color=_BLUE, markersize=4)
-    axes.axvline(1.0, color="black", linewidth=1.0, linestyle="--", label="given")
-    if one.value != 1.0:
-        axes.axvline(one.value, color=_VERMILION, linewidth=2.0, label="fitted")
-    axes.set_xticks([1 / 3, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0], ["1/3", "0.5", "0.7", "1", "1.5", "2", "3"])
-    axes.minorticks_off()
-    axes.yaxis.set_major_formatter(PercentFormatter(1.0, decimals=1))
-    axes.set_ylim(0.0, max(0.01, 1.15 * float(losses.max())))
+def _draw_parts(axes: Axes, calibration: Calibration) -> None:
+    """What part of the touchdowns has a smaller error, with the given and the fitted values and by simple answers."""
+    parts = np.arange(1, len(calibration.given) + 1) / len(calibration.given)
+    axes.plot(np.sort(calibration.held_out), parts, color=_VERMILION, linewidth=2.0, label="fitted, held out")
+    axes.plot(np.sort(calibration.given), parts, color="black", label="given values")
+    for (said, errors), color in zip(calibration.simple.items(), cycle((_BLUE, *PALETTE[2:])), strict=False):
+        axes.plot(np.sort(errors), parts, color=color, linestyle="--", label=said)
+    axes.set_title("Part of the touchdowns with less error")
+    axes.set(xlabel="relative error", xlim=(0.0, 2.0 * float(np.quantile(calibration.given, 0.9))), ylim=(0.0, 1.0))
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_formatter(PercentFormatter(1.0, decimals=0))
     axes.legend(loc="lower right", frameon=True)
