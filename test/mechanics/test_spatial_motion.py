@@ -255,6 +255,23 @@ def test_a_point_beside_those_that_stand_strikes_at_once_where_it_is_on_the_supp
     assert found.point in (4, 6)
 
 
+def test_a_point_below_the_support_that_rises_and_falls_back_comes_to_rest_and_the_body_goes_on() -> None:
+    state = SpatialState((0.0, 0.0, 0.045), FLAT, (0.0, 0.0, 0.1), (0.0, 0.5, 0.0))
+    found = fall(state, ALIKE, CUBE, horizon=1.0)
+    assert found.point < 0  # one edge stops rising first, then the other comes to rest on it
+    above = fall(state._replace(angular_velocity=(0.0, 6.0, 0.0)), ALIKE, CUBE, (0, 2), horizon=1.0)
+    assert above.point in (4, 6)
+
+
+def test_a_corner_that_lifts_does_not_strike_as_it_leaves() -> None:
+    pose = (0.0, -math.sin(0.3), 0.0, math.cos(0.3))
+    corner = Rotation.from_quat(pose).apply(CUBE[4])
+    for spin in ((0.0, 11.0, 0.0), (-4.0, 11.0, 0.1), (3.0, -12.0, 2.0)):
+        v = -np.cross(spin, corner) + [0.3, 0.1, 0.0]
+        found = fall(SpatialState((0.0, 0.0, -corner[2]), pose, tuple(v), spin), ALIKE, CUBE, (4,), 0.2)
+        assert found.point != 4 or found.time > 0.05
+
+
 def test_odd_numbers_have_no_touchdown_and_raise_nothing() -> None:
     good = SpatialState((0.0, 0.0, 0.2), FLAT, (0.0, 0.0, -1.0), (1.0, 2.0, 3.0))
     bad = [

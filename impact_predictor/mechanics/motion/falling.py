@@ -29,6 +29,8 @@ _POOR = 4.0
 """Error of a step that is cut, relative to the tolerance, that is too much."""
 _GAP = 1e-8
 """How near to zero a gap is found to close, relative to the size."""
+_LIGHT = 1e-6
+"""Relative to the scale of speeds: a point that approaches more slowly comes to rest, and does not strike."""
 _WILD = 1e6
 """Error of the smallest step, relative to the tolerance, that tells a jam."""
 
@@ -204,6 +206,11 @@ def follow(
             locate(y, model, stance)
             measure(y, k, 0, points, frame, offsets, now)
             margins(y, model, stance, before)
+            for i in range(n):
+                # What lifts does not approach first.
+                rests = abs(now[3 * i]) <= _GAP * size and abs(now[3 * i + 1]) <= _LIGHT * speed
+                if label[i] == OPEN and rests and now[3 * i + 2] > 0.0:
+                    now[3 * i], now[3 * i + 1] = max(now[3 * i], 0.0), max(now[3 * i + 1], 0.0)
             again = False
         left, turn = horizon - time, sqrt(y[10] * y[10] + y[11] * y[11] + y[12] * y[12])
         if left <= 0.0:
@@ -254,7 +261,9 @@ def follow(
                 target = -1
             for i in range(n):
                 if label[i] == OPEN:
-                    if abs(then[3 * i]) <= _GAP * size and then[3 * i + 1] < 0.0:
+                    rate = then[3 * i + 1]
+                    rests = then[3 * i] < 0.0 and abs(rate) <= _LIGHT * speed and now[3 * i + 1] > rate
+                    if (abs(then[3 * i]) <= _GAP * size and rate < 0.0) or rests:
                         reached = i
                         continue
                     s = crossing(now, then, i, h, dip)
@@ -312,16 +321,19 @@ def follow(
         locate(y, model, stance)
         if event < n:
             for _ in range(2):
-                shift = -now[3 * event] / now[3 * event + 1] if now[3 * event + 1] < 0.0 else 0.0
+                shift = 0.0
+                if now[3 * event + 1] < 0.0 and abs(now[3 * event]) <= _GAP * size:
+                    shift = -now[3 * event] / now[3 * event + 1]
                 shift = max(min(max(shift, -1e-3 * h), 1e-3 * h), -time)
                 for i in range(13):
                     y[i] += shift * k[i]
                 time += shift
                 locate(y, model, stance)
                 measure(y, k, 0, points, frame, offsets, now)
-            if now[3 * event + 1] < -ROUNDING * speed:
+            if now[3 * event + 1] < -_LIGHT * speed:
                 normalise(y)
                 return time, event
+            offsets[event] += now[3 * event]
             stand(y, event, model, stance)
         else:
             change(event - n, y, before, model, stance)

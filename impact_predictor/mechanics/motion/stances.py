@@ -15,7 +15,7 @@ _ALIKE = 10.0
 """Factor on these within which the events of several points are one."""
 _CREEPS = 1e-3
 """Relative to the scale of speeds: a slower slip creeps."""
-_VEERS = 3e-5
+_VEERS = 1e-4
 """Error in a step, relative to the scale of speeds, by the direction of a creeping point's friction, which lags."""
 NONE = 1e-8
 """Relative to the scale of speeds: a slower slip is none."""
