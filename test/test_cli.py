@@ -201,7 +201,7 @@ def test_an_impact_without_a_solution_is_no_success(monkeypatch: pytest.MonkeyPa
 def test_replay_prints_tables_and_notes(bag: str) -> None:
     result = run("replay", bag, "--params", SCENE)
     assert result.exit_code == 0
-    assert "touchdowns scored: relative error" in result.stdout
+    assert "touchdowns scored by the whole twist: relative error" in result.stdout
     assert "before touchdown" in result.stdout
     assert "per second, with reading and writing" in result.stdout
     assert result.stderr.startswith("note: ")

@@ -106,7 +106,7 @@ def test_the_demonstration_writes_predictions_and_a_picture_and_prints_what_was_
     demo(["-o", str(tmp_path / "demo"), "--tosses", "3"], standalone_mode=False)
     printed = capsys.readouterr().out
     assert "touchdowns scored" in printed
-    assert "BACK_PIVOT" in printed
+    assert "flight>corner" in printed
     assert topics(tmp_path / "demo/predictions.mcap") == RECORDED
     assert (tmp_path / "demo/touchdowns.png").read_bytes().startswith(b"\x89PNG")
 

@@ -69,7 +69,7 @@ def demo(output: Path, tosses: int | None) -> None:
 
     from ..files import make_folder
     from ..report.figures import write_touchdowns
-    from ..report.replay import lead_time_table, touchdown_table
+    from ..report.replay import lead_time_table, of_each_kind, touchdown_table
     from ..report.summary import Tally
     from ..report.table import show
     from ..resources import find
@@ -80,7 +80,7 @@ def demo(output: Path, tosses: int | None) -> None:
     rows, errors = read_recording(predictions)
     console = Console()
     console.print(f"{tosses} recorded tosses of a cube, played through ROS topics", style="bold")
-    show(console, touchdown_table([row for row in rows if row.scored]))
+    show(console, touchdown_table(of_each_kind(rows)))
     console.print()
     show(console, lead_time_table(errors))
     console.print()

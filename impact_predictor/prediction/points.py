@@ -207,27 +207,28 @@ class PointContacts(Contacts):
         return PointRecord(self.points, gravity, self._recorder) if self.is_spatial else None
 
     def _match(self, recorded: RecordedTouchdown) -> None:
-        """Find the prediction of a touchdown that the record shows: one that waits, or what was told last before it."""
-        waiting = [one for one in self._pending if one.recorded is None and recorded.is_near(one.stamp)]
-        if waiting:
+        """Find what the last sample before a touchdown told of it, which the record shows, and what waits for it."""
+        end = recorded.last_before
+        told = [track for stamp, track in self._told if recorded.frames[1].stamp <= stamp <= end]
+        last = told[-1].until(end) if told else None
+        if last is not None and not recorded.is_near(last.stamp):
+            last = None
+        recorded.is_announced = last is not None
+        near = [one for one in (*self._pending, self._landed) if one is not None and recorded.is_near(one.stamp)]
+        if waiting := [one for one in near if one.recorded is None and one in self._pending]:
             pending = min(waiting, key=lambda one: abs(one.stamp - recorded.stamp))
+            pending.told = last or pending.track.until(end)
         else:
-            told = [track for stamp, track in self._told if recorded.frames[1].stamp <= stamp <= recorded.stamp]
-            track = told[-1].until(recorded.stamp) if told else None
-            if track is None or not recorded.is_near(track.stamp):
-                return
-            recorded.is_announced = True
-            others = [one for one in (*self._pending, self._landed) if one is not None and recorded.is_near(one.stamp)]
-            is_told = told[-1].has_landed or any({*one.track.last.new} & {*track.last.new} for one in others)
-            # What is still ahead may yet land.
-            if is_told or (told[-1] is self._track and not recorded.is_last):
-                return
+            is_ahead = bool(told) and told[-1] is self._track and not recorded.is_last
+            if last is None or told[-1].has_landed or is_ahead or any(one.shares(last) for one in near):
+                return  # what is ahead may still land, and what has landed is scored once
             told[-1].has_landed = True
-            pending = Pending(track, track.stamp, self._record, Leftover.OTHER_POINTS)
+            pending = Pending(last, last.stamp, self._record, Leftover.OTHER_POINTS)
+            pending.told = last
             for frame in recorded.frames[BEFORE : BEFORE + AFTER]:
                 pending.add(*frame)
             self._pending.append(pending)
-        pending.recorded, recorded.is_announced, recorded.is_matched = recorded, True, True
+        pending.recorded, recorded.is_matched = recorded, True
 
     def _has_landed(self, track: Track, posture: Posture) -> bool:
         gaps, rates = posture.gaps, posture.rates

@@ -76,6 +76,11 @@ class RecordedTouchdown:
         return kind_of(self.old, self.new)
 
     @property
+    def last_before(self) -> int:
+        """Stamp in ns up to which a sample was surely before it: its time is not known to less than a frame."""
+        return min(self.stamp, self.frames[2].stamp - 1)
+
+    @property
     def is_complete(self) -> bool:
         """Whether all frames are there that measure it."""
         return len(self.frames) >= BEFORE + AFTER
@@ -153,8 +158,6 @@ class TouchdownRecorder:
     def _look(self, one: Frame, last: Frame, following: Frame, after: Frame) -> None:
         """Find what strikes between the last frame and the following one."""
         tolerance, gaps, then = self._scene.tolerance, last.posture.gaps, following.posture.gaps
-        if min(gaps) > tolerance and min(then) > tolerance:
-            return
         steps = last.stamp - one.stamp, following.stamp - last.stamp, after.stamp - following.stamp
         if max(steps) > UNEVEN * min(steps):
             return
@@ -168,7 +171,7 @@ class TouchdownRecorder:
             away = (after.posture.gaps[i] - then[i]) / to_after
             # At the last frame gravity has added half a frame's gain to the mean rate of the frame before it.
             rest = min(max(gap / (approach + 0.5 * gain), 0.0), step)
-            comes_from_it = then[i] - away * (step - rest) < tolerance
+            comes_from_it = then[i] - away * (step - rest) < tolerance + gain * step
             recently = self._struck.get(i, -1) >= self._frames[0].stamp
             if away + approach > STOPPED * approach and comes_from_it and not recently:
                 self._struck[i] = last.stamp

@@ -193,7 +193,9 @@ class Pending:
         self.track = track
         self.stamp = stamp
         self.recorded: RecordedTouchdown | None = None
-        """What the record shows of it."""
+        """What the record shows of it ..."""
+        self.told: Track | None = None
+        """... and what was predicted until then."""
         self._record, self._leftover = record, leftover
         self._measured: list[tuple[int, Vector3, Vector3]] = []
 
@@ -205,6 +207,10 @@ class Pending:
     def complete(self) -> bool:
         known = self.recorded or self._record is None or self._record.touchdowns.knows(self.stamp)
         return bool(known) and self._is_measured
+
+    def shares(self, track: Track) -> bool:
+        """Whether it has a new point of other predictions."""
+        return not set(self.track.last.new).isdisjoint(track.last.new)
 
     @property
     def _is_measured(self) -> bool:
@@ -248,10 +254,11 @@ class Pending:
         if recorded is None:
             unseen = Leftover.UNSEEN if record.touchdowns.knows(self.stamp) else Leftover.TOO_SHORT
             return leftover | unseen, None
+        if self.told is None:
+            return leftover | Leftover.UNANNOUNCED, None
         if not recorded.is_even:
             return leftover | Leftover.TOO_SHORT, None
-        track = self.track.until(recorded.stamp) or self.track
-        told, stamp, frames = track.last, track.stamp, recorded.frames[BEFORE : BEFORE + 3]
+        told, stamp, frames = self.told.last, self.told.stamp, recorded.frames[BEFORE : BEFORE + 3]
         first, second, third = [(frame.stamp - stamp) / NANOSECONDS for frame in frames]
         center = add(told.position, to_world(axes_of(told.orientation), scene.center_of_mass))
         resting = tuple([contact.point for contact in told.contacts]) or told.old + told.new

@@ -66,6 +66,8 @@ class Leftover(IntFlag):
     """The points that were predicted to strike did not come to the support, others did."""
     UNSEEN = 128
     """The record shows no point that comes to the support then."""
+    UNANNOUNCED = 1024
+    """No sample before it announced it."""
     NOT_ISOLATED = 256
     """Another touchdown is too near for the twist between them to be told."""
     MOVING_CONTACTS = 512

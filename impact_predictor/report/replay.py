@@ -3,25 +3,30 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import partial
 from math import hypot
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from rich.console import Console
 from rich.table import Table
 
+from ..mechanics.types import Flag
 from ..prediction.scene import STATES
 from ..prediction.types import Status
 from ..scenarios.comparison import LEAD_TIMES, Truth, Warned
 from ..stamps import NANOSECONDS
 from ..wording import NONE, counted, duration, fixed, percent, words
+from .skill import skill_tables
 from .summary import SpanErrors, Tally, errors_of, velocity_errors_ahead
 from .table import MOST_ROWS, Column, first_stamp, more, say, show, table_of
 from .touchdowns import TouchdownRow, rows_of
 
 if TYPE_CHECKING:
     from ..bags.replay import Result
+
+MOST_OF_A_KIND: Final = 4
+"""Touchdowns of each kind that are listed unless all are asked for."""
 
 
 def print_replay(console: Console, result: Result, every: bool = False) -> None:
@@ -35,8 +40,11 @@ def print_replay(console: Console, result: Result, every: bool = False) -> None:
     if landings:
         listed = landings if every else landings[:MOST_ROWS]
         _show(console, landings_table(listed), *more(len(landings) - len(listed), "landing"))
-    if listed := others if every else [row for row in others if row.scored][:MOST_ROWS]:
+    if listed := others if every else of_each_kind(others):
         _show(console, touchdown_table(listed), *more(len(others) - len(listed), "touchdown"))
+    for sentence, columns, scores in skill_tables(others, result.recorded):
+        say(console, sentence)
+        _show(console, table_of(columns, scores))
     if any(one.errors.number for one in errors):
         _show(console, lead_time_table(errors))
     say(console, *Tally(rows).sentences())
@@ -55,20 +63,33 @@ def _show(console: Console, table: Table, *remarks: str) -> None:
     say(console, *remarks, "")
 
 
+def of_each_kind(rows: Iterable[TouchdownRow]) -> list[TouchdownRow]:
+    """The first scored touchdowns of each kind."""
+    kinds = Counter[str]()
+    listed = []
+    for row in rows:
+        if row.is_scored and kinds[row.kind] < MOST_OF_A_KIND:
+            kinds[row.kind] += 1
+            listed.append(row)
+    return listed
+
+
 def touchdown_table(rows: Sequence[TouchdownRow]) -> Table:
-    """The touchdowns with the velocities right after them: what was predicted, and below it what was measured."""
+    """The touchdowns with what was predicted of each, and below it what was measured."""
     columns = [
         _when(rows),
         Column("ahead\nfirst\nlast ms", lambda row: f"{_ms(row.ahead)}\n{_ms(row.lead_time)}"),
-        Column("predicted\nmode, below\nmeasured", lambda row: row.mode.name, left=True),
-        Column("vx\nm/s", partial(_velocity, "vx", 3)),
-        Column("vy\nm/s", partial(_velocity, "vy", 3)),
-        Column("omega\nrad/s", partial(_velocity, "omega", 2)),
-        Column("error\n%", lambda row: percent(row.relative_error)),
+        Column("kind,\npredicted\nmode", lambda row: f"{row.kind}\n{row.mode.name}", left=True),
+        Column("speed\nm/s", partial(_velocity, 0)),
+        Column("up\nm/s", partial(_velocity, 1)),
+        Column("turns\nrad/s", partial(_velocity, 2)),
+        Column("old\nlifts", partial(_lift, "lift_old"), optional=True),
+        Column("new\nlifts", partial(_lift, "lift_new"), optional=True),
+        Column("error\n%, in\nplane", lambda row: f"{percent(row.error_6d)}\n{percent(row.error)}"),
         Column("cost\nus", lambda row: fixed(row.cost and 1e6 * row.cost, 0), optional=True),
         Column("notes", _notes, left=True, fold=11, optional=True),
     ]
-    return table_of(columns, rows, lambda row: "" if row.scored else "dim")
+    return table_of(columns, rows, lambda row: "" if row.is_scored else "dim")
 
 
 def _when(rows: Sequence[TouchdownRow]) -> Column:
@@ -84,12 +105,30 @@ def _ms(seconds: float | None, decimals: int = 1, sign: str = "") -> str:
     return fixed(None if seconds is None else 1e3 * seconds, decimals, sign)
 
 
-def _velocity(part: str, decimals: int, row: TouchdownRow) -> str:
-    return "\n".join(fixed(getattr(one, part, None), decimals) for one in (row.predicted_twist, row.measured_twist))
+def _velocity(which: int, row: TouchdownRow) -> str:
+    """Speed of the mass centre, its part along the normal, or the angular speed: predicted and measured."""
+    texts = []
+    for whole, planar in (
+        (row.predicted_twist_6d, row.predicted_twist),
+        (row.measured_twist_6d, row.measured_twist),
+    ):
+        speeds = (hypot(*whole[:3]), whole[2], hypot(*whole[3:])) if whole else None
+        if speeds is None and planar is not None:
+            speeds = hypot(planar.vx, planar.vy), planar.vy, abs(planar.omega)
+        texts.append(fixed(speeds and speeds[which], 3 if which < 2 else 2))
+    return "\n".join(texts)
+
+
+def _lift(key: str, row: TouchdownRow) -> str:
+    lift = getattr(row, key)
+    return NONE if lift is None else "\n".join("yes" if lifts else "no" for lifts in lift[:2])
 
 
 def _notes(row: TouchdownRow) -> str:
-    return ("" if row.scored else "not scored: ") + ", ".join(map(words, row.flags))
+    flags = [flag for flag in row.flags if flag in Flag.__members__]
+    if row.is_scored:
+        return ", ".join(map(words, flags))
+    return f"not scored: {', '.join(map(words, (*row.why_not_scored, *flags)))}"
 
 
 def lead_time_table(errors: Sequence[SpanErrors]) -> Table:
@@ -97,7 +136,7 @@ def lead_time_table(errors: Sequence[SpanErrors]) -> Table:
     columns = [
         Column("before touchdown\nms", lambda one: f"{one.begin * 1e3:.0f} to {one.end * 1e3:.0f}"),
         Column("predictions\n", lambda one: str(one.errors.number)),
-        Column("median error\n%", lambda one: percent(one.errors.p50)),
+        Column("error in the plane:\nmedian %", lambda one: percent(one.errors.p50)),
         Column("90 % below\n%", lambda one: percent(one.errors.p90)),
     ]
     return table_of(columns, errors)
@@ -153,7 +192,7 @@ def bodies_table(result: Result, rows: Sequence[TouchdownRow]) -> Table | None:
         columns += [
             Column(
                 "touchdowns\nscored",
-                lambda body: _of(sum(row.scored for row in mine[body]), len(mine[body])),
+                lambda body: _of(sum(row.is_scored for row in mine[body]), len(mine[body])),
                 fold=10,
             ),
             Column("median\nerror %", lambda body: percent(errors_of(mine[body]).p50)),

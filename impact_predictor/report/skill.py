@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
+from functools import partial
 from math import hypot
+from operator import attrgetter
 from typing import Any, Final, NamedTuple
 
 from ..prediction.recorded import Announced
 from ..prediction.skill import SIMPLE
 from ..prediction.types import KINDS
+from ..wording import fixed, percent
 from .summary import Distribution, spread_of
+from .table import Column
 from .touchdowns import TouchdownRow
 
 ALL: Final = "all"
@@ -71,6 +75,66 @@ class LiftScore(NamedTuple):
         return sum(shares) / 2 if len(shares) == 2 else None
 
 
+def _median(k: int, score: KindScore) -> str:
+    return percent(score.simple[k].p50 if score.simple else None)
+
+
+def _brier(score: float | None, lifted: bool) -> str:
+    return fixed(score, 3) if lifted and score is not None else ""
+
+
+KIND_COLUMNS: Final = (
+    Column("kind", attrgetter("kind"), left=True),
+    Column("touch-\ndowns", lambda one: f"{one.touchdowns:,}"),
+    Column("an-\nnounced\n%", lambda one: percent(one.announced / one.touchdowns if one.touchdowns else None)),
+    Column("scored", lambda one: f"{one.errors.number:,}"),
+    Column("error %:\nmedian", lambda one: percent(one.errors.p50)),
+    Column("\n90 %", lambda one: percent(one.errors.p90)),
+    *[Column(said.replace(" ", "\n"), partial(_median, k)) for k, said in enumerate(SIMPLE.values())],
+    Column("error of\nthe time\nms", lambda one: fixed(one.times.p50 and 1e3 * one.times.p50, 1)),
+)
+"""Medians of simple answers stand beside those of the predictions."""
+COMPONENT_COLUMNS: Final = (
+    Column("component", attrgetter("name"), left=True),
+    Column("unit", lambda one: COMPONENTS[one.name], left=True),
+    Column("bias", lambda one: fixed(one.bias, 3, "+")),
+    Column("slope", lambda one: fixed(one.slope, 2)),
+    Column("R2", lambda one: fixed(one.r2, 2)),
+)
+LIFT_COLUMNS: Final = (
+    Column("contact", lambda one: f"{one[0].name} {'lifted' if one[1] else 'stayed'}", left=True),
+    Column("told\nto lift", lambda one: f"{one[0].counts[one[1], True]:,}"),
+    Column("told\nto stay", lambda one: f"{one[0].counts[one[1], False]:,}"),
+    Column("right %,\nbalanced", lambda one: percent(one[0].balanced) if one[1] else ""),
+    Column("Brier\nscore", lambda one: _brier(one[0].brier, one[1]), optional=True),
+    Column("of the\nbase rate", lambda one: _brier(one[0].base, one[1]), optional=True),
+)
+"""Two rows for a group of contacts: those that lifted, and those that stayed."""
+
+KINDS_SAID: Final = (
+    "The whole twist after the touchdowns that the record shows, by their kind: its relative error, and in the median "
+    "that of simple answers to the same touchdowns."
+)
+COMPONENTS_SAID: Final = (
+    "Its components: the mean of predicted less measured ones, the slope of measured over predicted ones, and the part "
+    "of the variance that is predicted."
+)
+LIFTS_SAID: Final = "Do the contacts lift? They have if their mean gap grows by a tenth of the contact tolerance."
+
+
+def skill_tables(
+    rows: Sequence[TouchdownRow], recorded: Mapping[str, Announced]
+) -> list[tuple[str, Sequence[Column], list[Any]]]:
+    """A sentence, columns and rows of each table about the skill of predictions; none where nothing is scored."""
+    kinds = kind_scores(rows, recorded)
+    if not any(one.errors.number for one in kinds):
+        return []
+    lifts = [(one, lifted) for one in lift_scores(rows) for lifted in (True, False)]
+    tables = (KINDS_SAID, KIND_COLUMNS, kinds), (COMPONENTS_SAID, COMPONENT_COLUMNS, component_scores(rows))
+    lift_columns = [one for one in LIFT_COLUMNS if not one.optional or any(one.cell(lift) for lift in lifts[:1])]
+    return [table for table in (*tables, (LIFTS_SAID, lift_columns, lifts)) if table[2]]
+
+
 def kind_scores(rows: Iterable[TouchdownRow], recorded: Mapping[str, Announced]) -> list[KindScore]:
     """Of each kind that there is, and of all; `recorded` counts the touchdowns that records show, by kind."""
     scored = [row for row in rows if row.error_6d is not None]
@@ -117,6 +181,20 @@ def _turned(twist: Sequence[float], before: Sequence[float]) -> tuple[float, ...
     c, s = (x / length, y / length) if length else (1.0, 0.0)
     vx, vy, vz, wx, wy, wz = twist
     return c * vx + s * vy, c * vy - s * vx, vz, c * wx + s * wy, c * wy - s * wx, wz
+
+
+def pair_of(row: TouchdownRow, component: str) -> tuple[float, float] | None:
+    """What was measured and predicted of a component, in the impact plane where there is no whole twist; None where
+    that has no such component that a record shows.
+    """
+    whole, before = (row.measured_twist_6d, row.predicted_twist_6d), row.before_twist_6d
+    if row.error_6d is not None and whole[0] and whole[1] and before:
+        measured, predicted = (_turned(twist, before)[list(COMPONENTS).index(component)] for twist in whole if twist)
+        return measured, predicted
+    name = {"v along": "vx", "w across": "omega"}.get(component)
+    if name is None or row.measured_twist is None:
+        return None
+    return getattr(row.measured_twist, name), getattr(row.predicted_twist, name)
 
 
 def lift_scores(rows: Iterable[TouchdownRow]) -> list[LiftScore]:

@@ -33,6 +33,7 @@ WHY: Final = {
     "DRIVEN": "the feet are driven: what follows is not the impact alone",
     "OTHER_POINTS": "other points came to the support than was predicted",
     "UNSEEN": "the record shows no point that came to the support then",
+    "UNANNOUNCED": "it was announced only when it had happened",
     "NOT_ISOLATED": "another touchdown was too near",
     "MOVING_CONTACTS": "the contacts move over the body",
 }
@@ -137,11 +138,17 @@ def from_json(entry: Mapping[str, Any] | None) -> Distribution:
     return Distribution(number=entry["count"], most=entry["max"], bins=dict(entry["bins"]), **percentiles)
 
 
+def _errors(spread: Distribution) -> str:
+    if not spread.number:
+        return ""
+    return f": relative error {percent(spread.p50)} % in the median, 90 % below {percent(spread.p90)} %"
+
+
 class Tally:
     """Touchdowns of one bag or of many: how wrong the scored ones are, why others are not, and landings of feet."""
 
     def __init__(self, rows: Iterable[TouchdownRow] = ()) -> None:
-        self._touchdowns = 0
+        self._touchdowns = self._on_points = 0
         self._reasons: Counter[str] = Counter()
         self._feet: set[tuple[str, str]] = set()
         self._landings = 0
@@ -166,8 +173,9 @@ class Tally:
                 }
             else:
                 self._touchdowns += 1
-                self._reasons.update(reasons([row]))
-                numbers = {"relative": row.error}
+                self._on_points += row.is_on_points
+                self._reasons.update(row.why_not_scored)
+                numbers = {"planar": row.error, "whole": row.error_6d}
             for name, number in numbers.items():
                 if number is not None:
                     self._known[name].append(number)
@@ -180,13 +188,15 @@ class Tally:
     def _of_touchdowns(self) -> list[str]:
         if not self._touchdowns:
             return ["No touchdown was predicted."]
-        errors = spread_of(self._known["relative"])
-        said = f"{errors.number:,} of {counted(self._touchdowns, 'touchdown')} scored"
-        if errors.number:
-            said += f": relative error {percent(errors.p50)} % in the median, 90 % below {percent(errors.p90)} %"
+        of, planar = f" of {counted(self._touchdowns, 'touchdown')}", spread_of(self._known["planar"])
+        said = [f"{planar.number:,}{of} scored{_errors(planar)}."]
+        if self._on_points:
+            whole = spread_of(self._known["whole"])
+            said = [f"{whole.number:,}{of} scored by the whole twist{_errors(whole)}."]
+            said += [f"{planar.number:,} scored in the impact plane{_errors(planar)}."] if planar.number else []
         why = [f"  {count:,} {words(reason)}: {WHY[reason]}" for reason, count in self._reasons.most_common()]
         heading = "The samples after the others do not show what the impact left, for one or several reasons each:"
-        return [f"{said}.", *([heading] if why else []), *why]
+        return [*said, *([heading] if why else []), *why]
 
     def _of_landings(self) -> list[str]:
         from ..scenarios.comparison import LEAD_TIMES  # only where feet have landed

@@ -64,7 +64,9 @@ class TouchdownRow(NamedTuple):
     predicted_twist_6d: Annotated[Numbers | None, TouchdownField("twist_6d", message="predicted_6d")] = None
     measured_twist_6d: Annotated[Numbers | None, TouchdownField("twist_6d", message="measured_6d")] = None
     relative_error_6d: Annotated[float | None, TouchdownField("float64", "1")] = None
-    not_scored_6d: Annotated[tuple[str, ...], TouchdownField("list<string>", message="leftover_6d")] = ()
+    not_scored_6d: Annotated[tuple[str, ...], TouchdownField("list<string>", message="leftover_6d")] = (
+        "MOVING_CONTACTS",
+    )
     simple_errors_6d: Annotated[Numbers | None, TouchdownField("simple", "1")] = None
     lift_old: Annotated[tuple[Any, ...] | None, TouchdownField("lift", message="lift.old")] = None
     lift_new: Annotated[tuple[Any, ...] | None, TouchdownField("lift", message="lift.new")] = None
@@ -92,6 +94,28 @@ class TouchdownRow(NamedTuple):
     def error_6d(self) -> float | None:
         """The relative error of what is scored as a whole twist."""
         return None if self.not_scored_6d else self.relative_error_6d
+
+    @property
+    def best_error(self) -> float | None:
+        """That of the whole twist, or else in the impact plane; None where neither is scored."""
+        return self.error if self.error_6d is None else self.error_6d
+
+    @property
+    def is_scored(self) -> bool:
+        """Whether the record tells how right it was."""
+        return self.best_error is not None
+
+    @property
+    def is_on_points(self) -> bool:
+        """Whether it is one that may be scored as a whole twist."""
+        return not self.foot and "MOVING_CONTACTS" not in self.not_scored_6d
+
+    @property
+    def why_not_scored(self) -> tuple[str, ...]:
+        """Why it is not scored, as a whole twist where it may be; the names of `Leftover`."""
+        if self.is_on_points:
+            return self.not_scored_6d
+        return () if self.scored else tuple([flag for flag in self.flags if flag in Leftover.__members__])
 
     @property
     def ahead(self) -> float | None:
@@ -235,5 +259,6 @@ def row_of_message(body: str, values: Mapping[str, str], cost: float | None = No
     for key in ("old", "new"):
         entry[key] = [*map(int, values[key].split())]
     entry["flags"] = [flag for key in ("leftover", "flags") for flag in values[key].split("|") if flag != "NONE"]
-    entry["not_scored_6d"] = [flag for flag in values["leftover_6d"].split("|") if flag != "NONE"]
+    whole = values.get("leftover_6d", "MOVING_CONTACTS")
+    entry["not_scored_6d"] = [flag for flag in whole.split("|") if flag != "NONE"]
     return row_of_json(entry)._replace(cost=cost)

@@ -159,12 +159,12 @@ def test_points_stand_where_measured_and_predicted_velocities_say() -> None:
     along, turning = list(read([TOSSES]).figures.values())[1:3]
     assert traces(along)["PIVOT (1)"]["x"] == [0.4]
     assert traces(along)["PIVOT (1)"]["y"] == [0.5]
-    assert [(trace["x"], trace["y"]) for trace in turning["data"][1:]] == [([-0.2], [-0.2]), ([-0.1], [-0.2])]
+    assert [(trace["x"], trace["y"]) for trace in turning["data"][1:]] == [([-2.0], [-2.0]), ([-1.0], [-2.0])]
     assert traces(along)["PIVOT (1)"]["hovertext"] == ["tosses.mcap, 0.100 s, cube<br>relative error 10.0 %"]
     # The graphics card draws many points, and a browser draws few without one.
     many = read([answer(touchdowns=[touchdown(k) for k in range(MANY + 1)])])
     assert along["data"][-1]["type"] == "scatter"
-    for title in ("run.mcap", "Along the support: vx"):
+    for title in ("run.mcap", "Along the support"):
         trace = many.figures[title]["data"][-1]
         assert (trace["type"], len(trace["x"])) == ("scattergl", MANY + 1)
 
@@ -181,18 +181,50 @@ def test_modes_are_confused_as_the_truth_tells_and_what_no_record_shows_does_not
     assert "The mode is right in 1 of 2." in page.text
 
 
-def test_without_a_truth_the_page_says_that_modes_cannot_be_told() -> None:
-    page = read([TOSSES])
-    assert "does not tell in which modes" in page.text
-    assert page.tables["modes"][0][1:] == [
-        ["STOP both contacts hold, neither slips: the body stops", "1", "1", "20.0 %", "20.0 %"],
-        ["PIVOT the old contact lifts, the new one sticks", "2", "1", "10.0 %", "10.0 %"],
+WHOLE = touchdown(
+    200,
+    scored=False,
+    relative_error=None,
+    kind="flight>corner",
+    before_twist_6d=[0.0, 2.0, -1.0, 0.0, 0.0, 0.0],
+    predicted_twist_6d=[0.1, 1.5, 0.4, -3.0, 0.0, 0.0],
+    measured_twist_6d=[0.2, 1.25, 0.5, -4.0, 0.0, 0.0],
+    relative_error_6d=0.125,
+    not_scored_6d=[],
+    simple_errors_6d=[0.9, 0.8, 0.3, 0.4, 0.2],
+    lift_old=[True, False, None],
+    time_error=0.001,
+)
+
+
+def test_whole_twists_are_drawn_along_the_velocity_before_and_have_tables_beside_simple_answers() -> None:
+    kinds = {"flight>corner": {"touchdowns": 3, "announced": 2}, "all": {"touchdowns": 3, "announced": 2}}
+    page = read([answer(touchdowns=[WHOLE], kinds=kinds)] * 2)
+    figures = page.figures
+    along, up, turning = (traces(figures[name])["PIVOT (2)"] for name in ("Along the support", "Upwards", "Turning"))
+    assert [(one["x"][0], one["y"][0]) for one in (along, up, turning)] == [(1.25, 1.5), (0.5, 0.4), (4.0, 3.0)]
+    skill, lifts = page.tables["skill"]
+    assert skill[1] == [
+        "flight>corner",
+        "6",
+        "66.7",
+        "2",
+        "12.5",
+        "12.5",
+        "90.0",
+        "80.0",
+        "30.0",
+        "40.0",
+        "20.0",
+        "1.0",
     ]
-    assert read([WALK]).tables["modes"][0][1][1:] == ["3", "0", "–", "–"]
+    assert lifts[1:] == [["old lifted", "0", "0", "-"], ["old stayed", "2", "0", ""]]
+    assert "modes" not in page.tables
+    assert "skill" not in read([WALK]).tables
 
 
 def test_errors_ahead_and_costs_are_told_in_numbers(page: PageReader) -> None:
-    title = "Velocities after the impact, against measured ones"
+    title = "Velocities in the impact plane, against measured ones"
     ahead = traces(read([TRUE]).figures[title])
     assert (ahead["median"]["x"], ahead["median"]["y"]) == ([5.0], [pytest.approx(20.0)])
     assert ahead["90 % below"]["y"] == [pytest.approx(28.0)]

@@ -14,8 +14,10 @@ from impact_predictor.bags.replay import Result, Settled
 from impact_predictor.mechanics.types import Flag, Twist
 from impact_predictor.prediction.types import Status
 from impact_predictor.report.replay import (
+    MOST_OF_A_KIND,
     landings_table,
     lead_time_table,
+    of_each_kind,
     print_replay,
     touchdown_table,
     truth_sentences,
@@ -153,7 +155,16 @@ ROW = row_of("cube", SCORE, cost=98e-6)._replace(
 LARGE = ROW._replace(predicted_twist=Twist(-123456.789, 0.0, -1234567.89))
 UNSCORED = ROW._replace(scored=False, flags=("OUT_OF_PLANE", "ONE_CORNER_FIRST"), cost=None)
 UNMEASURED = ROW._replace(measured_twist=None, relative_error=None, scored=False, flags=("TOO_SHORT",))
-NUMBERS = {"-1.234", "0.571", "-11.52", "-1.199", "0.512", "-10.25", "12.3", "98"}
+NUMBERS = {"1.360", "0.571", "11.52", "1.304", "0.512", "10.25", "12.3", "98"}
+"""Speeds, their upward parts and angular speeds among them."""
+WHOLE = ROW._replace(
+    predicted_twist_6d=(3.0, 4.0, 0.0, 0.0, 0.0, -2.0),
+    measured_twist_6d=(0.0, 0.0, -0.75, 1.0, 2.0, 2.0),
+    relative_error_6d=0.375,
+    not_scored_6d=(),
+    before_twist_6d=(1.0,) * 6,
+    lift_old=(True, False, None),
+)
 
 
 @pytest.mark.parametrize("width", [40, 80, 100, 120])
@@ -162,7 +173,7 @@ def test_no_number_is_cut_off_at_any_width_and_from_80_columns_on_the_lines_fit(
     assert set(text.split()) >= {*NUMBERS, "5690.729", "12.3", "PIVOT_SLIDE"}
     assert "…" not in text
     assert max(map(len, text.splitlines())) <= max(width, 80)
-    assert set(shown(touchdown_table([LARGE]), width).split()) >= {"-123456.789", "-1234567.89"}
+    assert set(shown(touchdown_table([LARGE]), width).split()) >= {"123456.789", "1234567.89"}
 
 
 def test_the_lines_of_several_bodies_fit_too() -> None:
@@ -184,6 +195,19 @@ def test_costs_notes_and_bodies_have_columns_only_where_they_are_known() -> None
     assert "not scored: out of plane, one corner first" in shown(touchdown_table([UNSCORED]), 160)
     text = shown(touchdown_table([ROW._replace(cost=None, flags=())]), 120)
     assert not any(word in text for word in ("cost", "notes", "cube"))
+
+
+def test_a_whole_twist_stands_with_its_lifts_before_the_error_in_the_plane() -> None:
+    cells = [re.split(r"\s{2,}", line.strip()) for line in shown(touchdown_table([WHOLE]), 120).splitlines()[-2:]]
+    assert cells[0][2:7] == ["edge>face", "5.000", "0.000", "2.00", "yes"]
+    assert cells[1][1:6] == ["PIVOT_SLIDE", "0.750", "-0.750", "3.00", "no"]
+    assert "37.5" in cells[0]
+    assert "25.0" in cells[1]
+
+
+def test_some_touchdowns_of_each_kind_are_listed_and_the_skill_of_all_is_told() -> None:
+    corners = [WHOLE._replace(kind="flight>corner", stamp=k) for k in range(MOST_OF_A_KIND + 2)]
+    assert of_each_kind([*corners, WHOLE, UNSCORED]) == [*corners[:MOST_OF_A_KIND], WHOLE]
 
 
 def test_lead_times_without_predictions_have_no_error() -> None:

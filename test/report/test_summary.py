@@ -79,6 +79,14 @@ def test_touchdowns_together_count_the_scored_and_explain_the_others() -> None:
     assert Tally().sentences() == ["No touchdown was predicted."]
     assert Tally([UNMEASURED]).sentences()[0] == "0 of 1 touchdown scored."
     assert Tally([SCORED]).sentences() == [f"1 of 1 touchdown {scored}"]
+    whole = SCORED._replace(relative_error_6d=0.125, not_scored_6d=())
+    near = UNSCORED._replace(not_scored_6d=("NOT_ISOLATED",))
+    assert Tally([whole, near]).sentences() == [
+        "1 of 2 touchdowns scored by the whole twist: relative error 12.5 % in the median, 90 % below 12.5 %.",
+        "1 scored in the impact plane: relative error 25.0 % in the median, 90 % below 25.0 %.",
+        "The samples after the others do not show what the impact left, for one or several reasons each:",
+        "  1 not isolated: another touchdown was too near",
+    ]
 
 
 def test_landings_together_say_how_early_they_were_predicted_and_what_their_impacts_do() -> None:

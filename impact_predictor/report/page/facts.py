@@ -9,9 +9,11 @@ from pathlib import Path
 from typing import Any, Final
 
 from ...bags.find import told_apart
-from ...prediction.types import Leftover
+from ...prediction.recorded import Announced
 from ...wording import counted
+from ..skill import ALL
 from ..summary import WHY, Distribution, SpanErrors, from_json, quantile, spread_of, together
+from ..touchdowns import TouchdownRow, row_of_json
 from . import Headline, part_words, time_words
 
 BagAnswer = Mapping[str, Any]
@@ -39,22 +41,31 @@ class ReplayFacts:
         self.answers = answers
         self.names = [str(name) for name in told_apart([Path(answer["bag"]) for answer in answers])]
         self.touchdowns, self.scored, self.true = list[BagAnswer](), list[BagAnswer](), list[BagAnswer]()
+        self.rows, self.scored_rows, self.recorded = list[TouchdownRow](), list[TouchdownRow](), dict[str, Announced]()
         self.truth, errors = Counter[str](), list[float]()
         for answer in answers:
             touchdowns, true = answer.get("touchdowns", ()), answer.get("true_touchdowns", ())
-            scored = [one for one in touchdowns if one["scored"] and one["relative_error"] is not None]
+            rows = [*map(row_of_json, touchdowns)]
+            scored = [(one, row) for one, row in zip(touchdowns, rows, strict=True) if row.is_scored]
             # Against the truth where a bag tells it, else against what was measured.
             known = [one["velocity_error"] for one in true if one["velocity_error"] is not None]
-            errors += known or [one["relative_error"] for one in scored]
+            errors += known or [row.best_error for row in rows if row.best_error is not None]
             self.touchdowns += touchdowns
-            self.scored += scored
+            self.rows += rows
+            self.scored += [one for one, _ in scored]
+            self.scored_rows += [row for _, row in scored]
+            for kind, counts in answer.get("kinds", {}).items():
+                if kind != ALL:
+                    before = self.recorded.get(kind, Announced(0, 0))
+                    self.recorded[kind] = Announced(
+                        before.touchdowns + counts["touchdowns"], before.announced + counts["announced"]
+                    )
             self.true += true
             told = answer.get("truth", {})
             self.truth.update({key: told[key] for key in ("touchdowns", "missed", "false", "unresolved") if told})
         self.velocity_errors = spread_of(errors)
         self.costs = together(from_json(answer.get("cost_us")) for answer in answers)
-        others = (one for one in self.touchdowns if not one["scored"] and "foot" not in one)
-        self.uncompared = Counter(flag for one in others for flag in one["flags"] if flag in Leftover.__members__)
+        self.uncompared = Counter(flag for row in self.rows if not row.foot for flag in row.why_not_scored)
 
     def confusion(self) -> Counter[tuple[str, str]]:
         """How often which true mode was predicted as which, of all touchdowns that their record can show.
@@ -105,8 +116,9 @@ class ReplayFacts:
             if one.begin >= LEAST_LEAD_TIME:
                 late, span = one.errors, f"{1e3 * one.begin:.0f} to {1e3 * one.end:.0f} ms ahead"
                 break
-        known = [one for one in self.touchdowns if one["scored"] or one.get("time_error") is not None]
-        times = [one["announced_lead_time"] for one in known]
+        times = [
+            row.announced_lead_time for row in self.rows if row.is_scored or (row.foot and row.time_error is not None)
+        ]
         first, early, latest = (time_words(quantile(times, part) if times else None) for part in (0.5, 0.1, 0.0))
         half, most = (time_words(one and 1e-6 * one) for one in (cost.p50, cost.p99))
         return [

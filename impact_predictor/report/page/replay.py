@@ -15,7 +15,8 @@ from ...prediction.types import Status
 from ...stamps import NANOSECONDS
 from ...wording import counted, words
 from ..modes import MODES, PALETTE
-from ..summary import PER_DECADE, WHY, quantile, without_bag
+from ..skill import pair_of, skill_tables
+from ..summary import PER_DECADE, WHY, without_bag
 from . import GREY, Cell, Chart, PageTable, Section, marks, page, part_words, script_inside, time_words, write_html
 from .facts import NOTHING, BagAnswer, ReplayFacts
 from .timeline import FALSE, MANY, MISSED, ORDER, look_of, timeline
@@ -31,16 +32,17 @@ READING: Final = (
     "mark for more."
 )
 AGAINST: Final = (
-    "Each point is a touchdown: to the right the velocity that the samples 2 to 4 after it show, upwards the one that "
-    "was predicted last before it. On the line both are the same. The relative error of a touchdown is the distance of "
-    "both its points from the line, over its velocities before the impact. By the time of those samples gravity, "
-    "further impacts and a moving support have changed what the impact left."
+    "Each point is a touchdown: to the right what the record shows after it, upwards what was predicted for the same "
+    "time. On the line both are the same. Of a body on points it is the whole twist between the second and the third "
+    "frame after it, along the velocity before, along z, and about the horizontal axis across that velocity; of others "
+    "the twist in the impact plane, as the samples 2 to 4 after it show it."
 )
-UNTOLD: Final = (
-    "The record does not tell in which modes the bodies truly went on, and its velocities do not either: whether a "
-    "contact lifts shows in the vertical velocity, in which an impact is lost among what gravity and other contacts "
-    "do before the next samples. What can be checked is how well the velocities agree that each mode comes with."
+COMPARED: Final = (
+    ("Along the support", "m/s", "v along"),
+    ("Upwards", "m/s", "v up"),
+    ("Turning", "rad/s", "w across"),
 )
+"""Titles, units and components of the charts."""
 COST: Final = (
     "The time from a sample to its prediction, as this machine took it: without reading the bag and writing "
     "messages, which a node does besides. A sample that shows no touchdown ahead takes the least."
@@ -100,6 +102,7 @@ def page_of_replay(
         bags(facts, each, order, links or {place: f"#bag-{place + 1}" for place in drawn}),
         Section("when", "When the touchdowns came", [READING], charts),
         velocities(facts, each),
+        skill(facts),
         modes(facts),
         lead_times(facts),
         cost(facts),
@@ -133,35 +136,47 @@ def bags(facts: ReplayFacts, each: Sequence[ReplayFacts], order: Sequence[int], 
 def velocities(facts: ReplayFacts, each: Sequence[ReplayFacts]) -> Section:
     """Predicted against measured velocities (m/s) right after the touchdowns."""
     kind, charts = "scattergl" if len(facts.scored) > MANY else "scatter", []
-    hover = "measured %{x:.3f}, predicted %{y:.3f} m/s<br>%{hovertext}<extra></extra>"
-    layout = {"height": 460, "xaxis": {"title": "measured, m/s"}}
-    layout["yaxis"] = {"title": "predicted, m/s", "scaleanchor": "x"}
-    for title, part in (("Along the support: vx", 0), ("From turning: ω times half the contacts' distance", 2)):
+    for title, unit, part in COMPARED:
         points: dict[str, list[tuple[float, float, str]]] = {}
         for name, of in zip(facts.names, each, strict=True):
-            for one in of.scored:
-                arm = one["half_distance"] if part == 2 else 1.0
-                measured, predicted = (round(arm * one[key][part], 6) for key in ("measured_twist", "predicted_twist"))
-                said = f"{name}, {(one['stamp'] - of.answers[0]['begin']) / NANOSECONDS:.3f} s, {one['body']}"
-                said += f"\nrelative error {part_words(one['relative_error'])}"
-                points.setdefault(one["mode"], []).append((measured, predicted, said))
+            for one, row in zip(of.scored, of.scored_rows, strict=True):
+                if (pair := pair_of(row, part)) is None:
+                    continue
+                said = f"{name}, {(row.stamp - of.answers[0]['begin']) / NANOSECONDS:.3f} s, {row.body}"
+                said += f"\nrelative error {part_words(row.best_error)}"
+                points.setdefault(one["mode"], []).append((*pair, said))
         if points:
             values = [value for of_mode in points.values() for point in of_mode for value in point[:2]]
             ends = [min(values), max(values) + 1e-9]
             line = {"type": "scatter", "mode": "lines", "x": ends, "y": ends, "line": {"color": GREY}}
             traces: list[dict[str, Any]] = [line | {"hoverinfo": "skip", "showlegend": False}]
+            hover = f"measured %{{x:.3f}}, predicted %{{y:.3f}} {unit}<br>%{{hovertext}}<extra></extra>"
             for mode in sorted(points, key=ORDER.index):
                 look = {"type": kind, "marker": look_of(mode) | {"size": 8}, "opacity": 0.75, "hovertemplate": hover}
                 traces.append(marks(f"{mode} ({len(points[mode]):,})", points[mode], **look))
+            layout = {"height": 460, "xaxis": {"title": f"measured, {unit}"}}
+            layout["yaxis"] = {"title": f"predicted, {unit}", "scaleanchor": "x"}
             charts.append(Chart(title, traces, layout, wide=False))
     return Section("velocities", "Predicted against measured velocities", [AGAINST], charts)
 
 
+def skill(facts: ReplayFacts) -> Section:
+    """How right the whole twists are, beside simple answers."""
+    tables = [
+        PageTable(
+            [" ".join(column.header.replace("-\n", "").split()) for column in columns],
+            [[column.cell(row) for column in columns] for row in rows],
+            said,
+        )
+        for said, columns, rows in skill_tables([row for row in facts.rows if not row.foot], facts.recorded)
+    ]
+    return Section("skill", "How right the whole twists are", [], tables)
+
+
 def modes(facts: ReplayFacts) -> Section:
-    """The modes that were predicted against the true ones, or what can be told of them without a truth."""
-    # Of a landing it is the mode of an impact with the speed of the foot in its last sample in the air.
-    found = Counter(one.get("landing_mode") or one["mode"] for one in facts.touchdowns)
+    """The modes that were predicted against the true ones, where the record tells them."""
     looks = {mode.name: Cell(mode.name, look.meaning) for mode, look in MODES.items()}
+    tables = []
     if counts := facts.confusion():
         true, predicted = ([one for one in (*looks, NOTHING) if one in kinds] for kinds in zip(*counts, strict=True))
         looks[NOTHING] = Cell(FALSE)
@@ -170,22 +185,15 @@ def modes(facts: ReplayFacts) -> Section:
             cells = [Cell(f"{counts[row, one]:,}", css="best" if row == one else "") for one in predicted]
             rows.append([looks[row], *cells])
         caption = "How many touchdowns of each true mode (a row) were predicted in which mode (a column)."
-        table = PageTable(["true mode", *(MISSED if one == NOTHING else one for one in predicted)], rows, caption)
-        return Section("modes", "Predicted against true modes", [], [table])
-    rows = []
-    for mode in sorted(found, key=ORDER.index):
-        errors = [one["relative_error"] for one in facts.scored if one["mode"] == mode]
-        parts = [part_words(quantile(errors, part) if errors else None) for part in (0.5, 0.9)]
-        rows.append([looks[mode], f"{found[mode]:,}", f"{len(errors):,}", *parts])
-    head = ["predicted mode", "touchdowns", "compared", "median error", "90 % below"]
-    return Section("modes", "Predicted modes", [UNTOLD], [PageTable(head, rows)] if rows else [])
+        tables = [PageTable(["true mode", *(MISSED if one == NOTHING else one for one in predicted)], rows, caption)]
+    return Section("modes", "Predicted against true modes", [], tables)
 
 
 def lead_times(facts: ReplayFacts) -> Section:
     """Errors over the time ahead at which a prediction is made."""
     charts = []
     for key, title, axis, factor in (
-        ("relative_errors_ahead", "Velocities after the impact, against measured ones", "relative error, %", 100.0),
+        ("relative_errors_ahead", "Velocities in the impact plane, against measured ones", "relative error, %", 100.0),
         ("time_errors_ahead", "Time of the touchdown", "error of the time, ms", 1e3),
     ):
         spans, traces = facts.errors_ahead(key), []

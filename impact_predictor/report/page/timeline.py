@@ -10,6 +10,7 @@ from ...mechanics.types import Mode
 from ...stamps import NANOSECONDS
 from ...wording import words
 from ..modes import EDGE, MODES
+from ..touchdowns import TouchdownRow, row_of_json
 from . import GREY, Chart, marks, part_words, safe, time_words
 from .facts import BagAnswer
 
@@ -141,18 +142,19 @@ def _body(answer: BagAnswer, body: str) -> Iterable[Lane]:
         yield Lane(f"{body} predicted", [_predicted(one) for one in true if one["predicted_stamp"] is not None])
         yield Lane("true", [_true(one) for one in true if one["stamp"] is not None])
         return
-    yield Lane(f"{body} predicted", [_touchdown(one) for one in mine if one["scored"]])
-    if not all(one["scored"] for one in mine):
-        yield Lane("not compared", [_touchdown(one) for one in mine if not one["scored"]])
+    rows = [*map(row_of_json, mine)]
+    yield Lane(f"{body} predicted", [_touchdown(row) for row in rows if row.is_scored])
+    if not all(row.is_scored for row in rows):
+        yield Lane("not compared", [_touchdown(row) for row in rows if not row.is_scored])
 
 
-def _touchdown(one: BagAnswer) -> TimelineMark:
+def _touchdown(row: TouchdownRow) -> TimelineMark:
     """A touchdown that was predicted and came; faint where nothing measured can be compared with it."""
-    ahead, compared = one["announced_lead_time"], f"relative error {part_words(one['relative_error'])}"
-    if not one["scored"]:
-        compared = f"not compared: {', '.join(map(words, one['flags']))}"
-    said = f"{one['mode']}\nannounced {time_words(ahead)} ahead\n{compared}"
-    return TimelineMark(one["stamp"], one["mode"], said, ahead, not one["scored"])
+    ahead, compared = row.announced_lead_time, f"relative error {part_words(row.best_error)}"
+    if not row.is_scored:
+        compared = f"not compared: {', '.join(map(words, row.why_not_scored))}"
+    said = f"{row.mode.name}\nannounced {time_words(ahead)} ahead\n{compared}"
+    return TimelineMark(row.stamp, row.mode.name, said, ahead, not row.is_scored)
 
 
 def _predicted(one: BagAnswer) -> TimelineMark:
