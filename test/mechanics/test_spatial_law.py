@@ -29,6 +29,7 @@ def struck(w, c, friction, restitution, **settings):
     return outcome.velocities
 
 
+@pytest.mark.slow
 def test_one_contact_takes_the_path_of_routh_and_keller_and_converges_with_the_steps():
     # Second order in the median; where the slip stops or whips round within a step, an angle of that
     # step, pi / 2 / steps, of its speed is uncertain.
@@ -131,6 +132,7 @@ def test_a_contact_with_a_gap_closes_as_the_others_are_compressed():
     assert compared >= 10
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("restitution", [0.0, 0.1, 0.3, 0.6, 1.0])
 def test_a_crate_on_three_corners_moves_on_as_on_stiff_springs(restitution):
     crate, rough = MovingBody(MASS, INERTIA, CORNERS, TWIST), {"regularisation": 1e-4, "tolerance": 1e-6}

@@ -97,6 +97,7 @@ def test_restitution_is_energetic_when_slip_reverses():
     assert found.velocity == pytest.approx([-(rebound - at_stop) / 2.5, 0.0, rebound], abs=CLOSED_FORM)
 
 
+@pytest.mark.slow
 def test_another_integrator_takes_the_same_path():
     for w, c, friction, restitution in cases(2, 15):
         found = one_contact(w, c, friction, restitution)
@@ -183,6 +184,7 @@ def test_three_balls_in_a_row_come_to_those_of_a_stiff_second_contact(stiffness)
     assert found.velocities[:, 2] == pytest.approx([1.0, 0.0], abs=2.0 / stiffness)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("restitution", [0.1, 0.6])
 def test_a_crate_on_stiff_springs_comes_to_the_limit_in_which_it_does_not_move(restitution):
     inertia = 50.0 / 12.0 * np.diag([0.6**2 + 0.5**2, 1.0 + 0.5**2, 1.0 + 0.6**2])
