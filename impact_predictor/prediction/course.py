@@ -7,7 +7,7 @@ end, so that poses are right even after steps as long as a third of a frame.
 
 from __future__ import annotations
 
-from math import atan2, ceil, hypot, sqrt
+from math import atan2, ceil, sqrt
 from typing import Final, NamedTuple
 
 from .scene import InertiaTensor, Scene
@@ -100,7 +100,7 @@ def between(one: Pose, other: Pose, seconds: float) -> SpatialTwist:
     """The mean twist from one pose to the other."""
     x, y, z, w = one.orientation
     x, y, z, w = composed(other.orientation, (-x, -y, -z, w))
-    sine = hypot(x, y, z)
+    sine = sqrt(x * x + y * y + z * z)
     # Both signs of a quaternion are one orientation: the shorter turn is meant.
     angle = 2.0 * atan2(sine if w >= 0.0 else -sine, abs(w))
     scale = angle / (sine * seconds) if sine > 0.0 else 0.0
@@ -133,7 +133,7 @@ def _pressed(
             _push(upward, motion, change, per_mass)
             press += change
             wanted = along - first[9] * _speed(first, motion), across - second[9] * _speed(second, motion)
-            drag = hypot(*wanted)
+            drag = sqrt(wanted[0] * wanted[0] + wanted[1] * wanted[1])
             part = friction * press / drag if drag > friction * press else 1.0
             x, y = part * wanted[0], part * wanted[1]
             _push(first, motion, x - along, per_mass)

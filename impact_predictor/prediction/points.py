@@ -226,7 +226,7 @@ class PointContacts(Contacts):
             pending = Pending(last, last.stamp, self._record, Leftover.OTHER_POINTS)
             pending.told = last
             for frame in recorded.frames[BEFORE : BEFORE + AFTER]:
-                pending.add(*frame)
+                pending.add(frame.sample, frame.posture)
             self._pending.append(pending)
         pending.recorded, recorded.is_matched = recorded, True
 

@@ -42,14 +42,11 @@ NEAR: Final = 1.2
 
 
 class Frame(NamedTuple):
-    """A sample, and its posture over the support."""
+    """A sample of a stamp in ns, and its posture over the support."""
 
+    stamp: int
     sample: Sample
     posture: Posture
-
-    @property
-    def stamp(self) -> int:
-        return self.sample.stamp
 
 
 @dataclass(eq=False)
@@ -116,7 +113,7 @@ class TouchdownRecorder:
         """m/s: the approach of the slowest touchdown that is clear."""
         self.counts: dict[str, Announced] = {}
         """Clear touchdowns, by kind."""
-        self._scene, self._fall = scene, -dot(scene.gravity, scene.normal) / NANOSECONDS
+        self._scene, self._fall = scene, -dot(scene.gravity, scene.normal) / NANOSECONDS**2
         self._frames: deque[Frame] = deque(maxlen=AFTER + 1)
         self.found: deque[RecordedTouchdown] = deque()
         """The last ones, the oldest first."""
@@ -125,14 +122,15 @@ class TouchdownRecorder:
 
     def take(self, sample: Sample, posture: Posture) -> None:
         """Look at the next sample."""
-        if self._frames and sample.stamp - self._frames[-1].stamp < FRAME:
+        frames, stamp = self._frames, sample.stamp
+        if frames and stamp - frames[-1].stamp < FRAME:
             return
-        frame = Frame(sample, posture)
-        self._frames.append(frame)
+        frame = Frame(stamp, sample, posture)
+        frames.append(frame)
         for touchdown in self.found:
             touchdown.frames.append(frame)
-        if len(self._frames) >= 4:
-            self._look(*list(self._frames)[-4:])
+        if len(frames) >= 4:
+            self._look(frames[-4], frames[-3], frames[-2], frame)
         while self.found and len(self.found[0].frames) > KEPT:
             self._drop()
 
@@ -157,27 +155,32 @@ class TouchdownRecorder:
 
     def _look(self, one: Frame, last: Frame, following: Frame, after: Frame) -> None:
         """Find what strikes between the last frame and the following one."""
-        tolerance, gaps, then = self._scene.tolerance, last.posture.gaps, following.posture.gaps
-        steps = last.stamp - one.stamp, following.stamp - last.stamp, after.stamp - following.stamp
-        if max(steps) > UNEVEN * min(steps):
+        to_last, step, to_after = last.stamp - one.stamp, following.stamp - last.stamp, after.stamp - following.stamp
+        before, gaps = one.posture.gaps, last.posture.gaps
+        # At the last frame gravity has added half a frame's gain to the mean rate of the frame before it.
+        gain, ratio = self._fall * step, step / to_last
+        reach, deepest = gain * step + SCATTER * self._scene.tolerance, -self._scene.tolerance
+        least = GAINS * gain * to_last
+        falling = [
+            i
+            for i, (high, gap) in enumerate(zip(before, gaps, strict=True))
+            if high - gap > least and deepest < gap < (high - gap) * ratio + reach
+        ]
+        steps = to_last, step, to_after
+        if not falling or max(steps) > UNEVEN * min(steps):
             return
-        to_last, step, to_after = [step / NANOSECONDS for step in steps]
-        gain = self._fall * steps[1]
-        slowest, strikes = GAINS * gain, []
-        for i, gap in enumerate(gaps):
-            approach = (one.posture.gaps[i] - gap) / to_last
-            if approach <= slowest or not -tolerance < gap < (approach + gain) * step + SCATTER * tolerance:
-                continue
-            away = (after.posture.gaps[i] - then[i]) / to_after
-            # At the last frame gravity has added half a frame's gain to the mean rate of the frame before it.
-            rest = min(max(gap / (approach + 0.5 * gain), 0.0), step)
-            comes_from_it = then[i] - away * (step - rest) < tolerance + gain * step
+        strikes = []
+        for i in falling:
+            approach = (before[i] - gaps[i]) / to_last
+            away = (after.posture.gaps[i] - following.posture.gaps[i]) / to_after
+            rest = min(max(gaps[i] / (approach + 0.5 * gain), 0.0), step)
+            rises_from = following.posture.gaps[i] - away * (step - rest)
             recently = self._struck.get(i, -1) >= self._frames[0].stamp
-            if away + approach > STOPPED * approach and comes_from_it and not recently:
+            if away + approach > STOPPED * approach and rises_from < gain * step - deepest and not recently:
                 self._struck[i] = last.stamp
-                strikes.append((last.stamp + round(rest * NANOSECONDS), i, approach))
+                strikes.append((last.stamp + round(rest), i, approach * NANOSECONDS))
         for stamp, i, approach in sorted(strikes):
-            self._add(stamp, i, approach, slowest)
+            self._add(stamp, i, approach, GAINS * gain * NANOSECONDS)
 
     def _add(self, stamp: int, point: int, approach: float, slowest: float) -> None:
         if self.found and stamp - self.found[-1].stamp <= TOGETHER:

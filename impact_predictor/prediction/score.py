@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
-from math import dist, hypot
+from math import hypot, sqrt
 from typing import Final, NamedTuple
 
 from ..mechanics.types import Mode, Twist
@@ -104,7 +104,8 @@ class SpatialScore:
     @cached_property
     def size(self) -> float:
         """Half the least distance of two points in m, which makes speeds of angular velocities."""
-        return 0.5 * min(dist(*pair) for pair in combinations(self.course.points, 2))
+        lines = [add(one, other, -1.0) for one, other in combinations(self.course.points, 2)]
+        return 0.5 * sqrt(min([dot(line, line) for line in lines], default=0.0))
 
     @cached_property
     def _expected(self) -> list[Pose]:
@@ -112,9 +113,12 @@ class SpatialScore:
 
     def _relative(self, twist: SpatialTwist) -> float:
         (linear, angular), (other, spin), before = twist, self.measured, self.told.before_6d
-        error = hypot(*add(linear, other, -1.0), *[self.size * part for part in add(angular, spin, -1.0)])
-        scale = hypot(*before.linear, *[self.size * part for part in before.angular])
+        error = self._speed(add(linear, other, -1.0), add(angular, spin, -1.0))
+        scale = self._speed(*before)
         return error / scale if scale > 0.0 else 0.0
+
+    def _speed(self, linear: Vector3, angular: Vector3) -> float:
+        return sqrt(dot(linear, linear) + self.size * self.size * dot(angular, angular))
 
     def _rise(self, group: tuple[int, ...], poses: Sequence[Pose]) -> float:
         """How much the mean gap of points grows from the first to the last pose."""
@@ -266,7 +270,7 @@ class Pending:
             leftover |= Leftover.TOO_SLOW
         if not recorded.is_isolated:
             leftover |= Leftover.NOT_ISOLATED
-        poses = [Pose(center_of(scene, *frame), frame.sample.orientation) for frame in frames]
+        poses = [Pose(center_of(scene, frame.sample, frame.posture), frame.sample.orientation) for frame in frames]
         score = SpatialScore(
             stamp=recorded.stamp,
             late=(stamp - recorded.stamp) / NANOSECONDS,

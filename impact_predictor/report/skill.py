@@ -57,13 +57,15 @@ class ComponentScore(NamedTuple):
 
 class LiftScore(NamedTuple):
     """Whether a group of contacts lifts: `counts` by (measured, told), and where probabilities are told the mean square
-    of their errors (Brier), beside that of the base rate.
+    of their errors (Brier), beside that of the base rate. `reliability` has for each fifth of the probabilities that
+    were told how many there are, their mean, and the share of those that lifted.
     """
 
     name: str
     counts: Mapping[tuple[bool, bool], int]
     brier: float | None
     base: float | None
+    reliability: tuple[tuple[int, float, float], ...]
 
     @property
     def balanced(self) -> float | None:
@@ -210,7 +212,12 @@ def lift_scores(rows: Iterable[TouchdownRow]) -> list[LiftScore]:
         ]
         if lifts:
             counts = Counter((measured, told) for told, measured, _ in lifts)
-            found.append(LiftScore(name, counts, brier, base))
+            fifths = [[pair for pair in sure if min(int(5.0 * pair[1]), 4) == fifth] for fifth in range(5)]
+            means = [[sum(numbers) / len(pairs) for numbers in zip(*pairs, strict=True)] for pairs in fifths if pairs]
+            reliability = zip(map(len, filter(None, fifths)), means, strict=True)
+            found.append(
+                LiftScore(name, counts, brier, base, tuple((n, chance, share) for n, (share, chance) in reliability))
+            )
     return found
 
 
@@ -243,6 +250,7 @@ def skill_as_json(rows: Sequence[TouchdownRow], recorded: Mapping[str, Announced
                 "balanced": one.balanced,
                 "brier": one.brier,
                 "brier_of_base_rate": one.base,
+                "reliability": one.reliability,
             }
             for one in lift_scores(rows)
         },

@@ -68,6 +68,7 @@ def test_a_lift_is_counted_as_told_and_as_measured_and_its_probability_is_judged
     assert old.balanced == pytest.approx(0.75)
     assert old.brier == pytest.approx((0.25**2 + 0.5**2 + 0.25**2) / 3.0)
     assert old.base == pytest.approx(2.0 / 9.0)  # two of three lift
+    assert old.reliability == ((1, 0.25, 0.0), (1, 0.5, 1.0), (1, 0.75, 1.0))
     (sure,) = lift_scores([scored(0.1, lift_new=(True, True, None))])
     assert (sure.name, sure.balanced, sure.brier, sure.base) == ("new", None, None, None)
 
