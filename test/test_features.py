@@ -25,6 +25,7 @@ ROOT = Path(__file__).parents[1]
 SHIPPED = {path.stem: dict(read_parameters(path)) for path in sorted((ROOT / "config").glob("*.yaml"))}
 BODY: dict[str, Any] = {"body.mass": 12.0, "body.inertia": [0.5, 0.6, 0.7, 0.0, 0.0, 0.0], "contact.friction": 0.0}
 CRATE = {**BODY, "body.contact_points": [x for a in (-0.3, 0.3) for b in (-0.2, 0.2) for x in (a, b, -0.2)]}
+CYLINDER = {**BODY, "body.radius": 0.3, "support.edges": [0.0, -0.2, 0.0, 0.0, 0.2, 0.0]}
 WALKER = {**BODY, "feet.names": ["left", "right"]}
 DECK = {**CRATE, "support.motion": "odom"}
 WATCHED = {**DECK, "onset.watch": True, "place.position": [0.0, 0.0, 0.2]}
@@ -37,7 +38,8 @@ WITHOUT_AND_WITH: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "moving support": (CRATE, DECK),
     "harmonic extrapolation": (DECK, {**DECK, "support.extrapolation": "harmonic"}),
     "onset watch": (CRATE, {**CRATE, "onset.watch": True}),
-    "cylinder": (CRATE, {**BODY, "body.radius": 0.3, "support.edges": [0.0, -0.2, 0.0, 0.0, 0.2, 0.0]}),
+    "cylinder": (CRATE, CYLINDER),
+    "three dimensions": (CYLINDER, CRATE),
     "tilt": (WATCHED, {**WATCHED, "source": "imu"}),
     "feet": (BODY, WALKER),
     "force sensors": (WALKER, {**WALKER, "feet.force": 30.0}),
@@ -56,8 +58,8 @@ HEAVY = {"matplotlib", "numba", "pinocchio", "plotly", "rich", "scipy"}
 LONGEST = 4 * NANOSECONDS
 """Stamps of the last messages: some falls, after a support has been watched for a while."""
 NEEDED = {
-    "numba": {"uncertainty", "feet"},
-    "scipy": {"uncertainty", "feet"},
+    "numba": {"uncertainty", "three dimensions"},
+    "scipy": {"uncertainty", "three dimensions"},
     "pinocchio": {"articulated inertia"},
 }
 """... and the features of which one needs them."""

@@ -34,6 +34,7 @@ SWITCHES: Final = {
     "harmonic extrapolation": "support.motion support.extrapolation",
     "onset watch": "onset.watch",
     "cylinder": "body.radius",
+    "three dimensions": "!body.radius",
     "tilt": "source",
     "feet": "feet.names",
     "articulated inertia": "feet.names robot.urdf",

@@ -401,8 +401,10 @@ def solve(
             softness[i] = 0.0
             bias[i] = max(0.0, -restitution[i] * c[3 * i + 2])
             capped[i] = 0
-            depth[i] = -distances[i]
-            if distances[i] > 0.0:
+            # What closes within a compression has closed: this law knows no order.
+            late = gaps[i] > merge * max(0.0, -c[3 * i + 2])
+            depth[i] = -distances[i] if late else 0.0
+            if late:
                 softness[i] = -1.0
         for j in range(m):
             p[j] = 0.0
