@@ -9,9 +9,19 @@ from __future__ import annotations
 
 from math import sqrt
 
-from .reactions import CREEPS, OPEN, SLIPS, STICKS, Floats, Model, Stance, hold, locate, rates
+from .reactions import CREEPS, OPEN, SLIPS, STICKS, Floats, Model, Stance, derive, hold, locate, rates
 from .stances import NONE, ROUNDING, change, creep, head, margins, near, settle, stand, stays, steady, stop, veers
 
+_NODES = 0.2, 0.3, 0.8, 8.0 / 9.0, 1.0, 1.0
+_STAGES = (
+    *(0.2,),
+    *(3.0 / 40.0, 9.0 / 40.0),
+    *(44.0 / 45.0, -56.0 / 15.0, 32.0 / 9.0),
+    *(19372.0 / 6561.0, -25360.0 / 2187.0, 64448.0 / 6561.0, -212.0 / 729.0),
+    *(9017.0 / 3168.0, -355.0 / 33.0, 46732.0 / 5247.0, 49.0 / 176.0, -5103.0 / 18656.0),
+    *(35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0),
+)
+_ERRORS = 71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339200.0, 22.0 / 525.0, -0.025
 _TOLERANCE = 1e-6
 """Error of a step, relative to the scales of the motion."""
 _TURN = 0.8
@@ -35,57 +45,26 @@ _WILD = 1e6
 """Error of the smallest step, relative to the tolerance, that tells a jam."""
 
 
-def step(
-    time: float, h: float, y: Floats, k: Floats, trial: Floats, middle: Floats, model: Model, stance: Stance
-) -> tuple[float, int]:
+def step(time: float, h: float, y: Floats, k: Floats, trial: Floats, model: Model, stance: Stance) -> tuple[float, int]:
     """One step from y, whose derivative is k[:13], to `trial`, whose derivative is k[78:]; error and jammed point."""
     size, speed, _, _ = model[4]
-    for i in range(13):
-        middle[i] = y[i] + h * (0.2 * k[i])
-    jam = rates(time + 0.2 * h, middle, k, 13, False, model, stance)
-    for i in range(13):
-        middle[i] = y[i] + h * (3.0 / 40.0 * k[i] + 9.0 / 40.0 * k[13 + i])
-    jam = max(jam, rates(time + 0.3 * h, middle, k, 26, False, model, stance))
-    for i in range(13):
-        middle[i] = y[i] + h * (44.0 / 45.0 * k[i] - 56.0 / 15.0 * k[13 + i] + 32.0 / 9.0 * k[26 + i])
-    jam = max(jam, rates(time + 0.8 * h, middle, k, 39, False, model, stance))
-    for i in range(13):
-        middle[i] = y[i] + h * (
-            19372.0 / 6561.0 * k[i]
-            - 25360.0 / 2187.0 * k[13 + i]
-            + 64448.0 / 6561.0 * k[26 + i]
-            - 212.0 / 729.0 * k[39 + i]
-        )
-    jam = max(jam, rates(time + 8.0 / 9.0 * h, middle, k, 52, False, model, stance))
-    for i in range(13):
-        middle[i] = y[i] + h * (
-            9017.0 / 3168.0 * k[i]
-            - 355.0 / 33.0 * k[13 + i]
-            + 46732.0 / 5247.0 * k[26 + i]
-            + 49.0 / 176.0 * k[39 + i]
-            - 5103.0 / 18656.0 * k[52 + i]
-        )
-    jam = max(jam, rates(time + h, middle, k, 65, False, model, stance))
-    for i in range(13):
-        trial[i] = y[i] + h * (
-            35.0 / 384.0 * k[i]
-            + 500.0 / 1113.0 * k[26 + i]
-            + 125.0 / 192.0 * k[39 + i]
-            - 2187.0 / 6784.0 * k[52 + i]
-            + 11.0 / 84.0 * k[65 + i]
-        )
-    normalise(trial)
-    jam = max(jam, rates(time + h, trial, k, 78, False, model, stance))
+    row, jam = 0, -1
+    for stage in range(6):
+        for i in range(13):
+            slope = 0.0
+            for j in range(stage + 1):
+                slope += _STAGES[row + j] * k[13 * j + i]
+            trial[i] = y[i] + h * slope
+        row += stage + 1
+        if stage == 5:
+            normalise(trial)
+        jam = max(jam, derive(time + _NODES[stage] * h, trial, k, 13 * stage + 13, False, model, stance))
     error = 0.0
     for i in range(13):
-        part = h * abs(
-            71.0 / 57600.0 * k[i]
-            - 71.0 / 16695.0 * k[26 + i]
-            + 71.0 / 1920.0 * k[39 + i]
-            - 17253.0 / 339200.0 * k[52 + i]
-            + 22.0 / 525.0 * k[65 + i]
-            - 0.025 * k[78 + i]
-        )
+        part = 0.0
+        for j in range(7):
+            part += _ERRORS[j] * k[13 * j + i]
+        part = h * abs(part)
         part *= 1.0 / size if i < 3 else 1.0 if i < 7 else 1.0 / speed if i < 10 else size / speed
         error = max(error, part)
     return error / _TOLERANCE, jam
@@ -173,11 +152,11 @@ def follow(
 ) -> tuple[float, int]:
     """Follow the state y up to the first strike: its time and point; -1 as point where there is none by the horizon.
 
-    y becomes the state there, `scratch[3]` (3 n) the gaps with their derivatives, and the stance what stands then.
+    y becomes the state there, `scratch[2]` (3 n) the gaps with their derivatives, and the stance what stands then.
     """
     points, scale = model[0], model[4]
     held, label, toward, forces, _, _, frame, _ = stance
-    k, trial, middle, now, then, before, after = scratch
+    k, trial, now, then, before, after = scratch
     size, speed, weight = scale[0], scale[1], scale[2]
     n, time, still = len(label), 0.0, 0
     locate(y, model, stance)
@@ -197,7 +176,7 @@ def follow(
                 stand(y, i, model, stance)
     if struck >= 0:
         return 0.0, struck
-    again, h = True, 0.3 * sqrt(size / weight)
+    again, h = True, (0.3 if held[n] else 1.0) * sqrt(size / weight)
     for _ in range(_MAX_STEPS):
         if again:
             settle(time, y, k, model, stance)
@@ -222,7 +201,7 @@ def follow(
             if label[held[slot]] == CREEPS and scale[3] != _BLEND * h * weight:
                 scale[3] = _BLEND * h * weight
                 rates(time, y, k, 0, False, model, stance)
-        error, jam = step(time, h, y, k, trial, middle, model, stance)
+        error, jam = step(time, h, y, k, trial, model, stance)
         small = h <= 1e-6 * sqrt(size / weight)
         if not small and veers(trial, h, model, stance):
             h *= 0.3
@@ -256,7 +235,7 @@ def follow(
                     low, low_value, high_value = h, value, 0.5 * high_value
                 if abs(value) > close:
                     h = high - high_value * (high - low) / (high_value - low_value)
-                    error, jam = step(time, h, y, k, trial, middle, model, stance)
+                    error, jam = step(time, h, y, k, trial, model, stance)
                     continue
                 target = -1
             for i in range(n):
@@ -290,7 +269,7 @@ def follow(
                 target = event - n
                 low, low_value, high, high_value = 0.0, before[target], h, after[target]
             h *= cut
-            error, jam = step(time, h, y, k, trial, middle, model, stance)
+            error, jam = step(time, h, y, k, trial, model, stance)
         if (early or not error <= _POOR) and not small:
             # What was at its border comes back to it, or leaves it at once.
             h *= 0.25

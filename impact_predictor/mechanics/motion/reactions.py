@@ -86,7 +86,7 @@ def locate(y: Floats, model: Model, stance: Stance) -> None:
         blocks[o + 9], blocks[o + 10], blocks[o + 11] = t * c1, t * c2, t * (xy * xz - xx * yz)
 
 
-def rates(time: float, y: Floats, out: Floats, at: int, cones: bool, model: Model, stance: Stance) -> int:
+def derive(time: float, y: Floats, out: Floats, at: int, cones: bool, model: Model, stance: Stance) -> int:
     """Derivative of the state y into out[at:at + 13]; -1, or the point whose slip no finite reaction goes with.
 
     With `cones` the forces obey non-penetration and Coulomb's law in accelerations. Without, a point that sticks is
@@ -186,6 +186,11 @@ def rates(time: float, y: Floats, out: Floats, at: int, cones: bool, model: Mode
         forget(stance)
     fill(y, out, at, ax, ay, az, alx, aly, alz)
     return jam
+
+
+def rates(time: float, y: Floats, out: Floats, at: int, cones: bool, model: Model, stance: Stance) -> int:
+    """As `derive`, which becomes a part of its callers where it is compiled: this one is called."""
+    return derive(time, y, out, at, cones, model, stance)
 
 
 def drag(y: Floats, i: int, model: Model, stance: Stance) -> tuple[float, float]:

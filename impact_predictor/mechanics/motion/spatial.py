@@ -153,11 +153,14 @@ Stepper = Callable[[int, list[float], list[int], list[float]], list[float]]
 
 LAW_CODE = (reactions, stances, falling, contact_steps, spatial_problem)
 
+INLINED = (reactions.derive, reactions.fill, reactions.locate, falling.measure, falling.crossing, stances.margins)
+"""Law functions that become a part of those that call them: calls with so many sequences take a third of the time."""
+
 
 @cache
 def solver() -> FallSolver:
     """The law code that finds a touchdown, compiled if that can be; the first time on a machine this takes seconds."""
-    solve = compiled(make_fall, LAW_CODE, never)
+    solve = compiled(make_fall, LAW_CODE, lambda function: function in INLINED)
     if solve is None:
         return fall_on_lists
     import numpy as np
@@ -178,7 +181,7 @@ def fall_on_lists(n: int, numbers: list[float], marks: list[int]) -> tuple[int, 
 @cache
 def stepper() -> Stepper:
     """The law code that goes on in steps, compiled if that can be."""
-    steps = compiled(make_go_on, LAW_CODE, never)
+    steps = compiled(make_go_on, LAW_CODE, lambda function: function in INLINED)
     if steps is None:
         return go_on_lists
     import numpy as np
@@ -199,10 +202,6 @@ def go_on_lists(n: int, numbers: list[float], marks: list[int], times: list[floa
 def sizes(n: int) -> int:
     """Numbers that the law code of n points works with."""
     return WORK[0] + WORK[1] * n + WORK[2] * n * n
-
-
-def never(function: object) -> bool:
-    return False
 
 
 def make_fall(law_code: str) -> Callable[..., int]:

@@ -22,7 +22,7 @@ INPUT = 32
 """Numbers of a problem before those of its points: horizon, state, inertia over mass, pull; friction and points."""
 OUTPUT = 14
 """Numbers of an answer before those of its points: time and state; gap and rate of each."""
-WORK = 175, 38, 9
+WORK = 162, 38, 9
 """Numbers to work with: some, some for each point, and some for each pair of points."""
 INVALID = -2
 
@@ -99,14 +99,14 @@ def fall(n: int, numbers: Floats, marks: Ints, work: Floats, out: Floats) -> int
     valid, y, offsets, model, stance = prepare(n, numbers, marks, work)
     if not valid:
         return INVALID
-    o = WORK[0] - 117 + (WORK[1] - 10) * n + WORK[2] * n * n
-    k, trial, middle = work[o : o + 91], work[o + 91 : o + 104], work[o + 104 : o + 117]
-    o += 117
+    o = WORK[0] - 104 + (WORK[1] - 10) * n + WORK[2] * n * n
+    k, trial = work[o : o + 91], work[o + 91 : o + 104]
+    o += 104
     now, then = work[o : o + 3 * n], work[o + 3 * n : o + 6 * n]
     before, after = work[o + 6 * n : o + 8 * n], work[o + 8 * n : o + 10 * n]
     for i in range(2 * n):
         before[i] = after[i] = 0.0
-    out[0], point = follow(y, numbers[0], offsets, model, stance, (k, trial, middle, now, then, before, after))
+    out[0], point = follow(y, numbers[0], offsets, model, stance, (k, trial, now, then, before, after))
     for i in range(13):
         out[1 + i] = y[i]
     for i in range(n):
@@ -120,7 +120,7 @@ def go_on(n: int, numbers: Floats, marks: Ints, work: Floats, times: Floats, out
     valid, y, offsets, model, stance = prepare(n, numbers, marks, work)
     if not valid or not numbers[0] > 0.0:
         return INVALID
-    o = WORK[0] - 117 + (WORK[1] - 10) * n + WORK[2] * n * n
+    o = WORK[0] - 104 + (WORK[1] - 10) * n + WORK[2] * n * n
     k, time = work[o : o + 91], 0.0
     for m in range(len(times)):
         left = times[m] - time
