@@ -14,8 +14,8 @@ from .vectors import add, axes_of, combine, cross, dot, mean, times, to_body, to
 SIMPLE: Final = {
     "nothing": "nothing happens",
     "stops": "all stops",
-    "slows": "0.85 of v, no turning",
-    "no_slip": "plastic, no slip",
+    "slows": "0.85 v",
+    "no_slip": "no slip",
     "planar": "planar law",
 }
 """The simple answers in words."""

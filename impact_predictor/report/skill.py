@@ -115,7 +115,8 @@ LIFT_COLUMNS: Final = (
 
 KINDS_SAID: Final = (
     "The whole twist after the touchdowns that the record shows, by their kind: its relative error, and in the median "
-    "that of simple answers to the same touchdowns."
+    "that of simple answers to the same touchdowns: nothing happens; all stops; 0.85 of the velocity along the support "
+    "and no turning; plastic without slip; the law in the impact plane."
 )
 COMPONENTS_SAID: Final = (
     "Its components: the mean of predicted less measured ones, the slope of measured over predicted ones, and the part "
