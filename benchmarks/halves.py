@@ -68,7 +68,7 @@ def main() -> int:
     with TemporaryDirectory() as name:
         folder = Path(name)
         given = folder / "given.yaml"
-        given.write_text(changed(scene, PUBLISHED))
+        given.write_text(changed(scene, {**PUBLISHED, "uncertainty.gap": NewValues((-1.0,), "")}))
         for half, other in (HALVES, HALVES[::-1]):
             bag, body, fitted, out = (folder / f"{half}{end}" for end in (".mcap", "_body.yaml", ".yaml", "_out.mcap"))
             write_half(half, bag)

@@ -31,6 +31,9 @@ class Coefficients(NamedTuple):
     radius: float = 0.0
 
 
+_KEPT = 8
+"""Answers of `Solver.misses` that are kept: a search ends where the next one begins."""
+
 LATEST = 1e9
 """s: when the first contact closes of a body that has none."""
 
@@ -63,6 +66,7 @@ class Solver:
         laws = [(one.scene.law, hardly(one.scene)) for one in touchdowns]
         self._laws = {law: np.array([law == other for other in laws]) for law in laws}
         self._later = np.zeros_like(self._before)
+        self._solved: dict[Coefficients, tuple[Reals, Reals]] = {}
 
     def after(self, coefficients: Coefficients) -> Reals:
         """The twists right after the impacts (n, 6)."""
@@ -98,10 +102,14 @@ class Solver:
 
     def misses(self, coefficients: Coefficients) -> Reals:
         """By what the predictions miss the measured twist, relative to the speed before (n, 6)."""
-        after = self.after(coefficients)
-        later = self.continued(after, coefficients)
-        self._later = later - after
-        return self.of(later)
+        if coefficients not in self._solved:
+            if len(self._solved) == _KEPT:
+                self._solved.pop(next(iter(self._solved)))
+            after = self.after(coefficients)
+            later = self.continued(after, coefficients)
+            self._solved[coefficients] = self.of(later), later - after
+        missed, self._later = self._solved[coefficients]
+        return missed
 
     def near(self, coefficients: Coefficients) -> Reals:
         """What `misses` gives if the bodies go on as they did with the last coefficients of `misses`, in less time."""
