@@ -7,129 +7,21 @@ placed with scipy's rotations: any support, any position, any body frame. The im
 from __future__ import annotations
 
 from collections.abc import Callable
-from itertools import product
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pytest
-from newton_in_space import Newton, tensor
+from bodies_in_space import ALIKE, CUBE, HALF, Array, Somewhere, somewhere, state_of, turning
 from scipy.spatial.transform import Rotation
 
-from impact_predictor.mechanics.impact.spatial import Body, ContactPoints, SpatialOutcome, solve_spatial_impact
-from impact_predictor.mechanics.motion.spatial import Pull, SpatialState
+from impact_predictor.mechanics.motion.spatial import SpatialState
 from impact_predictor.prediction.predictor import Predictor
-from impact_predictor.prediction.scene import Scene
-from impact_predictor.prediction.types import Sample, Touchdown, Vector3
+from impact_predictor.prediction.types import Touchdown
 
 CLOSE = 1e-5
 """The motion is followed to 1e-6 of its scales, up to some m/s."""
 STRUCK = 2e-4
 """... and the impact makes more of it."""
-HALF = 0.05
-MERGE, SLOW = 0.0015, 0.005
-CUBE = np.array(list(product((-HALF, HALF), repeat=3)))
-GENERAL = tuple(4 * HALF * HALF / 6.0 * part for part in (1.0, 1.2, 1.4, 0.05, 0.02, -0.1))
-ALIKE = (4 * HALF * HALF / 6.0,) * 3 + (0.0,) * 3
-PULL = Pull(gravity=(0.6, -0.3, -9.6))
-"""On a slope."""
-MASS, RESTITUTION = 0.4, 0.2
-ZEROS = (0.0,) * 36
-
-Array = np.ndarray[Any, np.dtype[np.float64]]
-
-
-def triple(numbers: Any) -> Vector3:
-    x, y, z = (float(number) for number in numbers)
-    return x, y, z
-
-
-class Somewhere(NamedTuple):
-    """A body over a support: the rotation and shift of the support's frame, the rotation of the body's axes and the
-    mass centre in the body frame, its contact points from there, its inertia over its mass, and its friction.
-    """
-
-    support: Rotation
-    place: Array
-    mount: Rotation
-    center: Vector3
-    points: Array
-    inertia: tuple[float, ...] = GENERAL
-    friction: float = 0.3
-
-    def scene(self, **changes: Any) -> Scene:
-        own = MASS * self.mount.as_matrix().T @ tensor(self.inertia) @ self.mount.as_matrix()
-        normal = self.support.apply([0.0, 0.0, 1.0])
-        scene = Scene(
-            mass=MASS,
-            inertia=(triple(own[0]), triple(own[1]), triple(own[2])),
-            friction=self.friction,
-            restitution=RESTITUTION,
-            center_of_mass=self.center,
-            points=tuple(triple(self.mount.inv().apply(point) + self.center) for point in self.points),
-            normal=triple(normal),
-            height=float(normal @ self.place),
-            gravity=triple(self.support.apply(PULL.gravity)),
-            contact_time=SLOW,
-            merge=MERGE,
-            tolerance=1e-4,
-            horizon=1.0,
-        )
-        return scene._replace(**changes)
-
-    def pose(self, state: Array) -> tuple[Array, Rotation]:
-        """Of the body frame, of a state as `Newton` has it."""
-        orientation = self.support * Rotation.from_quat(state[3:7]) * self.mount
-        return self.place + self.support.apply(state[:3]) - orientation.apply(self.center), orientation
-
-    def sample(self, time: float, state: Array, earlier: Array | None = None, window: float = 0.0) -> Sample:
-        """A sample of a state; its twist is the mean over a window from an `earlier` state on, if that is given."""
-        position, orientation = self.pose(state)
-        if earlier is None:
-            spin = self.support.apply(state[10:13])
-            linear = self.support.apply(state[7:10]) - np.cross(spin, orientation.apply(self.center))
-        else:
-            place, was = self.pose(earlier)
-            linear, spin = (position - place) / window, (orientation * was.inv()).as_rotvec() / window
-        x, y, z, w = (float(part) for part in orientation.as_quat())
-        twist = triple(orientation.inv().apply(linear)), triple(orientation.inv().apply(spin))
-        return Sample(round(time * 1e9), "world", "body", triple(position), (x, y, z, w), *twist, ZEROS, ZEROS)
-
-    def newton(self, labels: dict[int, str]) -> Newton:
-        return Newton(self.inertia, self.points, labels, self.friction, PULL)
-
-    def impact(self, state: Array, old: tuple[int, ...]) -> tuple[tuple[int, ...], SpatialOutcome]:
-        """Which points take part in the impact that begins in a state, and what it does, in the support's frame."""
-        turn = Rotation.from_quat(state[3:7])
-        arms = turn.apply(self.points)
-        gaps, rates = state[2] + arms[:, 2], state[9] + np.cross(state[10:13], arms)[:, 2]
-        new = tuple(
-            i for i in range(len(gaps)) if i not in old and rates[i] < 0.0 and gaps[i] < 1e-9 - 2.0 * MERGE * rates[i]
-        )
-        taking = [*old, *new]
-        apart = [0.0 if i in old else max(0.0, gaps[i]) for i in taking]
-        contacts = ContactPoints(arms[taking], self.friction, RESTITUTION, gaps=apart)
-        body = Body(MASS, MASS * turn.as_matrix() @ tensor(self.inertia) @ turn.as_matrix().T)
-        slow = SLOW * float(np.linalg.norm(PULL.gravity))
-        return new, solve_spatial_impact(body, contacts, state[7:13], merge=MERGE, threshold=slow)
-
-
-def somewhere(seed: int, points: Array, **changes: Any) -> Somewhere:
-    rng = np.random.default_rng(seed)
-    support, mount = Rotation.random(2, random_state=rng)
-    placed = Somewhere(support, rng.normal(size=3), mount, triple(0.1 * rng.normal(size=3)), points)
-    return placed._replace(**changes)
-
-
-def state_of(height: float, turn: Rotation, velocity: Any, spin: Any) -> SpatialState:
-    x, y, z, w = (float(part) for part in turn.as_quat())
-    return SpatialState((0.3, -0.2, height), (x, y, z, w), triple(velocity), triple(spin))
-
-
-def turning(turn: Rotation, standing: list[int], spin: Any, slip: tuple[float, float] = (0.0, 0.0)) -> SpatialState:
-    """A body on some of its points, the first of which moves along the support by `slip`."""
-    arms = turn.apply(CUBE)
-    stands = arms[standing[0]]
-    return state_of(-stands[2], turn, np.cross(stands, spin) + np.array([*slip, 0.0]), spin)
 
 
 def flying(rng: np.random.Generator) -> tuple[SpatialState, dict[int, str]]:
@@ -203,3 +95,80 @@ def assert_told(touchdown: Touchdown, placed: Somewhere, state: Array, after: Ar
     linear = orientation.inv().apply(placed.support.apply(after[:3])) - np.cross(spin, placed.center)
     assert touchdown.linear == pytest.approx(linear, abs=10.0 * STRUCK)
     assert HALF * np.array(touchdown.angular) == pytest.approx(HALF * spin, abs=10.0 * STRUCK)
+
+
+def test_a_face_that_is_level_strikes_with_all_its_corners() -> None:
+    placed = somewhere(1, CUBE, inertia=ALIKE)
+    start = state_of(0.06, Rotation.from_rotvec([0.0, 0.0, 0.5]), [0.8, 0.3, -1.0], [0.0, 0.0, 2.0])
+    course = placed.newton({}).strike(start, 0.6)
+    new, outcome = placed.impact(course.state, ())
+    touchdown = Predictor(placed.scene()).update(placed.sample(0.0, np.concatenate(start))).touchdown
+    assert touchdown is not None
+    assert (touchdown.old, touchdown.new) == ((), new)
+    assert len(new) == 4
+    assert_told(touchdown, placed, course.state, np.array(outcome.twist))
+
+
+def test_a_touchdown_in_space_is_announced_up_to_the_horizon() -> None:
+    placed = somewhere(2, CUBE)
+    start, labels = flying(np.random.default_rng(2))
+    time = placed.newton(labels).strike(start, 0.6).time
+    sample = placed.sample(0.0, np.concatenate(start))
+    for horizon, is_announced in ((time - 1e-5, False), (time + 1e-5, True)):
+        assert (Predictor(placed.scene(horizon=horizon)).update(sample).touchdown is not None) is is_announced
+
+
+@pytest.mark.parametrize("poses", [False, True], ids=["averaged twists", "differenced poses"])
+def test_the_twist_of_a_body_in_space_is_that_of_half_its_window_ago(poses: bool) -> None:
+    window, placed = 0.01, somewhere(3, CUBE, inertia=ALIKE)
+    start, labels = flying(np.random.default_rng(4))
+    newton = placed.newton(labels)
+    end = newton.strike(start, 0.6).time
+    aware = Predictor(placed.scene(twist_window=window, poses=poses))
+    naive = Predictor(placed.scene())
+    late: list[float] = []
+    too_late: list[float] = []
+    for time in np.arange(0.02, end - 0.005, window):
+        now, earlier = (newton.strike(start, moment).state for moment in (time, time - window))
+        averaged = placed.sample(time, now, earlier, window)
+        told = averaged._replace(linear=(9.0, 9.0, 9.0), angular=(0.0, 0.0, 0.0)) if poses else averaged
+        first = poses and time == 0.02
+        for predictor, sample, errors in ((aware, told, late), (naive, averaged, too_late)):
+            touchdown = predictor.update(sample).touchdown
+            if not first:
+                assert touchdown is not None
+                errors.append(abs(touchdown.lead_time - (end - time)))
+    assert max(late) < 1e-3
+    assert max(late) < 0.25 * max(too_late)
+
+
+def test_a_touchdown_right_after_another_is_told_by_the_impact_that_the_twist_does_not_show_yet() -> None:
+    """An edge that is askew by 10 mm strikes in flight: one corner, and within the twist window the other one."""
+    window = 0.012
+    placed = somewhere(5, CUBE, inertia=ALIKE)
+    edge = Rotation.from_rotvec([0.1, 0.0, 0.0]) * Rotation.from_rotvec([0.0, 0.5, 0.0])
+    start = state_of(0.11, edge, [0.3, 0.0, -1.0], [0.0, 0.0, 0.0])
+    first = placed.newton({}).strike(start, 0.6)
+    new, outcome = placed.impact(first.state, ())
+    assert len(new) == 1
+    again = SpatialState(
+        *(tuple(part) for part in (first.state[:3], first.state[3:7], outcome.twist[:3], outcome.twist[3:]))
+    )
+    freely = placed.newton({})
+    second = freely.strike(again, 0.2)
+    assert 0.6 * window < second.time < window
+    assert second.point not in new
+
+    def state(time: float) -> Array:
+        if time < first.time:
+            return placed.newton({}).strike(start, time).state
+        return freely.strike(again, time - first.time).state
+
+    predictor, told = Predictor(placed.scene(twist_window=window, tolerance=0.005)), []
+    end = first.time + second.time
+    for time in np.arange(first.time - 0.03, end - 5e-4, 0.001):
+        touchdown = predictor.update(placed.sample(time, state(time), state(time - window), window)).touchdown
+        if touchdown is not None and time > first.time + 0.6 * window:  # half of it shows that it has landed
+            told.append((touchdown.new, touchdown.lead_time - (end - time)))
+    assert {points for points, _ in told} == {(second.point,)}
+    assert max(abs(error) for _, error in told) < 1e-3

@@ -219,7 +219,7 @@ def at_touchdown(placed: Placed, time: float, state: PlanarState, stands: bool) 
         size = math.hypot(*edge)
         new = new._replace(x=edge[0], y=edge[1], normal=(-edge[0] / size, -edge[1] / size))
     twist = Twist(*relative[3:])
-    return twist, solve_impact(body._replace(old=old if stands else None, new=new), twist)
+    return twist, solve_impact(body._replace(old=old if stands else None, new=new), twist, restitution="energetic")
 
 
 CASES = {
