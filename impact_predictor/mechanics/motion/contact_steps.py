@@ -11,8 +11,9 @@ from math import sqrt
 from .reactions import OPEN, STICKS, Floats, Model, Stance, coulomb, locate, rates, share
 
 _SWEEPS = 60
-_CONVERGED = 1e-7
-"""Change of a velocity in one sweep that ends them, relative to the scale of speeds."""
+_CONVERGED = 1e-4
+"""Change of a velocity in one sweep that ends them, relative to the scale of speeds: less than what a step errs by, and
+the next step begins with the impulses that this one found."""
 
 
 def advance(time: float, h: float, y: Floats, k: Floats, offsets: Floats, model: Model, stance: Stance) -> None:

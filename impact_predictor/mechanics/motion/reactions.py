@@ -393,8 +393,15 @@ def coulomb(blocks: Floats, o: int, bx: float, by: float, bz: float, friction: f
             return fx, fy, fz
         normal = -bz / lever
         drag = friction * normal
-        ex = drag * dx + pace * (bx + normal * xz - drag * (xx * dx + xy * dy))
-        ey = drag * dy + pace * (by + normal * yz - drag * (xy * dx + yy * dy))
+        ax = bx + normal * xz - drag * (xx * dx + xy * dy)
+        ay = by + normal * yz - drag * (xy * dx + yy * dy)
+        # Newton's step to the direction along which it is accelerated, or, away from it, a projection.
+        stiff, along = drag * (xx * dy * dy - 2.0 * xy * dx * dy + yy * dx * dx), ax * dx + ay * dy
+        turn = (ay * dx - ax * dy) / (stiff + along) if stiff + 2.0 * along > 0.0 else 2.0
+        if abs(turn) <= 1.0:
+            ex, ey = dx - turn * dy, dy + turn * dx
+        else:
+            ex, ey = drag * dx + pace * ax, drag * dy + pace * ay
         size = sqrt(ex * ex + ey * ey)
         if size == 0.0:
             break
