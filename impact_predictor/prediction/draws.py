@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ..mechanics.impact.spatial_body import ANSWER, BODY, CONTACT, RESULT, determinant
 from ..mechanics.types import ContactState, Mode
-from .planar import mode_of
+from .planar import hardly, mode_of
 from .scene import Scene
 from .types import Covariance, Sample, SpatialTwist, Vector3
 from .uncertainty import factor_of, normal_points, product
@@ -108,7 +108,8 @@ class Draws:
         normals = (of_each[:, :, :6].reshape(count, n, 2, 3) * self._normal).sum(axis=3).tolist()
         slips = (of_each[:, :, 6] == SLIPS).tolist()
         numbers = problem.tolist()
-        soft, blur = mobilities(numbers, n), self._blur(numbers, n)
+        # What leaves more slowly than gravity takes back in a contact time does not lift.
+        soft, blur, slow = mobilities(numbers, n), self._blur(numbers, n), hardly(self._scene)
         modes, weights, lifts = [], [0.0] * len(Mode), [0.0] * n
         for along, slipping in zip(normals, slips, strict=True):
             # What holds would go into its support by as much as its impulse takes it back.
@@ -117,12 +118,12 @@ class Draws:
                 rate if rate > least else -mobility * push for (push, rate), mobility in zip(along, soft, strict=True)
             ]
             for i in range(n):
-                lifts[i] += over(margins[i], blur) / count
+                lifts[i] += over(margins[i] - slow, blur) / count
             found = []
             for begin, end in ((0, standing), (standing, n)):
                 rate = total(rates[begin:end]) / (end - begin) if end > begin else inf
                 margin = rate if rate > least else total([min(0.0, one) for one in margins[begin:end]]) / (end - begin)
-                found.append((rate > least, True in slipping[begin:end], over(margin, blur)))
+                found.append((rate > least, True in slipping[begin:end], over(margin - slow, blur)))
             (old_lifts, old_slips, old), (new_lifts, new_slips, new) = found
             modes.append(mode_of(old_lifts, new_lifts, old_slips, new_slips))
             weights[Mode.FLIGHT] += old * new / count
