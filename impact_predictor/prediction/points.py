@@ -90,7 +90,7 @@ class PointContacts(Contacts):
             status = self._place_of(sample, posture)
             if status is not Status.ACCEPTED:
                 return status
-        if self._spatial is not None and self._spatial.learns_gaps:
+        if self._spatial is not None:
             self._spatial.watch(posture)
         self.stamp = sample.stamp
         self._moment = moment

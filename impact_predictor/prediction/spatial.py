@@ -75,8 +75,9 @@ ENOUGH = 100
 """Gaps of standing points from which on their scatter is known."""
 
 PLANAR = 1e-3
-"""A touchdown is planar whose motion across its plane is below this part of the new contact's approach, the pull there
-below this part of the whole, and whose contacts and inertia lie as near to the plane: there both laws agree to that."""
+"""A touchdown is planar whose motion across its plane, with what pulls it there until then, is below this part of the
+new contact's approach, and whose contacts and inertia lie as near to the plane: there both laws agree to that. Motion
+and gaps are also those of a plane where they cannot be told from it: within `SLACK` deviations of standing points."""
 
 STATES = tuple(ContactState)
 
@@ -132,8 +133,8 @@ class SpatialModel:
         self._law = number_of(scene.law)
         self.gap_deviation = scene.gap_deviation if scene.gap_deviation >= 0.0 else 0.1 * scene.tolerance
         """Standard deviation of the gaps in m, as far as it is known."""
-        self.learns_gaps = scene.samples > 0 and scene.gap_deviation < 0.0
-        self._seen, self._mean, self._squares = 0, 0.0, 0.0
+        self._seen, self._mean, self._squares, self._speeds = 0, 0.0, 0.0, 0.0
+        self._scatter = 0.0, 0.0
         self._draws: Draws | None = None
         if scene.samples:
             from .draws import Draws
@@ -141,16 +142,21 @@ class SpatialModel:
             self._draws = Draws(scene, self._solve)
 
     def watch(self, posture: Posture) -> None:
-        """Learn how far the gaps of points that stand scatter: so far are those of the others uncertain."""
-        slow, tolerance = hardly(self._scene), self._scene.tolerance
-        for gap, rate in zip(posture.gaps, posture.rates, strict=True):
-            if -tolerance <= gap <= tolerance and -slow <= rate <= slow:
+        """Learn how far gaps and rates of points that stand scatter: so far are those of the others uncertain."""
+        slow, tolerance, rates = hardly(self._scene), self._scene.tolerance, posture.rates
+        if not -slow <= min(rates) <= max(rates) <= slow:
+            return
+        for gap, rate in zip(posture.gaps, rates, strict=True):
+            if -tolerance <= gap <= tolerance:
                 self._seen += 1
                 change = gap - self._mean
                 self._mean += change / self._seen
                 self._squares += change * (gap - self._mean)
+                self._speeds += rate * rate
         if self._seen >= ENOUGH:
-            self.gap_deviation = sqrt(self._squares / self._seen)
+            self._scatter = sqrt(self._squares / self._seen), sqrt(self._speeds / self._seen)
+            if self._scene.gap_deviation < 0.0:
+                self.gap_deviation = self._scatter[0]
 
     def is_planar(self, sample: Sample, posture: Posture, contacts: ActiveContacts, gravity: Vector3) -> bool:
         """Whether a touchdown that a sample shows on some contacts is one in the impact plane.
@@ -160,11 +166,15 @@ class SpatialModel:
         scene, old, new = self._scene, contacts.old, contacts.new
         gaps = [posture.gaps[i] for i in new]
         approach = -total([posture.rates[i] for i in new]) / len(new)
-        least = PLANAR * approach
-        if max(gaps) - min(gaps) > least * scene.merge or (len(old) > 1 and len(new) == 1):
+        # What standing points show of both at rest is not told from none.
+        gap, rate = self._scatter
+        least = max(PLANAR * approach, SLACK * rate)
+        if max(gaps) - min(gaps) > max(PLANAR * approach * scene.merge, SLACK * gap) or (
+            len(old) > 1 and len(new) == 1
+        ):
             return False
         plane = plane_of(scene, self._points, sample, posture, contacts, gravity)
-        if abs(plane.gravity[2]) > PLANAR * sqrt(dot(gravity, gravity)):
+        if abs(plane.gravity[2]) * max(0.0, *gaps) > least * approach:
             return False
         reach = sqrt(plane.new[0] * plane.new[0] + plane.new[1] * plane.new[1])
         for group in (old, new):

@@ -1,0 +1,196 @@
+"""What draws over gaps, twist and coefficients say of impacts in three dimensions."""
+
+from __future__ import annotations
+
+import sys
+from typing import Any
+
+import numpy as np
+import pytest
+from bodies_in_space import ALIKE, CUBE, HALF, MASS, MERGE, PULL, RESTITUTION, SLOW, Somewhere, somewhere, state_of
+from newton_in_space import tensor
+from scipy.spatial.transform import Rotation
+
+from impact_predictor.mechanics.impact.spatial import Body, ContactPoints, solve_spatial_impacts
+from impact_predictor.mechanics.motion.spatial import SpatialState
+from impact_predictor.mechanics.types import ContactState, Mode
+from impact_predictor.prediction.planar import posture_of
+from impact_predictor.prediction.predictor import Predictor
+from impact_predictor.prediction.scene import Scene
+from impact_predictor.prediction.spatial import SpatialModel
+from impact_predictor.prediction.types import Covariance, Sample, Touchdown
+
+DRAWN: dict[str, Any] = {"samples": 32, "gap_deviation": 5e-4, "friction_deviation": 0.05, "restitution_deviation": 0.1}
+
+
+def falling(seed: int) -> tuple[Somewhere, SpatialState]:
+    rng = np.random.default_rng(seed)
+    spin, velocity = 5.0 * rng.normal(size=3), [*rng.normal(size=2), -0.8]
+    return somewhere(seed, CUBE), state_of(0.12, Rotation.random(random_state=rng), velocity, spin)
+
+
+def even_edge() -> tuple[Somewhere, SpatialState]:
+    """A cube whose lowest edge is level, symmetric about the plane across it."""
+    return somewhere(3, CUBE, inertia=ALIKE), state_of(
+        0.1, Rotation.from_rotvec([0.0, 0.4, 0.0]), [0.2, 0.0, -1.0], [0.0, 1.0, 0.0]
+    )
+
+
+def announced(placed: Somewhere, start: SpatialState, covariance: Any = (), **changes: Any) -> Touchdown:
+    sample = placed.sample(0.0, np.concatenate(start))._replace(twist_covariance=covariance)
+    touchdown = Predictor(placed.scene(**changes)).update(sample).touchdown
+    assert touchdown is not None
+    return touchdown
+
+
+def spread_by(deviation: float) -> tuple[float, ...]:
+    return tuple((deviation**2 * np.diag([1.0, 1.0, 1.0, 100.0, 100.0, 100.0])).ravel().tolist())
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_the_probabilities_of_modes_sum_to_one_and_lifts_are_probabilities(seed: int) -> None:
+    touchdown = announced(*falling(seed), spread_by(0.02), **DRAWN)
+    assert touchdown.uncertainty is not None
+    assert sum(touchdown.uncertainty.probabilities) == pytest.approx(1.0, abs=1e-12)
+    assert min(touchdown.uncertainty.probabilities) >= 0.0
+    lifts = [contact.lift_probability for contact in touchdown.contacts]
+    assert all(lift is not None and 0.0 <= lift <= 1.0 for lift in lifts)
+    assert touchdown.uncertainty.probabilities[touchdown.mode] > 0.0
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_deviations_of_zero_change_nothing(seed: int) -> None:
+    placed, start = falling(seed)
+    told = announced(placed, start, gap_deviation=0.0)
+    drawn = announced(placed, start, gap_deviation=0.0, samples=32)
+    assert drawn.uncertainty is not None
+    contacts = tuple(contact._replace(lift_probability=None) for contact in drawn.contacts)
+    assert drawn._replace(uncertainty=None, contacts=contacts) == told
+    assert drawn.uncertainty.deviation == (0.0, 0.0, 0.0)
+
+
+def test_deviations_of_zero_cost_one_impact(monkeypatch: pytest.MonkeyPatch) -> None:
+    counts: list[int] = []
+    solve = SpatialModel._solve
+
+    def counted(self: SpatialModel, problems: Any, *others: Any) -> None:
+        counts.append(len(problems))
+        solve(self, problems, *others)
+
+    monkeypatch.setattr(SpatialModel, "_solve", counted)
+    announced(*falling(1), gap_deviation=0.0, samples=32)
+    assert counts == [1]
+
+
+def test_the_corners_of_an_even_edge_lift_as_likely_as_each_other() -> None:
+    touchdown = announced(*even_edge(), samples=32, gap_deviation=1e-3, law_deviation=0.0)
+    first, second = touchdown.contacts
+    assert first.lift_probability == pytest.approx(second.lift_probability, abs=1e-9)
+    assert touchdown.uncertainty is not None
+    # What the order turns the body by to one side in half of the draws it turns it by to the other in the rest.
+    _, _, omega = touchdown.uncertainty.deviation
+    assert omega > 0.0
+
+
+def test_what_is_told_is_the_mean_over_the_draws_of_the_likeliest_mode() -> None:
+    """In all draws of this fall the one corner leaves, so that it is the mean of all of them."""
+    placed, start = falling(2)
+    touchdown = announced(placed, start, spread_by(1e-3), samples=64, gap_deviation=0.0)
+    assert touchdown.uncertainty is not None
+    assert touchdown.after == pytest.approx(touchdown.uncertainty.mean, abs=1e-9)
+
+
+def test_the_covariance_is_that_of_a_big_sample() -> None:
+    placed, start = falling(4)
+    deviation = 0.005
+    told = announced(placed, start, spread_by(deviation), samples=64, gap_deviation=0.0, center_of_mass=placed.center)
+    assert told.uncertainty is not None
+    assert told.uncertainty.given is Covariance.USED
+    course = placed.newton({}).strike(start, 0.6)
+    turn = Rotation.from_quat(course.state[3:7])
+    at_sample = placed.pose(np.concatenate(start))[1]
+    own = at_sample.apply(np.eye(3))
+    noise = deviation * np.random.default_rng(0).normal(size=(20000, 6)) * [1.0, 1.0, 1.0, 10.0, 10.0, 10.0]
+    spin = noise[:, 3:] @ own
+    linear = noise[:, :3] @ own + np.cross(spin, at_sample.apply(placed.center))
+    twists = course.state[7:13] + np.hstack([placed.support.inv().apply(linear), placed.support.inv().apply(spin)])
+    body = Body(MASS, MASS * turn.as_matrix() @ tensor(placed.inertia) @ turn.as_matrix().T)
+    arm = turn.apply(placed.points)[[course.point]]
+    slow = SLOW * float(np.linalg.norm(PULL.gravity))
+    contacts = ContactPoints(arm, placed.friction, RESTITUTION)
+    after = solve_spatial_impacts(body, contacts, twists, merge=MERGE, threshold=slow).twist
+    now = placed.pose(course.state)[1].inv()
+    spins = now.apply(placed.support.apply(after[:, 3:]))
+    velocities = now.apply(placed.support.apply(after[:, :3])) - np.cross(spins, placed.center)
+    expected = np.cov(np.hstack([velocities, spins]).T)
+    scale = np.sqrt(np.outer(expected.diagonal(), expected.diagonal()))
+    found = np.reshape(told.uncertainty.twist_covariance, (6, 6))
+    assert (found - expected) / scale == pytest.approx(np.zeros((6, 6)), abs=0.15)
+
+
+def test_a_contact_that_leaves_faster_lifts_more_likely() -> None:
+    placed, start = falling(2)
+    found = []
+    for restitution in np.linspace(0.0, 1.0, 6):
+        touchdown = announced(placed, start, samples=16, gap_deviation=0.0, restitution=float(restitution))
+        (contact,) = touchdown.contacts
+        rate = float(np.dot(contact.velocity, placed.scene().normal))
+        found.append((rate, contact.lift_probability))
+    assert found == sorted(found)
+    assert found[0][1] < 0.5 < found[-1][1]
+
+
+@pytest.mark.parametrize("first", [(-1.0, 0.0), (1e30, 0.0), (1.0, 0.5)], ids=["negative", "huge", "askew"])
+def test_an_odd_covariance_is_refused_and_leaves_numbers(first: tuple[float, float]) -> None:
+    covariance = first + 34 * (0.0,)
+    touchdown = announced(*falling(3), covariance, **DRAWN)
+    assert touchdown.uncertainty is not None
+    assert touchdown.uncertainty.given is Covariance.REFUSED
+    assert np.isfinite([*touchdown.uncertainty.probabilities, *touchdown.after, *touchdown.linear]).all()
+    assert touchdown.uncertainty.twist_covariance == covariance
+
+
+def test_draws_have_the_same_bits_with_numba_and_without(monkeypatch: pytest.MonkeyPatch) -> None:
+    from impact_predictor.mechanics.impact import spatial
+    from impact_predictor.mechanics.motion import spatial as motion
+
+    compiled = [announced(*falling(seed), spread_by(0.02), **DRAWN) for seed in range(2)]
+    prepared = spatial.solvers, motion.solver
+    try:
+        for one in prepared:
+            one.cache_clear()
+        monkeypatch.setitem(sys.modules, "numba", None)  # an import of it fails
+        assert [announced(*falling(seed), spread_by(0.02), **DRAWN) for seed in range(2)] == compiled
+    finally:
+        for one in prepared:
+            one.cache_clear()
+
+
+def resting(count: int, deviation: float) -> tuple[Scene, list[Sample]]:
+    placed, rng = somewhere(6, CUBE), np.random.default_rng(6)
+    flat, samples = Rotation.identity(), []
+    for _ in range(count):
+        samples.append(placed.sample(0.0, np.concatenate(state_of(HALF, flat, 3 * [0.0], 3 * [0.0]))))
+        x, y, z = np.add(samples[-1].position, deviation * rng.normal() * np.array(placed.scene().normal)).tolist()
+        samples[-1] = samples[-1]._replace(position=(x, y, z))
+    return placed.scene(tolerance=0.005, samples=16), samples
+
+
+def test_the_deviation_of_the_gaps_is_learnt_from_points_that_stand() -> None:
+    scene, samples = resting(200, 8e-4)
+    model = SpatialModel(scene, scene.points)
+    assert model.gap_deviation == pytest.approx(5e-4)  # a tenth of the tolerance
+    for sample in samples:
+        model.watch(posture_of(scene, scene.points, sample))
+    assert model.gap_deviation == pytest.approx(8e-4, rel=0.15)
+    told = SpatialModel(scene._replace(gap_deviation=3e-4), scene.points)
+    for sample in samples:
+        told.watch(posture_of(scene, scene.points, sample))
+    assert told.gap_deviation == 3e-4
+
+
+def test_a_mode_is_one_that_a_draw_has() -> None:
+    for seed in range(8):
+        touchdown = announced(*falling(seed), **DRAWN)
+        leaves = touchdown.contacts[0].state is ContactState.LEAVES
+        assert len(touchdown.contacts) > 1 or (touchdown.mode is Mode.FLIGHT) is leaves
