@@ -26,7 +26,7 @@ FITTED: Final = ("friction", "restitution", "merge")
 """What is fitted whether it is asked for or not."""
 
 
-class Range(NamedTuple):
+class CoefficientRange(NamedTuple):
     """Of a coefficient: its least and greatest value, a step that changes it little, and the width of an interval
     beyond which it is not known: a book tells it as well.
     """
@@ -52,10 +52,10 @@ PROFILES: Final = {
 }
 
 RANGES: Final = {
-    "friction": Range(0.0, 100.0, 5e-3, 0.2),
-    "restitution": Range(0.0, 1.0, 5e-3, 0.3),
-    "exponent": Range(-1.0, 1.0, 1e-2, 0.4),
-    "radius": Range(0.0, 2e-2, 2e-4, 5e-3),
+    "friction": CoefficientRange(0.0, 100.0, 5e-3, 0.2),
+    "restitution": CoefficientRange(0.0, 1.0, 5e-3, 0.3),
+    "exponent": CoefficientRange(-1.0, 1.0, 1e-2, 0.4),
+    "radius": CoefficientRange(0.0, 2e-2, 2e-4, 5e-3),
 }
 
 COARSE: Final = (0.0, 0.05, 0.1, 0.16, 0.24, 0.32, 0.44, 0.64, 1.0, 2.0, 100.0), (0.0, 0.1, 0.25, 0.5, 1.0)
@@ -120,7 +120,9 @@ def calibrate(
         )
     given = Coefficients(*known.pop())
     wanted = [*FITTED, *asked]
-    fit = Fit(touchdowns, blocks_of(records), given, [name for name in wanted if name in RANGES], seed, tell)
+    fit = CoefficientSearch(
+        touchdowns, blocks_of(records), given, [name for name in wanted if name in RANGES], seed, tell
+    )
     given_errors = lengths(fit.solver.misses(given))
     fit.search(fit.rough(given))
     profiles = {name: fit.profile(name) for name in wanted if name in PROFILES}
@@ -143,7 +145,7 @@ def calibrate(
     )
 
 
-class Fit:
+class CoefficientSearch:
     """The search for the coefficients `names`; `best` are the best so far, of which those change that are `free`."""
 
     def __init__(

@@ -27,6 +27,7 @@ FLAGS: Final = {
     Flag.INVALID_INPUT: "a number is out of range",
     Flag.THIN_BODY: "so thin a body bends while it strikes and rebounds; rigid theory does not know that",
     Flag.SLOW_IMPACT: "so weak an impact that gravity matters while it lasts; rigid theory leaves gravity out",
+    Flag.NOT_CONVERGED: "the impulses in three dimensions still changed when the sweeps ended; the answer is near",
 }
 MARGINS: Final = {
     "friction": ("friction of the contacts", "friction", ""),
