@@ -302,6 +302,11 @@ class SpatialModel:
             contacts = [
                 contact._replace(lift_probability=chance) for contact, chance in zip(contacts, drawn.lifts, strict=True)
             ]
+            if drawn.twists.shape[1] > 1:
+                contacts = [
+                    moving(contact, add(after.linear, cross(after.angular, arm)), scene.normal, RESTS * speed)
+                    for contact, arm in zip(contacts, collision.arms, strict=True)
+                ]
         else:
             mode = mode_of_contacts(contacts[: len(old)], contacts[len(old) :], scene.normal, RESTS * speed)
         plane = self._plane(collision)
@@ -445,6 +450,16 @@ def prepare() -> None:
     fall(still, (1.0, 1.0, 1.0, 0.0, 0.0, 0.0), [ORIGIN], horizon=1e-3)
     problem, answer = np.zeros((1, BODY + CONTACT)), np.zeros((1, ANSWER + RESULT))
     solvers().bodies(1, problem, False, 0.0, 0.0, 1, answer, np.zeros(1, np.int64), *workspace(1))
+
+
+def moving(contact: PointOutcome, velocity: Vector3, normal: Vector3, least: float) -> PointOutcome:
+    """A contact of a body with the mean twist of some draws: what approaches in it has not closed in all of them."""
+    rate, state = dot(normal, velocity), contact.state
+    if rate < -least:
+        state = ContactState.NEARS
+    elif rate > least or state is ContactState.NEARS:
+        state = ContactState.LEAVES
+    return contact._replace(velocity=velocity, state=state)
 
 
 def frame_of(normal: Vector3) -> Quaternion:

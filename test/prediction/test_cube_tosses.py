@@ -13,6 +13,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from impact_predictor.bags.read import read_messages
+from impact_predictor.mechanics.types import ContactState, Flag
 from impact_predictor.parameters.file import read_parameters
 from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction.predictor import Predictor
@@ -120,11 +121,13 @@ def test_no_touchdown_is_settled_twice(record: Record) -> None:
     """The source averages, so the sample in which an impact lies still shows half of the approach."""
     last: dict[int, int] = {}
     for score in sorted(record.scores, key=lambda score: score.stamp):
+        if score.leftover & Leftover.TOO_SLOW:
+            continue  # it comes to rest, in impacts that may be as near to each other
         for point in score.touchdown.new:
             assert score.stamp - last.get(point, 0) > 0.9e9 * PERIOD
             last[point] = score.stamp
     stamps = sorted(score.stamp for score in scored(record.scores))
-    assert min(late - early for early, late in pairwise(stamps)) > 30_000_000
+    assert min(late - early for early, late in pairwise(stamps)) > 25_000_000
 
 
 def test_touchdowns_are_announced_on_time(record: Record) -> None:
@@ -137,3 +140,22 @@ def test_touchdowns_are_announced_on_time(record: Record) -> None:
             late += [stamp - end for new, end in ends if new == answer.touchdown.new and abs(stamp - end) < 50_000_000]
     assert len(late) >= 150
     assert np.median(np.abs(late)) <= 0.5e9 * PERIOD
+
+
+def test_no_point_of_what_is_told_approaches_its_support_but_one_that_has_not_closed(record: Record) -> None:
+    told = 0
+    for answer in record.answers:
+        touchdown = answer.touchdown
+        if touchdown is None or not touchdown.contacts:
+            continue
+        told += 1
+        spin = np.linalg.norm(touchdown.before_6d.angular)
+        speed = np.linalg.norm(touchdown.before_6d.linear) + 0.05 * spin
+        places = Rotation.from_quat(touchdown.orientation).apply(
+            np.array(record.scene.points) - record.scene.center_of_mass
+        )
+        for contact in touchdown.contacts:
+            spun = np.cross(touchdown.after_6d.angular, places[contact.point])
+            rate = np.dot(record.scene.normal, touchdown.after_6d.linear + spun)
+            assert rate > -1e-4 * speed or contact.state is ContactState.NEARS or touchdown.flags & Flag.NOT_CONVERGED
+    assert told > 15000
