@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import click
 
+from ..mechanics.compiled import told_of_compiling
 from ..wording import listed
 
 if TYPE_CHECKING:
@@ -69,28 +70,9 @@ def progress(label: str, unit: str = "samples", total: int | None = None) -> Ite
         bar.stop()
 
 
-@contextmanager
-def compiling_is_said() -> Iterator[None]:
+def compiling_is_said() -> AbstractContextManager[None]:
     """Say so when numba compiles meanwhile, instead of taking what it compiled before."""
-    try:
-        from numba.core import event
-    except ImportError:
-        yield
-        return
-
-    class Say(event.Listener):
-        said = False
-
-        def on_start(self, event: Any) -> None:
-            if not self.said:
-                self.said = True
-                click.echo(COMPILING, err=True)
-
-        def on_end(self, event: Any) -> None:
-            """Nothing is said then."""
-
-    with event.install_listener("numba:compile", Say()):
-        yield
+    return told_of_compiling(lambda: click.echo(COMPILING, err=True))
 
 
 def say_unfinished(outputs: Sequence[Path | None], scheduler: str | None = None) -> None:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from hashlib import sha256
 from inspect import getmembers, getsource, isfunction
 from types import ModuleType
@@ -71,3 +72,27 @@ def fill(given: Any, values: Any) -> None:
             fill(array, part)
     elif isinstance(given, np.ndarray):
         given[...] = values
+
+
+@contextmanager
+def told_of_compiling(tell: Callable[[], None]) -> Iterator[None]:
+    """Tell once when numba compiles meanwhile, instead of taking what it compiled before."""
+    try:
+        from numba.core import event
+    except ImportError:
+        yield
+        return
+
+    class Teller(event.Listener):
+        told = False
+
+        def on_start(self, event: Any) -> None:
+            if not self.told:
+                self.told = True
+                tell()
+
+        def on_end(self, event: Any) -> None:
+            """Nothing is told then."""
+
+    with event.install_listener("numba:compile", Teller()):
+        yield

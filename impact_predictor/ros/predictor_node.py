@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from array import array
 from collections.abc import Mapping, Sequence
+from contextlib import nullcontext
 from difflib import get_close_matches
 from itertools import chain
 from typing import Any, Final
@@ -17,6 +18,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter as NodeParameter
 
 from ..errors import InputError
+from ..mechanics.compiled import told_of_compiling
 from ..parameters.validation import Parameter, Value, check_change, is_of_every_node, parameter_of, validate
 from ..prediction.monitor import Monitor
 from ..prediction.scene import ODOM, Scene, inputs_of, scenes_of
@@ -50,10 +52,13 @@ class PredictorNode(Node):
                 raise InputError("a parameter is given as [], which ROS reads as no value; leave it out") from error
             raise InputError(f"ROS refuses to make the node: {sentence(error)}") from error
 
+    def _tell_compiling(self) -> None:
+        self.get_logger().info("numba compiles the impact laws, once for a machine: half a minute")
+
     def _connect(self, scenes: dict[str, Scene]) -> None:
-        if any(scene.samples or not scene.radius for scene in scenes.values()):
-            self.get_logger().info("preparing the impact laws; where numba is, it compiles them once, about 20 s")
-        self._monitor = Monitor(scenes)
+        compiles = any(scene.samples or not scene.radius for scene in scenes.values())
+        with told_of_compiling(self._tell_compiling) if compiles else nullcontext():
+            self._monitor = Monitor(scenes)
         # Each subscription that tells what was lost costs the single-threaded executor as much as another topic.
         counts_losses = self.executor_kind == "events" or len(scenes) == 1
         self._reporter = reporter = Reporter(self, self._monitor, counts_losses)
