@@ -482,3 +482,20 @@ def test_a_body_dropped_without_turning_is_foreseen_in_three_dimensions() -> Non
     impulse = speed / (0.5 + lever @ np.linalg.solve(inertia, lever))
     assert touchdown.impulses[1] == pytest.approx((impulse, 0.0), abs=CLOSE)
     assert touchdown.after.vy == pytest.approx(impulse / 2.0 - speed, abs=CLOSE)
+
+
+@pytest.mark.parametrize("kind", BODIES)
+def test_both_laws_agree_where_one_takes_over_from_the_other(kind: str) -> None:
+    """Less motion across the plane than the border allows, and more; the steps of the law in space err by 3 %."""
+    placed = anywhere(BODIES[kind], 3)
+    if placed.body.old is None:
+        placed = placed._replace(tensor=np.diag([1.1, 1.3, 1.0]) * placed.body.inertia)
+    end, at = placed.body.motion()
+    planar = announced(placed, end - 0.002)
+    approach = -float(np.dot(placed.plane.apply([0.0, 1.0, 0.0]), planar.before_6d.linear))
+    approach += planar.half_distance * 2.0 * abs(planar.before.omega) if planar.old else 0.0
+    beside = [announced(placed._replace(lateral=part * 1e-3 * abs(approach)), end - 0.002) for part in (0.1, 3.0)]
+    assert [bool(touchdown.segments) for touchdown in beside] == [True, False]
+    for touchdown in beside:
+        assert touchdown.mode is planar.mode
+        assert touchdown.after == pytest.approx(tuple(planar.after), abs=0.03 * (abs(planar.before.omega) + 1.0))
