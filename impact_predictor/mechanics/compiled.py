@@ -9,8 +9,6 @@ from inspect import getmembers, getsource, isfunction
 from types import ModuleType
 from typing import Any, TypeVar, cast
 
-import numpy as np
-
 Function = TypeVar("Function", bound=Callable[..., object])
 
 
@@ -63,14 +61,14 @@ def on_lists(function: Callable[..., Any]) -> Callable[..., Any]:
 def as_lists(given: Any) -> Any:
     if isinstance(given, tuple):
         return tuple(map(as_lists, given))
-    return given.tolist() if isinstance(given, np.ndarray) else given
+    return given.tolist() if hasattr(given, "tolist") else given
 
 
 def fill(given: Any, values: Any) -> None:
     if isinstance(given, tuple):
         for array, part in zip(given, values, strict=True):
             fill(array, part)
-    elif isinstance(given, np.ndarray):
+    elif hasattr(given, "tolist"):
         given[...] = values
 
 
