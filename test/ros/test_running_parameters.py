@@ -44,7 +44,8 @@ def sample(k, frame="cube"):
 
 
 def scene_with(**changes):
-    return scenes_of(validate({**GIVEN, **changes}))
+    # Each of the samples has the twist in it, and all of them the same pose.
+    return scenes_of(validate({**GIVEN, "odom.twist": "message", **changes}))
 
 
 def answer(scenes, *samples):
