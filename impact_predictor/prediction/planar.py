@@ -84,11 +84,12 @@ def center_of(scene: Scene, sample: Sample, posture: Posture) -> Vector3:
     return add(sample.position, to_world(posture.axes, scene.center_of_mass))
 
 
-def contacts_of(scene: Scene, posture: Posture) -> ActiveContacts | None:
+def contacts_of(scene: Scene, posture: Posture, slack: float = 0.0) -> ActiveContacts | None:
     """Which points stand and which strike next; None where no point approaches.
 
     A point approaches faster than gravity moves it within the contact time; points that close within the contact time
-    after the first one strike together with it. Where the first one hardly moves yet, none is known to strike next.
+    after the first one strike together with it, or would if their gaps were less by `slack` (m), in which these cannot
+    be told. Where the first one hardly moves yet, none is known to strike next.
     """
     gaps, rates = posture.gaps, posture.rates
     slowest, tolerance = -hardly(scene), scene.tolerance
@@ -106,7 +107,7 @@ def contacts_of(scene: Scene, posture: Posture) -> ActiveContacts | None:
     base = total([gaps[i] for i in old]) / len(old) if old else 0.0
     due = [(base - gaps[i]) / rates[i] for i in closing]
     last = max(0.0, min(due)) + scene.contact_time
-    new = [i for i, time in zip(closing, due, strict=True) if time <= last]
+    new = [i for i, time in zip(closing, due, strict=True) if time + slack / rates[i] <= last]
     if min([rates[i] for i in new]) >= slowest:
         return None
     return ActiveContacts(tuple(old), tuple(new))

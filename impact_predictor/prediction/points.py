@@ -253,7 +253,7 @@ def collision_of(
     Over a moving support the sample is seen from there, and `moment` is the support at its stamp. Without a `spatial`
     model the collision is one in the impact plane, which leaves out what goes across it.
     """
-    contacts = contacts_of(scene, posture)
+    contacts = contacts_of(scene, posture, 0.0 if spatial is None else spatial.slack)
     if contacts is None:
         return None
     gravity, uniform = scene.gravity, True

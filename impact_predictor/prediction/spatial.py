@@ -135,6 +135,8 @@ class SpatialModel:
         """Standard deviation of the gaps in m, as far as it is known."""
         self._seen, self._mean, self._squares, self._speeds = 0, 0.0, 0.0, 0.0
         self._scatter = 0.0, 0.0
+        self.slack = 0.0
+        """Difference of gaps in m that cannot be told from none, as far as it is known."""
         self._draws: Draws | None = None
         if scene.samples:
             from .draws import Draws
@@ -155,6 +157,7 @@ class SpatialModel:
                 self._speeds += rate * rate
         if self._seen >= ENOUGH:
             self._scatter = sqrt(self._squares / self._seen), sqrt(self._speeds / self._seen)
+            self.slack = SLACK * self._scatter[0]
             if self._scene.gap_deviation < 0.0:
                 self.gap_deviation = self._scatter[0]
 
@@ -167,11 +170,8 @@ class SpatialModel:
         gaps = [posture.gaps[i] for i in new]
         approach = -total([posture.rates[i] for i in new]) / len(new)
         # What standing points show of both at rest is not told from none.
-        gap, rate = self._scatter
-        least = max(PLANAR * approach, SLACK * rate)
-        if max(gaps) - min(gaps) > max(PLANAR * approach * scene.merge, SLACK * gap) or (
-            len(old) > 1 and len(new) == 1
-        ):
+        least = max(PLANAR * approach, SLACK * self._scatter[1])
+        if max(gaps) - min(gaps) > max(PLANAR * approach * scene.merge, self.slack) or (len(old) > 1 and len(new) == 1):
             return False
         plane = plane_of(scene, self._points, sample, posture, contacts, gravity)
         if abs(plane.gravity[2]) * max(0.0, *gaps) > least * approach:
