@@ -159,8 +159,8 @@ class PointContacts(Contacts):
             return
         if self.scene.deck is not None:
             self.size = hypot(*edge_of(list(self.points)))
-        if self.is_spatial and len(self.points) > PLANE:
-            self._spatial = SpatialModel(self.scene, self.points)
+        is_spatial = self.is_spatial and len(self.points) > PLANE
+        self._spatial = SpatialModel(self.scene, self.points) if is_spatial else None
 
     def _place_of(self, sample: Sample, posture: Posture) -> Status:
         """Whether a body can be where it is seen on a moving support."""

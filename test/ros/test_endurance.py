@@ -113,7 +113,8 @@ def test_whatever_happens_to_clocks_and_order_the_node_answers_like_the_library_
 @pytest.mark.slow
 @pytest.mark.parametrize("executor", ["single", "events"])
 def test_contact_points_that_change_in_mid_flight_count_from_the_next_sample_on(peer, toss, executor):
-    with running_node(SCENE, *EVERY_SAMPLE, "-p", f"executor:={executor}") as node:
+    moving = ("-p", "odom.twist:=message")  # its samples have one pose
+    with running_node(SCENE, *EVERY_SAMPLE, *moving, "-p", f"executor:={executor}") as node:
         shapes = peer.connected(peer.publisher(PolygonStamped, "contact_geometry", RELIABLE))
         samples = peer.connected(peer.publisher(Odometry, "odom", RELIABLE))
         tilted = (0.0, math.sin(0.05), 0.0, math.cos(0.05))
