@@ -15,7 +15,6 @@ from typing import Any
 import numpy as np
 import pytest
 from newton_in_space import Newton, numbers_of, tensor
-from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
 from impact_predictor.mechanics.motion import Fall, PlanarState, next_touchdown
@@ -25,10 +24,7 @@ from impact_predictor.mechanics.motion.spatial import (
     SpatialState,
     fall,
     fall_on_lists,
-    go_on,
-    go_on_lists,
     solver,
-    stepper,
 )
 
 GOLDEN = json.loads((Path(__file__).parent / "golden" / "motion.json").read_text())
@@ -309,70 +305,6 @@ def test_random_stances_give_finite_touchdowns_above_the_support() -> None:
             assert min(free) > -1e-6 * EDGE or found.time == 0.0
 
 
-def test_after_a_touchdown_a_free_body_flies_on_by_eulers_equations() -> None:
-    draw = random.Random(8)
-    for pull in (Pull(), DECK):
-        start = in_flight(draw)._replace(position=(0.0, 0.0, 2.0))
-        times = (0.0, 0.05, 0.1)
-        course = solve_ivp(
-            Newton(GENERAL, CUBE, {}, 0.0, pull).rates, (0.0, 0.1), unit(start), "DOP853", times, rtol=1e-12
-        )
-        for found, expected in zip(
-            go_on(start, GENERAL, CUBE, times, (), 0.2, pull, step=1e-4), course.y.T, strict=True
-        ):
-            assert numbers_of(found) == pytest.approx(expected, abs=2e-3)
-
-
-def unit(state: SpatialState) -> Any:
-    numbers = numbers_of(state)
-    numbers[3:7] /= np.linalg.norm(numbers[3:7])
-    return numbers
-
-
-def test_a_block_that_lands_flat_stays_down_slides_and_stops() -> None:
-    state = SpatialState((0.0, 0.0, 0.6 * EDGE), FLAT, (1.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-    landing = math.sqrt(2.0 * 0.1 * EDGE / 9.81)
-    # The impulse of landing takes friction times the speed of landing from the slip.
-    speed, brake = 1.0 - 0.3 * 9.81 * landing, 0.3 * 9.81
-    stop = landing + speed / brake
-    times = (landing + 1e-3, landing + 0.1, stop, stop + 0.1)
-    states = go_on(state, ALIKE, CUBE, times, (), 0.3)
-    for time, found in zip(times, states, strict=True):
-        slid = min(time, stop) - landing
-        assert found.position[0] == pytest.approx(landing + (speed - 0.5 * brake * slid) * slid, abs=2e-3)
-        assert found.position[2] == pytest.approx(0.5 * EDGE, abs=1e-4)
-        assert found.velocity[0] == pytest.approx(speed - brake * slid, abs=5e-3)
-    assert numbers_of(states[-1])[7:] == pytest.approx([0.0] * 6, abs=1e-6)
-
-
-def test_until_the_touchdown_both_ways_to_follow_a_body_agree_as_steps_shrink() -> None:
-    draw, errors = random.Random(9), []
-    while len(errors) < 10:
-        start, corner = on_corner(draw, 0.5)
-        found = fall(start, GENERAL, CUBE, (corner,), 0.3)
-        if not 0.02 < found.time < 0.2:
-            continue
-        end = numbers_of(found.state)
-        per_step = []
-        for step in (4e-4, 1e-4):
-            other = numbers_of(go_on(start, GENERAL, CUBE, [found.time - 1e-4], (corner,), 0.3, step=step)[0])
-            per_step.append(np.abs((other - end)[:3] + 1e-4 * end[7:10]).max())
-        errors.append(per_step)
-    coarse, fine = np.median(errors, axis=0)
-    assert coarse < 2e-3
-    assert fine < 0.5 * coarse
-
-
-def test_nothing_sinks_into_the_support_as_steps_go_on_through_impacts() -> None:
-    draw = random.Random(10)
-    for _ in range(10):
-        states = go_on(in_flight(draw), GENERAL, CUBE, np.linspace(0.0, 0.6, 30).tolist(), (), 0.3)
-        lows = [state.position[2] + Rotation.from_quat(state.orientation).apply(CUBE)[:, 2].min() for state in states]
-        assert min(lows) > -2e-3
-        assert abs(lows[-1]) < 2e-3
-    assert go_on(states[0]._replace(velocity=(math.nan, 0.0, 0.0)), GENERAL, CUBE, [0.1]) == ()
-
-
 @pytest.mark.extras
 def test_compiled_and_plain_code_give_the_same_bits() -> None:
     pytest.importorskip("numba")
@@ -387,5 +319,3 @@ def test_compiled_and_plain_code_give_the_same_bits() -> None:
         assert (point, labels[:8]) == (point_plain, labels_plain[:8])
         if point >= 0:
             assert out == out_plain
-        numbers[0] = 5e-4
-        assert stepper()(8, numbers, list(marks), [0.05]) == go_on_lists(8, numbers, list(marks), [0.05])

@@ -1,6 +1,4 @@
-"""The motion of a rigid body on points over a plane support in three dimensions.
-
-`fall` finds its next touchdown, `go_on` follows it after one, through plastic contacts.
+"""The next touchdown of a rigid body on points over a plane support in three dimensions: `fall`.
 
 A free body turns by Euler's equations. Points that stand hold the body, slip with Coulomb's friction against their
 whole slip, begin to slip where they leave the cone of friction, and lift where the support would have to pull. Time,
@@ -19,7 +17,7 @@ from typing import Any, NamedTuple
 
 from ..compiled import compiled
 from ..types import Quaternion, Vector3
-from . import contact_steps, falling, reactions, spatial_problem, stances
+from . import falling, reactions, spatial_problem, stances
 from .reactions import OPEN
 from .spatial_problem import OUTPUT, WORK
 
@@ -100,29 +98,8 @@ def fall(
     )
 
 
-def go_on(
-    state: SpatialState,
-    inertia: Sequence[float],
-    points: Sequence[Vector3],
-    times: Sequence[float],
-    standing: Collection[int] = (),
-    friction: float | Sequence[float] = 0.0,
-    pull: Pull = Pull(),  # noqa: B008
-    step: float = 2.5e-4,
-) -> tuple[SpatialState, ...]:
-    """The states of the body at `times` in s, which do not fall, with plastic contacts.
-
-    As `fall`, but the points that stand may leave the support, the others come to stand on it, and what strikes it ends
-    its approach at once. Steps are `step` s long at most, and errors are of their order. Empty where the numbers are
-    none that a body can have.
-    """
-    n, numbers, marks = problem(step, state, inertia, points, standing, friction, pull)
-    found = stepper()(n, numbers, marks, list(map(float, times)))
-    return tuple(state_of(found[13 * k : 13 * k + 13]) for k in range(len(found) // 13))
-
-
 def problem(
-    first: float,
+    horizon: float,
     state: SpatialState,
     inertia: Sequence[float],
     points: Sequence[Vector3],
@@ -133,7 +110,7 @@ def problem(
     """A problem as the law code takes it: how many points, numbers and marks."""
     n = len(points)
     frictions = [friction] * n if isinstance(friction, float | int) else friction
-    numbers = [first, *state.position, *state.orientation, *state.velocity, *state.angular_velocity]
+    numbers = [horizon, *state.position, *state.orientation, *state.velocity, *state.angular_velocity]
     numbers += [*inertia, *pull.gravity, *pull.growth, *pull.spin, *pull.turning, *frictions]
     for point in points:
         numbers += point
@@ -149,9 +126,8 @@ def state_of(numbers: Sequence[float]) -> SpatialState:
 
 
 FallSolver = Callable[[int, list[float], list[int]], tuple[int, list[float], list[int]]]
-Stepper = Callable[[int, list[float], list[int], list[float]], list[float]]
 
-LAW_CODE = (reactions, stances, falling, contact_steps, spatial_problem)
+LAW_CODE = (reactions, stances, falling, spatial_problem)
 
 INLINED = (reactions.derive, reactions.fill, reactions.locate, falling.measure, falling.crossing, stances.margins)
 """Law functions that become a part of those that call them: calls with so many sequences take a third of the time."""
@@ -178,27 +154,6 @@ def fall_on_lists(n: int, numbers: list[float], marks: list[int]) -> tuple[int, 
     return spatial_problem.fall(n, numbers, marks, [0.0] * sizes(n), out), out, marks
 
 
-@cache
-def stepper() -> Stepper:
-    """The law code that goes on in steps, compiled if that can be."""
-    steps = compiled(make_go_on, LAW_CODE, lambda function: function in INLINED)
-    if steps is None:
-        return go_on_lists
-    import numpy as np
-
-    def on_arrays(n: int, numbers: list[float], marks: list[int], times: list[float]) -> list[float]:
-        out = np.empty(13 * len(times))
-        status = steps(n, np.array(numbers), np.array(marks), np.empty(sizes(n)), np.array(times), out)
-        return out.tolist() if status == 0 else []
-
-    return on_arrays
-
-
-def go_on_lists(n: int, numbers: list[float], marks: list[int], times: list[float]) -> list[float]:
-    out = [0.0] * (13 * len(times))
-    return out if spatial_problem.go_on(n, numbers, marks, [0.0] * sizes(n), times, out) == 0 else []
-
-
 def sizes(n: int) -> int:
     """Numbers that the law code of n points works with."""
     return WORK[0] + WORK[1] * n + WORK[2] * n * n
@@ -212,13 +167,3 @@ def make_fall(law_code: str) -> Callable[..., int]:
         return spatial_problem.fall(n, numbers, marks, work, out)
 
     return fall
-
-
-def make_go_on(law_code: str) -> Callable[..., int]:
-    """The function that goes on in steps."""
-
-    def go_on(n: int, numbers: Any, marks: Any, work: Any, times: Any, out: Any) -> int:
-        law_code  # noqa: B018
-        return spatial_problem.go_on(n, numbers, marks, work, times, out)
-
-    return go_on

@@ -1,6 +1,6 @@
 """Problems of a rigid body over its support in flat sequences: what is given, what is worked with, what is answered.
 
-Written as `reactions` is. Numbers of a problem: horizon or step; place, quaternion, velocity and angular velocity; the
+Written as `reactions` is. Numbers of a problem: horizon; place, quaternion, velocity and angular velocity; the
 inertia over the mass as xx yy zz xy xz yz; gravity, its growth, angular velocity and acceleration of the frame;
 friction (n); points (3 n). `marks` (2 n + 1) of points that stand are not 0. An answer: time, state, and of each point
 its gap and its rate.
@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from math import sqrt
 
-from .contact_steps import advance
 from .falling import follow, normalise
 from .reactions import OPEN, Floats, Ints, Model, Stance, locate
 
@@ -113,21 +112,3 @@ def fall(n: int, numbers: Floats, marks: Ints, work: Floats, out: Floats) -> int
         out[OUTPUT + 2 * i], out[OUTPUT + 2 * i + 1] = now[3 * i], now[3 * i + 1]
         marks[i] = stance[1][i]
     return point
-
-
-def go_on(n: int, numbers: Floats, marks: Ints, work: Floats, times: Floats, out: Floats) -> int:
-    """The states (13 each) at `times` that do not fall, in steps of numbers[0] at most, or INVALID."""
-    valid, y, offsets, model, stance = prepare(n, numbers, marks, work)
-    if not valid or not numbers[0] > 0.0:
-        return INVALID
-    o = WORK[0] - 104 + (WORK[1] - 10) * n + WORK[2] * n * n
-    k, time = work[o : o + 91], 0.0
-    for m in range(len(times)):
-        left = times[m] - time
-        steps = int(left / numbers[0]) + 1
-        for s in range(steps):
-            advance(time + s * (left / steps), left / steps, y, k, offsets, model, stance)
-        time = times[m]
-        for i in range(13):
-            out[13 * m + i] = y[i]
-    return 0
