@@ -97,10 +97,17 @@ def play(bag: Path, scene: Path, tosses: int, output: Path) -> None:
         InputError: a process ended before its time, or did not start.
     """
     from ..bags.read import read_messages, topics
+    from ..parameters.file import read_parameters
+    from ..parameters.validation import validate
+    from ..prediction.monitor import Monitor
+    from ..prediction.scene import scenes_of
     from ..ros.player import PLAYED, PLAYING, timed
     from ..ros.processes import Child, ros_environment
-    from .progress import progress
+    from .progress import compiling_is_said, progress
 
+    with compiling_is_said():
+        # What the node would compile while the player waits for it.
+        Monitor(scenes_of(validate(read_parameters(scene))))
     seconds = sum(pause for pause, _ in timed(read_messages(bag, topics(bag)), tosses))
     environment = ros_environment()
     arguments = {
