@@ -68,15 +68,24 @@ def demo(output: Path, tosses: int | None) -> None:
     from rich.console import Console
 
     from ..files import make_folder
+    from ..parameters.file import read_parameters
+    from ..parameters.validation import validate
+    from ..prediction.monitor import Monitor
+    from ..prediction.scene import scenes_of
     from ..report.figures import write_touchdowns
     from ..report.replay import lead_time_table, of_each_kind, touchdown_table
     from ..report.summary import Tally
     from ..report.table import show
     from ..resources import find
+    from .progress import compiling_is_said
 
     make_folder(output)
     tosses, predictions, picture = tosses or TOSSES, output / "predictions.mcap", output / "touchdowns.png"
-    play(find("examples/cube_tosses"), find("config/cube_tosses.yaml"), tosses, predictions)
+    scene = find("config/cube_tosses.yaml")
+    with compiling_is_said():
+        # What the node would compile while the player waits for it.
+        Monitor(scenes_of(validate(read_parameters(scene))))
+    play(find("examples/cube_tosses"), scene, tosses, predictions)
     rows, errors = read_recording(predictions)
     console = Console()
     console.print(f"{tosses} recorded tosses of a cube, played through ROS topics", style="bold")
@@ -97,17 +106,10 @@ def play(bag: Path, scene: Path, tosses: int, output: Path) -> None:
         InputError: a process ended before its time, or did not start.
     """
     from ..bags.read import read_messages, topics
-    from ..parameters.file import read_parameters
-    from ..parameters.validation import validate
-    from ..prediction.monitor import Monitor
-    from ..prediction.scene import scenes_of
     from ..ros.player import PLAYED, PLAYING, timed
     from ..ros.processes import Child, ros_environment
-    from .progress import compiling_is_said, progress
+    from .progress import progress
 
-    with compiling_is_said():
-        # What the node would compile while the player waits for it.
-        Monitor(scenes_of(validate(read_parameters(scene))))
     seconds = sum(pause for pause, _ in timed(read_messages(bag, topics(bag)), tosses))
     environment = ros_environment()
     arguments = {
