@@ -1,6 +1,10 @@
-"""What every test run shares: quick tests first, and ROS graphs that do not see each other."""
+"""What every test run shares: quick tests first, law code compiled once, ROS graphs that do not see each other."""
 
+import fcntl
 import os
+import signal
+from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import settings
@@ -18,11 +22,39 @@ LONGEST = "test_heavy_sea.py"
 
 def pytest_configure() -> None:
     """Give each worker of a parallel run a ROS domain of its own, before anything imports rclpy."""
+    # A shell lets what it starts in the background ignore SIGINT, and so would the processes that tests start and end.
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
     worker = int(os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw"))
     # Domains up to 101 keep clear of the ports that Linux hands to ordinary sockets; up to eight workers try others.
     domains = [1 + (os.getppid() + worker + k) % 101 for k in range(0, 96, 8)]
     os.environ["ROS_DOMAIN_ID"] = str(next(filter(is_free, domains), domains[0]))
     os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        compile_once()
+
+
+def compile_once() -> None:
+    """Let one worker compile law code while the others wait for what it keeps: on a new machine that is half a minute.
+
+    A compilation takes minutes where each worker does the same at the same time.
+    """
+    try:
+        from numba.core.caching import NullCache
+        from numba.core.dispatcher import Dispatcher
+    except ImportError:
+        return
+    compile_alone = Dispatcher.compile
+
+    def compile_in_turn(self: Any, signature: Any) -> Any:
+        # What has no cache is compiled as a part of what has one.
+        if isinstance(self._cache, NullCache):
+            return compile_alone(self, signature)
+        with Path(__file__).open() as file:
+            fcntl.flock(file, fcntl.LOCK_EX)
+            return compile_alone(self, signature)
+
+    Dispatcher.compile = compile_in_turn
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
