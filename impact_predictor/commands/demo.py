@@ -7,11 +7,9 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Sequence
 from contextlib import ExitStack
-from math import hypot
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final
 
 import click
 
@@ -19,9 +17,7 @@ from ..errors import InputError
 from .options import examples
 
 if TYPE_CHECKING:
-    from ..report.summary import SpanErrors
     from ..report.touchdowns import TouchdownRow
-    from ..ros.messages import Diagnostic
 
 TOSSES: Final = 18
 REMAPPING: Final = ("-r", "/cube/odom:=/odom", "-r", "/cube/contact_geometry:=/contact_geometry")
@@ -31,13 +27,6 @@ START: Final = 30.0
 
 PROCESSING: Final = 0.5
 """Seconds that the node gets for what it has just received."""
-
-
-class Recording(NamedTuple):
-    """What was recorded: settled touchdowns, and the errors of the predictions of the scored ones by lead time."""
-
-    rows: list[TouchdownRow]
-    lead_time_errors: Sequence[SpanErrors]
 
 
 @click.command(
@@ -73,9 +62,10 @@ def demo(output: Path, tosses: int | None) -> None:
     from ..prediction.monitor import Monitor
     from ..prediction.scene import scenes_of
     from ..report.figures import write_touchdowns
-    from ..report.replay import lead_time_table, of_each_kind, touchdown_table
-    from ..report.summary import Tally
-    from ..report.table import show
+    from ..report.replay import TWO_LINES, of_each_kind, touchdown_table
+    from ..report.skill import skill_tables
+    from ..report.summary import Tally, errors_ahead
+    from ..report.table import say, show, table_of
     from ..resources import find
     from .progress import compiling_is_said
 
@@ -86,16 +76,16 @@ def demo(output: Path, tosses: int | None) -> None:
         # What the node would compile while the player waits for it.
         Monitor(scenes_of(validate(read_parameters(scene))))
     play(find("examples/cube_tosses"), scene, tosses, predictions)
-    rows, errors = read_recording(predictions)
+    rows = read_recording(predictions)
     console = Console()
     console.print(f"{tosses} recorded tosses of a cube, played through ROS topics", style="bold")
+    say(console, TWO_LINES)
     show(console, touchdown_table(of_each_kind(rows)))
-    console.print()
-    show(console, lead_time_table(errors))
-    console.print()
-    for sentence in Tally(rows).sentences():
-        console.print(sentence, soft_wrap=True)
-    write_touchdowns(picture, rows, errors, f"{tosses} tosses of a cube, live on ROS topics")
+    for _, columns, scores in skill_tables(rows, {}):
+        console.print()
+        show(console, table_of(columns, scores))
+    say(console, "", *Tally(rows).sentences())
+    write_touchdowns(picture, rows, errors_ahead(()), f"{tosses} tosses of a cube, live on ROS topics")
     console.print(f"Predictions: {predictions}\nPicture: {picture}", soft_wrap=True)
 
 
@@ -143,53 +133,26 @@ def play(bag: Path, scene: Path, tosses: int, output: Path) -> None:
         player.end()
 
 
-def read_recording(path: Path) -> Recording:
+def read_recording(path: Path) -> list[TouchdownRow]:
     """The touchdowns that the node has settled, with the cost that it reported next, as in its diagnostics.
 
     Raises:
         InputError: nothing can be read there.
     """
     from ..bags.read import read_messages
-    from ..report.summary import errors_ahead
     from ..report.touchdowns import row_of_message
     from ..ros.messages import DIAGNOSTIC_ARRAY, decode_diagnostic_array
     from ..ros.player import NODE, RECORDED
 
     wanted = {topic: kind for topic, kind in RECORDED.items() if kind == DIAGNOSTIC_ARRAY}
     rows: list[TouchdownRow] = []
-    predictions: list[Diagnostic] = []
-    errors: list[tuple[float, float]] = []
     without_cost = 0
     for topic, _, data in read_messages(path, wanted):
         (message,) = decode_diagnostic_array(data)
-        if topic == f"{NODE}/prediction":
-            predictions.append(message)
-        elif topic == f"{NODE}/score":
-            row = row_of_message("", message.values)
-            rows.append(row)
-            errors += _errors(row, predictions)
+        if topic == f"{NODE}/score":
+            rows.append(row_of_message("", message.values))
         elif "cost_us.update.median" in message.values:
             cost = float(message.values["cost_us.update.median"]) * 1e-6
             rows[without_cost:] = [row._replace(cost=cost) for row in rows[without_cost:]]
             without_cost = len(rows)
-    return Recording(rows, errors_ahead(errors))
-
-
-def _errors(row: TouchdownRow, predictions: list[Diagnostic]) -> list[tuple[float, float]]:
-    """Lead time (s) and relative error of every prediction of a scored touchdown that named the same contacts."""
-    from ..report.summary import LEAD_TIME_EDGES
-
-    earlier = [one.values for one in predictions if int(one.values["stamp"]) <= row.stamp]
-    if not row.scored or row.measured_twist is None or not earlier or "old" not in earlier[-1]:
-        return []
-    scale = hypot(row.before_twist.vx, row.before_twist.omega * row.half_distance)
-    found = []
-    for values in reversed(earlier):
-        lead_time = (row.stamp - int(values["stamp"])) * 1e-9
-        if lead_time >= LEAD_TIME_EDGES[-1] or "old" not in values:
-            break
-        if (values["old"], values["new"]) == (earlier[-1]["old"], earlier[-1]["new"]):
-            dvx = float(values["after.vx"]) - row.measured_twist.vx
-            domega = float(values["after.omega"]) - row.measured_twist.omega
-            found.append((lead_time, hypot(dvx, domega * row.half_distance) / scale))
-    return found
+    return rows

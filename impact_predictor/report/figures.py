@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import chain, cycle
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-from matplotlib.ticker import MaxNLocator, PercentFormatter
+from matplotlib.ticker import PercentFormatter
 
 from ..files import named
+from ..prediction.skill import SIMPLE
 from ..wording import listed, percent
 from .gait import FootLandings, feet_of, write_gait
 from .modes import PALETTE
 from .plot import GREY, PICTURE, Axes, Figure, headline, picture
+from .skill import KindScore, LiftScore, kind_scores, lift_scores, pair_of
 from .summary import LEAD_TIME_EDGES, SpanErrors, Tally, errors_ahead
 from .touchdowns import TouchdownRow, rows_of
 
@@ -55,7 +57,7 @@ class ReplayPicture:
         for body, gait in list(result.gaits.items())[: MOST - len(self._machines)]:
             mine = [row for row in rows if row.body == (body or row.body)]
             self._machines.append(feet_of(f"{bag} {body}".rstrip(), gait, mine))
-        self._scored += [row for row in rows if row.scored]
+        self._scored += [row for row in rows if row.is_scored]
         scores = [settled.score for settled in result.settled if settled.score.scored]
         self._ahead += [made for one in scores for made in one.history if made[0] < LEAD_TIME_EDGES[-1]]
 
@@ -77,48 +79,95 @@ class ReplayPicture:
 def write_touchdowns(
     path: str | os.PathLike[str], rows: Sequence[TouchdownRow], errors: Sequence[SpanErrors], title: str
 ) -> None:
-    """Draw the scored rows, and the errors against lead time, into a PNG or SVG file.
+    """Draw the scored rows into a PNG or SVG file: velocities, and errors by kind and lifts, or against lead time.
 
     Raises:
         InputError: the file cannot be written, or is of another format.
     """
-    scored = [row for row in rows if row.scored and row.measured_twist is not None and row.relative_error is not None]
-    with picture(path, 13.5, 4.9) as figure:
+    scored = [row for row in rows if row.is_scored]
+    kinds = kind_scores(scored, {})
+    with picture(path, 16.0, 4.9) as figure:
         headline(figure, title)
         if not scored:
             figure.text(0.5, 0.5, "no touchdown was scored", ha="center", color=GREY)
             return
-        left, middle, right = figure.subplots(1, 3, width_ratios=(1.1, 1.0, 1.0))
-        s = np.array([row.half_distance for row in scored])
-        measured, predicted = (
-            np.array([getattr(row, name) for row in scored]) for name in ("measured_twist", "predicted_twist")
+        left, middle, *others = figure.subplots(
+            1, 4 if kinds else 3, width_ratios=(1.0, 1.0, 1.3, 1.0)[: 3 + bool(kinds)]
         )
-        look: Any = {"alpha": 0.6, "markersize": 5, "markeredgewidth": 0}
-        left.plot(measured[:, 0], predicted[:, 0], "o", color=_BLUE, label="vx, along the support", **look)
-        left.plot(s * measured[:, 2], s * predicted[:, 2], "o", color=_VERMILION, label="ω s, from turning", **look)
-        left.axline((0.0, 0.0), slope=1.0, color="black", linewidth=1.0, zorder=1, label="exact")
-        left.set_title("Velocities right after the touchdown")
-        left.set(xlabel="measured (m/s); s: half the contacts' distance", ylabel="predicted (m/s)")
-        left.set_aspect("equal", adjustable="datalim")
-        left.legend(loc="upper left")
-        _draw_errors(middle, scored)
-        _draw_lead_times(right, errors)
+        _draw_pairs(
+            left, scored, "Velocity after the touchdown", "m/s", {"v along": "along the support", "v up": "upwards"}
+        )
+        _draw_pairs(
+            middle, scored, "Turning after the touchdown", "rad/s", {"w across": "about the level axis across v"}
+        )
+        if kinds:
+            _draw_kinds(others[0], kinds)
+            _draw_lifts(others[1], lift_scores(scored))
+        else:
+            _draw_lead_times(others[0], errors)
 
 
-def _draw_errors(axes: Axes, rows: Sequence[TouchdownRow]) -> None:
-    errors = np.array([100.0 * (row.relative_error or 0.0) for row in rows])
-    half, most = np.quantile(errors, (0.5, 0.9))
-    # Errors far outside would press the others into one bar: they are counted in the last one.
-    end = max(min(1.4 * errors.max(), 3.0 * most), 1.0)
-    axes.hist(np.minimum(errors, end), bins=min(40, max(10, len(errors) // 5)), color=_BLUE, alpha=0.7)
-    for value, style, label in ((half, "-", "median"), (most, "--", "90 % below")):
-        said = f"{label} {percent(0.01 * value)} %"
-        axes.axvline(value, color=_VERMILION, linestyle=style, linewidth=1.5, label=said)
-    axes.set_title("Relative error of the last prediction")
-    outside = f"; {np.sum(errors > end)} beyond, in the last bar" if np.any(errors > end) else ""
-    axes.set(xlabel=f"relative error (%){outside}", ylabel="touchdowns", xlim=(0.0, end))
-    axes.yaxis.set_major_locator(MaxNLocator(integer=True))
-    axes.legend(loc="upper right", frameon=True)
+def _draw_pairs(axes: Axes, rows: Sequence[TouchdownRow], title: str, unit: str, parts: Mapping[str, str]) -> None:
+    """Predicted over measured components of twists."""
+    for (part, said), color in zip(parts.items(), (_BLUE, _VERMILION), strict=False):
+        if pairs := [pair for row in rows if (pair := pair_of(row, part)) is not None]:
+            axes.plot(
+                *zip(*pairs, strict=True), "o", color=color, label=said, alpha=0.5, markersize=4, markeredgewidth=0
+            )
+    axes.axline((0.0, 0.0), slope=1.0, color="black", linewidth=1.0, zorder=1, label="exact")
+    axes.set_title(title)
+    axes.set(xlabel=f"measured ({unit})", ylabel=f"predicted ({unit})")
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.legend(loc="upper left")
+
+
+def _draw_kinds(axes: Axes, kinds: Sequence[KindScore]) -> None:
+    """The errors of whole twists by kind, beside those of simple answers."""
+    shown = [one for one in kinds if one.errors.number]
+    places = range(len(shown))
+    for k, (said, marker) in enumerate(zip(SIMPLE.values(), "x+^sD", strict=True)):
+        medians = [
+            (100.0 * half, place)
+            for place, one in enumerate(shown)
+            if one.simple and (half := one.simple[k].p50) is not None
+        ]
+        if medians:
+            axes.plot(*zip(*medians, strict=True), marker, color=GREY, markersize=5, fillstyle="none", label=said)
+    middles, ends = ([100.0 * (getattr(one.errors, part) or 0.0) for one in shown] for part in ("p50", "p90"))
+    axes.hlines(places, middles, ends, color=_VERMILION, linewidth=2.0)
+    axes.plot(ends, places, "|", color=_VERMILION, markersize=10, markeredgewidth=2.0, label="prediction: 90 % below")
+    axes.plot(middles, places, "o", color=_VERMILION, label="prediction: median")
+    axes.set_yticks(places, [f"{one.kind}\n({one.errors.number:,})" for one in shown])
+    axes.set_title("Error of the whole twist, by kind")
+    axes.set(xlabel="relative error (%); of simple answers the median", xlim=(0.0, None))
+    # Room for the legend below the last kind.
+    axes.set_ylim(len(shown) + 1.3, -0.5)
+    axes.legend(loc="lower center", ncols=2, fontsize=8)
+
+
+def _draw_lifts(axes: Axes, lifts: Sequence[LiftScore]) -> None:
+    """How often contacts lifted, over the probability of it that was told."""
+    for one, color in zip(lifts, (_BLUE, _VERMILION), strict=False):
+        told = one.reliability
+        if not told:
+            counts = [(one.counts[True, lifts], one.counts[False, lifts]) for lifts in (False, True)]
+            told = tuple((sum(n), k, n[0] / sum(n)) for k, n in enumerate(counts) if sum(n))
+        numbers, chances, shares = zip(*told, strict=True)
+        axes.plot(
+            [100.0 * part for part in chances],
+            [100.0 * part for part in shares],
+            "o-",
+            color=color,
+            label=f"{one.name} contact",
+        )
+        for number, chance, share in told:
+            axes.annotate(
+                f"{number:,}", (100.0 * chance, 100.0 * share), (4, -11), textcoords="offset points", fontsize=8
+            )
+    axes.axline((0.0, 0.0), slope=1.0, color="black", linewidth=1.0, zorder=1, label="exact")
+    axes.set_title("Does the contact lift?")
+    axes.set(xlabel="told probability (%), and number", ylabel="share that lifted (%)", xlim=(0, 104), ylim=(0, 104))
+    axes.legend(loc="upper left")
 
 
 def _draw_lead_times(axes: Axes, errors: Sequence[SpanErrors]) -> None:

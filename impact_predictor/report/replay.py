@@ -28,6 +28,12 @@ if TYPE_CHECKING:
 MOST_OF_A_KIND: Final = 4
 """Touchdowns of each kind that are listed unless all are asked for."""
 
+TWO_LINES: Final = (
+    "Of each touchdown the upper line is what was predicted last, the lower one what was measured: the speed of the "
+    "mass centre, its part upwards, the rate of turning, and whether the contacts lift. The upper error is that of the "
+    "whole twist, the lower one that in the impact plane."
+)
+
 
 def print_replay(console: Console, result: Result, every: bool = False) -> None:
     """Print the touchdowns (the first scored ones, or `every` one), the errors and what became of the samples."""
@@ -41,6 +47,7 @@ def print_replay(console: Console, result: Result, every: bool = False) -> None:
         listed = landings if every else landings[:MOST_ROWS]
         _show(console, landings_table(listed), *more(len(landings) - len(listed), "landing"))
     if listed := others if every else of_each_kind(others):
+        say(console, TWO_LINES)
         _show(console, touchdown_table(listed), *more(len(others) - len(listed), "touchdown"))
     for sentence, columns, scores in skill_tables(others, result.recorded):
         say(console, sentence)

@@ -12,7 +12,7 @@ from typing import Any, Final, NamedTuple
 from ..prediction.recorded import Announced
 from ..prediction.skill import SIMPLE
 from ..prediction.types import KINDS
-from ..wording import fixed, percent
+from ..wording import NONE, fixed, percent
 from .summary import Distribution, spread_of
 from .table import Column
 from .touchdowns import TouchdownRow
@@ -87,12 +87,16 @@ def _brier(score: float | None, lifted: bool) -> str:
 
 KIND_COLUMNS: Final = (
     Column("kind", attrgetter("kind"), left=True),
-    Column("touch-\ndowns", lambda one: f"{one.touchdowns:,}"),
-    Column("an-\nnounced\n%", lambda one: percent(one.announced / one.touchdowns if one.touchdowns else None)),
+    Column("touch-\ndowns", lambda one: f"{one.touchdowns:,}" if one.touchdowns else NONE, optional=True),
+    Column(
+        "an-\nnounced\n%",
+        lambda one: percent(one.announced / one.touchdowns if one.touchdowns else None),
+        optional=True,
+    ),
     Column("scored", lambda one: f"{one.errors.number:,}"),
     Column("error %:\nmedian", lambda one: percent(one.errors.p50)),
     Column("\n90 %", lambda one: percent(one.errors.p90)),
-    *[Column(said.replace(" ", "\n"), partial(_median, k)) for k, said in enumerate(SIMPLE.values())],
+    *[Column(said.replace(" ", "\n"), partial(_median, k), optional=True) for k, said in enumerate(SIMPLE.values())],
     Column("error of\nthe time\nms", lambda one: fixed(one.times.p50 and 1e3 * one.times.p50, 1)),
 )
 """Medians of simple answers stand beside those of the predictions."""
