@@ -46,9 +46,9 @@ def test_what_is_asked_for_comes_back_too(name: str, value: float, least: float)
 
 @pytest.mark.slow
 def test_the_intervals_hold_the_truth_about_as_often_as_they_say() -> None:
-    held = [holds(calibrate([touchdowns(noise=0.03, seed=seed)]), TRUTH) for seed in range(8)]
-    # Of 24 intervals with 95 % at most 4 miss in 99 % of all cases.
-    assert np.sum(held) >= 20
+    held = [holds(calibrate([touchdowns(noise=0.03, seed=seed)]), TRUTH) for seed in range(4)]
+    # Of 12 intervals with 95 % at most 3 miss in 99 % of all cases.
+    assert np.sum(held) >= 9
 
 
 def test_the_held_out_error_is_that_of_the_noise() -> None:

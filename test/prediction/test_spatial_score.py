@@ -187,7 +187,7 @@ def test_lifts_are_told_and_measured_by_the_same_rise_of_the_gaps() -> None:
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "kind"), zip(((), (), (1,), (1,), (0, 1), (0, 1, 2)), ((3,), (3, 4)) * 3, KINDS, strict=True)
+    ("old", "new", "kind"), [*zip(((), (), (1,), (1,), (0, 1), (0, 1, 2)), ((3,), (3, 4)) * 3, KINDS, strict=True)]
 )
 def test_a_kind_tells_what_stood_and_what_struck(old: tuple[int, ...], new: tuple[int, ...], kind: str) -> None:
     assert kind_of(old, new) == kind

@@ -186,7 +186,8 @@ def solve_spatial_impacts(
         of_contacts.reshape(*of_contacts.shape[:-2], n * CONTACT),
     )
     shape = problems.shape[:-1]
-    problems = problems.reshape(-1, BODY + n * CONTACT)
+    # Of another order of its numbers it would be compiled once more.
+    problems = np.ascontiguousarray(problems.reshape(-1, BODY + n * CONTACT))
     answers, notes = np.zeros((len(problems), ANSWER + RESULT * n)), np.zeros(len(problems), np.int64)
     solvers().bodies(n, problems, *how, answers, notes, *workspace(n))
     answers = answers.reshape(*shape, ANSWER + RESULT * n)

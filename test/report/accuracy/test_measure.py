@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 from math import inf
+from pathlib import Path
 from random import Random
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 from read_page import PageReader
+from recordings import first_messages, write_bag
 
 from impact_predictor.report import accuracy
 from impact_predictor.report.accuracy import (
@@ -32,6 +34,7 @@ from impact_predictor.report.accuracy import (
     touchdowns,
 )
 from impact_predictor.report.accuracy.page import accuracy_page
+from impact_predictor.resources import find
 
 SCENES = [AccuracyScene("one", TOUCHDOWN, "", "", ""), AccuracyScene("two", TOUCHDOWN, "", "", "")]
 
@@ -88,7 +91,11 @@ def test_the_cheapest_that_is_good_enough_on_all_scenes_is_chosen_and_the_nodes_
 
 
 @pytest.mark.slow
-def test_a_small_report_has_a_row_for_each_method_on_each_scene_and_makes_a_page() -> None:
+def test_a_small_report_has_a_row_for_each_method_on_each_scene_and_makes_a_page(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    some = write_bag(tmp_path / "some.mcap", first_messages(4000))
+    monkeypatch.setattr(accuracy, "find", lambda name: some if name == "examples/cube_tosses" else find(name))
     done = list[int]()
     report = json.loads(json.dumps(accuracy.report(0.02, "a command", done.append), allow_nan=False))
     assert done == list(range(1, len(report["rows"]) + 1))
