@@ -222,7 +222,9 @@ class Pending:
 
     def score(self, scene: Scene) -> Score:
         """The score; where the record ended before it was complete, without what was measured."""
-        last = self.track.last
+        # What was repeated after it told nothing new.
+        made = self.track.until(self.stamp) or self.track
+        last = made.last
         leftover = last.leftover | self._leftover
         score = Score(
             stamp=self.stamp,
@@ -232,6 +234,7 @@ class Pending:
             scored=False,
             leftover=leftover | Leftover.TOO_SHORT,
             history=(),
+            announced=made.lead_time(made.answers[0][0]),
         )
         if self._record is not None:
             unscored, spatial = self._spatial(scene, self._record)

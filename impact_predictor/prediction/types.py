@@ -329,11 +329,12 @@ class Touchdown(NamedTuple):
 class Score(NamedTuple):
     """A settled touchdown: the last prediction before it against what was measured after it.
 
-    `stamp` in ns, the predicted touchdown; `measured` None when the record ends too early; `relative_error` None
-    when there is nothing to compare; `history` the (lead time in s, relative error) of every prediction of it that had
-    the same contacts. Of a walking machine `stamp` is when its foot came to stand, and `landing` tells of that. All
-    this is in the impact plane; `spatial` compares the whole twists, where the record shows the touchdown, and counts
-    where `leftover_6d` does not say why not.
+    `stamp` in ns, the predicted touchdown, which was `announced` so many s ahead by the first prediction of it;
+    `measured` None when the record ends too early; `relative_error` None when there is nothing to compare; `history`
+    the (lead time in s, relative error) of every prediction of it that had the same contacts. Of a walking machine
+    `stamp` is when its foot came to stand, and `landing` tells of that. All this is in the impact plane; `spatial`
+    compares the whole twists, where the record shows the touchdown, and counts where `leftover_6d` does not say why
+    not.
     """
 
     stamp: int
@@ -346,6 +347,7 @@ class Score(NamedTuple):
     landing: Landing | None = None
     leftover_6d: Leftover = Leftover.MOVING_CONTACTS
     spatial: SpatialScore | None = None
+    announced: float = 0.0
 
     @property
     def kind(self) -> str:

@@ -148,7 +148,7 @@ _NO_LANDING: Final = Landing("", 0, None, None, ())
 def row_of(body: str, score: Score, cost: float | None = None) -> TouchdownRow:
     """The row of a score; `cost` in s."""
     touchdown, landing = score.touchdown, score.landing or _NO_LANDING
-    history, impact = landing.history if score.landing else score.history, landing.impact
+    impact = landing.impact
     flags = [flag for flags in (score.leftover, touchdown.flags) for flag in type(flags) if flag & flags]
     spatial, sure = score.spatial, touchdown.uncertainty
     before, predicted, measured = [
@@ -159,7 +159,7 @@ def row_of(body: str, score: Score, cost: float | None = None) -> TouchdownRow:
     return TouchdownRow(
         body=body,
         stamp=score.stamp,
-        announced_lead_time=history[0][0] if history else touchdown.lead_time,
+        announced_lead_time=score.announced,
         lead_time=touchdown.lead_time,
         mode=touchdown.mode,
         before_twist=touchdown.before,

@@ -95,6 +95,8 @@ def test_a_touchdown_that_went_on_as_predicted_has_no_error() -> None:
     assert spatial.stamp == pytest.approx(10**9, abs=300_000)  # ns: extrapolated with the last mean rate
     assert spatial.late == pytest.approx(0.0, abs=3e-4)
     assert score.leftover & Leftover.ONE_POINT
+    # The first of ten samples announced it, and the last one before it, 4 ms ahead.
+    assert (score.announced, score.touchdown.lead_time) == pytest.approx((0.067, 0.004), abs=3e-4)
 
 
 def test_the_error_is_that_of_all_components_relative_to_the_twist_before() -> None:

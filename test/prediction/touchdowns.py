@@ -42,6 +42,7 @@ SCORE = Score(
     scored=True,
     leftover=Leftover.NONE,
     history=((0.055, 0.5), (0.01, 0.3), (0.004, 0.25)),
+    announced=0.055,
 )
 UNSCORED = SCORE._replace(scored=False, leftover=Leftover.OUT_OF_PLANE | Leftover.ONE_CORNER_FIRST)
 UNMEASURED = SCORE._replace(measured=None, relative_error=None, scored=False, leftover=Leftover.TOO_SHORT, history=())
@@ -54,4 +55,4 @@ LANDING = Landing(
     speed=0.25,
     impact=TOUCHDOWN,
 )
-LANDED = UNMEASURED._replace(stamp=2_000_000_000, leftover=Leftover.DRIVEN, landing=LANDING)
+LANDED = UNMEASURED._replace(stamp=2_000_000_000, leftover=Leftover.DRIVEN, landing=LANDING, announced=0.2)

@@ -36,7 +36,7 @@ TOUCHDOWN = Touchdown(
     *(NOTHING, NOTHING, LEVEL, NOTHING, NOTHING, 0.3, 0.0, 0.0, 0.0, 0.0, Leftover.DRIVEN, STILL, STILL),
 )
 LANDING = Landing("RF", 2_062_000_000, -0.003, True, ((0.11, 0.004), (0.002, -0.0005)))
-SCORE = Score(LANDING.stamp, TOUCHDOWN, None, None, False, Leftover.DRIVEN, (), LANDING)
+SCORE = Score(LANDING.stamp, TOUCHDOWN, None, None, False, Leftover.DRIVEN, (), LANDING, announced=0.11)
 
 
 def told(*feet: Foot, **changes: Any) -> list[Diagnostic]:

@@ -211,7 +211,8 @@ class LandingTracker:
         if not isinstance(touchdown, Touchdown):
             return None
         after.track.add(landing.stamp, touchdown, 0.0)
-        return after.score(self._scene)._replace(landing=landing)
+        score = after.score(self._scene)._replace(landing=landing)
+        return score._replace(announced=landing.history[0][0]) if landing.history else score
 
     def _seen(self, i: int, new: tuple[int, ...]) -> FootCollision | None:
         """The landing of the `new` points of a foot, of which `i` has come to stand, as the last frame before shows it.

@@ -222,12 +222,6 @@ FOOT: Final = Table[Foot](
 """Of each foot of a walking machine, in a status of its own."""
 
 
-def announced(score: Score) -> float:
-    """The lead time in s of the first prediction of a touchdown, or of the landing that it is."""
-    history = score.history if score.landing is None else score.landing.history
-    return history[0][0] if history else score.touchdown.lead_time
-
-
 def _of_touchdown(*keys: str, new: tuple[str, ...] = ()) -> tuple[Field[Score], ...]:
     """Fields of the touchdown that is scored, perhaps by new keys."""
     fields = {field.key: field for field in TOUCHDOWN.fields}
@@ -261,7 +255,7 @@ SCORE: Final = Table[Score](
     Field("scored", "", "whether the record can tell", lambda it: it.scored),
     Field("leftover", "", "why it cannot, or NONE", lambda it: it.leftover),
     *_of_touchdown("flags", "law", "old", "new"),
-    Field("announced", "s", "lead time of the first prediction with these contacts", lambda it: announced(it)),
+    Field("announced", "s", "lead time of the first prediction", lambda it: it.announced),
     *_of_touchdown("lead_time", "half_distance", "off_axis", "lateral", "closing_spread", "offset"),
     *_of_touchdown("before.vx", "before.vy", "before.omega"),
     *_of_touchdown(*("after.vx", "after.vy", "after.omega"), new=("predicted.vx", "predicted.vy", "predicted.omega")),
