@@ -48,7 +48,9 @@ def along(body: Body, contacts: ContactPoints, twist: NDArray[np.float64], steps
 
     def recorded(*given: Any) -> int:
         done = work(*given)
-        before, velocity, impulse = given[2], given[-2], given[-1]
+        system, before, motion, impulse = given[1], given[3], given[-2], given[-1]
+        velocity = [0.0] * len(before)
+        spatial_path.velocities(system, motion, velocity)
         # A step that is cut is solved again from where it began.
         if solved and np.array_equal(solved[-1][0], before):
             solved.pop()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from contextlib import contextmanager
 from hashlib import sha256
 from inspect import getmembers, getsource, isfunction
@@ -39,9 +39,11 @@ def compiled(
         return cast(Function, njit(function, error_model="numpy"))
 
 
-def door(make: Callable[[str], Callable[..., Any]], modules: Iterable[ModuleType]) -> Callable[..., Any]:
+def door(
+    make: Callable[[str], Callable[..., Any]], modules: Iterable[ModuleType], inlined: Collection[object] = ()
+) -> Callable[..., Any]:
     """The function that `make` makes, compiled if that can be; else it runs on lists, which are faster there."""
-    found = compiled(make, modules, lambda function: False)
+    found = compiled(make, modules, lambda function: function in inlined)
     return on_lists(make("")) if found is None else found
 
 

@@ -8,9 +8,10 @@ contact points and the inertia do not move.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import copysign, hypot, sqrt
+from math import copysign, hypot, inf, sqrt
 from typing import NamedTuple
 
+from ..mechanics.impact.answer import mode_of
 from ..mechanics.types import ContactState, Mode, Twist, Vector
 from .scene import Scene
 from .types import PointOutcome, Sample, SpatialTwist, Vector3
@@ -19,6 +20,9 @@ from .vectors import add, any_across, axes_of, cross, dot, mean, times, to_body,
 STANDING = 0.2
 """A point within the contact tolerance stands while it moves along the normal slower than this part of the fastest
 point: the stance of a body that turns about it, told from a body that only grazes the support."""
+
+RESTS = 1e-5
+"""A group of contacts holds that leaves more slowly than this part of the approach."""
 
 ROUNDING = 1e-12
 """The square of a direction this small, relative to the vector it is a part of, is none: points may be float32."""
@@ -113,26 +117,16 @@ def contacts_of(scene: Scene, posture: Posture, slack: float = 0.0) -> ActiveCon
     return ActiveContacts(tuple(old), tuple(new))
 
 
-def mode_of(old_lifts: bool, new_lifts: bool, old_slips: bool, new_slips: bool) -> Mode:
-    """The mode of an impact by what its groups of contacts do; an old contact that is not there counts as lifted."""
-    if new_lifts:
-        return Mode.FLIGHT if old_lifts else Mode.BACK_PIVOT
-    if old_lifts:
-        return Mode.PIVOT_SLIDE if new_slips else Mode.PIVOT
-    return Mode.SLIDE if old_slips or new_slips else Mode.STOP
-
-
 def mode_of_contacts(old: Sequence[PointOutcome], new: Sequence[PointOutcome], normal: Vector3, least: float) -> Mode:
-    """The mode of an impact, from its groups of contacts: one lifts when the mean of its gap rates exceeds `least`."""
-    found = [
-        (
-            not group or total([dot(normal, contact.velocity) for contact in group]) > least * len(group),
-            any(contact.state is ContactState.SLIPS for contact in group),
-        )
-        for group in (old, new)
-    ]
-    (old_lifts, old_slips), (new_lifts, new_slips) = found
-    return mode_of(old_lifts, new_lifts, old_slips, new_slips)
+    """The mode of an impact, from its groups of contacts: one lifts when the mean of its gap rates exceeds `least`.
+
+    An old contact that is not there counts as lifted.
+    """
+    speeds = []
+    for group in (old, new):
+        rate = total([dot(normal, contact.velocity) for contact in group]) / len(group) if group else inf
+        speeds += [rate, inf if any(contact.state is ContactState.SLIPS for contact in group) else 0.0]
+    return Mode(mode_of(least, *speeds))
 
 
 def planar_twist(twist: SpatialTwist, ahead: Vector3, normal: Vector3, axis: Vector3) -> Twist:

@@ -16,10 +16,11 @@ from ..mechanics.impact.solve import number_of
 from ..mechanics.impact.spatial import STEPS, flags_named, solvers, workspace
 from ..mechanics.impact.spatial_body import ANSWER, BODY, CONTACT, RESULT
 from ..mechanics.motion.spatial import Pull, SpatialState, fall
-from ..mechanics.types import ContactState, Twist
+from ..mechanics.types import ContactState
 from .impact import OFF_AXIS, OFFSET, leftover_of
 from .planar import (
     ORIGIN,
+    RESTS,
     STANDING,
     ActiveContacts,
     Posture,
@@ -35,19 +36,15 @@ from .planar import (
 )
 from .scene import InertiaTensor, Scene, six_numbers
 from .types import (
-    Covariance,
     Moment,
     PointOutcome,
     Quaternion,
     Sample,
     SpatialTwist,
     Touchdown,
-    Uncertainty,
     Vector3,
 )
-from .uncertainty import moments, product
 from .vectors import (
-    Axes,
     add,
     axes_of,
     composed,
@@ -63,7 +60,7 @@ from .vectors import (
 )
 
 if TYPE_CHECKING:
-    from .draws import DrawnImpact, Draws
+    from .draws import Draws
 
 WINDOW = 2.0
 """Points take part in an impact that close within so many compressions after the first one."""
@@ -288,32 +285,33 @@ class SpatialModel:
         self._solve(problem[None], answer[None], notes)
         numbers, contacts = answer.tolist(), []
         for k, point in enumerate(collision.points):
-            a, b, c, u, v, w, state = numbers[ANSWER + RESULT * k : ANSWER + RESULT * (k + 1)]
+            a, b, c, u, v, w, state, _ = numbers[ANSWER + RESULT * k : ANSWER + RESULT * (k + 1)]
             found = PointOutcome(
                 point=point, is_new=k >= len(old), impulse=(a, b, c), velocity=(u, v, w), state=STATES[int(state)]
             )
             contacts.append(found)
         vx, vy, vz, wx, wy, wz, lost = numbers[:ANSWER]
+        plane, now = self._plane(collision), axes_of(collision.orientation)
         after, drawn = SpatialTwist((vx, vy, vz), (wx, wy, wz)), None
         if self._draws is not None:
             rates = list(collision.rates[len(old) :])
-            drawn = self._draws.drawn(sample, posture.axes, problem, answer, len(old), rates, self.gap_deviation)
+            drawn = self._draws.drawn(
+                *(sample, posture.axes, problem, answer, len(old), rates, self.gap_deviation, now, plane.axis)
+            )
             mode, after = drawn.mode, drawn.after
             contacts = [
                 contact._replace(lift_probability=chance) for contact, chance in zip(contacts, drawn.lifts, strict=True)
             ]
-            if drawn.twists.shape[1] > 1:
+            if drawn.many:
                 contacts = [
                     moving(contact, add(after.linear, cross(after.angular, arm)), scene.normal, RESTS * speed)
                     for contact, arm in zip(contacts, collision.arms, strict=True)
                 ]
         else:
             mode = mode_of_contacts(contacts[: len(old)], contacts[len(old) :], scene.normal, RESTS * speed)
-        plane = self._plane(collision)
-        now, axis, ahead = axes_of(collision.orientation), plane.axis, cross(plane.axis, scene.normal)
+        axis, ahead = plane.axis, cross(plane.axis, scene.normal)
         angular, center = to_body(now, after.angular), scene.center_of_mass
         spread = max(collision.gaps[len(old) :]) / speed
-        uncertainty = None if drawn is None else self._uncertainty(sample, drawn, plane.axis, now)
         return Touchdown(
             lead_time=collision.lead_time,
             mode=mode,
@@ -350,7 +348,7 @@ class SpatialModel:
             before_6d=before,
             after_6d=after,
             contacts=tuple(contacts),
-            uncertainty=uncertainty,
+            uncertainty=None if drawn is None else drawn.uncertainty,
         )
 
     def _solve(
@@ -364,22 +362,6 @@ class SpatialModel:
         scene, n = self._scene, (problems.shape[1] - BODY) // CONTACT
         how = bool(self._law), scene.merge, hardly(scene), steps
         self._solver(n, problems, *how, answers, notes, *workspace(n))
-
-    def _uncertainty(self, sample: Sample, drawn: DrawnImpact, axis: Vector3, now: Axes) -> Uncertainty:
-        from .draws import in_body
-
-        ahead, normal = cross(axis, self._scene.normal), self._scene.normal
-        to_plane = np.array([(*ahead, *ORIGIN), (*normal, *ORIGIN), (*ORIGIN, *times(axis, -1.0))])
-        mean, spread = moments(product(to_plane, drawn.twists))
-        _, covariance = moments(product(in_body(now, self._scene.center_of_mass), drawn.twists))
-        used = drawn.given is Covariance.USED
-        return Uncertainty(
-            given=drawn.given,
-            probabilities=drawn.probabilities,
-            mean=Twist(*mean.tolist()),
-            deviation=Twist(*np.sqrt(spread.diagonal()).tolist()),
-            twist_covariance=tuple(covariance.ravel().tolist()) if used else sample.twist_covariance,
-        )
 
     def _plane(self, collision: SpatialCollision) -> NearestPlane:
         """The impact plane that is nearest to a collision, and what it leaves over."""
@@ -437,10 +419,6 @@ class SpatialModel:
             spin=to_body(frame, felt.angular),
             turning=to_body(frame, felt.turning),
         )
-
-
-RESTS = 1e-5
-"""A group of contacts holds that leaves more slowly than this part of the approach."""
 
 
 @cache

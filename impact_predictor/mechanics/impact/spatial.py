@@ -14,7 +14,7 @@ from ..compiled import door
 from ..types import ContactState, Flag
 from . import spatial_body, spatial_path
 from .solve import number_of
-from .spatial_body import ANSWER, BODY, CONTACT, INVALID, RESULT, SYMMETRY
+from .spatial_body import ANSWER, BODY, CONTACT, INVALID, RESULT, SYMMETRY, coordinates, room
 from .spatial_path import BLENDED, NOT_CONVERGED
 
 STEPS = 8
@@ -22,9 +22,6 @@ STEPS = 8
 
 MERGE = 1.5e-3
 """How long a compression lasts, in s, unless more is known."""
-
-SCRATCH = 14
-"""Sequences of 3 n numbers that the law code works with."""
 
 FLAGS = {NOT_CONVERGED: Flag.NOT_CONVERGED, BLENDED: Flag.ENERGY_GAINED, INVALID: Flag.INVALID_INPUT}
 """The flags of the law code by their names."""
@@ -220,19 +217,18 @@ def _solve_mechanism(
     gaps = np.array(_for_each(n, contacts.gaps, "the gaps"))
     is_known = np.isfinite(friction) & (friction >= 0.0) & (restitution >= 0.0) & (restitution <= 1.0)
     impulse, after = np.zeros(m), np.where(np.isfinite(c), c, 0.0)
-    _, _, scratch, marks = workspace(n)
-    notes, work = INVALID, 0.0
+    work, marks = workspace(n, coordinates(n))
+    notes = INVALID
     if is_known.all() and np.isfinite(c).all() and _is_delassus(W):
         rows = (0.5 * (W + W.T)).ravel()
-        notes = solvers().mechanism(*(n, rows, friction, restitution, gaps, *how, after, impulse, scratch[5:], marks))
-        work = float((0.5 * impulse * (c + after)).sum())
+        notes = solvers().mechanism(n, rows, friction, restitution, gaps, *how, c, after, impulse, work, marks)
     return SpatialOutcome(
         twist=None,
         impulses=impulse.reshape(n, 3),
         velocities=after.reshape(n, 3),
-        states=tuple([STATES[int(mark)] for mark in marks[0]]),
+        states=tuple([STATES[mark] for mark in marks[:n].tolist()]),
         flags=flags_named(notes),
-        energy_lost=-work,
+        energy_lost=-float((0.5 * impulse * (c + after)).sum()),
         law=law,
     )
 
@@ -312,16 +308,9 @@ def _flags(notes: NDArray[np.int64]) -> NDArray[np.uint16]:
     return flags
 
 
-def workspace(
-    n: int,
-) -> tuple[NDArray[np.float64], NDArray[np.float64], tuple[NDArray[np.float64], ...], tuple[NDArray[np.int64], ...]]:
-    """What the law code of n contacts works with: W, the rows of G, and sequences of numbers and of marks."""
-    return (
-        np.zeros(9 * n * n),
-        np.zeros(18 * n),
-        tuple(np.zeros(3 * n) for _ in range(SCRATCH)),
-        tuple(np.zeros(n, np.int64) for _ in range(2)),
-    )
+def workspace(n: int, motion: int = 6) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Numbers and marks that the law code of n contacts works with, and `motion` coordinates."""
+    return np.empty(room(n, motion)), np.zeros(2 * n, np.int64)
 
 
 class Solvers(NamedTuple):
@@ -334,10 +323,11 @@ class Solvers(NamedTuple):
 @cache
 def solvers() -> Solvers:
     """The doors, compiled if that can be; the first time on a machine this takes some seconds."""
-    return Solvers(door(make_bodies, LAW_CODE), door(make_mechanism, LAW_CODE))
+    return Solvers(door(make_bodies, LAW_CODE, INLINED), door(make_mechanism, LAW_CODE, INLINED))
 
 
 LAW_CODE = (spatial_path, spatial_body)
+INLINED = (spatial_path.velocities, spatial_path.push)
 
 
 def make_bodies(law_code: str) -> Callable[..., None]:
@@ -352,16 +342,12 @@ def make_bodies(law_code: str) -> Callable[..., None]:
         steps: int,
         answers: Sequence[Any],
         notes: Any,
-        W: Any,
-        rows: Any,
-        scratch: Any,
+        work: Any,
         marks: Any,
     ) -> None:
         law_code  # noqa: B018
         for i in range(len(problems)):
-            notes[i] = spatial_body.strike(
-                n, problems[i], total, merge, threshold, steps, answers[i], W, rows, scratch, marks
-            )
+            notes[i] = spatial_body.strike(n, problems[i], total, merge, threshold, steps, answers[i], work, marks)
 
     return bodies
 
@@ -379,14 +365,15 @@ def make_mechanism(law_code: str) -> Callable[..., int]:
         merge: float,
         threshold: float,
         steps: int,
+        start: Any,
         c: Any,
         impulse: Any,
-        scratch: Any,
+        work: Any,
         marks: Any,
     ) -> int:
         law_code  # noqa: B018
-        return spatial_path.solve(
-            n, W, friction, restitution, gaps, total, merge, threshold, steps, c, impulse, scratch, marks
+        return spatial_body.strike_mechanism(
+            n, W, friction, restitution, gaps, total, merge, threshold, steps, start, c, impulse, work, marks
         )
 
     return mechanism

@@ -1,17 +1,20 @@
-"""An impact of a rigid body in three dimensions as its contacts see it, and back: law code on flat sequences.
+"""An impact of a rigid body, or of a mechanism, in three dimensions as its contacts see it, and back.
+
+All is law code on flat sequences, as in `spatial_path`.
 
 A problem is one flat sequence: mass; the inertia ixx, iyy, izz, ixy, ixz, iyz about the mass centre; the twist vx, vy,
 vz, wx, wy, wz of the mass centre; then of each contact its position x, y, z from the mass centre, its normal, friction,
 restitution, the velocity of its support, and its gap. An answer is the twist, the energy lost, and of each contact its
-impulse, its velocity relative to the support, and its state, all along the axes of the problem.
+impulse, its velocity relative to the support, its state, all along the axes of the problem, and how fast an impulse
+along the normal moves it there, over the impulse.
 """
 
 from __future__ import annotations
 
-from collections.abc import MutableSequence, Sequence
+from collections.abc import MutableSequence
 from math import sqrt
 
-from .spatial_path import Given, Scratch, solve
+from .spatial_path import WORK, Given, Scratch, solve
 
 BODY = 13
 """Numbers of a problem that come before its contacts."""
@@ -22,17 +25,18 @@ CONTACT = 12
 ANSWER = 7
 """Numbers of an answer that come before its contacts; each of them has `RESULT`."""
 
-RESULT = 7
-
-START = 11
-"""Where the scratch has the velocities before the impact."""
+RESULT = 8
 
 INVALID = 4
 """The flag of numbers that no body can have."""
 
 LARGEST = 1e100
+SINGULAR = 1e-21
+"""An inertia about any axis counts as this part of the trace at least."""
+
 SYMMETRY = 1e-9
 
+ROUNDING = 1e-14
 ROUNDED = 0.01
 """By this part of its trace an inertia may miss the triangle inequality: thin plates are given with few digits."""
 
@@ -71,6 +75,11 @@ def determinant(xx: float, yy: float, zz: float, xy: float, xz: float, yz: float
     return xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz)
 
 
+def room(n: int, r: int) -> int:
+    """Numbers that an impact of n contacts is worked with, where motion has r coordinates."""
+    return 3 * n * r + (15 + WORK) * n + 2 * r
+
+
 def strike(
     n: int,
     problem: Given,
@@ -79,10 +88,8 @@ def strike(
     threshold: float,
     steps: int,
     answer: Scratch,
-    W: Scratch,
-    rows: Scratch,
-    scratch: Sequence[Scratch],
-    marks: Sequence[MutableSequence[int]],
+    work: Scratch,
+    marks: MutableSequence[int],
 ) -> int:
     """Fill in the answer to a problem; its flags, as those of `spatial_path.solve`, and `INVALID`."""
     for j in range(ANSWER + RESULT * n):
@@ -91,88 +98,113 @@ def strike(
         for j in range(6):
             answer[j] = problem[7 + j] if -LARGEST <= problem[7 + j] <= LARGEST else 0.0
         return INVALID
-    mass = problem[0]
-    xx, yy, zz, xy, xz, yz = problem[1], problem[2], problem[3], problem[4], problem[5], problem[6]
-    det = determinant(xx, yy, zz, xy, xz, yz)
-    ixx = (yy * zz - yz * yz) / det
-    iyy = (xx * zz - xz * xz) / det
-    izz = (xx * yy - xy * xy) / det
-    ixy = (xz * yz - xy * zz) / det
-    ixz = (xy * yz - xz * yy) / det
-    iyz = (xy * xz - xx * yz) / det
-    vx, vy, vz, wx, wy, wz = problem[7], problem[8], problem[9], problem[10], problem[11], problem[12]
-    impulse, c, friction, restitution, gaps = scratch[0], scratch[1], scratch[2], scratch[3], scratch[4]
     m = 3 * n
+    rows, start, o = work[0 : 6 * m], work[6 * m : 7 * m], 7 * m
+    friction, restitution, gaps = work[o : o + n], work[o + n : o + 2 * n], work[o + 2 * n : o + 3 * n]
+    c, impulse, v, rest = work[8 * m : 9 * m], work[9 * m : 10 * m], work[10 * m : 10 * m + 6], work[10 * m + 6 :]
+    # With the inertia L L^T the rows are along coordinates in which twice the energy is the square of the motion.
+    root = sqrt(problem[0])
+    xx, yy, zz, xy, xz, yz = problem[1], problem[2], problem[3], problem[4], problem[5], problem[6]
+    least = SINGULAR * (xx + yy + zz)
+    lxx = sqrt(max(xx, least))
+    lxy, lxz = xy / lxx, xz / lxx
+    lyy = sqrt(max(yy - lxy * lxy, least))
+    lyz = (yz - lxy * lxz) / lyy
+    lzz = sqrt(max(zz - lxz * lxz - lyz * lyz, least))
+    vx, vy, vz, wx, wy, wz = problem[7], problem[8], problem[9], problem[10], problem[11], problem[12]
     for i in range(n):
         k = BODY + i * CONTACT
         rx, ry, rz = problem[k], problem[k + 1], problem[k + 2]
         nx, ny, nz = problem[k + 3], problem[k + 4], problem[k + 5]
-        friction[i] = problem[k + 6]
-        restitution[i] = problem[k + 7]
-        gaps[i] = problem[k + 11]
+        friction[i], restitution[i], gaps[i] = problem[k + 6], problem[k + 7], problem[k + 11]
         # The tangents: t1 across the normal in the plane of x and z unless the normal is along y there.
         if abs(nx) + abs(nz) > 1e-3:
             size = sqrt(nx * nx + nz * nz)
             ax, ay, az = nz / size, 0.0, -nx / size
         else:
-            ax, ay, az = 1.0, -nx / ny, 0.0
-            size = sqrt(ax * ax + ay * ay)
-            ax /= size
-            ay /= size
+            size = sqrt(1.0 + nx / ny * (nx / ny))
+            ax, ay, az = 1.0 / size, -nx / ny / size, 0.0
         bx, by, bz = ny * az - nz * ay, nz * ax - nx * az, nx * ay - ny * ax
         ux = vx + wy * rz - wz * ry - problem[k + 8]
         uy = vy + wz * rx - wx * rz - problem[k + 9]
         uz = vz + wx * ry - wy * rx - problem[k + 10]
         for t in range(3):
-            if t == 0:
-                dx, dy, dz = ax, ay, az
-            elif t == 1:
-                dx, dy, dz = bx, by, bz
-            else:
-                dx, dy, dz = nx, ny, nz
+            dx, dy, dz = nx, ny, nz
+            if t < 2:
+                dx, dy, dz = (ax, ay, az) if t == 0 else (bx, by, bz)
             at = 6 * (3 * i + t)
-            rows[at] = dx
-            rows[at + 1] = dy
-            rows[at + 2] = dz
-            rows[at + 3] = ry * dz - rz * dy
-            rows[at + 4] = rz * dx - rx * dz
-            rows[at + 5] = rx * dy - ry * dx
-            c[3 * i + t] = dx * ux + dy * uy + dz * uz
+            jx = (ry * dz - rz * dy) / lxx
+            jy = (rz * dx - rx * dz - lxy * jx) / lyy
+            jz = (rx * dy - ry * dx - lxz * jx - lyz * jy) / lzz
+            rows[at], rows[at + 1], rows[at + 2] = dx / root, dy / root, dz / root
+            rows[at + 3], rows[at + 4], rows[at + 5] = jx, jy, jz
+            start[3 * i + t] = dx * ux + dy * uy + dz * uz
+    system = (rows, start, friction, restitution, gaps)
+    flags = solve(n, system, total, merge, threshold, steps, c, impulse, v, rest, marks)
     for j in range(m):
-        g = 6 * j
-        jx, jy, jz = rows[g + 3], rows[g + 4], rows[g + 5]
-        hx = ixx * jx + ixy * jy + ixz * jz
-        hy = ixy * jx + iyy * jy + iyz * jz
-        hz = ixz * jx + iyz * jy + izz * jz
-        for k in range(j, m):
-            q = 6 * k
-            linear = rows[g] * rows[q] + rows[g + 1] * rows[q + 1] + rows[g + 2] * rows[q + 2]
-            w = linear / mass + hx * rows[q + 3] + hy * rows[q + 4] + hz * rows[q + 5]
-            W[j * m + k] = w
-            W[k * m + j] = w
-    flags = solve(n, W, friction, restitution, gaps, total, merge, threshold, steps, c, impulse, scratch[5:], marks)
-    fx = fy = fz = tx = ty = tz = lost = 0.0
-    for j in range(m):
-        g = 6 * j
-        p = impulse[j]
-        fx += rows[g] * p
-        fy += rows[g + 1] * p
-        fz += rows[g + 2] * p
-        tx += rows[g + 3] * p
-        ty += rows[g + 4] * p
-        tz += rows[g + 5] * p
-        lost -= 0.5 * p * (scratch[START][j] + c[j])
+        answer[6] -= 0.5 * impulse[j] * (start[j] + c[j])
         at = ANSWER + RESULT * (j // 3)
         for t in range(3):
-            answer[at + t] += rows[g + t] * p
-            answer[at + 3 + t] += rows[g + t] * c[j]
+            direction = rows[6 * j + t] * root
+            answer[at + t] += direction * impulse[j]
+            answer[at + 3 + t] += direction * c[j]
     for i in range(n):
-        answer[ANSWER + RESULT * i + 6] = float(marks[0][i])
-    answer[0] = vx + fx / mass
-    answer[1] = vy + fy / mass
-    answer[2] = vz + fz / mass
-    answer[3] = wx + ixx * tx + ixy * ty + ixz * tz
-    answer[4] = wy + ixy * tx + iyy * ty + iyz * tz
-    answer[5] = wz + ixz * tx + iyz * ty + izz * tz
-    answer[6] = lost
+        at = ANSWER + RESULT * i
+        answer[at + 6] = float(marks[i])
+        for k in range(18 * i + 12, 18 * i + 18):
+            answer[at + 7] += rows[k] * rows[k]
+    turn = v[5] / lzz
+    roll = (v[4] - lyz * turn) / lyy
+    answer[0], answer[1], answer[2] = vx + v[0] / root, vy + v[1] / root, vz + v[2] / root
+    answer[3] = wx + (v[3] - lxy * roll - lxz * turn) / lxx
+    answer[4], answer[5] = wy + roll, wz + turn
     return flags
+
+
+def strike_mechanism(
+    n: int,
+    W: Given,
+    friction: Given,
+    restitution: Given,
+    gaps: Given,
+    total: bool,
+    merge: float,
+    threshold: float,
+    steps: int,
+    start: Given,
+    c: Scratch,
+    impulse: Scratch,
+    work: Scratch,
+    marks: MutableSequence[int],
+) -> int:
+    """Solve the impact of a mechanism from its velocities at the contacts, as `spatial_path.solve` does."""
+    m = 3 * n
+    r = coordinates(n)
+    rows, v = work[0 : m * r], work[m * r : m * r + r]
+    # W = A A^T (Cholesky): of the velocities next is that of which most is left, until what is left is rounding.
+    for j in range(m):
+        c[j] = 1.0 if W[j * m + j] > 0.0 else 0.0
+        for k in range(r):
+            rows[j * r + k] = 0.0
+    for k in range(m):
+        best = 0
+        for j in range(m):
+            best = j if c[j] > c[best] else best
+        if c[best] <= ROUNDING:
+            break
+        c[best], root = 0.0, sqrt(c[best] * W[best * m + best])
+        rows[best * r + k] = root
+        for j in range(m):
+            if c[j] > 0.0:
+                rest = W[j * m + best]
+                for i in range(k):
+                    rest -= rows[j * r + i] * rows[best * r + i]
+                rows[j * r + k] = rest / root
+                c[j] -= rest / root * (rest / root) / W[j * m + j]
+    system = (rows, start, friction, restitution, gaps)
+    return solve(n, system, total, merge, threshold, steps, c, impulse, v, work[m * r + r :], marks)
+
+
+def coordinates(n: int) -> int:
+    """Coordinates of the motion that n contacts of a mechanism see, in sixes."""
+    return 6 * ((n + 1) // 2)

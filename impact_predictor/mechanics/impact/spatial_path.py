@@ -1,8 +1,14 @@
 """The impact of any number of contacts in three dimensions, in contact space: how the impulses grow.
 
 Everything here is law code on flat sequences: lists where it runs as Python, arrays where numba compiles it, with the
-same bits. Of n contacts the contact velocities are `c` (3 n): along t1, t2 and the normal of one after the other, `W`
-(9 n^2) is the Delassus matrix row by row, and impulses go like velocities.
+same bits. Of n contacts the contact velocities are `c` (3 n): along t1, t2 and the normal of one after the other, and
+impulses go like velocities. The Delassus matrix is W = A A^T, so that impulses p change the motion v by A^T p, and the
+velocities are start + A v. A rigid body has 6 such coordinates of motion, a mechanism up to 3 n.
+
+`system` is (rows, start, friction, restitution, gaps): A row by row, the number of its columns a multiple of 6; the
+velocities before the impact; numbers of each contact. `blocks` (6 n) are the 3 x 3 blocks of W on its diagonal, as aa,
+bb, zz, ab, az, bz.
+`springs` is (softness, bias, blocks, capped), as `sweep` takes them.
 
 The path law: struck contacts are springs of one stiffness along a pseudo-time, with energetic restitution (Stronge); a
 contact that rests has 0 <= dN _|_ c_n >= 0 at each instant; friction opposes the whole slip, or sticks (Routh and
@@ -17,6 +23,8 @@ from math import pi, sqrt
 
 Given = Sequence[float]
 Scratch = MutableSequence[float]
+System = tuple[Given, Given, Given, Given, Given]
+Springs = tuple[Scratch, Scratch, Scratch, MutableSequence[int]]
 
 RESTING, LOADING, UNLOADING, OPEN = 0, 1, 2, 3
 
@@ -32,7 +40,7 @@ SLIDING = 1.0 - 1e-9
 PRESSED = 0.1
 """A contact that answers to a push by less than this part, because its own friction presses it, is swept without."""
 
-TOLERANCE = 1e-3
+TOLERANCE = 1e-2
 """Of the sweeps, relative, for one step to a quarter; it falls with their cube, as the error of a step does."""
 
 SWEEPS = 60
@@ -55,6 +63,9 @@ STATE_ROUNDING = 1e-5
 
 LEAVES, SLIPS, STICKS, NEARS = 0, 1, 2, 3
 
+WORK = 17
+"""Numbers for each contact that `solve` works with, besides as many as the motion has."""
+
 NOT_CONVERGED, BLENDED = 1, 2
 
 CUTS = 4
@@ -76,129 +87,146 @@ and on a floor paths end within a tenth of it."""
 
 def sweep(
     n: int,
-    W: Given,
+    system: System,
+    springs: Springs,
     before: Given,
-    friction: Given,
-    softness: Given,
-    bias: Given,
-    capped: Sequence[int],
     middle: float,
     tolerance: float,
     most: int,
-    c: Scratch,
+    v: Scratch,
     p: Scratch,
 ) -> int:
     """Solve for the impulses p of one step by projected Gauss-Seidel; how many sweeps it took, `most` if it failed.
 
     0 <= p_n _|_ c_n + softness p_n - bias >= 0 at each contact whose softness is not negative, and friction within
     its cone: sticking where c_t = 0 can be had, else against the slip c_t + middle before_t. A `capped` contact is
-    not pushed faster than c_n = 0. `c` is `before` + W p all along; it ends when no velocity changes by more than the
-    tolerance.
+    not pushed faster than c_n = 0. The motion v has A^T p in it all along; it ends when no velocity changes by more
+    than the tolerance.
     """
-    m = 3 * n
-    change = 0.0
+    rows, start, friction, _, _ = system
+    softness, bias, blocks, capped = springs
+    r, change = len(v), 0.0
+    sixes = range(0, r, 6)
     for count in range(most):
         change = 0.0
         for k in range(n):
             # Forth and back, so that the order of the contacts matters less.
             i = k if count % 2 == 0 else n - 1 - k
-            if softness[i] < 0.0:
+            soft, zz = softness[i], blocks[6 * i + 2]
+            if soft < 0.0 or zz + soft <= 0.0:
                 continue
-            a = 3 * i
-            b = a + 1
-            z = a + 2
-            wzz = W[z * m + z]
-            if wzz + softness[i] <= 0.0:
+            a, b, z = 3 * i, 3 * i + 1, 3 * i + 2
+            cz = start[z]
+            for j in sixes:
+                o = z * r + j
+                cz += rows[o] * v[j] + rows[o + 1] * v[j + 1] + rows[o + 2] * v[j + 2]
+                cz += rows[o + 3] * v[j + 3] + rows[o + 4] * v[j + 4] + rows[o + 5] * v[j + 5]
+            press = p[z]
+            if press == 0.0 and cz >= bias[i]:
                 continue
+            ca, cb, oldx, oldy, most_drag = start[a], start[b], p[a], p[b], friction[i]
+            for j in sixes:
+                o, q = a * r + j, b * r + j
+                v0, v1, v2, v3, v4, v5 = v[j], v[j + 1], v[j + 2], v[j + 3], v[j + 4], v[j + 5]
+                ca += rows[o] * v0 + rows[o + 1] * v1 + rows[o + 2] * v2
+                ca += rows[o + 3] * v3 + rows[o + 4] * v4 + rows[o + 5] * v5
+                cb += rows[q] * v0 + rows[q + 1] * v1 + rows[q + 2] * v2
+                cb += rows[q + 3] * v3 + rows[q + 4] * v4 + rows[q + 5] * v5
+            aa, bb, ab = blocks[6 * i], blocks[6 * i + 1], blocks[6 * i + 3]
+            az, bz = blocks[6 * i + 4], blocks[6 * i + 5]
             # While the contact slides its friction grows with the normal impulse: both change at once.
             ua = ub = 0.0
-            size = sqrt(p[a] * p[a] + p[b] * p[b])
-            if size > 0.0 and size >= SLIDING * friction[i] * p[z]:
-                ua = friction[i] * p[a] / size
-                ub = friction[i] * p[b] / size
-                both = wzz + W[z * m + a] * ua + W[z * m + b] * ub
-                if both >= PRESSED * wzz:
-                    wzz = both
+            size = sqrt(oldx * oldx + oldy * oldy)
+            if size > 0.0 and size >= SLIDING * most_drag * press:
+                ua, ub = most_drag * oldx / size, most_drag * oldy / size
+                both = zz + az * ua + bz * ub
+                if both >= PRESSED * zz:
+                    zz = both
                 else:
                     ua = ub = 0.0
-            new = p[z] - (c[z] + softness[i] * p[z] - bias[i]) / (wzz + softness[i])
+            new = press - (cz + soft * press - bias[i]) / (zz + soft)
             if capped[i] == 1:
-                new = min(new, p[z] - c[z] / wzz)
-            if new < 0.0:
-                new = 0.0
-            step = new - p[z]
-            if step != 0.0:
-                p[z] = new
-                p[a] += ua * step
-                p[b] += ub * step
-                for j in range(m):
-                    c[j] += (W[z * m + j] + ua * W[a * m + j] + ub * W[b * m + j]) * step
-                change = max(change, abs(step) * wzz)
-            limit = friction[i] * new
-            if limit == 0.0:
-                x = y = 0.0
-            else:
-                waa = W[a * m + a]
-                wab = W[a * m + b]
-                wbb = W[b * m + b]
-                x = p[a]
-                y = p[b]
-                half = 0.5 * (waa + wbb)
-                det = waa * wbb - wab * wab
+                new = min(new, press - cz / zz)
+            new = max(new, 0.0)
+            step, limit, x, y = new - press, most_drag * new, 0.0, 0.0
+            nowx, nowy = oldx + ua * step, oldy + ub * step
+            if limit > 0.0:
+                x, y = nowx, nowy
+                ca += (az + ua * aa + ub * ab) * step
+                cb += (bz + ua * ab + ub * bb) * step
+                half = 0.5 * (aa + bb)
+                det = aa * bb - ab * ab
+                sx, sy = x, y
                 if det > SINGULAR * half * half:
-                    sx = x - (wbb * c[a] - wab * c[b]) / det
-                    sy = y - (waa * c[b] - wab * c[a]) / det
+                    sx -= (bb * ca - ab * cb) / det
+                    sy -= (aa * cb - ab * ca) / det
                 elif half > 0.0:
                     # One direction alone moves: the inverse on it.
-                    sx = x - (waa * c[a] + wab * c[b]) / (4.0 * half * half)
-                    sy = y - (wab * c[a] + wbb * c[b]) / (4.0 * half * half)
-                else:
-                    sx = x
-                    sy = y
+                    sx -= (aa * ca + ab * cb) / (4.0 * half * half)
+                    sy -= (ab * ca + bb * cb) / (4.0 * half * half)
                 if sx * sx + sy * sy <= limit * limit:
-                    x = sx
-                    y = sy
+                    x, y = sx, sy
                 elif half > 0.0:
-                    rest = 0.5 * (waa - wbb)
-                    w = half + sqrt(rest * rest + wab * wab)
-                    x -= (c[a] + middle * before[a]) / w
-                    y -= (c[b] + middle * before[b]) / w
+                    rest = 0.5 * (aa - bb)
+                    w = half + sqrt(rest * rest + ab * ab)
+                    x -= (ca + middle * before[a]) / w
+                    y -= (cb + middle * before[b]) / w
                     size = sqrt(x * x + y * y)
                     if size > limit:
-                        x *= limit / size
-                        y *= limit / size
-            dx = x - p[a]
-            dy = y - p[b]
-            if dx != 0.0 or dy != 0.0:
-                p[a] = x
-                p[b] = y
-                for j in range(m):
-                    c[j] += W[a * m + j] * dx + W[b * m + j] * dy
-                change = max(change, abs(dx) * W[a * m + a], abs(dy) * W[b * m + b])
-        if change <= tolerance:
+                        x, y = x * limit / size, y * limit / size
+            moved = step * step * zz * zz + (x - nowx) * (x - nowx) * aa * aa + (y - nowy) * (y - nowy) * bb * bb
+            change = moved if moved > change else change
+            p[a], p[b], p[z] = x, y, new
+            x, y = x - oldx, y - oldy
+            for j in sixes:
+                o, q, s = a * r + j, b * r + j, z * r + j
+                v[j] += rows[o] * x + rows[q] * y + rows[s] * step
+                v[j + 1] += rows[o + 1] * x + rows[q + 1] * y + rows[s + 1] * step
+                v[j + 2] += rows[o + 2] * x + rows[q + 2] * y + rows[s + 2] * step
+                v[j + 3] += rows[o + 3] * x + rows[q + 3] * y + rows[s + 3] * step
+                v[j + 4] += rows[o + 4] * x + rows[q + 4] * y + rows[s + 4] * step
+                v[j + 5] += rows[o + 5] * x + rows[q + 5] * y + rows[s + 5] * step
+        if change <= tolerance * tolerance:
             return count + 1
-    return most if change > LOOSE * tolerance else most - 1
+    return most if change > LOOSE * LOOSE * tolerance * tolerance else most - 1
+
+
+def velocities(system: System, v: Given, c: Scratch) -> None:
+    """Contact velocities c of a motion v."""
+    rows, start, _, _, _ = system
+    r = len(v)
+    for j in range(len(start)):
+        speed = start[j]
+        for k in range(0, r, 6):
+            o = j * r + k
+            speed += rows[o] * v[k] + rows[o + 1] * v[k + 1] + rows[o + 2] * v[k + 2]
+            speed += rows[o + 3] * v[k + 3] + rows[o + 4] * v[k + 4] + rows[o + 5] * v[k + 5]
+        c[j] = speed
+
+
+def push(system: System, p: Given, v: Scratch) -> None:
+    """Add what impulses p do to a motion v."""
+    rows, r = system[0], len(v)
+    for j in range(len(p)):
+        if p[j] != 0.0:
+            for k in range(r):
+                v[k] += rows[j * r + k] * p[j]
 
 
 def follow(
     n: int,
-    W: Given,
-    friction: Given,
-    restitution: Given,
+    system: System,
+    springs: Springs,
     distances: Given,
     threshold: float,
     steps: int,
     scale: float,
     c: Scratch,
     impulse: Scratch,
-    before: Scratch,
-    p: Scratch,
+    scratch: Sequence[Scratch],
     depth: Scratch,
     deepest: Scratch,
-    softness: Scratch,
-    bias: Scratch,
     phase: MutableSequence[int],
-    capped: MutableSequence[int],
 ) -> int:
     """Follow the path: `c` becomes the velocities after it, `impulse` grows by what acted; whether it came to its end.
 
@@ -207,6 +235,9 @@ def follow(
     by; `steps` resolve a quarter of an oscillation. The rest is scratch.
     """
     m = 3 * n
+    restitution = system[3]
+    softness, bias, blocks, capped = springs
+    before, p, v, last_v = scratch
     struck = 0
     for i in range(n):
         p[3 * i] = p[3 * i + 1] = p[3 * i + 2] = 0.0
@@ -228,38 +259,38 @@ def follow(
         for i in range(n):
             if phase[i] == LOADING or phase[i] == UNLOADING:
                 e = 1.0 if phase[i] == LOADING else max(restitution[i], HARDEST)
-                stiffest = max(stiffest, W[(3 * i + 2) * (m + 1)] / (e * e))
+                stiffest = max(stiffest, blocks[6 * i + 2] / (e * e))
         if stiffest == 0.0:
             return 0
         h = 0.5 * pi / (steps * sqrt(stiffest))
         for j in range(m):
             before[j] = c[j]
+        for j in range(len(v)):
+            last_v[j] = v[j]
         for _ in range(CUTS):
             ratio = h / last if last > 0.0 else 0.0
             last = h
-            for j in range(m):
-                c[j] = before[j]
-                p[j] *= ratio
             for i in range(n):
+                z = 3 * i + 2
+                keep = 0.0 if phase[i] == OPEN else ratio
+                p[z - 2], p[z - 1], p[z] = keep * p[z - 2], keep * p[z - 1], keep * p[z]
                 capped[i] = 0
+                softness[i] = bias[i] = 0.0
                 if phase[i] == OPEN:
                     softness[i] = -1.0
-                    p[3 * i] = p[3 * i + 1] = p[3 * i + 2] = 0.0
-                elif phase[i] == RESTING:
-                    softness[i] = bias[i] = 0.0
-                else:
+                elif phase[i] != RESTING:
                     # The force at the middle of the step, k (d - h (c + c') / 4), times h, solved for c'.
                     e = restitution[i]
                     stiffness = 1.0 / (e * e) if phase[i] == UNLOADING else 1.0
                     rest = (1.0 - e * e) * deepest[i] if phase[i] == UNLOADING else 0.0
                     softness[i] = 4.0 / (h * h * stiffness)
-                    bias[i] = 4.0 * (depth[i] - rest) / h - c[3 * i + 2]
+                    bias[i] = 4.0 * (depth[i] - rest) / h - before[z]
                     capped[i] = 1 if phase[i] == LOADING and e < angle else 0
-            for j in range(m):
-                if p[j] != 0.0:
-                    for k in range(m):
-                        c[k] += W[j * m + k] * p[j]
-            sweep(n, W, before, friction, softness, bias, capped, 1.0, tolerance, SWEEPS, c, p)
+            for j in range(len(v)):
+                v[j] = last_v[j]
+            push(system, p, v)
+            sweep(n, system, springs, before, 1.0, tolerance, SWEEPS, v, p)
+            velocities(system, v, c)
             # Where a compression ends within the step, the step ends there.
             part = 1.0
             for i in range(n):
@@ -267,7 +298,7 @@ def follow(
                 force = depth[i] - 0.25 * h * (before[z] + c[z])
                 if capped[i] == 1 and before[z] < -slow and 0.0 < p[z] < h * force:
                     # Without the cap it would leave; of two at one place the cap leaves one without impulse.
-                    leaves = c[z] + W[z * (m + 1)] * (h * force - p[z])
+                    leaves = c[z] + blocks[6 * i + 2] * (h * force - p[z])
                     part = min(part, before[z] / (before[z] - max(leaves, 0.0)))
             if part > NEARLY:
                 break
@@ -279,13 +310,17 @@ def follow(
         if pushed == 0.0:
             # Without a push of springs the contacts that rest do nothing of themselves, though they could lock.
             for j in range(m):
-                c[j] = before[j]
                 p[j] = 0.0
-            sweep(n, W, before, friction, softness, bias, capped, 1.0, tolerance, SWEEPS, c, p)
+            for j in range(len(v)):
+                v[j] = last_v[j]
+            sweep(n, system, springs, before, 1.0, tolerance, SWEEPS, v, p)
+            velocities(system, v, c)
         elapsed += h
         moves = 0.0
         for j in range(m):
             moves = max(moves, abs(before[j]), abs(c[j]))
+            if moves > tolerance:
+                break
         if moves <= tolerance:
             # The contacts lock the body, and the springs keep their work.
             return 1
@@ -323,25 +358,23 @@ def follow(
             if phase[i] == UNLOADING or (phase[i] == LOADING and depth[i] > 0.0):
                 struck += 1
             elif phase[i] == LOADING and c[z] < 0.0:
-                struck += 1 if elapsed * sqrt(W[z * (m + 1)]) < LATEST * 0.5 * pi else 0
+                struck += 1 if elapsed * sqrt(blocks[6 * i + 2]) < LATEST * 0.5 * pi else 0
     return 0
 
 
 def finish(
     n: int,
-    W: Given,
-    friction: Given,
+    system: System,
+    springs: Springs,
     scale: float,
     c: Scratch,
     impulse: Scratch,
-    before: Scratch,
-    p: Scratch,
     depth: Given,
-    softness: Scratch,
-    bias: Scratch,
-    capped: MutableSequence[int],
+    p: Scratch,
+    v: Scratch,
 ) -> int:
     """Stop plastically what still approaches of the contacts that have closed: sweeps as those of `sweep`."""
+    softness, bias, _, capped = springs
     lowest = 0.0
     for i in range(n):
         bias[i] = 0.0
@@ -351,96 +384,102 @@ def finish(
             lowest = min(lowest, c[3 * i + 2])
     if lowest >= -ROUNDING * scale:
         return 0
-    m = 3 * n
-    for j in range(m):
-        before[j] = c[j]
+    for j in range(len(p)):
         p[j] = 0.0
-    used = sweep(n, W, before, friction, softness, bias, capped, 0.0, ROUNDING * scale, THOROUGH, c, p)
-    for j in range(m):
+    used = sweep(n, system, springs, c, 0.0, ROUNDING * scale, THOROUGH, v, p)
+    velocities(system, v, c)
+    for j in range(len(p)):
         impulse[j] += p[j]
     return used
 
 
 def solve(
     n: int,
-    W: Given,
-    friction: Given,
-    restitution: Given,
-    gaps: Given,
+    system: System,
     total: bool,
     merge: float,
     threshold: float,
     steps: int,
     c: Scratch,
     impulse: Scratch,
-    scratch: Sequence[Scratch],
-    marks: Sequence[MutableSequence[int]],
+    v: Scratch,
+    work: Scratch,
+    marks: MutableSequence[int],
 ) -> int:
-    """Solve an impact: `c` becomes the velocities after it, `impulse` what acted, marks[0] the states of the contacts.
+    """Solve an impact: c becomes the velocities after it, `impulse` what acted, v what it did to the motion, and
+    marks[:n] the states of the contacts.
 
     The flags are `NOT_CONVERGED`, and `BLENDED` where the answer would have gained energy, which Newton's restitution
-    can do, and the errors of steps.
+    can do, and the errors of steps. It works with `WORK` numbers for each contact, and as many as v
+    has.
     """
-    before, p, depth, deepest, softness, bias, start, plastic, distances = scratch
-    phase, capped = marks
     m = 3 * n
+    rows, start, _, restitution, gaps = system
+    r = len(v)
+    before, p, blocks, other = work[0:m], work[m : 2 * m], work[2 * m : 4 * m], work[4 * m : 4 * m + r]
+    o = 4 * m + r
+    depth, deepest, distances = work[o : o + n], work[o + n : o + 2 * n], work[o + 2 * n : o + m]
+    softness, bias = work[o + m : o + m + n], work[o + m + n : o + m + 2 * n]
+    phase, capped = marks[0:n], marks[n : 2 * n]
+    springs = (softness, bias, blocks, capped)
+    for i in range(n):
+        for k in range(6):
+            one = 3 * i + (k if k < 3 else k // 5)
+            two = 3 * i + (k if k < 3 else 1 if k == 3 else 2)
+            product = 0.0
+            for j in range(r):
+                product += rows[one * r + j] * rows[two * r + j]
+            blocks[6 * i + k] = product
     scale = 0.0
     for j in range(m):
-        start[j] = c[j]
+        c[j] = start[j]
         impulse[j] = 0.0
         scale = max(scale, abs(c[j]))
+    for j in range(r):
+        v[j] = 0.0
     flags = 0
     for i in range(n):
         # A compression lasts `merge`, a quarter of an oscillation in the pseudo-time.
         distances[i] = 0.0
         if gaps[i] > 0.0:
-            w = W[(3 * i + 2) * (m + 1)]
+            w = blocks[6 * i + 2]
             distances[i] = gaps[i] / merge * 0.5 * pi / sqrt(w) if merge > 0.0 and w > 0.0 else FAR * scale
     if total:
         for i in range(n):
-            softness[i] = 0.0
-            bias[i] = max(0.0, -restitution[i] * c[3 * i + 2])
-            capped[i] = 0
             # What closes within a compression has closed: this law knows no order.
             late = gaps[i] > merge * max(0.0, -c[3 * i + 2])
             depth[i] = -distances[i] if late else 0.0
-            if late:
-                softness[i] = -1.0
-        for j in range(m):
-            p[j] = 0.0
-        if (
-            sweep(n, W, start, friction, softness, bias, capped, 0.0, ROUNDING * scale, THOROUGH, c, impulse)
-            == THOROUGH
-        ):
+            softness[i] = -1.0 if late else 0.0
+            bias[i] = max(0.0, -restitution[i] * c[3 * i + 2])
+            capped[i] = 0
+        if sweep(n, system, springs, start, 0.0, ROUNDING * scale, THOROUGH, v, impulse) == THOROUGH:
             flags |= NOT_CONVERGED
     elif not follow(
-        *(n, W, friction, restitution, distances, max(threshold, ROUNDING * scale), steps, scale, c, impulse),
-        *(before, p, depth, deepest, softness, bias, phase, capped),
+        *(n, system, springs, distances, max(threshold, ROUNDING * scale), steps, scale, c, impulse),
+        *((before, p, v, other), depth, deepest, phase),
     ):
         flags |= NOT_CONVERGED
-    for j in range(m):
-        # Without the roundings of the steps.
-        c[j] = start[j]
-    for k in range(m):
-        if impulse[k] != 0.0:
-            for j in range(m):
-                c[j] += W[k * m + j] * impulse[k]
-    if finish(n, W, friction, scale, c, impulse, before, p, depth, softness, bias, capped) == THOROUGH:
+    # Without the roundings of the steps.
+    for j in range(r):
+        v[j] = 0.0
+    push(system, impulse, v)
+    velocities(system, v, c)
+    if finish(n, system, springs, scale, c, impulse, depth, p, v) == THOROUGH:
         flags |= NOT_CONVERGED
-    work = 0.0
+    gained = 0.0
     for j in range(m):
-        work += 0.5 * impulse[j] * (start[j] + c[j])
-    if work > 0.0:
-        flags |= lose(n, W, friction, scale, start, c, impulse, plastic, before, p, depth, softness, bias, capped)
+        gained += 0.5 * impulse[j] * (start[j] + c[j])
+    if gained > 0.0:
+        flags |= lose(n, system, springs, scale, c, impulse, depth, (before, p, v, other))
     zero = STATE_ROUNDING * scale
     for i in range(n):
         a = 3 * i
         if depth[i] < 0.0:
-            phase[i] = NEARS
+            marks[i] = NEARS
         elif c[a + 2] > zero:
-            phase[i] = LEAVES
+            marks[i] = LEAVES
         else:
-            phase[i] = SLIPS if c[a] * c[a] + c[a + 1] * c[a + 1] > zero * zero else STICKS
+            marks[i] = SLIPS if c[a] * c[a] + c[a + 1] * c[a + 1] > zero * zero else STICKS
             if c[a + 2] < -zero:
                 flags |= NOT_CONVERGED
     return flags
@@ -448,43 +487,39 @@ def solve(
 
 def lose(
     n: int,
-    W: Given,
-    friction: Given,
+    system: System,
+    springs: Springs,
     scale: float,
-    start: Given,
     c: Scratch,
     impulse: Scratch,
-    plastic: Scratch,
-    before: Scratch,
-    p: Scratch,
     depth: Given,
-    softness: Scratch,
-    bias: Scratch,
-    capped: MutableSequence[int],
+    scratch: Sequence[Scratch],
 ) -> int:
     """Draw an answer to the plastic one by so much that it gains no energy: both are in the same convex cones."""
-    m = 3 * n
-    for j in range(m):
+    start = system[1]
+    plastic, p, v, whole = scratch
+    for j in range(len(c)):
         plastic[j] = 0.0
         c[j] = start[j]
-    finish(n, W, friction, scale, c, plastic, before, p, depth, softness, bias, capped)
+    for k in range(len(v)):
+        whole[k] = v[k]
+        v[k] = 0.0
+    finish(n, system, springs, scale, c, plastic, depth, p, v)
     # Along P = plastic + s (impulse - plastic) the work is a + b s + q s^2, and a <= 0 < a + b + q.
     a = b = q = 0.0
-    for j in range(m):
-        more = impulse[j] - plastic[j]
-        wp = wm = 0.0
-        for k in range(m):
-            wp += W[j * m + k] * plastic[k]
-            wm += W[j * m + k] * (impulse[k] - plastic[k])
-        a += plastic[j] * (start[j] + 0.5 * wp)
-        b += more * (start[j] + wp)
-        q += 0.5 * more * wm
+    for j in range(len(c)):
+        a += plastic[j] * start[j]
+        b += (impulse[j] - plastic[j]) * start[j]
+    for k in range(len(v)):
+        more = whole[k] - v[k]
+        a += 0.5 * v[k] * v[k]
+        b += v[k] * more
+        q += 0.5 * more * more
     root = sqrt(max(0.0, b * b - 4.0 * q * min(a, 0.0)))
     s = -2.0 * min(a, 0.0) / (b + root) if b + root > 0.0 else 0.0
-    for j in range(m):
+    for j in range(len(c)):
         impulse[j] = plastic[j] + s * (impulse[j] - plastic[j])
-    for j in range(m):
-        c[j] = start[j]
-        for k in range(m):
-            c[j] += W[j * m + k] * impulse[k]
+    for k in range(len(v)):
+        v[k] += s * (whole[k] - v[k])
+    velocities(system, v, c)
     return BLENDED if s < UNBLENDED else 0

@@ -1,0 +1,109 @@
+"""What the answers to all draws of an impact say, as law code on flat sequences (see `mechanics.compiled`)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import erf, inf, sqrt
+
+from ..mechanics.impact.spatial_body import ANSWER, BODY, CONTACT, RESULT
+from ..mechanics.impact.spatial_path import SLIPS, Given, Scratch
+from ..mechanics.types import Mode
+
+_, STOP, SLIDE, PIVOT_SLIDE, PIVOT, BACK_PIVOT, FLIGHT = (int(mode) for mode in Mode)
+
+OF_MODE = 8
+"""Numbers of each mode in what is told: its probability, how many draws have it, and the sum of their twists."""
+
+PLANAR = OF_MODE * len(Mode)
+"""Where what is told has mean and variance of the twist in the impact plane; then the covariance of the body's ..."""
+
+LIFTS = PLANAR + 6 + 36
+"""... and then the probability with which each contact lifts, and scratch."""
+
+ROUNDING = 1e-9
+ROOT = sqrt(2.0)
+
+
+def over(margin: float, blur: float) -> float:
+    """The probability that a quantity of a mean and a standard deviation is above zero."""
+    return 0.5 * (1.0 + erf(margin / (blur * ROOT)))
+
+
+def tell(n: int, standing: int, problem: Given, answers: Sequence[Given], given: Given, told: Scratch) -> None:
+    """Fill in what the answers to draws of a problem say; the first `standing` of its n contacts stand.
+
+    `given` is the rate in m/s above which a group of contacts leaves; by what part of its speed a contact strays from
+    the law; the speed that gravity gives in a contact time; then the body's axes, its mass centre in its frame, and the
+    axis and the normal of the impact plane.
+    """
+    least, stray, slow = given[0], given[1], given[2]
+    for k in range(len(told)):
+        told[k] = 0.0
+    square, count, spot = 0.0, len(answers), LIFTS + n
+    for i in range(n):
+        k = BODY + CONTACT * i
+        square += problem[k] * problem[k] + problem[k + 1] * problem[k + 1] + problem[k + 2] * problem[k + 2]
+    vx, vy, vz, wx, wy, wz = problem[7], problem[8], problem[9], problem[10], problem[11], problem[12]
+    speed = sqrt(vx * vx + vy * vy + vz * vz) + sqrt((wx * wx + wy * wy + wz * wz) * square / n)
+    blur = max(stray, ROUNDING) * speed
+    for d in range(count):
+        answer = answers[d]
+        old = new = 0.0
+        old_lifts = new_lifts = old_slips = new_slips = False
+        for group in range(2):
+            begin, end = (0, standing) if group == 0 else (standing, n)
+            rate, held, slips = 0.0, 0.0, False
+            for i in range(begin, end):
+                k, at = BODY + CONTACT * i + 3, ANSWER + RESULT * i
+                push = problem[k] * answer[at] + problem[k + 1] * answer[at + 1] + problem[k + 2] * answer[at + 2]
+                away = problem[k] * answer[at + 3] + problem[k + 1] * answer[at + 4] + problem[k + 2] * answer[at + 5]
+                # What holds would go into its support by as much as its impulse takes it back; what leaves more slowly
+                # than gravity takes back in a contact time does not lift.
+                margin = away if away > least else -answer[at + 7] * push
+                told[LIFTS + i] += over(margin - slow, blur) / count
+                rate, held, slips = rate + away, held + min(0.0, margin), slips or answer[at + 6] == SLIPS
+            rate = rate / (end - begin) if end > begin else inf
+            lifts = rate > least
+            chance = over((rate if lifts else held / (end - begin)) - slow, blur)
+            if group == 0:
+                old, old_lifts, old_slips = chance, lifts, slips
+            else:
+                new, new_lifts, new_slips = chance, lifts, slips
+        alone, none = PIVOT_SLIDE if new_slips else PIVOT, SLIDE if old_slips or new_slips else STOP
+        told[OF_MODE * FLIGHT] += old * new / count
+        told[OF_MODE * BACK_PIVOT] += (1.0 - old) * new / count
+        told[OF_MODE * alone] += old * (1.0 - new) / count
+        told[OF_MODE * none] += (1.0 - old) * (1.0 - new) / count
+        mode = alone if old_lifts else none
+        if new_lifts:
+            mode = FLIGHT if old_lifts else BACK_PIVOT
+        told[OF_MODE * mode + 1] += 1.0
+        for j in range(6):
+            told[OF_MODE * mode + 2 + j] += answer[j]
+            told[spot + 9 + j] += answer[j] / count
+    for d in range(-1, count):
+        # The mean of all draws, and how each of them differs from it, along the axes of the body and in the plane.
+        for j in range(9):
+            told[spot + j] = 0.0
+        for j in range(3):
+            mean, turn = told[spot + 9 + j], told[spot + 12 + j]
+            v, w = (mean, turn) if d < 0 else (answers[d][j] - mean, answers[d][3 + j] - turn)
+            for k in range(3):
+                told[spot + k] += given[3 + 3 * k + j] * v
+                told[spot + 3 + k] += given[3 + 3 * k + j] * w
+            ax, nx = given[15 + (j + 1) % 3], given[18 + (j + 2) % 3]
+            ay, ny = given[15 + (j + 2) % 3], given[18 + (j + 1) % 3]
+            told[spot + 6] += (ax * nx - ay * ny) * v
+            told[spot + 7] += given[18 + j] * v
+            told[spot + 8] -= given[15 + j] * w
+        if d < 0:
+            for k in range(3):
+                told[PLANAR + k] = told[spot + 6 + k]
+            continue
+        for k in range(3):
+            a, b = (k + 1) % 3, (k + 2) % 3
+            told[spot + k] -= told[spot + 3 + a] * given[12 + b] - told[spot + 3 + b] * given[12 + a]
+            told[PLANAR + 3 + k] += told[spot + 6 + k] * told[spot + 6 + k] / count
+        for j in range(6):
+            for k in range(6):
+                told[PLANAR + 6 + 6 * j + k] += told[spot + j] * told[spot + k] / count
