@@ -55,8 +55,7 @@ def _planar(told: Touchdown, course: Course) -> SpatialTwist:
     new = Contact(x, y, scene.friction, restitution=scene.restitution)
     # The old contact stands on the level of the new one.
     old = Contact(places[0][0], y, scene.friction) if told.old and places[0][0] < x else None
-    blocked = len(told.old) > 1 and len(told.new) > 1
-    body = TwoPointBody(scene.mass, inertia_about(scene, to_body(axes, told.axis), blocked), old, new)
+    body = TwoPointBody(scene.mass, inertia_about(scene, to_body(axes, told.axis), blocked=False), old, new)
     before = Twist(dot(ahead, linear), dot(scene.normal, linear), -dot(told.axis, angular))
     after = solve_impact(body, before, "path", scene.validity).twist
     gain = combine(after.vx - before.vx, ahead, after.vy - before.vy, scene.normal, 0.0, ahead)
