@@ -75,8 +75,12 @@ def fill(given: Any, values: Any) -> None:
 
 
 @contextmanager
-def told_of_compiling(tell: Callable[[], None]) -> Iterator[None]:
-    """Tell once when numba compiles meanwhile, instead of taking what it compiled before."""
+def told_of_compiling(tell: Callable[[], None], is_over: Callable[[], bool] = bool) -> Iterator[None]:
+    """Tell once when numba compiles meanwhile, instead of taking what it compiled before.
+
+    Raises:
+        KeyboardInterrupt: `is_over` says so between two of the many steps in which it compiles.
+    """
     try:
         from numba.core import event
     except ImportError:
@@ -90,9 +94,11 @@ def told_of_compiling(tell: Callable[[], None]) -> Iterator[None]:
             if not self.told:
                 self.told = True
                 tell()
+            if is_over():
+                raise KeyboardInterrupt
 
         def on_end(self, event: Any) -> None:
             """Nothing is told then."""
 
-    with event.install_listener("numba:compile", Teller()):
+    with event.install_listener("numba:run_pass", Teller()):
         yield

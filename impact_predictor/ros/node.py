@@ -31,7 +31,10 @@ def _serve(stop: Stop) -> int:
     # ROS may be missing: whoever starts this program is to learn so in one sentence.
     from .predictor_node import PredictorNode
 
-    node = PredictorNode()
+    try:
+        node = PredictorNode(lambda: stop.requested)
+    except KeyboardInterrupt:
+        return 0
     # All that is loaded now stays: to look at it again would hold the messages up for 20 ms and more, now and then.
     gc.freeze()
     try:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from array import array
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
 from difflib import get_close_matches
 from itertools import chain
@@ -33,17 +33,18 @@ _QOS_OVERRIDES: Final = "qos_overrides."
 class PredictorNode(Node):
     """Translates between topics and the monitor of the scenes."""
 
-    def __init__(self) -> None:
+    def __init__(self, is_over: Callable[[], bool] = bool) -> None:
         """Take parameters and topics as the arguments of the process say.
 
         Raises:
             InputError: a parameter is wrong.
+            KeyboardInterrupt: `is_over` says so while the impact laws are compiled, which may take minutes.
         """
         try:
             super().__init__("impact_predictor", automatically_declare_parameters_from_overrides=True)
             self._settings = NodeParameters(self)
             self.executor_kind = str(self._settings.values["executor"])
-            self._connect(scenes_of(self._settings.values))
+            self._connect(scenes_of(self._settings.values), is_over)
         except InputError:
             raise
         # What rclpy raises for a name, a parameter or a QoS override that it cannot take.
@@ -55,9 +56,9 @@ class PredictorNode(Node):
     def _tell_compiling(self) -> None:
         self.get_logger().info("numba compiles the impact laws, once for a machine: half a minute")
 
-    def _connect(self, scenes: dict[str, Scene]) -> None:
+    def _connect(self, scenes: dict[str, Scene], is_over: Callable[[], bool]) -> None:
         compiles = any(scene.samples or not scene.radius for scene in scenes.values())
-        with told_of_compiling(self._tell_compiling) if compiles else nullcontext():
+        with told_of_compiling(self._tell_compiling, is_over) if compiles else nullcontext():
             self._monitor = Monitor(scenes)
         # Each subscription that tells what was lost costs the single-threaded executor as much as another topic.
         counts_losses = self.executor_kind == "events" or len(scenes) == 1

@@ -49,6 +49,21 @@ def test_a_signal_ends_the_node_with_status_0_whenever_it_comes_and_leaves_nothi
         assert not [name for name in shared if Path(name).exists()]
 
 
+@needs_ros
+@pytest.mark.slow
+def test_a_signal_ends_the_node_while_numba_compiles_for_it(tmp_path):
+    pytest.importorskip("numba")
+    environment = {**ros_environment(), "NUMBA_CACHE_DIR": str(tmp_path)}
+    with subprocess.Popen(
+        [*NODE, "--ros-args", "--params-file", SCENE], stdout=PIPE, stderr=PIPE, text=True, env=environment
+    ) as node:
+        said = node.stderr.readline()
+        assert "numba compiles the impact laws" in said
+        node.send_signal(signal.SIGINT)
+        assert (node.wait(PATIENCE), node.stderr.read()) == (0, "")
+    assert not list(tmp_path.rglob("*.nbc"))
+
+
 def send(node, number, moment):
     """Send a signal some time after the program has begun, before its first line a signal is for the interpreter; the
     files in which it shared memory until then.
