@@ -100,6 +100,29 @@ def test_what_is_told_is_the_mean_over_the_draws_of_the_likeliest_mode() -> None
     assert touchdown.after == pytest.approx(touchdown.uncertainty.mean, abs=1e-9)
 
 
+def struck(placed: Somewhere, course: Any, twists: Any, friction: Any, restitution: Any) -> Any:
+    """The twists after a corner has struck, each with a twist before it, a friction and a restitution of its own."""
+    turn = Rotation.from_quat(course.state[3:7])
+    body = Body(MASS, MASS * turn.as_matrix() @ tensor(placed.inertia) @ turn.as_matrix().T)
+    contacts = ContactPoints(turn.apply(placed.points)[[course.point]], friction, restitution)
+    slow = SLOW * float(np.linalg.norm(PULL.gravity))
+    return solve_spatial_impacts(body, contacts, twists, merge=MERGE, threshold=slow).twist
+
+
+def test_uncertain_friction_and_restitution_spread_the_twist_as_in_a_big_sample() -> None:
+    placed, start = falling(4)
+    told = announced(placed, start, samples=64, gap_deviation=0.0, friction_deviation=0.3, restitution_deviation=0.3)
+    assert told.uncertainty is not None
+    course, draw = placed.newton({}).strike(start, 0.6), np.random.default_rng(0).normal(size=(2, 20000, 1))
+    # Neither is below 0, and no restitution above 1.
+    friction, restitution = np.maximum(0.0, placed.friction + 0.3 * draw[0]), np.clip(RESTITUTION + 0.3 * draw[1], 0, 1)
+    after = struck(placed, course, course.state[7:13], friction, restitution)
+    axis, normal = placed.support.inv().apply(told.axis), np.array((0.0, 0.0, 1.0))
+    planar = np.stack([after[:, :3] @ np.cross(axis, normal), after[:, 2], -after[:, 3:] @ axis])
+    assert told.uncertainty.mean == pytest.approx(planar.mean(axis=1), rel=0.03)
+    assert told.uncertainty.deviation == pytest.approx(planar.std(axis=1), rel=0.1)
+
+
 def test_the_covariance_is_that_of_a_big_sample() -> None:
     placed, start = falling(4)
     deviation = 0.005
@@ -107,18 +130,13 @@ def test_the_covariance_is_that_of_a_big_sample() -> None:
     assert told.uncertainty is not None
     assert told.uncertainty.given is Covariance.USED
     course = placed.newton({}).strike(start, 0.6)
-    turn = Rotation.from_quat(course.state[3:7])
     at_sample = placed.pose(np.concatenate(start))[1]
     own = at_sample.apply(np.eye(3))
     noise = deviation * np.random.default_rng(0).normal(size=(20000, 6)) * [1.0, 1.0, 1.0, 10.0, 10.0, 10.0]
     spin = noise[:, 3:] @ own
     linear = noise[:, :3] @ own + np.cross(spin, at_sample.apply(placed.center))
     twists = course.state[7:13] + np.hstack([placed.support.inv().apply(linear), placed.support.inv().apply(spin)])
-    body = Body(MASS, MASS * turn.as_matrix() @ tensor(placed.inertia) @ turn.as_matrix().T)
-    arm = turn.apply(placed.points)[[course.point]]
-    slow = SLOW * float(np.linalg.norm(PULL.gravity))
-    contacts = ContactPoints(arm, placed.friction, RESTITUTION)
-    after = solve_spatial_impacts(body, contacts, twists, merge=MERGE, threshold=slow).twist
+    after = struck(placed, course, twists, placed.friction, RESTITUTION)
     now = placed.pose(course.state)[1].inv()
     spins = now.apply(placed.support.apply(after[:, 3:]))
     velocities = now.apply(placed.support.apply(after[:, :3])) - np.cross(spins, placed.center)
