@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from ..errors import InputError
 from ..parameters.types import inertia_flaw
 from ..prediction.scene import Scene
+from ..prediction.types import KINDS
 from ..wording import counted
 from .flight import NEEDED, WIDE, Flight, estimates, flight_of, resamples
-from .impacts import DEVIATIONS, ImpactKind, MotionRecord
+from .impacts import DEVIATIONS, MotionRecord
 from .impulses import AGAIN, Impulses, SinglePoint, SinglePoints, Weights, is_solid, least_lengths, parts_of, rounded
 from .motions import Reals, RecordedMotion, distinct
 from .search import FOLDS, Estimate
@@ -141,7 +142,7 @@ def _single_points(scene: Scene, records: Sequence[MotionRecord]) -> tuple[Singl
         (number, record.motion, impact)
         for number, record in enumerate(records)
         for impact in record.impacts
-        if impact.kind is ImpactKind.FLIGHT_CORNER and impact.isolated and impact.clear > scene.tolerance / DEVIATIONS
+        if impact.kind == KINDS[0] and impact.isolated and impact.clear > scene.tolerance / DEVIATIONS
     ]
     owners, owner = np.unique([number for number, _, _ in found], return_inverse=True)
     if len(owners) < NEEDED:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from enum import Enum
 from itertools import pairwise
 from math import ceil, inf
 from typing import Final, NamedTuple
@@ -12,6 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from ..prediction.planar import STANDING
 from ..prediction.scene import Scene
+from ..prediction.types import kind_of
 from .motions import Reals, RecordedMotion
 
 DEVIATIONS: Final = 3.0
@@ -35,20 +35,6 @@ AFTER: Final = 2
 
 FLIGHT: Final = 6
 """Poses of the shortest flight from which a straight line and gravity leave something to be told."""
-
-
-class ImpactKind(Enum):
-    """What stood, and what struck: a corner is one point, an edge two or more."""
-
-    FLIGHT_CORNER = "flight>corner"
-    FLIGHT_EDGE = "flight>edge"
-    CORNER_CORNER = "corner>corner"
-    CORNER_EDGE = "corner>edge+"
-    EDGE_CORNER = "edge>corner"
-    EDGE_FACE = "edge>face"
-
-
-_KINDS: Final = tuple(ImpactKind)
 
 
 class FrameMotion(NamedTuple):
@@ -99,9 +85,9 @@ class RecordedImpact(NamedTuple):
     clear: float
 
     @property
-    def kind(self) -> ImpactKind:
-        """What stood, and what struck."""
-        return _KINDS[2 * min(len(self.old), 2) + (len(self.new) > 1)]
+    def kind(self) -> str:
+        """What stood, and what struck, as of a `Touchdown`."""
+        return kind_of(self.old, self.new)
 
     def meeting(self, scene: Scene, point: Reals) -> tuple[float, float]:
         """The time (s) at which, and the height (m) above the support in which, the paths of a point before and after
