@@ -1,52 +1,63 @@
-"""How the score of the recorded cube tosses depends on each choice of the prediction: every one halved and doubled.
+"""How right predictions of the recorded cube tosses are: with each choice changed by itself, and by the time ahead.
 
     python benchmarks/sensitivity.py
 
-Prints a row for each: scored touchdowns, median and 90 % of the relative error of the twist after them; and what a
-simple answer scores on the same touchdowns.
+Prints of the whole twist (six numbers) the relative error, in the median and what 90 % stay below, and in how many of a
+hundred whether the old and the new contact lift is told right (balanced over those that do and those that do not). Then
+the same error, and that of the time, by how long before the touchdown a prediction was made.
 """
 
 from __future__ import annotations
 
 import sys
-from math import hypot
+from collections.abc import Iterator
+from contextlib import nullcontext
+from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
-from types import ModuleType
-from typing import NamedTuple
+from typing import Any, NamedTuple
 from unittest.mock import patch
 
 import numpy as np
-from rich.console import Console
-from rich.progress import track
-from rich.table import Table
 
 from impact_predictor.bags.read import read_messages
 from impact_predictor.parameters.file import read_parameters
 from impact_predictor.parameters.validation import validate
-from impact_predictor.prediction import impact, planar, points
+from impact_predictor.prediction import draws
+from impact_predictor.prediction.course import Pose
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene, inertia_matrix
-from impact_predictor.prediction.types import Geometry, Sample, Score
+from impact_predictor.prediction.score import SpatialScore
+from impact_predictor.prediction.types import Geometry, Sample, Touchdown
+from impact_predictor.prediction.vectors import add, axes_of, to_world
 from impact_predictor.ros.messages import ODOMETRY, POLYGON, decode_odometry, decode_polygon
 
 ROOT = Path(__file__).resolve().parents[1]
 TOSSES = ROOT / "examples/cube_tosses/cube_tosses.mcap"
 PARAMETERS = ROOT / "config/cube_tosses.yaml"
 
-HALF_SIDE = 0.0524
-"""Of the cube, in m."""
+PUBLISHED = {"inertia": inertia_matrix([8.1e-4]), "center_of_mass": (0.0, 0.0, 0.0)}
+SPANS = (0.0, 0.01, 0.02, 0.03, 0.05, 0.1)
+"""s before the touchdown."""
 
-SIMPLE = 0.85
-"""The part of vx that is left after most landings of the cube."""
+Made = tuple[int, Touchdown]
+"""A prediction and the stamp in ns of its sample."""
 
-SCENE_FIELDS = ("tolerance", "contact_time", "twist_window", "horizon", "friction", "restitution")
-CONSTANTS: tuple[tuple[ModuleType, str], ...] = (
-    (planar, "STANDING"),
-    (points, "SETTLED"),
-    (impact, "OFF_AXIS"),
-    (impact, "OFFSET"),
-    (impact, "SLOWEST"),
-)
+
+class Scored(NamedTuple):
+    """A scored touchdown, and what was predicted of it, the last prediction first."""
+
+    score: SpatialScore
+    predictions: list[Made]
+
+
+class Variation(NamedTuple):
+    """A choice changed: the scene to predict with, and the steps of the law for a draw."""
+
+    choice: str
+    value: str
+    scene: Scene
+    steps: int = 0
 
 
 def load() -> list[Sample | Geometry]:
@@ -58,89 +69,115 @@ def load() -> list[Sample | Geometry]:
     ]
 
 
-def scores_of(scene: Scene, record: list[Sample | Geometry]) -> list[Score]:
-    """The touchdowns that count."""
-    body = Predictor(scene)
-    scores = []
+def scored(scene: Scene, record: list[Sample | Geometry]) -> list[Scored]:
+    """The touchdowns whose whole twist counts."""
+    body, made, scores = Predictor(scene), list[Made](), []
     for message in record:
         if isinstance(message, Geometry):
             body.tell(message)
-        else:
-            scores.append(body.update(message).score)
-    scores.extend(body.finish())
-    return [score for score in scores if score is not None and score.scored]
-
-
-def row_of(errors: list[float | None]) -> tuple[str, str, str]:
-    """Count, median and 90 % of relative errors."""
-    return str(len(errors)), f"{np.median(errors):.4f}", f"{np.percentile(errors, 90):.4f}"
-
-
-def scored(scene: Scene, record: list[Sample | Geometry]) -> tuple[str, str, str]:
-    """Count, median and 90 % of the scored relative errors."""
-    return row_of([score.relative_error for score in scores_of(scene, record)])
-
-
-def simple(scene: Scene, record: list[Sample | Geometry], part: float) -> tuple[str, str, str]:
-    """The same of the simple answer "this part of vx as before, and no turning"."""
-    errors: list[float | None] = []
-    for score in scores_of(scene, record):
-        before, s, measured = score.touchdown.before, score.touchdown.half_distance, score.measured
-        assert measured is not None
-        miss = hypot(part * before.vx - measured.vx, measured.omega * s)
-        errors.append(miss / hypot(before.vx, before.omega * s))
-    return row_of(errors)
-
-
-class Variation(NamedTuple):
-    """A choice changed: the scene to predict with, and a constant of a module that is set meanwhile."""
-
-    choice: str
-    value: float
-    scene: Scene
-    module: ModuleType = impact
-    constant: str = "OFF_AXIS"
-
-
-def variations(scene: Scene) -> list[Variation]:
-    """Every choice halved and doubled, then the height of the floor and the physical constants."""
-    changed = [
-        Variation(field, factor * getattr(scene, field), scene._replace(**{field: factor * getattr(scene, field)}))
-        for field in SCENE_FIELDS
-        for factor in (0.5, 2.0)
+            continue
+        prediction = body.update(message)
+        if prediction.touchdown is not None:
+            made.append((message.stamp, prediction.touchdown))
+        scores.append((prediction.score, len(made)))
+    scores += [(score, len(made)) for score in body.finish()]
+    return [
+        Scored(score.spatial, list(of_one(score.spatial, made[max(0, count - 200) : count])))
+        for score, count in scores
+        if score is not None and score.spatial is not None and not score.leftover_6d
     ]
-    changed += [
-        Variation(name, value, scene, module, name)
-        for module, name in CONSTANTS
-        for value in (0.5 * getattr(module, name), 2.0 * getattr(module, name))
+
+
+def of_one(score: SpatialScore, made: list[Made]) -> Iterator[Made]:
+    """The predictions of one touchdown, backwards: a point that strikes is the same in each and in the next one."""
+    new = set(score.told.new)
+    for stamp, told in reversed(made):
+        if stamp < score.stamp:
+            if new.isdisjoint(told.new):
+                return
+            new = set(told.new)
+            yield stamp, told
+
+
+def errors_of(score: SpatialScore, made: Made) -> tuple[float, float]:
+    """The error of the whole twist of a prediction, and of its time in ms."""
+    stamp, told = made
+    late = stamp * 1e-9 + told.lead_time - score.stamp * 1e-9
+    shift = score.late - late
+    center = add(told.position, to_world(axes_of(told.orientation), score.course.scene.center_of_mass))
+    course = score.course._replace(start=Pose(center, told.orientation), resting=told.old + told.new)
+    first, second, third = score.moments
+    moments = first + shift, second + shift, third + shift
+    return replace(score, told=told, course=course, moments=moments).error, 1e3 * abs(late)
+
+
+def is_within(touchdown: Scored, made: Made, begin: float, end: float) -> bool:
+    """Whether a prediction was made so many s before the touchdown."""
+    return begin <= (touchdown.score.stamp - made[0]) * 1e-9 < end
+
+
+def row_of(touchdowns: list[Scored]) -> list[str]:
+    """How many there are, how right their twists are, and how right their lifts."""
+    errors = [one.score.error for one in touchdowns]
+    row = [str(len(errors)), f"{np.median(errors):.3f}", f"{np.percentile(errors, 90):.3f}"]
+    for group in (0, 1):
+        lifts = [lift for one in touchdowns if (lift := one.score.lifts[group]) is not None]
+        shares = [np.mean([lift.told == real for lift in lifts if lift.measured == real]) for real in (True, False)]
+        row.append(f"{50.0 * sum(shares):.0f}")
+    return row
+
+
+def variations(scene: Scene) -> Iterator[Variation]:
+    """Every choice changed by itself."""
+    changes: list[tuple[str, str, dict[str, Any]]] = [
+        ("body", "as published", PUBLISHED),
+        ("body.inertia", "8.1e-4, published", {"inertia": PUBLISHED["inertia"]}),
+        ("body.center_of_mass", "0, published", {"center_of_mass": PUBLISHED["center_of_mass"]}),
+        ("contact.friction", "0.18, published", {"friction": 0.18}),
+        *[("contact.friction", str(value), {"friction": value}) for value in (0.09, 0.35)],
+        ("contact.restitution", "0.125, published", {"restitution": 0.125}),
+        *[("contact.restitution", str(value), {"restitution": value}) for value in (0.0, 0.5)],
+        *[("contact.merge", f"{1e3 * value:g} ms", {"merge": value}) for value in (0.0, 1e-3, 4e-3)],
+        *[("contact.tolerance", f"{1e3 * value:g} mm", {"tolerance": value}) for value in (2.5e-3, 0.01)],
+        ("odom.twist", "message", {"poses": False}),
+        *[("uncertainty.samples", str(value), {"samples": value}) for value in (0, 64)],
+        *[("uncertainty.gap", f"{1e3 * value:g} mm", {"gap_deviation": value}) for value in (0.0, 2e-4, 8e-4)],
+        ("uncertainty.law", "0", {"law_deviation": 0.0}),
+        ("law", "total", {"law": "total"}),
     ]
-    changed += [Variation("height", height, scene._replace(height=height)) for height in (-0.0029, -0.0009, 0.0)]
-    solid = 2 / 3 * scene.mass * HALF_SIDE**2
-    changed.append(Variation("inertia (solid cube)", solid, scene._replace(inertia=inertia_matrix([solid]))))
-    changed.append(Variation("restitution (plastic)", 0.0, scene._replace(restitution=0.0)))
-    changed.append(Variation("friction (no slip)", 1e3, scene._replace(friction=1e3)))
-    changed.append(Variation("twist_window (none)", 0.0, scene._replace(twist_window=0.0)))
-    changed.append(Variation("law (total)", 0.0, scene._replace(law="total")))
-    return changed
+    yield Variation("as shipped", "", scene)
+    for choice, value, fields in changes:
+        yield Variation(choice, value, scene._replace(**fields))
+    for steps in (2, 32):
+        yield Variation("steps of a draw", str(steps), scene, steps)
 
 
 def main() -> int:
-    """Print the table."""
+    """Print both tables, each row as soon as it is known."""
     record = load()
     scene = Scene.from_parameters(validate(read_parameters(PARAMETERS)))
-    table = Table(
-        "choice", "value", "scored", "median", "90 %", title="Recorded cube tosses: each choice changed alone"
-    )
-    table.add_row("as shipped", "", *scored(scene, record))
-    table.add_row("simple answer: this part of vx, no turning", f"{SIMPLE}", *simple(scene, record, SIMPLE))
-    for variation in track(variations(scene), "replaying", console=Console(stderr=True)):
-        value = getattr(variation.module, variation.constant)
-        if variation.scene is scene:
-            value = variation.value
-        with patch.object(variation.module, variation.constant, value):
-            table.add_row(variation.choice, f"{variation.value:.4g}", *scored(variation.scene, record))
-    Console().print(table)
+    shipped: list[Scored] = []
+    show("choice", "value", "scored", "median", "90 %", "old lifts", "new lifts")
+    for variation in variations(scene):
+        with patch.object(draws, "DRAW_STEPS", variation.steps) if variation.steps else nullcontext():
+            touchdowns = scored(variation.scene, record)
+        shipped = shipped or touchdowns
+        show(variation.choice, variation.value, *row_of(touchdowns))
+        if touchdowns is shipped:
+            show("made ms ahead", "", "number", "median", "90 %", "time: ms", "90 %")
+            for begin, end in pairwise(SPANS):
+                # Of each touchdown the last prediction that was made so early.
+                made = [next((one for one in of.predictions if is_within(of, one, begin, end)), None) for of in shipped]
+                some = [errors_of(of.score, one) for of, one in zip(shipped, made, strict=True) if one is not None]
+                spreads = [(np.median(errors), np.percentile(errors, 90)) for errors in zip(*some, strict=True)]
+                numbers = [f"{value:.3g}" for spread in spreads for value in spread]
+                show(f"  {1e3 * begin:.0f} to {1e3 * end:.0f}", "", str(len(some)), *numbers)
     return 0
+
+
+def show(choice: str, value: str, *numbers: str) -> None:
+    """Print a row."""
+    print(f"{choice:22s}{value:18s}" + "".join(f"{number:>11s}" for number in numbers), flush=True)
 
 
 if __name__ == "__main__":
