@@ -254,6 +254,17 @@ def test_a_touchdown_that_nobody_announced_is_counted_as_missed() -> None:
     assert recorded(4.5, frames=range(8)).counts == {}  # it may still find its prediction
 
 
+@pytest.mark.parametrize(("sees", "announced"), [(10, 1), (0, 0)], ids=["seen coming", "seen at once"])
+def test_a_touchdown_that_was_predicted_for_its_time_is_counted_as_announced(sees: int, announced: int) -> None:
+    toss, predictor = falling(), Predictor(TOSS)
+    samples = samples_of(toss, gone_on(toss, told_after(toss)))
+    # Until it is seen coming its twist tells that it rises, so fast that no touchdown lies within the horizon.
+    rising = (0.0, 0.0, 0.5 * 9.81 * TOSS.horizon**2 + 2.0)
+    run(predictor, [one if k >= 10 - sees else one._replace(linear=rising) for k, one in enumerate(samples)])
+    predictor.finish()
+    assert predictor.contacts.recorded == {"flight>corner": Announced(1, announced)}
+
+
 def test_touchdowns_that_follow_at_once_are_not_scored() -> None:
     """A body comes down with 1 m/s, rises for 5.75 ms, and is back after 11.5 ms, on another corner."""
     still = {"velocity": np.array((0.0, 0.0, -1.0)), "spin": np.zeros(3)}
