@@ -55,14 +55,14 @@ def resumed_slip(w, friction):
     return direction / np.linalg.norm(direction)
 
 
-def one_contact(w, c, friction, restitution, tolerance=1e-12, method="DOP853"):
+def one_contact(w, c, friction, restitution):
     """The path of an impact at one contact whose velocity c = (t1, t2, n) answers the impulse P as c + W P."""
     w, c = np.asarray(w, float), np.asarray(c, float)
     # Units in which speed and mobility are one.
     speed, mobility = np.linalg.norm(c), np.trace(w)
     if not c[2] < 0.0:
         return Path(c, np.zeros(3), "")
-    path = _Path(w / mobility, c / speed, friction, restitution, tolerance, method)
+    path = _Path(w / mobility, c / speed, friction, restitution)
     path.follow()
     return Path(speed * path.c, speed / mobility * path.impulse, path.phases)
 
@@ -70,9 +70,8 @@ def one_contact(w, c, friction, restitution, tolerance=1e-12, method="DOP853"):
 class _Path:
     """A path and where on it the contact is; `work` is what it has taken up, `most` the most so far."""
 
-    def __init__(self, w, c, friction, restitution, tolerance, method):
+    def __init__(self, w, c, friction, restitution):
         self.w, self.c, self.friction, self.kept = w, c.copy(), friction, 1.0 - restitution * restitution
-        self.tolerance, self.method = tolerance, method
         self.impulse, self.work, self.most, self.phases = np.zeros(3), 0.0, 0.0, ""
 
     def follow(self):
@@ -130,9 +129,7 @@ class _Path:
         while True:
             turns.direction = 1.0 if approaches else -1.0
             events = [stops, turns] if approaches else [stops, turns, opens]
-            found = solve_ivp(
-                rates, (0.0, 1e9), y, self.method, events=events, rtol=self.tolerance, atol=1e-3 * self.tolerance
-            )
+            found = solve_ivp(rates, (0.0, 1e9), y, "DOP853", events=events, rtol=1e-12, atol=1e-3 * 1e-12)
             y = found.y[:, -1]
             at = next(number for number, times in enumerate(found.t_events) if len(times))
             if at == 1:

@@ -8,6 +8,7 @@ import pytest
 from spatial_reference import Mechanism, MovingBody, delassus, on_springs, one_contact, rows
 from test_spatial_reference import BALL, cases, chain
 
+import impact_predictor
 from impact_predictor import Body, ContactPoints, Flag, solve_spatial_impact
 from impact_predictor.mechanics.types import ContactState
 
@@ -273,3 +274,10 @@ def test_mobilities_that_no_mechanism_has_are_flagged(w, flags, law):
 def test_arrays_of_another_shape_and_odd_settings_end_in_a_sentence(given, says):
     with pytest.raises(ValueError, match=says):
         solve_spatial_impact(*given)
+
+
+def test_it_says_what_does_the_work_of_the_law_that_is_gone():
+    with pytest.raises(ImportError, match="use solve_spatial_impact"):
+        from impact_predictor import solve_transverse_impact  # noqa: F401
+    with pytest.raises(ImportError, match="use solve_spatial_impact"):
+        _ = impact_predictor.Transverse

@@ -8,7 +8,7 @@ from alone import random_impacts
 from golden_impacts import CASES, body_of
 from seen_by_contacts import velocities
 
-from impact_predictor import Flag, Mode, Twist, cylinder, solve_impact
+from impact_predictor import Flag, Mode, Twist, cylinder, plate, solve_impact
 from impact_predictor.mechanics.impact.spatial import Body, ContactPoints, ContactState, solve_spatial_impact
 
 THIN = 1e-6
@@ -112,3 +112,17 @@ def test_a_body_that_locks_in_its_wedge_comes_to_its_end():
     outcome = spatial_outcome(body, body.turning(-1.0), COARSE)
     assert outcome.flags == Flag.NONE
     assert np.abs(outcome.twist).max() < 1e-4
+
+
+def test_a_box_on_edges_that_slips_along_them_turns_as_its_plate_with_what_friction_is_left():
+    """Without slip along the edges it is the plate's planar impact; with much of it, one with hardly any friction."""
+    body = plate(length=1.0, height=0.4, mass=3.0, friction=0.2)
+    corners = ContactPoints([(x, y, -0.2) for x in (-0.5, 0.5) for y in (-0.35, 0.35)], friction=0.2)
+    for slip in (0.0, 1e3):
+        vx, vy, omega = body.turning(-1.0)
+        box = Body(3.0, (0.3, body.inertia, 0.4))
+        found = solve_spatial_impact(box, corners, (vx + 0.3, slip, vy, 0.0, -omega, 0.0), steps=64).twist
+        smooth = plate(length=1.0, height=0.4, mass=3.0, friction=0.2 if slip == 0.0 else 0.0)
+        expected = solve_impact(smooth, Twist(vx + 0.3, vy, omega)).twist
+        assert (found[0], found[2], -found[4]) == pytest.approx(expected, abs=2e-3)
+        assert found[1] < slip or abs(found[1]) < 1e-9
