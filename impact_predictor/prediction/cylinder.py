@@ -80,7 +80,7 @@ class CylinderContacts(PointContacts):
 
     def collision_of(self, sample: Sample, posture: Posture, moment: Moment | None) -> Collision | None:
         scene = self.scene
-        contacts = contacts_of(scene, posture)
+        contacts = contacts_of(scene, posture, self.scatter)
         if contacts is None:
             return None
         age = 0.5 * scene.twist_window

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import copysign, hypot, inf, sqrt
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from ..mechanics.impact.answer import mode_of
 from ..mechanics.types import ContactState, Mode, Twist, Vector
@@ -17,9 +17,15 @@ from .scene import Scene
 from .types import PointOutcome, Sample, SpatialTwist, Vector3
 from .vectors import add, any_across, axes_of, cross, dot, mean, times, to_body, to_world, total
 
+if TYPE_CHECKING:
+    from .scatter import Scatter
+
 STANDING = 0.2
 """A point within the contact tolerance stands while it moves along the normal slower than this part of the fastest
 point: the stance of a body that turns about it, told from a body that only grazes the support."""
+
+NEARER = 0.5
+"""... of which noise may hide up to this part: there a point is as near to rest as to the fastest one."""
 
 RESTS = 1e-5
 """A group of contacts holds that leaves more slowly than this part of the approach."""
@@ -88,33 +94,42 @@ def center_of(scene: Scene, sample: Sample, posture: Posture) -> Vector3:
     return add(sample.position, to_world(posture.axes, scene.center_of_mass))
 
 
-def contacts_of(scene: Scene, posture: Posture, slack: float = 0.0) -> ActiveContacts | None:
+def contacts_of(scene: Scene, posture: Posture, scatter: Scatter | None = None) -> ActiveContacts | None:
     """Which points stand and which strike next; None where no point approaches.
 
     A point approaches faster than gravity moves it within the contact time; points that close within the contact time
-    after the first one strike together with it, or would if their gaps were less by `slack` (m), in which these cannot
-    be told. Where the first one hardly moves yet, none is known to strike next.
+    after the first one strike together with it. Where the first one hardly moves yet, none is known to strike next.
+    Differences of gaps and of rates below their `scatter` count as none.
     """
     gaps, rates = posture.gaps, posture.rates
-    slowest, tolerance = -hardly(scene), scene.tolerance
+    slack, noise = (0.0, 0.0) if scatter is None else (scatter.gap, scatter.rate)
+    slowest, tolerance = -hardly(scene), max(scene.tolerance, slack)
     fastest = min(rates)
     if fastest >= slowest:
         return None
-    limit = STANDING * max(max(rates), -fastest)
+    limit = still_of(rates, noise)
     old = [i for i, gap in enumerate(gaps) if gap <= tolerance and -limit <= rates[i] <= limit]
     # A point that hardly moves may still come first; one that is down counts as resting there.
     closing = [
         i for i, rate in enumerate(rates) if rate < 0.0 and i not in old and (rate < slowest or gaps[i] > tolerance)
     ]
-    if not closing:
+    if not any(rates[i] < -noise or gaps[i] > tolerance for i in closing):
         return None
     base = total([gaps[i] for i in old]) / len(old) if old else 0.0
     due = [(base - gaps[i]) / rates[i] for i in closing]
     last = max(0.0, min(due)) + scene.contact_time
-    new = [i for i, time in zip(closing, due, strict=True) if time + slack / rates[i] <= last]
+    new = [
+        i for i, time in zip(closing, due, strict=True) if time + (slack + noise * max(0.0, time)) / rates[i] <= last
+    ]
     if min([rates[i] for i in new]) >= slowest:
         return None
     return ActiveContacts(tuple(old), tuple(new))
+
+
+def still_of(rates: Sequence[float], noise: float) -> float:
+    """The speed in m/s along the normal up to which a point stands, where rates of `noise` cannot be told from none."""
+    fastest = max(max(rates), -min(rates))
+    return max(STANDING * fastest, min(noise, NEARER * fastest))
 
 
 def mode_of_contacts(old: Sequence[PointOutcome], new: Sequence[PointOutcome], normal: Vector3, least: float) -> Mode:

@@ -14,6 +14,7 @@ from .impact import SLOWEST, Collision, ImpactModel, collision_after
 from .planar import ImpactPlane, Posture, center_of, contacts_of, edge_of, hardly, inertia_about, plane_of, posture_of
 from .predictor import DEEP, DEEP_TOLERANCES, Contacts
 from .recorded import AFTER, BEFORE, Announced, RecordedTouchdown, TouchdownRecorder
+from .scatter import Scatter
 from .scene import Scene
 from .score import Pending, PointRecord, Track
 from .spatial import SpatialCollision, SpatialModel
@@ -46,6 +47,7 @@ class PointContacts(Contacts):
         """Distance in m of the contact points that are furthest apart, where the support moves."""
         self.collision: tuple[Sample, Posture, Collision | SpatialCollision] | None = None
         """The last collision whose impact was computed, with the sample that shows it."""
+        self.scatter = Scatter(scene)
         self._impact = ImpactModel(scene)
         self._spatial: SpatialModel | None = None
         self._moment: Moment | None = None
@@ -60,7 +62,7 @@ class PointContacts(Contacts):
         self._measure_points()
         # What is compiled for the first touchdown is compiled now.
         if self._spatial is None and self.is_spatial and not self.points:
-            SpatialModel(scene, ((0.0, 0.0, 0.0),))
+            SpatialModel(scene, ((0.0, 0.0, 0.0),), self.scatter)
 
     def tell(self, message: ContactInput) -> Status:
         assert isinstance(message, Geometry)
@@ -90,8 +92,7 @@ class PointContacts(Contacts):
             status = self._place_of(sample, posture)
             if status is not Status.ACCEPTED:
                 return status
-        if self._spatial is not None:
-            self._spatial.watch(posture)
+        self.scatter.take(sample.stamp, posture)
         self.stamp = sample.stamp
         self._moment = moment
         self._measure(sample, posture)
@@ -138,6 +139,7 @@ class PointContacts(Contacts):
         self._recent.clear()
         self._told.clear()
         self._recorder.forget()
+        self.scatter.forget()
         self._track = self._landed = self._last = None
         self.stamp = None
 
@@ -152,7 +154,7 @@ class PointContacts(Contacts):
         self, sample: Sample, posture: Posture, moment: Moment | None
     ) -> Collision | SpatialCollision | None:
         """The collision that a sample shows to be ahead; None where there is none within the horizon."""
-        return collision_of(self.scene, self.points, sample, posture, moment, self._spatial)
+        return collision_of(self.scene, self.points, sample, posture, moment, self._spatial, self.scatter)
 
     def _measure_points(self) -> None:
         if not self.points:
@@ -160,7 +162,7 @@ class PointContacts(Contacts):
         if self.scene.deck is not None:
             self.size = hypot(*edge_of(list(self.points)))
         is_spatial = self.is_spatial and len(self.points) > PLANE
-        self._spatial = SpatialModel(self.scene, self.points) if is_spatial else None
+        self._spatial = SpatialModel(self.scene, self.points, self.scatter) if is_spatial else None
 
     def _place_of(self, sample: Sample, posture: Posture) -> Status:
         """Whether a body can be where it is seen on a moving support."""
@@ -237,7 +239,8 @@ class PointContacts(Contacts):
         if old:
             gap -= total([gaps[i] for i in old]) / len(old)
         approach = -total([rates[i] for i in new]) / len(new)
-        return gap <= self.scene.tolerance and approach < SETTLED * track.approach
+        near = max(self.scene.tolerance, self.scatter.gap)
+        return gap <= near and approach < SETTLED * track.approach
 
 
 def collision_of(
@@ -247,13 +250,14 @@ def collision_of(
     posture: Posture,
     moment: Moment | None = None,
     spatial: SpatialModel | None = None,
+    scatter: Scatter | None = None,
 ) -> Collision | SpatialCollision | None:
     """The collision that a sample shows to be ahead; None where there is none within the horizon.
 
     Over a moving support the sample is seen from there, and `moment` is the support at its stamp. Without a `spatial`
     model the collision is one in the impact plane, which leaves out what goes across it.
     """
-    contacts = contacts_of(scene, posture, 0.0 if spatial is None else spatial.slack)
+    contacts = contacts_of(scene, posture, scatter)
     if contacts is None:
         return None
     gravity, uniform = scene.gravity, True

@@ -21,7 +21,6 @@ from .impact import OFF_AXIS, OFFSET, leftover_of
 from .planar import (
     ORIGIN,
     RESTS,
-    STANDING,
     ActiveContacts,
     Posture,
     along_plane,
@@ -33,7 +32,9 @@ from .planar import (
     off_axis_of,
     planar_twist,
     plane_of,
+    still_of,
 )
+from .scatter import SLACK, Scatter
 from .scene import InertiaTensor, Scene, six_numbers
 from .types import (
     Moment,
@@ -65,16 +66,10 @@ if TYPE_CHECKING:
 WINDOW = 2.0
 """Points take part in an impact that close within so many compressions after the first one."""
 
-SLACK = 3.0
-"""... and those whose gap may be so much less by this many standard deviations."""
-
-ENOUGH = 100
-"""Gaps of standing points from which on their scatter is known."""
-
 PLANAR = 1e-3
 """A touchdown is planar whose motion across its plane, with what pulls it there until then, is below this part of the
 new contact's approach, and whose contacts and inertia lie as near to the plane: there both laws agree to that. Motion
-and gaps are also those of a plane where they cannot be told from it: within `SLACK` deviations of standing points."""
+and gaps are also those of a plane where they cannot be told from it by how far they scatter."""
 
 STATES = tuple(ContactState)
 
@@ -118,7 +113,7 @@ class NearestPlane(NamedTuple):
 class SpatialModel:
     """How the body of a scene, on some points, falls and is struck; everything that can be prepared is."""
 
-    def __init__(self, scene: Scene, points: tuple[Vector3, ...]) -> None:
+    def __init__(self, scene: Scene, points: tuple[Vector3, ...], scatter: Scatter) -> None:
         self._scene, self._points = scene, points
         (xx, xy, xz), (_, yy, yz), (_, _, zz) = scene.inertia
         self._inertia = [part / scene.mass for part in (xx, yy, zz, xy, xz, yz)]
@@ -128,35 +123,18 @@ class SpatialModel:
         self._solver = solvers().bodies
         prepare()
         self._law = number_of(scene.law)
-        self.gap_deviation = scene.gap_deviation if scene.gap_deviation >= 0.0 else 0.1 * scene.tolerance
-        """Standard deviation of the gaps in m, as far as it is known."""
-        self._seen, self._mean, self._squares, self._speeds = 0, 0.0, 0.0, 0.0
-        self._scatter = 0.0, 0.0
-        self.slack = 0.0
-        """Difference of gaps in m that cannot be told from none, as far as it is known."""
+        self.scatter = scatter
         self._draws: Draws | None = None
         if scene.samples:
             from .draws import Draws
 
             self._draws = Draws(scene, self._solve)
 
-    def watch(self, posture: Posture) -> None:
-        """Learn how far gaps and rates of points that stand scatter: so far are those of the others uncertain."""
-        slow, tolerance, rates = hardly(self._scene), self._scene.tolerance, posture.rates
-        if not -slow <= min(rates) <= max(rates) <= slow:
-            return
-        for gap, rate in zip(posture.gaps, rates, strict=True):
-            if -tolerance <= gap <= tolerance:
-                self._seen += 1
-                change = gap - self._mean
-                self._mean += change / self._seen
-                self._squares += change * (gap - self._mean)
-                self._speeds += rate * rate
-        if self._seen >= ENOUGH:
-            self._scatter = sqrt(self._squares / self._seen), sqrt(self._speeds / self._seen)
-            self.slack = SLACK * self._scatter[0]
-            if self._scene.gap_deviation < 0.0:
-                self.gap_deviation = self._scatter[0]
+    @property
+    def gap_deviation(self) -> float:
+        """Standard deviation of the gaps in m: as the scene tells, else as standing points do."""
+        told, learnt = self._scene.gap_deviation, self.scatter.deviation
+        return told if told >= 0.0 else 0.1 * self._scene.tolerance if learnt is None else learnt
 
     def is_planar(self, sample: Sample, posture: Posture, contacts: ActiveContacts, gravity: Vector3) -> bool:
         """Whether a touchdown that a sample shows on some contacts is one in the impact plane.
@@ -166,30 +144,32 @@ class SpatialModel:
         scene, old, new = self._scene, contacts.old, contacts.new
         gaps = [posture.gaps[i] for i in new]
         approach = -total([posture.rates[i] for i in new]) / len(new)
-        # What standing points show of both at rest is not told from none.
-        least = max(PLANAR * approach, SLACK * self._scatter[1])
-        if max(gaps) - min(gaps) > max(PLANAR * approach * scene.merge, self.slack) or (len(old) > 1 and len(new) == 1):
+        # What noise may be is not told from none.
+        least, even = max(PLANAR * approach, self.scatter.rate), max(PLANAR * approach * scene.merge, self.scatter.gap)
+        if max(gaps) - min(gaps) > even or (len(old) > 1 and len(new) == 1):
             return False
         plane = plane_of(scene, self._points, sample, posture, contacts, gravity)
         if abs(plane.gravity[2]) * max(0.0, *gaps) > least * approach:
             return False
         reach = sqrt(plane.new[0] * plane.new[0] + plane.new[1] * plane.new[1])
+        aside = max(PLANAR * reach, self.scatter.noise)
         for group in (old, new):
             places = [dot(plane.ahead, self._points[i]) for i in group]
-            if places and max(places) - min(places) > PLANAR * reach:
+            if places and max(places) - min(places) > aside:
                 return False
         spin = sqrt(dot(sample.angular, sample.angular))
-        if plane.offset > PLANAR * reach or max(abs(plane.lateral), plane.off_axis * spin * reach) > least:
+        if plane.offset > aside or max(abs(plane.lateral), plane.off_axis * spin * reach) > least:
             return False
         turned = along(scene.inertia, plane.axis)
         across = add(turned, plane.axis, -dot(plane.axis, turned))
-        return dot(across, across) <= PLANAR * PLANAR * dot(turned, turned)
+        return dot(across, across) * reach * reach <= aside * aside * dot(turned, turned)
 
     def collision(self, sample: Sample, posture: Posture, moment: Moment | None) -> SpatialCollision | None:
         """The collision that a sample shows to be ahead; None where there is none within the horizon."""
         scene, gaps, rates = self._scene, posture.gaps, posture.rates
-        limit = max(2.0 * hardly(scene), STANDING * max(max(rates), -min(rates)))
-        stands = [gap <= scene.tolerance and -limit <= rate <= limit for gap, rate in zip(gaps, rates, strict=True)]
+        limit = max(2.0 * hardly(scene), still_of(rates, self.scatter.rate))
+        near = max(scene.tolerance, self.scatter.gap)
+        stands = [gap <= near and -limit <= rate <= limit for gap, rate in zip(gaps, rates, strict=True)]
         # An averaged twist is that of half its window ago: the motion is followed from there.
         age = 0.5 * scene.twist_window
         velocity, spin = to_world(posture.axes, posture.velocity), to_world(posture.axes, sample.angular)

@@ -7,18 +7,16 @@ from typing import Any
 
 import numpy as np
 import pytest
-from bodies_in_space import ALIKE, CUBE, HALF, MASS, MERGE, PULL, RESTITUTION, SLOW, Somewhere, somewhere, state_of
+from bodies_in_space import ALIKE, CUBE, MASS, MERGE, PULL, RESTITUTION, SLOW, Somewhere, somewhere, state_of
 from newton_in_space import tensor
 from scipy.spatial.transform import Rotation
 
 from impact_predictor.mechanics.impact.spatial import Body, ContactPoints, solve_spatial_impacts
 from impact_predictor.mechanics.motion.spatial import SpatialState
 from impact_predictor.mechanics.types import ContactState, Mode
-from impact_predictor.prediction.planar import posture_of
 from impact_predictor.prediction.predictor import Predictor
-from impact_predictor.prediction.scene import Scene
 from impact_predictor.prediction.spatial import SpatialModel
-from impact_predictor.prediction.types import Covariance, Sample, Touchdown
+from impact_predictor.prediction.types import Covariance, Touchdown
 
 DRAWN: dict[str, Any] = {"samples": 32, "gap_deviation": 5e-4, "friction_deviation": 0.05, "restitution_deviation": 0.1}
 
@@ -182,29 +180,6 @@ def test_draws_have_the_same_bits_with_numba_and_without(monkeypatch: pytest.Mon
     finally:
         for one in prepared:
             one.cache_clear()
-
-
-def resting(count: int, deviation: float) -> tuple[Scene, list[Sample]]:
-    placed, rng = somewhere(6, CUBE), np.random.default_rng(6)
-    flat, samples = Rotation.identity(), []
-    for _ in range(count):
-        samples.append(placed.sample(0.0, np.concatenate(state_of(HALF, flat, 3 * [0.0], 3 * [0.0]))))
-        x, y, z = np.add(samples[-1].position, deviation * rng.normal() * np.array(placed.scene().normal)).tolist()
-        samples[-1] = samples[-1]._replace(position=(x, y, z))
-    return placed.scene(tolerance=0.005, samples=16), samples
-
-
-def test_the_deviation_of_the_gaps_is_learnt_from_points_that_stand() -> None:
-    scene, samples = resting(200, 8e-4)
-    model = SpatialModel(scene, scene.points)
-    assert model.gap_deviation == pytest.approx(5e-4)  # a tenth of the tolerance
-    for sample in samples:
-        model.watch(posture_of(scene, scene.points, sample))
-    assert model.gap_deviation == pytest.approx(8e-4, rel=0.15)
-    told = SpatialModel(scene._replace(gap_deviation=3e-4), scene.points)
-    for sample in samples:
-        told.watch(posture_of(scene, scene.points, sample))
-    assert told.gap_deviation == 3e-4
 
 
 def test_a_mode_is_one_that_a_draw_has() -> None:

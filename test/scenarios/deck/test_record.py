@@ -12,6 +12,7 @@ from cargo_scenes import a_drum, box
 from records import impacts_of, samples_of
 
 from impact_predictor.bags.read import read_messages, topics
+from impact_predictor.bags.replay import replay
 from impact_predictor.errors import InputError
 from impact_predictor.mechanics.motion import End
 from impact_predictor.mechanics.motion.support import MovingSupport
@@ -232,3 +233,18 @@ def test_a_toppled_unit_tells_nothing_more_and_the_others_go_on(tmp_path: Path) 
 def test_a_scene_without_a_moving_deck_is_refused(scene: Scene, sentence: str) -> None:
     with pytest.raises(InputError, match=sentence):
         gravity_of({"": scene})
+
+
+def test_a_box_that_rocks_in_noise_beyond_its_tolerance_stands_on_an_edge_still(tmp_path: Path) -> None:
+    scene = box(tolerance=1e-5, contact_time=0.002)
+    noise = SensorNoise(position=0.002, orientation=0.001, velocity=0.02, rate=0.01)
+    path = recorded(tmp_path / "deck.mcap", {"": scene}, a_deck(0.15), noise=noise)
+    truth = replay(path, scene).truth
+    assert truth is not None
+    assert truth.clear >= 10
+    assert truth.clear_mode_accuracy is not None
+    assert truth.clear_mode_accuracy > 0.9
+    assert truth.median_velocity_error is not None
+    # Where nothing stood it would be 1.3: the noise is 0.023 m/s, of approaches of 0.1 to 0.3 m/s.
+    assert truth.median_velocity_error < 0.15
+    assert truth.false < 60

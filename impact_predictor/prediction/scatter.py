@@ -1,0 +1,85 @@
+"""How far gaps and their rates scatter in a record: what is as small cannot be told from none."""
+
+from __future__ import annotations
+
+from collections import deque
+from math import sqrt
+
+from ..stamps import NANOSECONDS
+from .checks import PAUSE
+from .planar import Posture, hardly
+from .scene import Scene
+
+SLACK = 3.0
+"""What is less than so many standard deviations is not told from none."""
+
+ENOUGH = 100
+"""Samples, or gaps of standing points, from which on their scatter is known."""
+
+OF_MEDIAN = 1.4826
+"""Standard deviation of normal noise, by the median of its amounts."""
+
+OF_STEP, OF_MIDDLE = sqrt(2.0), sqrt(1.5)
+"""How far the difference of two numbers scatters, and that of one from the middle of two others, by each one's own."""
+
+
+class Scatter:
+    """The scatter of the gaps of a body's points.
+
+    Whatever the body does, samples that follow each other tell it: by what a gap differs from what its rates have made
+    of the one before, and a rate from the middle of its neighbours. Points that stand tell also what stays from sample
+    to sample, as where a point is wrong on the body.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        self.gap, self.rate = 0.0, 0.0
+        """Differences of gaps (m) and of rates (m/s) that cannot be told from none, as far as it is known ..."""
+        self.noise = 0.0
+        """... and those of gaps from one sample to the next."""
+        self.deviation: float | None = None
+        """Standard deviation of the gaps of standing points in m, once it is known."""
+        self._scene = scene
+        self._last: list[tuple[int, Posture]] = []
+        self._taken = 0
+        self._steps, self._middles = deque[float](maxlen=ENOUGH), deque[float](maxlen=ENOUGH)
+        self._seen, self._mean, self._squares = 0, 0.0, 0.0
+
+    def take(self, stamp: int, posture: Posture) -> None:
+        """Take the next sample, with a stamp in ns."""
+        last, gaps, rates = self._last, posture.gaps, posture.rates
+        last.append((stamp, posture))
+        slow = max(hardly(self._scene), self.rate)
+        if -slow <= min(rates) and max(rates) <= slow:
+            self._stand(gaps)
+        if len(last) < 3:
+            return
+        (first, before), (middle, between), _ = last
+        del last[0]
+        if not first < middle < stamp <= first + PAUSE or not len(before.gaps) == len(between.gaps) == len(gaps):
+            return
+        self._taken += 1
+        i = self._taken % len(gaps)  # one point for each sample is enough
+        step, share = (stamp - middle) / NANOSECONDS, (middle - first) / (stamp - first)
+        self._steps.append(abs(gaps[i] - between.gaps[i] - 0.5 * step * (rates[i] + between.rates[i])))
+        self._middles.append(abs(between.rates[i] - before.rates[i] - share * (rates[i] - before.rates[i])))
+        if self._taken % ENOUGH == 0:
+            self.noise = SLACK * OF_MEDIAN / OF_STEP * sorted(self._steps)[ENOUGH // 2]
+            self.rate = SLACK * OF_MEDIAN / OF_MIDDLE * sorted(self._middles)[ENOUGH // 2]
+            self.gap = max(self.noise, SLACK * (self.deviation or 0.0))
+
+    def forget(self) -> None:
+        """Begin anew with the next sample; what was learnt stays known."""
+        self._last.clear()
+
+    def _stand(self, gaps: list[float]) -> None:
+        """Learn from points that stand."""
+        tolerance = max(self._scene.tolerance, self.noise)
+        for gap in gaps:
+            if -tolerance <= gap <= tolerance:
+                self._seen += 1
+                change = gap - self._mean
+                self._mean += change / self._seen
+                self._squares += change * (gap - self._mean)
+        if self._seen >= ENOUGH:
+            self.deviation = sqrt(self._squares / self._seen)
+            self.gap = max(self.noise, SLACK * self.deviation)
