@@ -30,8 +30,8 @@ MOST_OF_A_KIND: Final = 4
 
 TWO_LINES: Final = (
     "Of each touchdown the upper line is what was predicted last, the lower one what was measured: the speed of the "
-    "mass centre, its part upwards, the rate of turning, and whether the contacts lift. The upper error is that of the "
-    "whole twist, the lower one that in the impact plane."
+    "mass centre, its part upwards, the rate of turning, and whether the contacts rise by what a record can show. The "
+    "upper error is that of the whole twist, the lower one that in the impact plane."
 )
 
 
