@@ -59,6 +59,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("few_resamples")
 def test_the_json_tells_the_true_body_and_the_scene_file_has_it(folder: Path) -> None:
     scene, output = str(folder / "scene.yaml"), str(folder / "identified.yaml")
     result = run(str(folder / "box.mcap"), "--params", scene, "-o", output, "--json")
@@ -81,6 +82,7 @@ def test_the_json_tells_the_true_body_and_the_scene_file_has_it(folder: Path) ->
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("few_resamples")
 def test_the_tables_tell_intervals_what_is_held_out_and_what_cannot_be_told(folder: Path) -> None:
     result = run(str(folder / "box.mcap"), "--params", str(folder / "scene.yaml"), "--tensor", "isotropic")
     assert result.exit_code == 0, result.output

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 import pytest
 from tossed_bodies import CENTER, CORNERS, GIVEN, MASS, RADIUS, SCENE, TRUE, tosses
 
 from impact_predictor.bags.replay import replay
-from impact_predictor.calibration import flight, search
 from impact_predictor.calibration.identify import Identification, identify
 from impact_predictor.calibration.motions import RecordedMotion, RecordingMonitor, distinct
 from impact_predictor.calibration.search import Estimate
@@ -18,7 +15,7 @@ from impact_predictor.errors import InputError
 from impact_predictor.prediction.scene import inertia_matrix
 from impact_predictor.resources import find
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("few_resamples")]
 
 
 def motions(number: int = 60, noise: float = 0.0, kind: str = "box") -> list[RecordedMotion]:
@@ -31,15 +28,6 @@ def within(one: Estimate, truth: float, slack: float = 1.0) -> bool:
     assert one.high is not None
     middle, half = 0.5 * (one.low + one.high), 0.5 * slack * (one.high - one.low)
     return abs(truth - middle) <= half
-
-
-@pytest.fixture(scope="module", autouse=True)
-def few_resamples() -> Iterator[None]:
-    """Intervals from a fifth of the usual resamples: as wide as theirs to a tenth."""
-    with pytest.MonkeyPatch.context() as patch:
-        for module in (search, flight):
-            patch.setattr(module, "RESAMPLES", 200)
-        yield
 
 
 @pytest.fixture(scope="module")

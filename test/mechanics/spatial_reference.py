@@ -129,7 +129,7 @@ class _Path:
         while True:
             turns.direction = 1.0 if approaches else -1.0
             events = [stops, turns] if approaches else [stops, turns, opens]
-            found = solve_ivp(rates, (0.0, 1e9), y, "DOP853", events=events, rtol=1e-12, atol=1e-3 * 1e-12)
+            found = solve_ivp(rates, (0.0, 1e9), y, "DOP853", events=events, rtol=1e-12, atol=1e-15)
             y = found.y[:, -1]
             at = next(number for number, times in enumerate(found.t_events) if len(times))
             if at == 1:
