@@ -11,19 +11,16 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
-from contextlib import nullcontext
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
-from unittest.mock import patch
 
 import numpy as np
 
 from impact_predictor.bags.read import read_messages
 from impact_predictor.parameters.file import read_parameters
 from impact_predictor.parameters.validation import validate
-from impact_predictor.prediction import draws
 from impact_predictor.prediction.course import Pose
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene, inertia_matrix
@@ -52,12 +49,11 @@ class Scored(NamedTuple):
 
 
 class Variation(NamedTuple):
-    """A choice changed: the scene to predict with, and the steps of the law for a draw."""
+    """A choice changed, and the scene to predict with then."""
 
     choice: str
     value: str
     scene: Scene
-    steps: int = 0
 
 
 def load() -> list[Sample | Geometry]:
@@ -148,8 +144,6 @@ def variations(scene: Scene) -> Iterator[Variation]:
     yield Variation("as shipped", "", scene)
     for choice, value, fields in changes:
         yield Variation(choice, value, scene._replace(**fields))
-    for steps in (2, 32):
-        yield Variation("steps of a draw", str(steps), scene, steps)
 
 
 def main() -> int:
@@ -159,8 +153,7 @@ def main() -> int:
     shipped: list[Scored] = []
     show("choice", "value", "scored", "median", "90 %", "old lifts", "new lifts")
     for variation in variations(scene):
-        with patch.object(draws, "DRAW_STEPS", variation.steps) if variation.steps else nullcontext():
-            touchdowns = scored(variation.scene, record)
+        touchdowns = scored(variation.scene, record)
         shipped = shipped or touchdowns
         show(variation.choice, variation.value, *row_of(touchdowns))
         if touchdowns is shipped:
