@@ -7,12 +7,27 @@ end, so that poses are right even after steps as long as a third of a frame.
 
 from __future__ import annotations
 
-from math import atan2, ceil, sqrt
+from math import ceil, sqrt
 from typing import Final, NamedTuple
 
 from .scene import InertiaTensor, Scene
 from .types import Quaternion, SpatialTwist, Vector3
-from .vectors import Axes, add, any_across, axes_of, composed, cross, dot, times, to_body, to_world, turned
+from .vectors import (
+    Axes,
+    add,
+    any_across,
+    applied,
+    axes_of,
+    conjugate,
+    cross,
+    dot,
+    inverse,
+    rotation_between,
+    times,
+    to_body,
+    to_world,
+    turned,
+)
 
 STEP: Final = 2.5e-3
 """s, at most."""
@@ -54,7 +69,7 @@ class Course(NamedTuple):
 
     def poses(self, twist: SpatialTwist, moments: tuple[float, ...]) -> list[Pose]:
         """The poses at some moments, in s after the impact and rising, of a body with this twist right after it."""
-        scene, normal, inverse = self.scene, self.scene.normal, _inverse(self.scene.inertia)
+        scene, normal, mobility = self.scene, self.scene.normal, inverse(self.scene.inertia)
         arms = [add(point, scene.center_of_mass, -1.0) for point in self.points]
         (center, orientation), (linear, spin) = self.start, twist
         upright = to_body(axes_of(orientation), normal)
@@ -67,7 +82,7 @@ class Course(NamedTuple):
             for _ in range(count if h > 0.0 else 0):
                 axes = axes_of(orientation)
                 own = to_body(axes, spin)
-                spin = add(spin, to_world(axes, _product(inverse, cross(_product(scene.inertia, own), own))), h)
+                spin = add(spin, to_world(axes, applied(mobility, cross(applied(scene.inertia, own), own))), h)
                 linear = add(linear, self.gravity, h)
                 own, upright = to_body(axes, spin), to_body(axes, normal)
                 swing, rate = cross(upright, own), dot(normal, linear)
@@ -77,7 +92,7 @@ class Course(NamedTuple):
                 for arm, level in zip(arms, levels, strict=True):
                     limit = gain - max(0.0, height - level + dot(upright, arm)) / h
                     if rate + dot(swing, arm) < limit:
-                        contacts.append((_rows(scene, inverse, axes, arm), limit))
+                        contacts.append((_rows(scene, mobility, axes, arm), limit))
                 if contacts:
                     linear, spin = _pressed(contacts, scene.friction, 1.0 / scene.mass, linear, spin)
                     own = to_body(axes, spin)
@@ -90,24 +105,20 @@ class Course(NamedTuple):
     def stopped(self, twist: SpatialTwist) -> SpatialTwist:
         """The twist after a plastic impact without slip: the points that rest stop, or leave."""
         scene, axes = self.scene, axes_of(self.start.orientation)
-        inverse = _inverse(scene.inertia)
+        mobility = inverse(scene.inertia)
         arms = [add(self.points[i], scene.center_of_mass, -1.0) for i in self.resting]
-        contacts = [(_rows(scene, inverse, axes, arm), 0.0) for arm in arms]
+        contacts = [(_rows(scene, mobility, axes, arm), 0.0) for arm in arms]
         return SpatialTwist(*_pressed(contacts, STICKY, 1.0 / scene.mass, *twist))
 
 
 def between(one: Pose, other: Pose, seconds: float) -> SpatialTwist:
     """The mean twist from one pose to the other."""
-    x, y, z, w = one.orientation
-    x, y, z, w = composed(other.orientation, (-x, -y, -z, w))
-    sine = sqrt(x * x + y * y + z * z)
-    # Both signs of a quaternion are one orientation: the shorter turn is meant.
-    angle = 2.0 * atan2(sine if w >= 0.0 else -sine, abs(w))
-    scale = angle / (sine * seconds) if sine > 0.0 else 0.0
-    return SpatialTwist(times(add(other.center, one.center, -1.0), 1.0 / seconds), (x * scale, y * scale, z * scale))
+    # Along the axes of the world: between the ways back.
+    turn = rotation_between(conjugate(other.orientation), conjugate(one.orientation), 1.0 / seconds)
+    return SpatialTwist(times(add(other.center, one.center, -1.0), 1.0 / seconds), turn)
 
 
-def _rows(scene: Scene, inverse: InertiaTensor, axes: Axes, arm: Vector3) -> list[Row]:
+def _rows(scene: Scene, mobility: InertiaTensor, axes: Axes, arm: Vector3) -> list[Row]:
     """The rows of a contact along the normal and across it, at an arm in the body's frame."""
     normal, reach, rows = scene.normal, to_world(axes, arm), list[Row]()
     across = any_across(normal)
@@ -115,7 +126,7 @@ def _rows(scene: Scene, inverse: InertiaTensor, axes: Axes, arm: Vector3) -> lis
     across = times(across, 1.0 / sqrt(dot(across, across)))
     for along in (normal, across, cross(normal, across)):
         moment = cross(reach, along)
-        turning = to_world(axes, _product(inverse, to_body(axes, moment)))
+        turning = to_world(axes, applied(mobility, to_body(axes, moment)))
         rows.append((*along, *moment, *turning, 1.0 / (1.0 / scene.mass + dot(moment, turning))))
     return rows
 
@@ -161,15 +172,3 @@ def _push(row: Row, motion: list[float], impulse: float, per_mass: float) -> Non
     motion[3] += impulse * ux
     motion[4] += impulse * uy
     motion[5] += impulse * uz
-
-
-def _product(matrix: InertiaTensor, vector: Vector3) -> Vector3:
-    return dot(matrix[0], vector), dot(matrix[1], vector), dot(matrix[2], vector)
-
-
-def _inverse(matrix: InertiaTensor) -> InertiaTensor:
-    """The inverse of a symmetric matrix."""
-    a, b, c = matrix
-    columns = cross(b, c), cross(c, a), cross(a, b)
-    scale = 1.0 / dot(a, columns[0])
-    return times(columns[0], scale), times(columns[1], scale), times(columns[2], scale)

@@ -15,7 +15,7 @@ from ..mechanics.impact.answer import mode_of
 from ..mechanics.types import ContactState, Mode, Twist, Vector
 from .scene import Scene
 from .types import PointOutcome, Sample, SpatialTwist, Vector3
-from .vectors import add, any_across, axes_of, cross, dot, mean, times, to_body, to_world, total
+from .vectors import add, any_across, applied, axes_of, cross, dot, inverse, mean, times, to_body, to_world, total
 
 if TYPE_CHECKING:
     from .scatter import Scatter
@@ -255,16 +255,6 @@ def edge_of(points: list[Vector3]) -> Vector3:
 
 def inertia_about(scene: Scene, axis: Vector3, blocked: bool) -> float:
     """Inertia about the axis: the tensor's own where the contacts block every other rotation, else the free body's."""
-    (xx, xy, xz), (_, yy, yz), (_, _, zz) = scene.inertia
-    x, y, z = axis
     if blocked:
-        return xx * x * x + yy * y * y + zz * z * z + 2.0 * (xy * x * y + xz * x * z + yz * y * z)
-    # axis . adj(I) . axis / det(I) is the free body's mobility about the axis.
-    adjugate = (
-        (yy * zz - yz * yz) * x * x
-        + (xx * zz - xz * xz) * y * y
-        + (xx * yy - xy * xy) * z * z
-        + 2.0 * ((xz * yz - xy * zz) * x * y + (xy * yz - xz * yy) * x * z + (xy * xz - xx * yz) * y * z)
-    )
-    whole = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz)
-    return whole / adjugate
+        return dot(axis, applied(scene.inertia, axis))
+    return 1.0 / dot(axis, applied(inverse(scene.inertia), axis))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Mapping
-from math import atan2, cos, hypot, sin, sqrt
+from math import cos, hypot, sin
 
 from ..mechanics.motion import Fall, PlanarState, next_touchdown
 from ..mechanics.types import Contact, TwoPointBody, Vector
@@ -19,7 +19,7 @@ from .scene import Scene
 from .score import Pending, PointRecord, Track
 from .spatial import SpatialCollision, SpatialModel
 from .types import ContactInput, Geometry, Leftover, Moment, Sample, Status, Touchdown, Vector3
-from .vectors import add, axes_of, composed, conjugate, times, to_body, total
+from .vectors import add, axes_of, rotation_between, times, to_body, total
 
 ACCURACY = 1e-6  # of the motion before the touchdown, relative: a thousandth of what poses and twists are measured to
 SETTLED = 0.5
@@ -327,11 +327,5 @@ def differenced(last: Sample | None, sample: Sample) -> Sample:
     if last is None or not 0 < sample.stamp - last.stamp <= PAUSE:
         return sample
     rate = NANOSECONDS / (sample.stamp - last.stamp)
-    axes = axes_of(sample.orientation)
-    x, y, z, w = composed(conjugate(last.orientation), sample.orientation)
-    # The rotation vector of a unit quaternion; over one sample a body turns by less than half a turn.
-    sine = sqrt(x * x + y * y + z * z)
-    angle = 2.0 * atan2(sine, abs(w))
-    scale = (angle / sine if sine > 0.0 else 2.0) * (rate if w >= 0.0 else -rate)
-    linear = times(to_body(axes, add(sample.position, last.position, -1.0)), rate)
-    return sample._replace(linear=linear, angular=(x * scale, y * scale, z * scale))
+    linear = times(to_body(axes_of(sample.orientation), add(sample.position, last.position, -1.0)), rate)
+    return sample._replace(linear=linear, angular=rotation_between(last.orientation, sample.orientation, rate))

@@ -35,7 +35,7 @@ from .planar import (
     still_of,
 )
 from .scatter import SLACK, Scatter
-from .scene import InertiaTensor, Scene, six_numbers
+from .scene import Scene, six_numbers
 from .types import (
     Moment,
     PointOutcome,
@@ -47,6 +47,7 @@ from .types import (
 )
 from .vectors import (
     add,
+    applied,
     axes_of,
     composed,
     conjugate,
@@ -58,6 +59,7 @@ from .vectors import (
     to_body,
     to_world,
     total,
+    turned,
 )
 
 if TYPE_CHECKING:
@@ -160,7 +162,7 @@ class SpatialModel:
         spin = sqrt(dot(sample.angular, sample.angular))
         if plane.offset > aside or max(abs(plane.lateral), plane.off_axis * spin * reach) > least:
             return False
-        turned = along(scene.inertia, plane.axis)
+        turned = applied(scene.inertia, plane.axis)
         across = add(turned, plane.axis, -dot(plane.axis, turned))
         return dot(across, across) * reach * reach <= aside * aside * dot(turned, turned)
 
@@ -179,7 +181,7 @@ class SpatialModel:
             center = add(center, pull, -0.5 * age * age)
         return self._followed(
             center=center,
-            orientation=rotated(sample.orientation, spin, -age),
+            orientation=turned(sample.orientation, times(sample.angular, -age)),
             twist=SpatialTwist(velocity, spin),
             stands=stands,
             age=age,
@@ -427,18 +429,3 @@ def frame_of(normal: Vector3) -> Quaternion:
         return 1.0, 0.0, 0.0, 0.0
     scale = 1.0 / sqrt(2.0 * (1.0 + z))
     return -y * scale, x * scale, 0.0, (1.0 + z) * scale
-
-
-def rotated(orientation: Quaternion, spin: Vector3, time: float) -> Quaternion:
-    """An orientation after it has turned for a short time (s) with an angular velocity in the world, to third order."""
-    half = 0.5 * time
-    x, y, z = spin[0] * half, spin[1] * half, spin[2] * half
-    square = x * x + y * y + z * z
-    sine, cosine = 1.0 - square / 6.0, 1.0 - 0.5 * square
-    a, b, c, d = composed((x * sine, y * sine, z * sine, cosine), orientation)
-    unit = 1.0 / sqrt(a * a + b * b + c * c + d * d)
-    return a * unit, b * unit, c * unit, d * unit
-
-
-def along(inertia: InertiaTensor, axis: Vector3) -> Vector3:
-    return dot(inertia[0], axis), dot(inertia[1], axis), dot(inertia[2], axis)

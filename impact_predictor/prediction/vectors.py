@@ -5,8 +5,8 @@ from __future__ import annotations
 import operator
 import sys
 from collections.abc import Iterable, Sequence
-from functools import reduce
-from math import cos, sin, sqrt
+from functools import lru_cache, reduce
+from math import atan2, cos, sin, sqrt
 
 from .types import Quaternion, Vector3
 
@@ -104,9 +104,22 @@ def to_world(axes: Axes, vector: Vector3) -> Vector3:
     return combine(vector[0], axes[0], vector[1], axes[1], vector[2], axes[2])
 
 
-def to_body(axes: Axes, vector: Vector3) -> Vector3:
-    """A vector of the world frame in the body frame."""
-    return dot(axes[0], vector), dot(axes[1], vector), dot(axes[2], vector)
+def applied(rows: Axes, vector: Vector3) -> Vector3:
+    """A matrix, row by row, times a vector."""
+    return dot(rows[0], vector), dot(rows[1], vector), dot(rows[2], vector)
+
+
+to_body = applied
+"""A vector of the world frame in the body frame, whose axes come first."""
+
+
+@lru_cache(maxsize=16)
+def inverse(matrix: Axes) -> Axes:
+    """The inverse of a symmetric matrix."""
+    a, b, c = matrix
+    columns = cross(b, c), cross(c, a), cross(a, b)
+    scale = 1.0 / dot(a, columns[0])
+    return times(columns[0], scale), times(columns[1], scale), times(columns[2], scale)
 
 
 def tensor_to_world(axes: Axes, tensor: Axes) -> Axes:
@@ -125,6 +138,17 @@ def turned(orientation: Quaternion, rotation: Vector3) -> Quaternion:
     x, y, z, w = composed(orientation, (qx, qy, qz, qw))
     unit = 1.0 / sqrt(x * x + y * y + z * z + w * w)
     return x * unit, y * unit, z * unit, w * unit
+
+
+def rotation_between(first: Quaternion, second: Quaternion, rate: float = 1.0) -> Vector3:
+    """The rotation vector in rad, along the first one's axes, that leads from one orientation to another, times a rate.
+
+    Both signs of a quaternion are one orientation: the shorter turn is meant.
+    """
+    x, y, z, w = composed(conjugate(first), second)
+    length = sqrt(x * x + y * y + z * z)
+    scale = (2.0 * atan2(length, abs(w)) / length if length > 0.0 else 2.0) * (rate if w >= 0.0 else -rate)
+    return x * scale, y * scale, z * scale
 
 
 def composed(first: Quaternion, second: Quaternion) -> Quaternion:

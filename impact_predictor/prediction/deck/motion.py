@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections import deque
 from functools import partial
 from itertools import repeat
-from math import atan2, sin, sqrt
+from math import sin, sqrt
 from operator import mul, sub
 from typing import TYPE_CHECKING, NamedTuple
 
 from ...stamps import NANOSECONDS
 from ..types import Felt, Moment, Quaternion, Vector3
-from ..vectors import Axes, add, axes_of, combine, composed, cross, dot, lines, times, to_body, total, turned
+from ..vectors import Axes, add, axes_of, combine, cross, dot, lines, times, to_body, total, turned
 
 if TYPE_CHECKING:
     import numpy as np
@@ -113,16 +113,6 @@ def turned_back(vector: Vector3, rotation: Vector3) -> Vector3:
     half = sin(0.5 * angle)
     aside = cross(vector, rotation)
     return add(add(vector, aside, sin(angle) / angle), cross(aside, rotation), 2.0 * half * half / square)
-
-
-def rotation_between(first: Quaternion, second: Quaternion) -> Vector3:
-    """The rotation vector, along the first one's axes, that leads from one orientation to another (rad)."""
-    px, py, pz, pw = first
-    x, y, z, w = composed((-px, -py, -pz, pw), second)
-    if w < 0.0:
-        x, y, z, w = -x, -y, -z, -w
-    length = sqrt(x * x + y * y + z * z)
-    return times((x, y, z), 2.0 * atan2(length, w) / length if length > 0.0 else 2.0)
 
 
 def later(state: SupportState, stamp: int) -> SupportState:

@@ -11,8 +11,8 @@ from ...stamps import NANOSECONDS
 from ..checks import LARGEST, PAUSE, check_orientation, order_of
 from ..scene import MovingDeck
 from ..types import Felt, Imu, Moment, Sample, Status, Vector3
-from ..vectors import add, axes_of, dot, times, to_body, to_world
-from .motion import MeanMotion, MotionWindow, SupportState, ahead, between, forecast, later, resting, rotation_between
+from ..vectors import add, axes_of, dot, rotation_between, times, to_body, to_world
+from .motion import MeanMotion, MotionWindow, SupportState, ahead, between, forecast, later, resting
 
 if TYPE_CHECKING:
     import numpy as np

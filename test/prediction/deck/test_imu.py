@@ -11,11 +11,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from impact_predictor.prediction.deck.motion import ahead, rotation_between
+from impact_predictor.prediction.deck.motion import ahead
 from impact_predictor.prediction.deck.tracker import Deck
 from impact_predictor.prediction.scene import MovingDeck
 from impact_predictor.prediction.types import Felt, Imu, Moment, Status, Vector3
-from impact_predictor.prediction.vectors import add, axes_of, cross, to_body, turned
+from impact_predictor.prediction.vectors import add, axes_of, cross, rotation_between, to_body, turned
 
 G = 9.81
 GRAVITY = (0.0, 0.0, -G)

@@ -13,11 +13,10 @@ from hypothesis import strategies as st
 from touchdowns import SAMPLE
 
 from impact_predictor.prediction.checks import PAUSE
-from impact_predictor.prediction.deck.motion import rotation_between
 from impact_predictor.prediction.deck.tracker import Deck
 from impact_predictor.prediction.scene import MovingDeck
 from impact_predictor.prediction.types import Felt, Imu, Moment, Quaternion, Sample, Status, Vector3
-from impact_predictor.prediction.vectors import add, axes_of, times, to_body, turned
+from impact_predictor.prediction.vectors import add, axes_of, rotation_between, times, to_body, turned
 
 GRAVITY = (0.0, 0.0, -9.81)
 UP = (0.0, 0.0, 1.0)
