@@ -2,29 +2,54 @@
 
 The edges take the place of the contact points, as numbers 0 and 1. They run through the two given points, across the
 line between these and in the support, and so does the axis of the cylinder, on which its mass centre lies. The normals
-point from the edges to the axis: a contact slips where the cylinder spins. Friction against slip along the axis is left
-out.
+point from the edges to the axis: a contact slips where the cylinder spins, and where it slides along its axis. This
+changes the impact; up to it the cylinder keeps its velocity along the axis.
 """
 
 from __future__ import annotations
 
-from math import atan2, hypot, sqrt
+from math import atan2, hypot, inf, sqrt
+from typing import Final
+
+import numpy as np
 
 from ..errors import InputError
+from ..mechanics.compiled import on_lists
+from ..mechanics.impact.answer import mode_of
+from ..mechanics.impact.solve import number_of
+from ..mechanics.impact.spatial import STEPS, flags_named, make_bodies, workspace
+from ..mechanics.impact.spatial_body import ANSWER, RESULT
 from ..mechanics.motion import PlanarState, next_strike
 from ..mechanics.motion.support import FeltSupport, FixedSupport
-from ..mechanics.types import Contact, Twist, TwoPointBody, Vector
+from ..mechanics.types import Contact, ContactState, Mode, Twist, TwoPointBody, Vector
 from .deck.frame import gravity_over, is_uniform, planar_support
 from .impact import Collision, collision_after
-from .planar import ActiveContacts, ImpactPlane, Posture, center_of, contacts_of, inertia_about, off_axis_of
+from .planar import (
+    RESTS,
+    ActiveContacts,
+    ImpactPlane,
+    Posture,
+    center_of,
+    contacts_of,
+    hardly,
+    inertia_about,
+    off_axis_of,
+)
 from .points import PointContacts
 from .scene import Scene
-from .types import Moment, Sample, Vector3
+from .spatial import PLANAR, SpatialCollision, outcomes_of
+from .types import Moment, Sample, SpatialTwist, Touchdown, Vector3
 from .vectors import add, axes_of, cross, dot, times, to_body, to_world
 
 ASIDE = 0.5
 """A cylinder has left its edges when its axis is farther outside of them than this part of its radius: there it would
 still balance over an edge of a support that leans by 30 degrees."""
+
+BLOCKED: Final = 1e9
+"""What does not turn has so many times the inertia about the axis."""
+
+PLAIN: Final = on_lists(make_bodies(""))
+"""The law code as Python: a cylinder that slides along its axis is rare, and needs nothing compiled."""
 
 
 class CylinderContacts(PointContacts):
@@ -43,7 +68,7 @@ class CylinderContacts(PointContacts):
         rise = dot(scene.normal, line)
         level = add(line, scene.normal, -rise)
         width, length = sqrt(dot(level, level)), sqrt(dot(line, line))
-        if not 1e-6 * scene.radius < width <= length < 2.0 * scene.radius:
+        if not (1e-6 * scene.radius < width and length < 2.0 * scene.radius):
             raise InputError(
                 f"the edges at {first} and {second} do not carry a cylinder of radius {scene.radius} m; "
                 "give two that lie beside each other, nearer than its diameter"
@@ -125,6 +150,63 @@ class CylinderContacts(PointContacts):
             body = body._replace(old=None, new=self._contact(edges[fall.point], place))
         contacts = ActiveContacts(contacts.old, (abs(behind - fall.point),))
         return collision_after(sample, posture, contacts, plane, body, fall, (x, y), age)
+
+    def touchdown_of(self, sample: Sample, posture: Posture, collision: Collision | SpatialCollision) -> Touchdown:
+        assert isinstance(collision, Collision)
+        told, body, across = super().touchdown_of(sample, posture, collision), collision.body, collision.across
+        touching = [body.new] if body.old is None else [body.old, body.new]
+        slips = [across.velocity - across.roll * one.y + across.yaw * one.x for one in touching]
+        if max(map(abs, slips)) <= max(PLANAR * collision.speed, self.scatter.rate) or self.scene.friction == 0.0:
+            return told
+        return self._struck(told, collision, touching)
+
+    def _struck(self, told: Touchdown, collision: Collision, touching: list[Contact]) -> Touchdown:
+        """A touchdown whose contacts slip along the axis too: its impact is that of the law in three dimensions.
+
+        The cylinder lies on its edges all along: they do not let it turn across its axis. Along the axis their
+        impulses have no lever then, wherever they are.
+        """
+        scene, before, across = self.scene, collision.before, collision.across
+        n, along = len(touching), told.axis
+        # In the impact plane and against the axis: these are the principal axes, in which what is blocked stays so.
+        axes = cross(along, scene.normal), scene.normal, times(along, -1.0)
+        inertia = collision.body.inertia
+        problem = [scene.mass, BLOCKED * inertia, BLOCKED * inertia, inertia, 0.0, 0.0, 0.0]
+        problem += [before.vx, before.vy, -across.velocity, across.roll, across.yaw, before.omega]
+        for one in touching:
+            problem += [one.x, one.y, 0.0, *one.normal, 0.0, scene.friction, scene.restitution, 0.0, 0.0, 0.0, 0.0]
+        answer, notes = np.zeros(ANSWER + RESULT * n), np.zeros(1, np.int64)
+        how = bool(number_of(scene.law)), scene.merge, hardly(scene), STEPS
+        PLAIN(n, np.array([problem]), *how, answer[None], notes, *workspace(n))
+        numbers = answer.tolist()
+        found = outcomes_of(numbers, told.old, told.new)
+        speeds, impulses = [] if told.old else [inf, inf], [] if told.old else [(0.0, 0.0)]
+        for one, contact in zip(touching, found, strict=True):
+            (nx, ny), (a, b, _), (u, v, _) = one.normal, contact.impulse, contact.velocity
+            impulses.append((nx * a + ny * b, ny * a - nx * b))
+            speeds += [nx * u + ny * v, inf if contact.state is ContactState.SLIPS else 0.0]
+        vx, vy, vz, wx, wy, wz, lost = numbers[:ANSWER]
+        after = SpatialTwist(to_world(axes, (vx, vy, vz)), to_world(axes, (wx, wy, wz)))
+        now = axes_of(told.orientation)
+        angular = to_body(now, after.angular)
+        return told._replace(
+            mode=Mode(mode_of(RESTS * collision.speed, *speeds)),
+            after=Twist(vx, vy, wz),
+            impulses=(impulses[0], impulses[1]),
+            segments=(),
+            energy_lost=lost,
+            flags=flags_named(int(notes[0])),
+            unique=True,
+            linear=add(to_body(now, after.linear), cross(angular, scene.center_of_mass), -1.0),
+            angular=angular,
+            after_6d=after,
+            contacts=tuple(
+                contact._replace(impulse=to_world(axes, contact.impulse), velocity=to_world(axes, contact.velocity))
+                for contact in found
+            ),
+            uncertainty=None,
+            planar=None,
+        )
 
     def _contact(self, edge: Vector, center: Vector) -> Contact:
         scene, (x, y) = self.scene, (edge[0] - center[0], edge[1] - center[1])

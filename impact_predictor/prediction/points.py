@@ -123,11 +123,7 @@ class PointContacts(Contacts):
             # The impact itself may be in this twist, averaged or just begun: the last prediction stands.
             self._told.append((sample.stamp, track))
             return track.hold(sample.stamp)
-        if isinstance(collision, Collision):
-            touchdown = self._impact.touchdown(sample, posture, collision)
-        else:
-            assert self._spatial is not None
-            touchdown = self._spatial.touchdown(sample, posture, collision)
+        touchdown = self.touchdown_of(sample, posture, collision)
         self.collision = sample, posture, collision
         track.add(sample.stamp, touchdown, collision.measured)
         self._told.append((sample.stamp, track))
@@ -155,6 +151,13 @@ class PointContacts(Contacts):
     ) -> Collision | SpatialCollision | None:
         """The collision that a sample shows to be ahead; None where there is none within the horizon."""
         return collision_of(self.scene, self.points, sample, posture, moment, self._spatial, self.scatter)
+
+    def touchdown_of(self, sample: Sample, posture: Posture, collision: Collision | SpatialCollision) -> Touchdown:
+        """The touchdown at the end of an approach, with its impact."""
+        if isinstance(collision, Collision):
+            return self._impact.touchdown(sample, posture, collision)
+        assert self._spatial is not None
+        return self._spatial.touchdown(sample, posture, collision)
 
     def _measure_points(self) -> None:
         if not self.points:

@@ -265,13 +265,8 @@ class SpatialModel:
         problem, n = self._problem(collision), len(collision.points)
         answer, notes = np.zeros(ANSWER + RESULT * n), np.zeros(1, np.int64)
         self._solve(problem[None], answer[None], notes)
-        numbers, contacts = answer.tolist(), []
-        for k, point in enumerate(collision.points):
-            a, b, c, u, v, w, state, _ = numbers[ANSWER + RESULT * k : ANSWER + RESULT * (k + 1)]
-            found = PointOutcome(
-                point=point, is_new=k >= len(old), impulse=(a, b, c), velocity=(u, v, w), state=STATES[int(state)]
-            )
-            contacts.append(found)
+        numbers = answer.tolist()
+        contacts = outcomes_of(numbers, old, new)
         vx, vy, vz, wx, wy, wz, lost = numbers[:ANSWER]
         plane, now = self._plane(collision), axes_of(collision.orientation)
         after, drawn = SpatialTwist((vx, vy, vz), (wx, wy, wz)), None
@@ -410,6 +405,19 @@ def prepare() -> None:
     fall(still, (1.0, 1.0, 1.0, 0.0, 0.0, 0.0), [ORIGIN], horizon=1e-3)
     problem, answer = np.zeros((1, BODY + CONTACT)), np.zeros((1, ANSWER + RESULT))
     solvers().bodies(1, problem, False, 0.0, 0.0, 1, answer, np.zeros(1, np.int64), *workspace(1))
+
+
+def outcomes_of(answer: list[float], old: tuple[int, ...], new: tuple[int, ...]) -> list[PointOutcome]:
+    """What an answer of the law says of each contact."""
+    found = []
+    for k, point in enumerate(old + new):
+        a, b, c, u, v, w, state, _ = answer[ANSWER + RESULT * k : ANSWER + RESULT * (k + 1)]
+        found.append(
+            PointOutcome(
+                point=point, is_new=k >= len(old), impulse=(a, b, c), velocity=(u, v, w), state=STATES[int(state)]
+            )
+        )
+    return found
 
 
 def moving(contact: PointOutcome, velocity: Vector3, normal: Vector3, least: float) -> PointOutcome:
