@@ -14,7 +14,7 @@ from impact_predictor.calibration.impacts import MotionRecord
 from impact_predictor.calibration.motions import Reals, RecordedMotion, RecordingMonitor, distinct
 from impact_predictor.commands.replay import read_scenes
 from impact_predictor.errors import InputError
-from impact_predictor.prediction.scene import MovingDeck
+from impact_predictor.prediction.scene import MovingDeck, Scene
 from impact_predictor.prediction.types import KINDS, Geometry, Sample
 from impact_predictor.resources import find
 
@@ -118,6 +118,18 @@ def test_free_flights_hold_no_impact_and_leave_out_what_is_near_the_support() ->
             assert record.motion.gaps(SCENE)[flight].min() > SCENE.tolerance
 
 
+def test_a_pause_ends_a_flight_and_hides_an_impact() -> None:
+    stamps, positions, rotations, points = tosses(NUMBER)[0].motion
+    whole = MotionRecord(SCENE, tosses(NUMBER)[0].motion)
+    flight, impact = max(whole.flights, key=lambda run: run.stop - run.start), whole.impacts[0]
+    for lost in ((flight.start + flight.stop) // 2, impact.frame + 1):
+        kept = np.delete(np.arange(len(stamps)), [lost, lost + 1])
+        record = MotionRecord(SCENE, RecordedMotion(stamps[kept], positions[kept], rotations[kept], points))
+        assert record.flights
+        assert max(np.diff(record.motion.times[run]).max() for run in record.flights) < 1.5 / 200.0
+    assert impact.time < min(one.time for one in record.impacts) - 0.01
+
+
 def test_a_motion_turned_about_the_vertical_or_numbered_anew_counts_once() -> None:
     one, other = (toss.motion for toss in tosses(NUMBER)[:2])
     turn = Rotation.from_rotvec([0.0, 0.0, 1.0]).as_matrix()
@@ -150,9 +162,10 @@ def test_motions_end_at_pauses_and_where_the_points_change() -> None:
     assert [len(motion.points) for motion in monitor.motions] == [8, 8, 4]
 
 
-def test_a_body_on_a_deck_is_refused_in_one_sentence() -> None:
+@pytest.mark.parametrize("scenes", [{"": SCENE._replace(deck=MovingDeck())}, {"a": SCENE, "b": SCENE}], ids=len)
+def test_a_body_on_a_deck_or_several_are_refused_in_one_sentence(scenes: dict[str, Scene]) -> None:
     with pytest.raises(InputError, match="one body on contact points over a fixed support"):
-        RecordingMonitor({"": SCENE._replace(deck=MovingDeck())})
+        RecordingMonitor(scenes)
 
 
 @pytest.mark.slow
