@@ -10,6 +10,8 @@ from test_spatial_reference import BALL, cases, chain
 
 import impact_predictor
 from impact_predictor import Body, ContactPoints, Flag, solve_spatial_impact
+from impact_predictor.mechanics.compiled import on_lists
+from impact_predictor.mechanics.impact import spatial
 from impact_predictor.mechanics.types import ContactState
 
 MASS, INERTIA = 50.0, 50.0 / 12.0 * np.diag([0.6**2 + 0.5**2, 1.0 + 0.5**2, 1.0 + 0.6**2])
@@ -172,11 +174,20 @@ GOOD = Body(1.0, [0.1, 0.12, 0.15]), ContactPoints(PLACES, 0.4, 0.3), FALLS
 NAN, INF = np.nan, np.inf
 
 
+@pytest.fixture(params=["compiled", "plain"])
+def code(request, monkeypatch):
+    """The law code as it is where numba is installed, and where it is not: there a division by zero raises."""
+    if request.param == "plain":
+        plain = [on_lists(make("")) for make in (spatial.make_bodies, spatial.make_mechanism)]
+        monkeypatch.setattr(spatial, "solvers", lambda: spatial.Solvers(*plain))
+
+
 def finite(outcome):
     found = [outcome.impulses, outcome.velocities, outcome.energy_lost]
     return all(np.isfinite(each).all() for each in [*found, *([] if outcome.twist is None else [outcome.twist])])
 
 
+@pytest.mark.usefixtures("code")
 @pytest.mark.parametrize("law", ["path", "total"])
 @pytest.mark.parametrize(
     "change",
@@ -203,6 +214,7 @@ def test_numbers_that_no_body_has_are_flagged(change, law):
     assert not outcome.impulses.any()
 
 
+@pytest.mark.usefixtures("code")
 @pytest.mark.parametrize("law", ["path", "total"])
 @pytest.mark.parametrize("friction", [0.0, 0.5, 1e4])
 @pytest.mark.parametrize(
@@ -226,6 +238,7 @@ def test_places_that_are_odd_have_an_answer(positions, normals, friction, law):
     assert along.min(initial=0.0) >= -1e-5
 
 
+@pytest.mark.usefixtures("code")
 @pytest.mark.parametrize("law", ["path", "total"])
 def test_a_vice_that_closes_is_told_to_have_no_answer(law):
     vice = ContactPoints([[0.0, 0.0, -0.5], [0.0, 0.0, 0.5]], 0.4, 0.3, [UP, DOWN], [UP, DOWN])
@@ -238,6 +251,7 @@ BLOCKED = np.diag([1.0, 1.0, 0.0, 1.0, 1.0, 0.0])
 INDEFINITE = np.eye(6) + 2.0 * (np.eye(6, k=3) + np.eye(6, k=-3)) @ np.diag([0.0, 0.0, 1.0, 0.0, 0.0, 1.0])
 
 
+@pytest.mark.usefixtures("code")
 @pytest.mark.parametrize("law", ["path", "total"])
 @pytest.mark.parametrize(
     ("w", "flags"),

@@ -17,7 +17,7 @@ import pytest
 from newton_in_space import Newton, numbers_of, tensor
 from scipy.spatial.transform import Rotation
 
-from impact_predictor.mechanics.motion import Fall, PlanarState, next_touchdown
+from impact_predictor.mechanics.motion import Fall, PlanarState, next_touchdown, spatial
 from impact_predictor.mechanics.motion.spatial import (
     Pull,
     SpatialFall,
@@ -268,7 +268,10 @@ def test_a_corner_that_lifts_does_not_strike_as_it_leaves() -> None:
         assert found.point != 4 or found.time > 0.05
 
 
-def test_odd_numbers_have_no_touchdown_and_raise_nothing() -> None:
+@pytest.mark.parametrize("plain", [False, True], ids=["compiled", "plain"])
+def test_odd_numbers_have_no_touchdown_and_raise_nothing(plain: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    if plain:
+        monkeypatch.setattr(spatial, "solver", lambda: fall_on_lists)
     good = SpatialState((0.0, 0.0, 0.2), FLAT, (0.0, 0.0, -1.0), (1.0, 2.0, 3.0))
     bad = [
         fall(good._replace(position=(0.0, math.nan, 0.2)), ALIKE, CUBE),

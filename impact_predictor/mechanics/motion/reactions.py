@@ -354,16 +354,17 @@ def share(held: Ints, label: Ints, arms: Floats, forces: Floats) -> None:
         i = held[k]
         for m in range(k):
             j = held[m]
+            x, y, z = (
+                arms[3 * i] - arms[3 * j],
+                arms[3 * i + 1] - arms[3 * j + 1],
+                arms[3 * i + 2] - arms[3 * j + 2],
+            )
             load = max(forces[3 * i + 2], 0.0) + max(forces[3 * j + 2], 0.0)
-            if label[i] == STICKS and label[j] == STICKS and load > 0.0:
-                x, y, z = (
-                    arms[3 * i] - arms[3 * j],
-                    arms[3 * i + 1] - arms[3 * j + 1],
-                    arms[3 * i + 2] - arms[3 * j + 2],
-                )
+            weight = load * (x * x + y * y + z * z)  # 0 of points at one place
+            if label[i] == STICKS and label[j] == STICKS and weight > 0.0:
                 push = max(forces[3 * i + 2], 0.0) * (forces[3 * j] * x + forces[3 * j + 1] * y)
                 push -= max(forces[3 * j + 2], 0.0) * (forces[3 * i] * x + forces[3 * i + 1] * y)
-                push /= load * (x * x + y * y + z * z)
+                push /= weight
                 forces[3 * i], forces[3 * j] = forces[3 * i] + push * x, forces[3 * j] - push * x
                 forces[3 * i + 1], forces[3 * j + 1] = forces[3 * i + 1] + push * y, forces[3 * j + 1] - push * y
                 forces[3 * i + 2], forces[3 * j + 2] = forces[3 * i + 2] + push * z, forces[3 * j + 2] - push * z
