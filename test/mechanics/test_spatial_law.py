@@ -5,7 +5,7 @@ Differences are relative to the fastest contact before the impact.
 
 import numpy as np
 import pytest
-from spatial_reference import Mechanism, MovingBody, delassus, on_springs, one_contact, rows
+from spatial_reference import Mechanism, MovingBody, delassus, on_springs, one_contact, planar_contact, rows
 from test_spatial_reference import BALL, cases, chain
 
 import impact_predictor
@@ -60,6 +60,14 @@ def test_a_ball_slips_straight_on_until_it_rolls(friction, restitution):
     assert outcome.velocities[0] == pytest.approx([0.6 * left, -0.8 * left, 1.3 * restitution], abs=1e-4)
     rests = {True: ContactState.SLIPS, False: ContactState.STICKS}[left > 0.0]
     assert outcome.states == (ContactState.LEAVES if restitution else rests,)
+
+
+def test_a_mechanism_that_moves_in_a_plane_alone_has_its_planar_impact():
+    flat = np.diag([1.0, 0.0, 1.0])
+    for w, c, friction, restitution in cases(12, 100, planar=True):
+        found = struck(flat @ w @ flat, c, friction, restitution, steps=128)[0]
+        expected, _ = planar_contact(w, c, friction, restitution)
+        assert found == pytest.approx(expected, abs=0.5 * np.pi / 128 * np.linalg.norm(c))
 
 
 @pytest.mark.parametrize("count", [3, 6])
