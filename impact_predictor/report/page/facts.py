@@ -29,31 +29,25 @@ LEAST_LEAD_TIME: Final = 0.02
 class ReplayFacts:
     """What the answers of one bag or of several say together.
 
-    `names` are the last parts of the paths, or as much of them as no other bag has. `scored` are the touchdowns whose
-    velocities are compared with measured ones, `uncompared` counts the reasons (names of `Leftover`) why others are
-    not, feet, which are driven, aside. `true` are true touchdowns and false alarms, `truth` counts true touchdowns,
-    missed ones, false alarms and those that cannot be seen; both are empty where no bag tells the truth. `costs` are
-    in microseconds.
+    `names` are the last parts of the paths, or as much of them as no other bag has. `rows` are the touchdowns, `scored`
+    those whose velocities are compared with measured ones; `uncompared` counts the reasons (names of `Leftover`) why
+    others are not, feet, which are driven, aside. `true` are true touchdowns and false alarms, `truth` counts true
+    touchdowns, missed ones, false alarms and those that cannot be seen; both are empty where no bag tells the truth.
+    `costs` are in microseconds.
     """
 
     def __init__(self, answers: Sequence[BagAnswer]) -> None:
         """Collect them."""
         self.answers = answers
         self.names = [str(name) for name in told_apart([Path(answer["bag"]) for answer in answers])]
-        self.touchdowns, self.scored, self.true = list[BagAnswer](), list[BagAnswer](), list[BagAnswer]()
-        self.rows, self.scored_rows, self.recorded = list[TouchdownRow](), list[TouchdownRow](), dict[str, Announced]()
+        self.rows, self.true, self.recorded = list[TouchdownRow](), list[BagAnswer](), dict[str, Announced]()
         self.truth, errors = Counter[str](), list[float]()
         for answer in answers:
-            touchdowns, true = answer.get("touchdowns", ()), answer.get("true_touchdowns", ())
-            rows = [*map(row_of_json, touchdowns)]
-            scored = [(one, row) for one, row in zip(touchdowns, rows, strict=True) if row.is_scored]
+            rows, true = [*map(row_of_json, answer.get("touchdowns", ()))], answer.get("true_touchdowns", ())
             # Against the truth where a bag tells it, else against what was measured.
             known = [one["velocity_error"] for one in true if one["velocity_error"] is not None]
             errors += known or [row.best_error for row in rows if row.best_error is not None]
-            self.touchdowns += touchdowns
             self.rows += rows
-            self.scored += [one for one, _ in scored]
-            self.scored_rows += [row for _, row in scored]
             for kind, counts in answer.get("kinds", {}).items():
                 if kind != ALL:
                     before = self.recorded.get(kind, Announced(0, 0))
@@ -63,6 +57,7 @@ class ReplayFacts:
             self.true += true
             told = answer.get("truth", {})
             self.truth.update({key: told[key] for key in ("touchdowns", "missed", "false", "unresolved") if told})
+        self.scored = [row for row in self.rows if row.is_scored]
         self.velocity_errors = spread_of(errors)
         self.costs = together(from_json(answer.get("cost_us")) for answer in answers)
         self.uncompared = Counter(flag for row in self.rows if not row.foot for flag in row.why_not_scored)
@@ -99,13 +94,13 @@ class ReplayFacts:
         compared += "".join(
             f"; most of the others not, as {WHY[reason]}" for reason, _ in self.uncompared.most_common(1)
         )
-        found, missed, feet = "–", "", [one for one in self.touchdowns if "foot" in one]
+        found, missed, feet = "–", "", [row for row in self.rows if row.foot]
         if truth:
             found = f"{truth['touchdowns'] - truth['missed']:,} of {truth['touchdowns']:,}"
             missed = f"{truth['missed']:,} missed, {counted(truth['false'], 'false alarm')}"
             missed += f", {truth['unresolved']:,} more too slow or too close to be seen" if truth["unresolved"] else ""
         elif feet:
-            found = f"{sum(one['time_error'] is not None for one in feet):,} of {len(feet):,}"
+            found = f"{sum(row.time_error is not None for row in feet):,} of {len(feet):,}"
             missed = "landings, as the feet's motion shows them"
         right = f"median against the {'true' if truth else 'measured'} ones; 90 % below {part_words(errors.p90)}. "
         if both := {pair: count for pair, count in self.confusion().items() if NOTHING not in pair}:
@@ -122,7 +117,7 @@ class ReplayFacts:
         first, early, latest = (time_words(quantile(times, part) if times else None) for part in (0.5, 0.1, 0.0))
         half, most = (time_words(one and 1e-6 * one) for one in (cost.p50, cost.p99))
         return [
-            Headline("touchdowns", f"{len(self.touchdowns):,}", compared),
+            Headline("touchdowns", f"{len(self.rows):,}", compared),
             Headline("found", found, missed),
             Headline("velocity error", part_words(errors.p50), right),
             Headline("time error", time_words(late.p50), f"median {span}; 90 % below {time_words(late.p90)}"),

@@ -96,7 +96,7 @@ def page_of_replay(
     """The page as HTML; `script` is plotly's, `links` where the bags lead, by their places."""
     facts, each = ReplayFacts(answers), [ReplayFacts([answer]) for answer in answers]
     order = sorted(range(len(answers)), key=lambda place: each[place].badness(), reverse=True)
-    drawn = [place for place in order if each[place].touchdowns or each[place].true][:DRAWN]
+    drawn = [place for place in order if each[place].rows or each[place].true][:DRAWN]
     charts = [timeline(facts.names[place], answers[place], f"bag-{place + 1}") for place in drawn]
     parts = (
         bags(facts, each, order, links or {place: f"#bag-{place + 1}" for place in drawn}),
@@ -139,12 +139,12 @@ def velocities(facts: ReplayFacts, each: Sequence[ReplayFacts]) -> Section:
     for title, unit, part in COMPARED:
         points: dict[str, list[tuple[float, float, str]]] = {}
         for name, of in zip(facts.names, each, strict=True):
-            for one, row in zip(of.scored, of.scored_rows, strict=True):
+            for row in of.scored:
                 if (pair := pair_of(row, part)) is None:
                     continue
                 said = f"{name}, {(row.stamp - of.answers[0]['begin']) / NANOSECONDS:.3f} s, {row.body}"
                 said += f"\nrelative error {part_words(row.best_error)}"
-                points.setdefault(one["mode"], []).append((*pair, said))
+                points.setdefault(row.mode.name, []).append((*pair, said))
         if points:
             values = [value for of_mode in points.values() for point in of_mode for value in point[:2]]
             ends = [min(values), max(values) + 1e-9]
