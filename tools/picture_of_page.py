@@ -21,7 +21,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("page", type=Path, help="an .html file")
     parser.add_argument("picture", type=Path, help="a .png file to write")
-    parser.add_argument("--until", default="velocities", help="anchor of the last section that is shown")
+    parser.add_argument("--until", default="skill", help="anchor of the last section that is shown")
     arguments = parser.parse_args()
     with sync_playwright() as playwright:
         # A container runs it as root, and has no sandbox for that.

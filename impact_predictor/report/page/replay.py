@@ -101,8 +101,8 @@ def page_of_replay(
     parts = (
         bags(facts, each, order, links or {place: f"#bag-{place + 1}" for place in drawn}),
         Section("when", "When the touchdowns came", [READING], charts),
-        velocities(facts, each),
         skill(facts),
+        velocities(facts, each),
         modes(facts),
         lead_times(facts),
         cost(facts),
