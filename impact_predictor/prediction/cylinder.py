@@ -37,7 +37,8 @@ from .planar import (
 )
 from .points import PointContacts
 from .scene import Scene
-from .spatial import PLANAR, SpatialCollision, outcomes_of
+from .spatial import PLANAR
+from .spatial_impact import SpatialCollision, outcomes_of
 from .types import Moment, Sample, SpatialTwist, Touchdown, Vector3
 from .vectors import add, axes_of, cross, dot, times, to_body, to_world
 

@@ -68,7 +68,7 @@ class Draws:
     ) -> DrawnImpact:
         """The draws of an impact.
 
-        `problem` and `answer` are as `SpatialModel` makes them, and the first `standing` of the contacts stand; the
+        `problem` and `answer` are as the law takes and gives them, and the first `standing` of the contacts stand; the
         `axes` of the sample turn the covariance of its twist; `rates` in m/s are those of the other gaps, whose
         standard deviation is `gap`; `now` are the body's axes at the touchdown, and `axis` that of the impact plane.
         """

@@ -58,7 +58,7 @@ class ActiveContacts(NamedTuple):
 
 
 class ImpactPlane(NamedTuple):
-    """The impact plane, in the body frame, and the body in it.
+    """The impact plane, in the body frame or in another, and the body in it.
 
     `axis`, `ahead` (d) and `normal` (n) are unit vectors; `old` (None in flight) and `new` the contacts from the mass
     centre along (d, n) in m; `twist` of the mass centre; `gravity` along (d, n, axis). Left over: `off_axis` (0..1),
@@ -75,6 +75,16 @@ class ImpactPlane(NamedTuple):
     off_axis: float
     lateral: float
     offset: float
+
+    @property
+    def half_distance(self) -> float:
+        """Half the distance of the contacts, in m; 0 in flight."""
+        return 0.0 if self.old is None else 0.5 * hypot(self.new[0] - self.old[0], self.new[1] - self.old[1])
+
+    @property
+    def width(self) -> float:
+        """What the offset is measured by: half the distance, in flight that of the new contact from the mass centre."""
+        return hypot(*self.new) if self.old is None else self.half_distance
 
 
 def posture_of(scene: Scene, points: tuple[Vector3, ...], sample: Sample) -> Posture:
@@ -168,27 +178,36 @@ def plane_of(
     gravity: Vector3 | None = None,
 ) -> ImpactPlane:
     """The impact plane of a posture's contacts; `gravity` in the frame of the sample is the scene's unless given."""
-    n, spin, velocity = posture.normal, sample.angular, posture.velocity
-    old, new = contacts
-    center = scene.center_of_mass
+    (old, new), center = contacts, scene.center_of_mass
     struck = add(mean([points[i] for i in new]), center, -1.0)
-    if old:
-        stood = add(mean([points[i] for i in old]), center, -1.0)
-        edge = edge_of([points[i] for i in old]) if len(old) > 1 else None
-        axis = axis_of(n, spin, velocity, edge, add(struck, stood, -1.0), hardly(scene))
-    else:
-        axis = axis_of(n, spin, velocity, None, struck, hardly(scene))
-    ahead = cross(axis, n)
+    stood = add(mean([points[i] for i in old]), center, -1.0) if old else None
+    edge = edge_of([points[i] for i in old]) if len(old) > 1 else None
+    pull = to_body(posture.axes, scene.gravity if gravity is None else gravity)
+    return plane_through(posture.normal, sample.angular, posture.velocity, stood, struck, edge, pull, hardly(scene))
 
-    stance: Vector | None = None
-    offset = abs(dot(axis, struck))
-    lateral = dot(axis, velocity)
-    if old:
+
+def plane_through(
+    n: Vector3,
+    spin: Vector3,
+    velocity: Vector3,
+    stood: Vector3 | None,
+    struck: Vector3,
+    edge: Vector3 | None,
+    gravity: Vector3,
+    slow: float,
+) -> ImpactPlane:
+    """The impact plane along the normal n and through what stands and what is struck, seen from the mass centre.
+
+    `edge` is the line on which the body stands; all is in one frame, of `slow` see `axis_of`.
+    """
+    arm = struck if stood is None else add(struck, stood, -1.0)
+    axis = axis_of(n, spin, velocity, edge, arm, slow)
+    ahead, rate = cross(axis, n), dot(axis, spin)
+    offset, lateral, stance = abs(dot(axis, struck)), dot(axis, velocity), None
+    if stood is not None:
         stance = dot(ahead, stood), dot(n, stood)
         offset = max(offset, abs(dot(axis, stood)))
         lateral += dot(axis, cross(spin, stood))
-    rate = dot(axis, spin)
-    gravity = to_body(posture.axes, scene.gravity if gravity is None else gravity)
     return ImpactPlane(
         axis=axis,
         ahead=ahead,

@@ -17,7 +17,8 @@ from .recorded import AFTER, BEFORE, Announced, RecordedTouchdown, TouchdownReco
 from .scatter import Scatter
 from .scene import Scene
 from .score import Pending, PointRecord, Track
-from .spatial import SpatialCollision, SpatialModel
+from .spatial import SpatialModel
+from .spatial_impact import SpatialCollision
 from .types import ContactInput, Geometry, Leftover, Moment, Sample, Status, Touchdown, Vector3
 from .vectors import add, axes_of, rotation_between, times, to_body, total
 
@@ -157,7 +158,7 @@ class PointContacts(Contacts):
         if isinstance(collision, Collision):
             return self._impact.touchdown(sample, posture, collision)
         assert self._spatial is not None
-        return self._spatial.touchdown(sample, posture, collision)
+        return self._spatial.impact.touchdown(sample, posture.axes, collision, self._spatial.gap_deviation)
 
     def _measure_points(self) -> None:
         if not self.points:

@@ -1,0 +1,179 @@
+"""The impact in three dimensions at the end of an approach: the body after it, what its contacts do, how sure it is."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..mechanics.impact.solve import number_of
+from ..mechanics.impact.spatial import STATES, STEPS, flags_named, solvers, workspace
+from ..mechanics.impact.spatial_body import ANSWER, BODY, CONTACT, RESULT
+from ..mechanics.types import ContactState
+from .impact import OFF_AXIS, OFFSET, leftover_of
+from .planar import (
+    ORIGIN,
+    RESTS,
+    ActiveContacts,
+    ImpactPlane,
+    along_plane,
+    edge_of,
+    hardly,
+    mode_of_contacts,
+    planar_twist,
+    plane_through,
+)
+from .scene import Scene, six_numbers
+from .types import PointOutcome, Quaternion, Sample, SpatialTwist, Touchdown, Vector3
+from .vectors import Axes, add, axes_of, cross, dot, mean, tensor_to_world, to_body, to_world
+
+if TYPE_CHECKING:
+    from .draws import Draws
+
+
+class SpatialCollision(NamedTuple):
+    """The collision that a sample shows to be ahead, before its impact, in the frame in which the support is given.
+
+    `position` in m is that of the mass centre, and `before` its twist; of each of the `points`, those of `contacts`,
+    `arms` lead there from the mass centre, `gaps` in m are still open when the first one closes, and `rates`
+    in m/s are those of the gaps. The rest is as in `Collision`.
+    """
+
+    contacts: ActiveContacts
+    lead_time: float
+    position: Vector3
+    orientation: Quaternion
+    before: SpatialTwist
+    points: tuple[int, ...]
+    arms: tuple[Vector3, ...]
+    gaps: tuple[float, ...]
+    rates: tuple[float, ...]
+    measured: float
+    speed: float
+
+
+class SpatialImpactModel:
+    """How the body of a scene is struck in three dimensions; the law code is compiled, where it can be, and loaded."""
+
+    def __init__(self, scene: Scene) -> None:
+        self._scene, self._law = scene, bool(number_of(scene.law))
+        self._draws: Draws | None = None
+        if scene.samples:
+            from .draws import Draws
+
+            self._draws = Draws(scene, self._solve)
+        self._solve(np.zeros((1, BODY + CONTACT)), np.zeros((1, ANSWER + RESULT)), np.zeros(1, np.int64))
+
+    def touchdown(self, sample: Sample, axes: Axes, collision: SpatialCollision, deviation: float) -> Touchdown:
+        """The touchdown at the end of an approach, with its impact.
+
+        `axes` are those of the body in the sample; `deviation` in m is that of the gaps.
+        """
+        scene, (old, new), count = self._scene, collision.contacts, len(collision.contacts.old)
+        before, speed, normal = collision.before, collision.speed, scene.normal
+        plane, now, least = plane_at(scene, collision), axes_of(collision.orientation), RESTS * speed
+        problem, drawn = self._problem(collision, now), None
+        answer, notes = np.empty(ANSWER + RESULT * len(collision.points)), np.empty(1, np.int64)
+        self._solve(problem[None], answer[None], notes)
+        numbers = answer.tolist()
+        vx, vy, vz, wx, wy, wz, lost = numbers[:ANSWER]
+        after = SpatialTwist((vx, vy, vz), (wx, wy, wz))
+        if self._draws is not None:
+            rates = list(collision.rates[count:])
+            drawn = self._draws.drawn(sample, axes, problem, answer, count, rates, deviation, now, plane.axis)
+            after = drawn.after
+        contacts = outcomes_of(numbers, old, new)
+        if drawn is not None:
+            contacts = [one._replace(lift_probability=lifts) for one, lifts in zip(contacts, drawn.lifts, strict=True)]
+            if drawn.many:
+                contacts = [
+                    moving(contact, add(after.linear, cross(after.angular, arm)), normal, least)
+                    for contact, arm in zip(contacts, collision.arms, strict=True)
+                ]
+        stood, struck = contacts[:count], contacts[count:]
+        axis, ahead, center, angular = plane.axis, plane.ahead, scene.center_of_mass, to_body(now, after.angular)
+        spread = max(collision.gaps[count:]) / speed
+        return Touchdown(
+            lead_time=collision.lead_time,
+            mode=mode_of_contacts(stood, struck, normal, least) if drawn is None else drawn.mode,
+            before=planar_twist(before, ahead, normal, axis),
+            after=planar_twist(after, ahead, normal, axis),
+            impulses=(along_plane(stood, ahead, normal), along_plane(struck, ahead, normal)),
+            segments=(),
+            energy_lost=lost,
+            flags=flags_named(int(notes[0])),
+            unique=True,
+            law=scene.law,
+            old=old,
+            new=new,
+            axis=axis,
+            position=add(collision.position, to_world(now, center), -1.0),
+            orientation=collision.orientation,
+            linear=add(to_body(now, after.linear), cross(angular, center), -1.0),
+            angular=angular,
+            half_distance=plane.half_distance,
+            off_axis=plane.off_axis,
+            lateral=plane.lateral,
+            closing_spread=spread,
+            offset=plane.offset,
+            leftover=leftover_of(
+                scene,
+                stands=bool(old),
+                strays=plane.off_axis > OFF_AXIS or plane.offset > OFFSET * plane.width,
+                apart=spread > scene.contact_time or (count > 1 and len(new) == 1),
+                speed=speed,
+            ),
+            before_6d=before,
+            after_6d=after,
+            contacts=tuple(contacts),
+            uncertainty=None if drawn is None else drawn.uncertainty,
+        )
+
+    def _solve(
+        self,
+        problems: NDArray[np.float64],
+        answers: NDArray[np.float64],
+        notes: NDArray[np.int64],
+        steps: int = STEPS,
+    ) -> None:
+        """Fill in the answers to problems with as many contacts each."""
+        scene, n = self._scene, (problems.shape[1] - BODY) // CONTACT
+        how = self._law, scene.merge, hardly(scene), steps
+        solvers().bodies(n, problems, *how, answers, notes, *workspace(n))
+
+    def _problem(self, collision: SpatialCollision, axes: Axes) -> NDArray[np.float64]:
+        """The numbers of a collision as the law takes them (see `mechanics.impact.spatial_body`)."""
+        scene, (linear, angular) = self._scene, collision.before
+        numbers = [scene.mass, *six_numbers(tensor_to_world(axes, scene.inertia)), *linear, *angular]
+        for arm, gap in zip(collision.arms, collision.gaps, strict=True):
+            numbers += (*arm, *scene.normal, scene.friction, scene.restitution, 0.0, 0.0, 0.0, gap)
+        return np.array(numbers)
+
+
+def plane_at(scene: Scene, collision: SpatialCollision) -> ImpactPlane:
+    """The impact plane that is nearest to a collision, and what it leaves over."""
+    (linear, angular), count = collision.before, len(collision.contacts.old)
+    stood, struck = list(collision.arms[:count]), mean(list(collision.arms[count:]))
+    edge = edge_of(stood) if count > 1 else None
+    middle = mean(stood) if stood else None
+    return plane_through(scene.normal, angular, linear, middle, struck, edge, ORIGIN, hardly(scene))
+
+
+def outcomes_of(answer: list[float], old: tuple[int, ...], new: tuple[int, ...]) -> list[PointOutcome]:
+    """What an answer of the law says of each contact."""
+    found = []
+    for k, point in enumerate(old + new):
+        a, b, c, u, v, w, state, _ = answer[ANSWER + RESULT * k : ANSWER + RESULT * (k + 1)]
+        found.append(PointOutcome(point, k >= len(old), (a, b, c), (u, v, w), STATES[int(state)]))
+    return found
+
+
+def moving(contact: PointOutcome, velocity: Vector3, normal: Vector3, least: float) -> PointOutcome:
+    """A contact of a body with the mean twist of some draws: what approaches in it has not closed in all of them."""
+    rate, state = dot(normal, velocity), contact.state
+    if rate < -least:
+        state = ContactState.NEARS
+    elif rate > least or state is ContactState.NEARS:
+        state = ContactState.LEAVES
+    return contact._replace(velocity=velocity, state=state)
