@@ -138,7 +138,6 @@ def variations(scene: Scene) -> Iterator[Variation]:
         ("odom.twist", "message", {"poses": False}),
         *[("uncertainty.samples", str(value), {"samples": value}) for value in (0, 64)],
         *[("uncertainty.gap", f"{1e3 * value:g} mm", {"gap_deviation": value}) for value in (0.0, 2e-4, 8e-4)],
-        ("uncertainty.law", "0", {"law_deviation": 0.0}),
         ("law", "total", {"law": "total"}),
     ]
     yield Variation("as shipped", "", scene)
