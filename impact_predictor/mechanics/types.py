@@ -80,6 +80,8 @@ class Flag(IntFlag):
     """The impact is so weak that gravity matters while it lasts (`Validity.gravity_share`)."""
     NOT_CONVERGED = 4096
     """The impulses of an impact in three dimensions still changed when the sweeps ended; the answer is near."""
+    POINT_APPROACHES = 8192
+    """A point that took no part in the impact is about to touch the support, as the body moves after it."""
 
 
 class Validity(NamedTuple):

@@ -6,19 +6,25 @@ from collections.abc import Sequence
 from math import erf, inf, sqrt
 
 from ..mechanics.impact.spatial_body import ANSWER, BODY, CONTACT, RESULT
-from ..mechanics.impact.spatial_path import SLIPS, Given, Scratch
+from ..mechanics.impact.spatial_path import LEAVES, NEARS, SLIPS, STICKS, Given, Scratch
 from ..mechanics.types import Mode
 
 _, STOP, SLIDE, PIVOT_SLIDE, PIVOT, BACK_PIVOT, FLIGHT = (int(mode) for mode in Mode)
 
-OF_MODE = 8
-"""Numbers of each mode in what is told: its probability, how many draws have it, and the sum of their twists."""
+OF_MODE = 2
+"""Numbers of each mode in what is told: its probability, and how many draws have it."""
 
 PLANAR = OF_MODE * len(Mode)
 """Where what is told has mean and variance of the twist in the impact plane; then the covariance of the body's ..."""
 
-LIFTS = PLANAR + 6 + 36
-"""... and then the probability with which each contact lifts, and scratch."""
+LIKELIEST = PLANAR + 6 + 36
+"""... then the likeliest mode that a draw has, and the last of the draws that are told ..."""
+
+LIFTS = LIKELIEST + 2
+"""... then the probability with which each contact lifts, the mean of the answers that are told, and scratch."""
+
+SCRATCH = 15
+"""Numbers of scratch besides one for each draw."""
 
 ROUNDING = 1e-9
 ROOT = sqrt(2.0)
@@ -34,12 +40,14 @@ def tell(n: int, standing: int, problem: Given, answers: Sequence[Given], given:
 
     `given` is the rate in m/s above which a group of contacts leaves; by what part of its speed a contact strays from
     the law; the speed that gravity gives in a contact time; then the body's axes, its mass centre in its frame, and the
-    axis and the normal of the impact plane.
+    axis and the normal of the impact plane. In the mean of the answers that are told, those with the likeliest
+    mode, a contact has closed that has done so in half of them.
     """
     least, stray, slow = given[0], given[1], given[2]
     for k in range(len(told)):
         told[k] = 0.0
-    square, count, spot = 0.0, len(answers), LIFTS + n
+    square, count, size = 0.0, len(answers), ANSWER + RESULT * n
+    whole, spot = LIFTS + n, LIFTS + n + size
     for i in range(n):
         k = BODY + CONTACT * i
         square += problem[k] * problem[k] + problem[k + 1] * problem[k + 1] + problem[k + 2] * problem[k + 2]
@@ -79,8 +87,32 @@ def tell(n: int, standing: int, problem: Given, answers: Sequence[Given], given:
             mode = FLIGHT if old_lifts else BACK_PIVOT
         told[OF_MODE * mode + 1] += 1.0
         for j in range(6):
-            told[OF_MODE * mode + 2 + j] += answer[j]
             told[spot + 9 + j] += answer[j] / count
+        told[spot + SCRATCH + d] = float(mode)
+    best = 0
+    for mode in range(STOP, FLIGHT + 1):
+        if told[OF_MODE * mode + 1] > 0.0 and (best == 0 or told[OF_MODE * mode] > told[OF_MODE * best]):
+            best = mode
+    most = told[OF_MODE * best + 1]
+    for d in range(count):
+        if told[spot + SCRATCH + d] == best:
+            told[LIKELIEST], told[LIKELIEST + 1] = float(best), float(d)
+            for j in range(size):
+                told[whole + j] += answers[d][j] / most
+    for i in range(n):
+        k, at = BODY + CONTACT * i + 3, ANSWER + RESULT * i + 6
+        away, nears, slips = 0.0, 0.0, False
+        for j in range(3):
+            away += problem[k + j] * told[whole + at - 3 + j]
+        for d in range(count):
+            if told[spot + SCRATCH + d] == best:
+                nears += 1.0 if answers[d][at] == NEARS else 0.0
+                slips = slips or answers[d][at] == SLIPS
+        told[whole + at] = SLIPS if slips else STICKS
+        if away > least:
+            told[whole + at] = LEAVES
+        elif nears > 0.5 * most:
+            told[whole + at] = NEARS
     for d in range(-1, count):
         # The mean of all draws, and how each of them differs from it, along the axes of the body and in the plane.
         for j in range(9):

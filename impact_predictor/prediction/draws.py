@@ -16,13 +16,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..mechanics.compiled import door
-from ..mechanics.impact.spatial_body import BODY, CONTACT
+from ..mechanics.impact.spatial import STEPS
+from ..mechanics.impact.spatial_body import ANSWER, BODY, CONTACT, RESULT
 from ..mechanics.types import Mode, Twist
 from . import drawn
-from .drawn import LIFTS, OF_MODE, PLANAR
+from .drawn import LIFTS, LIKELIEST, OF_MODE, PLANAR, SCRATCH
 from .planar import RESTS, hardly
 from .scene import Scene
-from .types import Covariance, Sample, SpatialTwist, Uncertainty, Vector3
+from .types import Covariance, Sample, Uncertainty, Vector3
 from .uncertainty import factor_of, normal_points, product
 from .vectors import Axes, cross
 
@@ -33,15 +34,15 @@ MODES = tuple(Mode)
 
 
 class DrawnImpact(NamedTuple):
-    """What the draws of an impact say, `many` or one.
+    """What the draws of an impact say.
 
-    `mode` is the likeliest of those that a draw has, and `after` the mean twist of the draws with this mode; `lifts`
-    are the probabilities with which each contact lifts.
+    `mode` is the likeliest of those that a draw has, `answer` the mean over the draws with this mode, with the flags of
+    one of them in its `notes`; `lifts` are the probabilities with which each contact lifts.
     """
 
-    many: bool
     mode: Mode
-    after: SpatialTwist
+    answer: list[float]
+    notes: int
     lifts: list[float]
     uncertainty: Uncertainty
 
@@ -59,7 +60,6 @@ class Draws:
         sample: Sample,
         axes: Axes,
         problem: NDArray[np.float64],
-        answer: NDArray[np.float64],
         standing: int,
         rates: list[float],
         gap: float,
@@ -68,9 +68,9 @@ class Draws:
     ) -> DrawnImpact:
         """The draws of an impact.
 
-        `problem` and `answer` are as the law takes and gives them, and the first `standing` of the contacts stand; the
-        `axes` of the sample turn the covariance of its twist; `rates` in m/s are those of the other gaps, whose
-        standard deviation is `gap`; `now` are the body's axes at the touchdown, and `axis` that of the impact plane.
+        `problem` is as the law takes it, and the first `standing` of the contacts stand; the `axes` of the
+        sample turn the covariance of its twist; `rates` in m/s are those of the other gaps, whose standard deviation is
+        `gap`; `now` are the body's axes at the touchdown, and `axis` that of the impact plane.
         """
         scene, n = self._scene, (len(problem) - BODY) // CONTACT
         factor, given = factor_of(sample.twist_covariance)
@@ -78,11 +78,11 @@ class Draws:
         turns = used and any(sample.twist_covariance)
         striking = n - standing if gap > 0.0 and n - standing > 1 else 0
         dimensions = (6 if turns else 0) + (2 if self._coefficients else 0) + striking
-        answers = answer[None]
+        size, count, problems = ANSWER + RESULT * n, 1, problem[None]
         if dimensions:
             points = normal_points(scene.samples, dimensions)
             count = points.shape[1]
-            problems, answers = np.empty((count, len(problem))), np.empty((count, len(answer)))
+            problems = np.empty((count, len(problem)))
             problems[:] = problem
             contacts = problems[:, BODY:].reshape(count, n, CONTACT)
             if turns:
@@ -95,28 +95,25 @@ class Draws:
                 points = points[2:]
             if striking:
                 contacts[:, standing:, 11] = gaps_of(contacts[:, standing:], rates, gap * points.T)
-            self._solve(problems, answers, np.empty(count, np.int64), DRAW_STEPS)
-        told = np.empty(LIFTS + n + 15)
+        answers, notes = np.empty((count, size)), np.empty(count, np.int64)
+        self._solve(problems, answers, notes, DRAW_STEPS if dimensions else STEPS)
+        told = np.empty(LIFTS + n + size + SCRATCH + count)
         frame = *now[0], *now[1], *now[2], *scene.center_of_mass, *axis, *scene.normal
         how = np.array((-RESTS * min(rates), scene.law_deviation, hardly(scene), *frame))
         self._tell(n, standing, problem, answers, how, told)
         numbers = told.tolist()
-        weights, counts = numbers[0:PLANAR:OF_MODE], numbers[1:PLANAR:OF_MODE]
-        mode = max([mode for mode in MODES if counts[mode]], key=weights.__getitem__)
-        o = OF_MODE * mode + 2
-        vx, vy, vz, wx, wy, wz = [part / counts[mode] for part in numbers[o : o + 6]]
         x, y, turn, xx, yy, turning = numbers[PLANAR : PLANAR + 6]
         return DrawnImpact(
-            many=len(answers) > 1,
-            mode=mode,
-            after=SpatialTwist((vx, vy, vz), (wx, wy, wz)),
+            mode=MODES[int(numbers[LIKELIEST])],
+            answer=numbers[LIFTS + n : LIFTS + n + size],
+            notes=int(notes[int(numbers[LIKELIEST + 1])]),
             lifts=numbers[LIFTS : LIFTS + n],
             uncertainty=Uncertainty(
                 given=given,
-                probabilities=tuple(weights),
+                probabilities=tuple(numbers[0:PLANAR:OF_MODE]),
                 mean=Twist(x, y, turn),
                 deviation=Twist(sqrt(xx), sqrt(yy), sqrt(turning)),
-                twist_covariance=tuple(numbers[PLANAR + 6 : LIFTS]) if used else sample.twist_covariance,
+                twist_covariance=tuple(numbers[PLANAR + 6 : LIKELIEST]) if used else sample.twist_covariance,
             ),
         )
 
@@ -125,7 +122,14 @@ class Draws:
 def teller() -> Callable[..., None]:
     """The law code that reads the answers of draws, compiled, where it can be, and loaded."""
     tell = door(make_teller, (drawn,), (drawn.over,))
-    tell(1, 0, np.ones(BODY + CONTACT), np.ones((1, 15)), np.ones(21), np.empty(LIFTS + 16))
+    tell(
+        1,
+        0,
+        np.ones(BODY + CONTACT),
+        np.ones((1, ANSWER + RESULT)),
+        np.ones(21),
+        np.empty(LIFTS + 2 + ANSWER + RESULT + SCRATCH),
+    )
     return tell
 
 

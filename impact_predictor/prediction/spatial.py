@@ -173,6 +173,7 @@ class SpatialModel:
             arms=tuple([to_world(axes, self._arms[i]) for i in points]),
             gaps=tuple([0.0 if i in old or i == end.point else max(0.0, end.gaps[i]) for i in points]),
             rates=tuple([end.rates[i] for i in points]),
+            places=self._arms,
             measured=-total([rates[i] for i in new]) / len(new),
             speed=-end.rates[end.point],
         )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -10,7 +11,8 @@ from numpy.typing import NDArray
 from ..mechanics.impact.solve import number_of
 from ..mechanics.impact.spatial import STATES, STEPS, flags_named, solvers, workspace
 from ..mechanics.impact.spatial_body import ANSWER, BODY, CONTACT, RESULT
-from ..mechanics.types import ContactState
+from ..mechanics.impact.spatial_path import NEARS
+from ..mechanics.types import Flag
 from .impact import OFF_AXIS, OFFSET, leftover_of
 from .planar import (
     ORIGIN,
@@ -32,12 +34,20 @@ if TYPE_CHECKING:
     from .draws import Draws
 
 
+FAR = 1e9
+"""m: the gap of a contact that takes no part."""
+
+MOVES = 1e-3
+"""m/s: slower approaches are none."""
+
+
 class SpatialCollision(NamedTuple):
     """The collision that a sample shows to be ahead, before its impact, in the frame in which the support is given.
 
     `position` in m is that of the mass centre, and `before` its twist; of each of the `points`, those of `contacts`,
     `arms` lead there from the mass centre, `gaps` in m are still open when the first one closes, and `rates`
-    in m/s are those of the gaps. The rest is as in `Collision`.
+    in m/s are those of the gaps. `places` are those of all points of the body from the mass centre, along its axes. The
+    rest is as in `Collision`.
     """
 
     contacts: ActiveContacts
@@ -49,6 +59,7 @@ class SpatialCollision(NamedTuple):
     arms: tuple[Vector3, ...]
     gaps: tuple[float, ...]
     rates: tuple[float, ...]
+    places: Sequence[Vector3]
     measured: float
     speed: float
 
@@ -74,23 +85,21 @@ class SpatialImpactModel:
         before, speed, normal = collision.before, collision.speed, scene.normal
         plane, now, least = plane_at(scene, collision), axes_of(collision.orientation), RESTS * speed
         problem, drawn = self._problem(collision, now), None
-        answer, notes = np.empty(ANSWER + RESULT * len(collision.points)), np.empty(1, np.int64)
-        self._solve(problem[None], answer[None], notes)
-        numbers = answer.tolist()
-        vx, vy, vz, wx, wy, wz, lost = numbers[:ANSWER]
-        after = SpatialTwist((vx, vy, vz), (wx, wy, wz))
-        if self._draws is not None:
+        if self._draws is None:
+            answers, flags = np.empty((1, ANSWER + RESULT * len(collision.points))), np.empty(1, np.int64)
+            self._solve(problem[None], answers, flags)
+            answer, notes = answers[0].tolist(), int(flags[0])
+            contacts = outcomes_of(answer, old, new)
+        else:
             rates = list(collision.rates[count:])
-            drawn = self._draws.drawn(sample, axes, problem, answer, count, rates, deviation, now, plane.axis)
-            after = drawn.after
-        contacts = outcomes_of(numbers, old, new)
-        if drawn is not None:
-            contacts = [one._replace(lift_probability=lifts) for one, lifts in zip(contacts, drawn.lifts, strict=True)]
-            if drawn.many:
-                contacts = [
-                    moving(contact, add(after.linear, cross(after.angular, arm)), normal, least)
-                    for contact, arm in zip(contacts, collision.arms, strict=True)
-                ]
+            drawn = self._draws.drawn(sample, axes, problem, count, rates, deviation, now, plane.axis)
+            answer, notes = self._stopped(problem, drawn.answer, least), drawn.notes
+            contacts = [
+                contact._replace(lift_probability=lifts)
+                for contact, lifts in zip(outcomes_of(answer, old, new), drawn.lifts, strict=True)
+            ]
+        vx, vy, vz, wx, wy, wz, lost = answer[:ANSWER]
+        after = SpatialTwist((vx, vy, vz), (wx, wy, wz))
         stood, struck = contacts[:count], contacts[count:]
         axis, ahead, center, angular = plane.axis, plane.ahead, scene.center_of_mass, to_body(now, after.angular)
         spread = max(collision.gaps[count:]) / speed
@@ -102,7 +111,7 @@ class SpatialImpactModel:
             impulses=(along_plane(stood, ahead, normal), along_plane(struck, ahead, normal)),
             segments=(),
             energy_lost=lost,
-            flags=flags_named(int(notes[0])),
+            flags=flags_named(notes) | self._unmet(collision, after, now),
             unique=True,
             law=scene.law,
             old=old,
@@ -142,6 +151,40 @@ class SpatialImpactModel:
         how = self._law, scene.merge, hardly(scene), steps
         solvers().bodies(n, problems, *how, answers, notes, *workspace(n))
 
+    def _stopped(self, problem: NDArray[np.float64], mean: list[float], least: float) -> list[float]:
+        """A mean answer of draws in which no contact that has closed approaches by more than `least`, in m/s.
+
+        In some of the draws it has not closed: what is left of its approach is stopped plastically.
+        """
+        normal, spots = self._scene.normal, range(ANSWER, len(mean), RESULT)
+        nears = [mean[at + 6] == NEARS for at in spots]
+        approaches = [mean[at + 3] * normal[0] + mean[at + 4] * normal[1] + mean[at + 5] * normal[2] for at in spots]
+        if all(near or rate >= -least for near, rate in zip(nears, approaches, strict=True)):
+            return mean
+        again = problem[None].copy()
+        again[0, 7:BODY] = mean[:6]
+        again[0, BODY + 7 :: CONTACT] = 0.0
+        again[0, BODY + 11 :: CONTACT] = np.where(nears, FAR, 0.0)
+        answers = np.empty((1, len(mean)))
+        self._solve(again, answers, np.empty(1, np.int64))
+        answer: list[float] = answers[0].tolist()
+        answer[6] += mean[6]
+        for at in spots:
+            for j in range(at, at + 3):
+                answer[j] += mean[j]
+        return answer
+
+    def _unmet(self, collision: SpatialCollision, after: SpatialTwist, now: Axes) -> Flag:
+        """The flag of a twist with which a point that took no part closes within a compression after the impact."""
+        scene, normal = self._scene, to_body(now, self._scene.normal)
+        height, rate = dot(collision.position, scene.normal) - scene.height, dot(after.linear, scene.normal)
+        turning = cross(normal, to_body(now, after.angular))
+        for i, place in enumerate(collision.places):
+            speed = -rate - dot(turning, place)
+            if speed > MOVES and i not in collision.points and height + dot(normal, place) < speed * scene.merge:
+                return Flag.POINT_APPROACHES
+        return Flag.NONE
+
     def _problem(self, collision: SpatialCollision, axes: Axes) -> NDArray[np.float64]:
         """The numbers of a collision as the law takes them (see `mechanics.impact.spatial_body`)."""
         scene, (linear, angular) = self._scene, collision.before
@@ -167,13 +210,3 @@ def outcomes_of(answer: list[float], old: tuple[int, ...], new: tuple[int, ...])
         a, b, c, u, v, w, state, _ = answer[ANSWER + RESULT * k : ANSWER + RESULT * (k + 1)]
         found.append(PointOutcome(point, k >= len(old), (a, b, c), (u, v, w), STATES[int(state)]))
     return found
-
-
-def moving(contact: PointOutcome, velocity: Vector3, normal: Vector3, least: float) -> PointOutcome:
-    """A contact of a body with the mean twist of some draws: what approaches in it has not closed in all of them."""
-    rate, state = dot(normal, velocity), contact.state
-    if rate < -least:
-        state = ContactState.NEARS
-    elif rate > least or state is ContactState.NEARS:
-        state = ContactState.LEAVES
-    return contact._replace(velocity=velocity, state=state)

@@ -28,6 +28,7 @@ FLAGS: Final = {
     Flag.THIN_BODY: "so thin a body bends while it strikes and rebounds; rigid theory does not know that",
     Flag.SLOW_IMPACT: "so weak an impact that gravity matters while it lasts; rigid theory leaves gravity out",
     Flag.NOT_CONVERGED: "the impulses in three dimensions still changed when the sweeps ended; the answer is near",
+    Flag.POINT_APPROACHES: "a point that took no part is about to touch the support as the body moves then",
 }
 MARGINS: Final = {
     "friction": ("friction of the contacts", "friction", ""),

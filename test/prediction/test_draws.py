@@ -13,10 +13,11 @@ from scipy.spatial.transform import Rotation
 
 from impact_predictor.mechanics.impact.spatial import Body, ContactPoints, solve_spatial_impacts
 from impact_predictor.mechanics.motion.spatial import SpatialState
-from impact_predictor.mechanics.types import ContactState, Mode
+from impact_predictor.mechanics.types import ContactState, Flag, Mode
 from impact_predictor.prediction.predictor import Predictor
+from impact_predictor.prediction.scene import Scene
 from impact_predictor.prediction.spatial_impact import SpatialImpactModel
-from impact_predictor.prediction.types import Covariance, Touchdown
+from impact_predictor.prediction.types import Covariance, Sample, Touchdown
 
 DRAWN: dict[str, Any] = {"samples": 32, "gap_deviation": 5e-4, "friction_deviation": 0.05, "restitution_deviation": 0.1}
 
@@ -91,12 +92,63 @@ def test_the_corners_of_an_even_edge_lift_as_likely_as_each_other() -> None:
     assert omega > 0.0
 
 
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("deviation", [0.0, 0.02])
+def test_nothing_that_has_closed_approaches_after_what_is_told(seed: int, deviation: float) -> None:
+    """And impulses, twists and contacts belong together."""
+    placed, start = even_edge() if seed == 0 else falling(seed)
+    touchdown = announced(placed, start, spread_by(deviation), samples=32, gap_deviation=5e-3)
+    assert touchdown.uncertainty is not None
+    before, after, scene = touchdown.before_6d, touchdown.after_6d, placed.scene()
+    arms = Rotation.from_quat(touchdown.orientation).apply(np.subtract(scene.points, scene.center_of_mass))
+    struck = np.sum([contact.impulse for contact in touchdown.contacts], axis=0)
+    # The mean twist before the draws that are told is near that of the sample where the twist is uncertain, too.
+    slack = 1e-9 if deviation == 0.0 else 3.0 * deviation
+    assert np.subtract(after.linear, before.linear) == pytest.approx(struck / MASS, abs=slack)
+    for contact in touchdown.contacts:
+        moving = np.add(after.linear, np.cross(after.angular, arms[contact.point]))
+        assert np.array(contact.velocity) == pytest.approx(moving, abs=1e-9)
+        assert np.dot(contact.velocity, scene.normal) > -1e-3 or contact.state is ContactState.NEARS
+    assert not touchdown.flags & Flag.POINT_APPROACHES
+
+
 def test_what_is_told_is_the_mean_over_the_draws_of_the_likeliest_mode() -> None:
     """In all draws of this fall the one corner leaves, so that it is the mean of all of them."""
     placed, start = falling(2)
     touchdown = announced(placed, start, spread_by(1e-3), samples=64, gap_deviation=0.0)
     assert touchdown.uncertainty is not None
     assert touchdown.after == pytest.approx(touchdown.uncertainty.mean, abs=1e-9)
+
+
+@pytest.mark.parametrize(("gap", "approaches"), [(1e-4, True), (2e-3, False)])
+def test_a_point_that_took_no_part_and_is_pressed_into_its_support_is_named(gap: float, approaches: bool) -> None:
+    """The far end of a beam still rises when its near end strikes, which turns it down again."""
+    scene = Scene(
+        mass=1.0,
+        inertia=((0.01, 0.0, 0.0), (0.0, 0.01, 0.0), (0.0, 0.0, 0.01)),
+        friction=0.1,
+        restitution=0.3,
+        points=((0.2, 0.0, 0.0), (-0.2, 0.0, 0.0), (0.0, 0.3, 0.3)),
+    )
+    low, rising, lead = -1.0, 0.5, 1e-3
+    tilt = np.arcsin((gap - (rising - low) * lead) / 0.4)
+    turn = Rotation.from_rotvec([0.0, tilt, 0.0])
+    x, y, z, w = turn.as_quat()
+    sample = Sample(
+        stamp=10**9,
+        frame_id="",
+        child_frame_id="",
+        position=(0.0, 0.0, 0.5 * (gap - (rising + low) * lead)),
+        orientation=(x, y, z, w),
+        linear=tuple(turn.inv().apply([0.0, 0.0, 0.5 * (low + rising)])),
+        angular=tuple(turn.inv().apply([1.0, (rising - low) / 0.4, 0.0])),
+        pose_covariance=(),
+        twist_covariance=(),
+    )
+    touchdown = Predictor(scene).update(sample).touchdown
+    assert touchdown is not None
+    assert touchdown.new == (0,)
+    assert bool(touchdown.flags & Flag.POINT_APPROACHES) is approaches
 
 
 def struck(placed: Somewhere, course: Any, twists: Any, friction: Any, restitution: Any) -> Any:

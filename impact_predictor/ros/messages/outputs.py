@@ -69,6 +69,7 @@ _DOUBTFUL_FLAGS: Final = int(
     | Flag.NO_SOLUTION
     | Flag.INVALID_INPUT
     | Flag.NOT_CONVERGED
+    | Flag.POINT_APPROACHES
 )
 _DOUBTFUL_LEFTOVERS: Final = int(Leftover.OUT_OF_PLANE | Leftover.ONE_CORNER_FIRST | Leftover.TOO_SLOW)
 
