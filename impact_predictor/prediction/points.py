@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import insort
 from collections import deque
 from collections.abc import Mapping
 from math import cos, hypot, sin
@@ -131,7 +132,8 @@ class PointContacts(Contacts):
         return touchdown
 
     def forget(self) -> None:
-        self.settled.extend([pending.score(self.scene) for pending in self._pending])
+        for pending in self._pending:
+            self._settle(pending)
         self._pending.clear()
         self._recent.clear()
         self._told.clear()
@@ -195,17 +197,31 @@ class PointContacts(Contacts):
         for pending in self._pending:
             pending.add(sample, posture)
         while self._pending and self._pending[0].complete:
-            self.settled.append(self._pending.pop(0).score(self.scene))
-        track = self._track
+            self._settle(self._pending.pop(0))
+        track, last = self._track, self._landed
         if track is not None and self._has_landed(track, posture):
             self._track, track.has_landed = None, True
             pending = Pending(track, min(track.stamp, sample.stamp), self._record)
+            if last is not None:
+                pending.joins(last)
             for earlier in self._recent:
                 if earlier[0].stamp > pending.stamp:
                     pending.add(*earlier)
             pending.add(sample, posture)
-            self._pending.append(pending)
-            self._landed = pending
+            self._wait(pending)
+            self._landed = last = pending
+        least = max(hardly(self.scene), self.scatter.rate)
+        if last is not None and any(posture.rates[i] > least for i in last.track.last.new):
+            last.landed.is_over = True
+
+    def _wait(self, pending: Pending) -> None:
+        insort(self._pending, pending, key=lambda one: one.stamp)
+
+    def _settle(self, pending: Pending) -> None:
+        """Hand out the score of a touchdown, unless it has another one."""
+        if pending.counts:
+            pending.landed.is_scored = True
+            self.settled.append(pending.score(self.scene))
 
     @property
     def _record(self) -> PointRecord | None:
@@ -233,7 +249,7 @@ class PointContacts(Contacts):
             pending.told = last
             for frame in recorded.frames[BEFORE : BEFORE + AFTER]:
                 pending.add(frame.sample, frame.posture)
-            self._pending.append(pending)
+            self._wait(pending)
         pending.recorded, recorded.is_matched = recorded, True
 
     def _has_landed(self, track: Track, posture: Posture) -> bool:
@@ -244,7 +260,8 @@ class PointContacts(Contacts):
             gap -= total([gaps[i] for i in old]) / len(old)
         approach = -total([rates[i] for i in new]) / len(new)
         near = max(self.scene.tolerance, self.scatter.gap)
-        return gap <= near and approach < SETTLED * track.approach
+        # What still rose when it was announced comes down first.
+        return gap <= near and approach < SETTLED * track.approach and track.approach > 0.0
 
 
 def collision_of(

@@ -184,6 +184,19 @@ class PointRecord(NamedTuple):
     touchdowns: TouchdownRecorder
 
 
+@dataclass
+class Landed:
+    """A touchdown that has happened, however often it seemed to until its points rose again.
+
+    Of these `times` the ones that a record shows are scored, without any the last one; where there is no record, the
+    first one. It `is_over` once one of the points has risen.
+    """
+
+    times: int = 1
+    is_over: bool = False
+    is_scored: bool = False
+
+
 class Pending:
     """A touchdown that has happened and waits for the samples that measure it; `stamp` in ns.
 
@@ -200,6 +213,7 @@ class Pending:
         """What the record shows of it ..."""
         self.told: Track | None = None
         """... and what was predicted until then."""
+        self.landed, self._time = Landed(), 1
         self._record, self._leftover = record, leftover
         self._measured: list[tuple[int, Vector3, Vector3]] = []
 
@@ -215,6 +229,19 @@ class Pending:
     def shares(self, track: Track) -> bool:
         """Whether it has a new point of other predictions."""
         return not set(self.track.last.new).isdisjoint(track.last.new)
+
+    def joins(self, other: Pending) -> None:
+        """Count as the same touchdown as the one before, if the points came down with that and none has risen since."""
+        if not other.landed.is_over and set(self.track.last.new) <= set(other.track.last.new):
+            self.landed = other.landed
+            self.landed.times += 1
+            self._time = self.landed.times
+
+    @property
+    def counts(self) -> bool:
+        """Whether it is scored, of all times that its touchdown seemed to happen."""
+        wanted = 1 if self._record is None else self.landed.times
+        return self.recorded is not None or (self._time == wanted and not self.landed.is_scored)
 
     @property
     def _is_measured(self) -> bool:

@@ -16,7 +16,7 @@ from ..prediction.types import Status
 from ..stamps import NANOSECONDS
 from .skill import skill_as_json
 from .summary import SpanErrors, errors_ahead, errors_of, spread_of, to_json, velocity_errors_ahead
-from .touchdowns import FIELDS, PARTS, row_as_json, row_of
+from .touchdowns import FIELDS, PARTS, row_as_json, rows_of
 
 if TYPE_CHECKING:
     from pyarrow.parquet import ParquetWriter
@@ -34,7 +34,7 @@ _SHORT: Final = {"from": "from", "to": "to", "count": "count", "median": "p50", 
 
 def as_json(result: Result) -> dict[str, Any]:
     """Everything that a replay found; what a bag does not have, its JSON has not."""
-    rows = [row_of(*settled) for settled in result.settled]
+    rows = rows_of(result.settled)
     errors, times = errors_of(rows), times_ahead(result)
     ahead = [_span(one) for one in velocity_errors_ahead(result.settled)]
     begin, end = result.extent or (None, None)

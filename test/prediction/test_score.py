@@ -329,3 +329,25 @@ def test_the_memory_of_a_touchdown_that_never_comes_is_bounded() -> None:
     score = answers[-1].score
     assert score is not None
     assert 0 < len(score.history) <= LONGEST
+
+
+@pytest.mark.parametrize("points", [BLOCK, ((BACK, 0.0, LOW), (FRONT, 0.0, LOW))])
+def test_a_touchdown_that_takes_some_samples_is_scored_once(points: tuple[Vector3, ...]) -> None:
+    predictor = Predictor(SCENE._replace(points=points))
+    samples = [falling(k * PERIOD) for k in range(BEFORE_SAMPLES)]
+    for k, part in enumerate((0.4, 0.15, *[0.0] * 20)):
+        still = Twist(part * BEFORE.vx, part * BEFORE.vy, part * BEFORE.omega)
+        samples.append(block((BEFORE_SAMPLES + k) * PERIOD, 0.0, still))
+    scores = [score for score in (predictor.update(sample).score for sample in samples) if score is not None]
+    assert [score.touchdown.new for score in [*scores, *predictor.finish()]] == [(2, 3) if len(points) > 2 else (1,)]
+
+
+@pytest.mark.parametrize("rise", [0.0, 0.2])
+def test_points_that_rose_in_between_come_down_anew(rise: float) -> None:
+    predictor = Predictor(SCENE)
+    samples = [falling(k * PERIOD) for k in range(BEFORE_SAMPLES)]
+    for k, part in enumerate((0.0, -rise, -rise, 0.5, 0.0, *[0.0] * 20)):
+        twist = Twist(part * BEFORE.vx, part * BEFORE.vy, part * BEFORE.omega)
+        samples.append(block((BEFORE_SAMPLES + k) * PERIOD, 0.0, twist))
+    scores = [score for score in (predictor.update(sample).score for sample in samples) if score is not None]
+    assert len([*scores, *predictor.finish()]) == (2 if rise else 1)

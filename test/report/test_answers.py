@@ -53,6 +53,13 @@ def test_the_json_of_a_replay_has_the_promised_keys_and_no_nan() -> None:
     }
 
 
+def test_the_touchdowns_of_the_json_are_in_the_order_of_their_stamps() -> None:
+    late, early = SCORE._replace(stamp=2_000), SCORE._replace(stamp=1_000)  # what other points did is known later
+    settled = (Settled("cube", late, 1e-4), Settled("cube", early, 1e-4))
+    rows = as_json(Result("a.mcap", 4, 0.001, settled, {Status.ACCEPTED: 4}, {}, (), "", ""))["touchdowns"]
+    assert [row["stamp"] for row in rows] == [1_000, 2_000]
+
+
 def test_the_json_of_several_bodies_has_their_inputs_and_how_each_compares_with_the_truth() -> None:
     truth = Truth(4, 1, 2, 3, 0.75, 0.01, None, 2, 1.0, 1)
     result = Result(
