@@ -251,6 +251,12 @@ def test_a_point_beside_those_that_stand_strikes_at_once_where_it_is_on_the_supp
     assert found.point in (4, 6)
 
 
+def test_of_several_points_on_the_support_the_fastest_strikes() -> None:
+    level = SpatialState((0.0, 0.0, 0.5 * EDGE), FLAT, (0.0, 0.0, 0.0), (0.5, 1.0, 0.0))
+    found = fall(level, ALIKE, CUBE)
+    assert (found.time, CUBE[found.point]) == (0.0, (0.5 * EDGE, -0.5 * EDGE, -0.5 * EDGE))
+
+
 def test_a_point_below_the_support_that_rises_and_falls_back_comes_to_rest_and_the_body_goes_on() -> None:
     state = SpatialState((0.0, 0.0, 0.045), FLAT, (0.0, 0.0, 0.1), (0.0, 0.5, 0.0))
     found = fall(state, ALIKE, CUBE, horizon=1.0)
