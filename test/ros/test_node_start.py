@@ -39,7 +39,7 @@ PATIENCE = 60.0
 def test_a_signal_ends_the_node_with_status_0_whenever_it_comes_and_leaves_nothing_behind(number, executor, scene):
     # Alone, so that what it shares with the processes of its ROS domain ends with it.
     alone = ros_environment()
-    for moment in (0.0, 0.1, 0.2, 0.3, 0.5, 1.2):
+    for moment in (0.0, 0.1, 0.3, 1.2):
         arguments = ("--ros-args", "--params-file", CONFIG / f"{scene}.yaml", "-p", f"executor:={executor}")
         node = subprocess.Popen([*NODE, *arguments], stdout=PIPE, stderr=PIPE, text=True, env=alone)
         shared = send(node, number, moment)
