@@ -228,9 +228,9 @@ def landed(at: float, foot: str = "LF", body: str = "robot", **changes: object) 
     stamp = round(at * 1e9)
     landing = LANDING._replace(
         foot=foot, stamp=stamp, late=None, confirmed=None, history=HISTORY, speed=0.123, impact=TOUCHDOWN
-    )
-    score = LANDED._replace(stamp=stamp, touchdown=TOUCHDOWN, landing=landing._replace(**changes))  # type: ignore[arg-type]
-    return Settled(body, score, None)
+    )._replace(**changes)  # type: ignore[arg-type]
+    announced = landing.history[0][0] if landing.history else 0.0
+    return Settled(body, LANDED._replace(stamp=stamp, announced=announced, touchdown=TOUCHDOWN, landing=landing), None)
 
 
 KNOWN = {"late": -0.0123, "confirmed": False}
