@@ -4,8 +4,9 @@
 
 Each run goes over the whole record; of each sample the fastest run counts, so that other programs disturb little. The
 messages are decoded as they come, as in the node, but only the predictor is timed. What a part of it costs is what is
-saved where a recording of its answers answers in its place. On the deck the cost of its tracker (`Deck.at`, at the
-stamp of the body) is part of the sample's; what a message of the deck costs is told apart.
+saved where a recording of its answers answers in its place; what one impact costs is told by `bench_spatial.py`. On the
+deck the cost of its tracker (`Deck.at`, at the stamp of the body) is part of the sample's; what a message of the deck
+costs is told apart.
 """
 
 from __future__ import annotations
@@ -154,7 +155,10 @@ def main() -> int:
     for part in PARTS:
         parts.add_row(part.name, f"{np.mean(whole - fastest(scene, record, runs, part)):.1f}")
     parts.add_row("all else", f"{np.mean(fastest(scene, record, runs, *PARTS)):.1f}")
-    Console(width=120).print(by_kind("as shipped", whole, kinds), parts, deck_table(runs))
+    certain = scene._replace(samples=0)
+    without = by_kind("without draws", fastest(certain, record, runs), run(certain, record)[1])
+    shipped = by_kind(f"as shipped, with {scene.samples} draws", whole, kinds)
+    Console(width=120).print(shipped, without, parts, deck_table(runs))
     return 0
 
 

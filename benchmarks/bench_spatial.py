@@ -3,7 +3,8 @@
     python benchmarks/bench_spatial.py
 
 Bodies of random twists strike a floor with the corners of a regular polygon. Prints medians in microseconds: of the law
-as the predictor calls it, compiled (where numba is) and as plain Python, and of a call of `solve_spatial_impact`.
+as the predictor calls it, compiled (where numba is) and as plain Python, of 16 draws at once, and of a call of
+`solve_spatial_impact`. What a whole sample costs, with draws and without, is told by `bench_predictor.py`.
 """
 
 from __future__ import annotations
@@ -20,11 +21,13 @@ from rich.table import Table
 from impact_predictor import Body, ContactPoints, solve_spatial_impact
 from impact_predictor.mechanics.compiled import on_lists
 from impact_predictor.mechanics.impact.spatial import STEPS, make_bodies, solvers, workspace
-from impact_predictor.mechanics.impact.spatial_body import ANSWER, RESULT
+from impact_predictor.mechanics.impact.spatial_body import ANSWER, BODY, CONTACT, RESULT
+from impact_predictor.prediction.draws import DRAW_STEPS
 
 TURNS, BODIES = 15, 64
 MASS, MOMENTS, FRICTION, RESTITUTION = 2.0, (0.03, 0.04, 0.05), 0.4, 0.3
 MERGE, THRESHOLD = 1.5e-3, 0.05
+DRAWS, DEVIATION = 16, 5e-4
 
 
 def corners(n: int) -> NDArray[np.float64]:
@@ -53,6 +56,16 @@ def law_of(n: int, law: Callable[..., None]) -> Callable[[], object]:
     return lambda: law(n, given, False, MERGE, THRESHOLD, STEPS, answers, notes, *work)
 
 
+def draws_of(n: int) -> Callable[[], object]:
+    """The compiled law over draws of all bodies, which differ in what contacts are still open, as `law_of`."""
+    law, source = solvers().bodies, np.random.default_rng(2)
+    drawn = np.repeat(problems(n), DRAWS, axis=0)
+    gaps = np.abs(source.normal(size=(len(drawn), n)) * DEVIATION)
+    drawn[:, BODY:].reshape(-1, n, CONTACT)[:, :, 11] = gaps - gaps.min(axis=1)[:, None]
+    answers, notes, work = np.zeros((len(drawn), ANSWER + RESULT * n)), np.zeros(len(drawn), np.int64), workspace(n)
+    return lambda: law(n, drawn, False, MERGE, THRESHOLD, DRAW_STEPS, answers, notes, *work)
+
+
 def calls_of(n: int) -> Callable[[], object]:
     """A call for each body, as a function without arguments."""
     body, points, all_of = Body(MASS, MOMENTS), ContactPoints(corners(n), FRICTION, RESTITUTION), twists()
@@ -63,6 +76,7 @@ def main() -> None:
     """Time all of them in turns and print the table."""
     laws = {"law": solvers().bodies, "law, plain Python": on_lists(make_bodies(""))}
     functions = {(name, n): law_of(n, law) for n in (1, 2, 4, 8) for name, law in laws.items()}
+    functions |= {(f"law, {DRAWS} draws", n): draws_of(n) for n in (1, 2, 4, 8)}
     functions |= {("solve_spatial_impact", n): calls_of(n) for n in (1, 2, 4, 8)}
     times: dict[tuple[str, int], list[float]] = {key: [] for key in functions}
     for _ in range(TURNS):
@@ -71,7 +85,7 @@ def main() -> None:
             function()
             times[key].append((perf_counter_ns() - start) / BODIES / 1e3)
     table = Table("us per impact, by contacts", "1", "2", "4", "8")
-    for name in (*laws, "solve_spatial_impact"):
+    for name in (*laws, f"law, {DRAWS} draws", "solve_spatial_impact"):
         table.add_row(name, *(f"{statistics.median(times[name, n]):.1f}" for n in (1, 2, 4, 8)))
     Console().print(table)
 
