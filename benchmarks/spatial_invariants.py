@@ -32,15 +32,16 @@ SURE = set(LIMITS)
 
 LIMITS |= {
     "approach": SETTLED,
-    "states": SETTLED,
+    "states": 10.0 * SETTLED,
     "turned": 1e-3,
     "mirrored": 1e-12,
     "reordered": 1e-3,
     "units": 1e-12,
 }
 """Roundings of sums of some tens of terms where every digit counts; 1e-5 of the speeds where the iterations of the law
-end and where it calls a contact at rest. In each step one contact is solved after the other, and a rounding decides
-whether a compression ends in it or in the next: so their order and the axes may count as much as the steps do."""
+end, and 1e-4 where it calls a contact at rest. In each step one contact is solved after the other, and a rounding
+decides whether a compression ends in it or in the next: so their order and the axes may count as much as the steps
+do."""
 
 UNITS = 2.0**20, 2.0**-13, 2.0**7
 """Units of mass, length and time: powers of two, which change no digit."""

@@ -27,7 +27,7 @@ point: the stance of a body that turns about it, told from a body that only graz
 NEARER = 0.5
 """... of which noise may hide up to this part: there a point is as near to rest as to the fastest one."""
 
-RESTS = 1e-5
+RESTS = 3e-4
 """A group of contacts holds that leaves more slowly than this part of the approach."""
 
 ROUNDING = 1e-12

@@ -6,8 +6,8 @@ impulses go like velocities. The Delassus matrix is W = A A^T, so that impulses 
 velocities are start + A v. A rigid body has 6 such coordinates of motion, a mechanism up to 3 n.
 
 `system` is (rows, start, friction, restitution, gaps): A row by row, the number of its columns a multiple of 6; the
-velocities before the impact; numbers of each contact. `blocks` (6 n) are the 3 x 3 blocks of W on its diagonal, as aa,
-bb, zz, ab, az, bz.
+velocities before the impact; numbers of each contact. `blocks` (`BLOCK` n) has zz, aa, bb, ab, az, bz of the 3 x 3
+blocks of W on its diagonal; aa, bb, ab of the inverse of their tangential part, and one over its largest eigenvalue.
 `springs` is (softness, bias, blocks, capped), as `sweep` takes them.
 
 The path law: struck contacts are springs of one stiffness along a pseudo-time, with energetic restitution (Stronge); a
@@ -40,7 +40,7 @@ SLIDING = 1.0 - 1e-9
 PRESSED = 0.1
 """A contact that answers to a push by less than this part, because its own friction presses it, is swept without."""
 
-TOLERANCE = 1e-3
+TOLERANCE = 1e-2
 """Of the sweeps, relative, for one step to a quarter; it falls with their cube, as the error of a step does."""
 
 SWEEPS = 60
@@ -58,12 +58,18 @@ UNBLENDED = 0.999
 FAR = 1e9
 """The distance, in speeds, of a contact that is open while the others strike."""
 
-STATE_ROUNDING = 1e-5
-"""A contact leaves, or slips, faster than this part of the fastest contact before the impact."""
+STATE_ROUNDING = 1e-4
+"""A contact leaves, or slips, faster than this part of the fastest contact before the impact: sweeps err by less ..."""
+
+APPROACHING = 1e-5
+"""... and one that approaches faster than this part has not been stopped."""
 
 LEAVES, SLIPS, STICKS, NEARS = 0, 1, 2, 3
 
-WORK = 17
+BLOCK = 10
+"""Numbers of a contact's block."""
+
+WORK = 21
 """Numbers for each contact that `solve` works with, besides as many as the motion has."""
 
 NOT_CONVERGED, BLENDED = 1, 2
@@ -112,7 +118,8 @@ def sweep(
         for k in range(n):
             # Forth and back, so that the order of the contacts matters less.
             i = k if count % 2 == 0 else n - 1 - k
-            soft, zz = softness[i], blocks[6 * i + 2]
+            block = BLOCK * i
+            soft, zz = softness[i], blocks[block]
             if soft < 0.0 or zz + soft <= 0.0:
                 continue
             a, b, z = 3 * i, 3 * i + 1, 3 * i + 2
@@ -132,13 +139,19 @@ def sweep(
                 ca += rows[o + 3] * v3 + rows[o + 4] * v4 + rows[o + 5] * v5
                 cb += rows[q] * v0 + rows[q + 1] * v1 + rows[q + 2] * v2
                 cb += rows[q + 3] * v3 + rows[q + 4] * v4 + rows[q + 5] * v5
-            aa, bb, ab = blocks[6 * i], blocks[6 * i + 1], blocks[6 * i + 3]
-            az, bz = blocks[6 * i + 4], blocks[6 * i + 5]
+            aa, bb, ab, az, bz = (
+                blocks[block + 1],
+                blocks[block + 2],
+                blocks[block + 3],
+                blocks[block + 4],
+                blocks[block + 5],
+            )
             # While the contact slides its friction grows with the normal impulse: both change at once.
             ua = ub = 0.0
             size = sqrt(oldx * oldx + oldy * oldy)
             if size > 0.0 and size >= SLIDING * most_drag * press:
-                ua, ub = most_drag * oldx / size, most_drag * oldy / size
+                part = most_drag / size
+                ua, ub = part * oldx, part * oldy
                 both = zz + az * ua + bz * ub
                 if both >= PRESSED * zz:
                     zz = both
@@ -154,26 +167,17 @@ def sweep(
                 x, y = nowx, nowy
                 ca += (az + ua * aa + ub * ab) * step
                 cb += (bz + ua * ab + ub * bb) * step
-                half = 0.5 * (aa + bb)
-                det = aa * bb - ab * ab
-                sx, sy = x, y
-                if det > SINGULAR * half * half:
-                    sx -= (bb * ca - ab * cb) / det
-                    sy -= (aa * cb - ab * ca) / det
-                elif half > 0.0:
-                    # One direction alone moves: the inverse on it.
-                    sx -= (aa * ca + ab * cb) / (4.0 * half * half)
-                    sy -= (ab * ca + bb * cb) / (4.0 * half * half)
+                sx = x - blocks[block + 6] * ca - blocks[block + 8] * cb
+                sy = y - blocks[block + 8] * ca - blocks[block + 7] * cb
                 if sx * sx + sy * sy <= limit * limit:
                     x, y = sx, sy
-                elif half > 0.0:
-                    rest = 0.5 * (aa - bb)
-                    w = half + sqrt(rest * rest + ab * ab)
-                    x -= (ca + middle * before[a]) / w
-                    y -= (cb + middle * before[b]) / w
-                    size = sqrt(x * x + y * y)
-                    if size > limit:
-                        x, y = x * limit / size, y * limit / size
+                else:
+                    x -= blocks[block + 9] * (ca + middle * before[a])
+                    y -= blocks[block + 9] * (cb + middle * before[b])
+                    size = x * x + y * y
+                    if size > limit * limit:
+                        part = limit / sqrt(size)
+                        x, y = part * x, part * y
             moved = step * step * zz * zz + (x - nowx) * (x - nowx) * aa * aa + (y - nowy) * (y - nowy) * bb * bb
             change = moved if moved > change else change
             p[a], p[b], p[z] = x, y, new
@@ -202,6 +206,24 @@ def velocities(system: System, v: Given, c: Scratch) -> None:
             speed += rows[o] * v[k] + rows[o + 1] * v[k + 1] + rows[o + 2] * v[k + 2]
             speed += rows[o + 3] * v[k + 3] + rows[o + 4] * v[k + 4] + rows[o + 5] * v[k + 5]
         c[j] = speed
+
+
+def measure(at: int, r: int, rows: Given, blocks: Scratch, block: int) -> None:
+    """Fill in the block of the contact whose rows of r numbers begin at a place."""
+    aa = bb = zz = ab = az = bz = 0.0
+    for k in range(at, at + r):
+        a, b, z = rows[k], rows[k + r], rows[k + 2 * r]
+        aa, bb, zz, ab, az, bz = aa + a * a, bb + b * b, zz + z * z, ab + a * b, az + a * z, bz + b * z
+    blocks[block], blocks[block + 1], blocks[block + 2], blocks[block + 3] = zz, aa, bb, ab
+    blocks[block + 4], blocks[block + 5] = az, bz
+    half, det, rest = 0.5 * (aa + bb), aa * bb - ab * ab, 0.5 * (aa - bb)
+    if det > SINGULAR * half * half:
+        blocks[block + 6], blocks[block + 7], blocks[block + 8] = bb / det, aa / det, -ab / det
+    else:
+        # One direction alone moves, or none: the inverse on it.
+        part = 0.25 / (half * half) if half > 0.0 else 0.0
+        blocks[block + 6], blocks[block + 7], blocks[block + 8] = part * aa, part * bb, part * ab
+    blocks[block + 9] = 1.0 / (half + sqrt(rest * rest + ab * ab)) if half > 0.0 else 0.0
 
 
 def push(system: System, p: Given, v: Scratch) -> None:
@@ -259,7 +281,7 @@ def follow(
         for i in range(n):
             if phase[i] == LOADING or phase[i] == UNLOADING:
                 e = 1.0 if phase[i] == LOADING else max(restitution[i], HARDEST)
-                stiffest = max(stiffest, blocks[6 * i + 2] / (e * e))
+                stiffest = max(stiffest, blocks[BLOCK * i] / (e * e))
         if stiffest == 0.0:
             return 0
         h = 0.5 * pi / (steps * sqrt(stiffest))
@@ -298,7 +320,7 @@ def follow(
                 force = depth[i] - 0.25 * h * (before[z] + c[z])
                 if capped[i] == 1 and before[z] < -slow and 0.0 < p[z] < h * force:
                     # Without the cap it would leave; of two at one place the cap leaves one without impulse.
-                    leaves = c[z] + blocks[6 * i + 2] * (h * force - p[z])
+                    leaves = c[z] + blocks[BLOCK * i] * (h * force - p[z])
                     part = min(part, before[z] / (before[z] - max(leaves, 0.0)))
             if part > NEARLY:
                 break
@@ -358,7 +380,7 @@ def follow(
             if phase[i] == UNLOADING or (phase[i] == LOADING and depth[i] > 0.0):
                 struck += 1
             elif phase[i] == LOADING and c[z] < 0.0:
-                struck += 1 if elapsed * sqrt(blocks[6 * i + 2]) < LATEST * 0.5 * pi else 0
+                struck += 1 if elapsed * sqrt(blocks[BLOCK * i]) < LATEST * 0.5 * pi else 0
     return 0
 
 
@@ -416,20 +438,19 @@ def solve(
     m = 3 * n
     rows, start, _, restitution, gaps = system
     r = len(v)
-    before, p, blocks, other = work[0:m], work[m : 2 * m], work[2 * m : 4 * m], work[4 * m : 4 * m + r]
-    o = 4 * m + r
+    before, p, blocks, other = (
+        work[0:m],
+        work[m : 2 * m],
+        work[2 * m : 2 * m + BLOCK * n],
+        work[WORK * n : WORK * n + r],
+    )
+    o = 2 * m + BLOCK * n
     depth, deepest, distances = work[o : o + n], work[o + n : o + 2 * n], work[o + 2 * n : o + m]
     softness, bias = work[o + m : o + m + n], work[o + m + n : o + m + 2 * n]
     phase, capped = marks[0:n], marks[n : 2 * n]
     springs = (softness, bias, blocks, capped)
     for i in range(n):
-        for k in range(6):
-            one = 3 * i + (k if k < 3 else k // 5)
-            two = 3 * i + (k if k < 3 else 1 if k == 3 else 2)
-            product = 0.0
-            for j in range(r):
-                product += rows[one * r + j] * rows[two * r + j]
-            blocks[6 * i + k] = product
+        measure(3 * i * r, r, rows, blocks, BLOCK * i)
     scale = 0.0
     for j in range(m):
         c[j] = start[j]
@@ -442,7 +463,7 @@ def solve(
         # A compression lasts `merge`, a quarter of an oscillation in the pseudo-time.
         distances[i] = 0.0
         if gaps[i] > 0.0:
-            w = blocks[6 * i + 2]
+            w = blocks[BLOCK * i]
             distances[i] = gaps[i] / merge * 0.5 * pi / sqrt(w) if merge > 0.0 and w > 0.0 else FAR * scale
             if distances[i] <= ROUNDING * scale:
                 # Rounding alone does not decide whether a slow contact is struck.
@@ -483,7 +504,7 @@ def solve(
             marks[i] = LEAVES
         else:
             marks[i] = SLIPS if c[a] * c[a] + c[a + 1] * c[a + 1] > zero * zero else STICKS
-            if c[a + 2] < -zero:
+            if c[a + 2] < -APPROACHING * scale:
                 flags |= NOT_CONVERGED
     return flags
 
