@@ -18,12 +18,13 @@ from impact_predictor.testing.plugin import TOLERANCES as OPTIONS
 TOLERANCES = Tolerances(
     error=0.3, median_error=0.2, time_error=0.01, mode_accuracy=0.9, missed=1, false=1, touchdowns=Range(1)
 )
+HISTORY = ((0.055, 0.5), (0.004, 0.25))
 RIGHT = Score(
-    23_410_000_000, TOUCHDOWN, Twist(0.5, 0.125, -2.0), 0.25, True, Leftover.NONE, ((0.055, 0.5), (0.004, 0.25))
+    23_410_000_000, TOUCHDOWN, Twist(0.5, 0.125, -2.0), 0.25, True, Leftover.NONE, HISTORY, announced=HISTORY[0][0]
 )
 WRONG = RIGHT._replace(stamp=24_000_000_000, relative_error=0.345)
 UNSCORED = RIGHT._replace(stamp=25_000_000_000, scored=False, leftover=Leftover.OUT_OF_PLANE | Leftover.TOO_SHORT)
-HISTORY = ((0.2, 0.004), (0.06, 0.012), (0.021, -0.0125), (0.004, -0.001))
+LANDINGS = ((0.2, 0.004), (0.06, 0.012), (0.021, -0.0125), (0.004, -0.001))
 LANDED = Score(
     26_000_000_000,
     TOUCHDOWN,
@@ -32,7 +33,7 @@ LANDED = Score(
     False,
     Leftover.DRIVEN,
     (),
-    Landing("LF", 26_000_000_000, None, None, HISTORY, 0.25),
+    Landing("LF", 26_000_000_000, None, None, LANDINGS, 0.25),
 )
 
 
