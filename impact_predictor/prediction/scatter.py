@@ -14,7 +14,10 @@ SLACK = 3.0
 """What is less than so many standard deviations is not told from none."""
 
 ENOUGH = 100
-"""Samples, or gaps of standing points, from which on their scatter is known."""
+"""Samples that tell their scatter, and gaps of standing points from which on theirs is known."""
+
+OFTEN = 10
+"""After so many samples what they tell is told anew, by as many as there are until `ENOUGH` were taken."""
 
 OF_MEDIAN = 1.4826
 """Standard deviation of normal noise, by the median of its amounts."""
@@ -62,9 +65,10 @@ class Scatter:
         step, share = (stamp - middle) / NANOSECONDS, (middle - first) / (stamp - first)
         self._steps.append(abs(gaps[i] - between.gaps[i] - 0.5 * step * (rates[i] + between.rates[i])))
         self._middles.append(abs(between.rates[i] - before.rates[i] - share * (rates[i] - before.rates[i])))
-        if self._taken % ENOUGH == 0:
-            self.noise = SLACK * OF_MEDIAN / OF_STEP * sorted(self._steps)[ENOUGH // 2]
-            self.rate = SLACK * OF_MEDIAN / OF_MIDDLE * sorted(self._middles)[ENOUGH // 2]
+        if self._taken % OFTEN == 0:
+            half = len(self._steps) // 2
+            self.noise = SLACK * OF_MEDIAN / OF_STEP * sorted(self._steps)[half]
+            self.rate = SLACK * OF_MEDIAN / OF_MIDDLE * sorted(self._middles)[half]
             self.gap = max(self.noise, SLACK * (self.deviation or 0.0))
 
     def forget(self) -> None:
