@@ -1,6 +1,7 @@
 """Every touchdown of recorded cube tosses against predictions.mcap, in three dimensions, without the program itself.
 
     python benchmarks/check_touchdowns.py BAG PREDICTIONS [--half even|odd|all]
+    python benchmarks/check_touchdowns.py BAG PREDICTIONS --lead OTHER_PREDICTIONS
 
 Reads the odometry and the corners of the bag, and post_impact of the predictions: stamp = touchdown, pose there, twist
 right after, log time = stamp of the sample that caused it. Impacts are found from the heights of the corners alone. For
@@ -16,13 +17,15 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from rich.console import Console
+from rich.table import Table
 from rosbags.highlevel import AnyReader
 from rosbags.typesys import Stores, get_typestore
 from scipy.spatial.transform import Rotation
@@ -38,6 +41,9 @@ SLOWEST, CLEAR = 0.10, 0.2
 TOLERANCE, TOGETHER, LIFT = 0.0035, 0.005, 0.0005
 PAUSE = 250_000_000
 NEAR = 1.2
+EARLIEST = 8
+"""Frames ahead, 54 ms, up to which errors are told by lead time."""
+
 KINDS = ("flight>corner", "flight>edge", "corner>corner", "corner>edge+", "edge>corner", "edge>face")
 
 
@@ -236,47 +242,97 @@ def kind_of(old: list[int], new: list[int]) -> str:
     return KINDS[2 * min(len(old), 2) + (len(new) > 1)]
 
 
-def rows_of(motion: Track, told: dict[int, Told], seen: set[tuple[float, ...]]) -> list[Row]:
-    """What became of each clear touchdown of a motion that was not `seen` before."""
-    gaps, impacts, rows = motion.gaps, impacts_of(motion.gaps), []
-    rates = np.diff(gaps, axis=0) / DT
-    linear = np.diff(motion.positions, axis=0) / DT
-    turns = np.einsum("tij,tkj->tik", motion.rotations[1:], motion.rotations[:-1])
-    angular = Rotation.from_matrix(turns).as_rotvec() / DT
+def clear_of(motion: Track, seen: set[tuple[float, ...]]) -> Iterator[tuple[Impact, bool]]:
+    """The clear impacts of a motion that were not `seen` before, and whether each is isolated."""
+    gaps, impacts = motion.gaps, impacts_of(motion.gaps)
     times = [-9.0, *(impact.time for impact in impacts), 1e9]
-    for j, (time, k, new, approach) in enumerate(impacts):
+    for j, impact in enumerate(impacts):
+        k = impact.frame
         key = tuple(np.round(np.sort(gaps[k - 1 : k + 2].ravel()), 6))
-        if k < 2 or k + 5 > len(gaps) or approach < CLEAR or key in seen:
+        if k < 2 or k + 5 > len(gaps) or impact.approach < CLEAR or key in seen:
             continue
         seen.add(key)
+        yield impact, times[j + 2] > k + 3 and times[j] < k - 1
+
+
+def announced(motion: Track, told: dict[int, Told], impact: Impact, earlier: int = 0) -> Told | None:
+    """What was told of an impact so many frames before the last sample before it; None where it was not."""
+    k = impact.frame
+    state = told.get(int(motion.stamps[k - earlier])) if k >= earlier else None
+    near = state is not None and abs((state.stamp - motion.stamps[0]) * 1e-9 / DT - impact.time) < NEAR
+    return state if near else None
+
+
+def missed(motion: Track, state: Told, k: int) -> tuple[float, Reals] | None:
+    """The error of a told state after an impact after the frame k, and how far the corners rise by it; None if late."""
+    start = (state.stamp - motion.stamps[0]) * 1e-9 - k * DT
+    if start >= 1.9 * DT:
+        return None
+    first, second, third = goes_on(state, motion.corners, start, [max(start + 1e-6, DT), 2.0 * DT, 3.0 * DT])
+    spin = Rotation.from_matrix(third[1] @ second[1].T).as_rotvec() / DT
+    turn = motion.rotations[k + 3] @ motion.rotations[k + 2].T
+    wrong = np.linalg.norm((third[0] - second[0] - motion.positions[k + 3] + motion.positions[k + 2]) / DT)
+    wrong = np.hypot(wrong, SIZE * np.linalg.norm(spin - Rotation.from_matrix(turn).as_rotvec() / DT))
+    before = np.hypot(np.linalg.norm(motion.linear[k]), SIZE * np.linalg.norm(motion.angular[k]))
+    return float(wrong / before), third[0][2] - first[0][2] + motion.corners @ (third[1] - first[1])[2]
+
+
+def rows_of(motion: Track, told: dict[int, Told], seen: set[tuple[float, ...]]) -> list[Row]:
+    """What became of each clear touchdown of a motion that was not `seen` before."""
+    gaps, rows = motion.gaps, []
+    rates = np.diff(gaps, axis=0) / DT
+    for impact, isolated in clear_of(motion, seen):
+        k, new = impact.frame, impact.new
         still = max(0.08, 0.2 * np.abs(rates[k - 1]).max())
         old = [i for i in range(len(motion.corners)) if i not in new and gaps[k, i] < 0.005]
         old = [i for i in old if abs(rates[k - 1, i]) < still]
-        row = Row(kind_of(old, new), announced=False)
-        state = told.get(int(motion.stamps[k]))
-        if state is None or abs((state.stamp - motion.stamps[0]) * 1e-9 / DT - time) >= NEAR:
-            rows.append(row)
-            continue
-        row = row._replace(announced=True)
-        start = (state.stamp - motion.stamps[0]) * 1e-9 - k * DT
-        if times[j + 2] > k + 3 and times[j] < k - 1 and start < 1.9 * DT:
-            first, second, third = goes_on(state, motion.corners, start, [max(start + 1e-6, DT), 2.0 * DT, 3.0 * DT])
-            spin = Rotation.from_matrix(third[1] @ second[1].T).as_rotvec() / DT
-            missed = np.linalg.norm((third[0] - second[0]) / DT - linear[k + 2])
-            missed = np.hypot(missed, SIZE * np.linalg.norm(spin - angular[k + 2]))
-            before = np.hypot(np.linalg.norm(motion.linear[k]), SIZE * np.linalg.norm(motion.angular[k]))
-            rise = third[0][2] - first[0][2] + motion.corners @ (third[1] - first[1])[2]
+        state = announced(motion, told, impact)
+        row = Row(kind_of(old, new), announced=state is not None)
+        found = missed(motion, state, k) if state is not None and isolated else None
+        if found is not None:
+            error, rise = found
             risen = gaps[k + 3] - gaps[k + 1]
             lifts = [
                 (bool(risen[group].mean() > LIFT), bool(rise[group].mean() > LIFT)) if group else None
                 for group in (old, new)
             ]
             # A single corner always rises from flight.
-            row = row._replace(
-                error=float(missed / before), old=lifts[0], new=lifts[1] if old or len(new) > 1 else None
-            )
+            row = row._replace(error=error, old=lifts[0], new=lifts[1] if old or len(new) > 1 else None)
         rows.append(row)
     return rows
+
+
+def lead_times(bag: str, *predictions: str) -> Table:
+    """Announced parts and errors of times (ms) and twists by how many frames ahead some predictions told a touchdown.
+
+    Errors, in the median and at 90 %, are those of the isolated clear touchdowns that all of them announce so early.
+    """
+    tolds = [read(bag, one)[1] for one in predictions]
+    pairs: list[list[list[float]]] = [[] for _ in range(EARLIEST + 1)]
+    n = len(tolds)
+    heard, count, seen = np.zeros((EARLIEST + 1, len(tolds)), int), 0, set[tuple[float, ...]]()
+    for _, motion in motions_of(read(bag)[0]):
+        for impact, isolated in clear_of(motion, seen):
+            count += isolated
+            for earlier in range(EARLIEST + 1) if isolated else ():
+                states = [announced(motion, told, impact, earlier) for told in tolds]
+                heard[earlier] += [state is not None for state in states]
+                found = [None if state is None else missed(motion, state, impact.frame) for state in states]
+                times = [
+                    0.0 if state is None else abs((state.stamp - motion.stamps[0]) * 1e-6 - 1e3 * DT * impact.time)
+                    for state in states
+                ]
+                if None not in found:
+                    pairs[earlier].append([*times, *(one[0] for one in found if one is not None)])
+    table = Table("frames ahead", "n", *(f"{Path(one).name}: announced; ms, error; at 90 %" for one in predictions))
+    for earlier, errors_of in enumerate(pairs):
+        half, most = (np.quantile(np.array(errors_of), q, axis=0) for q in (0.5, 0.9))
+        cells = [
+            f"{heard[earlier, i] / count:.3f}; {half[i]:.2f} ms {half[n + i]:.3f}; {most[i]:.2f} ms {most[n + i]:.3f}"
+            for i in range(n)
+        ]
+        table.add_row(str(earlier), str(len(errors_of)), *cells)
+    return table
 
 
 def balanced(lifts: list[tuple[bool, bool]]) -> float:
@@ -291,6 +347,7 @@ class Verdict(NamedTuple):
     number: int
     announced: float
     scored: int
+    mean: float
     median: float
     p90: float
     old: float
@@ -320,6 +377,7 @@ def judged(bag: str, predictions: str, half: str = "all") -> dict[str, Verdict]:
                 number=len(some),
                 announced=float(np.mean([row.announced for row in some])),
                 scored=len(errors),
+                mean=float(np.mean(errors)) if errors else float("nan"),
                 median=float(np.median(errors)) if errors else float("nan"),
                 p90=float(np.percentile(errors, 90)) if errors else float("nan"),
                 old=balanced([row.old for row in some if row.old is not None]),
@@ -333,8 +391,12 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("bag")
     parser.add_argument("predictions")
+    parser.add_argument("--lead", metavar="OTHER", help="other predictions: both by how early they told a touchdown")
     parser.add_argument("--half", choices=("even", "odd", "all"), default="all")
     given = parser.parse_args()
+    if given.lead is not None:
+        Console(width=120).print(lead_times(given.bag, given.predictions, given.lead))
+        return 0
     for kind, verdict in judged(given.bag, given.predictions, given.half).items():
         print(f"{kind:14s} {verdict}")
     return 0
