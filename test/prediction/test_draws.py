@@ -222,9 +222,10 @@ def test_an_odd_covariance_is_refused_and_leaves_numbers(first: tuple[float, flo
 def test_draws_have_the_same_bits_with_numba_and_without(monkeypatch: pytest.MonkeyPatch) -> None:
     from impact_predictor.mechanics.impact import spatial
     from impact_predictor.mechanics.motion import spatial as motion
+    from impact_predictor.prediction import draws
 
     compiled = [announced(*falling(seed), spread_by(0.02), **DRAWN) for seed in range(2)]
-    prepared = spatial.solvers, motion.solver
+    prepared = spatial.solvers, motion.solver, draws.teller
     try:
         for one in prepared:
             one.cache_clear()

@@ -15,7 +15,9 @@ from functools import cache
 from math import inf
 from typing import Any, NamedTuple
 
-from ..compiled import compiled
+import numpy as np
+
+from ..compiled import door
 from ..types import Quaternion, Vector3
 from . import falling, reactions, spatial_problem, stances
 from .reactions import OPEN
@@ -84,48 +86,34 @@ def fall(
     by the least impulse; `friction` coefficient, one number or (n,); `horizon` in s. Never raises for bad numbers, and
     never returns NaN.
     """
-    n, numbers, marks = problem(horizon, state, inertia, points, standing, friction, pull)
-    struck, out, marks = solver()(n, numbers, marks)
-    if struck < 0:
-        return SpatialFall(inf, -1, state, (), (), tuple(standing))
-    return SpatialFall(
-        time=out[0],
-        point=struck,
-        state=state_of(out[1:OUTPUT]),
-        gaps=tuple(out[OUTPUT::2]),
-        rates=tuple(out[OUTPUT + 1 :: 2]),
-        standing=tuple(i for i in range(n) if marks[i] != OPEN),
-    )
-
-
-def problem(
-    horizon: float,
-    state: SpatialState,
-    inertia: Sequence[float],
-    points: Sequence[Vector3],
-    standing: Collection[int],
-    friction: float | Sequence[float],
-    pull: Pull,
-) -> tuple[int, list[float], list[int]]:
-    """A problem as the law code takes it: how many points, numbers and marks."""
     n = len(points)
     frictions = [friction] * n if isinstance(friction, float | int) else friction
     numbers = [horizon, *state.position, *state.orientation, *state.velocity, *state.angular_velocity]
     numbers += [*inertia, *pull.gravity, *pull.growth, *pull.spin, *pull.turning, *frictions]
     for point in points:
         numbers += point
-    marks = [0] * (2 * n + 1)
+    marks, told = np.zeros(2 * n + 1, np.int64), np.empty(OUTPUT + 2 * n)
     for i in standing:
         marks[i] = 1
-    return n, numbers, marks
+    work = np.empty(WORK[0] + WORK[1] * n + WORK[2] * n * n)
+    struck = solver()(n, np.array(numbers, float), marks, work, told)
+    if struck < 0:
+        return SpatialFall(inf, -1, state, (), (), tuple(standing))
+    out = told.tolist()
+    return SpatialFall(
+        time=out[0],
+        point=struck,
+        state=state_of(out[1:OUTPUT]),
+        gaps=tuple(out[OUTPUT::2]),
+        rates=tuple(out[OUTPUT + 1 :: 2]),
+        standing=tuple([i for i, mark in enumerate(marks[:n].tolist()) if mark != OPEN]),
+    )
 
 
 def state_of(numbers: Sequence[float]) -> SpatialState:
     px, py, pz, qx, qy, qz, qw, vx, vy, vz, wx, wy, wz = numbers
     return SpatialState((px, py, pz), (qx, qy, qz, qw), (vx, vy, vz), (wx, wy, wz))
 
-
-FallSolver = Callable[[int, list[float], list[int]], tuple[int, list[float], list[int]]]
 
 LAW_CODE = (reactions, stances, falling, spatial_problem)
 
@@ -134,29 +122,9 @@ INLINED = (reactions.derive, reactions.fill, reactions.locate, falling.measure, 
 
 
 @cache
-def solver() -> FallSolver:
+def solver() -> Callable[..., int]:
     """The law code that finds a touchdown, compiled if that can be; the first time on a machine this takes seconds."""
-    solve = compiled(make_fall, LAW_CODE, lambda function: function in INLINED)
-    if solve is None:
-        return fall_on_lists
-    import numpy as np
-
-    def on_arrays(n: int, numbers: list[float], marks: list[int]) -> tuple[int, list[float], list[int]]:
-        out, mark = np.empty(OUTPUT + 2 * n), np.array(marks)
-        struck = solve(n, np.array(numbers), mark, np.empty(sizes(n)), out)
-        return struck, out.tolist(), mark.tolist()
-
-    return on_arrays
-
-
-def fall_on_lists(n: int, numbers: list[float], marks: list[int]) -> tuple[int, list[float], list[int]]:
-    out = [0.0] * (OUTPUT + 2 * n)
-    return spatial_problem.fall(n, numbers, marks, [0.0] * sizes(n), out), out, marks
-
-
-def sizes(n: int) -> int:
-    """Numbers that the law code of n points works with."""
-    return WORK[0] + WORK[1] * n + WORK[2] * n * n
+    return door(make_fall, LAW_CODE, INLINED)
 
 
 def make_fall(law_code: str) -> Callable[..., int]:
