@@ -41,7 +41,7 @@ class Scatter:
         """... and those of gaps from one sample to the next."""
         self.deviation: float | None = None
         """Standard deviation of the gaps of standing points in m, once it is known."""
-        self._scene = scene
+        self._tolerance, self._slowest = scene.tolerance, hardly(scene)
         self._last: list[tuple[int, Posture]] = []
         self._taken = 0
         self._steps, self._middles = deque[float](maxlen=ENOUGH), deque[float](maxlen=ENOUGH)
@@ -51,7 +51,7 @@ class Scatter:
         """Take the next sample, with a stamp in ns."""
         last, gaps, rates = self._last, posture.gaps, posture.rates
         last.append((stamp, posture))
-        slow = max(hardly(self._scene), self.rate)
+        slow = max(self._slowest, self.rate)
         if -slow <= min(rates) and max(rates) <= slow:
             self._stand(gaps)
         if len(last) < 3:
@@ -77,7 +77,7 @@ class Scatter:
 
     def _stand(self, gaps: list[float]) -> None:
         """Learn from points that stand."""
-        tolerance = max(self._scene.tolerance, self.noise)
+        tolerance = max(self._tolerance, self.noise)
         for gap in gaps:
             if -tolerance <= gap <= tolerance:
                 self._seen += 1
