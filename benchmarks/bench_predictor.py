@@ -29,8 +29,9 @@ from rich.table import Table
 from impact_predictor.bags.read import BagMessage, read_messages
 from impact_predictor.parameters.file import read_parameters
 from impact_predictor.parameters.validation import validate
-from impact_predictor.prediction import impact, points
+from impact_predictor.prediction import spatial
 from impact_predictor.prediction.deck.tracker import Deck
+from impact_predictor.prediction.draws import Draws
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.prediction.types import Status
@@ -44,16 +45,16 @@ KINDS = ("no touchdown ahead", "in flight", "standing")
 
 
 class Part(NamedTuple):
-    """A part of the predictor: a function, and the module that calls it."""
+    """A part of the predictor: a function, and the module that calls it, or the class that has it."""
 
     name: str
-    module: ModuleType
+    module: ModuleType | type
     function: str
 
 
 PARTS = (
-    Part("the motion until the touchdown", points, "next_touchdown"),
-    Part("impacts in the plane", impact, "solve_impact"),
+    Part("the motion until the touchdown", spatial, "fall"),
+    Part("what draws say of the impact", Draws, "drawn"),
 )
 
 
