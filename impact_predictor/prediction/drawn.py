@@ -40,14 +40,19 @@ def tell(n: int, standing: int, problem: Given, answers: Sequence[Given], given:
 
     `given` is the rate in m/s above which a group of contacts leaves; by what part of its speed a contact strays from
     the law; the speed that gravity gives in a contact time; then the body's axes, its mass centre in its frame, and the
-    axis and the normal of the impact plane. In the mean of the answers that are told, those with the likeliest
-    mode, a contact has closed that has done so in half of them.
+    axis and the normal of the impact plane.
     """
-    least, stray, slow = given[0], given[1], given[2]
     for k in range(len(told)):
         told[k] = 0.0
-    square, count, size = 0.0, len(answers), ANSWER + RESULT * n
-    whole, spot = LIFTS + n, LIFTS + n + size
+    tell_modes(n, standing, problem, answers, given, told)
+    tell_answer(n, problem, answers, given[0], told)
+    tell_moments(n, answers, given, told)
+
+
+def tell_modes(n: int, standing: int, problem: Given, answers: Sequence[Given], given: Given, told: Scratch) -> None:
+    """Fill in how likely each mode is and each contact's lift, and which mode each draw has."""
+    least, stray, slow = given[0], given[1], given[2]
+    square, count, modes = 0.0, len(answers), LIFTS + n + ANSWER + RESULT * n + SCRATCH
     for i in range(n):
         k = BODY + CONTACT * i
         square += problem[k] * problem[k] + problem[k + 1] * problem[k + 1] + problem[k + 2] * problem[k + 2]
@@ -86,16 +91,23 @@ def tell(n: int, standing: int, problem: Given, answers: Sequence[Given], given:
         if new_lifts:
             mode = FLIGHT if old_lifts else BACK_PIVOT
         told[OF_MODE * mode + 1] += 1.0
-        for j in range(6):
-            told[spot + 9 + j] += answer[j] / count
-        told[spot + SCRATCH + d] = float(mode)
+        told[modes + d] = float(mode)
+
+
+def tell_answer(n: int, problem: Given, answers: Sequence[Given], least: float, told: Scratch) -> None:
+    """Fill in the likeliest mode that a draw has, and the mean of the answers with it.
+
+    A contact has closed in it that has done so in half of them.
+    """
+    count, size, whole = len(answers), ANSWER + RESULT * n, LIFTS + n
+    modes = whole + size + SCRATCH
     best = 0
     for mode in range(STOP, FLIGHT + 1):
         if told[OF_MODE * mode + 1] > 0.0 and (best == 0 or told[OF_MODE * mode] > told[OF_MODE * best]):
             best = mode
     most = told[OF_MODE * best + 1]
     for d in range(count):
-        if told[spot + SCRATCH + d] == best:
+        if told[modes + d] == best:
             told[LIKELIEST], told[LIKELIEST + 1] = float(best), float(d)
             for j in range(size):
                 told[whole + j] += answers[d][j] / most
@@ -105,7 +117,7 @@ def tell(n: int, standing: int, problem: Given, answers: Sequence[Given], given:
         for j in range(3):
             away += problem[k + j] * told[whole + at - 3 + j]
         for d in range(count):
-            if told[spot + SCRATCH + d] == best:
+            if told[modes + d] == best:
                 nears += 1.0 if answers[d][at] == NEARS else 0.0
                 slips = slips or answers[d][at] == SLIPS
         told[whole + at] = SLIPS if slips else STICKS
@@ -113,6 +125,14 @@ def tell(n: int, standing: int, problem: Given, answers: Sequence[Given], given:
             told[whole + at] = LEAVES
         elif nears > 0.5 * most:
             told[whole + at] = NEARS
+
+
+def tell_moments(n: int, answers: Sequence[Given], given: Given, told: Scratch) -> None:
+    """Fill in mean and variance of the twist in the impact plane, and its covariance along the axes of the body."""
+    count, spot = len(answers), LIFTS + n + ANSWER + RESULT * n
+    for d in range(count):
+        for j in range(6):
+            told[spot + 9 + j] += answers[d][j] / count
     for d in range(-1, count):
         # The mean of all draws, and how each of them differs from it, along the axes of the body and in the plane.
         for j in range(9):
