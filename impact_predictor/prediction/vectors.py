@@ -19,12 +19,14 @@ if sys.version_info >= (3, 12):
     def total(values: Iterable[float]) -> float:
         """The sum from the first to the last, rounded at each step, so that every Python gives the same bits.
 
-        From Python 3.12 on `sum` compensates its rounding, before that it does not.
+        From Python 3.12 on `sum` compensates its rounding, before that it does not. No values give the float 0.0.
         """
         return reduce(operator.add, values, 0.0)
 
 else:
-    total = sum
+
+    def total(values: Iterable[float]) -> float:
+        return sum(values, 0.0)
 
 
 def lines(times: Sequence[float], columns: Iterable[Sequence[float]]) -> list[tuple[float, float]]:
