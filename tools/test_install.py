@@ -58,8 +58,8 @@ while "{NAME}" not in probe.get_node_names():
 """
 
 
-predictions: dict[str, str] = {}
-"""What each Python predicted, by the path of the Python."""
+predictions: dict[str, list[str]] = {}
+"""The checksums of what each Python predicted for the bags, by the path of the Python."""
 
 ros_domains = itertools.count(1 + os.getpid() % 80)
 """One for each install: two run at a time, and their nodes have one name."""
@@ -186,7 +186,7 @@ def check_extras(environment: Environment) -> None:
             raise InstallError(f"{' '.join(command)} should name the extra {extra} in one line, but said:\n{said}")
 
 
-def predictions_of(environment: Environment) -> str:
+def predictions_of(environment: Environment) -> list[str]:
     """The checksums of the predictions for the recorded bags: the same on every Python with the same bag libraries."""
     share = environment.prefix / "share" / NAME
     sums = []
@@ -201,7 +201,7 @@ def predictions_of(environment: Environment) -> str:
         )
         environment.run(*command, "-o", str(output))
         sums.append(hashlib.sha256(output.read_bytes()).hexdigest())
-    return " ".join(sums)
+    return sums
 
 
 def check_node_missing(environment: Environment) -> None:
@@ -349,7 +349,10 @@ def same_predictions() -> str:
     name = f"the same predictions on {len(predictions)} Pythons"
     if len(predictions) < 2:
         return f"SKIP {name}: it takes two to compare"
-    return f"{'PASS' if len(set(predictions.values())) == 1 else 'FAIL'} {name}"
+    differing = [
+        bag for (bag, _), sums in zip(BAGS, zip(*predictions.values(), strict=True), strict=True) if len(set(sums)) > 1
+    ]
+    return f"FAIL {name}: those of {', '.join(differing)} differ" if differing else f"PASS {name}"
 
 
 if __name__ == "__main__":
