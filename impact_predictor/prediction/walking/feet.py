@@ -12,10 +12,12 @@ from ..predictor import DEEP, DEEP_TOLERANCES, Contacts
 from ..scene import Scene
 from ..types import ContactInput, Foot, Geometry, Joints, Moment, Sample, Schedule, Status, Touchdown, Wrench
 from ..vectors import add, axes_of, cross, dot, to_world
+from .announcement import ExpectedLanding
 from .cubic import PointFrame
+from .ground import Ground
 from .landings import FootForces, LandingSchedule, LandingTracker
 from .mechanism import REMEMBERED, ArticulatedMachine, BaseMotion, LeggedMachine, RigidMachine
-from .stance import ExpectedLanding, FootPoint, Ground
+from .stance import FootPoint
 
 
 class FeetContacts(Contacts):

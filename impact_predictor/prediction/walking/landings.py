@@ -19,9 +19,10 @@ from ..scene import Scene, Walking
 from ..score import LONGEST, MEASURED, Pending, Track
 from ..types import Landing, Sample, Schedule, Score, Status, Touchdown, Vector3, Wrench
 from ..vectors import dot, mean
+from .announcement import ExpectedLanding
 from .impact import LandingPoint, touchdown_of
 from .mechanism import BaseMotion, LeggedMachine, TwistLine, extrapolated
-from .stance import ExpectedLanding, FootPoint
+from .stance import FootPoint
 
 PLANNED = 10_000_000_000  # ns for which what was planned is remembered
 FURTHEST = 1_000_000_000  # ns from a planned landing beyond which a landing is another one, which nobody planned

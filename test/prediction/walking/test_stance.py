@@ -10,7 +10,8 @@ import pytest
 
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.prediction.walking.cubic import PointFrame
-from impact_predictor.prediction.walking.stance import FootPoint, Ground
+from impact_predictor.prediction.walking.ground import Ground
+from impact_predictor.prediction.walking.stance import FootPoint
 
 MS = 1_000_000
 DEAD_TIME = 20 * MS
