@@ -14,6 +14,7 @@ from ..errors import InputError
 from ..prediction.scene import CONTACT_GEOMETRY, STATES, Scene, inputs_of
 from ..prediction.types import Status
 from ..ros.messages import DIAGNOSTIC_ARRAY, INPUT_TYPES
+from ..scenarios.landing import LANDING_TOPIC
 from ..scenarios.truth import ONSET_TOPIC, TRUTH_TOPIC
 from .inputs import adapted_topics, find_topics
 from .inputs import remapping as remapping
@@ -100,18 +101,27 @@ def replay(
         names, notes = find_topics(path, recorded, inputs_of(by_name), remap or {})
         adapted = adapted_topics(recorded, names)
         wanted = {topic: INPUT_TYPES[one.kind].name for one, topic in names.items()} | adapted
-        knows_truth = recorded.get(TRUTH_TOPIC) == DIAGNOSTIC_ARRAY
-        if knows_truth:
-            wanted |= {
-                one: DIAGNOSTIC_ARRAY for one in (TRUTH_TOPIC, ONSET_TOPIC) if recorded.get(one) == DIAGNOSTIC_ARRAY
-            }
+        truths = [one for one in (TRUTH_TOPIC, ONSET_TOPIC, LANDING_TOPIC) if recorded.get(one) == DIAGNOSTIC_ARRAY]
+        knows_truth, knows_landings = TRUTH_TOPIC in truths, LANDING_TOPIC in truths
+        if not knows_truth:
+            truths = [one for one in truths if one == LANDING_TOPIC]
+        wanted |= dict.fromkeys(truths, DIAGNOSTIC_ARRAY)
         messages, readers = bag.messages(wanted), {}
         if adapted:
             from .adapters import readers as readers_of
 
             readers = readers_of(bag, adapted)
         write = None if output is None else stack.enter_context(BagWriter(output)).write
-        run = Run(by_name, names, write, readers, knows_truth=knows_truth, markers=markers, monitor=monitor)
+        run = Run(
+            by_name,
+            names,
+            write,
+            readers,
+            knows_truth=knows_truth,
+            knows_landings=knows_landings,
+            markers=markers,
+            monitor=monitor,
+        )
         run.take(_readable(messages, damage), progress)
         inputs = {one: _counts(counts) for one, counts in run.statuses.items()}
         if damage and not any(counts for one, counts in inputs.items() if one.kind in STATES):

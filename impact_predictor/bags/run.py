@@ -55,6 +55,7 @@ class Run:
         readers: Mapping[str, AdapterReader] = MappingProxyType({}),
         *,
         knows_truth: bool,
+        knows_landings: bool = False,
         markers: bool,
         monitor: Monitor | None = None,
     ) -> None:
@@ -77,10 +78,15 @@ class Run:
         for topic, read in readers.items():
             inputs = {one.kind: one for one, its_topic in topics.items() if its_topic == topic}
             self._takers[topic] = partial(self._take_adapted, read, inputs, takes)
-        if knows_truth or (readers and any(scene.walking is not None for scene in scenes.values())):
+        walks = any(scene.walking is not None for scene in scenes.values())
+        if knows_truth or knows_landings or (readers and walks):
             from ..scenarios.comparison import Comparison
 
-            self.comparison = Comparison(scenes, knows_impacts=knows_truth)
+            self.comparison = Comparison(scenes, knows_impacts=knows_truth, knows_landings=knows_landings)
+        if knows_landings and self.comparison is not None:
+            from ..scenarios.landing import LANDING_TOPIC, decode_true_landings
+
+            self._takers[LANDING_TOPIC] = partial(_take_truth, self.comparison.landings, decode_true_landings)
         if knows_truth and self.comparison is not None:
             from ..scenarios.truth import ONSET_TOPIC, TRUTH_TOPIC, decode_true_impacts, decode_true_onsets
 

@@ -1,8 +1,8 @@
 """Predicted against true touchdowns: what was found, how early, and how right; `matching` tells which belong together.
 
-Touchdowns are those of impacts, or landings of feet. The truth of these is what a plan or a simulation says of every
-foot: whether it stands. It comes beside the samples, is never an input of a prediction, and knows neither modes nor
-velocities, so that these are not compared.
+Touchdowns are those of impacts, or landings of feet. The truth of these is what a plan says of every foot, whether it
+stands, or what a simulation says of every landing. It comes beside the samples and is never an input of a prediction;
+modes and velocities after landings are not compared.
 
 A body under watch may be warned of before something happens to it. A warning counts only if it stands: a level of WARN
 or ERROR from its beginning up to what happens, without a report of another level between them.
@@ -23,6 +23,7 @@ from ..prediction.types import Prediction, Vector3
 from ..prediction.vectors import add, axes_of, cross, to_world
 from ..ros.cdr import ERROR, STALE, WARN
 from ..stamps import NANOSECONDS
+from .landing import TrueLanding
 from .matching import LEAD_TIMES as LEAD_TIMES
 from .matching import NEAREST, Announcement, Match, Rows, match, truth_of
 from .matching import Truth as Truth
@@ -91,14 +92,18 @@ class Compared(NamedTuple):
 class Comparison:
     """What was predicted of the bodies of some scenes, and what truly happened to them.
 
-    A body goes by its name, or where it has none by its frame. `impacts` and `onsets` are the true ones; where
-    `knows_impacts` is False, a record tells of no impacts, and only bodies are compared whose true stances are told.
+    A body goes by its name, or where it has none by its frame. `impacts`, `onsets` and `landings` are the true ones;
+    where `knows_impacts` is False, a record tells of no impacts, and only bodies are compared whose true stances are
+    told, and with `knows_landings` those that have feet.
     """
 
-    def __init__(self, scenes: Mapping[str, Scene], *, knows_impacts: bool = True) -> None:
+    def __init__(
+        self, scenes: Mapping[str, Scene], *, knows_impacts: bool = True, knows_landings: bool = False
+    ) -> None:
         self.impacts: list[TrueImpact] = []
         self.onsets: list[TrueOnset] = []
-        self._knows_impacts = knows_impacts
+        self.landings: list[TrueLanding] = []
+        self._knows_impacts, self._knows_landings = knows_impacts, knows_landings
         self._scenes = scenes
         # The names of bodies by their frames, by which a truth may call them too.
         self._names: dict[str, str] = {}
@@ -152,8 +157,8 @@ class Comparison:
 
     def later_landings(self) -> int:
         """How many true landings come after the last sample of their body that was accepted: they are not compared."""
-        last = {body: stamps[-1] for body, stamps in self._samples.items()}
-        return sum(stamp > last.get(body, stamp) for (body, _), stamps in self._landings.items() for stamp in stamps)
+        last, landings = {body: stamps[-1] for body, stamps in self._samples.items()}, self._all_landings()
+        return sum(stamp > last.get(body, stamp) for (body, _), stamps in landings.items() for stamp in stamps)
 
     def compare(self) -> Compared:
         """Compare the predictions of all bodies that have samples with what truly happened to them."""
@@ -165,7 +170,8 @@ class Comparison:
             onsets[self._names.get(onset.body, onset.body)].append(onset)
         matches: dict[str, list[Match]] = {}
         for body in self._samples:
-            if body in self._stands:
+            walks = self._knows_landings and self._scene(body).walking is not None
+            if walks or body in self._stands:
                 matches[body] = self._matched_landings(body)
             elif self._knows_impacts:
                 matches[body] = self._matched_impacts(body, impacts[body])
@@ -217,14 +223,22 @@ class Comparison:
 
     def _matched_landings(self, body: str) -> list[Match]:
         """The landings of a body until its last sample, foot by foot, and its false alarms."""
-        found, end = list[Match](), self._samples[body][-1]
-        for foot, rows in self._rows[body].items():
-            if foot:
-                stamps = sorted(stamp for stamp in self._landings[body, foot] if stamp <= end)
-                # A foot comes down softly: it may seem to come down still when the plan says that it stands.
-                matched, alarms = match(stamps, rows.all, end, late=NEAREST)
-                found += [Match(body, foot, stamp, None, matched.get(k, ())) for k, stamp in enumerate(stamps)]
-                found += [Match(body, foot, None, None, row) for row in alarms]
+        found, end, landings = list[Match](), self._samples[body][-1], self._all_landings()
+        rows = {foot: rows.all for foot, rows in self._rows[body].items() if foot}
+        # What a scene does not call a foot is predicted no landing.
+        for foot in [*rows, *sorted({foot for of, foot in landings if of == body} - set(rows))]:
+            stamps = sorted(stamp for stamp in landings.get((body, foot), ()) if stamp <= end)
+            # A foot comes down softly: it may seem to come down still when the plan says that it stands.
+            matched, alarms = match(stamps, rows.get(foot, ()), end, late=NEAREST)
+            found += [Match(body, foot, stamp, None, matched.get(k, ())) for k, stamp in enumerate(stamps)]
+            found += [Match(body, foot, None, None, row) for row in alarms]
+        return found
+
+    def _all_landings(self) -> dict[tuple[str, str], list[int]]:
+        """The stamps of the true landings of each foot of each body."""
+        found = defaultdict(list, {place: list(stamps) for place, stamps in self._landings.items()})
+        for landing in self.landings:
+            found[self._names.get(landing.body, landing.body), landing.foot].append(landing.stamp)
         return found
 
     def _warned(self, name: str, impacts: Sequence[TrueImpact], onsets: Sequence[TrueOnset]) -> Warned:

@@ -9,6 +9,7 @@ from impact_predictor.mechanics.types import Mode, Twist
 from impact_predictor.prediction.scene import Scene, Walking
 from impact_predictor.prediction.types import Foot, Leftover, Prediction, Sample, Status
 from impact_predictor.scenarios.comparison import Comparison, Truth
+from impact_predictor.scenarios.landing import LandingState, TrueLanding
 from impact_predictor.scenarios.truth import TrueImpact
 
 SCENE = Scene(1.0, ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), 0.5, contact_time=0.001)
@@ -269,6 +270,11 @@ def landed(made: Comparison) -> list[tuple[str, int | None]]:
     return [(one.foot, one.stamp) for one in made.compare().matches]
 
 
+def true_landing(foot: str, stamp: int) -> TrueLanding:
+    state = LandingState(0.0, (0.0,) * 6, (), ((0.0, 0.0, -1.0),), ((0.0, 0.0, 0.0),))
+    return TrueLanding(stamp, "base", foot, (foot,), (), (0.0, 0.0, 1.0), before=state, after=(state,))
+
+
 def test_a_foot_lands_when_its_flag_rises_but_not_with_the_first_one() -> None:
     made = landings(100, {"left": (0, 20, 60), "right": (30, 80)}, {})
     assert landed(made) == [("left", 60 * MS), ("right", 30 * MS)]
@@ -318,6 +324,20 @@ def test_true_landings_after_the_last_answer_are_counted_apart() -> None:
         made.add_stances("base", at * MS, stands)
     assert made.later_landings() == 1
     assert landed(made) == [("left", 90 * MS)]
+
+
+def test_true_landings_of_a_simulation_are_found_like_those_of_a_plan() -> None:
+    announced = {0: dict.fromkeys(range(5, 70), 70.0), 1: dict.fromkeys(range(10, 71), 71.0)}
+    made = Comparison({"": WALKER}, knows_impacts=False, knows_landings=True)
+    for at in range(100):
+        made.add(answer(at, announced, (), ("left", "right")))
+    nothing = together_of(made)
+    assert (nothing.touchdowns, nothing.false) == (0, 2)
+    made.landings += [true_landing("left", 70 * MS), true_landing("right", 72 * MS), true_landing("tail", 50 * MS)]
+    assert landed(made) == [("left", 70 * MS), ("right", 72 * MS), ("tail", 50 * MS)]
+    truth = together_of(made)
+    assert (truth.touchdowns, truth.missed, truth.false) == (3, 1, 0)
+    assert truth.median_time_error == pytest.approx(0.0005)
 
 
 def test_of_bodies_without_feet_no_landing_is_compared() -> None:

@@ -1,0 +1,116 @@
+"""True landings of feet, and the messages in which a bag carries them: like impacts, they are never an input."""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+from ..prediction.types import Vector3
+from ..ros.cdr import OK, MalformedMessage, decode_diagnostic_array, diagnostic_array, diagnostic_status, pairs_of
+
+LANDING_TOPIC: Final = "/truth/landings"
+
+_MOMENT: Final = ("time", "twist", "rates")
+
+
+class LandingState(NamedTuple):
+    """A machine `time` s after a foot has touched the ground, 0 for the last moment before.
+
+    `twist` of the trunk along its axes, linear of its origin in m/s and angular in rad/s; `rates` of the joints in
+    rad/s or m/s, in the order of joint_states; of each foot in the order of the scene its velocity in m/s and the
+    impulse in N s that the ground has given to it since, in the axes of the world.
+    """
+
+    time: float
+    twist: tuple[float, ...]
+    rates: tuple[float, ...]
+    velocities: tuple[Vector3, ...]
+    impulses: tuple[Vector3, ...]
+
+
+class TrueLanding(NamedTuple):
+    """A foot that came to the ground and stayed.
+
+    `stamp` in ns of the first contact; `body` its trunk's frame; `foot` its name; `feet` the names of all, and those of
+    them that were `standing`; `normal` of the ground under the foot; the machine just `before`, and `after` it. The
+    last state is that of the first peak of the normal force on the foot.
+    """
+
+    stamp: int
+    body: str
+    foot: str
+    feet: tuple[str, ...]
+    standing: tuple[str, ...]
+    normal: Vector3
+    before: LandingState
+    after: tuple[LandingState, ...]
+
+    @property
+    def speed(self) -> float:
+        """How fast the foot came down, in m/s."""
+        x, y, z = self.before.velocities[self.feet.index(self.foot)]
+        return -(x * self.normal[0] + y * self.normal[1] + z * self.normal[2])
+
+
+def encode_true_landing(landing: TrueLanding, frame_id: str) -> bytes:
+    """A diagnostic_msgs/DiagnosticArray stamped with the landing; every number reads back as the same double."""
+    named = {"stamp": str(landing.stamp), "body": landing.body, "foot": landing.foot}
+    named |= {"feet": " ".join(landing.feet), "standing": " ".join(landing.standing), "normal": _row(landing.normal)}
+    for k, state in enumerate((landing.before, *landing.after)):
+        named |= {
+            f"{k}.{name}": _row(values) for name, values in zip(_MOMENT, ((state.time,), *state[1:3]), strict=True)
+        }
+        for name, vectors in (("velocities", state.velocities), ("impulses", state.impulses)):
+            named[f"{k}.{name}"] = _row([part for vector in vectors for part in vector])
+    status = diagnostic_status(OK, "truth/landing", landing.foot, landing.body, pairs_of(named))
+    return diagnostic_array(landing.stamp, frame_id, [status])
+
+
+def decode_true_landings(data: bytes) -> list[TrueLanding]:
+    """The landings in the bytes of a diagnostic_msgs/DiagnosticArray.
+
+    Raises:
+        MalformedMessage: the bytes are no such message, or tell no landings.
+    """
+    try:
+        return [_landing(status.values) for status in decode_diagnostic_array(data)]
+    except (KeyError, ValueError) as error:
+        raise MalformedMessage(f"not a true landing: {error}") from None
+
+
+def _landing(values: dict[str, str]) -> TrueLanding:
+    count = sum(key.endswith(".time") for key in values)
+    before, *after = [_state(values, f"{k}.") for k in range(count)]
+    return TrueLanding(
+        stamp=int(values["stamp"]),
+        body=values["body"],
+        foot=values["foot"],
+        feet=tuple(values["feet"].split()),
+        standing=tuple(values["standing"].split()),
+        normal=_vectors(values["normal"])[0],
+        before=before,
+        after=tuple(after),
+    )
+
+
+def _state(values: dict[str, str], key: str) -> LandingState:
+    (time,), twist, rates = (_numbers(values[key + name]) for name in _MOMENT)
+    return LandingState(
+        time=time,
+        twist=twist,
+        rates=rates,
+        velocities=_vectors(values[key + "velocities"]),
+        impulses=_vectors(values[key + "impulses"]),
+    )
+
+
+def _row(values: tuple[float, ...] | list[float]) -> str:
+    return " ".join(repr(float(value)) for value in values)
+
+
+def _numbers(text: str) -> tuple[float, ...]:
+    return tuple(map(float, text.split()))
+
+
+def _vectors(text: str) -> tuple[Vector3, ...]:
+    numbers = iter(_numbers(text))
+    return tuple(zip(numbers, numbers, numbers, strict=True))
