@@ -163,8 +163,10 @@ def remarks(
 
 def _doubts(run: Run, body: str) -> list[str]:
     """What is left out of the messages about contact points, and what speaks against the scene although they fit it."""
-    record, said = run.bodies[body], []
-    left_out = run.monitor.predictors[body].contacts.unknown_joints
+    record, contacts = run.bodies[body], run.monitor.predictors[body].contacts
+    said, walking, left_out = list(contacts.doubts()), record.scene.walking, contacts.unknown_joints
+    if walking is not None and walking.find_delay:
+        said.append(f"the feet are {contacts.delay or 'not yet known to be late: too few of them have stood'}")
     if left_out:
         unknown = listed(left_out, _MOST_NAMED)
         said.append(f"robot.urdf does not know {unknown}, so what is told of these joints is left out")

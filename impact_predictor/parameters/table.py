@@ -337,6 +337,21 @@ _TABLE: Final = (
         "feet.timeout", 0.1, "Age above which a message about the feet tells nothing any more.", low=1e-3, high=60.0
     ),
     double(
+        "feet.delay",
+        0.0,
+        "By how much the stamps of the feet are later than those of the trunk, which is taken out of them; negative "
+        "where they are earlier.",
+        unit="s",
+        low=-0.1,
+        high=0.1,
+    ),
+    boolean(
+        "feet.find_delay",
+        False,
+        "Whether the delay of the feet is found while they stand, and taken out; feet.delay is then what it begins "
+        "with.",
+    ),
+    double(
         "feet.force",
         0.0,
         "Force on the sensor of a foot, on contact_wrench, from which it confirms that the foot stands; 0 where there "

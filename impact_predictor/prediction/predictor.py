@@ -17,6 +17,7 @@ from .types import ContactInput, Foot, Geometry, Moment, Prediction, Sample, Sco
 if TYPE_CHECKING:
     from .deck.tracker import Deck
     from .recorded import Announced
+    from .walking.clock import Delay
 
 
 DEEP = 0.05
@@ -73,6 +74,15 @@ class Contacts(ABC):
 
     def feet(self) -> tuple[Foot, ...]:
         """The feet as the last sample shows them, of a body that has feet."""
+        return ()
+
+    @property
+    def delay(self) -> Delay | None:
+        """How much later than the body its feet are told; None where it has none, or nothing has shown it yet."""
+        return None
+
+    def doubts(self) -> tuple[str, ...]:
+        """What looks wrong in that which is told about the contacts, and what to do; a clause each."""
         return ()
 
     @abstractmethod

@@ -105,6 +105,7 @@ class Walking(NamedTuple):
     s tell nothing any more. From `force` (N) on a force sensor says that its foot stands; 0 where there are none.
     `has_schedule` tells that a planner does publish when the feet are to stand. Without a `robot` the legs have no mass
     and the body is rigid. `friction` and `restitution` of each foot, or one for all; empty where they are the scene's.
+    The stamps of the feet are later than the trunk's by a `delay` in s, which is found by itself with `find_delay`.
     """
 
     feet: tuple[str, ...]
@@ -112,6 +113,8 @@ class Walking(NamedTuple):
     dead_time: float = 0.02
     timeout: float = 0.1
     force: float = 0.0
+    delay: float = 0.0
+    find_delay: bool = False
     has_schedule: bool = False
     robot: Robot | None = None
     friction: tuple[float, ...] = ()

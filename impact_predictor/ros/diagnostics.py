@@ -237,7 +237,7 @@ class FeetReport:
     def __init__(self, body: str, contacts: Contacts | None = None) -> None:
         """Count for a body, "" being the name of a body alone, which may have a model of its joints."""
         self.flaw = ""
-        """What is wrong with its force sensors in the last second, "" where nothing is."""
+        """What is wrong with what is told of its feet, by the last second, "" where nothing is."""
         self._prefix = f"{body}/feet" if body else "feet"
         self._contacts = contacts
         self._feet: tuple[Foot, ...] = ()
@@ -272,18 +272,23 @@ class FeetReport:
     def second_over(self) -> None:
         """Sum up the second that ends, and begin the next."""
         disagree = [name for name, count in sorted(self._disagreed.items()) if count > DISAGREES * self._samples]
-        self.flaw = f"{self._prefix}: the force sensor of {' and '.join(disagree)} does not agree" if disagree else ""
+        doubts = [] if self._contacts is None else list(self._contacts.doubts())
+        if disagree:
+            doubts.insert(0, f"the force sensor of {' and '.join(disagree)} does not agree")
+        self.flaw = f"{self._prefix}: {doubts[0]}" if doubts else ""
         self._begin_second()
 
     def figures(self) -> list[tuple[str, str, object]]:
         """Key, format and value of each figure for /diagnostics; times in s."""
         late, errors = self._late, self._time_errors
-        joints = () if self._contacts is None else self._contacts.unknown_joints
+        joints, delay = ((), None) if self._contacts is None else (self._contacts.unknown_joints, self._contacts.delay)
         found: list[tuple[str, str, object]] = [
             ("standing", "", " ".join([foot.name for foot in self._feet if foot.stands]) or "none"),
             ("landings", "d", self._landings.total()),
             *[(f"landings.{name}", "d", count) for name, count in sorted(self._landings.items())],
             ("joints_left_out", "", " ".join(joints) if joints else None),
+            ("delay", ".5f", None if delay is None else delay.time),
+            ("delay.deviation", ".5f", None if delay is None else delay.deviation),
             ("landings.unannounced", "d", self._unannounced or None),
             ("landings.median_time_error", ".4f", median(errors) if errors else None),
             ("landings.early", "d", sum([one < 0.0 for one in late]) if late else None),

@@ -13,6 +13,7 @@ from ..scene import Scene
 from ..types import ContactInput, Foot, Geometry, Joints, Moment, Sample, Schedule, Status, Touchdown, Wrench
 from ..vectors import add, axes_of, cross, dot, to_world
 from .announcement import ExpectedLanding
+from .clock import Delay, FeetClock
 from .cubic import PointFrame
 from .ground import Ground
 from .landings import FootForces, LandingSchedule, LandingTracker
@@ -45,6 +46,7 @@ class FeetContacts(Contacts):
         self._forces = FootForces(walking)
         self._waiting: deque[Geometry] = deque(maxlen=REMEMBERED)
         self._dues: list[ExpectedLanding | None] = []
+        self._clock = FeetClock(self._count, scene.normal, round(walking.dead_time * NANOSECONDS), walking.delay)
         self._begin()
 
     def _begin(self) -> None:
@@ -52,6 +54,7 @@ class FeetContacts(Contacts):
         self._points = [FootPoint(self.scene, dead_time) for _ in range(self._count)]
         self._ground = Ground(self.scene)
         self._base = BaseMotion()
+        self._clock.begin()
         self._found = Status.ACCEPTED  # what became of the last geometry that met a sample
         self._landings = LandingTracker(
             self.scene, self._machine, self._points, self._base, self._schedule, self._forces
@@ -74,6 +77,7 @@ class FeetContacts(Contacts):
         assert isinstance(other, FeetContacts)
         self.geometry, self.frame_id = other.geometry, other.frame_id
         self._waiting, self._schedule = other._waiting, other._schedule
+        self._clock.follow(other._clock)
         self._begin()
 
     def check(self, stamp: int) -> Status:
@@ -102,6 +106,16 @@ class FeetContacts(Contacts):
         stamp = self._base.samples[-1].stamp
         return tuple([self._foot(number, stamp) for number in range(len(self._walking.feet))])
 
+    @property
+    def delay(self) -> Delay | None:
+        return self._clock.delay
+
+    def doubts(self) -> tuple[str, ...]:
+        if self._walking.find_delay or not self._clock.is_wrong or self.delay is None:
+            return ()
+        said = f"the feet are {self.delay}: set feet.delay to {self.delay.time:.4f}, or feet.find_delay to true"
+        return (said,)
+
     def forget(self) -> None:
         self.settled.extend(self._landings.finish())
         self.stamp = None
@@ -117,7 +131,11 @@ class FeetContacts(Contacts):
         status = order_of(geometry.stamp, last)
         if status is Status.ACCEPTED:
             self.geometry, self.frame_id = geometry, geometry.frame_id
-            self._waiting.append(geometry)
+            if self._walking.find_delay and self._clock.correct():
+                # What was learnt of ground, noise and swings has the old delay in it.
+                self._waiting.clear()
+                self.forget()
+            self._waiting.append(geometry._replace(stamp=geometry.stamp - round(self._clock.taken * NANOSECONDS)))
             return self._see()
         if last is not None and last - geometry.stamp > PAUSE:
             self.geometry = None
@@ -130,7 +148,8 @@ class FeetContacts(Contacts):
         waiting, status = self._waiting, Status.ACCEPTED
         while self._base.samples and waiting and waiting[0].stamp <= self._base.samples[-1].stamp:
             geometry = waiting.popleft()
-            found = self._frames(geometry, self._base.at(geometry.stamp))
+            base = self._base.at(geometry.stamp)
+            found = self._frames(geometry, base)
             if isinstance(found, Status):
                 status = self._found = found
                 continue
@@ -138,6 +157,11 @@ class FeetContacts(Contacts):
             landed = [point.add(frame, self._ground) for point, frame in zip(self._points, found, strict=True)]
             for i in [i for i, has_landed in enumerate(landed) if has_landed]:
                 self._landings.land(i)
+            for i, point in enumerate(self._points):
+                if point.stands:
+                    self._clock.stand(i, point.since, found[i], base, geometry.points[i])
+                else:
+                    self._clock.swing(i, point.since)
         return status
 
     def _frames(self, geometry: Geometry, base: Sample) -> list[PointFrame] | Status:

@@ -16,7 +16,19 @@ from ...stamps import NANOSECONDS
 from ..planar import GRAZES, ORIGIN, direction_of
 from ..scene import Robot, Scene, six_numbers
 from ..types import Geometry, Joints, Sample, Status
-from ..vectors import Axes, add, axes_of, cross, lines, tensor_to_world, times, to_body, to_world, turned
+from ..vectors import (
+    Axes,
+    add,
+    axes_of,
+    cross,
+    lines,
+    rotation_between,
+    tensor_to_world,
+    times,
+    to_body,
+    to_world,
+    turned,
+)
 
 SINGULAR = 1e-12  # a principal moment of inertia below this part of the largest one is rounding
 NOTHING = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -54,15 +66,17 @@ class BaseMotion:
         self._line = None
 
     def at(self, stamp: int) -> Sample:
-        """The base at a stamp in ns, from the nearest of its last samples; the older of two that are equally near."""
-        near = self.samples[-1]
-        for sample in reversed(self.samples):
-            if abs(sample.stamp - stamp) > abs(near.stamp - stamp):
+        """The base at a stamp in ns, between its last samples or beyond them."""
+        after = self.samples[-1]
+        for before in reversed(self.samples):
+            if before.stamp == stamp:
+                return before
+            if before.stamp < stamp:
+                if before is not after:
+                    return between(before, after, stamp)
                 break
-            near = sample
-        if near.stamp == stamp:
-            return near
-        return extrapolated(near, None, (stamp - near.stamp) / NANOSECONDS)._replace(stamp=stamp)
+            after = before
+        return extrapolated(after, None, (stamp - after.stamp) / NANOSECONDS)._replace(stamp=stamp)
 
     @property
     def line(self) -> TwistLine | None:
@@ -98,6 +112,25 @@ def extrapolated(sample: Sample, line: TwistLine | None, time: float) -> Sample:
         orientation=orientation,
         linear=to_body(then, (x + a * time, y + b * time, z + c * time)),
         angular=to_body(then, (u + p * time, v + q * time, w + r * time)),
+    )
+
+
+def between(before: Sample, after: Sample, stamp: int) -> Sample:
+    """A base at a stamp in ns between two samples: twists lie on a line, and the pose turns and bends with them."""
+    span = (after.stamp - before.stamp) / NANOSECONDS
+    part = (stamp - before.stamp) / (after.stamp - before.stamp)
+    bend = 0.5 * part * (1.0 - part) * span
+    axes = axes_of(before.orientation)
+    gain = add(to_world(axes_of(after.orientation), after.linear), to_world(axes, before.linear), -1.0)
+    spin = add(after.angular, before.angular, -1.0)
+    place = add(before.position, add(after.position, before.position, -1.0), part)
+    rotation = add(times(rotation_between(before.orientation, after.orientation), part), spin, -bend)
+    return before._replace(
+        stamp=stamp,
+        position=add(place, gain, -bend),
+        orientation=turned(before.orientation, rotation),
+        linear=add(before.linear, add(after.linear, before.linear, -1.0), part),
+        angular=add(before.angular, spin, part),
     )
 
 

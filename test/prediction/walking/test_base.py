@@ -60,13 +60,25 @@ def test_from_few_samples_or_ones_that_come_at_once_the_twist_of_now_is_kept(per
     assert then.angular == pytest.approx(last.angular, abs=1e-15)
 
 
-@pytest.mark.parametrize(("offset", "nearest"), [(0, 4), (-1_000_000, 4), (-1_500_000, 3), (1_000_000, 4)])
-def test_between_samples_the_nearest_one_is_carried_on(offset: int, nearest: int) -> None:
+@pytest.mark.parametrize("offset", [0, -1_000_000, -1_250_000, -2_000_000, -PERIOD])
+def test_between_samples_a_base_moves_at_a_constant_acceleration(offset: int) -> None:
+    samples = [sample(k * PERIOD) for k in range(5)]
+    found, true = motion_of(samples).at(samples[-1].stamp + offset), sample(samples[-1].stamp + offset)
+    assert found.stamp == true.stamp
+    assert found.position == pytest.approx(true.position, abs=1e-12)
+    assert found.orientation == pytest.approx(true.orientation, abs=1e-12)
+    # Along the axes of the base, which turn, the velocity is no line: 2 rad/s turn 3 m/s^2 by 4e-5 m/s meanwhile.
+    assert found.linear == pytest.approx(true.linear, abs=4e-5)
+    assert found.angular == pytest.approx(true.angular, abs=1e-12)
+
+
+@pytest.mark.parametrize(("offset", "end"), [(-4 * PERIOD - 1_000_000, 0), (1_000_000, 4)])
+def test_beyond_its_samples_the_nearest_one_is_carried_on(offset: int, end: int) -> None:
     samples = [sample(k * PERIOD) for k in range(5)]
     stamp = samples[-1].stamp + offset
     found = motion_of(samples).at(stamp)
     assert found.stamp == stamp
-    age = (stamp - samples[nearest].stamp) * 1e-9
-    velocity = to_world(axes_of(samples[nearest].orientation), samples[nearest].linear)
-    expected = [p + v * age for p, v in zip(samples[nearest].position, velocity, strict=True)]
+    age = (stamp - samples[end].stamp) * 1e-9
+    velocity = to_world(axes_of(samples[end].orientation), samples[end].linear)
+    expected = [p + v * age for p, v in zip(samples[end].position, velocity, strict=True)]
     assert found.position == pytest.approx(expected, abs=1e-15)
