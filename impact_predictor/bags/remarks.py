@@ -155,6 +155,12 @@ def remarks(
     for one in inputs:
         if one.kind in (CONTACT_GEOMETRY, JOINTS) and one.body is not None:
             said += [f"{names[one]}: {doubt}" for doubt in _doubts(run, one.body)]
+    for body, record in run.bodies.items():
+        contacts, walking = run.monitor.predictors[body].contacts, record.scene.walking
+        doubts = list(contacts.doubts())
+        if walking is not None and walking.find_delay:
+            doubts.append(f"the feet are {contacts.delay or 'not known to be late: too few of them have stood'}")
+        said += [f"{body}: {doubt}" if body else doubt for doubt in doubts]
     if run.comparison is not None and (later := run.comparison.later_landings()):
         landings = "1 true landing is" if later == 1 else f"{later:,} true landings are"
         said.append(f"{landings} after the last sample that was accepted, and not counted")
@@ -164,9 +170,7 @@ def remarks(
 def _doubts(run: Run, body: str) -> list[str]:
     """What is left out of the messages about contact points, and what speaks against the scene although they fit it."""
     record, contacts = run.bodies[body], run.monitor.predictors[body].contacts
-    said, walking, left_out = list(contacts.doubts()), record.scene.walking, contacts.unknown_joints
-    if walking is not None and walking.find_delay:
-        said.append(f"the feet are {contacts.delay or 'not yet known to be late: too few of them have stood'}")
+    said, left_out = [], contacts.unknown_joints
     if left_out:
         unknown = listed(left_out, _MOST_NAMED)
         said.append(f"robot.urdf does not know {unknown}, so what is told of these joints is left out")

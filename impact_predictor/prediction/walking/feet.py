@@ -15,9 +15,11 @@ from ..vectors import add, axes_of, cross, dot, to_world
 from .announcement import ExpectedLanding
 from .clock import Delay, FeetClock
 from .cubic import PointFrame
+from .forces import FootForces
 from .ground import Ground
-from .landings import FootForces, LandingSchedule, LandingTracker
+from .landings import LandingTracker
 from .mechanism import REMEMBERED, ArticulatedMachine, BaseMotion, LeggedMachine, RigidMachine
+from .schedule import LandingSchedule
 from .stance import FootPoint
 
 
@@ -111,10 +113,10 @@ class FeetContacts(Contacts):
         return self._clock.delay
 
     def doubts(self) -> tuple[str, ...]:
-        if self._walking.find_delay or not self._clock.is_wrong or self.delay is None:
-            return ()
-        said = f"the feet are {self.delay}: set feet.delay to {self.delay.time:.4f}, or feet.find_delay to true"
-        return (said,)
+        found, delay = [self._schedule.doubt], self.delay
+        if delay is not None and self._clock.is_wrong and not self._walking.find_delay:
+            found.append(f"the feet are {delay}: set feet.delay to {delay.time:.4f}, or feet.find_delay to true")
+        return tuple(filter(None, found))
 
     def forget(self) -> None:
         self.settled.extend(self._landings.finish())

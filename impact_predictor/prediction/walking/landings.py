@@ -7,25 +7,22 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Sequence
-from itertools import pairwise
 from math import hypot
 from operator import itemgetter
 from typing import NamedTuple
 
 from ...stamps import NANOSECONDS
-from ..checks import LARGEST, followed
 from ..planar import posture_of
-from ..scene import Scene, Walking
+from ..scene import Scene
 from ..score import LONGEST, MEASURED, Pending, Track
-from ..types import Landing, Sample, Schedule, Score, Status, Touchdown, Vector3, Wrench
-from ..vectors import dot, mean
+from ..types import Landing, Sample, Score, Status, Touchdown, Vector3
+from ..vectors import mean
 from .announcement import ExpectedLanding
+from .forces import FootForces
 from .impact import LandingPoint, touchdown_of
 from .mechanism import BaseMotion, LeggedMachine, TwistLine, extrapolated
+from .schedule import LandingSchedule
 from .stance import FootPoint
-
-PLANNED = 10_000_000_000  # ns for which what was planned is remembered
-FURTHEST = 1_000_000_000  # ns from a planned landing beyond which a landing is another one, which nobody planned
 
 
 class FootCollision(NamedTuple):
@@ -148,7 +145,7 @@ class LandingTracker:
         pending.landing = Landing(
             foot=foot,
             stamp=stamp,
-            late=self._schedule.late(foot, stamp),
+            late=self._schedule.landed(foot, stamp),
             confirmed=self._forces.agree(foot, True, self._base.samples[-1].stamp),
             history=tuple(errors),
             point=None if len(new) == each else " ".join(part),
@@ -264,65 +261,3 @@ class LandingTracker:
             last = min([due.stamp for due in own.values()], default=0) + self._contact_time
             own = {i: due for i, due in own.items() if due.stamp <= last}
         return own
-
-
-class LandingSchedule:
-    """The planned landings of some feet; a schedule replaces what was planned from its first time on."""
-
-    def __init__(self, feet: Sequence[str]) -> None:
-        self._stances: dict[str, list[tuple[int, bool]]] = {foot: [] for foot in feet}
-        self._landings: dict[str, list[int]] = {foot: [] for foot in feet}
-
-    def set(self, schedule: Schedule) -> Status:
-        times = schedule.times
-        if not set(schedule.feet) <= set(self._stances):
-            return Status.FEET_CHANGED
-        fits = len(schedule.stands) == len(times) and all(len(one) == len(schedule.feet) for one in schedule.stands)
-        if not fits or any(b <= a for a, b in pairwise(times)):
-            return Status.MALFORMED
-        if not times:
-            return Status.ACCEPTED
-        for number, foot in enumerate(schedule.feet):
-            kept = [one for one in self._stances[foot] if times[0] - PLANNED < one[0] < times[0]]
-            following = [(time, stands[number]) for time, stands in zip(times, schedule.stands, strict=True)]
-            # Planners tell the same stance again and again: only its changes are kept.
-            told = [*kept, *following]
-            planned = told[:1] + [one for before, one in pairwise(told) if one[1] is not before[1]]
-            self._stances[foot] = planned
-            self._landings[foot] = [time for (_, before), (time, now) in pairwise(planned) if now and not before]
-        return Status.ACCEPTED
-
-    def late(self, foot: str, stamp: int) -> float | None:
-        """How much later than planned, in s, a foot lands at a stamp in ns; None where none is planned near it."""
-        late = min([stamp - planned for planned in self._landings[foot]], key=abs, default=None)
-        return None if late is None or abs(late) > FURTHEST else late / NANOSECONDS
-
-
-class FootForces:
-    """The last force on each foot of a machine."""
-
-    def __init__(self, walking: Walking) -> None:
-        self._feet = walking.feet
-        self._least = walking.force**2
-        self._timeout = round(walking.timeout * NANOSECONDS)
-        self._pressed: dict[str, tuple[int, bool]] = {}
-
-    def set(self, wrench: Wrench) -> Status:
-        foot, square = wrench.frame_id, dot(wrench.force, wrench.force)
-        if foot not in self._feet:
-            return Status.WRONG_FRAME
-        if not square < LARGEST:
-            return Status.NOT_FINITE
-        status, last = followed(wrench.stamp, self._pressed[foot][0] if foot in self._pressed else None)
-        if status is Status.ACCEPTED:
-            self._pressed[foot] = wrench.stamp, square >= self._least
-        elif last is None:
-            self._pressed.pop(foot, None)
-        return status
-
-    def agree(self, foot: str, stands: bool, stamp: int) -> bool | None:
-        """Whether the sensor of a foot shows the same stance near a stamp in ns; None where it shows nothing then."""
-        pressed = self._pressed.get(foot)
-        if pressed is None or abs(stamp - pressed[0]) > self._timeout:
-            return None
-        return pressed[1] is stands

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from impact_predictor.prediction.types import Schedule, Status
-from impact_predictor.prediction.walking.landings import LandingSchedule
+from impact_predictor.prediction.walking.schedule import LandingSchedule
 
 MS = 1_000_000
 
@@ -66,3 +66,26 @@ def test_a_landing_far_from_every_planned_one_is_not_late() -> None:
     plan.set(Schedule(0, ("LF",), (0, 1_000_000_000), ((False,), (True,))))
     assert plan.late("LF", 1_900_000_000) == 0.9
     assert plan.late("LF", 60_000_000_000) is None
+
+
+@pytest.mark.parametrize(("offset", "said"), [(1_700_000_000_000, "1.7e+09 s after"), (-3_000, "3 s before")])
+def test_a_plan_in_another_clock_is_named_with_how_far_it_is_off(offset: int, said: str) -> None:
+    plan = LandingSchedule(("left",))
+    times = tuple((offset + k * 250 + 50_000) * MS for k in range(200))
+    plan.set(Schedule(0, ("left",), times, tuple((k % 2 == 1,) for k in range(200))))
+    first = 50_250 if offset > 0 else 99_750
+    for _ in range(5):
+        assert not plan.doubt
+        assert plan.landed("left", first * MS) is None
+    assert plan.doubt.startswith("the last 5 landings are more than 1 s from what schedule plans")
+    assert f"which is {said} them: let the planner stamp by the clock of odom" in plan.doubt
+    assert plan.landed("left", times[1]) == 0.0
+    assert not plan.doubt
+
+
+def test_feet_of_which_nothing_is_planned_put_no_plan_in_doubt() -> None:
+    plan = LandingSchedule(("left", "right"))
+    plan.set(Schedule(0, ("right",), (0, 200 * MS), ((False,), (True,))))
+    for k in range(20):
+        plan.landed("left", k * 10_000 * MS)
+    assert not plan.doubt
