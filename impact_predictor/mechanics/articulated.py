@@ -1,8 +1,9 @@
 """Whole-body mechanics of a machine with joints, from its URDF through Pinocchio: `WholeBody`.
 
 Its generalized velocities are the linear and the angular velocity of the base, the root link of the URDF, along the
-base's axes, and then one for each joint. An impact is over before joint torques, which are finite, do anything: the
-joints are free in it, so that the mobility of its contacts is W = G M(q)^-1 G^T with the whole-body inertia M.
+base's axes, and then one for each joint. The mobility of its contacts is W = G M^-1 G^T with the whole-body inertia M,
+which has the armature on its diagonal: a rotor behind a gear weighs, seen from its joint, its inertia times the square
+of the gear's ratio (Featherstone, "Rigid Body Dynamics Algorithms", 2008, section 9.6).
 """
 
 from __future__ import annotations
@@ -24,8 +25,8 @@ class WholeBody:
     """A model of `urdf`, a file, with the points at the origins of its `frames` (links or joints) as contacts.
 
     `joints` are the names of the joints that move, in the model's order, and `mass` in kg is that of all links. `place`
-    it before anything else is read: `inertia` (n, n) is then M(q), `points` (k, 3) in m and `jacobians` (k, 3, n) are
-    those of the frames' origins, along the base's axes.
+    it before anything else is read: `inertia` (n, n) is then M(q), with the `armature` of each joint (kg m^2, or kg),
+    `points` (k, 3) in m and `jacobians` (k, 3, n) are those of the frames' origins, along the base's axes.
 
     Raises:
         InputError: Pinocchio is not installed, there is no such file or frame, or the file is not the URDF of a machine
@@ -50,6 +51,7 @@ class WholeBody:
         self._endless = [(i, joint.idx_q) for i, joint in enumerate(moving) if joint.nq == 2]
         # The base is at the origin and not turned, so that the model's world is its frame.
         self._q: NDArray[np.float64] = self._pinocchio.neutral(self._model)
+        self.armature: NDArray[np.float64] = np.zeros(len(self.joints))
         self.inertia: NDArray[np.float64] = np.zeros((self._model.nv, self._model.nv))
         self.points: NDArray[np.float64] = np.zeros((len(frames), 3))
         self.jacobians: NDArray[np.float64] = np.zeros((len(frames), 3, self._model.nv))
@@ -62,6 +64,7 @@ class WholeBody:
             self._q[place : place + 2] = np.cos(positions[i]), np.sin(positions[i])
         pinocchio, model, data = self._pinocchio, self._model, self._data
         self.inertia = pinocchio.crba(model, data, self._q)
+        self.inertia = self.inertia_with(self.armature)
         pinocchio.computeJointJacobians(model, data, self._q)
         pinocchio.updateFramePlacements(model, data)
         aligned = pinocchio.ReferenceFrame.LOCAL_WORLD_ALIGNED
@@ -79,18 +82,33 @@ class WholeBody:
         moved: NDArray[np.float64] = self.jacobians[:, :, 6:] @ rates
         return moved
 
+    def inertia_with(self, added: NDArray[np.float64]) -> NDArray[np.float64]:
+        """M with more inertia `added` at each joint."""
+        inertia = self.inertia.copy()
+        inertia.reshape(-1)[6 * len(inertia) + 6 :: len(inertia) + 1] += added
+        return inertia
+
     def mobility(
-        self, points: Sequence[int], ways: NDArray[np.float64]
+        self,
+        points: Sequence[int],
+        ways: NDArray[np.float64],
+        added: NDArray[np.float64] | None = None,
+        are_held: bool = False,
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """W = G M^-1 G^T in 1/kg, and M^-1 G^T, the change of the generalized velocities by each unit impulse.
 
         A row of G is the velocity of one of the `points`, given by their indices, along one of the `ways` (k, 3), unit
-        vectors; rows of one point follow each other.
+        vectors; rows of one point follow each other. M may have more inertia `added` at each joint; joints that
+        `are_held` do not move.
         """
-        rows = (ways @ self.jacobians[list(points)]).reshape(-1, len(self.inertia))
-        root = np.linalg.inv(np.linalg.cholesky(self.inertia))
+        inertia = self.inertia if added is None else self.inertia_with(added)
+        size = 6 if are_held else len(inertia)
+        rows = (ways @ self.jacobians[list(points), :, :size]).reshape(-1, size)
+        root = np.linalg.inv(np.linalg.cholesky(inertia[:size, :size]))
         half = root @ rows.T
-        return half.T @ half, root.T @ half
+        moved = np.zeros((len(inertia), len(rows)))
+        moved[:size] = root.T @ half
+        return half.T @ half, moved
 
 
 def _pinocchio() -> Any:

@@ -24,6 +24,8 @@ OF_FEET = {
 }
 """What a parameter must be for a machine that walks, and why."""
 
+ROBOT = tuple(name for name in PARAMETERS if name.startswith("robot.") and name != "robot.urdf")
+
 OFF = 0.01
 """A body may be placed this part of its size above or below its support: its place was measured with a tape."""
 
@@ -134,13 +136,27 @@ def _check_feet(one: _Given) -> None:
                 "give one number for each foot, or one for all of them"
             )
     frames, named = len(values["robot.frames"]), one.named("robot.frames")
-    if frames and not values["robot.urdf"] and one.is_own("robot.frames"):
-        raise InputError(f"{named} are frames of a model: give its file as robot.urdf")
+    for name in ROBOT:
+        if not values["robot.urdf"] and values[name] != PARAMETERS[name].default and one.is_own(name):
+            raise InputError(f"{one.named(name)} is for the model of a machine: give its file as robot.urdf")
     if values["robot.urdf"] and frames != len(values[feet]) * values["feet.points"]:
         raise InputError(
             f"{named} has {frames} names{one.of}, but feet.names has {len(values[feet])} and feet.points "
             f"is {values['feet.points']}: give one frame for each point of each foot"
         )
+
+    gains = [name for name in ("robot.kp", "robot.kd") if values[name]]
+    if bool(gains) is not (values["robot.drives"] == "pd"):
+        raise InputError(
+            f"{one.named('robot.drives')} is {values['robot.drives']}{one.of} with "
+            f"{' and '.join(gains) or 'no gains'}: give pd and at least one of robot.kp and robot.kd, or neither"
+        )
+    for name in ("robot.armature", *gains):
+        if len(values[name]) not in (0, 1, len(values["robot.joints"])):
+            raise InputError(
+                f"{one.named(name)} has {len(values[name])} numbers{one.of}, but robot.joints has "
+                f"{len(values['robot.joints'])} names: give one number for all joints, or name each joint there"
+            )
 
 
 def _check_place(one: _Given) -> None:

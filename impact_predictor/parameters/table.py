@@ -76,6 +76,15 @@ _TABLE: Final = (
         "How long a contact is compressed: impacts on points that close within it overlap; 0 keeps them apart.",
         high=1.0,
     ),
+    double(
+        "contact.stiffness",
+        0.0,
+        "Stiffness of a foot on the ground, which tells how long the drives of a robot work until the force of its "
+        "contact has its first peak; 0 where it is not known: contact.merge and contact.time tell that then.",
+        unit="N/m",
+        low=0.0,
+        high=1e12,
+    ),
     text("support.frame", "", "frame_id that odom must have; empty accepts any.", shared=True, fixed=SUPPORT),
     doubles(
         "support.normal",
@@ -400,6 +409,50 @@ _TABLE: Final = (
         "The frame in robot.urdf of each contact point of the feet, in the order of feet.names.",
         flaw=feet_flaw,
         fixed=TOPICS,
+    ),
+    texts(
+        "robot.joints",
+        (),
+        "Names of the joints of robot.urdf, in whose order robot.armature, robot.kp and robot.kd are given; only where "
+        "one of these has more than one number.",
+        flaw=feet_flaw,
+        fixed=COMPUTED,
+    ),
+    doubles(
+        "robot.armature",
+        (),
+        "Inertia of the rotor of each joint, seen from the joint (of a prismatic one in kg), or one number for all of "
+        "them. Left out, rotors weigh nothing.",
+        unit="kg m^2",
+        low=0.0,
+        high=1e9,
+        fixed=COMPUTED,
+    ),
+    text(
+        "robot.drives",
+        "free",
+        "What the drives do in an impact: nothing (free), hold every joint (held), or follow the gains robot.kp and "
+        "robot.kd over contact.time (pd).",
+        choices=("free", "held", "pd"),
+        fixed=COMPUTED,
+    ),
+    doubles(
+        "robot.kp",
+        (),
+        "With robot.drives pd, gain of each joint on its position, or one for all of them.",
+        unit="N m/rad",
+        low=0.0,
+        high=1e9,
+        fixed=COMPUTED,
+    ),
+    doubles(
+        "robot.kd",
+        (),
+        "With robot.drives pd, gain of each joint on its velocity, or one for all of them.",
+        unit="N m s/rad",
+        low=0.0,
+        high=1e9,
+        fixed=COMPUTED,
     ),
 )
 

@@ -38,6 +38,7 @@ SWITCHES: Final = {
     "tilt": "source",
     "feet": "feet.names",
     "articulated inertia": "feet.names robot.urdf",
+    "drives": "feet.names robot.urdf robot.drives",
     "force sensors": "feet.names feet.force",
     "schedule": "feet.names feet.has_schedule",
     "friction of feet": "feet.names feet.friction",
@@ -54,6 +55,7 @@ ON: Final = {
     "support.extrapolation": {"harmonic"},
     "source": {"imu"},
     "executor": {"events"},
+    "robot.drives": {"held", "pd"},
 }
 """The choices that switch a feature on; of every other parameter all values do but nothing, zero and false."""
 
@@ -91,10 +93,20 @@ class Watching(NamedTuple):
 
 
 class Robot(NamedTuple):
-    """The model of an articulated machine: a file `urdf`, and the frame in it of each point of the feet, in order."""
+    """The model of an articulated machine: a file `urdf`, and the frame in it of each point of the feet, in order.
+
+    `armature` (kg m^2) of each joint is the inertia of its rotor, seen from the joint. Its `drives` are "free", "held",
+    or "pd", with the gains `kp` (N m/rad) and `kd` (N m s/rad) of each joint. One number is that of all joints; several
+    are in the order of the names `joints`. Of prismatic joints the units are kg, N/m and N s/m.
+    """
 
     urdf: str
     frames: tuple[str, ...]
+    joints: tuple[str, ...] = ()
+    armature: tuple[float, ...] = ()
+    drives: str = "free"
+    kp: tuple[float, ...] = ()
+    kd: tuple[float, ...] = ()
 
 
 class Walking(NamedTuple):
@@ -131,7 +143,7 @@ class Scene(NamedTuple):
     `inertia` is about the mass centre; `points` are the contact points, empty where they come with the samples;
     `normal` is the support's unit normal and `height` its distance from the origin along it, in the frame of the
     samples; `tolerance` the gap in m below which a point touches; `contact_time` in s how long a contact lasts, and
-    `merge` its compression;
+    `merge` its compression, unless its `stiffness` in N/m tells that of a foot (0: it is not known);
     `twist_window` in s the time over which the source averages its twist, 0 for a twist of the very instant;
     `horizon` in s how far ahead a touchdown is announced; `samples` how many points carry uncertainty through an
     impact, 0 for none, with the standard deviations of friction and restitution; `margins` whether a touchdown keeps
@@ -159,6 +171,7 @@ class Scene(NamedTuple):
     tolerance: float = 0.005
     contact_time: float = 0.005
     merge: float = 0.0015
+    stiffness: float = 0.0
     poses: bool = False
     gap_deviation: float = -1.0
     law_deviation: float = 0.15
@@ -184,7 +197,7 @@ class Scene(NamedTuple):
         """The scene of validated parameters (see `impact_predictor.parameters.validation`)."""
         normal = values["support.normal"]
         length = hypot(*normal)
-        robot = Robot(values["robot.urdf"], values["robot.frames"]) if values["robot.urdf"] else None
+        robot = _record(Robot, "robot", values) if values["robot.urdf"] else None
         motion, feet, pull = values["support.motion"], values["feet.names"], hypot(*values["gravity"])
         points = () if values["body.radius"] or feet else values["body.contact_points"]
         return cls(
@@ -201,6 +214,7 @@ class Scene(NamedTuple):
             tolerance=values["contact.tolerance"],
             contact_time=values["contact.time"],
             merge=values["contact.merge"],
+            stiffness=values["contact.stiffness"],
             poses=values["odom.twist"] == "poses",
             gap_deviation=values["uncertainty.gap"],
             law_deviation=values["uncertainty.law"],

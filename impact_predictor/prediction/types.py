@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from enum import IntEnum, IntFlag
+from collections.abc import Callable, Sequence
+from enum import Enum, IntEnum, IntFlag
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from ..mechanics.types import ContactState, Flag, Mode, Outcome, Twist, Vector
@@ -44,6 +44,17 @@ class Status(IntEnum):
     BELOW_GROUND = 20
     WRONG_JOINTS = 21
     SINGULAR_INERTIA = 22
+
+
+class Bound(Enum):
+    """What the impulses of a walking machine are, for legs and drives give way as no scene tells exactly."""
+
+    LOWER = "lower bound"
+    """Joints without drives and rotors, which give way as much as they can."""
+    ESTIMATE = "estimate"
+    """Armature or drives are known."""
+    UPPER = "upper bound"
+    """One rigid body, or joints that are held."""
 
 
 class Leftover(IntFlag):
@@ -194,7 +205,8 @@ class Foot(NamedTuple):
     `gap` (m) of its lowest point and how fast that approaches the ground (m/s); `lead_time` in s until it lands and
     `landing_speed` in m/s then, None where no landing lies within the horizon; `late` in s after the planned landing,
     negative before it, None without a plan; `confirmed` whether a force sensor agrees, None without one. `position` of
-    its lowest point, and the `place` where it lands, in m, in the frame of the sample.
+    its lowest point, and the `place` where it lands, in m, in the frame of the sample. `impulse` in N s is what it gets
+    in the impact of the touchdown ahead, and `bound` what that is; None where it takes no part.
     """
 
     name: str
@@ -208,6 +220,8 @@ class Foot(NamedTuple):
     confirmed: bool | None = None
     position: Vector3 | None = None
     place: Vector3 | None = None
+    impulse: Vector3 | None = None
+    bound: Bound | None = None
 
 
 class Landing(NamedTuple):
@@ -289,6 +303,9 @@ class Touchdown(NamedTuple):
     `lateral` the velocity along the axis in m/s; `closing_spread` the time in s between the closing of the two ends of
     the striking edge; `uncertainty` and `planar` where the scene asks for them, `planar` being the impact in the plane
     whose margins can be read. `before_6d` and `after_6d` are the whole twists, `contacts` the points that take part.
+
+    Of a walking machine `bound` tells what the impulses are, and `drives` which part of them its drives make; `jumps`
+    are the changes of the velocities of its `joints` (rad/s or m/s), of which one rigid body has none.
     """
 
     lead_time: float
@@ -319,11 +336,26 @@ class Touchdown(NamedTuple):
     contacts: tuple[PointOutcome, ...] = ()
     uncertainty: Uncertainty | None = None
     planar: Outcome | None = None
+    bound: Bound | None = None
+    drives: float = 0.0
+    joints: tuple[str, ...] = ()
+    jumps: tuple[float, ...] = ()
 
     @property
     def kind(self) -> str:
         """What stands and what strikes (`kind_of`)."""
         return kind_of(self.old, self.new)
+
+
+def impulse_at(touchdown: Touchdown, points: Sequence[int]) -> Vector3 | None:
+    """The impulse in N s on some points together, None where none of them takes part in a touchdown."""
+    x = y = z = 0.0
+    takes_part = False
+    for contact in touchdown.contacts:
+        if contact.point in points:
+            (u, v, w), takes_part = contact.impulse, True
+            x, y, z = x + u, y + v, z + w
+    return (x, y, z) if takes_part else None
 
 
 class Score(NamedTuple):

@@ -41,6 +41,8 @@ class FootLandings(NamedTuple):
     impulses: list[tuple[float, float]]
     length: float
     period: float
+    bounds: frozenset[str] = frozenset()
+    """What the impulses are."""
 
 
 def feet_of(machine: str, gait: Gait, rows: Iterable[TouchdownRow]) -> list[FootLandings]:
@@ -72,6 +74,7 @@ def feet_of(machine: str, gait: Gait, rows: Iterable[TouchdownRow]) -> list[Foot
                 impulses=[(time, hypot(*row.impulse)) for time, row in landings if row.impulse],
                 length=length,
                 period=1e3 * length / max(1, gait.samples - 1),
+                bounds=frozenset(row.bound for _, row in landings if row.bound),
             )
         )
     return feet
@@ -96,7 +99,9 @@ def write_gait(path: str | os.PathLike[str], feet: Sequence[FootLandings], title
             said = f"no error: the record tells a landing up to one sample ({period:.3g} ms) late"
             errors.axhspan(-period, 0.0, color="#eeeeee", zorder=0, label=said)
         speeds.set_title("Speed of the foot in its last sample in the air")
-        impulses.set_title("Impulse that it gets where it lands with that speed")
+        bounds = ", ".join(sorted(frozenset().union(*(foot.bounds for foot in feet))))
+        said = f" ({bounds})" if bounds else ""
+        impulses.set_title(f"Impulse that it gets where it lands with that speed{said}")
         for axes, values, unit in ((errors, "errors", "ms"), (speeds, "speeds", "m/s"), (impulses, "impulses", "N s")):
             axes.set_ylabel(unit)
             for foot in feet:

@@ -151,6 +151,7 @@ def lead_time_table(errors: Sequence[SpanErrors]) -> Table:
 
 def landings_table(landings: Sequence[TouchdownRow]) -> Table:
     """One row for each landing; below the impulse of the foot that of the others, if they get any."""
+    bounds = sorted({row.bound.replace(" ", "\n") for row in landings if row.bound})
     columns = [
         _when(landings),
         Column("foot", lambda row: f"{row.foot} {row.point or ''}".rstrip(), left=True),
@@ -158,7 +159,7 @@ def landings_table(landings: Sequence[TouchdownRow]) -> Table:
         Column(f"error\nms, at\n{1e3 * LEAD_TIMES[0]:.0f} ms", lambda row: _ms(row.time_errors[0], 1, "+")),
         Column("predicted\nmode", lambda row: row.mode.name, left=True),
         Column("foot's\nspeed\nm/s", lambda row: fixed(row.landing_speed, 3)),
-        Column("N s at\nfoot,\nothers", _impulses),
+        Column("\n".join(["N s at\nfoot,\nothers", *bounds]), _impulses),
         Column("body's\nchange\nm/s", lambda row: fixed(row.velocity_change and hypot(*row.velocity_change[:2]), 3)),
         Column("late\nms", lambda row: _ms(row.late, 1, "+"), optional=True),
         Column("force\nagrees", lambda row: {True: "yes", False: "no"}.get(row.confirmed, NONE), optional=True),

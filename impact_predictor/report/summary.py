@@ -152,6 +152,7 @@ class Tally:
         self._reasons: Counter[str] = Counter()
         self._feet: set[tuple[str, str]] = set()
         self._landings = 0
+        self._bounds: set[str] = set()
         self._known: dict[str, array[float]] = defaultdict(lambda: array("d"))
         """The numbers that rows have, by what they tell; of landings all but `relative`."""
         self.add(rows)
@@ -162,6 +163,7 @@ class Tally:
             if row.foot:
                 self._landings += 1
                 self._feet.add((row.body, row.foot))
+                self._bounds |= {row.bound} if row.bound else set()
                 numbers = {
                     "predicted": row.time_error,
                     # What follows of a foot that stands already comes at once after its first part.
@@ -214,5 +216,6 @@ class Tally:
         if known["impulse"]:
             speeds = f"{quantile(known['speed'], 0.5):.3f} m/s in the median, at most {max(known['speed']):.3f} m/s"
             most = f"{max(known['impulse']):.2f} N s to a foot and {max(known['change']):.3f} m/s to the body"
-            told.append(f"Feet come down with {speeds}; that gives at most {most}.")
+            bound = f" ({', '.join(sorted(self._bounds))})" if self._bounds else ""
+            told.append(f"Feet come down with {speeds}; that gives at most {most}{bound}.")
         return told

@@ -81,6 +81,7 @@ class TouchdownRow(NamedTuple):
     landing_mode: Annotated[Mode | None, TouchdownField("mode", of_foot=True)] = None
     impulse: Annotated[Vector | None, TouchdownField("impulse", "N s", of_foot=True)] = None
     others_impulse: Annotated[Vector | None, TouchdownField("impulse", "N s", of_foot=True)] = None
+    bound: Annotated[str | None, TouchdownField("string", of_foot=True)] = None
     velocity_change: Annotated[Twist | None, TouchdownField("twist", of_foot=True)] = None
     time_errors: tuple[float | None, ...] = ()
     cost: float | None = None
@@ -194,6 +195,7 @@ def row_of(body: str, score: Score, cost: float | None = None) -> TouchdownRow:
         landing_mode=impact and impact.mode,
         impulse=impact and impact.impulses[1],
         others_impulse=impact.impulses[0] if impact and impact.old else None,
+        bound=impact and impact.bound and impact.bound.value,
         velocity_change=impact and Twist(*map(sub, impact.after, impact.before)),
     )
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import hypot, pi, sqrt
+from math import hypot, nan, pi, sqrt
 from typing import Any
 
 import pytest
@@ -155,7 +155,18 @@ REFUSED: list[tuple[dict[str, Any], str]] = [
         "robot.frames has 3 names, but feet.names has 2 and feet.points is 1: give one frame for each point of each",
     ),
     ({**FEET, "robot.urdf": "a.urdf"}, "robot.frames has 0 names, but"),
-    ({**FEET, "robot.frames": ["a", "b"]}, "robot.frames are frames of a model: give its file as robot.urdf"),
+    ({**FEET, "robot.frames": ["a", "b"]}, "robot.frames is for the model of a machine: give its file as robot.urdf"),
+    ({**FEET, "robot.armature": [0.1]}, "robot.armature is for the model of a machine: give its file as robot.urdf"),
+    ({**MODEL, "robot.armature": [-0.1]}, "robot.armature is [-0.1], but it must be a list of finite doubles"),
+    ({**MODEL, "robot.armature": [0.1, 0.2]}, "robot.armature has 2 numbers, but robot.joints has 0 names: give one"),
+    ({**MODEL, "robot.joints": ["a", "a"]}, "but 'a' is there twice"),
+    ({**MODEL, "robot.kd": [2.0]}, "robot.drives is free with robot.kd: give pd and at least one of robot.kp and"),
+    ({**MODEL, "robot.drives": "pd"}, "robot.drives is pd with no gains: give pd and at least one of robot.kp and"),
+    ({**MODEL, "robot.drives": "pd", "robot.kp": [nan]}, "robot.kp is [nan], but it must be a list of finite doubles"),
+    (
+        {**MODEL, "robot.drives": "pd", "robot.joints": ["a", "b"], "robot.kp": [1.0] * 3},
+        "robot.kp has 3 numbers, but robot.joints has 2 names: give one number for all joints, or name each joint",
+    ),
     ({**MODEL, "body.mass": None, "robot.urdf": ""}, "body.mass is missing"),
 ]
 

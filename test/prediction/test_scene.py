@@ -22,6 +22,7 @@ FIELDS: list[tuple[str, Any, str, Any]] = [
     ("contact.restitution", 0.2, "restitution", 0.2),
     ("contact.tolerance", 0.001, "tolerance", 0.001),
     ("contact.time", 0.002, "contact_time", 0.002),
+    ("contact.stiffness", 1e5, "stiffness", 1e5),
     ("contact.merge", 0.003, "merge", 0.003),
     ("odom.twist", "poses", "poses", True),
     ("uncertainty.gap", 0.001, "gap_deviation", 0.001),
@@ -32,6 +33,7 @@ FIELDS: list[tuple[str, Any, str, Any]] = [
     ("odom.twist_window", 0.01, "twist_window", 0.01),
     ("gravity", [0.1, 0.0, -1.6], "gravity", (0.1, 0.0, -1.6)),
     ("law", "total", "law", "total"),
+    ("contact.stiffness", 1e5, "stiffness", 1e5),
     ("uncertainty.samples", 64, "samples", 64),
     ("uncertainty.friction", 0.03, "friction_deviation", 0.03),
     ("uncertainty.restitution", 0.05, "restitution_deviation", 0.05),
@@ -89,9 +91,15 @@ def test_the_feet_of_a_machine_and_its_model_reach_the_scene() -> None:
         "feet.restitution": [0.1],
         "robot.urdf": "robot.urdf",
         "robot.frames": ["left_heel", "left_toe", "right_heel", "right_toe"],
+        "robot.joints": ["hip", "knee"],
+        "robot.armature": [0.1, 0.2],
+        "robot.drives": "pd",
+        "robot.kp": [100.0],
+        "robot.kd": [1.0, 2.0],
     }
     scene = Scene.from_parameters(validate({**BODY, **given}))
-    robot = Robot("robot.urdf", ("left_heel", "left_toe", "right_heel", "right_toe"))
+    frames, joints = ("left_heel", "left_toe", "right_heel", "right_toe"), ("hip", "knee")
+    robot = Robot("robot.urdf", frames, joints, (0.1, 0.2), "pd", (100.0,), (1.0, 2.0))
     assert scene.walking == Walking(("left", "right"), 2, 0.01, 0.2, 30.0, True, robot, (0.4, 0.5), (0.1,))
     assert not scene.needs_geometry  # the joints tell where the feet are
     without = {name: value for name, value in given.items() if not name.startswith("robot.")}

@@ -10,7 +10,19 @@ from ...stamps import NANOSECONDS
 from ..checks import LARGEST, PAUSE, order_of
 from ..predictor import DEEP, DEEP_TOLERANCES, Contacts
 from ..scene import Scene
-from ..types import ContactInput, Foot, Geometry, Joints, Moment, Sample, Schedule, Status, Touchdown, Wrench
+from ..types import (
+    ContactInput,
+    Foot,
+    Geometry,
+    Joints,
+    Moment,
+    Sample,
+    Schedule,
+    Status,
+    Touchdown,
+    Wrench,
+    impulse_at,
+)
 from ..vectors import add, axes_of, cross, dot, to_world
 from .announcement import ExpectedLanding
 from .clock import Delay, FeetClock
@@ -49,6 +61,7 @@ class FeetContacts(Contacts):
         self._waiting: deque[Geometry] = deque(maxlen=REMEMBERED)
         self._dues: list[ExpectedLanding | None] = []
         self._clock = FeetClock(self._count, scene.normal, round(walking.dead_time * NANOSECONDS), walking.delay)
+        self._ahead: Touchdown | Status | None = None
         self._begin()
 
     def _begin(self) -> None:
@@ -102,7 +115,8 @@ class FeetContacts(Contacts):
     def touchdown(self) -> Touchdown | Status | None:
         sample = self._base.samples[-1]
         self._dues = [point.revise(sample.stamp, self._ground) for point in self._points]
-        return self._landings.soonest(sample, self._dues)
+        self._ahead = self._landings.soonest(sample, self._dues)
+        return self._ahead
 
     def feet(self) -> tuple[Foot, ...]:
         stamp = self._base.samples[-1].stamp
@@ -197,6 +211,10 @@ class FeetContacts(Contacts):
             due = min(dues, key=attrgetter("stamp"))
             lead_time, speed = (due.stamp - stamp) / NANOSECONDS, -dot(self.scene.normal, due.velocity)
             late, place = self._schedule.late(name, due.stamp), due.position
+        impulse = bound = None
+        if isinstance(self._ahead, Touchdown):
+            impulse = impulse_at(self._ahead, range(own.start, own.stop))
+            bound = None if impulse is None else self._ahead.bound
         if landed:
             late = self._schedule.late(name, since) if since else None
         return Foot(
@@ -211,4 +229,6 @@ class FeetContacts(Contacts):
             confirmed=self._forces.agree(name, bool(landed), stamp),
             position=lowest.frames[-1].position,
             place=place,
+            impulse=impulse,
+            bound=bound,
         )

@@ -65,9 +65,8 @@ def touchdown_of(
     the points are then at `places` (m, in the world). Those that are `landing` are the new ones, and those of feet that
     land together with them; those that `stood` rest on the support. Each is a contact of the law in three dimensions.
     The old contacts, which give the impact plane and the mode, are those that land together with the new ones, else
-    those that stood of the same foot, else all that stood. Joints are free during an impact, or held by a `machine`
-    that has none. Feet that have braked before they land make no impact (Mode.NO_IMPACT). A status, where the machine
-    has no response.
+    those that stood of the same foot, else all that stood. Feet that have braked before they land make no impact
+    (Mode.NO_IMPACT). A status, where the machine has no response.
     """
     walking, normal, those = scene.walking, scene.normal, sorted({*stood, *landing})
     assert walking is not None
@@ -93,7 +92,6 @@ def touchdown_of(
     found = machine.struck(those, met, axes, scene)
     if isinstance(found, Status):
         return found
-    assert found.twist is not None
     x, y, z, p, q, r = found.twist.tolist()
     kick, spin, center = (x, y, z), (p, q, r), to_world(axes, scene.center_of_mass)
     told = zip(those, found.impulses.tolist(), found.velocities.tolist(), found.states, strict=True)
@@ -127,7 +125,7 @@ def touchdown_of(
         energy_lost=found.energy_lost,
         flags=flags,
         unique=True,
-        law=scene.law,
+        law=found.law,
         old=old,
         new=new,
         axis=axis,
@@ -144,6 +142,10 @@ def touchdown_of(
         before_6d=before,
         after_6d=after,
         contacts=contacts,
+        bound=found.bound,
+        drives=found.drives,
+        joints=machine.joints,
+        jumps=found.jumps,
     )
 
 

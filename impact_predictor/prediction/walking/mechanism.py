@@ -7,15 +7,18 @@ from __future__ import annotations
 
 from collections import deque
 from math import isfinite
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...errors import InputError
-from ...mechanics.impact.spatial import Body, ContactPoints, SpatialOutcome, solve_spatial_impact
+from ...mechanics.impact.spatial import Body, ContactPoints, solve_spatial_impact
+from ...mechanics.types import ContactState, Flag
 from ...stamps import NANOSECONDS
 from ..planar import GRAZES, ORIGIN, direction_of
 from ..scene import Robot, Scene, six_numbers
-from ..types import Geometry, Joints, Sample, Status
+from ..types import Bound, Geometry, Joints, Sample, Status
 from ..vectors import (
     Axes,
     add,
@@ -134,6 +137,25 @@ def between(before: Sample, after: Sample, stamp: int) -> Sample:
     )
 
 
+class MachineOutcome(NamedTuple):
+    """What an impact does to a machine: the fields of a `SpatialOutcome`, the bound that it is, and of a robot more.
+
+    `jumps` are the changes of the joint velocities (rad/s or m/s), `drives` is the part of the impulses' work that the
+    drives oppose, 0 to 1.
+    """
+
+    twist: NDArray[np.float64]
+    impulses: NDArray[np.float64]
+    velocities: NDArray[np.float64]
+    states: tuple[ContactState, ...]
+    flags: Flag
+    energy_lost: float
+    law: str
+    bound: Bound
+    jumps: tuple[float, ...] = ()
+    drives: float = 0.0
+
+
 class RigidMachine:
     """One rigid body, the scene's, with its whole inertia tensor; its legs have no mass and are held by their joints.
 
@@ -143,6 +165,7 @@ class RigidMachine:
 
     is_rigid = True
     """Whether the feet move with the base alone."""
+    joints: tuple[str, ...] = ()
 
     def __init__(self, scene: Scene) -> None:
         moments = np.linalg.eigvalsh(np.array(scene.inertia))
@@ -155,7 +178,7 @@ class RigidMachine:
         axes = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
         self.struck([0], ContactPoints([ORIGIN], 0.0), axes, scene)
 
-    def struck(self, points: list[int], contacts: ContactPoints, axes: Axes, scene: Scene) -> SpatialOutcome | Status:
+    def struck(self, points: list[int], contacts: ContactPoints, axes: Axes, scene: Scene) -> MachineOutcome | Status:
         """What an impact at some points of the feet does to the machine; a status where it has no response.
 
         The `contacts` are told from the base's origin, as if the machine were at rest and the support came with the
@@ -169,22 +192,27 @@ class RigidMachine:
         assert found.twist is not None
         x, y, z, p, q, r = found.twist.tolist()
         found.twist[:3] = add((x, y, z), cross((p, q, r), center), -1.0)
-        return found
+        return MachineOutcome(found.twist, *found[1:], bound=Bound.UPPER)
 
 
 class ArticulatedMachine:
     """A robot at the joint positions that were told last; its base is the root link of the URDF, `body` its model.
 
     Raises:
-        InputError: see `WholeBody`.
+        InputError: see `WholeBody` and `JointDrives`.
     """
 
     is_rigid = False
 
     def __init__(self, robot: Robot) -> None:
-        from ...mechanics.articulated import WholeBody  # only where a scene has a robot
+        # Only where a scene has a robot.
+        from ...mechanics.articulated import WholeBody
+        from .drives import JointDrives
 
         self.body = WholeBody(robot.urdf, robot.frames)
+        self.joints = self.body.joints
+        self._drives = JointDrives(robot, self.joints)
+        self.body.armature = self._drives.armature
         self.unknown: tuple[str, ...] = ()
         """Joints that were told last and that the model does not know."""
         self._names: tuple[str, ...] = ()
@@ -212,18 +240,43 @@ class ArticulatedMachine:
         moving = body.velocities(np.array(rates)).tolist() if velocities else ()
         return Geometry(joints.stamp, "", tuple(map(tuple, body.points.tolist())), tuple(map(tuple, moving)))
 
-    def struck(self, points: list[int], contacts: ContactPoints, axes: Axes, scene: Scene) -> SpatialOutcome | Status:
+    def struck(self, points: list[int], contacts: ContactPoints, axes: Axes, scene: Scene) -> MachineOutcome | Status:
         """See `RigidMachine`; the contacts are where the model has them, at the last joint positions."""
         if self._status is not Status.ACCEPTED:
             return self._status
-        first = direction_of(scene.normal, [])
+        first, drives = direction_of(scene.normal, []), self._drives
         frame = first, cross(scene.normal, first), scene.normal
-        W, moved = self.body.mobility(points, np.array([to_body(axes, way) for way in frame]))
-        ways = np.array(frame)
-        c = -(np.asarray(contacts.velocities, float) @ ways.T).ravel()
-        found = solve_spatial_impact(W, contacts, c, scene.law, scene.merge, GRAZES)
-        change = (moved[:6] @ found.impulses.ravel()).reshape(2, 3) @ np.array(axes)
-        return found._replace(twist=change.ravel(), impulses=found.impulses @ ways, velocities=found.velocities @ ways)
+        ways, local = np.array(frame), np.array([to_body(axes, way) for way in frame])
+        c = -(np.asarray(contacts.velocities, float) @ ways.T)
+        struck = int(c[:, 2].argmin())
+        added = drives.inertia(self.body, local[2] @ self.body.jacobians[points[struck]], scene)
+        W, moved = self.body.mobility(points, local, added, drives.are_held)
+        law, load = scene.law, np.zeros(c.shape)
+        if drives.bound is Bound.ESTIMATE and c.any():
+            # What stands carries the weight as long as the impact lasts: a small blow takes off a part of that load,
+            # and lifts nothing. Load and blow go on together, so that the law is that of the whole impulse.
+            rests = ~c.any(axis=1)
+            load[rests] = ways @ scene.gravity * (-scene.mass * scene.contact_time / max(int(rests.sum()), 1))
+            restitution = np.where(rests, 0.0, contacts.restitution)
+            contacts, law = contacts._replace(restitution=restitution), "total"
+        start = c.ravel()
+        found = solve_spatial_impact(W, contacts, start - W @ load.ravel(), law, scene.merge, GRAZES)
+        impulses = found.impulses - load
+        change, given = moved @ impulses.ravel(), impulses.ravel() @ (found.velocities.ravel() - start)
+        jumps = change[6:]
+        opposed = 0.0 if added is None or given <= 0.0 else float(added @ (jumps * jumps) / given)
+        return MachineOutcome(
+            twist=(change[:6].reshape(2, 3) @ np.array(axes)).ravel(),
+            impulses=impulses @ ways,
+            velocities=found.velocities @ ways,
+            states=found.states,
+            flags=found.flags,
+            energy_lost=-0.5 * float(impulses.ravel() @ (start + found.velocities.ravel())),
+            law=found.law,
+            bound=drives.bound,
+            jumps=tuple(jumps.tolist()),
+            drives=opposed,
+        )
 
     def _know(self, names: tuple[str, ...]) -> bool:
         """Whether each joint of the model is once among the names; then their order is known."""

@@ -118,9 +118,10 @@ def _landing(one: BagAnswer) -> TimelineMark:
     said = ", ".join(filter(None, (one["foot"], one["point"])))
     if one["landing_speed"] is not None:
         said += f" lands with {one['landing_speed']:.3f} m/s"
+    bound = f" ({one['bound']})" if one.get("bound") else ""
     for key, where in (("impulse", ""), ("others_impulse", " at other feet")):
         if one.get(key):
-            said += f"\nimpulse {hypot(*one[key]):.2f} N s{where}"
+            said += f"\nimpulse {hypot(*one[key]):.2f} N s{where}{bound}"
     if one["late"] is not None:
         said += f"\n{1e3 * one['late']:+.1f} ms after the plan"
     if one["time_error"] is None:

@@ -361,7 +361,8 @@ def _in_words(ahead: ShownTouchdown, stamp: int, scale: float) -> list[str]:
     sizes = [_short(hypot(*impulse)) for impulse in touchdown.impulses[0 if touchdown.old else 1 :]]
     speed, rate = hypot(touchdown.after.vx, touchdown.after.vy), abs(touchdown.after.omega)
     after = "then at rest" if touchdown.mode is Mode.STOP else f"then {_short(speed)} m/s, {_short(rate)} rad/s"
-    return [when, f"impulses {' and '.join(sizes)} N s (1 m: {_short(scale)})", after]
+    bound = f", {touchdown.bound.value}" if touchdown.bound else ""
+    return [when, f"impulses {' and '.join(sizes)} N s{bound} (1 m: {_short(scale)})", after]
 
 
 def _short(number: float) -> str:

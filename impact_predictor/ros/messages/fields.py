@@ -12,12 +12,27 @@ from operator import attrgetter
 from typing import TYPE_CHECKING, Any, Final, Generic, TypeVar
 
 from ...mechanics.types import Flag, Mode
-from ...prediction.types import Covariance, Foot, Landing, Leftover, Prediction, Score, Status, Touchdown, Uncertainty
+from ...prediction.types import (
+    Bound,
+    Covariance,
+    Foot,
+    Landing,
+    Leftover,
+    Prediction,
+    Score,
+    SpatialTwist,
+    Status,
+    Touchdown,
+    Uncertainty,
+    Vector3,
+    impulse_at,
+)
+from ...prediction.vectors import add
 from ..cdr import LENGTHS, PADDING, add_pair, string
 
 if TYPE_CHECKING:
     from ...mechanics.margins import Margin, Margins
-    from ...prediction.types import PointOutcome, SpatialTwist
+    from ...prediction.types import PointOutcome
 
 Source = TypeVar("Source")
 
@@ -120,6 +135,33 @@ def _twist_6d(prefix: str, meaning: str, get: Callable[[Source], SpatialTwist | 
             yield Field(f"{prefix}.{'vw'[part]}{axis}", unit, f"{meaning}: {axis}", value)
 
 
+BOUNDS: Final = ", ".join(bound.value for bound in Bound)
+
+
+def _bound(record: Touchdown | Foot) -> str | None:
+    return record.bound and record.bound.value
+
+
+def _of_drives(touchdown: Touchdown) -> float | None:
+    return touchdown.drives * touchdown.impulses[1][0] if touchdown.drives else None
+
+
+def _change(touchdown: Touchdown) -> SpatialTwist | None:
+    (before, spun), (after, spins) = touchdown.before_6d, touchdown.after_6d
+    return touchdown.bound and SpatialTwist(add(after, before, -1.0), add(spins, spun, -1.0))
+
+
+def _vector(key: str, unit: str, meaning: str, get: Callable[[Source], Vector3 | None]) -> Iterator[Field[Source]]:
+    """The fields of a vector, left out where there is none."""
+    for k, axis in enumerate("xyz"):
+
+        def value(record: Source, k: int = k) -> object:
+            vector = get(record)
+            return vector and vector[k]
+
+        yield Field(f"{key}.{axis}", unit, f"{meaning}: {axis}" if k == 0 else f"its {axis}", value)
+
+
 TOUCHDOWN: Final = Table[Touchdown](
     Field("law", "", "path or total", lambda it: it.law),
     Field("unique", "", "whether the law has one answer", lambda it: it.unique),
@@ -157,6 +199,11 @@ TOUCHDOWN: Final = Table[Touchdown](
     Field("lifts", "1", "probability that each of them leaves, with uncertainty.samples", _lifts),
     *_twist_6d("before_6d", "whole twist right before, in the support's frame", lambda it: it.before_6d),
     *_twist_6d("after_6d", "whole twist right after, in the support's frame", lambda it: it.after_6d),
+    Field("bound", "", f"what the impulses of feet are: {BOUNDS}", _bound),
+    Field("impulse.drives", "N s", "part of impulse.new.normal that the drives' gains make", _of_drives),
+    *_twist_6d("trunk", "what the impact changes of the twist of a machine with feet", _change),
+    Field("joints", "", "names of the joints of robot.urdf", lambda it: it.joints or None),
+    Field("joint_jumps", "rad/s", "changes of their velocities in the impact", lambda it: it.jumps or None),
 )
 """Of the touchdown ahead."""
 
@@ -215,9 +262,9 @@ FOOT: Final = Table[Foot](
     Field("landing_speed", "m/s", "speed at which it lands", lambda it: it.landing_speed),
     Field("late", "s", "after the planned landing; left out without a plan", lambda it: it.late),
     Field("confirmed", "", "whether its force sensor agrees; left out without one", lambda it: it.confirmed),
-    Field("place.x", "m", "where it lands, in the frame of the sample: x", lambda it: it.place and it.place[0]),
-    Field("place.y", "m", "its y", lambda it: it.place and it.place[1]),
-    Field("place.z", "m", "its z", lambda it: it.place and it.place[2]),
+    *_vector("place", "m", "where it lands, in the frame of the sample", lambda it: it.place),
+    *_vector("impulse", "N s", "what it gets in the touchdown ahead, in that frame", lambda it: it.impulse),
+    Field("bound", "", f"what this impulse is: {BOUNDS}", _bound),
 )
 """Of each foot of a walking machine, in a status of its own."""
 
@@ -290,6 +337,11 @@ SCORE: Final = Table[Score](
 )
 """Of a touchdown that has happened; first in the impact plane."""
 
+
+def _of_landing(landing: Landing) -> Vector3 | None:
+    return landing.impact and impulse_at(landing.impact, landing.impact.new)
+
+
 LANDING: Final = Table[Landing](
     Field("foot", "", "that has landed", lambda it: it.foot),
     Field("late", "s", "after the plan; left out without one", lambda it: it.late),
@@ -297,5 +349,7 @@ LANDING: Final = Table[Landing](
     Field("speed", "m/s", "of the foot in its last frame in the air", lambda it: it.speed),
     Field("point", "", "heel or toe; left out for all of a foot", lambda it: it.point),
     Field("time_error", "s", "of the last announcement", lambda it: float(it.history[-1][1]) if it.history else None),
+    *_vector("impulse", "N s", "at the foot, of the impact with that speed, in the frame of the sample", _of_landing),
+    Field("bound", "", f"what this impulse is: {BOUNDS}", lambda it: it.impact and _bound(it.impact)),
 )
 """Of a foot that has landed, besides its impact."""
