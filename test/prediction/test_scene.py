@@ -100,7 +100,18 @@ def test_the_feet_of_a_machine_and_its_model_reach_the_scene() -> None:
     scene = Scene.from_parameters(validate({**BODY, **given}))
     frames, joints = ("left_heel", "left_toe", "right_heel", "right_toe"), ("hip", "knee")
     robot = Robot("robot.urdf", frames, joints, (0.1, 0.2), "pd", (100.0,), (1.0, 2.0))
-    assert scene.walking == Walking(("left", "right"), 2, 0.01, 0.2, 30.0, True, robot, (0.4, 0.5), (0.1,))
+    expected = Walking(
+        feet=("left", "right"),
+        points=2,
+        dead_time=0.01,
+        timeout=0.2,
+        force=30.0,
+        has_schedule=True,
+        robot=robot,
+        friction=(0.4, 0.5),
+        restitution=(0.1,),
+    )
+    assert scene.walking == expected
     assert not scene.needs_geometry  # the joints tell where the feet are
     without = {name: value for name, value in given.items() if not name.startswith("robot.")}
     assert Scene.from_parameters(validate({**BODY, **without})).needs_geometry
