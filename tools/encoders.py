@@ -10,10 +10,10 @@ from impact_predictor.ros.cdr import LITTLE_ENDIAN, LITTLE_ENDIAN_HEADER, align8
 
 
 def encode_joints(joints: Joints) -> bytes:
-    """A sensor_msgs/JointState without efforts."""
+    """A sensor_msgs/JointState."""
     data = _headed(joints.stamp, "")
     _add_strings(data, joints.names)
-    for numbers in (joints.positions, joints.velocities, ()):
+    for numbers in (joints.positions, joints.velocities, joints.efforts):
         _add_doubles(data, numbers)
     return bytes(data)
 

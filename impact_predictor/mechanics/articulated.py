@@ -88,6 +88,18 @@ class WholeBody:
         inertia.reshape(-1)[6 * len(inertia) + 6 :: len(inertia) + 1] += added
         return inertia
 
+    def foot_forces(self, efforts: NDArray[np.float64], gravity: Sequence[float]) -> NDArray[np.float64]:
+        """Forces (k, 3) in N on the points, along the base's axes, that hold `joints` with their `efforts` (N m or N).
+
+        As if the machine rested under `gravity` (m/s^2, along the base's axes): J^T f = g(q) - efforts, by least
+        squares (Featherstone, "Rigid Body Dynamics Algorithms", 2008, section 3.2, without accelerations).
+        """
+        self._model.gravity.linear = np.array(gravity)
+        pull = self._pinocchio.computeGeneralizedGravity(self._model, self._data, self._q)[6:]
+        arms = self.jacobians[:, :, 6:].reshape(-1, len(pull))
+        forces: NDArray[np.float64] = np.linalg.lstsq(arms.T, pull - efforts, rcond=None)[0]
+        return forces.reshape(-1, 3)
+
     def mobility(
         self,
         points: Sequence[int],

@@ -135,6 +135,11 @@ def _check_feet(one: _Given) -> None:
                 f"{one.named(name)} has {len(values[name])} numbers{one.of}, but feet.names has {len(values[feet])}: "
                 "give one number for each foot, or one for all of them"
             )
+    if values["feet.force_source"] == "effort" and not (values["robot.urdf"] and values["feet.force"]):
+        raise InputError(
+            f"{one.named('feet.force_source')} is effort{one.of}: give robot.urdf, by which joints tell the force on "
+            "a foot, and feet.force, from which on it stands"
+        )
     frames, named = len(values["robot.frames"]), one.named("robot.frames")
     for name in ROBOT:
         if not values["robot.urdf"] and values[name] != PARAMETERS[name].default and one.is_own(name):

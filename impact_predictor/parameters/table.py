@@ -370,6 +370,14 @@ _TABLE: Final = (
         high=1e9,
         fixed=TOPICS,
     ),
+    text(
+        "feet.force_source",
+        "sensor",
+        "What tells the force on a foot: its sensor, or the efforts in joint_states with robot.urdf, as if the machine "
+        "rested.",
+        choices=("sensor", "effort"),
+        fixed=TOPICS,
+    ),
     doubles(
         "feet.friction",
         (),

@@ -114,9 +114,10 @@ class Walking(NamedTuple):
 
     `feet` are their names and each has `points` contact points (1, or 2 for heel and toe), which follow each other in
     the geometry in this order. A change of stance is believed after `dead_time` s; contact points older than `timeout`
-    s tell nothing any more. From `force` (N) on a force sensor says that its foot stands; 0 where there are none.
-    `has_schedule` tells that a planner does publish when the feet are to stand. Without a `robot` the legs have no mass
-    and the body is rigid. `friction` and `restitution` of each foot, or one for all; empty where they are the scene's.
+    s tell nothing any more. From `force` (N) on its `force_source`, the "sensor" or the "effort" of the joints, says
+    that a foot stands; 0 where neither does. `has_schedule` tells that a planner does publish when the feet are to
+    stand. Without a `robot` the legs have no mass and the body is rigid. `friction` and `restitution` of each foot, or
+    one for all; empty where they are the scene's.
     The stamps of the feet are later than the trunk's by a `delay` in s, which is found by itself with `find_delay`.
     """
 
@@ -125,6 +126,7 @@ class Walking(NamedTuple):
     dead_time: float = 0.02
     timeout: float = 0.1
     force: float = 0.0
+    force_source: str = "sensor"
     delay: float = 0.0
     find_delay: bool = False
     has_schedule: bool = False
@@ -277,7 +279,7 @@ def _told_about(scene: Scene) -> list[str]:
     told = {
         CONTACT_GEOMETRY: scene.needs_geometry,
         JOINTS: walking.robot is not None,
-        WRENCH: walking.force > 0.0,
+        WRENCH: walking.force > 0.0 and walking.force_source == "sensor",
         SCHEDULE: walking.has_schedule,
     }
     return [kind for kind, is_told in told.items() if is_told]

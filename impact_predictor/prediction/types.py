@@ -169,12 +169,15 @@ class Geometry(NamedTuple):
 
 
 class Joints(NamedTuple):
-    """Positions (rad or m) and velocities (rad/s or m/s) of joints by their names, as in sensor_msgs/JointState."""
+    """Positions (rad or m), velocities (rad/s or m/s) and efforts (N m or N) of joints by their names, as in
+    sensor_msgs/JointState; velocities and efforts are () where they are not measured.
+    """
 
     stamp: int
     names: tuple[str, ...]
     positions: tuple[float, ...]
     velocities: tuple[float, ...]
+    efforts: tuple[float, ...] = ()
 
 
 class Wrench(NamedTuple):

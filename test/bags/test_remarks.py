@@ -217,6 +217,27 @@ def test_joints_that_the_model_does_not_know_are_left_out_and_named(tmp_path: Pa
 
 
 @pytest.mark.extras
+@pytest.mark.parametrize(("pressed", "confirmed"), [(200.0, True), (20.0, False), (None, None)])
+def test_efforts_of_the_joints_confirm_a_landing_and_are_named_where_they_are_missing(
+    tmp_path: Path, modelled: Scene, pressed: float | None, confirmed: bool | None
+) -> None:
+    assert modelled.walking is not None
+    asked = modelled._replace(walking=modelled.walking._replace(force=50.0, force_source="effort"))
+
+    def loaded(_: int, one: Any) -> Any:
+        if isinstance(one, Joints) and pressed is not None:
+            # A force straight up from the foot below the hip works on the knee alone, which is 0.3 sin q before it.
+            stands = one.positions[0] == BENT
+            return one._replace(efforts=(0.0, 0.3 * sin(BENT) * (pressed if stands else 0.0), 0.0, 0.0))
+        return one
+
+    found = replayed(tmp_path, asked, loaded, steps_of_joints())
+    assert {one.score.landing.confirmed for one in found.settled if one.score.landing is not None} == {confirmed}
+    lacks = "joint_states lacks the effort of a joint of robot.urdf, so that nothing confirms that feet stand"
+    assert any(lacks in note for note in found.notes) is (pressed is None)
+
+
+@pytest.mark.extras
 def test_joints_that_are_missing_are_named(tmp_path: Path, modelled: Scene) -> None:
     def renamed(_: int, one: Any) -> Any:
         if isinstance(one, Joints):

@@ -167,6 +167,11 @@ REFUSED: list[tuple[dict[str, Any], str]] = [
         {**MODEL, "robot.drives": "pd", "robot.joints": ["a", "b"], "robot.kp": [1.0] * 3},
         "robot.kp has 3 numbers, but robot.joints has 2 names: give one number for all joints, or name each joint",
     ),
+    (
+        {**FEET, "feet.force": 20.0, "feet.force_source": "effort"},
+        "feet.force_source is effort: give robot.urdf, by which joints tell the force on a foot, and feet.force",
+    ),
+    ({**MODEL, "feet.force_source": "effort"}, "feet.force_source is effort: give robot.urdf"),
     ({**MODEL, "body.mass": None, "robot.urdf": ""}, "body.mass is missing"),
 ]
 

@@ -98,11 +98,11 @@ def test_joints_are_what_is_in_a_joint_state_both_ways(little_endian: bool) -> N
         names = [rng.choice(FRAMES) for _ in range(count)]
         # A source may leave out velocities or efforts, by the definition of the message.
         positions, velocities, efforts = (numbers(rng, rng.choice((0, count))) for _ in range(3))
-        joints = Joints(rng.randrange(2**31 * 10**9), tuple(names), positions, velocities)
+        joints = Joints(rng.randrange(2**31 * 10**9), tuple(names), positions, velocities, efforts)
         fields = [np.array(field) for field in (positions, velocities, efforts)]
         message = TYPES[JOINT_STATE](header(joints.stamp, rng.choice(FRAMES)), names, *fields)
         assert decode_joints(serialize(message, JOINT_STATE, little_endian)) == joints
-        message = TYPES[JOINT_STATE](header(joints.stamp, ""), names, *fields[:2], np.array([]))
+        message = TYPES[JOINT_STATE](header(joints.stamp, ""), names, *fields)
         assert encode_joints(joints) == serialize(message, JOINT_STATE)
 
 

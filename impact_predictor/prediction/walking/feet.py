@@ -23,7 +23,7 @@ from ..types import (
     Wrench,
     impulse_at,
 )
-from ..vectors import add, axes_of, cross, dot, to_world
+from ..vectors import add, axes_of, cross, dot, to_body, to_world
 from .announcement import ExpectedLanding
 from .clock import Delay, FeetClock
 from .cubic import PointFrame
@@ -85,7 +85,13 @@ class FeetContacts(Contacts):
             assert self._articulated is not None
             geometry = self._articulated.geometry_of(message)
             self.unknown_joints = self._articulated.unknown
-            return geometry if isinstance(geometry, Status) else self._place(geometry)
+            if isinstance(geometry, Status):
+                return geometry
+            if self._walking.force_source == "effort" and self._base.samples and self._forces.is_due(message.stamp):
+                axes = axes_of(self._base.samples[-1].orientation)
+                forces = self._articulated.forces_of(message, to_body(axes, self.scene.gravity))
+                self._forces.press(message.stamp, to_body(axes, self.scene.normal), forces)
+            return self._place(geometry)
         return self._place(message)
 
     def follow(self, other: Contacts) -> None:
@@ -130,6 +136,11 @@ class FeetContacts(Contacts):
         found, delay = [self._schedule.doubt], self.delay
         if delay is not None and self._clock.is_wrong and not self._walking.find_delay:
             found.append(f"the feet are {delay}: set feet.delay to {delay.time:.4f}, or feet.find_delay to true")
+        if self._forces.are_missing:
+            found.append(
+                "joint_states lacks the effort of a joint of robot.urdf, so that nothing confirms that feet stand: "
+                "publish efforts, or set feet.force_source to sensor"
+            )
         return tuple(filter(None, found))
 
     def forget(self) -> None:

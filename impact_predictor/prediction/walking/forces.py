@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from ...stamps import NANOSECONDS
 from ..checks import LARGEST, followed
 from ..scene import Walking
-from ..types import Status, Wrench
-from ..vectors import dot
+from ..types import Status, Vector3, Wrench
+from ..vectors import dot, total
+
+EVERY = 10_000_000  # ns between efforts that are looked at
 
 
 class FootForces:
@@ -14,9 +18,12 @@ class FootForces:
 
     def __init__(self, walking: Walking) -> None:
         self._feet = walking.feet
+        self._each = walking.points
         self._least = walking.force**2
         self._timeout = round(walking.timeout * NANOSECONDS)
         self._pressed: dict[str, tuple[int, bool]] = {}
+        self.are_missing = False
+        """Whether efforts were to tell the forces, and did not."""
 
     def set(self, wrench: Wrench) -> Status:
         foot, square = wrench.frame_id, dot(wrench.force, wrench.force)
@@ -30,6 +37,19 @@ class FootForces:
         elif last is None:
             self._pressed.pop(foot, None)
         return status
+
+    def is_due(self, stamp: int) -> bool:
+        """Whether efforts of a stamp in ns are to be looked at: that costs, and need not be done all the time."""
+        last, _ = self._pressed.get(self._feet[0], (stamp - EVERY, False))
+        return not 0 <= stamp - last < EVERY
+
+    def press(self, stamp: int, normal: Vector3, forces: Sequence[Vector3] | None) -> None:
+        """Take what efforts tell of the forces (N) on the points, and the ground's normal along the same axes."""
+        self.are_missing = forces is None
+        for number, foot in enumerate(self._feet if forces is not None else ()):
+            own = (forces or ())[number * self._each : (number + 1) * self._each]
+            pressed = max(0.0, total([dot(normal, force) for force in own]))
+            self.set(Wrench(stamp, foot, (pressed, 0.0, 0.0)))
 
     def agree(self, foot: str, stands: bool, stamp: int) -> bool | None:
         """Whether the sensor of a foot shows the same stance near a stamp in ns; None where it shows nothing then."""

@@ -6,7 +6,7 @@ It is one rigid body on legs without mass, or a robot with its joints.
 from __future__ import annotations
 
 from collections import deque
-from math import isfinite
+from math import isfinite, isnan, nan
 from typing import NamedTuple
 
 import numpy as np
@@ -18,7 +18,7 @@ from ...mechanics.types import ContactState, Flag
 from ...stamps import NANOSECONDS
 from ..planar import GRAZES, ORIGIN, direction_of
 from ..scene import Robot, Scene, six_numbers
-from ..types import Bound, Geometry, Joints, Sample, Status
+from ..types import Bound, Geometry, Joints, Sample, Status, Vector3
 from ..vectors import (
     Axes,
     add,
@@ -231,6 +231,8 @@ class ArticulatedMachine:
         if len(positions) != len(names) or len(velocities) not in (0, len(names)) or not self._know(names):
             return Status.WRONG_JOINTS
         angles, rates = ([values[i] for i in self._order] for values in (positions, velocities or positions))
+        if any(map(isnan, rates)):  # what a driver tells that does not measure them
+            velocities, rates = (), angles
         if not all(map(isfinite, (*angles, *rates))):
             return Status.NOT_FINITE
         body = self.body
@@ -239,6 +241,16 @@ class ArticulatedMachine:
             return self._status
         moving = body.velocities(np.array(rates)).tolist() if velocities else ()
         return Geometry(joints.stamp, "", tuple(map(tuple, body.points.tolist())), tuple(map(tuple, moving)))
+
+    def forces_of(self, joints: Joints, gravity: Vector3) -> list[Vector3] | None:
+        """Forces in N on the contact points by the efforts of the joints that were placed last (see `WholeBody`).
+
+        Those and `gravity` are along the base's axes. None where the efforts are missing.
+        """
+        efforts = [joints.efforts[i] for i in self._order] if len(joints.efforts) == len(joints.names) else [nan]
+        if not all(map(isfinite, efforts)):
+            return None
+        return [(x, y, z) for x, y, z in self.body.foot_forces(np.array(efforts), gravity).tolist()]
 
     def struck(self, points: list[int], contacts: ContactPoints, axes: Axes, scene: Scene) -> MachineOutcome | Status:
         """See `RigidMachine`; the contacts are where the model has them, at the last joint positions."""

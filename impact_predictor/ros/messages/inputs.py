@@ -140,9 +140,9 @@ def decode_joints(data: bytes) -> Joints:
     names, end = read_strings(data, end, order)
     positions, end = read_doubles(data, end, order)
     velocities, end = read_doubles(data, end, order)
-    _, end = read_doubles(data, end, order)
+    efforts, end = read_doubles(data, end, order)
     check_end(data, end, 3)
-    return Joints(stamp=nanoseconds, names=names, positions=positions, velocities=velocities)
+    return Joints(stamp=nanoseconds, names=names, positions=positions, velocities=velocities, efforts=efforts)
 
 
 @decoder(WRENCH)

@@ -95,6 +95,28 @@ def test_joints_that_the_model_does_not_know_are_left_out_whatever_they_are(frog
     assert frog.unknown == ("arm", "gripper", "arm")
 
 
+@pytest.mark.parametrize("velocities", [(), (nan, nan), (1.0, nan)])
+def test_velocities_that_a_driver_does_not_measure_are_none(frog, velocities):
+    assert frog.geometry_of(Joints(7, NAMES, (0.3, -0.2), velocities)).velocities == ()
+
+
+def test_efforts_tell_the_force_that_presses_a_foot_beside_the_weight_of_its_leg(frog):
+    frog.geometry_of(Joints(7, NAMES[::-1], (-0.2, 0.3), ()))
+    # Each leg is 1 kg half a metre below its hip, and pushes 1 m from it across itself with 40 N, or not at all.
+    for way, lean in (((0.0, 0.0, -9.81), 0.0), ((-9.81 * np.sin(0.4), 0.0, -9.81 * np.cos(0.4)), 0.4)):
+        held = [0.5 * 9.81 * np.sin(q - lean) for q in (0.3, -0.2)]
+        found = frog.forces_of(Joints(7, NAMES[::-1], (-0.2, 0.3), (), (held[1], held[0] - 40.0)), way)
+        assert np.array(found[0]) == pytest.approx(40.0 * np.array([-np.cos(0.3), 0.0, np.sin(0.3)]), abs=1e-12)
+        assert np.array(found[1]) == pytest.approx(np.zeros(3), abs=1e-12)
+
+
+@pytest.mark.parametrize("efforts", [(), (1.0,), (1.0, nan)])
+def test_efforts_that_are_missing_tell_no_force(frog, efforts):
+    joints = Joints(7, NAMES, (0.3, -0.2), (), efforts)
+    frog.geometry_of(joints)
+    assert frog.forces_of(joints, (0.0, 0.0, -9.81)) is None
+
+
 def test_before_any_joints_there_is_no_response_but_a_status(frog):
     assert struck(frog) is Status.NO_GEOMETRY
 
