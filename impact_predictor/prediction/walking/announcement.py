@@ -5,11 +5,13 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from ...stamps import NANOSECONDS
+from ..planar import hardly
 from ..scene import Scene
 from ..types import Vector3
 from ..vectors import add, dot
 from .cubic import Fit
 from .ground import Ground
+from .rest import falls
 from .trajectory import FootTrajectory
 
 # A landing is announced when it is no further ahead than so many times as long as the point has descended: from less
@@ -17,6 +19,10 @@ from .trajectory import FootTrajectory
 AHEAD = 1.5
 SOON = 0.5  # ... where noise leaves doubt that it lands at all
 LASTS = 0.8  # ... once it has shown in every sample for the dead time
+
+THROUGH = (
+    0.5  # contact tolerances below the expected level a point that still comes down has surely met no ground there
+)
 
 
 class ExpectedLanding(NamedTuple):
@@ -52,11 +58,13 @@ class LandingAnnouncement:
         self.due = self._doubted = self._shown = None
         self.closed = False
 
-    def revise(self, trajectory: FootTrajectory, stamp: int, ground: Ground) -> ExpectedLanding | None:
-        """The landing of a point in the air that is ahead of a stamp in ns."""
+    def revise(self, trajectory: FootTrajectory, stamp: int, ground: Ground, near: bool) -> ExpectedLanding | None:
+        """The landing of a point in the air that is ahead of a stamp in ns.
+
+        It is `near` where its gap is about that of the ground, or less.
+        """
         due = self.due
-        near = ground.is_near(trajectory.frames[-1])
-        self.closed = due is not None and due.stamp <= stamp and near
+        self.closed = due is not None and due.stamp <= stamp and near and not self._falls_on(trajectory, due, ground)
         if self.closed:
             return None  # What its trajectory shows is the ground already.
         fit = trajectory.fit(ground.noise, ground.prior)
@@ -72,7 +80,11 @@ class LandingAnnouncement:
         """Announce the landing that a fit shows, if that is sure enough, or withdraw what was announced."""
         due, landing = self.due, None
         if fit is not None:
-            landing = fit.landing(ground.level, self._scene.tolerance, self._scene.horizon)
+            place = trajectory.frames[-1].position if due is None else due.position
+            level = ground.level_at(place)
+            if fit.gap[0] < level.height:  # It has met no ground there.
+                level = level.below(fit.gap[0], fit.deviation_of(0, 0.0))
+            landing = fit.landing(level.height, self._scene.tolerance, self._scene.horizon)
         if fit is None or landing is None:
             self._shown = None
             if self._doubted_for(stamp):
@@ -92,6 +104,13 @@ class LandingAnnouncement:
         position, velocity = trajectory.motion(fit, landing.time)
         velocity = add(velocity, self._scene.normal, landing.rate - dot(velocity, self._scene.normal))
         self.due = ExpectedLanding(fit.stamp + round(landing.time * NANOSECONDS), position, velocity)
+
+    def _falls_on(self, trajectory: FootTrajectory, due: ExpectedLanding, ground: Ground) -> bool:
+        """Whether the point surely comes down still, through the ground where that was expected."""
+        frames = trajectory.last(2)
+        if len(frames) < 2 or frames[-1].gap > ground.level_at(due.position).height - THROUGH * self._scene.tolerance:
+            return False
+        return falls(frames, 2.0 * hardly(self._scene), ground.noise)
 
     def _doubted_for(self, stamp: int) -> bool:
         """Whether what is announced has not surely shown for the dead time."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from math import sqrt
+from math import inf, sqrt
 from operator import attrgetter
 
 from ...stamps import NANOSECONDS
@@ -181,7 +181,12 @@ class FeetContacts(Contacts):
                 status = self._found = found
                 continue
             status = self._found = Status.ACCEPTED
-            landed = [point.add(frame, self._ground) for point, frame in zip(self._points, found, strict=True)]
+            supported = any(point.stands or point.closed for point in self._points)
+            lowest = -inf if supported else min([frame.gap for frame in found]) + self.scene.tolerance
+            landed = [
+                point.add(frame, self._ground, base, alone=frame.gap <= lowest)
+                for point, frame in zip(self._points, found, strict=True)
+            ]
             for i in [i for i, has_landed in enumerate(landed) if has_landed]:
                 self._landings.land(i)
             for i, point in enumerate(self._points):

@@ -1,46 +1,202 @@
-"""The ground under the feet: the level at which they stand, and the noise of their gaps."""
+"""The ground under the feet, as standing ones show it: its level under each place, and the noise of their gaps."""
 
 from __future__ import annotations
 
-from math import sqrt
+from collections import deque
+from collections.abc import Sequence
+from math import erfc, exp, pi, sqrt
+from typing import NamedTuple
 
 from ...stamps import NANOSECONDS
+from ..planar import direction_of
 from ..scene import Scene
+from ..types import Vector3
+from ..vectors import cross, dot, total
 from .cubic import GapNoise, PointFrame
 from .trajectory import DescentPrior
 
 LEAST = GapNoise(gap=1e-5, rate=2e-4)  # by so much a planned course differs from a cubic over few frames: no noise
 GUESS = 0.2  # until feet have stood their gaps are taken to scatter by this part of the contact tolerance ...
 GUESS_RATE = 0.02  # ... and the rates of those by so much, in m/s
-DRIFT = 1.0  # contact tolerances in a second by which a standing foot may shift the level: an estimator's drift
-MEMORY = 100  # frames of standing feet over which level and noise are averaged ...
+DRIFT = 1.0  # contact tolerances in a second by which standing feet may shift the level: an estimator's drift
+UNSURE = 0.02  # contact tolerances by which that is not known
+MEMORY = 100  # frames of standing feet over which noise is averaged ...
 FEWEST = 10  # ... and from how many on that is believed
+STEADY = 15  # frames over which the level of a foothold is averaged ...
+FOLLOWS = 30  # ... and over which the drift is
+
+FOOTHOLDS = 24  # that are remembered: a hind foot steps where a front foot stood some steps before
+PLANE = 12  # of them, the last ones, that tell the plane about which levels scatter ...
+RECENT = 0.8  # ... each with that part of the weight of the next one
+SLOPE = 0.1  # standard deviation of the plane's slopes before footholds show them
+FORGETS = 0.9  # part of what earlier footholds told of the scatter that counts beside one more
+NEIGHBOUR = 0.1  # m: the ground is as high here as at a foothold that is much nearer than that
+FAR = 5.0  # squares of that distance, or standard deviations, beyond which nothing is told
+ROUGH = 0.2  # contact tolerances by which levels are taken to scatter until footholds show it ...
+GUESSED = 0.3  # ... and how much that counts beside one
+
+
+class Level(NamedTuple):
+    """Where the ground is under a place: its `height` in m over the scene's plane, with its standard `deviation`."""
+
+    height: float
+    deviation: float
+
+    def below(self, gap: float, deviation: float) -> Level:
+        """The level under a point that has come down to a gap with a standard deviation (m), and has met no ground.
+
+        It is a normal deviate that is known to be less than another one, the gap.
+        """
+        spread = sqrt(self.deviation**2 + deviation**2)
+        off = (gap - self.height) / spread
+        # Mills' ratio, and the first terms of its series (Abramowitz and Stegun, 26.2.12).
+        ratio = (
+            -off - 1.0 / off if off < -FAR else 2.0 * exp(-0.5 * off * off) / sqrt(2.0 * pi) / erfc(-off / sqrt(2.0))
+        )
+        part = self.deviation**2 / spread**2
+        left = 1.0 - part * min(1.0, ratio * (off + ratio))
+        return Level(self.height - part * spread * ratio, self.deviation * sqrt(left))
+
+
+class Foothold:
+    """A place where a point stands, or stood.
+
+    `u` and `v` (m) say where on the scene's plane; `level` (m) is the height of the ground there, less the drift of the
+    heights, as the mean of `count` frames.
+    """
+
+    __slots__ = ("count", "level", "u", "v")
+
+    def __init__(self, u: float, v: float, level: float, count: int) -> None:
+        self.u, self.v, self.level, self.count = u, v, level, count
+
+
+class Relief:
+    """How the levels of footholds lie about a plane: those of near ones are alike, others scatter.
+
+    This is kriging with a plane for the trend (Cressie, Statistics for Spatial Data, 1993, 3.4), except that each
+    neighbour tells for itself, as if the others did not: that takes no matrix for each place.
+    """
+
+    def __init__(self, tolerance: float) -> None:
+        """Know nothing but the contact tolerance in m."""
+        self.known = False
+        """Whether there has been a foothold."""
+        self._footholds: deque[tuple[Foothold, float]] = deque(maxlen=FOOTHOLDS)
+        self._square, self._weight = (ROUGH * tolerance) ** 2, GUESSED
+        self._error = (UNSURE * tolerance) ** 2
+        self._u = self._v = self._mean = 0.0
+        self._count = 1.0
+        self.slopes = 0.0, 0.0
+        """Those of the plane along u and v."""
+        # Of the slopes xx, xy and yy of the covariance matrix, in parts of the scatter's square.
+        self._unsure = 0.0, 0.0, 0.0
+
+    def add(self, foothold: Foothold, datum: float) -> None:
+        """Take a foothold whose level counts from a datum (m)."""
+        if self._footholds:
+            trend, unsure = self._trend(foothold.u, foothold.v)
+            self._weight = FORGETS * self._weight + 1.0
+            square = (foothold.level - datum - trend) ** 2 / (1.0 + unsure)
+            self._square += (square - self._square) / self._weight
+        self.known = True
+        self._footholds.append((foothold, datum))
+        self._fit(list(self._footholds)[-PLANE:])
+
+    def at(self, u: float, v: float) -> Level:
+        """The level at a place, over the datum there."""
+        trend, unsure = self._trend(u, v)
+        square = self._square + LEAST.gap**2
+        error, precision, off = self._error / square, 1.0, 0.0
+        for one, datum in self._footholds:
+            x, y = one.u - u, one.v - v
+            far = (x * x + y * y) / NEIGHBOUR**2
+            if far < FAR:
+                alike = exp(-far)
+                weight = alike / (1.0 + error - alike * alike)
+                precision += alike * weight
+                off += weight * (one.level - datum - self._trend(one.u, one.v)[0])
+        return Level(trend + off / precision, sqrt(square * (1.0 / precision + unsure)))
+
+    def _trend(self, u: float, v: float) -> tuple[float, float]:
+        """The plane's height at a place, and the square of its standard deviation in parts of the scatter's."""
+        x, y = u - self._u, v - self._v
+        (a, b), (p, q, r) = self.slopes, self._unsure
+        return self._mean + a * x + b * y, 1.0 / self._count + p * x * x + 2.0 * q * x * y + r * y * y
+
+    def _fit(self, footholds: list[tuple[Foothold, float]]) -> None:
+        """The plane nearest to footholds (least squares), which hardly slopes as long as they do not show it."""
+        weights = [RECENT**k for k in range(len(footholds) - 1, -1, -1)]
+        self._count = whole = total(weights)
+        told = [(w, one.u, one.v, one.level - datum) for w, (one, datum) in zip(weights, footholds, strict=True)]
+        self._u = total([w * u for w, u, _, _ in told]) / whole
+        self._v = total([w * v for w, _, v, _ in told]) / whole
+        self._mean = total([w * level for w, _, _, level in told]) / whole
+        p = r = self._square / SLOPE**2
+        q = a = b = 0.0
+        for w, u, v, level in told:
+            x, y, off = u - self._u, v - self._v, w * (level - self._mean)
+            p, q, r = p + w * x * x, q + w * x * y, r + w * y * y
+            a, b = a + x * off, b + y * off
+        whole = p * r - q * q
+        if whole > 0.0:
+            self.slopes = (r * a - q * b) / whole, (p * b - q * a) / whole
+            self._unsure = r / whole, -q / whole, p / whole
 
 
 class Ground:
-    """The level at which feet stand and the noise of their gaps, as the standing ones show both."""
+    """The level of the ground under each place and the noise of gaps, as the standing feet show both.
+
+    Heights may drift, as those of an estimator do: what standing feet show while they stand is drift, and where each of
+    them came to stand is ground.
+    """
 
     def __init__(self, scene: Scene) -> None:
-        self.level = 0.0
         self.noise = GapNoise(GUESS * scene.tolerance, GUESS_RATE)
         self.prior = DescentPrior()
+        self.drift = 0.0
+        """By how much in m the ground that feet show has moved along the normal, since the scene was written."""
         self._tolerance = scene.tolerance
+        self._u = direction_of(scene.normal, [])
+        self._v = cross(scene.normal, self._u)
+        self._relief = Relief(scene.tolerance)
         self._seen = 0
         self._square = self._square_rate = 0.0
 
-    def is_near(self, frame: PointFrame) -> bool:
-        """Whether a point is within the contact tolerance above the ground."""
-        return frame.gap - self.level <= self._tolerance
+    def level_at(self, place: Vector3) -> Level:
+        """The level of the ground under a place (m, in the frame of odom)."""
+        height, deviation = self._relief.at(dot(self._u, place), dot(self._v, place))
+        return Level(self.drift + height, deviation)
 
-    def add(self, frame: PointFrame, before: PointFrame) -> None:
-        """Take two frames of a standing point that follow each other."""
+    def level_of(self, foothold: Foothold) -> Level:
+        """The level of a foothold now."""
+        return Level(self.drift + foothold.level, 0.0)
+
+    def begin(self, frames: Sequence[PointFrame]) -> Foothold:
+        """The foothold of a point that stands, and has rested there for some frames."""
+        place, gap = frames[-1].position, total([frame.gap for frame in frames]) / len(frames)
+        if not self._relief.known:
+            self.drift = gap
+        # What is off is ground, but for the little drift that nobody has seen yet.
+        level, unsure = self.level_at(place), UNSURE * self._tolerance
+        off, square = gap - level.height, level.deviation**2 + unsure**2
+        self.drift += max(-unsure, min(off * unsure * unsure / (square + unsure * unsure), unsure))
+        found = Foothold(dot(self._u, place), dot(self._v, place), gap - self.drift, len(frames))
+        self._relief.add(found, 0.0)
+        return found
+
+    def add(self, frame: PointFrame, before: PointFrame, foothold: Foothold) -> None:
+        """Take two frames of a point that stands on a foothold; they follow each other."""
         self._seen = min(self._seen + 1, MEMORY)
         share = 1.0 / self._seen
-        # The height of a base drifts, and the ground that its feet show with it.
-        limit = self._tolerance
-        if self._seen > FEWEST:
-            limit *= DRIFT * abs(frame.stamp - before.stamp) / NANOSECONDS
-        self.level += max(-limit, min(share * (frame.gap - self.level), limit))
+        off = frame.gap - self.drift - foothold.level
+        limit = DRIFT * self._tolerance * abs(frame.stamp - before.stamp) / NANOSECONDS
+        self.drift += max(-limit, min(off / FOLLOWS, limit))
+        if abs(off) > self._tolerance:
+            foothold.count = 1  # The foot has slipped off an edge, or the ground has given way.
+        if foothold.count < STEADY:
+            foothold.count += 1
+            foothold.level += off / foothold.count
         # Differences of two frames leave the motion of the base's drift out, and have twice the square of the noise.
         self._square += share * (0.5 * (frame.gap - before.gap) ** 2 - self._square)
         rate = self.noise.rate

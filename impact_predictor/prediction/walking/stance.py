@@ -8,13 +8,18 @@ from math import sqrt
 from ...stamps import NANOSECONDS
 from ..planar import hardly
 from ..scene import Scene
+from ..types import Sample
 from ..vectors import total
 from .announcement import ExpectedLanding, LandingAnnouncement
 from .cubic import GapNoise, PointFrame
-from .ground import Ground
+from .ground import Foothold, Ground, Level
+from .rest import falls, hovers, rate_of, settles, since, stop_of
 from .trajectory import NEAREST, Arrival, ArrivalFit, FootTrajectory
 
 FAR = 3.0  # a point was off the ground when its gap was so many standard deviations above it
+FELL = 5.0  # times as far as it may seem to move at rest a point has come down before it rests
+SURE = 3.0  # standard deviations of its mean rate within which a point rests ...
+BOUNCE = 0.1  # ... and m/s by which it may still bounce where it has struck
 SETTLED = (
     3  # a frame shows the ground when the point is still near it, and has not begun to lift, so many dead times later
 )
@@ -23,8 +28,9 @@ SETTLED = (
 class FootPoint:
     """A point of a foot: its trajectory, whether it stands, and the landing that it announces.
 
-    A change of the stance is believed when it has lasted for the dead time. A point comes to stand when it has stayed
-    within the contact tolerance above the ground and has hardly moved; it stands until it has stayed further away.
+    A change of the stance is believed when it has lasted for the dead time. A point comes to stand when it has hardly
+    moved for so long, where the ground is expected, or where it stopped as only the ground stops a foot; it stands
+    until it has stayed further above its foothold than the contact tolerance.
     """
 
     def __init__(self, scene: Scene, dead_time: int) -> None:
@@ -37,9 +43,12 @@ class FootPoint:
         self.arrival: Arrival | None = None
         """How the point came to stand last."""
         self._scene, self._slow = scene, hardly(scene)
-        self._dead_time = dead_time
+        self._dead_time, self._contact_time = dead_time, round(scene.contact_time * NANOSECONDS)
         self._other: int | None = None  # stamp in ns since when the other stance shows
+        self._stopped: int | None = None  # stamp in ns at which it broke off its descent, and has rested since
+        self._has_moved = self._near = False
         self._arriving: ArrivalFit | None = None
+        self._foothold: Foothold | None = None
         self._standing: deque[PointFrame] = deque()
 
     @property
@@ -49,102 +58,168 @@ class FootPoint:
 
     @property
     def closed(self) -> bool:
-        """Whether it was to land by now and is near the ground: it stands, though not yet for the dead time."""
-        return self.announcement.closed
+        """Whether it has reached the ground and rests there, though not yet for the dead time."""
+        return self._stopped is not None or self.announcement.closed
 
     @property
     def landed(self) -> int | None:
         """Stamp in ns since which it stands, or has just closed, if it does."""
         if self.stands:
             return self.since
+        if self._stopped is not None:
+            return self._stopped
         return self.due.stamp if self.closed and self.due is not None else None
 
     @property
     def lands(self) -> int | None:
         """Stamp in ns at which it lands, as announced, or has landed."""
-        return self.landed if self.due is None else self.due.stamp
+        return self.landed if self.due is None or self._stopped is not None else self.due.stamp
 
     def stood(self, stamp: int) -> bool:
         """Whether it stood at a stamp in ns, as its last change tells."""
         landed = self.landed
         return self.since > stamp if landed is None else landed <= stamp
 
-    def add(self, frame: PointFrame, ground: Ground) -> bool:
+    def add(self, frame: PointFrame, ground: Ground, base: Sample | None = None, alone: bool = False) -> bool:
         """Take the next frame; whether the point has come to stand.
 
-        A foot that brakes before it lands seems to rest before it does: while its landing is surely ahead it swings.
+        The base, where it is told, is that of the frame's stamp; a point is `alone` where no other stands and none is
+        lower. A foot that brakes before it lands seems to rest before it does: while its landing is surely ahead it
+        swings.
         """
-        trajectory, announcement, near = self.trajectory, self.announcement, ground.is_near(frame)
+        trajectory, announcement = self.trajectory, self.announcement
         trajectory.frames.append(frame)
-        changed = self._changes(ground, awaited=announcement.awaits(frame.stamp))
-        if not near:
-            self._arriving = None
-        elif (self._arriving is None or not self._arriving.add(frame)) and (changed or not self.stands):
-            fit = announcement.fit
-            begin = trajectory.top if fit is None else max(trajectory.top, fit.begin)
-            frames = trajectory.last(NEAREST)
-            self._arriving = ArrivalFit(frames, begin, ground.level, self._scene.tolerance, ground.noise)
+        self._has_moved |= abs(frame.gap - trajectory.frames[0].gap) > self._scene.tolerance
+        level = ground.level_at(frame.position) if self._foothold is None else ground.level_of(self._foothold)
+        off, tolerance = frame.gap - level.height, self._scene.tolerance
+        near = self._near = off <= tolerance
+        if self.stands and off < -tolerance and falls(trajectory.last(2), self._slow, ground.noise):
+            near = False  # It has slipped off an edge.
+        rests = None if self.stands else self._rests(near, ground, base, alone)
+        changed = self._changes(near, rests, level, ground)
+        self._arrive(level, ground, rests, changed)
         if not self.stands:
             if changed:
                 self._standing.clear()
+                self._foothold = None
             trajectory.follow()
             return False
-        if changed and self._arriving is not None:
+        landed = changed and self._has_moved
+        if landed and self._arriving is not None:
             if announcement.fit is not None:
                 ground.prior.learn(announcement.fit)
             self.arrival = self._arriving.arrival()
-            self.since, self._arriving, announcement.fit = self.arrival.stamp, None, None
+            self.since = self.arrival.stamp
+        if changed:
+            self._arriving = announcement.fit = self._stopped = None
+        if self._foothold is None:
+            # It has sunk in and come back while it was not believed yet.
+            lasted = since(trajectory.frames, frame.stamp - self._contact_time) if self.since else [frame]
+            self._foothold = ground.begin(lasted)
         trajectory.rest()
-        if near:
+        if near or changed:
             self._standing.append(frame)
             if frame.stamp - self._standing[0].stamp > SETTLED * self._dead_time:
-                ground.add(self._standing.popleft(), self._standing[0])
+                ground.add(self._standing.popleft(), self._standing[0], self._foothold)
         announcement.end()
-        return changed
+        return landed
 
     def revise(self, stamp: int, ground: Ground) -> ExpectedLanding | None:
         """The landing ahead of a stamp in ns."""
-        if self.stands:
+        if self.stands or self._stopped is not None:
             return None
-        return self.announcement.revise(self.trajectory, stamp, ground)
+        return self.announcement.revise(self.trajectory, stamp, ground, self._near)
 
-    def _changes(self, ground: Ground, awaited: bool) -> bool:
-        """Whether the last frame changes the stance; not to standing while that is still `awaited`."""
+    def _arrive(self, level: Level, ground: Ground, rests: int | None, changed: bool) -> None:
+        """Look when the point arrived, once it rests, until it stands."""
+        frame = self.trajectory.frames[-1]
+        if rests is None:
+            self._arriving = None
+        elif (self._arriving is None or not self._arriving.add(frame)) and (changed or not self.stands):
+            fit = self.announcement.fit
+            begin = self.trajectory.top if fit is None else max(self.trajectory.top, fit.begin)
+            frames = self.trajectory.last(NEAREST)
+            # Where the ground was not expected it is known only now that the point rests since then.
+            air = [one for one in frames if one.stamp <= max(rests, frames[0].stamp)]
+            unsure = max(self._scene.tolerance, 2.0 * level.deviation)
+            self._arriving = ArrivalFit(air, begin, level.height, unsure, ground.noise)
+            for one in frames[len(air) :]:
+                self._arriving.add(one)
+
+    def _rests(self, near: bool, ground: Ground, base: Sample | None, alone: bool) -> int | None:
+        """Stamp in ns since which the point may be on the ground; None where it is in the air."""
+        frames, noise = self.trajectory.frames, ground.noise
+        frame = frames[-1]
+        self._stopped = self._stop(near, ground, base)
+        if near:
+            return frame.stamp
+        if self._stopped is not None:
+            return self._stopped - self._contact_time
+        if len(frames) < 4 or not (alone or base is not None):
+            return None
+        settled, still = settles(frames, self._dead_time, self._slow, noise)
+        if not settled:
+            return None
+        fell = max([one.gap for one in frames]) - frame.gap > self._scene.tolerance + FELL * still
+        if alone or (fell and base is not None and not hovers(settled, base)):
+            return settled[0].stamp
+        return None
+
+    def _stop(self, near: bool, ground: Ground, base: Sample | None) -> int | None:
+        """Stamp in ns at which the point stopped as only the ground stops a foot, if it has rested since."""
+        frames, noise = self.trajectory.frames, ground.noise
+        if len(frames) < 4:
+            return None
+        if self._stopped is None:
+            return stop_of(frames, self._contact_time, self._slow, noise)
+        rested = since(frames, frames[-1].stamp - self._contact_time)
+        rate, unsure = rate_of(rested, noise)
+        if abs(rate) > self._slow + SURE * unsure + BOUNCE:
+            return None
+        # A drive may have stopped the foot, which goes on with the base then.
+        late = frames[-1].stamp - self._stopped > self._dead_time
+        held = late and not near and base is not None and hovers(rested, base)
+        return None if held else self._stopped
+
+    def _changes(self, near: bool, rests: int | None, level: Level, ground: Ground) -> bool:
+        """Whether the last frame changes the stance."""
         frames = self.trajectory.frames
         frame = frames[-1]
-        near = ground.is_near(frame)
         if len(frames) == 1:
+            near = frame.gap - level.height <= self._scene.tolerance
             self.stands = near and (frame.rate is None or abs(frame.rate) <= self._slow + 3.0 * ground.noise.rate)
             return False
-        if near is self.stands:
+        if near if self.stands else rests is None:
             self._other = None
             return False
         if self._other is None:
-            self._other = frame.stamp
-        if frame.stamp - self._other < self._dead_time or (near and (awaited or not self._rests(ground.noise))):
+            self._other = frame.stamp if rests is None else rests
+        if frame.stamp - self._other < self._dead_time:
             return False
-        self.stands, self.since, self._other = near, self._other if near else self._left(ground), None
+        if self.stands:
+            self.since = self._left(level, ground.noise)
+        elif self._is_still(ground.noise) and (self._stopped or not self.announcement.awaits(frame.stamp)):
+            self.since = self._other
+        else:
+            return False
+        self.stands, self._other = not self.stands, None
         return True
 
-    def _left(self, ground: Ground) -> int:
+    def _left(self, level: Level, noise: GapNoise) -> int:
         """The stamp in ns of the last frame in which the point was on the ground: the tolerance is left later."""
         for frame in reversed(self.trajectory.frames):
-            if frame.stamp < self.since or frame.gap - ground.level <= FAR * ground.noise.gap:
+            if frame.stamp < self.since or frame.gap - level.height <= FAR * noise.gap:
                 break
         return max(frame.stamp, self.since)
 
-    def _rests(self, noise: GapNoise) -> bool:
+    def _is_still(self, noise: GapNoise) -> bool:
         """Whether the point has hardly moved along the normal within the dead time."""
-        frames = self.trajectory.frames
-        begin = frames[-1].stamp - self._dead_time
-        lasted = [frame for frame in frames if frame.stamp >= begin]
-        if len(lasted) < 2:
-            lasted = self.trajectory.last(2)
+        lasted = since(self.trajectory.frames, self.trajectory.frames[-1].stamp - self._dead_time)
         rates = [frame.rate for frame in lasted if frame.rate is not None]
         if rates:
-            return abs(total(rates)) / len(rates) <= self._slow + 3.0 * noise.rate / sqrt(len(rates))
+            return abs(total(rates)) / len(rates) <= self._slow + SURE * noise.rate / sqrt(len(rates))
         half = len(lasted) // 2
         late, early = lasted[-half:], lasted[:half]
         span = (sum([f.stamp for f in late]) - sum([f.stamp for f in early])) / half / NANOSECONDS
         rise = (total([f.gap for f in late]) - total([f.gap for f in early])) / half
-        return abs(rise) <= self._slow * span + 3.0 * noise.gap * sqrt(2.0 / half)
+        return abs(rise) <= self._slow * span + SURE * noise.gap * sqrt(2.0 / half)
