@@ -52,7 +52,8 @@ class WholeBody:
         # The base is at the origin and not turned, so that the model's world is its frame.
         self._q: NDArray[np.float64] = self._pinocchio.neutral(self._model)
         self.armature: NDArray[np.float64] = np.zeros(len(self.joints))
-        self.inertia: NDArray[np.float64] = np.zeros((self._model.nv, self._model.nv))
+        self._inertia: NDArray[np.float64] | None = None
+        self._is_regular = False
         self.points: NDArray[np.float64] = np.zeros((len(frames), 3))
         self.jacobians: NDArray[np.float64] = np.zeros((len(frames), 3, self._model.nv))
 
@@ -63,14 +64,26 @@ class WholeBody:
         for i, place in self._endless:
             self._q[place : place + 2] = np.cos(positions[i]), np.sin(positions[i])
         pinocchio, model, data = self._pinocchio, self._model, self._data
-        self.inertia = pinocchio.crba(model, data, self._q)
-        self.inertia = self.inertia_with(self.armature)
+        self._inertia = None
         pinocchio.computeJointJacobians(model, data, self._q)
         pinocchio.updateFramePlacements(model, data)
         aligned = pinocchio.ReferenceFrame.LOCAL_WORLD_ALIGNED
         for k, frame in enumerate(self._frames):
             self.points[k] = data.oMf[frame].translation
             self.jacobians[k] = pinocchio.getFrameJacobian(model, data, frame, aligned)[:3]
+        # What moves without mass does so at every posture: once is enough.
+        self._is_regular = self._is_regular or self._has_inverse()
+        return self._is_regular
+
+    @property
+    def inertia(self) -> NDArray[np.float64]:
+        """M(q) with the armature, which only impacts want."""
+        if self._inertia is None:
+            inertia = self._pinocchio.crba(self._model, self._data, self._q)
+            self._inertia = inertia + np.diag(np.concatenate([np.zeros(6), self.armature]))
+        return self._inertia
+
+    def _has_inverse(self) -> bool:
         try:
             pivots = np.diagonal(np.linalg.cholesky(self.inertia)) ** 2
         except np.linalg.LinAlgError:
@@ -116,11 +129,10 @@ class WholeBody:
         inertia = self.inertia if added is None else self.inertia_with(added)
         size = 6 if are_held else len(inertia)
         rows = (ways @ self.jacobians[list(points), :, :size]).reshape(-1, size)
-        root = np.linalg.inv(np.linalg.cholesky(inertia[:size, :size]))
-        half = root @ rows.T
         moved = np.zeros((len(inertia), len(rows)))
-        moved[:size] = root.T @ half
-        return half.T @ half, moved
+        moved[:size] = np.linalg.solve(inertia[:size, :size], rows.T)
+        W = rows @ moved[:size]
+        return 0.5 * (W + W.T), moved
 
 
 def _pinocchio() -> Any:

@@ -216,12 +216,40 @@ def _solve_mechanism(
     restitution = np.array(_for_each(n, contacts.restitution, "restitution"))
     gaps = np.array(_for_each(n, contacts.gaps, "the gaps"))
     is_known = np.isfinite(friction) & (friction >= 0.0) & (restitution >= 0.0) & (restitution <= 1.0)
-    impulse, after = np.zeros(m), np.where(np.isfinite(c), c, 0.0)
-    work, marks = workspace(n, coordinates(n))
-    notes = INVALID
     if is_known.all() and np.isfinite(c).all() and _is_delassus(W):
-        rows = (0.5 * (W + W.T)).ravel()
-        notes = solvers().mechanism(n, rows, friction, restitution, gaps, *how, c, after, impulse, work, marks)
+        return solve_delassus(0.5 * (W + W.T), friction, restitution, gaps, c, law, *how[1:])
+    return SpatialOutcome(
+        twist=None,
+        impulses=np.zeros((n, 3)),
+        velocities=np.where(np.isfinite(c), c, 0.0).reshape(n, 3),
+        states=(STATES[0],) * n,
+        flags=flags_named(INVALID),
+        energy_lost=0.0,
+        law=law,
+    )
+
+
+def solve_delassus(
+    W: NDArray[np.float64],
+    friction: NDArray[np.float64],
+    restitution: NDArray[np.float64],
+    gaps: NDArray[np.float64],
+    c: NDArray[np.float64],
+    law: str = "path",
+    merge: float = MERGE,
+    threshold: float = 0.0,
+    steps: int = STEPS,
+) -> SpatialOutcome:
+    """`solve_spatial_impact` of a mechanism, symmetric W (3 n, 3 n) and c (3 n,), without looking whether it is one.
+
+    `friction`, `restitution` and `gaps` are (n,). This takes a third of the time.
+    """
+    n, total = len(friction), bool(number_of(law))
+    impulse, after = np.zeros(3 * n), c.copy()
+    work, marks = workspace(n, coordinates(n))
+    notes = solvers().mechanism(
+        n, W.ravel(), friction, restitution, gaps, total, merge, threshold, steps, c, after, impulse, work, marks
+    )
     return SpatialOutcome(
         twist=None,
         impulses=impulse.reshape(n, 3),

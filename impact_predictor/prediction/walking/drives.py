@@ -15,9 +15,6 @@ from ..types import Bound
 
 Array = NDArray[np.float64]
 
-ROUNDS = 4
-"""So often the mass under a foot and the time of its compression follow from each other; then they err by a percent."""
-
 
 class JointDrives:
     """The armature and the drives of a robot's joints, in the order of its model.
@@ -55,14 +52,21 @@ class JointDrives:
         """
         if not self._have_gains:
             return None
-        whole, squeezed = scene.contact_time, min(scene.merge, scene.contact_time)
-        added = self._over(whole, squeezed)
-        for _ in range(ROUNDS if scene.stiffness else 0):
-            mobility = direction @ np.linalg.solve(body.inertia_with(added), direction)
-            squeezed = 0.5 * pi / sqrt(scene.stiffness * mobility)
-            whole = max(scene.contact_time, squeezed)
-            added = self._over(whole, squeezed)
-        return added
+        if not scene.stiffness:
+            return self._over(scene.contact_time, min(scene.merge, scene.contact_time))
+
+        def next_time(squeezed: float) -> float:
+            """The time of the compression, from the mass that the foot has with another one."""
+            inertia = body.inertia_with(self._over(max(scene.contact_time, squeezed), squeezed))
+            mobility = float(direction @ np.linalg.solve(inertia, direction))
+            return 0.5 * pi / sqrt(scene.stiffness * mobility)
+
+        # Mass and time follow from each other: Aitken's extrapolation of two steps errs by some percent at most.
+        first = next_time(scene.contact_time)
+        second = next_time(first)
+        before, step = first - scene.contact_time, second - first
+        squeezed = second - step * step / (step - before) if abs(step) < abs(before) else second
+        return self._over(max(scene.contact_time, squeezed), squeezed)
 
     def _over(self, whole: float, squeezed: float) -> Array:
         moved = 0.5 * whole * (whole - squeezed) + squeezed * squeezed / 6.0

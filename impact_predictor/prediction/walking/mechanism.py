@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import InputError
-from ...mechanics.impact.spatial import Body, ContactPoints, solve_spatial_impact
+from ...mechanics.impact.spatial import Body, ContactPoints, solve_delassus, solve_spatial_impact
 from ...mechanics.types import ContactState, Flag
 from ...stamps import NANOSECONDS
 from ..planar import GRAZES, ORIGIN, direction_of
@@ -263,16 +263,16 @@ class ArticulatedMachine:
         struck = int(c[:, 2].argmin())
         added = drives.inertia(self.body, local[2] @ self.body.jacobians[points[struck]], scene)
         W, moved = self.body.mobility(points, local, added, drives.are_held)
-        law, load = scene.law, np.zeros(c.shape)
+        law, load, each = scene.law, np.zeros(c.shape), np.empty((3, len(points)))
+        each[0], each[1], each[2] = contacts.friction, contacts.restitution, contacts.gaps
         if drives.bound is Bound.ESTIMATE and c.any():
             # What stands carries the weight as long as the impact lasts: a small blow takes off a part of that load,
             # and lifts nothing. Load and blow go on together, so that the law is that of the whole impulse.
             rests = ~c.any(axis=1)
             load[rests] = ways @ scene.gravity * (-scene.mass * scene.contact_time / max(int(rests.sum()), 1))
-            restitution = np.where(rests, 0.0, contacts.restitution)
-            contacts, law = contacts._replace(restitution=restitution), "total"
+            each[1, rests], law = 0.0, "total"
         start = c.ravel()
-        found = solve_spatial_impact(W, contacts, start - W @ load.ravel(), law, scene.merge, GRAZES)
+        found = solve_delassus(W, each[0], each[1], each[2], start - W @ load.ravel(), law, scene.merge, GRAZES)
         impulses = found.impulses - load
         change, given = moved @ impulses.ravel(), impulses.ravel() @ (found.velocities.ravel() - start)
         jumps = change[6:]
