@@ -79,8 +79,8 @@ _TABLE: Final = (
     double(
         "contact.stiffness",
         0.0,
-        "Stiffness of a foot on the ground, which tells how long the drives of a robot work until the force of its "
-        "contact has its first peak; 0 where it is not known: contact.merge and contact.time tell that then.",
+        "Stiffness of a foot on the ground, which tells how long the drives of a robot work until the force of a "
+        "contact has its first peak; 0 where it is not known: contact.time and contact.merge tell it then.",
         unit="N/m",
         low=0.0,
         high=1e12,

@@ -24,7 +24,8 @@ class JointDrives:
 
         (T - s / 2) Kd dv + (T^2 / 2 - T s / 2 + s^2 / 6) Kp dv,
 
-    which acts as an inertia of each joint: the derivation is in docs/walking.md.
+    which acts as an inertia of each joint: the derivation is in docs/walking.md. Where the stiffness of the contact is
+    known, T and s are a quarter of an oscillation on it; else they are contact.time and contact.merge.
 
     Raises:
         InputError: the robot's joints are not those of the model.
@@ -45,28 +46,29 @@ class JointDrives:
         """What impulses are with them: less is known of the joints, and the legs give way as much, or as little, as
         they can."""
 
-    def inertia(self, body: WholeBody, direction: Array, scene: Scene) -> Array | None:
-        """The inertia (joints) that gains add, where a point of the body is struck; None without gains.
+    def inertia(self, body: WholeBody, direction: Array, scene: Scene) -> tuple[Array | None, float]:
+        """The inertia (joints) that gains add where a point of the body is struck, None without gains; and how long the
+        contact lasts, in s.
 
         `direction` (n,) is the row of the generalized velocities that the blow stops, the point's along the normal.
         """
         if not self._have_gains:
-            return None
+            return None, scene.contact_time
         if not scene.stiffness:
-            return self._over(scene.contact_time, min(scene.merge, scene.contact_time))
+            return self._over(scene.contact_time, min(scene.merge, scene.contact_time)), scene.contact_time
 
-        def next_time(squeezed: float) -> float:
-            """The time of the compression, from the mass that the foot has with another one."""
-            inertia = body.inertia_with(self._over(max(scene.contact_time, squeezed), squeezed))
-            mobility = float(direction @ np.linalg.solve(inertia, direction))
+        def next_time(time: float) -> float:
+            """A quarter of the oscillation of the mass that the foot has when its contact lasts for another time."""
+            mobility = float(direction @ np.linalg.solve(body.inertia_with(self._over(time, time)), direction))
             return 0.5 * pi / sqrt(scene.stiffness * mobility)
 
         # Mass and time follow from each other: Aitken's extrapolation of two steps errs by some percent at most.
         first = next_time(scene.contact_time)
-        second = next_time(first)
-        before, step = first - scene.contact_time, second - first
-        squeezed = second - step * step / (step - before) if abs(step) < abs(before) else second
-        return self._over(max(scene.contact_time, squeezed), squeezed)
+        time = next_time(first)
+        before, step = first - scene.contact_time, time - first
+        if abs(step) < abs(before):
+            time -= step * step / (step - before)
+        return self._over(time, time), time
 
     def _over(self, whole: float, squeezed: float) -> Array:
         moved = 0.5 * whole * (whole - squeezed) + squeezed * squeezed / 6.0

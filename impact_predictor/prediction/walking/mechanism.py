@@ -261,7 +261,7 @@ class ArticulatedMachine:
         ways, local = np.array(frame), np.array([to_body(axes, way) for way in frame])
         c = -(np.asarray(contacts.velocities, float) @ ways.T)
         struck = int(c[:, 2].argmin())
-        added = drives.inertia(self.body, local[2] @ self.body.jacobians[points[struck]], scene)
+        added, time = drives.inertia(self.body, local[2] @ self.body.jacobians[points[struck]], scene)
         W, moved = self.body.mobility(points, local, added, drives.are_held)
         law, load, each = scene.law, np.zeros(c.shape), np.empty((3, len(points)))
         each[0], each[1], each[2] = contacts.friction, contacts.restitution, contacts.gaps
@@ -269,7 +269,7 @@ class ArticulatedMachine:
             # What stands carries the weight as long as the impact lasts: a small blow takes off a part of that load,
             # and lifts nothing. Load and blow go on together, so that the law is that of the whole impulse.
             rests = ~c.any(axis=1)
-            load[rests] = ways @ scene.gravity * (-scene.mass * scene.contact_time / max(int(rests.sum()), 1))
+            load[rests] = ways @ scene.gravity * (-scene.mass * time / max(int(rests.sum()), 1))
             each[1, rests], law = 0.0, "total"
         start = c.ravel()
         found = solve_delassus(W, each[0], each[1], each[2], start - W @ load.ravel(), law, scene.merge, GRAZES)
