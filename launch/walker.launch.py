@@ -13,6 +13,7 @@ from launch_ros.substitutions import FindPackageShare
 INPUTS = {
     "odom": "Topic of the trunk's state.",
     "contact_geometry": "Topic of the feet's points in the trunk's frame, for a machine without robot.urdf.",
+    "feet_states": "Topic of the feet's points by their names, with velocities and forces, in its place.",
     "joint_states": "Topic of the joints, for a machine with robot.urdf.",
     "contact_wrench": "Topic of the forces at the feet, where feet.force is above 0.",
     "schedule": "Topic of the planned contacts, where feet.has_schedule is true.",

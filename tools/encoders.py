@@ -5,8 +5,21 @@ from __future__ import annotations
 import struct
 from collections.abc import Sequence
 
-from impact_predictor.prediction.types import Joints, Schedule, Wrench
+from impact_predictor.prediction.types import FeetStates, Joints, Schedule, Wrench
 from impact_predictor.ros.cdr import LITTLE_ENDIAN, LITTLE_ENDIAN_HEADER, align8, stamp, string
+
+
+def encode_feet(feet: FeetStates) -> bytes:
+    """A sensor_msgs/MultiDOFJointState of points that do not turn."""
+    data = _headed(feet.stamp, feet.frame_id)
+    _add_strings(data, feet.names)
+    rests = (0.0, 0.0, 0.0, 1.0), (0.0,) * 3, (0.0,) * 3
+    for vectors, rest in zip((feet.positions, feet.velocities, feet.forces), rests, strict=True):
+        data += LITTLE_ENDIAN.length.pack(len(vectors))
+        if vectors:
+            data += bytes(align8(len(data)) - len(data))
+            data += b"".join([struct.pack(f"<{3 + len(rest)}d", *vector, *rest) for vector in vectors])
+    return bytes(data)
 
 
 def encode_joints(joints: Joints) -> bytes:

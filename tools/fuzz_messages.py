@@ -10,7 +10,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
-from encoders import encode_joints, encode_schedule, encode_wrench
+from encoders import encode_feet, encode_joints, encode_schedule, encode_wrench
 from fuzz_choices import Choices
 from made_motions import OfSupport, made
 
@@ -19,7 +19,7 @@ from impact_predictor.bags.run import Run
 from impact_predictor.parameters.file import read_parameters
 from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction.scene import Input, Scene, inputs_of, scenes_of
-from impact_predictor.prediction.types import Geometry, Imu, Joints, Sample, Schedule, Wrench
+from impact_predictor.prediction.types import FeetStates, Geometry, Imu, Joints, Sample, Schedule, Wrench
 from impact_predictor.ros import messages as coded
 from impact_predictor.ros.cdr import MalformedMessage, decode_diagnostic_array
 from impact_predictor.stamps import NANOSECONDS
@@ -105,6 +105,9 @@ def made_course(name: str, values: Mapping[str, Any]) -> Course:
                 gravity = tuple(-part for part in scene.gravity)
                 value = Imu(message.stamp, message.frame_id, message.orientation, message.angular, gravity)  # type: ignore[arg-type]
                 key = "imu", body
+            if isinstance(message, Geometry) and scene.walking is not None and len(found) % 2:
+                names = tuple([name for name in scene.walking.feet for _ in range(scene.walking.points)])
+                value, key = FeetStates(message.stamp, message.frame_id, names, message.points), ("feet_states", body)
             if key in inputs:
                 found.append((value.stamp, inputs[key], value))
     if any(one.body is None for one in inputs.values()) and not any(one.body is None for _, one, _ in found):
@@ -119,6 +122,7 @@ def encode(value: Any) -> bytes:
         Sample: coded.encode_odometry,
         Imu: coded.encode_imu,
         Geometry: coded.encode_polygon,
+        FeetStates: encode_feet,
         Joints: encode_joints,
         Wrench: encode_wrench,
         Schedule: encode_schedule,

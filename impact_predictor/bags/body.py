@@ -96,7 +96,7 @@ class BodyRecord:
 
     `seen` is the last sample, `first` and `last` are those that were accepted. Of the contact points, `geometry` is
     what was told last, `told` how often, and `moved` how often elsewhere than first. `nearest` is how near (m) a foot
-    came to the ground.
+    came to the ground, and `is_pressed` whether a force on one was told.
     """
 
     def __init__(self, body: str, scene: Scene, write: Write | None) -> None:
@@ -108,6 +108,7 @@ class BodyRecord:
         self.geometry: Geometry | None = None
         self.told = self.moved = 0
         self.nearest = inf
+        self.is_pressed = False
         self._first_geometry: Geometry | None = None
         self._write = write
         prefix = f"{NODE}/{body}/" if body else f"{NODE}/"
@@ -122,6 +123,7 @@ class BodyRecord:
         self.first = self.first or self.last
         if self.gait is not None:
             self.gait.take(prediction)
+            self.is_pressed = self.is_pressed or any(foot.confirmed is not None for foot in prediction.feet)
             self.nearest = min([self.nearest, *[abs(foot.gap) for foot in prediction.feet]])
         if prediction.touchdown is not None:
             self._costs.append((prediction.sample.stamp, cost))

@@ -7,12 +7,12 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Final
 
 from ..errors import InputError
-from ..prediction.scene import CONTACT_GEOMETRY, IMU, JOINTS, ODOM, STATES, Input
+from ..prediction.scene import CONTACT_GEOMETRY, IMU, ODOM, POINTS, STATES, Input
 from ..ros.messages import INPUT_TYPES
 from ..wording import listed
 from .read import listing
 
-GUESSED: Final = (ODOM, IMU, CONTACT_GEOMETRY, JOINTS)
+GUESSED: Final = (ODOM, IMU, *POINTS)
 """Kinds of inputs that the only topic of their type is taken for; trajectories and wrenches may be of anything."""
 
 

@@ -8,8 +8,8 @@ from math import inf
 from typing import TYPE_CHECKING, Any, Final
 
 from ..prediction.checks import REMEDIES
-from ..prediction.scene import CONTACT_GEOMETRY, JOINTS, SCHEDULE, STATES, WRENCH, Input, Scene, inputs_of
-from ..prediction.types import Geometry, Joints, Schedule, Status, Wrench
+from ..prediction.scene import CONTACT_GEOMETRY, POINTS, SCHEDULE, STATES, WRENCH, Input, Scene, inputs_of
+from ..prediction.types import FeetStates, Geometry, Joints, Schedule, Status, Wrench
 from ..ros.messages import INPUT_TYPES
 from ..wording import listed
 from .body import BodyRecord
@@ -55,6 +55,9 @@ def flaw_of(record: BodyRecord, status: Status, message: Any, joints: Sequence[s
         return "joint_names has a name that is none of feet.names"
     if status is Status.WRONG_FRAME and isinstance(message, Wrench):
         return "frame_id is none of feet.names"
+    if status is Status.FEET_CHANGED and isinstance(message, FeetStates) and walking is not None:
+        each, has = "once" if walking.points == 1 else "twice", listed(message.names, _MOST_NAMED) or "none"
+        return f"joint_names must have each of {listed(walking.feet, _MOST_NAMED)} {each}, but has {has}"
     if status is Status.FEET_CHANGED and isinstance(message, Geometry) and walking is not None:
         number, wanted = len(message.points), len(walking.feet) * walking.points
         if number == wanted:
@@ -93,7 +96,7 @@ def why_unpredictable(
     status, refused = max(counts, key=lambda one: counts[one]), list(states)
     if status is Status.NO_GEOMETRY:
         # What became of the contact points says more.
-        of_points = {one: those for one, those in inputs.items() if one.kind in (CONTACT_GEOMETRY, JOINTS)}
+        of_points = {one: those for one, those in inputs.items() if one.kind in POINTS}
         counts = total_of(of_points.values())
         faults = {one: count for one, count in counts.items() if one is not Status.ACCEPTED}
         if not faults:
@@ -108,7 +111,7 @@ def why_unpredictable(
 
 
 def _without_points(of_points: Sequence[Input], names: Mapping[Input, str], scenes: Mapping[str, Scene]) -> str:
-    needed = next((one.kind for one in inputs_of(scenes) if one.kind in (CONTACT_GEOMETRY, JOINTS)), CONTACT_GEOMETRY)
+    needed = next((one.kind for one in inputs_of(scenes) if one.kind in POINTS), CONTACT_GEOMETRY)
     topics = [names[one] for one in of_points if one.kind == needed]
     where = f"{', '.join(topics)} told none" if topics else f"there is no {INPUT_TYPES[needed].name} in the bag"
     # The points of feet move: they cannot be parameters.
@@ -123,9 +126,7 @@ def _words(run: Run, inputs: Mapping[Input, StatusCounts], one: Input, status: S
     record = run.bodies.get(one.body or "")
     if status is Status.GEOMETRY_STALE and record is not None and record.scene.walking is not None:
         timeout = record.scene.walking.timeout
-        of_points = [
-            those for each, those in inputs.items() if each.body == one.body and each.kind in (CONTACT_GEOMETRY, JOINTS)
-        ]
+        of_points = [those for each, those in inputs.items() if each.body == one.body and each.kind in POINTS]
         if any(those.keys() - {Status.ACCEPTED} for those in of_points):
             return "no message about the feet could be used for longer than feet.timeout"
         if record.interval > timeout:
@@ -149,11 +150,12 @@ def remarks(
                 refused.setdefault((names[one], status), f"{count} were refused as {status.name}: {words}")
     said = [*refused.values(), *_unnamed_feet(run, inputs, names)]
     for one in inputs_of(scenes):
-        if one.kind in MISSED and not inputs.get(one):
+        told = one.kind == WRENCH and run.bodies[one.body or ""].is_pressed
+        if one.kind in MISSED and not inputs.get(one) and not told:
             otherwise = "" if one in names else f"; if there is another topic of it, --remap {one.name}:=TOPIC"
             said.append(f"nothing comes on {names.get(one, one.name)}, though {MISSED[one.kind]}{otherwise}")
     for one in inputs:
-        if one.kind in (CONTACT_GEOMETRY, JOINTS) and one.body is not None:
+        if one.kind in POINTS and one.body is not None:
             said += [f"{names[one]}: {doubt}" for doubt in _doubts(run, one.body)]
     for body, record in run.bodies.items():
         contacts, walking = run.monitor.predictors[body].contacts, record.scene.walking

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Final
 from ..prediction.monitor import Monitor
 from ..prediction.recorded import Announced
 from ..prediction.scene import CONTACT_GEOMETRY, IMU, JOINTS, ODOM, SCHEDULE, WRENCH, Input, Scene
-from ..prediction.types import Geometry, Imu, Joints, Sample, Schedule, Status, Wrench
+from ..prediction.types import FeetStates, Geometry, Imu, Joints, Sample, Schedule, Status, Wrench
 from ..ros.messages import DIAGNOSTIC_ARRAY, INPUT_TYPES, MARKER_ARRAY, MalformedMessage, encode_reports
 from .body import NODE as NODE
 from .body import BodyRecord, Write
@@ -202,10 +202,10 @@ class Run:
                 self._draw(sample.stamp, log_time)
         return prediction.status
 
-    def _tell(self, record: BodyRecord, message: Joints | Wrench | Schedule, _: int) -> Status:
+    def _tell(self, record: BodyRecord, message: FeetStates | Joints | Wrench | Schedule, _: int) -> Status:
         status = self.monitor.tell(record.body, message)
         geometry = self.monitor.predictors[record.body].contacts.geometry
-        if isinstance(message, Joints) and geometry is not None and status in _FITTING:
+        if isinstance(message, FeetStates | Joints) and geometry is not None and status in _FITTING:
             record.take_geometry(geometry)
         return status
 

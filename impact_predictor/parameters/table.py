@@ -326,7 +326,8 @@ _TABLE: Final = (
         "feet.names",
         (),
         "Names of the feet of a walking machine, whose points move against the body. They come with contact_geometry, "
-        "in this order, or with joint_states where robot.urdf is given. Left out, the contact points are the body's.",
+        "in this order, with feet_states, or with joint_states where robot.urdf is given. Left out, the contact points "
+        "are the body's.",
         flaw=feet_flaw,
         fixed=TOPICS,
     ),

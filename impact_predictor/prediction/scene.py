@@ -19,10 +19,12 @@ InertiaTensor = tuple[Vector3, Vector3, Vector3]
 ODOM: Final = "odom"
 IMU: Final = "imu"
 CONTACT_GEOMETRY: Final = "contact_geometry"
+FEET_STATES: Final = "feet_states"
 JOINTS: Final = "joint_states"
 WRENCH: Final = "contact_wrench"
 SCHEDULE: Final = "schedule"
 
+POINTS: Final = (CONTACT_GEOMETRY, FEET_STATES, JOINTS)  # what tells where the contact points of a body are
 STATES: Final = (ODOM, IMU)  # what tells how a body moves; everything else is told about it
 
 SWITCHES: Final = {
@@ -278,6 +280,7 @@ def _told_about(scene: Scene) -> list[str]:
     walking = scene.walking or Walking(())
     told = {
         CONTACT_GEOMETRY: scene.needs_geometry,
+        FEET_STATES: scene.needs_geometry and scene.walking is not None,
         JOINTS: walking.robot is not None,
         WRENCH: walking.force > 0.0 and walking.force_source == "sensor",
         SCHEDULE: walking.has_schedule,

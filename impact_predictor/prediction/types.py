@@ -168,6 +168,21 @@ class Geometry(NamedTuple):
     velocities: tuple[Vector3, ...] = ()
 
 
+class FeetStates(NamedTuple):
+    """Where the points of feet are, by the `names` of their feet, as in sensor_msgs/MultiDOFJointState.
+
+    The points of one foot follow each other. `positions` in m, in the body frame; `velocities` in m/s relative to the
+    body and `forces` in N, along its axes; () where they are not measured.
+    """
+
+    stamp: int
+    frame_id: str
+    names: tuple[str, ...]
+    positions: tuple[Vector3, ...]
+    velocities: tuple[Vector3, ...] = ()
+    forces: tuple[Vector3, ...] = ()
+
+
 class Joints(NamedTuple):
     """Positions (rad or m), velocities (rad/s or m/s) and efforts (N m or N) of joints by their names, as in
     sensor_msgs/JointState; velocities and efforts are () where they are not measured.
@@ -197,7 +212,7 @@ class Schedule(NamedTuple):
     stands: tuple[tuple[bool, ...], ...]
 
 
-ContactInput = Geometry | Joints | Wrench | Schedule
+ContactInput = Geometry | FeetStates | Joints | Wrench | Schedule
 """What may be told about the contacts of a body besides its scene."""
 
 

@@ -118,8 +118,8 @@ def read_strings(data: bytes, offset: int, order: ByteOrder) -> tuple[tuple[str,
     return tuple(found), end
 
 
-def read_doubles(data: bytes, offset: int, order: ByteOrder) -> tuple[tuple[float, ...], int]:
-    """The sequence of doubles behind an offset, and the offset behind it.
+def read_doubles(data: bytes, offset: int, order: ByteOrder, each: int = 1) -> tuple[tuple[float, ...], int]:
+    """The sequence of doubles behind an offset, or of structures of `each` so many, and the offset behind it.
 
     Raises:
         struct.error: it does not end inside the message.
@@ -129,7 +129,7 @@ def read_doubles(data: bytes, offset: int, order: ByteOrder) -> tuple[tuple[floa
     if not count:
         # Nothing has to be aligned where no double follows.
         return (), start + 4
-    start = align8(start + 4)
+    start, count = align8(start + 4), count * each
     return struct.unpack_from(f"{order.mark}{count}d", data, start), start + 8 * count
 
 

@@ -22,13 +22,23 @@ from ..bags.read import BagMessage, read_messages, topics
 from ..bags.write import BagWriter
 from ..errors import InputError
 from ..stamps import NANOSECONDS
-from .messages import DIAGNOSTIC_ARRAY, IMU, JOINT_STATE, JOINT_TRAJECTORY, ODOMETRY, OUTPUTS, POLYGON, WRENCH
+from .messages import (
+    DIAGNOSTIC_ARRAY,
+    IMU,
+    JOINT_STATE,
+    JOINT_TRAJECTORY,
+    MULTI_DOF_JOINT_STATE,
+    ODOMETRY,
+    OUTPUTS,
+    POLYGON,
+    WRENCH,
+)
 from .process import Stop, message_class, run, spin
 
 AWAITED: Final = (ODOMETRY, IMU, POLYGON)
 """Types of the messages that are played when somebody has subscribed to them."""
 
-INPUTS: Final = (*AWAITED, JOINT_STATE, WRENCH, JOINT_TRAJECTORY)
+INPUTS: Final = (*AWAITED, JOINT_STATE, MULTI_DOF_JOINT_STATE, WRENCH, JOINT_TRAJECTORY)
 """Types of all messages that are played: not every scene of a robot needs the others that its bag has."""
 
 LATCHED: Final = (POLYGON, JOINT_TRAJECTORY)

@@ -302,8 +302,9 @@ def test_what_is_told_about_feet_goes_to_the_machine_that_has_them() -> None:
 
 
 def test_the_inputs_of_feet_come_before_the_states_of_their_body() -> None:
-    names = ["walker/contact_geometry", "walker/contact_wrench", "walker/schedule", "crate/odom", "walker/odom"]
+    names = ["contact_geometry", "feet_states", "contact_wrench", "schedule", "odom"]
+    names = [*[f"walker/{name}" for name in names[:4]], "crate/odom", "walker/odom"]
     assert [one.name for one in inputs_of(walking())] == names
     modelled = {"walker.robot.urdf": "robot.urdf", "walker.robot.frames": ["a", "b"], "walker.feet.force": 0.0}
-    names[:2] = ["walker/joint_states"]
+    names[:3] = ["walker/joint_states"]
     assert [one.name for one in inputs_of(walking(**modelled))] == names

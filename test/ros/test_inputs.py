@@ -12,21 +12,23 @@ from typing import Any
 
 import numpy as np
 import pytest
-from encoders import encode_joints, encode_schedule, encode_wrench
+from encoders import encode_feet, encode_joints, encode_schedule, encode_wrench
 from hypothesis import given
 from hypothesis import strategies as st
 from messages_of_rosbags import FRAMES, TYPES, TYPESTORE, header, numbers, odometry, random_sample, serialize
 
-from impact_predictor.prediction.types import Geometry, Imu, Joints, Schedule, Wrench
+from impact_predictor.prediction.types import FeetStates, Geometry, Imu, Joints, Schedule, Wrench
 from impact_predictor.ros.messages import (
     IMU,
     JOINT_STATE,
     JOINT_TRAJECTORY,
+    MULTI_DOF_JOINT_STATE,
     ODOMETRY,
     POLYGON,
     WRENCH,
     MalformedMessage,
     decode_diagnostic_array,
+    decode_feet,
     decode_imu,
     decode_joints,
     decode_odometry,
@@ -107,6 +109,24 @@ def test_joints_are_what_is_in_a_joint_state_both_ways(little_endian: bool) -> N
 
 
 @ENDIAN
+def test_feet_by_their_names_are_what_is_in_a_multi_dof_joint_state_both_ways(little_endian: bool) -> None:
+    rng = random.Random(2)
+    vector, turn = TYPES["geometry_msgs/msg/Vector3"], TYPES["geometry_msgs/msg/Quaternion"](0.0, 0.0, 0.0, 1.0)
+    for count in (0, 1, 2, 4) * 20:
+        names = [rng.choice(FRAMES) for _ in range(count)]
+        # Velocities and forces may be left out.
+        vectors = [tuple([numbers(rng, 3) for _ in range(size)]) for size in (count, *rng.choices((0, count), k=2))]
+        feet = FeetStates(rng.randrange(2**31 * 10**9), rng.choice(FRAMES), tuple(names), *vectors)
+        transforms = [TYPES["geometry_msgs/msg/Transform"](vector(*one), turn) for one in vectors[0]]
+        nothing = vector(0.0, 0.0, 0.0)
+        twists = [TYPES["geometry_msgs/msg/Twist"](vector(*one), nothing) for one in vectors[1]]
+        wrenches = [TYPES["geometry_msgs/msg/Wrench"](vector(*one), nothing) for one in vectors[2]]
+        message = TYPES[MULTI_DOF_JOINT_STATE](header(feet.stamp, feet.frame_id), names, transforms, twists, wrenches)
+        assert decode_feet(serialize(message, MULTI_DOF_JOINT_STATE, little_endian)) == feet
+        assert encode_feet(feet) == serialize(message, MULTI_DOF_JOINT_STATE)
+
+
+@ENDIAN
 def test_the_force_of_a_foot_is_what_is_in_a_wrench_both_ways(little_endian: bool) -> None:
     rng = random.Random(2)
     vector = TYPES["geometry_msgs/msg/Vector3"]
@@ -165,6 +185,7 @@ VALID: dict[Any, bytes] = {
     ),
     decode_imu: encode_imu(Imu(1, "imu", (0.0, 0.0, 0.0, 1.0), (1.0, 2.0, 3.0), (4.0, 5.0, 6.0))),
     decode_polygon: encode_polygon(Geometry(1, "cube", ((1.0, 2.0, 3.0), (0.5, -1.0, 0.0)))),
+    decode_feet: encode_feet(FeetStates(1, "base", ("LF", "RF"), ((0.1, 0.2, 0.3),) * 2, (), ((0.0, 0.0, 9.0),) * 2)),
     decode_joints: encode_joints(Joints(1, ("hip", "knee"), (0.1, 0.2), (0.3, 0.4))),
     decode_wrench: encode_wrench(Wrench(1, "LF", (0.0, 0.0, 200.0))),
     decode_schedule: encode_schedule(Schedule(1, ("LF", "RF"), (1, 10**9), ((True, False), (False, True)))),
@@ -200,7 +221,8 @@ def test_bytes_that_are_no_odometry_are_malformed(data: bytes, why: str) -> None
 
 @pytest.mark.parametrize("count", [3, 2**20, 2**29, 2**32 - 1])
 def test_a_wrong_count_is_malformed_at_once_however_large(count: int) -> None:
-    for decode, place in ((decode_polygon, 24), (decode_joints, 20), (decode_schedule, 20), (decode_schedule, 40)):
+    places = (decode_polygon, 24), (decode_feet, 24), (decode_joints, 20), (decode_schedule, 20), (decode_schedule, 40)
+    for decode, place in places:
         data = bytearray(VALID[decode])
         assert struct.unpack_from("<I", data, place) == (2,)
         struct.pack_into("<I", data, place, count)
@@ -240,10 +262,10 @@ def test_rclpy_reads_what_is_written_and_writes_what_is_read() -> None:
     from geometry_msgs.msg import PolygonStamped, WrenchStamped
     from nav_msgs.msg import Odometry
     from sensor_msgs.msg import Imu as ImuMessage
-    from sensor_msgs.msg import JointState
+    from sensor_msgs.msg import JointState, MultiDOFJointState
     from trajectory_msgs.msg import JointTrajectory
 
-    classes = (Odometry, ImuMessage, PolygonStamped, JointState, WrenchStamped, JointTrajectory)
+    classes = (Odometry, ImuMessage, PolygonStamped, MultiDOFJointState, JointState, WrenchStamped, JointTrajectory)
     for (decode, data), kind in zip(VALID.items(), classes, strict=True):
         message = serialization.deserialize_message(data, kind)
         assert decode(serialization.serialize_message(message)) == decode(data)

@@ -7,7 +7,7 @@ from math import cos
 from pathlib import Path
 
 import pytest
-from encoders import encode_joints, encode_schedule, encode_wrench
+from encoders import encode_feet, encode_joints, encode_schedule, encode_wrench
 
 pytest.importorskip("rclpy", reason="the node needs ROS 2: source it, or install the extra `ros`")
 
@@ -17,7 +17,7 @@ from trot import FEET, plan, trot
 from impact_predictor.bags.write import BagWriter
 from impact_predictor.parameters.file import read_parameters
 from impact_predictor.parameters.validation import validate
-from impact_predictor.prediction.types import Geometry, Joints, Schedule, Wrench
+from impact_predictor.prediction.types import FeetStates, Geometry, Joints, Schedule, Wrench
 from impact_predictor.ros.cdr import OK
 from impact_predictor.ros.messages import (
     ODOMETRY,
@@ -26,7 +26,7 @@ from impact_predictor.ros.messages import (
     encode_odometry,
     encode_polygon,
 )
-from impact_predictor.ros.messages.inputs import JOINT_STATE, JOINT_TRAJECTORY, WRENCH
+from impact_predictor.ros.messages.inputs import JOINT_STATE, JOINT_TRAJECTORY, MULTI_DOF_JOINT_STATE, WRENCH
 from impact_predictor.ros.process import message_class
 
 ROOT = Path(__file__).parents[2]
@@ -160,8 +160,11 @@ def test_a_walking_machine_is_told_by_the_node_what_the_replay_tells_byte_for_by
     for geometry, sample in trot(RATE, 2.0):
         force = Wrench(sample.stamp, "LF", (0.0, 0.0, 100.0 * (sample.stamp % 3)))
         messages.append(("/contact_wrench", WRENCH, encode_wrench(force)))
-        # Every other time the trunk is told of first.
+        # Every other time the trunk is told of first, and in the end the feet are told by their names.
         both = [("/contact_geometry", POLYGON, encode_polygon(geometry)), ("/odom", ODOMETRY, encode_odometry(sample))]
+        if len(messages) > RATE * 3:
+            named = FeetStates(geometry.stamp, geometry.frame_id, FEET, geometry.points, geometry.velocities)
+            both[0] = "/feet_states", MULTI_DOF_JOINT_STATE, encode_feet(named)
         messages += both if len(messages) % 2 else reversed(both)
     bag = tmp_path / "trot.mcap"
     with BagWriter(bag) as writer:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from math import inf, sqrt
+from math import inf, isnan, sqrt
 from operator import attrgetter
 
 from ...stamps import NANOSECONDS
@@ -12,6 +12,7 @@ from ..predictor import DEEP, DEEP_TOLERANCES, Contacts
 from ..scene import Scene
 from ..types import (
     ContactInput,
+    FeetStates,
     Foot,
     Geometry,
     Joints,
@@ -23,7 +24,7 @@ from ..types import (
     Wrench,
     impulse_at,
 )
-from ..vectors import add, axes_of, cross, dot, to_body, to_world
+from ..vectors import add, axes_of, cross, dot, times, to_body, to_world
 from .announcement import ExpectedLanding
 from .clock import Delay, FeetClock
 from .cubic import PointFrame
@@ -81,6 +82,8 @@ class FeetContacts(Contacts):
             return self._forces.set(message)
         if isinstance(message, Schedule):
             return self._schedule.set(message)
+        if isinstance(message, FeetStates):
+            return self._by_name(message)
         if isinstance(message, Joints):
             assert self._articulated is not None
             geometry = self._articulated.geometry_of(message)
@@ -90,7 +93,10 @@ class FeetContacts(Contacts):
             if self._walking.force_source == "effort" and self._base.samples and self._forces.is_due(message.stamp):
                 axes = axes_of(self._base.samples[-1].orientation)
                 forces = self._articulated.forces_of(message, to_body(axes, self.scene.gravity))
-                self._forces.press(message.stamp, to_body(axes, self.scene.normal), forces)
+                self._forces.are_missing = forces is None
+                if forces is not None:
+                    normal = to_body(axes, self.scene.normal)
+                    self._forces.press(message.stamp, [times(normal, max(0.0, dot(normal, one))) for one in forces])
             return self._place(geometry)
         return self._place(message)
 
@@ -147,6 +153,21 @@ class FeetContacts(Contacts):
         self.settled.extend(self._landings.finish())
         self.stamp = None
         self._begin()
+
+    def _by_name(self, told: FeetStates) -> Status:
+        """Take points that are told by the names of their feet; those of other names are left out."""
+        feet, names, forces = self._walking.feet, told.names, told.forces
+        order = [i for foot in feet for i, name in enumerate(names) if name == foot]
+        if any(names.count(foot) != self._walking.points for foot in feet):
+            return Status.FEET_CHANGED
+        if len(told.positions) != len(names) or any(len(one) not in (0, len(names)) for one in told[4:6]):
+            return Status.MALFORMED
+        velocities = tuple([told.velocities[i] for i in order]) if told.velocities else ()
+        if any(isnan(part) for velocity in velocities for part in velocity):  # what is told where none are measured
+            velocities = ()
+        if forces and self._walking.force > 0.0 and self._walking.force_source == "sensor":
+            self._forces.press(told.stamp, [forces[i] for i in order])
+        return self._place(Geometry(told.stamp, told.frame_id, tuple([told.positions[i] for i in order]), velocities))
 
     def _place(self, geometry: Geometry) -> Status:
         points, velocities = geometry.points, geometry.velocities

@@ -43,13 +43,12 @@ class FootForces:
         last, _ = self._pressed.get(self._feet[0], (stamp - EVERY, False))
         return not 0 <= stamp - last < EVERY
 
-    def press(self, stamp: int, normal: Vector3, forces: Sequence[Vector3] | None) -> None:
-        """Take what efforts tell of the forces (N) on the points, and the ground's normal along the same axes."""
-        self.are_missing = forces is None
-        for number, foot in enumerate(self._feet if forces is not None else ()):
-            own = (forces or ())[number * self._each : (number + 1) * self._each]
-            pressed = max(0.0, total([dot(normal, force) for force in own]))
-            self.set(Wrench(stamp, foot, (pressed, 0.0, 0.0)))
+    def press(self, stamp: int, forces: Sequence[Vector3]) -> None:
+        """Take the forces (N) on all points of the feet at a stamp in ns."""
+        for number, foot in enumerate(self._feet):
+            own = zip(*forces[number * self._each : (number + 1) * self._each], strict=True)
+            x, y, z = (total(parts) for parts in own)
+            self.set(Wrench(stamp, foot, (x, y, z)))
 
     def agree(self, foot: str, stands: bool, stamp: int) -> bool | None:
         """Whether the sensor of a foot shows the same stance near a stamp in ns; None where it shows nothing then."""

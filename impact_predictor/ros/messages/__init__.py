@@ -10,9 +10,11 @@ from .inputs import IMU as IMU
 from .inputs import INPUT_TYPES as INPUT_TYPES
 from .inputs import JOINT_STATE as JOINT_STATE
 from .inputs import JOINT_TRAJECTORY as JOINT_TRAJECTORY
+from .inputs import MULTI_DOF_JOINT_STATE as MULTI_DOF_JOINT_STATE
 from .inputs import ODOMETRY as ODOMETRY
 from .inputs import POLYGON as POLYGON
 from .inputs import WRENCH as WRENCH
+from .inputs import decode_feet as decode_feet
 from .inputs import decode_imu as decode_imu
 from .inputs import decode_joints as decode_joints
 from .inputs import decode_odometry as decode_odometry

@@ -1,6 +1,6 @@
 """The inputs of the predictor as bytes of ROS 2 Jazzy, both ways.
 
-nav_msgs/Odometry, geometry_msgs/PolygonStamped and WrenchStamped, sensor_msgs/Imu and JointState,
+nav_msgs/Odometry, geometry_msgs/PolygonStamped and WrenchStamped, sensor_msgs/Imu, JointState and MultiDOFJointState,
 trajectory_msgs/JointTrajectory. Each decoder takes either byte order, takes numbers as they are, and raises
 MalformedMessage where the bytes are no such message.
 """
@@ -11,7 +11,7 @@ from collections.abc import Callable
 from functools import lru_cache
 from typing import Any, Final, NamedTuple
 
-from ...prediction.types import Geometry, Imu, Joints, Sample, Schedule, Wrench
+from ...prediction.types import FeetStates, Geometry, Imu, Joints, Sample, Schedule, Wrench
 from ...stamps import NANOSECONDS
 from ..cdr import (
     LITTLE_ENDIAN,
@@ -32,6 +32,7 @@ ODOMETRY: Final = "nav_msgs/msg/Odometry"
 POLYGON: Final = "geometry_msgs/msg/PolygonStamped"
 IMU: Final = "sensor_msgs/msg/Imu"
 JOINT_STATE: Final = "sensor_msgs/msg/JointState"
+MULTI_DOF_JOINT_STATE: Final = "sensor_msgs/msg/MultiDOFJointState"
 WRENCH: Final = "geometry_msgs/msg/WrenchStamped"
 JOINT_TRAJECTORY: Final = "trajectory_msgs/msg/JointTrajectory"
 
@@ -145,6 +146,19 @@ def decode_joints(data: bytes) -> Joints:
     return Joints(stamp=nanoseconds, names=names, positions=positions, velocities=velocities, efforts=efforts)
 
 
+@decoder(MULTI_DOF_JOINT_STATE)
+def decode_feet(data: bytes) -> FeetStates:
+    """The feet in the bytes of a sensor_msgs/MultiDOFJointState: each is a joint that moves in all directions."""
+    order, nanoseconds, frame_id, end = read_header(data)
+    names, end = read_strings(data, end, order)
+    parts = []
+    for each in (7, 6, 6):  # transforms, twists and wrenches: the first three numbers of each are those of the point
+        numbers, end = read_doubles(data, end, order, each)
+        parts.append(tuple(zip(numbers[::each], numbers[1::each], numbers[2::each], strict=True)))
+    check_end(data, end, 3)
+    return FeetStates(nanoseconds, frame_id, names, *parts)
+
+
 @decoder(WRENCH)
 def decode_wrench(data: bytes) -> Wrench:
     """The force in the bytes of a geometry_msgs/WrenchStamped."""
@@ -189,6 +203,7 @@ INPUT_TYPES: Final = {
     "odom": InputType(ODOMETRY, decode_odometry),
     "imu": InputType(IMU, decode_imu),
     "contact_geometry": InputType(POLYGON, decode_polygon),
+    "feet_states": InputType(MULTI_DOF_JOINT_STATE, decode_feet),
     "joint_states": InputType(JOINT_STATE, decode_joints),
     "contact_wrench": InputType(WRENCH, decode_wrench),
     "schedule": InputType(JOINT_TRAJECTORY, decode_schedule),
