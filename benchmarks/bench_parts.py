@@ -37,7 +37,6 @@ SWITCHES: Final[dict[str, tuple[dict[str, Any], dict[str, Any]]]] = {
     "friction": ({"contact.friction": 0.0}, {"contact.friction": 0.3}),
     "restitution": ({"contact.restitution": 0.0}, {"contact.restitution": 0.3}),
     "twist window": ({"odom.twist_window": 0.0}, {"odom.twist_window": 0.01}),
-    "harmonic extrapolation": ({"support.extrapolation": "constant"}, {"support.extrapolation": "harmonic"}),
     "onset watch": ({"onset.watch": False}, {"onset.watch": True}),
     "force sensors": ({"feet.force": 0.0}, {"feet.force": 30.0}),
     "schedule": ({"feet.has_schedule": False}, {"feet.has_schedule": True}),

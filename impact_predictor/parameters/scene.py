@@ -73,8 +73,6 @@ def check_body(body: str, values: Mapping[str, Any], given: Collection[str]) -> 
             f"{one.named('onset.warn')} is {values['onset.warn']:g}, above {one.named('onset.error')}, which is "
             f"{values['onset.error']:g}: the level is WARN before it is ERROR"
         )
-    if values["support.harmonic_window"] <= values["support.window"]:
-        raise InputError("support.harmonic_window must be longer than support.window, which tells accelerations")
 
 
 def _check_source(one: _Given) -> None:

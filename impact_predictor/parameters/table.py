@@ -271,24 +271,6 @@ _TABLE: Final = (
         shared=True,
         fixed=SUPPORT,
     ),
-    text(
-        "support.extrapolation",
-        "constant",
-        "How the support's motion goes on: constant keeps its accelerations, harmonic fits waves to the last "
-        "support.harmonic_window.",
-        choices=("constant", "harmonic"),
-        shared=True,
-        fixed=SUPPORT,
-    ),
-    seconds(
-        "support.harmonic_window",
-        20.0,
-        "Time to which the harmonic extrapolation is fitted; several periods of the support's motion.",
-        low=1.0,
-        high=600.0,
-        shared=True,
-        fixed=SUPPORT,
-    ),
     metres(
         "support.extent",
         (),
@@ -307,7 +289,8 @@ _TABLE: Final = (
     ratio(
         "onset.warn",
         0.7,
-        "Part of the margin against sliding or tipping that is used up (1 at the onset) from which the level is WARN.",
+        "Part of the margin against sliding or tipping that is used up (1 at the onset) from which the level is WARN, "
+        "until the sea is learnt.",
         low=0.01,
         high=100.0,
     ),
@@ -321,7 +304,14 @@ _TABLE: Final = (
         high=100.0,
     ),
     seconds("onset.hold", 5.0, "How long the part must stay that low before the level falls.", high=3600.0),
-    seconds("onset.horizon", 5.0, "How far ahead an onset is looked for.", high=60.0),
+    seconds("onset.horizon", 10.0, "How far ahead an onset is looked for; waves tell nothing further.", high=15.0),
+    ratio(
+        "onset.vain",
+        0.6,
+        "Part of the warnings that may be vain: less warns later. Once the sea is learnt, which takes a minute or two, "
+        "the level is WARN when an onset within the horizon is likelier than one minus this.",
+        high=0.95,
+    ),
     texts(
         "feet.names",
         (),
@@ -465,7 +455,11 @@ _TABLE: Final = (
     ),
 )
 
-RETIRED: Final = {"transverse_slip": "friction opposes the whole slip of every touchdown now, so delete the line"}
+RETIRED: Final = {
+    "support.extrapolation": "the watch learns the sea by itself now, so delete the line",
+    "support.harmonic_window": "the watch learns the sea by itself now, so delete the line",
+    "transverse_slip": "friction opposes the whole slip of every touchdown now, so delete the line",
+}
 """Parameters that there were, and what to do about them."""
 
 PARAMETERS: Final[dict[str, Parameter]] = {parameter.name: parameter for parameter in _TABLE}

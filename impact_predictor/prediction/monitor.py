@@ -70,14 +70,16 @@ class Monitor:
             self._tilts = {body: Tilt(scene) for body, scene in scenes.items() if scene.source == "imu"}
 
     def _begin_to_watch(self, scenes: Mapping[str, Scene]) -> Watch:
-        from .deck.motion import forecast
         from .watch.watch import Watch
 
         self._watched = {body: scene for body, scene in scenes.items() if scene.watching is not None}
         if self._resting is not None:
-            return Watch(self._watched, partial(forecast, self._resting, None))
+            from .deck.forecast import single
+
+            return Watch(self._watched, partial(single, self._resting, None))
         assert self.deck is not None
-        return Watch(self._watched, self.deck.forecast)
+        self.deck.learn()
+        return Watch(self._watched, self.deck.outlook)
 
     def changed(self, scenes: Mapping[str, Scene]) -> Callable[[], None]:
         """What makes other scenes of the same bodies those of this monitor: nothing has changed before it is called.

@@ -33,7 +33,6 @@ SWITCHES: Final = {
     "twist window": "odom.twist_window",
     "geometry topic": "!body.contact_points !body.radius !robot.urdf",
     "moving support": "support.motion",
-    "harmonic extrapolation": "support.motion support.extrapolation",
     "onset watch": "onset.watch",
     "cylinder": "body.radius",
     "three dimensions": "!body.radius",
@@ -54,7 +53,6 @@ SWITCHES: Final = {
 
 ON: Final = {
     "support.motion": {"odom", "imu"},
-    "support.extrapolation": {"harmonic"},
     "source": {"imu"},
     "executor": {"events"},
     "robot.drives": {"held", "pd"},
@@ -66,16 +64,13 @@ class MovingDeck(NamedTuple):
     """How a moving support is observed; SI units.
 
     `source` is "odom" (pose and twist) or "imu", which lies at `imu_position` in the support's frame with its axes;
-    `window` in s over which accelerations are estimated; `extrapolation` is "constant" acceleration or "harmonic", a
-    fit to the last `harmonic_window` s; a message older than `timeout` s tells nothing any more; `extent` is (least x,
-    greatest x, least y, greatest y) of the deck in its frame, () for one without end.
+    `window` in s over which accelerations are estimated; a message older than `timeout` s tells nothing any more;
+    `extent` is (least x, greatest x, least y, greatest y) of the deck in its frame, () for one without end.
     """
 
     source: str = "odom"
     imu_position: Vector3 = (0.0, 0.0, 0.0)
     window: float = 0.2
-    extrapolation: str = "constant"
-    harmonic_window: float = 20.0
     timeout: float = 0.5
     extent: tuple[float, ...] = ()
 
@@ -84,14 +79,16 @@ class Watching(NamedTuple):
     """When the margins of a body against sliding and tipping raise its level.
 
     `warn` and `error` are parts of the margin that is used up (1 at the onset); a level falls again when the part is
-    `hysteresis` below them for `hold` s; the onset is looked for `horizon` s ahead.
+    `hysteresis` below them for `hold` s. Once the sea is learnt, it is warned of an onset within `horizon` s that is so
+    likely that at most the part `vain` of the warnings are vain.
     """
 
     warn: float = 0.7
     error: float = 1.0
     hysteresis: float = 0.1
     hold: float = 5.0
-    horizon: float = 5.0
+    horizon: float = 10.0
+    vain: float = 0.6
 
 
 class Robot(NamedTuple):

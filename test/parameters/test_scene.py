@@ -102,7 +102,6 @@ REFUSED: list[tuple[dict[str, Any], str]] = [
     ),
     ({"support.extent": [5.0, -5.0, -2.0, 2.0]}, "but each least must be below its greatest"),
     ({"support.extent": [-5.0, 5.0, 2.0, 2.0]}, "but each least must be below its greatest"),
-    ({"support.window": 5.0, "support.harmonic_window": 5.0}, "must be longer than support.window"),
     (
         {"bodies": ["a"], "a.onset.warn": 1.2},
         "a.onset.warn is 1.2, above onset.error, which is 1: the level is WARN before it is ERROR",
@@ -207,7 +206,6 @@ def test_what_does_not_fit_together_is_refused_in_one_sentence(given: dict[str, 
             "place.position": [0.0, -0.6 * sqrt(0.3**2 - 0.25**2), 0.15 + 0.8 * sqrt(0.3**2 - 0.25**2)],
         },
         {"gravity": UP},
-        {"support.extrapolation": "harmonic"},
         {"onset.warn": 1.0},
         {"feet.names": ["left foot", "LF_FOOT-1"]},
         {**WITH_WALKER, "feet.points": 2, "robot.urdf": "a.urdf", "walker.robot.frames": ["heel", "toe"]},
@@ -243,8 +241,8 @@ def test_a_name_hides_no_parameter(name: str) -> None:
 def test_what_concerns_the_support_as_a_whole_is_shared_and_given_once() -> None:
     shared = {name for name, parameter in PARAMETERS.items() if parameter.shared}
     assert shared == {
-        *("bodies", "executor", "gravity", "support.extent", "support.extrapolation", "support.frame"),
-        *("support.harmonic_window", "support.imu_position", "support.motion", "support.timeout", "support.window"),
+        *("bodies", "executor", "gravity", "support.extent", "support.frame", "support.imu_position"),
+        *("support.motion", "support.timeout", "support.window"),
     }
     for name in shared:
         assert refusal({"bodies": ["a"], f"a.{name}": PARAMETERS[name].default}) == (
@@ -296,19 +294,18 @@ def test_a_moving_support_and_a_watch_reach_the_scene() -> None:
         "support.imu_position": [1.0, 2.0, 3.0],
         "support.window": 0.1,
         "support.timeout": 0.4,
-        "support.extrapolation": "harmonic",
-        "support.harmonic_window": 30.0,
         "support.extent": [-1.0, 1.0, -2.0, 2.0],
         "onset.watch": True,
         "onset.warn": 0.5,
         "onset.error": 0.9,
         "onset.hysteresis": 0.2,
         "onset.hold": 3.0,
-        "onset.horizon": 10.0,
+        "onset.horizon": 12.0,
+        "onset.vain": 0.4,
     }
     (scene,) = scenes_of(validate({**BODY, **given})).values()
-    assert scene.deck == MovingDeck("imu", (1.0, 2.0, 3.0), 0.1, "harmonic", 30.0, 0.4, (-1.0, 1.0, -2.0, 2.0))
-    assert scene.watching == Watching(0.5, 0.9, 0.2, 3.0, 10.0)
+    assert scene.deck == MovingDeck("imu", (1.0, 2.0, 3.0), 0.1, 0.4, (-1.0, 1.0, -2.0, 2.0))
+    assert scene.watching == Watching(0.5, 0.9, 0.2, 3.0, 12.0, 0.4)
 
 
 def test_the_defaults_of_a_moving_support_and_of_a_watch_are_those_of_their_types() -> None:

@@ -7,15 +7,11 @@ from functools import partial
 from itertools import repeat
 from math import sin, sqrt
 from operator import mul, sub
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from ...stamps import NANOSECONDS
 from ..types import Felt, Moment, Quaternion, Vector3
 from ..vectors import Axes, add, axes_of, combine, cross, dot, lines, times, to_body, total, turned
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
 
 NOWHERE: Vector3 = (0.0, 0.0, 0.0)
 """Place, velocity and acceleration of a support that nobody measures."""
@@ -146,22 +142,6 @@ def between(first: SupportState, second: SupportState, stamp: int) -> SupportSta
 
 def blend(first: Vector3, second: Vector3, part: float) -> Vector3:
     return add(first, add(second, first, -1.0), part)
-
-
-def forecast(
-    moment: Moment, mean: MeanMotion | None, times: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Gravity felt, angular velocity and angular acceleration at times (n,) in s after a moment, each (n, 3).
-
-    Where a `mean` is given, what `ahead` says goes over to it, and to no rotation, as exp(-(t / quarter)^2).
-    """
-    import numpy as np  # only the watch asks
-
-    felt = np.array([moment.ahead(time) for time in times.tolist()]).reshape(len(times), 3, 3)
-    if mean is not None:
-        rest = np.array((mean.gravity, NOWHERE, NOWHERE))
-        felt = rest + np.exp(-np.square(times / mean.quarter))[:, None, None] * (felt - rest)
-    return felt[:, 0], felt[:, 1], felt[:, 2]
 
 
 class MotionWindow:

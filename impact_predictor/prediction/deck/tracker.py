@@ -12,13 +12,10 @@ from ..checks import LARGEST, PAUSE, check_orientation, order_of
 from ..scene import MovingDeck
 from ..types import Felt, Imu, Moment, Sample, Status, Vector3
 from ..vectors import add, axes_of, dot, rotation_between, times, to_body, to_world
-from .motion import MeanMotion, MotionWindow, SupportState, ahead, between, forecast, later, resting
+from .motion import MeanMotion, MotionWindow, SupportState, ahead, between, later, resting
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    from .harmonic import Harmonic
+    from .forecast import DeckOutlook, WaveForecast
     from .imu import DeckImu
 
 BOUNDS = (
@@ -59,11 +56,7 @@ class Deck:
             from .imu import DeckImu
 
             self._imu = DeckImu(deck.imu_position, gravity, normal)
-        self._harmonic: Harmonic | None = None
-        if deck.extrapolation == "harmonic":
-            from .harmonic import Harmonic
-
-            self._harmonic = Harmonic(deck.harmonic_window)
+        self._waves: WaveForecast | None = None
         self._frames = ("", "")
         self._seen: SupportState | None = None
         self._history: deque[SupportState] = deque()
@@ -163,15 +156,26 @@ class Deck:
             second = first
         return self._before
 
-    def forecast(self, times: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
-        """What will be felt at times (n,) in s after the last message: gravity, angular, turning; each of shape (n, 3).
+    def learn(self) -> None:
+        """Learn from now on how the support goes on in waves, for `outlook`."""
+        from .forecast import WaveForecast
 
-        Constant accelerations fade to the mean of the last minute within a quarter of a wave, because nothing is known
-        from them later; a harmonic fit tells what it can up to 10 s ahead. While nothing is known of the support
-        (`last` is None) it counts as level and at rest.
+        if self._waves is None:
+            self._waves = WaveForecast(self._gravity, is_felt=self._imu is not None)
+
+    def outlook(self, horizon: float) -> DeckOutlook:
+        """Courses of what will be felt after the last message, over a horizon in s.
+
+        Until the sea is learnt there is one: constant accelerations fade to the mean of the last minute within a
+        quarter of a wave, because nothing is known from them later. While nothing is known of the support (`last` is
+        None) it counts as level and at rest.
         """
-        fitted = self._harmonic is not None and self._harmonic.fitted
-        return forecast(self.last or resting(self._still), None if fitted else self._mean, times)
+        from .forecast import single
+
+        last = self.last
+        if last is not None and self._waves is not None and self._waves.is_trusted:
+            return self._waves.outlook(last.stamp, horizon)
+        return single(last or resting(self._still), self._mean, horizon)
 
     def _in_order(self, stamp: int, frames: tuple[str, str]) -> Status:
         last = None if self._seen is None else self._seen.stamp
@@ -195,8 +199,8 @@ class Deck:
         self._seen = self._latest = None
         self._window.clear()
         self._history.clear()
-        if self._harmonic is not None:
-            self._harmonic.clear()
+        if self._waves is not None:
+            self._waves.clear()
 
     def _spans(self, seen: SupportState, signal: Vector3) -> bool:
         """Take what was seen; whether the window is full, so that accelerations are known."""
@@ -221,8 +225,8 @@ class Deck:
         oldest = known.stamp - self._timeout
         while history[0].stamp < oldest:
             history.popleft()
-        if self._harmonic is not None:
-            self._harmonic.add(known)
+        if self._waves is not None:
+            self._waves.add(known)
         return Status.ACCEPTED if state is Status.NO_SUPPORT else state
 
     def _keeps_coming(self, stamp: int, last: int) -> bool:
@@ -243,7 +247,7 @@ class Deck:
             orientation=known.orientation,
             linear=to_body(known.axes, known.velocity),
             felt=felt,
-            ahead=partial(ahead, *felt) if self._harmonic is None else self._harmonic.ahead(known),
+            ahead=partial(ahead, *felt),
             gravity=self._gravity,
         )
 

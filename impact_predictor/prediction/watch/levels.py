@@ -52,7 +52,7 @@ class Levels:
 
     def __init__(self, watchings: Sequence[Watching]) -> None:
         self.warn = np.array([one.warn for one in watchings])
-        self._error = np.array([one.error for one in watchings])
+        self.error = np.array([one.error for one in watchings])
         self._hysteresis = np.array([one.hysteresis for one in watchings])
         self._hold = np.array([one.hold * NANOSECONDS for one in watchings])
         count = len(watchings)
@@ -89,7 +89,7 @@ class Levels:
             self.changed = True
 
     def _asked(self, used: NDArray[np.float64]) -> NDArray[np.int64]:
-        ranks: NDArray[np.int64] = np.where(used >= self._error, ERROR, np.where(used >= self.warn, WARN, OK))
+        ranks: NDArray[np.int64] = np.where(used >= self.error, ERROR, np.where(used >= self.warn, WARN, OK))
         return ranks
 
     def begin_anew(self) -> None:
@@ -113,8 +113,9 @@ NOTHING: Final = MarginsUsed(0.0, "", 0.0)
 
 class BodyOutlook(NamedTuple):
     """What the watch finds for one body: its `status` or that of the support; the margins `used`, None where support or
-    body are not known; whether it weighs nothing (`lifted`); the times in s until it tips and slides, inf where it does
-    not, and until it `strikes`, with the mode; the `barrier` in J that it takes to topple over `barrier_edge`.
+    body are not known; whether it weighs nothing (`lifted`); the times in s until tip and slide are likely, inf where
+    they do not become so, and the `chance` of either within the horizon; when it `strikes`, with the mode; the
+    `barrier` in J that it takes to topple over `barrier_edge`.
     """
 
     status: Status
@@ -122,6 +123,7 @@ class BodyOutlook(NamedTuple):
     lifted: bool
     time_to_tip: float
     time_to_slide: float
+    chance: float
     strikes: tuple[float, Mode] | None
     barrier: float
     barrier_edge: str
@@ -234,7 +236,7 @@ class WatchedBody:
             times = outlook.time_to_tip, outlook.time_to_slide
             for part, time, verb in zip((used.tip, used.slide), times, self._verbs[::2], strict=True):
                 if part < 1.0 and 0.0 < time < inf:
-                    found.append(f"{verb} in {time:.1f} s if the deck goes on so")
+                    found.append(f"{verb} in {time:.1f} s if the deck goes on so ({outlook.chance:.0%} likely)")
         return found
 
     def message(self, outlook: BodyOutlook, held: float | None) -> str:
@@ -263,6 +265,7 @@ class WatchedBody:
             "edge": used.edge or "none",
             "time_to_tip": f"{outlook.time_to_tip:.2f}",
             "time_to_slide": f"{outlook.time_to_slide:.2f}",
+            "onset_probability": f"{outlook.chance:.2f}",
             "energy_to_topple": f"{max(0.0, outlook.barrier - self.standing.kinetic):.3f}",
         }
         return {

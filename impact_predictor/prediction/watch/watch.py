@@ -8,16 +8,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from math import inf
-from typing import Final, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...stamps import NANOSECONDS
 from ..scene import MovingDeck, Scene
 from ..types import Moment, Quaternion, Sample, Status, Touchdown, Vector3
-from .levels import GRAVITY, NOTHING, OK, WARN, BodyOutlook, Level, Levels, MarginsUsed, WatchedBody, rank_of
+from .levels import ERROR, GRAVITY, NOTHING, OK, WARN, BodyOutlook, Level, Levels, MarginsUsed, WatchedBody, rank_of
 from .onset import Onset, OnsetCounts, first_times, motion_of, motions
+
+if TYPE_CHECKING:
+    from ..deck.forecast import DeckOutlook
 
 __all__ = ["Level", "Report", "Watch"]
 
@@ -27,9 +29,13 @@ SECOND: Final = 1_000_000_000
 JUDGED_EVERY: Final = 15_000_000
 """ns: a message that comes sooner after the last judgement waits for the next: margins hardly move."""
 
-FORECAST_EVERY: Final = 250_000_000  # ns from one look ahead to the next
-FORECAST_TIMES: Final = 50
-"""How many times ahead are looked at: 0.1 s apart in a horizon of 5 s, in which no deck rolls to and fro."""
+FORECAST_EVERY: Final = 500_000_000  # ns from one look ahead to the next
+
+IMMINENT: Final = 1.0
+"""s: the level is ERROR when the onset is likelier than not within so long."""
+
+STANDS: Final = 0.5
+"""A warning stands while the onset is so many times as likely as one must be that raises it."""
 
 
 class Report(NamedTuple):
@@ -43,7 +49,7 @@ class Report(NamedTuple):
 
 
 class Watch:
-    """Watches bodies, by their names, over one support whose motion `forecast(times)` tells ahead.
+    """Watches bodies, by their names, over one support of which `outlook(horizon)` tells courses ahead.
 
     Time is that of the support's stamps.
     """
@@ -51,18 +57,20 @@ class Watch:
     def __init__(
         self,
         scenes: Mapping[str, Scene],
-        forecast: Callable[[NDArray[np.float64]], tuple[NDArray[np.float64], ...]],
+        outlook: Callable[[float], DeckOutlook],
     ) -> None:
         self._bodies = bodies = [WatchedBody(name, scene) for name, scene in scenes.items()]
         self._numbers = {name: number for number, name in enumerate(scenes)}
-        self._forecast = forecast
+        self._outlook_of = outlook
         watchings = [body.watching for body in bodies]
         self._onset = Onset([body.standing.stance for body in bodies])
         self._levels = Levels(watchings)
         self._counts = OnsetCounts(np.array([one.hysteresis for one in watchings]))
         self._timeout = int((bodies[0].scene.deck or MovingDeck()).timeout * NANOSECONDS)
         self._horizons = np.array([one.horizon for one in watchings])
-        self._times = np.linspace(0.0, float(self._horizons.max()), FORECAST_TIMES + 1)
+        self._horizon = float(self._horizons.max())
+        self._likely = 1.0 - np.array([one.vain for one in watchings])
+        self._is_learnt = False
         self._motion = np.zeros(12)
         self._margins = self._onset.margins(self._motion)
         self._now: int | None = None
@@ -160,15 +168,31 @@ class Watch:
         self._support = status
         count = len(self._bodies)
         self._used, self._time_to_tip, self._time_to_slide = np.zeros(count), np.full(count, inf), np.full(count, inf)
+        self._chance = np.zeros(count)
         self._due = np.full(count, rank_of(status))
         self._judged = self._looked = None
 
     def _look_ahead(self, stamp: int) -> None:
+        """Find how likely an onset is within the horizon, and when it has become so likely that a warning is due."""
         self._looked = stamp
-        ahead = self._onset.margins(motions(*self._forecast(self._times)))
-        found = [first_times(ratios, self._times) for ratios in (ahead.tip, ahead.slide)]
-        self._time_to_tip, self._time_to_slide = [np.where(times > self._horizons, inf, times) for times in found]
-        self._due = np.where(np.minimum(self._time_to_tip, self._time_to_slide) < inf, WARN, OK)
+        ahead = self._outlook_of(self._horizon)
+        self._is_learnt = ahead.is_learnt
+        courses, count = ahead.gravity.shape[:2]
+        flat = [each.reshape(-1, 3) for each in (ahead.gravity, ahead.angular, ahead.turning)]
+        margins = self._onset.margins(motions(*flat))
+        bodies, found = len(self._bodies), []
+        for ratios in (margins.tip, margins.slide):
+            times = first_times(ratios.reshape(-1, count), ahead.times).reshape(bodies, courses)
+            found.append(np.where(times > self._horizons[:, None], inf, times))
+        either = np.minimum(*found)
+        self._chance = np.isfinite(either).mean(axis=1)
+        # The course of so many from which on the onset is as likely as one that is warned of.
+        due = np.maximum(np.ceil(self._likely * courses).astype(int) - 1, 0)
+        self._time_to_tip, self._time_to_slide = [np.sort(times)[np.arange(bodies), due] for times in found]
+        stands = (self._levels.ranks >= WARN) & (self._chance >= STANDS * self._likely)
+        self._due = np.where((self._chance >= self._likely) | stands, WARN, OK)
+        if ahead.is_learnt:
+            self._due[(either <= IMMINENT).mean(axis=1) > 0.5] = ERROR
 
     def _hear(self, number: int, stamp: int) -> None:
         """A body's source is heard, at the time that the support's stamps tell."""
@@ -192,7 +216,9 @@ class Watch:
         self._judged_at = self._now
         others = np.array([body.rank() for body in self._bodies])
         before = self._levels.ranks
-        self._levels.update(self._now, self._used, np.maximum(others, self._due))
+        # Once the sea is learnt, how likely an onset is warns of it, and not how near the deck has come to one.
+        parts = np.where(self._used < self._levels.error, 0.0, self._used) if self._is_learnt else self._used
+        self._levels.update(self._now, parts, np.maximum(others, self._due))
         ranks = self._levels.ranks
         for number in np.flatnonzero((ranks > before) | ((ranks == OK) & (ranks != before))).tolist():
             self._bodies[number].top = NOTHING
@@ -226,6 +252,7 @@ class Watch:
             lifted=felt and bool(self._margins.lifted[number]),
             time_to_tip=max(0.0, float(self._time_to_tip[number]) - passed),
             time_to_slide=max(0.0, float(self._time_to_slide[number]) - passed),
+            chance=float(self._chance[number]),
             strikes=body.strikes(self._now),
             barrier=work,
             barrier_edge=body.standing.edge_name(edge),

@@ -234,7 +234,8 @@ NUMBERS = st.tuples(ANY, ANY, ANY)
 def test_whatever_a_sensor_tells_there_is_a_status_or_numbers(
     force: Vector3, angular: Vector3, orientation: Any, step: int
 ) -> None:
-    deck = imu_deck(imu_position=PLACE, extrapolation="harmonic", harmonic_window=2.0)
+    deck = imu_deck(imu_position=PLACE)
+    deck.learn()
     for k in range(40):
         odd = still(k * step, specific_force=force, angular=angular, orientation=orientation)
         assert isinstance(deck.update_imu(odd if k != 20 else still(k * step)), Status)
@@ -244,4 +245,4 @@ def test_whatever_a_sensor_tells_there_is_a_status_or_numbers(
             assert all(map(isfinite, numbers))
         else:
             assert answer is not Status.ACCEPTED
-        assert all(np.isfinite(part).all() for part in deck.forecast(np.array([0.0, 5.0])))
+        assert all(np.isfinite(part).all() for part in deck.outlook(5.0))

@@ -2,35 +2,23 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from vessel import read_vessel
 
-from impact_predictor.bags.read import read_messages
 from impact_predictor.prediction.deck.tracker import Deck
 from impact_predictor.prediction.scene import MovingDeck
 from impact_predictor.prediction.types import Imu, Moment, Sample, Status
-from impact_predictor.ros.messages import IMU, ODOMETRY, decode_imu, decode_odometry
 
-BAG = Path(__file__).parents[3] / "examples/vessel_deck"
 GRAVITY = (0.0, 0.0, -9.80665)
 UP = (0.0, 0.0, 1.0)
 
 
 @pytest.fixture(scope="module")
 def record() -> list[tuple[Sample, Imu]]:
-    """Poses with twists, and what the sensor measured at the same stamps."""
-    samples, sensed = [], []
-    for topic, _, data in read_messages(BAG, {"/deck/odom": ODOMETRY, "/deck/imu": IMU}):
-        if topic == "/deck/odom":
-            samples.append(decode_odometry(data))
-        else:
-            sensed.append(decode_imu(data))
-    assert [sample.stamp for sample in samples] == [imu.stamp for imu in sensed]
-    assert len(samples) == 3686
-    return list(zip(samples, sensed, strict=True))
+    return read_vessel()
 
 
 def rms(errors: Any) -> float:
@@ -81,30 +69,3 @@ def test_between_messages_the_pose_is_that_of_the_message_left_out(record: list[
     assert rms(places) < 1e-4  # over 0.1 s a jerk of up to 0.3 m/s^3 moves it by 5e-5 m
     assert rms(tilts) < 1e-5
     assert rms(pulls) < 5e-3  # of the window of 0.6 s
-
-
-# Errors of what is felt, as parts of its deviation, as benchmarks/bench_tracking.py prints them, and a third more.
-CONSTANT = {0.25: 0.10, 1.0: 0.40, 2.0: 0.76, 5.0: 1.25}
-HARMONIC = {0.25: 0.004, 1.0: 0.018, 2.0: 0.065, 5.0: 0.40}
-
-
-@pytest.mark.parametrize(
-    ("extrapolation", "allowed"), [("constant", CONSTANT), ("harmonic", HARMONIC)], ids=["constant", "harmonic"]
-)
-def test_forecasts_are_as_good_as_told(
-    record: list[tuple[Sample, Imu]], extrapolation: str, allowed: dict[float, float]
-) -> None:
-    deck = Deck(MovingDeck(extrapolation=extrapolation), GRAVITY, UP)
-    stamps = np.array([sample.stamp for sample, _ in record]) / 1e9
-    felt = -np.array([imu.specific_force for _, imu in record])
-    times = np.array(list(allowed))
-    errors = []
-    for number, (sample, _) in enumerate(record[: 3686 - 60]):
-        deck.update(sample)
-        if number > 205 and number % 10 == 0:
-            gravity, _, _ = deck.forecast(times)
-            later = np.stack([np.interp(stamps[number] + times, stamps, column) for column in felt.T], axis=1)
-            errors.append(gravity - later)
-    deviation = rms(felt - felt.mean(0))
-    for i, (time, most) in enumerate(allowed.items()):
-        assert rms(np.array(errors)[:, i]) / deviation < most, time

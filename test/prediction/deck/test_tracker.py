@@ -298,17 +298,14 @@ def test_messages_of_the_source_that_the_scene_does_not_name_are_refused() -> No
     assert Deck(MovingDeck(), GRAVITY, UP).update_imu(imu) is Status.MALFORMED
 
 
-def row(forecast: tuple[Any, ...], index: int) -> Felt:
-    return Felt(*(tuple(part[index].tolist()) for part in forecast))
-
-
 def test_a_forecast_begins_with_what_is_known_and_ends_with_what_is_usual() -> None:
     deck = followed(swinging(0.8), np.arange(1600) / 100.0)  # two waves
-    forecast = deck.forecast(np.array([0.0, 0.001, 30.0]))
+    times, *felt, is_learnt = deck.outlook(15.0)
+    assert not is_learnt
+    assert (times[0], times[-1]) == (0.0, 15.0)
     assert deck.last is not None
-    assert apart(row(forecast, 0), deck.last.felt) < 1e-14
-    assert apart(row(forecast, 1), deck.last.ahead(1e-3)) < 1e-5  # (1 ms / 1.75 s)^2 of 9.81 m/s^2
-    gravity, angular, turning = row(forecast, 2)
+    assert apart(Felt(*(tuple(part[0, 0].tolist()) for part in felt)), deck.last.felt) < 1e-14
+    gravity, angular, turning = (part[0, -1] for part in felt)
     assert hypot(*angular, *turning) < 1e-30
     # The mean of harmonics is that of gravity turned by up to 0.1 rad, less what the last minute does not even out.
     assert gravity == pytest.approx(GRAVITY, abs=0.15)
@@ -316,12 +313,11 @@ def test_a_forecast_begins_with_what_is_known_and_ends_with_what_is_usual() -> N
 
 def test_a_forecast_of_nothing_known_is_a_level_support_at_rest() -> None:
     deck = Deck(MovingDeck(), GRAVITY, UP)
-    gravity, angular, turning = deck.forecast(np.linspace(0.0, 5.0, 11))
-    assert gravity.shape == angular.shape == turning.shape == (11, 3)
+    times, gravity, angular, turning, _ = deck.outlook(5.0)
+    assert gravity.shape == angular.shape == turning.shape == (1, len(times), 3)
     assert (gravity == GRAVITY).all()
     assert not angular.any()
     assert not turning.any()
-    assert [part.shape for part in deck_at_rest().forecast(np.array([]))] == [(0, 3)] * 3
 
 
 ANY = st.floats(width=64) | st.sampled_from([0.0, 1.0, 1e12, 1e-300, 1e308])
@@ -338,15 +334,16 @@ ODD = st.fixed_dictionaries(
 )
 
 
-@given(st.lists(ODD, max_size=12), st.sampled_from(["constant", "harmonic"]), st.floats(-10.0, 10.0))
+@given(st.lists(ODD, max_size=12), st.floats(-10.0, 10.0))
 @settings(max_examples=300, deadline=None)
-def test_whatever_comes_there_is_a_status_or_numbers(odd: list[dict[str, Any]], way: str, time: float) -> None:
-    deck = deck_at_rest(0.25, extrapolation=way, harmonic_window=1.0)
+def test_whatever_comes_there_is_a_status_or_numbers(odd: list[dict[str, Any]], time: float) -> None:
+    deck = deck_at_rest(0.25)
+    deck.learn()
     for changes in odd:
         assert isinstance(deck.update(still(**changes)), Status)
         for stamp in (changes["stamp"], changes["stamp"] - 7, 300_000_000):
             check(deck.at(stamp), time)
-        assert all(np.isfinite(part).all() for part in deck.forecast(np.array([0.0, abs(time)])))
+        assert all(np.isfinite(part).all() for part in deck.outlook(5.0))
 
 
 def check(answer: Moment | Status, time: float) -> None:

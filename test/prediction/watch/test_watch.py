@@ -14,6 +14,7 @@ from touchdowns import SAMPLE, TOUCHDOWN
 
 from impact_predictor.mechanics.types import Mode
 from impact_predictor.prediction.checks import REMEDIES
+from impact_predictor.prediction.deck.forecast import DeckOutlook
 from impact_predictor.prediction.deck.motion import resting
 from impact_predictor.prediction.scene import MovingDeck, Scene, Watching
 from impact_predictor.prediction.types import Quaternion, Status, Touchdown, Vector3
@@ -36,7 +37,8 @@ TALL = Scene(
 """It tips about its port edge at a list of atan(0.3 / 0.5), and slides at one of atan(0.9)."""
 DRUM = TALL._replace(points=(), radius=0.3, edges=((0.0, -0.1, 0.0), (0.0, 0.1, 0.0)), place=(0.0, 0.0, 0.28))
 KEYS = [
-    *("slide_ratio", "tip_ratio", "edge", "time_to_tip", "time_to_slide", "energy_to_topple", "tilt"),
+    *("slide_ratio", "tip_ratio", "edge", "time_to_tip", "time_to_slide", "onset_probability"),
+    *("energy_to_topple", "tilt"),
     *("slides_per_hour", "tips_per_hour", "impacts_per_hour", "status"),
 ]
 LEVEL: Quaternion = (0.0, 0.0, 0.0, 1.0)
@@ -58,12 +60,16 @@ class Run:
         self.looked = 0
         self.later = later
         self.felt = STILL
-        self.watch = Watch({f"u{k}": scene for k, scene in enumerate(scenes)}, self.forecast)
+        self.courses: list[Callable[[float], Vector3]] = []
+        self.watch = Watch({f"u{k}": scene for k, scene in enumerate(scenes)}, self.outlook)
 
-    def forecast(self, times: Any) -> Any:
+    def outlook(self, horizon: float) -> DeckOutlook:
         self.looked += 1
-        felt = [self.later(time) if self.later else self.felt for time in times.tolist()]
-        return np.array(felt), np.zeros((len(felt), 3)), np.zeros((len(felt), 3))
+        times = np.linspace(0.0, horizon, 101)
+        courses = self.courses or [self.later or (lambda _: self.felt)]
+        felt = np.array([[course(time) for time in times] for course in courses])
+        still = np.zeros(felt.shape)
+        return DeckOutlook(times=times, gravity=felt, angular=still, turning=still, is_learnt=bool(self.courses))
 
     @property
     def stamp(self) -> int:
@@ -194,12 +200,44 @@ def test_an_onset_ahead_within_the_horizon_warns_and_says_when() -> None:
     run.deck(leaning(0.2))
     report, beyond = run.reports()
     assert report.level == Level.WARN
-    assert report.message.startswith("tips in 2.0 s if the deck goes on so; ")
+    assert report.message.startswith("tips in 2.0 s if the deck goes on so (100% likely); ")
     assert report.values["time_to_tip"] == "2.00"
     assert report.values["time_to_slide"] == "3.25"
     assert (beyond.level, beyond.values["time_to_tip"]) == (Level.OK, "inf")
     run.deck(leaning(0.2))
     assert run.report().values["time_to_tip"] == "1.90"
+
+
+@pytest.mark.parametrize(
+    ("tipping", "level"), [(3, Level.OK), (4, Level.WARN), (10, Level.WARN)], ids=["unlikely", "likely", "sure"]
+)
+def test_once_the_sea_is_learnt_the_part_of_the_courses_that_tip_warns(tipping: int, level: Level) -> None:
+    run = Run(TALL._replace(watching=Watching(vain=0.6)))
+    run.courses = [lambda t, k=k: leaning(0.8 + (0.1 * t if k < tipping else 0.0)) for k in range(10)]
+    run.deck(leaning(0.8))  # above onset.warn, which says nothing any more
+    report = run.report()
+    assert (report.level, report.values["onset_probability"]) == (level, f"{tipping / 10:.2f}")
+    assert report.values["time_to_tip"] == ("2.00" if level else "inf")
+
+
+def test_an_onset_that_is_near_and_likelier_than_not_is_an_error() -> None:
+    run = Run(TALL, TALL._replace(watching=Watching(horizon=0.5)))
+    run.courses = [lambda t, k=k: leaning(0.2 + (t if k < 6 else 0.0)) for k in range(10)]
+    run.deck(leaning(0.2))
+    near, beyond = run.reports()
+    assert near.level == Level.ERROR
+    assert beyond.level == Level.OK
+    run.courses = [lambda t: leaning(0.2 + 0.4 * t)] * 10
+    run.deck(leaning(0.2), 6.0)  # longer than a level is held
+    assert run.report().level == Level.WARN
+
+
+def test_a_warning_stands_until_an_onset_is_half_as_likely_as_one_that_raises_it() -> None:
+    run = Run(TALL._replace(watching=Watching(vain=0.6, hold=1.0)))
+    for tipping, level in ((4, Level.WARN), (2, Level.WARN), (1, Level.OK), (3, Level.OK)):
+        run.courses = [lambda t, k=k, n=tipping: leaning(0.5 + (0.1 * t if k < n else 0.0)) for k in range(10)]
+        run.deck(leaning(0.5), 2.0)
+        assert run.report().level == level
 
 
 def test_each_body_has_its_own_thresholds() -> None:

@@ -1,0 +1,194 @@
+"""The motion of a support in waves some seconds ahead, and how unsure that is: an autoregression that learns the sea.
+
+What is measured of the deck, in means over quarters of a second, goes on as a linear function of its last eight seconds
+(vector autoregression; Luetkepohl, "New Introduction to Multiple Time Series Analysis", 2005, chapter 3). Its
+coefficients are the least-squares ones over the last ten minutes, in which the past fades, so that they follow a sea
+that changes. Channels that lead others, like heave before roll, tell of them: a recursion that all share (Prony) errs
+twice as much. How unsure a forecast is its own past errors show, whole courses of them, which need no model.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...stamps import NANOSECONDS
+from ..types import Moment, Vector3
+from ..vectors import dot, to_body
+from .motion import NOWHERE, MeanMotion, SupportState
+
+STEP = 250_000_000  # ns between two rows
+SECONDS = STEP / NANOSECONDS
+ORDER = 32  # rows that tell the next one: 8 s
+REACH = 60  # rows ahead: 15 s
+MEMORY = 2400  # rows after which the past counts 1/e: ten minutes
+REFIT = 40  # rows between two fits
+RIDGE = 1e-3
+"""Of each channel's variance, added to it: what is fitted below that is noise."""
+
+LEAST = 1e-4
+"""Standard deviation (SI units) below which a channel is at rest."""
+
+FURTHEST = 6.0  # standard deviations from a channel's mean beyond which nothing is forecast
+
+SPACED = 8  # rows between two courses of errors that are kept: nearer ones are alike
+COURSES = 48
+SINGLE = 51  # times at which a motion that is not learnt is looked at
+ENOUGH = 12  # courses from which a forecast is trusted
+
+
+class DeckOutlook(NamedTuple):
+    """Equally likely courses of what is felt on a support at `times` (t,) in s from now.
+
+    `gravity` felt at its origin (m/s^2), `angular` velocity (rad/s) and `turning`, its derivative, along the axes of
+    then, each (courses, t, 3); `is_learnt` where the courses show how unsure they are.
+    """
+
+    times: NDArray[np.float64]
+    gravity: NDArray[np.float64]
+    angular: NDArray[np.float64]
+    turning: NDArray[np.float64]
+    is_learnt: bool
+
+
+def single(moment: Moment, mean: MeanMotion | None, horizon: float) -> DeckOutlook:
+    """One course, from what is felt at a moment on: what `ahead` says, going over to a `mean` and to no rotation as
+    exp(-(t / quarter)^2).
+    """
+    times = np.linspace(0.0, horizon, SINGLE)
+    felt = np.array([moment.ahead(time) for time in times.tolist()]).reshape(len(times), 3, 3)
+    if mean is not None:
+        rest = np.array((mean.gravity, NOWHERE, NOWHERE))
+        felt = rest + np.exp(-np.square(times / mean.quarter))[:, None, None] * (felt - rest)
+    gravity, angular, turning = felt.swapaxes(0, 1)[:, None]
+    return DeckOutlook(times=times, gravity=gravity, angular=angular, turning=turning, is_learnt=False)
+
+
+class WaveForecast:
+    """Learns from one state of a support after another how its motion goes on, and how wrong that was.
+
+    `gravity` is in the world frame (m/s^2). The channels are its first two parts along the support's axes, and the
+    support's angular and linear velocity along these; or, where `is_felt`, what is felt there and the angular velocity.
+    Accelerations come from velocities that are forecast: those of measured ones are noisy.
+    """
+
+    def __init__(self, gravity: Vector3, is_felt: bool) -> None:
+        self._gravity, self._is_felt = gravity, is_felt
+        self._width = width = 6 if is_felt else 8
+        self._square, self._right = np.zeros((width * ORDER + 1,) * 2), np.zeros((width * ORDER + 1, width))
+        self._factors: NDArray[np.float64] | None = None
+        self._bounds = np.zeros(width), np.zeros(width)
+        self._courses: deque[NDArray[np.float64]] = deque(maxlen=COURSES)
+        self.clear()
+
+    def clear(self) -> None:
+        """Begin a new record of the same sea: what was learnt of it stays."""
+        self._last: tuple[int, NDArray[np.float64]] | None = None
+        self._part = np.zeros(self._width)
+        self._rows = np.zeros((0, self._width))
+        self._made: deque[tuple[int, NDArray[np.float64]]] = deque()
+        self._tick = self._new = 0
+
+    @property
+    def is_trusted(self) -> bool:
+        """Whether it has seen enough to forecast, and of what became of its forecasts."""
+        return self._factors is not None and len(self._rows) >= ORDER and len(self._courses) >= ENOUGH
+
+    def add(self, state: SupportState) -> None:
+        """Take the next state."""
+        last, now = self._last, self._channels(state)
+        self._last = state.stamp, now
+        if last is None:
+            return
+        begin, value = last
+        slope = (now - value) / (state.stamp - begin)
+        while begin // STEP < state.stamp // STEP:
+            end = (begin // STEP + 1) * STEP
+            there = value + (end - begin) * slope
+            row = self._part + (0.5 * (end - begin) / STEP) * (value + there)
+            # The first one is of a part of its time.
+            if self._tick:
+                self._take(row)
+            self._tick, begin, value = end // STEP, end, there
+            self._part = np.zeros(self._width)
+        self._part += (0.5 * (state.stamp - begin) / STEP) * (value + now)
+
+    def outlook(self, stamp: int, horizon: float) -> DeckOutlook:
+        """The courses from a stamp in ns, not before that of the last state, over a horizon in s."""
+        errors = np.array(self._courses)
+        rows = np.concatenate([self._rows[-1:], self._forecast()])
+        # An error may as well have been the other way: so a few courses go further.
+        errors = np.concatenate([np.zeros((len(errors), 1, self._width)), errors], axis=1)
+        felt = self._felt(np.concatenate([rows + errors, rows - errors]))
+        # A row is the mean over the step that ends with it.
+        begin = (self._tick * STEP - stamp) / NANOSECONDS
+        times = np.array([begin + SECONDS * (k - 0.5) for k in range(REACH + 1)])
+        first = int(np.searchsorted(times, 0.0))
+        last = max(first + 1, int(np.searchsorted(times, horizon, side="right")))
+        gravity, angular, turning = [each[:, first:last] for each in felt]
+        return DeckOutlook(times=times[first:last], gravity=gravity, angular=angular, turning=turning, is_learnt=True)
+
+    def _channels(self, state: SupportState) -> NDArray[np.float64]:
+        axes = state.axes
+        if self._is_felt:
+            return np.array((*to_body(axes, state.felt), *state.angular))
+        return np.array((*to_body(axes, self._gravity)[:2], *state.angular, *to_body(axes, state.velocity)))
+
+    def _felt(self, rows: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """Gravity felt, angular velocity and its derivative, each (n, t, 3), in courses of rows (n, t, width)."""
+        start = 3 if self._is_felt else 2
+        angular = rows[:, :, start : start + 3]
+        turning = np.gradient(angular, SECONDS, axis=1)
+        if self._is_felt:
+            return rows[:, :, :3], angular, turning
+        linear, gravity = rows[:, :, 5:], self._gravity
+        down = np.maximum(dot(gravity, gravity) - np.square(rows[:, :, :2]).sum(2, keepdims=True), 0.0)
+        felt = np.concatenate([rows[:, :, :2], -np.sqrt(down)], axis=2)
+        return felt - np.gradient(linear, SECONDS, axis=1) - np.cross(angular, linear), angular, turning
+
+    def _forecast(self) -> NDArray[np.float64]:
+        """The rows (REACH, width) after the last one."""
+        assert self._factors is not None
+        width, factors, constant = self._width, self._factors[:-1], self._factors[-1]
+        rows = np.empty((REACH + ORDER, width))
+        # The last row first, as the factors have it: each new one goes before the others.
+        rows[REACH:] = self._rows[: -ORDER - 1 : -1]
+        for i in range(REACH - 1, -1, -1):
+            row = rows[i + 1 : i + 1 + ORDER].ravel() @ factors + constant
+            rows[i] = np.minimum(np.maximum(row, self._bounds[0]), self._bounds[1])
+        return rows[:REACH][::-1]
+
+    def _take(self, row: NDArray[np.float64]) -> None:
+        """Take the mean of a step."""
+        self._rows = np.concatenate([self._rows[-(ORDER + REACH) :], row[None]])
+        self._new += 1
+        if self._made and self._made[0][0] + REACH == self._tick:
+            self._courses.append(self._rows[-REACH:] - self._made.popleft()[1])
+        if len(self._rows) <= ORDER:
+            self._new = 0
+        elif self._new == REFIT:
+            self._fit()
+        if self._factors is not None and self._tick % SPACED == 0 and len(self._rows) >= ORDER:
+            self._made.append((self._tick, self._forecast()))
+
+    def _fit(self) -> None:
+        """Learn the rows since the last fit."""
+        new, self._new = self._rows[-ORDER - self._new :], 0
+        count, width = len(new) - ORDER, self._width
+        told = np.ones((count, width * ORDER + 1))
+        lags = np.lib.stride_tricks.sliding_window_view(new[:-1], ORDER, axis=0)
+        told[:, :-1] = lags[:, :, ::-1].swapaxes(1, 2).reshape(count, -1)
+        fades = np.exp(-count / MEMORY)
+        self._square = fades * self._square + told.T @ told
+        self._right = fades * self._right + told.T @ new[ORDER:]
+        weight = self._square[-1, -1]
+        means = self._square[-1, :-1] / weight
+        variances = np.maximum(np.diagonal(self._square)[:-1] / weight - np.square(means), LEAST * LEAST)
+        ridge = RIDGE * weight * variances
+        reach = FURTHEST * np.sqrt(variances[:width])
+        self._bounds = means[:width] - reach, means[:width] + reach
+        factors = np.linalg.solve(self._square + np.diag(np.append(ridge, 0.0)), self._right)
+        self._factors = np.asarray(factors) if np.isfinite(factors).all() else None

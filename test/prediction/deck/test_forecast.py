@@ -1,0 +1,143 @@
+"""The forecast of a support in waves: on the recorded vessel and on sums of waves, how sure it says it is, and what it
+does while it knows too little.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from vessel import read_vessel
+
+from impact_predictor.prediction.deck.forecast import REACH, STEP, DeckOutlook, WaveForecast
+from impact_predictor.prediction.deck.motion import SupportState
+from impact_predictor.prediction.deck.tracker import Deck
+from impact_predictor.prediction.scene import MovingDeck
+from impact_predictor.prediction.types import Sample
+from impact_predictor.prediction.vectors import axes_of, to_body
+
+GRAVITY = (0.0, 0.0, -9.81)
+UP = (0.0, 0.0, 1.0)
+NOISE = {"linear": 0.02, "angular": 0.01}
+
+
+def noisy(samples: list[Sample]) -> Iterator[Sample]:
+    rng = np.random.default_rng(1)
+    for sample in samples:
+        yield sample._replace(
+            **{name: tuple(np.add(getattr(sample, name), rng.normal(0.0, s, 3))) for name, s in NOISE.items()}
+        )
+
+
+def outlooks(samples: list[Sample], every: int) -> Iterator[tuple[int, DeckOutlook]]:
+    deck = Deck(MovingDeck(window=1.0), GRAVITY, UP)
+    deck.learn()
+    for number, sample in enumerate(samples):
+        deck.update(sample)
+        outlook = deck.outlook(10.0)
+        if outlook.is_learnt and number % every == 0:
+            yield number, outlook
+
+
+def judged(samples: list[Sample], true: list[Sample], felt: np.ndarray, ahead: float) -> tuple[float, float, float]:
+    """Error of the gravity felt so many s ahead, as a part of its deviation; that of keeping the one of now; and the
+    part of the truth that the middle two thirds of the courses hold.
+    """
+    stamps = np.array([sample.stamp for sample in true]) / 1e9
+    errors, kept, held = [], [], []
+    for number, outlook in outlooks(samples, 7):
+        then = stamps[number] + ahead
+        if then < stamps[-1]:
+            courses = np.array(
+                [[np.interp(ahead, outlook.times, one) for one in course.T] for course in outlook.gravity]
+            )
+            truth = np.array([np.interp(then, stamps, one) for one in felt.T])
+            errors.append(courses.mean(axis=0) - truth)
+            kept.append(felt[number] - truth)
+            low, high = np.quantile(courses, [1 / 6, 5 / 6], axis=0)
+            held.append((low < truth) & (truth < high))
+    deviation = np.sqrt(np.square(felt - felt.mean(axis=0)).mean())
+    error, persistence = (float(np.sqrt(np.square(one).mean())) / deviation for one in (errors, kept))
+    return error, persistence, float(np.mean(held))
+
+
+@pytest.fixture(scope="module")
+def record() -> tuple[list[Sample], np.ndarray]:
+    pairs = read_vessel()
+    return [sample for sample, _ in pairs], -np.array([imu.specific_force for _, imu in pairs])
+
+
+@pytest.mark.parametrize(("ahead", "allowed"), [(1.0, 0.3), (2.0, 0.35), (5.0, 0.6)])
+def test_a_noisy_record_is_forecast_better_than_by_what_is_or_what_is_usual(
+    record: tuple[list[Sample], np.ndarray], ahead: float, allowed: float
+) -> None:
+    samples, felt = record
+    error, persistence, held = judged(list(noisy(samples)), samples, felt, ahead)
+    assert error < allowed  # of the deviation, which the mean errs by
+    assert error < persistence
+    assert 0.5 < held < 0.9  # of two thirds
+
+
+def test_nothing_is_forecast_before_the_sea_is_learnt_nor_right_after_a_jump(
+    record: tuple[list[Sample], np.ndarray],
+) -> None:
+    samples, _ = record
+    first = next(number for number, _ in outlooks(samples, 1))
+    assert 30.0 < (samples[first].stamp - samples[0].stamp) / 1e9 < 90.0
+    deck = Deck(MovingDeck(), GRAVITY, UP)
+    deck.learn()
+    moved = [one._replace(position=tuple(np.add(one.position, (50.0, 0.0, 0.0)))) for one in samples[first + 100 :]]
+    learnt = []
+    for sample in samples[: first + 100] + moved[:200]:
+        deck.update(sample)
+        learnt.append(deck.outlook(5.0).is_learnt)
+    assert learnt[first + 99]
+    assert not any(learnt[first + 100 : first + 175])  # 8 s of new rows are needed
+    assert learnt[-1]  # but what was learnt of the sea is not lost
+
+
+def state(time: float, felt: tuple[float, float, float], angular: tuple[float, float, float]) -> SupportState:
+    axes = axes_of((0.0, 0.0, 0.0, 1.0))
+    return SupportState(
+        stamp=round(time * 1e9), orientation=(0.0, 0.0, 0.0, 1.0), axes=axes, angular=angular, felt=felt
+    )
+
+
+def test_waves_of_one_period_are_forecast_as_they_go_on() -> None:
+    forecast, w = WaveForecast(GRAVITY, is_felt=True), 2.0 * np.pi / 7.0
+
+    def roll(time: float) -> float:
+        return 0.2 * float(np.sin(w * time))
+
+    times = np.arange(0.0, 300.0, 0.04)
+    for time in times:
+        felt = to_body(axes_of((np.sin(0.5 * roll(time)), 0.0, 0.0, np.cos(0.5 * roll(time)))), GRAVITY)
+        forecast.add(state(float(time), felt, (0.2 * w * float(np.cos(w * time)), 0.0, 0.0)))
+    outlook = forecast.outlook(round(times[-1] * 1e9), 10.0)
+    assert outlook.times[-1] > 9.5
+    wanted = [[0.0, -9.81 * np.sin(roll(times[-1] + t)), -9.81 * np.cos(roll(times[-1] + t))] for t in outlook.times]
+    assert outlook.gravity.mean(axis=0) == pytest.approx(np.array(wanted), abs=0.1)  # of 1.9 m/s^2
+    turning = [-0.2 * w * w * np.sin(w * (times[-1] + t)) for t in outlook.times]
+    assert outlook.turning.mean(axis=0)[:, 0] == pytest.approx(np.array(turning), abs=0.02)  # of 0.16 rad/s^2
+
+
+def test_a_deck_at_rest_stays_at_rest() -> None:
+    forecast = WaveForecast(GRAVITY, is_felt=False)
+    for time in np.arange(0.0, 120.0, 0.1):
+        forecast.add(state(float(time), GRAVITY, (0.0, 0.0, 0.0)))
+    outlook = forecast.outlook(120 * 10**9, 15.0)
+    assert outlook.gravity.reshape(-1, 3) == pytest.approx(np.tile(GRAVITY, (outlook.gravity.size // 3, 1)))
+    assert not outlook.angular.any()
+
+
+def test_a_forecast_stays_finite_where_nothing_repeats() -> None:
+    forecast, rng = WaveForecast(GRAVITY, is_felt=True), np.random.default_rng(0)
+    level = np.zeros(6)
+    for time in np.arange(0.0, 200.0, 0.1):
+        level = 1.02 * level + rng.normal(size=6)  # it grows and grows
+        forecast.add(state(float(time), tuple(level[:3]), tuple(level[3:])))
+    outlook = forecast.outlook(200 * 10**9, 15.0)
+    assert all(np.isfinite(part).all() for part in outlook)
+    assert len(outlook.times) == pytest.approx(REACH, abs=1)
+    assert np.diff(outlook.times) == pytest.approx(STEP / 1e9)
