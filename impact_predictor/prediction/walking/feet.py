@@ -60,6 +60,7 @@ class FeetContacts(Contacts):
         self._schedule = LandingSchedule(walking.feet)
         self._forces = FootForces(walking)
         self._waiting: deque[Geometry] = deque(maxlen=REMEMBERED)
+        self._named: int | None = None  # stamp of the last feet that were told by their names
         self._dues: list[ExpectedLanding | None] = []
         self._clock = FeetClock(self._count, scene.normal, round(walking.dead_time * NANOSECONDS), walking.delay)
         self._ahead: Touchdown | Status | None = None
@@ -98,6 +99,8 @@ class FeetContacts(Contacts):
                     normal = to_body(axes, self.scene.normal)
                     self._forces.press(message.stamp, [times(normal, max(0.0, dot(normal, one))) for one in forces])
             return self._place(geometry)
+        if self._named is not None and abs(message.stamp - self._named) <= self._timeout:
+            return Status.ACCEPTED  # Feet by their names tell more.
         return self._place(message)
 
     def follow(self, other: Contacts) -> None:
@@ -167,7 +170,11 @@ class FeetContacts(Contacts):
             velocities = ()
         if forces and self._walking.force > 0.0 and self._walking.force_source == "sensor":
             self._forces.press(told.stamp, [forces[i] for i in order])
-        return self._place(Geometry(told.stamp, told.frame_id, tuple([told.positions[i] for i in order]), velocities))
+        points = tuple([told.positions[i] for i in order])
+        status = self._place(Geometry(told.stamp, told.frame_id, points, velocities))
+        if status is Status.ACCEPTED:
+            self._named = told.stamp
+        return status
 
     def _place(self, geometry: Geometry) -> Status:
         points, velocities = geometry.points, geometry.velocities

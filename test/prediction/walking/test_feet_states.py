@@ -48,6 +48,16 @@ def test_velocities_may_be_left_out_or_not_be_measured(machine: Predictor) -> No
         assert machine.contacts.geometry.velocities == ()
 
 
+def test_points_that_are_told_by_order_too_count_only_while_none_are_told_by_name(machine: Predictor) -> None:
+    plain = Geometry(10**9 + 1, "base", RIGHT + LEFT)
+    machine.tell(TOLD)
+    assert machine.tell(plain) is Status.ACCEPTED
+    assert machine.contacts.geometry == Geometry(10**9, "base", LEFT + RIGHT, MOVING)
+    later = plain._replace(stamp=2 * 10**9)
+    assert machine.tell(later) is Status.ACCEPTED
+    assert machine.contacts.geometry == later
+
+
 @pytest.mark.parametrize(
     ("change", "status"),
     [
