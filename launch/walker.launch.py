@@ -17,6 +17,7 @@ INPUTS = {
     "joint_states": "Topic of the joints, for a machine with robot.urdf.",
     "contact_wrench": "Topic of the forces at the feet, where feet.force is above 0.",
     "schedule": "Topic of the planned contacts, where feet.has_schedule is true.",
+    "terrain": "Topic of the heights of the ground, where feet.terrain is above 0.",
 }
 
 

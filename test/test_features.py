@@ -45,6 +45,7 @@ WITHOUT_AND_WITH: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "feet": (BODY, WALKER),
     "force sensors": (WALKER, {**WALKER, "feet.force": 30.0}),
     "schedule": (WALKER, {**WALKER, "feet.has_schedule": True}),
+    "terrain": (WALKER, {**WALKER, "feet.terrain": 0.02}),
     "friction of feet": (WALKER, {**WALKER, "feet.friction": [0.5, 0.6]}),
     "restitution of feet": (WALKER, {**WALKER, "feet.restitution": [0.1]}),
     "margins": (CRATE, {**CRATE, "margins": True}),

@@ -243,7 +243,7 @@ KINDS: dict[str, list[dict[str, Any]]] = {
     "deck": [{"file": "deck_crate", "body.contact_points": ()}, {"file": "deck_crate", "support.motion": "imu"}],
     "cargo": [{"file": "deck_many"}, {"file": "deck_many", "support.motion": "imu"}],
     "walker": [
-        {"file": "walker", "feet.has_schedule": True, "feet.force": 50.0},
+        {"file": "walker", "feet.has_schedule": True, "feet.force": 50.0, "feet.terrain": 0.02},
         {"file": "walker", "robot.urdf": "machine.urdf", "robot.frames": ("left", "right")},
     ],
 }

@@ -8,7 +8,7 @@ from math import inf
 from typing import TYPE_CHECKING, Any, Final
 
 from ..prediction.checks import REMEDIES
-from ..prediction.scene import CONTACT_GEOMETRY, POINTS, SCHEDULE, STATES, WRENCH, Input, Scene, inputs_of
+from ..prediction.scene import CONTACT_GEOMETRY, POINTS, SCHEDULE, STATES, TERRAIN, WRENCH, Input, Scene, inputs_of
 from ..prediction.types import FeetStates, Geometry, Joints, Schedule, Status, Wrench
 from ..ros.messages import INPUT_TYPES
 from ..wording import listed
@@ -32,6 +32,7 @@ MENDABLE: Final = (
 
 MISSED: Final = {
     WRENCH: "feet.force asks for it: no sensor confirms that a foot stands",
+    TERRAIN: "feet.terrain asks for it: levels are those that feet have shown",
     SCHEDULE: "feet.has_schedule asks for it: no landing is told to be early or late",
 }
 """What follows where nothing comes on an input of which feet can do without."""

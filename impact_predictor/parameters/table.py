@@ -394,6 +394,16 @@ _TABLE: Final = (
         "late.",
         fixed=TOPICS,
     ),
+    double(
+        "feet.terrain",
+        0.0,
+        "Size of the cells in which the heights on the topic terrain are gathered, as large as those of the map; 0 "
+        "where none tells of the ground, and no subscription.",
+        unit="m",
+        low=0.0,
+        high=10.0,
+        fixed=TOPICS,
+    ),
     text(
         "robot.urdf",
         "",

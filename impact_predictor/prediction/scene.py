@@ -23,6 +23,7 @@ FEET_STATES: Final = "feet_states"
 JOINTS: Final = "joint_states"
 WRENCH: Final = "contact_wrench"
 SCHEDULE: Final = "schedule"
+TERRAIN: Final = "terrain"
 
 POINTS: Final = (CONTACT_GEOMETRY, FEET_STATES, JOINTS)  # what tells where the contact points of a body are
 STATES: Final = (ODOM, IMU)  # what tells how a body moves; everything else is told about it
@@ -42,6 +43,7 @@ SWITCHES: Final = {
     "drives": "feet.names robot.urdf robot.drives",
     "force sensors": "feet.names feet.force",
     "schedule": "feet.names feet.has_schedule",
+    "terrain": "feet.names feet.terrain",
     "friction of feet": "feet.names feet.friction",
     "restitution of feet": "feet.names feet.restitution",
     "margins": "margins",
@@ -118,6 +120,7 @@ class Walking(NamedTuple):
     stand. Without a `robot` the legs have no mass and the body is rigid. `friction` and `restitution` of each foot, or
     one for all; empty where they are the scene's.
     The stamps of the feet are later than the trunk's by a `delay` in s, which is found by itself with `find_delay`.
+    The ground is told as a map whose heights are gathered in cells of `terrain` m; 0 where none is told.
     """
 
     feet: tuple[str, ...]
@@ -129,6 +132,7 @@ class Walking(NamedTuple):
     delay: float = 0.0
     find_delay: bool = False
     has_schedule: bool = False
+    terrain: float = 0.0
     robot: Robot | None = None
     friction: tuple[float, ...] = ()
     restitution: tuple[float, ...] = ()
@@ -281,6 +285,7 @@ def _told_about(scene: Scene) -> list[str]:
         JOINTS: walking.robot is not None,
         WRENCH: walking.force > 0.0 and walking.force_source == "sensor",
         SCHEDULE: walking.has_schedule,
+        TERRAIN: walking.terrain > 0.0,
     }
     return [kind for kind, is_told in told.items() if is_told]
 

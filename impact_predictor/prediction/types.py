@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from enum import Enum, IntEnum, IntFlag
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from ..mechanics.types import ContactState, Flag, Mode, Outcome, Twist, Vector
 from ..mechanics.types import Quaternion as Quaternion
@@ -212,7 +212,15 @@ class Schedule(NamedTuple):
     stands: tuple[tuple[bool, ...], ...]
 
 
-ContactInput = Geometry | FeetStates | Joints | Wrench | Schedule
+class Terrain(NamedTuple):
+    """Heights of the ground as a map tells them: `points` (n, 3) in m, in the frame of the samples, NaN for unknown."""
+
+    stamp: int
+    frame_id: str
+    points: Any
+
+
+ContactInput = Geometry | FeetStates | Joints | Wrench | Schedule | Terrain
 """What may be told about the contacts of a body besides its scene."""
 
 

@@ -12,7 +12,7 @@ from rclpy.duration import Duration
 from rclpy.node import Node
 
 from ..prediction.monitor import Monitor
-from ..prediction.scene import CONTACT_GEOMETRY, IMU, SCHEDULE, Input
+from ..prediction.scene import CONTACT_GEOMETRY, IMU, SCHEDULE, TERRAIN, Input
 from ..prediction.types import Prediction, Sample, Score, Status
 from .endpoints import LONGEST, Backlog, LatchedTopic, Outlet, publisher, subscription
 from .messages import INPUT_TYPES, OUTPUTS, MalformedMessage, decode_odometry
@@ -37,7 +37,7 @@ class InputTopic:
         # Feet move, and what was published of them before is of no use.
         stays_true = one.kind == CONTACT_GEOMETRY and monitor.scenes[one.body or ""].walking is None
         self._latched: LatchedTopic | None = None
-        if stays_true or one.kind == SCHEDULE:
+        if stays_true or one.kind in (SCHEDULE, TERRAIN):
             self._latched = LatchedTopic(node, self._take, one.name, type_name)
         else:
             self.subscription = subscription(node, one.name, type_name, self._take, reporter.on_lost)

@@ -1,10 +1,12 @@
 """What `~/prediction`, `~/score` and /diagnostics tell of the feet of a walking machine."""
 
 import json
+import math
 from typing import Any
 
+import numpy as np
 import pytest
-from messages_of_rosbags import TYPESTORE, padded, serialize
+from messages_of_rosbags import TYPES, TYPESTORE, header, padded, serialize
 
 from impact_predictor.mechanics.types import Flag, Mode, Twist
 from impact_predictor.prediction.types import (
@@ -20,7 +22,15 @@ from impact_predictor.prediction.types import (
 )
 from impact_predictor.ros.cdr import OK, WARN, Diagnostic
 from impact_predictor.ros.diagnostics import FeetReport, shown
-from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY, decode_diagnostic_array, encode_prediction, encode_score
+from impact_predictor.ros.messages import (
+    DIAGNOSTIC_ARRAY,
+    POINT_CLOUD,
+    MalformedMessage,
+    decode_diagnostic_array,
+    decode_terrain,
+    encode_prediction,
+    encode_score,
+)
 
 NOTHING, LEVEL, UNKNOWN = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), (0.0,) * 36
 SAMPLE = Sample(2_000_000_000, "world", "base", NOTHING, LEVEL, NOTHING, NOTHING, UNKNOWN, UNKNOWN)
@@ -154,3 +164,28 @@ def test_a_force_sensor_disagrees_when_it_does_for_most_of_a_second_not_while_it
         report.take(answer(STANDING, SWINGING))
     report.second_over()
     assert not report.flaw
+
+
+@pytest.mark.parametrize("little_endian", [True, False])
+@pytest.mark.parametrize("kind", [7, 8])
+def test_heights_are_read_from_a_cloud_whatever_else_its_points_have(little_endian: bool, kind: int) -> None:
+    number, mark = {7: "f4", 8: "f8"}[kind], "<" if little_endian else ">"
+    layout = np.dtype([("ring", "u1"), *[(name, mark + number) for name in "xyz"], ("intensity", mark + "f4")])
+    rows = np.zeros((2, 3), layout)
+    for k, name in enumerate("xyz"):
+        rows[name] = np.arange(6.0).reshape(2, 3) * 0.5 + k
+    rows["z"][1, 2] = math.nan
+    field, cloud = TYPES["sensor_msgs/msg/PointField"], TYPES[POINT_CLOUD]
+    offsets = {name: layout.fields[name][1] for name in layout.names}
+    fields = [field(name, offsets[name], kind if name in "xyz" else 2, 1) for name in layout.names]
+    data = np.frombuffer(rows.tobytes(), np.uint8)
+    step = layout.itemsize
+    message = cloud(header(5, "map"), 2, 3, fields, not little_endian, step, 3 * step, data, False)
+    told = decode_terrain(serialize(message, POINT_CLOUD, little_endian))
+    assert (told.stamp, told.frame_id) == (5, "map")
+    expected = np.stack([rows[name].ravel() for name in "xyz"], axis=1)
+    np.testing.assert_array_equal(told.points, expected)
+    for wrong in (message.fields[:3], [*fields[:3], field("z", 100, kind, 1)]):
+        flawed = cloud(header(5, "map"), 2, 3, wrong, not little_endian, step, 3 * step, data, False)
+        with pytest.raises(MalformedMessage):
+            decode_terrain(serialize(flawed, POINT_CLOUD, little_endian))

@@ -20,6 +20,7 @@ from ..types import (
     Sample,
     Schedule,
     Status,
+    Terrain,
     Touchdown,
     Wrench,
     impulse_at,
@@ -34,6 +35,7 @@ from .landings import LandingTracker
 from .mechanism import REMEMBERED, ArticulatedMachine, BaseMotion, LeggedMachine, RigidMachine
 from .schedule import LandingSchedule
 from .stance import FootPoint
+from .terrain import TerrainMap
 
 
 class FeetContacts(Contacts):
@@ -58,6 +60,7 @@ class FeetContacts(Contacts):
         self._timeout = round(walking.timeout * NANOSECONDS)
         self._count = len(walking.feet) * walking.points
         self._schedule = LandingSchedule(walking.feet)
+        self._terrain = TerrainMap(walking.terrain, scene.tolerance) if walking.terrain else None
         self._forces = FootForces(walking)
         self._waiting: deque[Geometry] = deque(maxlen=REMEMBERED)
         self._named: int | None = None  # stamp of the last feet that were told by their names
@@ -69,7 +72,7 @@ class FeetContacts(Contacts):
     def _begin(self) -> None:
         dead_time = round(self._walking.dead_time * NANOSECONDS)
         self._points = [FootPoint(self.scene, dead_time) for _ in range(self._count)]
-        self._ground = Ground(self.scene)
+        self._ground = Ground(self.scene, self._terrain)
         self._base = BaseMotion()
         self._clock.begin()
         self._found = Status.ACCEPTED  # what became of the last geometry that met a sample
@@ -78,13 +81,18 @@ class FeetContacts(Contacts):
         )
 
     def tell(self, message: ContactInput) -> Status:
-        """Take where the points or the joints are, the force on a foot, or when the feet are planned to stand."""
+        """Take where points or joints are, the force on a foot, when the feet are planned to stand, or the terrain."""
         if isinstance(message, Wrench):
             return self._forces.set(message)
         if isinstance(message, Schedule):
             return self._schedule.set(message)
         if isinstance(message, FeetStates):
             return self._by_name(message)
+        if isinstance(message, Terrain):
+            assert self._terrain is not None
+            if self.scene.frame and message.frame_id != self.scene.frame:
+                return Status.WRONG_FRAME
+            return self._terrain.set(message)
         if isinstance(message, Joints):
             assert self._articulated is not None
             geometry = self._articulated.geometry_of(message)
@@ -107,6 +115,8 @@ class FeetContacts(Contacts):
         assert isinstance(other, FeetContacts)
         self.geometry, self.frame_id = other.geometry, other.frame_id
         self._waiting, self._schedule = other._waiting, other._schedule
+        if self._walking.terrain == other._walking.terrain:
+            self._terrain = other._terrain
         self._clock.follow(other._clock)
         self._begin()
 

@@ -13,6 +13,7 @@ from ..scene import Scene
 from ..types import Vector3
 from ..vectors import cross, dot, total
 from .cubic import GapNoise, PointFrame
+from .terrain import TerrainMap
 from .trajectory import DescentPrior
 
 LEAST = GapNoise(gap=1e-5, rate=2e-4)  # by so much a planned course differs from a cubic over few frames: no noise
@@ -148,10 +149,10 @@ class Ground:
     """The level of the ground under each place and the noise of gaps, as the standing feet show both.
 
     Heights may drift, as those of an estimator do: what standing feet show while they stand is drift, and where each of
-    them came to stand is ground.
+    them came to stand is ground. Where a map tells of the terrain footholds show how that is off.
     """
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, terrain: TerrainMap | None = None) -> None:
         self.noise = GapNoise(GUESS * scene.tolerance, GUESS_RATE)
         self.prior = DescentPrior()
         self.drift = 0.0
@@ -159,14 +160,23 @@ class Ground:
         self._tolerance = scene.tolerance
         self._u = direction_of(scene.normal, [])
         self._v = cross(scene.normal, self._u)
-        self._relief = Relief(scene.tolerance)
+        self._relief, self._residual = Relief(scene.tolerance), Relief(scene.tolerance)
+        self._terrain, self._scene = terrain, scene
+        self.footholds = self.unmapped = 0
+        """How many footholds there were, and of how many the map told nothing."""
         self._seen = 0
         self._square = self._square_rate = 0.0
 
     def level_at(self, place: Vector3) -> Level:
         """The level of the ground under a place (m, in the frame of odom)."""
-        height, deviation = self._relief.at(dot(self._u, place), dot(self._v, place))
-        return Level(self.drift + height, deviation)
+        u, v = dot(self._u, place), dot(self._v, place)
+        told = self._told(place)
+        if told is None:
+            height, deviation = self._relief.at(u, v)
+            return Level(self.drift + height, deviation)
+        datum, edge = told
+        height, deviation = self._residual.at(u, v)
+        return Level(self.drift + datum + height, sqrt(deviation * deviation + edge * edge))
 
     def level_of(self, foothold: Foothold) -> Level:
         """The level of a foothold now."""
@@ -182,7 +192,13 @@ class Ground:
         off, square = gap - level.height, level.deviation**2 + unsure**2
         self.drift += max(-unsure, min(off * unsure * unsure / (square + unsure * unsure), unsure))
         found = Foothold(dot(self._u, place), dot(self._v, place), gap - self.drift, len(frames))
+        told = self._told(place)
+        self.footholds += 1
         self._relief.add(found, 0.0)
+        if told is not None:
+            self._residual.add(found, told[0])
+        elif self._terrain is not None:
+            self.unmapped += 1
         return found
 
     def add(self, frame: PointFrame, before: PointFrame, foothold: Foothold) -> None:
@@ -205,3 +221,11 @@ class Ground:
             rate = max(LEAST.rate, sqrt(self._square_rate))
         if self._seen >= FEWEST:
             self.noise = GapNoise(max(LEAST.gap, sqrt(self._square)), rate)
+
+    def _told(self, place: Vector3) -> tuple[float, float] | None:
+        """The height of the terrain under a place over the scene's plane, and how much it may be off (m)."""
+        found = None if self._terrain is None else self._terrain.at(place)
+        if found is None:
+            return None
+        height, edge = found
+        return dot(self._scene.normal, (place[0], place[1], height)) - self._scene.height, edge

@@ -12,6 +12,7 @@ from .inputs import JOINT_STATE as JOINT_STATE
 from .inputs import JOINT_TRAJECTORY as JOINT_TRAJECTORY
 from .inputs import MULTI_DOF_JOINT_STATE as MULTI_DOF_JOINT_STATE
 from .inputs import ODOMETRY as ODOMETRY
+from .inputs import POINT_CLOUD as POINT_CLOUD
 from .inputs import POLYGON as POLYGON
 from .inputs import WRENCH as WRENCH
 from .inputs import decode_feet as decode_feet
@@ -20,6 +21,7 @@ from .inputs import decode_joints as decode_joints
 from .inputs import decode_odometry as decode_odometry
 from .inputs import decode_polygon as decode_polygon
 from .inputs import decode_schedule as decode_schedule
+from .inputs import decode_terrain as decode_terrain
 from .inputs import decode_wrench as decode_wrench
 from .inputs import encode_imu as encode_imu
 from .inputs import encode_odometry as encode_odometry

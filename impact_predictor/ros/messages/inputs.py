@@ -1,8 +1,8 @@
 """The inputs of the predictor as bytes of ROS 2 Jazzy, both ways.
 
-nav_msgs/Odometry, geometry_msgs/PolygonStamped and WrenchStamped, sensor_msgs/Imu, JointState and MultiDOFJointState,
-trajectory_msgs/JointTrajectory. Each decoder takes either byte order, takes numbers as they are, and raises
-MalformedMessage where the bytes are no such message.
+nav_msgs/Odometry, geometry_msgs/PolygonStamped and WrenchStamped, sensor_msgs/Imu, JointState, MultiDOFJointState and
+PointCloud2, trajectory_msgs/JointTrajectory. Each decoder takes either byte order, takes numbers as they are, and
+raises MalformedMessage where the bytes are no such message.
 """
 
 from __future__ import annotations
@@ -11,11 +11,14 @@ from collections.abc import Callable
 from functools import lru_cache
 from typing import Any, Final, NamedTuple
 
-from ...prediction.types import FeetStates, Geometry, Imu, Joints, Sample, Schedule, Wrench
+import numpy as np
+
+from ...prediction.types import FeetStates, Geometry, Imu, Joints, Sample, Schedule, Terrain, Wrench
 from ...stamps import NANOSECONDS
 from ..cdr import (
     LITTLE_ENDIAN,
     LITTLE_ENDIAN_HEADER,
+    MalformedMessage,
     align4,
     align8,
     check_end,
@@ -35,6 +38,7 @@ JOINT_STATE: Final = "sensor_msgs/msg/JointState"
 MULTI_DOF_JOINT_STATE: Final = "sensor_msgs/msg/MultiDOFJointState"
 WRENCH: Final = "geometry_msgs/msg/WrenchStamped"
 JOINT_TRAJECTORY: Final = "trajectory_msgs/msg/JointTrajectory"
+POINT_CLOUD: Final = "sensor_msgs/msg/PointCloud2"
 
 _ODOMETRY_NUMBERS_SIZE: Final = LITTLE_ENDIAN.odometry_numbers.size
 _POINT_SIZE: Final = LITTLE_ENDIAN.point32.size
@@ -192,6 +196,39 @@ def decode_schedule(data: bytes) -> Schedule:
     return Schedule(stamp=nanoseconds, feet=feet, times=tuple(times), stands=tuple(stands))
 
 
+_FLOATS: Final = {7: "f4", 8: "f8"}
+"""The types of numbers in a sensor_msgs/PointField that heights have: FLOAT32 and FLOAT64."""
+
+
+@decoder(POINT_CLOUD)
+def decode_terrain(data: bytes) -> Terrain:
+    """The heights in the bytes of a sensor_msgs/PointCloud2, whose fields x, y and z are floats."""
+    order, nanoseconds, frame_id, end = read_header(data)
+    height, width, count = (order.length.unpack_from(data, align4(end) + 4 * k)[0] for k in range(3))
+    end = align4(end) + 12
+    fields = {}
+    for _ in range(count):
+        name, end = read_string(data, align4(end), order)
+        (offset,) = order.length.unpack_from(data, align4(end))
+        fields[name] = offset, data[align4(end) + 4]
+        end = align4(end) + 12
+    mark = ">" if data[end] else "<"
+    step, row, size = (order.length.unpack_from(data, align4(end + 1) + 4 * k)[0] for k in range(3))
+    start = align4(end + 1) + 12
+    check_end(data, start + size + 1)
+    told = [fields.get(name, (0, 0)) for name in "xyz"]
+    if height * row > size or width * step > row or any(kind not in _FLOATS for _, kind in told):
+        raise MalformedMessage(f"not a {POINT_CLOUD} with the floats x, y and z")
+    formats, offsets = [mark + _FLOATS[kind] for _, kind in told], [offset for offset, _ in told]
+    try:
+        layout = np.dtype({"names": list("xyz"), "formats": formats, "offsets": offsets, "itemsize": step})
+        rows = np.ndarray((height, width), layout, data, start, (row, step))
+    except ValueError as error:
+        raise MalformedMessage(f"not a {POINT_CLOUD}: {error}") from None
+    points = np.stack([rows[name].ravel().astype(float) for name in "xyz"], axis=1)
+    return Terrain(nanoseconds, frame_id, points)
+
+
 class InputType(NamedTuple):
     """How the messages on an input travel: the name of their type, and what reads their bytes."""
 
@@ -207,5 +244,6 @@ INPUT_TYPES: Final = {
     "joint_states": InputType(JOINT_STATE, decode_joints),
     "contact_wrench": InputType(WRENCH, decode_wrench),
     "schedule": InputType(JOINT_TRAJECTORY, decode_schedule),
+    "terrain": InputType(POINT_CLOUD, decode_terrain),
 }
 """The types of the messages on each kind of input (see `impact_predictor.prediction.scene`)."""
