@@ -62,7 +62,7 @@ test: $(READY) ## all tests, the quick ones first; ARGS="-k rod" runs some
 	@$(BIN)/python -m pytest --numprocesses 3 --dist worksteal $(ARGS)
 
 test-extras: $(READY) ## what make test skips: the pages in a browser (Debian: chromium), MuJoCo, wavespectra, Pinocchio, Dask
-	@$(BIN)/python -m pip install --quiet --quiet --disable-pip-version-check --editable '.[$(EXTRAS),articulated,browser,fleet,peers,robots,spectra]' \
+	@$(BIN)/python -m pip install --quiet --quiet --disable-pip-version-check --editable '.[$(EXTRAS),articulated,browser,fleet,robot,spectra]' \
 	  --constraint $(CONSTRAINTS)
 	@$(BIN)/python -m pytest -m extras $(ARGS)
 

@@ -31,16 +31,14 @@ EXTRAS = {
     "fleet": ["dask>=2024.1", "distributed>=2024.1", "pyarrow>=16"],
     # Pinocchio, for machines with joints.
     "articulated": ["pin>=3.0"],
-    # What the laws are only compared with: benchmarks/bench_peers.py.
-    "peers": ["mujoco>=3.2"],
     # Spectra of waves to compare with.
     "spectra": ["wavespectra>=4.4"],
     "browser": ["playwright>=1.45"],
-    # Models of robots, for the tests.
-    "robots": ["example-robot-data>=4.0"],
+    # Robots that walk in MuJoCo: `impact-predictor simulate robot`; the laws are compared with it, too.
+    "robot": ["example-robot-data>=4.0", "mujoco>=3.3"],
     "test": ["hypothesis", "mpmath>=1.3", "pytest", "pytest-xdist"],
 }
-ALL = ("plot", "page", "calibrate", "fast", "fleet", "articulated")
+ALL = ("plot", "page", "calibrate", "fast", "fleet", "articulated", "robot")
 """What brings a command or an option; ROS from PyPI is never mixed with a sourced one, so it is asked for by name."""
 
 setup(

@@ -1,6 +1,6 @@
 """When one rigid body is good enough for a walking machine: the landings of HyQ, its joints locked and its joints free.
 
-    pip install -e '.[articulated,robots]'
+    pip install -e '.[articulated,robot]'
     python benchmarks/articulated.py
 
 For each of the 49 landings in examples/hyq the joint positions follow from the feet by inverse kinematics, so that the

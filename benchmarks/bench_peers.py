@@ -1,7 +1,7 @@
 """Impacts by compliant contacts and by MuJoCo, beside the laws of this program: python benchmarks/bench_peers.py
 
 The problems and what is held to be right are those of `impact-predictor report`. MuJoCo is compared where it is
-installed (the extra `peers`), on bodies that move in the plane alone and have a size at which a time step means
+installed (the extra `robot`), on bodies that move in the plane alone and have a size at which a time step means
 something. It has no restitution, and the contacts that serve an impact best: elliptic cones, and dampers as hard as the
 step allows. Compliant contacts are Kelvin-Voigt springs with regularised friction, integrated by scipy.
 """

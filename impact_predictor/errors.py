@@ -12,7 +12,7 @@ EXTRAS: Final = {
     "distributed": ("distributed", "fleet"),
     "jinja2": ("jinja2", "page"),
     "matplotlib": ("matplotlib", "plot"),
-    "mujoco": ("mujoco", "peers"),
+    "mujoco": ("mujoco", "robot"),
     "numba": ("numba", "fast"),
     "pinocchio": ("pin", "articulated"),
     "plotly": ("plotly", "page"),

@@ -125,7 +125,7 @@ def test_what_no_code_imports_is_not_declared(setup_arguments):
     assert names_of(setup_arguments["install_requires"]) <= distributions
     assert EXTRAS.keys() <= imported
     extras = setup_arguments["extras_require"]
-    assert {package for package, extra in EXTRAS.values() if extra != "peers"} <= names_of(extras["all"])
+    assert {package for package, _ in EXTRAS.values()} <= names_of(extras["all"])
     assert not names_of(extras["all"]) & names_of(extras["test"])
 
 

@@ -10,7 +10,6 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
-from encoders import encode_feet, encode_joints, encode_schedule, encode_wrench
 from fuzz_choices import Choices
 from made_motions import OfSupport, made
 
@@ -22,6 +21,7 @@ from impact_predictor.prediction.scene import Input, Scene, inputs_of, scenes_of
 from impact_predictor.prediction.types import FeetStates, Geometry, Imu, Joints, Sample, Schedule, Wrench
 from impact_predictor.ros import messages as coded
 from impact_predictor.ros.cdr import MalformedMessage, decode_diagnostic_array
+from impact_predictor.ros.messages.walker_inputs import encode_feet, encode_joints, encode_schedule, encode_wrench
 from impact_predictor.stamps import NANOSECONDS
 
 ROOT: Final = Path(__file__).parents[1]

@@ -12,6 +12,8 @@ import click
 from .options import ACUTE, LAW, F, edge_options, edges_of, examples, json_flag, number, together
 from .simulate_deck import EXAMPLES as DECK_EXAMPLES
 from .simulate_deck import simulate_deck
+from .simulate_robot import EXAMPLES as ROBOT_EXAMPLES
+from .simulate_robot import simulate_robot
 from .simulated import RATES_AS_MAGNITUDES, Products, as_json_option, picture_options, record_options
 
 if TYPE_CHECKING:
@@ -75,6 +77,7 @@ def motion_options(angle: float) -> Callable[[F], F]:
         *(line for body in ("rod", "plate", "cylinder") for line in EXAMPLES[body][:2]),
         EXAMPLES["wheel"][0],
         DECK_EXAMPLES[0],
+        ROBOT_EXAMPLES[0],
     ),
 )
 def simulate() -> None:
@@ -86,6 +89,7 @@ def simulate() -> None:
 
 
 simulate.add_command(simulate_deck)
+simulate.add_command(simulate_robot)
 
 
 @simulate.command("rod", short_help="A rod over two supports.", epilog=examples(*EXAMPLES["rod"]))

@@ -1,10 +1,12 @@
-"""What `simulate` prints: the impacts of bodies that rock and of a wheel, cargo on a deck, and how each ended."""
+"""What `simulate` prints: the impacts of bodies that rock and of a wheel, cargo on a deck, robots; how each ended."""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
+from functools import partial
 from math import degrees
+from statistics import median
 from typing import Final, NamedTuple
 
 from rich.console import Console
@@ -12,6 +14,8 @@ from rich.console import Console
 from ..mechanics.motion import End, RockingImpact
 from ..scenarios.as_json import rolling_as_json
 from ..scenarios.deck.voyage import Followed, Voyage
+from ..scenarios.landing import TrueLanding
+from ..scenarios.robot.walk import Walk
 from ..scenarios.rocking import Rocking
 from ..scenarios.truth import TrueOnset
 from ..scenarios.wheel import Rolling
@@ -119,3 +123,33 @@ def print_voyage(console: Console, voyage: Voyage) -> None:
     modes = Counter(impact.mode.name for impact in impacts).most_common()
     counts = ", ".join(f"{count:,} {mode}" for mode, count in modes) or "none"
     say(console, f"{counted(len(impacts), 'impact')}, {60.0 * len(impacts) / voyage.duration:.3g} a minute: {counts}.")
+
+
+def print_walk(console: Console, walk: Walk, landings: Sequence[TrueLanding]) -> None:
+    """Print how the feet of a robot landed: how often, how fast, and with what impulses, in the median."""
+    machine = walk.machine
+    stiffness, damping = machine.gains
+    end = "it falls" if walk.fallen else "the walk ends"
+    say(
+        console,
+        f"{machine.mass:.4g} kg on {len(machine.feet)} feet, {machine.height:.2f} m high, armature "
+        f"{machine.armature:.3g} kg m^2, drives of {stiffness:.3g} N m/rad and {damping:.3g} N m s/rad: {end} after "
+        f"{walk.duration:.4g} s and {walk.positions[-1, 0]:+.2f} m.",
+    )
+    impulses = [
+        Column(f"impulse\n{when}\nN s", partial(_median_impulse, place=place))
+        for place, when in enumerate(("1 ms", "2 ms", "5 ms", "peak"))
+    ]
+    columns = [
+        Column("foot", lambda of: of[0].foot, left=True),
+        Column("landings", lambda of: f"{len(of)}"),
+        Column("speed\nm/s", lambda of: f"{median(one.speed for one in of):.2f}"),
+        Column("fastest\nm/s", lambda of: f"{max(one.speed for one in of):.2f}"),
+        *impulses,
+    ]
+    by_foot = [[one for one in landings if one.foot == foot] for foot in machine.feet]
+    show(console, table_of(columns, [of for of in by_foot if of]))
+
+
+def _median_impulse(landings: Sequence[TrueLanding], place: int) -> str:
+    return f"{median(one.impulse(one.after[place]) for one in landings):.2f}"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import hypot, inf
 from operator import itemgetter
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from ..mechanics.motion import End, RockingImpact, Trajectory
 from ..mechanics.types import Mode
@@ -13,6 +13,10 @@ from .deck.voyage import Voyage
 from .truth import TrueImpact
 from .wheel import Rolling
 from .wheel_closed_forms import downhill, impact_friction, least_friction, steady
+
+if TYPE_CHECKING:
+    from .landing import TrueLanding
+    from .robot.walk import Walk
 
 RESOLVED: Final = 0.05
 """Approach in m/s above which an impact is told from the last small ones of a unit that comes to rest."""
@@ -100,4 +104,29 @@ def voyage_as_json(voyage: Voyage) -> dict[str, Any]:
         "end": end.name,
         "deck": {"most_rolled": voyage.most_rolled, "most_lateral": voyage.most_lateral},
         "units": units,
+    }
+
+
+def walk_as_json(walk: Walk, landings: list[TrueLanding]) -> dict[str, Any]:
+    """A robot's walk as JSON: its drives, and each landing with the impulses in N s along the normal after it."""
+    machine = walk.machine
+    return {
+        "robot": machine.files.urdf.stem,
+        "mass": machine.mass,
+        "height": machine.height,
+        "armature": machine.armature,
+        "gains": machine.gains,
+        "contact_time": machine.physics.contact_time,
+        "duration": walk.duration,
+        "fallen": walk.fallen,
+        "landings": [
+            {
+                "foot": landing.foot,
+                "time": landing.stamp / NANOSECONDS,
+                "speed": landing.speed,
+                "standing": landing.standing,
+                "impulses": [{"after": state.time, "impulse": landing.impulse(state)} for state in landing.after],
+            }
+            for landing in landings
+        ],
     }

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+from itertools import chain
 from typing import Final, NamedTuple
 
 from ..prediction.types import Vector3
+from ..prediction.vectors import dot
 from ..ros.cdr import OK, MalformedMessage, decode_diagnostic_array, diagnostic_array, diagnostic_status, pairs_of
 
 LANDING_TOPIC: Final = "/truth/landings"
-
-_MOMENT: Final = ("time", "twist", "rates")
 
 
 class LandingState(NamedTuple):
@@ -47,8 +47,11 @@ class TrueLanding(NamedTuple):
     @property
     def speed(self) -> float:
         """How fast the foot came down, in m/s."""
-        x, y, z = self.before.velocities[self.feet.index(self.foot)]
-        return -(x * self.normal[0] + y * self.normal[1] + z * self.normal[2])
+        return -dot(self.before.velocities[self.feet.index(self.foot)], self.normal)
+
+    def impulse(self, state: LandingState) -> float:
+        """What the ground has given to the foot until a state, along the normal, in N s."""
+        return dot(state.impulses[self.feet.index(self.foot)], self.normal)
 
 
 def encode_true_landing(landing: TrueLanding, frame_id: str) -> bytes:
@@ -56,11 +59,7 @@ def encode_true_landing(landing: TrueLanding, frame_id: str) -> bytes:
     named = {"stamp": str(landing.stamp), "body": landing.body, "foot": landing.foot}
     named |= {"feet": " ".join(landing.feet), "standing": " ".join(landing.standing), "normal": _row(landing.normal)}
     for k, state in enumerate((landing.before, *landing.after)):
-        named |= {
-            f"{k}.{name}": _row(values) for name, values in zip(_MOMENT, ((state.time,), *state[1:3]), strict=True)
-        }
-        for name, vectors in (("velocities", state.velocities), ("impulses", state.impulses)):
-            named[f"{k}.{name}"] = _row([part for vector in vectors for part in vector])
+        named |= {f"{k}.{name}": _row(values) for name, values in _numbers_of(state).items()}
     status = diagnostic_status(OK, "truth/landing", landing.foot, landing.body, pairs_of(named))
     return diagnostic_array(landing.stamp, frame_id, [status])
 
@@ -93,17 +92,26 @@ def _landing(values: dict[str, str]) -> TrueLanding:
 
 
 def _state(values: dict[str, str], key: str) -> LandingState:
-    (time,), twist, rates = (_numbers(values[key + name]) for name in _MOMENT)
     return LandingState(
-        time=time,
-        twist=twist,
-        rates=rates,
+        time=float(values[key + "time"]),
+        twist=_numbers(values[key + "twist"]),
+        rates=_numbers(values[key + "rates"]),
         velocities=_vectors(values[key + "velocities"]),
         impulses=_vectors(values[key + "impulses"]),
     )
 
 
-def _row(values: tuple[float, ...] | list[float]) -> str:
+def _numbers_of(state: LandingState) -> dict[str, tuple[float, ...]]:
+    return {
+        "time": (state.time,),
+        "twist": state.twist,
+        "rates": state.rates,
+        "velocities": tuple(chain.from_iterable(state.velocities)),
+        "impulses": tuple(chain.from_iterable(state.impulses)),
+    }
+
+
+def _row(values: tuple[float, ...]) -> str:
     return " ".join(repr(float(value)) for value in values)
 
 

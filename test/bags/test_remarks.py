@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from encoders import encode_joints
 from made_motions import made
 
 from impact_predictor.bags.replay import Result, replay
@@ -17,6 +16,7 @@ from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.prediction.types import Geometry, Joints, Sample, Status
 from impact_predictor.ros.messages import JOINT_STATE, ODOMETRY, POLYGON, encode_odometry, encode_polygon
+from impact_predictor.ros.messages.walker_inputs import encode_joints
 
 GIVEN: dict[str, Any] = {
     "body.mass": 20.0,

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from encoders import encode_schedule, encode_wrench
 from made_motions import made
 
 from impact_predictor.bags.read import BagMessage
@@ -25,6 +24,7 @@ from impact_predictor.ros.messages import (
     encode_odometry,
     encode_polygon,
 )
+from impact_predictor.ros.messages.walker_inputs import encode_schedule, encode_wrench
 
 GIVEN: dict[str, Any] = {
     "body.mass": 20.0,

@@ -26,7 +26,7 @@ def model_of(name):
     try:
         listed = files("example-robot-data") or []
     except PackageNotFoundError:
-        pytest.skip("needs the extra robots")
+        pytest.skip("needs the extra robot")
     return next(str(path.locate()) for path in listed if path.name == name)
 
 

@@ -12,7 +12,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from encoders import encode_feet, encode_joints, encode_schedule, encode_wrench
 from hypothesis import given
 from hypothesis import strategies as st
 from messages_of_rosbags import FRAMES, TYPES, TYPESTORE, header, numbers, odometry, random_sample, serialize
@@ -39,6 +38,7 @@ from impact_predictor.ros.messages import (
     encode_odometry,
     encode_polygon,
 )
+from impact_predictor.ros.messages.walker_inputs import encode_feet, encode_joints, encode_schedule, encode_wrench
 
 ENDIAN = pytest.mark.parametrize("little_endian", [True, False], ids=["little", "big"])
 

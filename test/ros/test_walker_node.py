@@ -7,7 +7,8 @@ from math import cos
 from pathlib import Path
 
 import pytest
-from encoders import encode_feet, encode_joints, encode_schedule, encode_wrench
+
+from impact_predictor.ros.messages.walker_inputs import encode_feet, encode_joints, encode_schedule, encode_wrench
 
 pytest.importorskip("rclpy", reason="the node needs ROS 2: source it, or install the extra `ros`")
 

@@ -1,12 +1,12 @@
-"""Joints, forces and plans as bytes of ROS 2 Jazzy: what searches and tests tell a predictor, which only reads them."""
+"""Feet, joints, forces and plans as bytes of ROS 2 Jazzy: what simulations, searches and tests tell a predictor."""
 
 from __future__ import annotations
 
 import struct
 from collections.abc import Sequence
 
-from impact_predictor.prediction.types import FeetStates, Joints, Schedule, Wrench
-from impact_predictor.ros.cdr import LITTLE_ENDIAN, LITTLE_ENDIAN_HEADER, align8, stamp, string
+from ...prediction.types import FeetStates, Joints, Schedule, Wrench
+from ..cdr import LITTLE_ENDIAN, LITTLE_ENDIAN_HEADER, align8, stamp, string
 
 
 def encode_feet(feet: FeetStates) -> bytes:

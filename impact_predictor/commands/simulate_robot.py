@@ -1,0 +1,168 @@
+"""`impact-predictor simulate robot`: a robot of a URDF that walks in MuJoCo, as a table or a bag."""
+
+from __future__ import annotations
+
+import json
+from math import isfinite, radians
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import click
+
+from ..mechanics.bodies import positive, refuse
+from .options import ACUTE, examples, json_flag, number, seed_option, text, together
+from .progress import progress
+from .simulated import bag_option
+
+if TYPE_CHECKING:
+    from ..scenarios.robot.description import RobotFiles
+    from ..scenarios.robot.ground import SimulatedGround
+
+NAMES: Final = ("a1", "anymal", "bolt", "go1", "hyq", "solo12", "talos")
+GAITS: Final = ("trot", "amble", "step")
+DURATION: Final = 12.0
+BIPED: Final = 2
+MOST: Final = 4000.0
+"""Hz: the physics makes no more steps."""
+
+EXAMPLES: Final = (
+    "impact-predictor simulate robot -o trot.mcap",
+    "impact-predictor simulate robot solo12 --blocks 0.005 --rate 1000 -o blocks.mcap",
+    "impact-predictor simulate robot talos --strike 0.3 --json",
+    "impact-predictor simulate robot --noise-position 0.001 --noise-velocity 0.02 --delay 0.005 -o noisy.mcap",
+    "impact-predictor simulate robot --urdf dog.urdf --feet LF,RF,LH,RH --radius 0.02 -o dog.mcap",
+)
+
+
+@click.command("robot", short_help="A robot of a URDF that walks in MuJoCo.", epilog=examples(*EXAMPLES))
+@click.argument("name", required=False, type=click.Choice(NAMES), metavar="[NAME]")
+@text("--urdf", "FILE", "URDF of another robot.")
+@text("--feet", "LINKS", "Links of its feet, left and right ones in turn, front ones first: LF,RF,LH,RH.")
+@text("--srdf", "FILE", "Its postures; its legs are bent as their limits allow unless given.")
+@number("--radius", "Radius of its feet, m: balls about the links' origins (those of the URDF unless given).")
+@click.option("--gait", type=click.Choice(GAITS), help="[default: trot on four feet, step on two]")
+@number("--swing", "Duration of a swing, s.", 0.2)
+@number("--strike", "Speed with which a swing is planned to end on the ground, m/s; 0 brakes to rest.", 0.6)
+@number("--speed", "Planned speed ahead, m/s (that of a robot of its size unless given).")
+@number("--clearance", "How high feet swing, m (that of a robot of its size unless given).")
+@number("--slope", "Slope of the ground, degrees; positive is uphill.", 0.0, **ACUTE)
+@number("--blocks", "Height of blocks on half of the ground, m.", 0.0)
+@number("--stairs", "Rise of stairs ahead, m; negative go down.", 0.0)
+@number("--armature", "Inertia of each drive at its joint, kg m^2 (that of a robot of its size unless given).")
+@number("--friction", "Coulomb friction coefficient of the feet.", 0.8)
+@number("--contact-time", "Time constant with which a contact stops a foot, s: less is stiffer.", 0.002)
+@number("--duration", "Seconds to simulate.", DURATION)
+@together(
+    number("--rate", "Samples of the bag for each second.", 400.0),
+    number("--noise-position", "Standard deviation of positions, m.", 0.0),
+    number("--noise-velocity", "Standard deviation of velocities, m/s.", 0.0),
+    number("--delay", "By how much feet, joints and forces are told late, s.", 0.0),
+    number("--drift", "Drift of the told height, m/s.", 0.0),
+)
+@seed_option("Makes blocks and noise.")
+@json_flag()
+@bag_option("the true landings")
+@text("--params-out", "FILE", "The scene for a replay. [default: the name of the bag, with .yaml]")
+@click.option("--by-joints", is_flag=True, help="The scene takes the feet from URDF and joints.")
+def simulate_robot(
+    name: str | None,
+    gait: str | None,
+    swing: float,
+    strike: float,
+    speed: float | None,
+    clearance: float | None,
+    armature: float | None,
+    friction: float,
+    contact_time: float,
+    duration: float,
+    rate: float,
+    noise_position: float,
+    noise_velocity: float,
+    delay: float,
+    drift: float,
+    seed: int,
+    as_json: bool,
+    output: str | None,
+    params_out: str | None,
+    by_joints: bool,
+    **options: Any,
+) -> int:
+    """A robot that walks with drives which follow a gait, whatever happens: a1, anymal, bolt, go1 (unless named), hyq,
+    solo12 or talos, or that of a URDF.
+
+    Those on two feet hang on a gantry, springs that hold the trunk upright: nothing balances them.
+    The same options and seed make the same bytes.
+    """
+    if output is None and (params_out is not None or by_joints):
+        raise click.UsageError("--params-out and --by-joints are those of a bag: give -o BAG too")
+    positive(swing=swing, contact_time=contact_time, duration=duration)
+    refuse({"rate": rate}, lambda value: 0.0 < value <= MOST, f"a number above 0, up to {MOST:g}")
+    chosen = {"speed": speed, "clearance": clearance, "armature": armature, "radius": options["radius"]}
+    given = {"strike": strike, "friction": friction, "blocks": options["blocks"], "noise-position": noise_position}
+    given |= {name: value for name, value in chosen.items() if value is not None}
+    refuse({**given, "noise-velocity": noise_velocity}, lambda value: value >= 0.0, "a number from 0")
+    refuse({"delay": delay, "drift": drift, "stairs": options["stairs"]}, isfinite, "a finite number")
+    from ..scenarios.as_json import walk_as_json
+    from ..scenarios.record import write_messages
+    from ..scenarios.robot.gait import PlannedGait
+    from ..scenarios.robot.machine import Machine, Physics
+    from ..scenarios.robot.scene import write_scene
+    from ..scenarios.robot.sensors import WalkSensors, walk_messages
+    from ..scenarios.robot.walk import landings_of, walk
+
+    robot = robot_of(name, options.pop("urdf"), options.pop("feet"), options.pop("srdf"), options.pop("radius"))
+    ground = ground_of(seed, **options)
+    machine = Machine(robot, ground, Physics(armature, friction, contact_time))
+    is_biped = len(machine.feet) == BIPED
+    told = PlannedGait(gait or ("step" if is_biped else "trot"), swing, strike, speed, clearance)
+    sensors = WalkSensors(rate, noise_position, noise_velocity, delay, drift, seed)
+    with progress("simulated robot", "s", round(duration)) as tell:
+        walked = walk(machine, ground, told, duration, is_biped, tell)
+    landings = landings_of(walked)
+    scene = None
+    if output is not None:
+        write_messages(output, walk_messages(walked, landings, sensors))
+        scene = Path(output).with_suffix(".yaml") if params_out is None else Path(params_out)
+        write_scene(scene, walked, by_joints=by_joints)
+    if as_json:
+        click.echo(json.dumps(walk_as_json(walked, landings), allow_nan=False))
+    else:
+        from rich.console import Console
+
+        from ..report.simulation import print_walk
+
+        print_walk(Console(), walked, landings)
+        if output is not None:
+            click.echo(f"Bag: {output}\nScene: {scene}")
+    return 1 if walked.fallen else 0
+
+
+def robot_of(
+    name: str | None, urdf: str | None, feet: str | None, srdf: str | None, radius: float | None
+) -> RobotFiles:
+    """The robot that the options name."""
+    from ..scenarios.robot.description import RobotFiles, Sole, robot_named
+
+    if urdf is None:
+        if (feet, srdf, radius) != (None, None, None):
+            raise click.UsageError("--feet, --srdf and --radius are those of a robot by --urdf")
+        return robot_named(name or NAMES[3])
+    if name is not None or feet is None:
+        raise click.UsageError("--urdf takes the place of a name, and needs --feet")
+    return RobotFiles(
+        urdf=Path(urdf),
+        feet=tuple(feet.split(",")),
+        srdf=None if srdf is None else Path(srdf),
+        sole=None if radius is None else Sole(radius=radius),
+    )
+
+
+def ground_of(seed: int, slope: float, blocks: float, stairs: float) -> SimulatedGround:
+    """The ground that the options describe."""
+    from ..scenarios.robot import ground
+
+    if sum(value != 0.0 for value in (slope, blocks, stairs)) > 1:
+        raise click.UsageError("--slope, --blocks and --stairs are three grounds; give one of them")
+    if blocks:
+        return ground.blocks(blocks, seed)
+    return ground.stairs(stairs) if stairs else ground.SimulatedGround(radians(slope))

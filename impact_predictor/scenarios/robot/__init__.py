@@ -1,0 +1,1 @@
+"""Robots of URDFs that walk in MuJoCo, as bags with the truth of every landing."""

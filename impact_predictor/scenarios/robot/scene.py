@@ -1,0 +1,65 @@
+"""The scene with which a replay predicts the walk of a simulated robot."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Final
+
+from ...errors import InputError
+from ..record import FRAME
+from .walk import Walk
+
+HEAD: Final = "# The scene of a robot that `impact-predictor simulate robot` has made walk."
+
+
+def scene_of(walk: Walk, *, by_joints: bool) -> str:
+    """A ROS 2 parameter file; `by_joints` takes feet, mass and inertia from URDF and joint_states."""
+    machine = walk.machine
+    center, inertia = machine.inertia()
+    (xx, xy, xz), (_, yy, yz), (_, _, zz) = inertia.tolist()
+    feet, points = ", ".join(machine.feet), len(machine.sole.points)
+    body = [
+        "    body:",
+        f"      mass: {machine.mass!r}",
+        f"      inertia: {[xx, yy, zz, xy, xz, yz]}",
+        f"      center_of_mass: {center.tolist()}",
+    ]
+    stiffness, damping = machine.gains
+    robot = [
+        "    robot:",
+        f"      urdf: {machine.files.urdf.resolve()}",
+        f"      frames: [{feet}]",
+        f"      armature: [{float(machine.armature)!r}]",
+        "      drives: pd",
+        f"      kp: [{float(stiffness)!r}]",
+        f"      kd: [{float(damping)!r}]",
+    ]
+    lines = [
+        HEAD,
+        "/**:",
+        "  ros__parameters:",
+        "    feet:",
+        f"      names: [{feet}]",
+        f"      points: {points}",
+        *(robot if by_joints else body),
+        "    contact:",
+        f"      friction: {machine.physics.friction!r}",
+        "    support:",
+        f"      frame: {FRAME}",
+        f"      normal: {list(walk.ground.normal)}",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def write_scene(path: Path, walk: Walk, *, by_joints: bool) -> None:
+    """Write the scene; a file that is no such scene stays as it is.
+
+    Raises:
+        InputError: there is another file, or it cannot be written.
+    """
+    try:
+        if path.exists() and not path.read_text(encoding="utf-8", errors="replace").startswith(HEAD):
+            raise InputError(f"{path} is no scene of a simulated robot, so it stays as it is; give --params-out")
+        path.write_text(scene_of(walk, by_joints=by_joints), encoding="utf-8")
+    except OSError as error:
+        raise InputError(f"{path} cannot be written: {error.strerror}") from error

@@ -1,0 +1,145 @@
+"""What the sensors of a robot tell of its walk, and the bag and the scene for a replay of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from ...prediction.types import Geometry, Joints, Sample, Schedule, Vector3, Wrench
+from ...ros.cdr import diagnostic_array
+from ...ros.messages import (
+    DIAGNOSTIC_ARRAY,
+    JOINT_STATE,
+    JOINT_TRAJECTORY,
+    ODOMETRY,
+    POLYGON,
+    WRENCH,
+    encode_odometry,
+    encode_polygon,
+)
+from ...ros.messages.walker_inputs import encode_joints, encode_schedule, encode_wrench
+from ...stamps import NANOSECONDS
+from ..landing import LANDING_TOPIC, TrueLanding, encode_true_landing
+from ..record import FRAME, RecordedMessage
+from .description import Values
+from .walk import STANDS, RobotStates, Walk
+
+FORCE_RATE: Final = 100.0
+"""Messages in Hz of each force sensor, at most."""
+
+
+class WalkSensors(NamedTuple):
+    """How a walk is observed: `rate` in Hz, and the seed of the noise.
+
+    White noise with standard deviations of `position` (m) and `velocity` (m/s) is on each coordinate of base and feet,
+    and on the joints as much as moves a foot so far. Feet, joints and forces are those of `delay` s before their stamp.
+    The told height of the base runs away from the true one with `drift` in m/s.
+    """
+
+    rate: float = 400.0
+    position: float = 0.0
+    velocity: float = 0.0
+    delay: float = 0.0
+    drift: float = 0.0
+    seed: int = 0
+
+
+def walk_messages(walk: Walk, landings: list[TrueLanding], sensors: WalkSensors) -> list[Iterator[RecordedMessage]]:
+    """The streams of messages of a walk, each ordered by its log times: the truth, the plan and the sensors.
+
+    Feet and joints come before the base of the same stamp.
+    """
+    return [iter(_truth(landings)), iter([_plan(walk)]), _sensed(walk, sensors)]
+
+
+def _truth(landings: list[TrueLanding]) -> list[RecordedMessage]:
+    nothing = diagnostic_array(0, FRAME, ())
+    told = [(landing.stamp, encode_true_landing(landing, FRAME)) for landing in landings]
+    return [RecordedMessage(stamp, LANDING_TOPIC, DIAGNOSTIC_ARRAY, data) for stamp, data in [(0, nothing), *told]]
+
+
+def _sensed(walk: Walk, sensors: WalkSensors) -> Iterator[RecordedMessage]:
+    machine, rng = walk.machine, np.random.default_rng((sensors.seed, 1))
+    stamps = [round(k * NANOSECONDS / sensors.rate) for k in range(1 + int(walk.duration * sensors.rate + 1e-9))]
+    times = np.array(stamps) / NANOSECONDS
+    now, then = walk.states(times), walk.states(times - sensors.delay)
+    points, velocities = (_rows(part) for part in _relative(then))
+    position, velocity = sensors.position, sensors.velocity
+    height = np.stack([0.0 * times, 0.0 * times, sensors.drift * times], axis=1)
+    blurred = {
+        "points": points + position * rng.standard_normal(points.shape),
+        "velocities": velocities + velocity * rng.standard_normal(points.shape),
+        "base": now.position + height + position * rng.standard_normal(now.position.shape),
+        "linear": now.twist[:, :3] + velocity * rng.standard_normal(now.position.shape),
+        "joints": then.joints + position / machine.height * rng.standard_normal(then.joints.shape),
+        "rates": then.rates + velocity / machine.height * rng.standard_normal(then.rates.shape),
+    }
+    pose, twist = _covariance(position), _covariance(velocity)
+    forces_every = max(1, round(sensors.rate / FORCE_RATE))
+    for k, stamp in enumerate(stamps):
+        row = {name: rows[k] for name, rows in blurred.items()}
+        parts = [tuple(part.tolist()) for part in (row["joints"], row["rates"], then.efforts[k])]
+        geometry, rates = (
+            encode_polygon(Geometry(stamp, machine.base, _tuples(row[name]))) for name in ("points", "velocities")
+        )
+        sample = Sample(
+            stamp=stamp,
+            frame_id=FRAME,
+            child_frame_id=machine.base,
+            position=_tuples(row["base"][None])[0],
+            orientation=tuple(now.orientation[k].tolist()),
+            linear=_tuples(row["linear"][None])[0],
+            angular=_tuples(now.twist[k, None, 3:])[0],
+            pose_covariance=pose,
+            twist_covariance=twist,
+        )
+        yield RecordedMessage(stamp, "/joint_states", JOINT_STATE, encode_joints(Joints(stamp, machine.joints, *parts)))
+        if k % forces_every == 0:
+            for foot, force in zip(machine.feet, _tuples(then.forces[k]), strict=True):
+                yield RecordedMessage(stamp, "/contact_wrench", WRENCH, encode_wrench(Wrench(stamp, foot, force)))
+        yield RecordedMessage(stamp, "/contact_velocities", POLYGON, rates)
+        yield RecordedMessage(stamp, "/contact_geometry", POLYGON, geometry)
+        yield RecordedMessage(stamp, "/odom", ODOMETRY, encode_odometry(sample))
+
+
+def _relative(seen: RobotStates) -> tuple[Values, Values]:
+    """Positions and velocities of the points relative to the base, along its axes."""
+    x, y, z, w = seen.orientation.T
+    axes = np.array(
+        [
+            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - z * w), 2.0 * (x * z + y * w)],
+            [2.0 * (x * y + z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - x * w)],
+            [2.0 * (x * z - y * w), 2.0 * (y * z + x * w), 1.0 - 2.0 * (x * x + y * y)],
+        ]
+    )
+    points = np.einsum("ijn,nfpi->nfpj", axes, seen.points - seen.position[:, None, None])
+    moved = np.einsum("ijn,nfpi->nfpj", axes, seen.point_velocities)
+    carried = seen.twist[:, None, None, :3] + np.cross(seen.twist[:, None, None, 3:], points)
+    return points, moved - carried
+
+
+def _rows(points: Values) -> Values:
+    return points.reshape(len(points), -1, 3)
+
+
+def _tuples(rows: Values) -> tuple[Vector3, ...]:
+    return tuple(map(tuple, rows.tolist()))
+
+
+def _covariance(deviation: float) -> tuple[float, ...]:
+    return tuple(np.diag([deviation**2] * 3 + [0.0] * 3).ravel().tolist())
+
+
+def _plan(walk: Walk) -> RecordedMessage:
+    """When the gait wants the feet to stand, as one message at the beginning."""
+    gait = walk.gait
+    ends = np.array([part for foot in gait.offsets for part in (foot, foot + gait.duty)])
+    strides = np.arange(-1, int(walk.duration / gait.period) + 1)
+    changes = np.unique(np.round(gait.period * (strides[:, None] + ends).ravel(), 9))
+    changes = changes[(changes >= 0.0) & (changes <= walk.duration)]
+    times = [0, *np.round((STANDS + changes) * NANOSECONDS).astype(int).tolist()]
+    stands = [(True,) * len(gait.offsets), *map(tuple, gait.stands(changes + 1e-6).tolist())]
+    schedule = Schedule(0, walk.machine.feet, tuple(times), tuple(stands))
+    return RecordedMessage(0, "/schedule", JOINT_TRAJECTORY, encode_schedule(schedule))
