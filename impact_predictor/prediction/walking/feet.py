@@ -77,7 +77,7 @@ class FeetContacts(Contacts):
         self._clock.begin()
         self._found = Status.ACCEPTED  # what became of the last geometry that met a sample
         self._landings = LandingTracker(
-            self.scene, self._machine, self._points, self._base, self._schedule, self._forces
+            self.scene, self._machine, self._points, self._base, self._schedule, self._forces, self._ground
         )
 
     def tell(self, message: ContactInput) -> Status:

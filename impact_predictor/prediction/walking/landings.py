@@ -12,17 +12,22 @@ from operator import itemgetter
 from typing import NamedTuple
 
 from ...stamps import NANOSECONDS
-from ..planar import posture_of
+from ..planar import hardly, posture_of
 from ..scene import Scene
 from ..score import LONGEST, MEASURED, Pending, Track
 from ..types import Landing, Sample, Score, Status, Touchdown, Vector3
 from ..vectors import mean
 from .announcement import ExpectedLanding
+from .cubic import PointFrame
 from .forces import FootForces
+from .ground import Ground
 from .impact import LandingPoint, touchdown_of
 from .mechanism import BaseMotion, LeggedMachine, TwistLine, extrapolated
 from .schedule import LandingSchedule
 from .stance import FootPoint
+
+LEAVING = 0.2  # a point that stands leaves the ground when it rises with this part of a speed that is hardly one ...
+RISES = 3.0  # ... and with so many standard deviations of the noise
 
 
 class FootCollision(NamedTuple):
@@ -69,10 +74,12 @@ class LandingTracker:
         base: BaseMotion,
         schedule: LandingSchedule,
         forces: FootForces,
+        ground: Ground,
     ) -> None:
         assert scene.walking is not None
         self._scene, self._walking, self._machine = scene, scene.walking, machine
         self._points, self._base, self._schedule, self._forces = points, base, schedule, forces
+        self._ground, self._slow = ground, LEAVING * hardly(scene)
         self._each = scene.walking.points
         self._contact_time = round(scene.contact_time * NANOSECONDS)
         self._announced: dict[int, PendingLanding] = {}
@@ -91,7 +98,11 @@ class LandingTracker:
         if not landings:
             return None
         landings.sort(key=itemgetter(0))
-        standing = [i for i, point in enumerate(points) if point.stands or point.closed]
+        standing = [
+            i
+            for i, point in enumerate(points)
+            if (point.stands or point.closed) and self._holds(point.trajectory.frames[-1])
+        ]
         places = [
             point.trajectory.frames[-1].position if due is None else due.position
             for point, due in zip(points, dues, strict=True)
@@ -243,10 +254,14 @@ class LandingTracker:
             time=0.0,
             lead_time=0.0,
             places=[frame.position for frame in frames],
-            old=tuple([j for j in others if points[j].stood(stamp)]),
+            old=tuple([j for j in others if points[j].stood(stamp) and self._holds(frames[j])]),
             new=new,
             landing={j: LandingPoint(moves[j], delays[j]) for j in sorted(delays) if j in moves},
         )
+
+    def _holds(self, frame: PointFrame) -> bool:
+        """Whether a point that stands does not rise already: then it carries nothing, and no impact meets it."""
+        return frame.rate is None or frame.rate <= max(self._slow, RISES * self._ground.noise.rate)
 
     def _own(self, foot: range, dues: list[ExpectedLanding | None]) -> dict[int, ExpectedLanding]:
         """The points that make the next landing of a foot: the first, and those that close soon after it.

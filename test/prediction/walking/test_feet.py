@@ -14,6 +14,7 @@ from impact_predictor.prediction.checks import PAUSE
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene, Walking
 from impact_predictor.prediction.types import (
+    Bound,
     Geometry,
     Leftover,
     Prediction,
@@ -397,6 +398,17 @@ def test_a_foot_that_lands_sooner_stands_when_the_next_one_lands() -> None:
     between = [one for one in seen.predictions if START + 562 * MS < one.sample.stamp < START + 578 * MS]
     assert {one.touchdown.old for one in between if one.touchdown is not None} == {(1, 2, 3)}
     assert all(one.feet[1].stands for one in between)
+
+
+def test_a_foot_that_rises_already_carries_nothing_and_no_impact_meets_it() -> None:
+    courses = [swing(0.3, 0.6, speed=0.3), stands, swing(0.585, 0.9), stands]
+    seen = walk(machine(), record(courses, 0.7))
+    last = [one for one in seen.predictions if one.sample.stamp < START + 600 * MS][-1]
+    assert last.feet[2].stands  # for its dead time
+    assert last.touchdown is not None
+    assert last.touchdown.old == (1, 3)
+    assert [foot.impulse is None for foot in last.feet] == [False, False, True, False]
+    assert {foot.bound for foot in last.feet} == {None, Bound.UPPER}
 
 
 def test_the_toe_of_a_foot_that_has_just_landed_on_its_heel_makes_no_false_alarm() -> None:

@@ -1,0 +1,209 @@
+"""What the landings of robots in physics do, beside what is told of them: impulses, changes of the trunk, modes.
+
+    pip install -e '.[articulated,robots]'
+    python benchmarks/walker_impacts.py BAG SCENE [BAG SCENE]...
+
+The bags are those of `impact-predictor simulate robot`, with the true landings, and the scenes have robot.urdf. Each
+landing is computed from the true velocities right before it and the joints of that moment, so that nothing but the
+impact is judged: for all joints held (one rigid body), for free joints, for free joints with the armature, and as the
+scene has it. Below stands what stops the mass that the foot has with free joints, and that no impact changes anything.
+
+Of each the impulse along the normal, told over measured, until 1, 2, 5 ms after the landing and until the greatest
+force; the change of the trunk's twist until 5 ms (less what its acceleration of the 5 ms before gives), told over
+measured and the part of it that is wrong, angular velocities counted with 0.2 m; the same of the joints. All medians.
+Then the modes: a foot slips that moves with more than 0.05 m/s along the ground 5 ms after it landed, and a standing
+foot has lifted that gets no impulse between 2 and 5 ms. One that rises with 0.01 m/s before the landing stands no more.
+"""
+
+from __future__ import annotations
+
+import sys
+from bisect import bisect_right
+from collections import defaultdict
+from collections.abc import Sequence
+from operator import itemgetter
+from pathlib import Path
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from rich.console import Console
+
+from impact_predictor.bags.read import Bag
+from impact_predictor.errors import InputError
+from impact_predictor.mechanics.types import ContactState
+from impact_predictor.parameters.file import read_values
+from impact_predictor.prediction.scene import Robot, Scene, scenes_of, triple
+from impact_predictor.prediction.types import Geometry, Joints, Sample, Touchdown
+from impact_predictor.prediction.vectors import add, axes_of, to_world
+from impact_predictor.prediction.walking.impact import LandingPoint, touchdown_of
+from impact_predictor.prediction.walking.mechanism import ArticulatedMachine
+from impact_predictor.report.table import Column, say, show, table_of
+from impact_predictor.ros.messages import JOINT_STATE, ODOMETRY
+from impact_predictor.ros.messages.inputs import decode_joints, decode_odometry
+from impact_predictor.scenarios.landing import LANDING_TOPIC, TrueLanding, decode_true_landings
+
+SLIPS: Final = 0.05
+RISES: Final = 0.01
+"""m/s: what is slower along the ground sticks, and what rises faster stands no more."""
+SLOW: Final = 0.1
+"""m/s: landings that are slower make no impact that forces would not hide."""
+LEVER: Final = 0.2
+SPAN: Final = 5_000_000
+WEIGHTS: Final = np.array([1.0, 1.0, 1.0, LEVER, LEVER, LEVER])
+TRUTH: Final = "diagnostic_msgs/msg/DiagnosticArray"
+
+Array = NDArray[np.float64]
+
+
+class Case(NamedTuple):
+    """A landing and the robot right before it; what the base and the joints did in the 5 ms before."""
+
+    landing: TrueLanding
+    base: Sample
+    joints: Joints
+    drift: Array
+    joint_drift: Array
+
+
+class Judged(NamedTuple):
+    """Told over measured impulses at each mark; of trunk and joints told over measured, and the part that is wrong;
+    whether the landing foot's slip is right, and of each standing foot whether it lifts.
+    """
+
+    impulses: list[float]
+    trunk: tuple[float, float]
+    joints: tuple[float, float]
+    slip: bool
+    lifts: list[bool]
+
+
+def cases(bag_path: str) -> list[Case]:
+    """The landings in a bag."""
+    wanted = {"/odom": ODOMETRY, "/joint_states": JOINT_STATE, LANDING_TOPIC: TRUTH}
+    bases, joints, landings = [], [], []
+    with Bag(bag_path) as bag:
+        for message in bag.messages(wanted):
+            if message.topic == "/odom":
+                bases.append(decode_odometry(message.data))
+            elif message.topic == "/joint_states":
+                joints.append(decode_joints(message.data))
+            else:
+                landings += decode_true_landings(message.data)
+    found = []
+    for landing in landings:
+        k = bisect_right(bases, landing.stamp, key=lambda sample: sample.stamp) - 1
+        j = bisect_right(joints, landing.stamp, key=lambda one: one.stamp) - 1
+        before = bisect_right(bases, landing.stamp - SPAN, key=lambda sample: sample.stamp) - 1
+        if min(before, j - (k - before)) < 0 or landing.speed < SLOW:
+            continue
+        earlier = joints[j - (k - before)]
+        ahead = 1e-9 * (landing.stamp - joints[j].stamp)
+        rates = np.array(landing.before.rates)
+        posture = joints[j]._replace(positions=tuple((np.array(joints[j].positions) + ahead * rates).tolist()))
+        base = bases[k]._replace(linear=triple(landing.before.twist[:3]), angular=triple(landing.before.twist[3:]))
+        share = 1e-9 * SPAN / (1e-9 * (landing.stamp - bases[before].stamp))
+        drift = share * (np.array(landing.before.twist) - [*bases[before].linear, *bases[before].angular])
+        moved = share * (rates - np.array(earlier.velocities))
+        found.append(Case(landing, base, posture, drift, moved))
+    return found
+
+
+def judge(scene: Scene, machine: ArticulatedMachine, case: Case, alone: bool = False) -> Judged | None:
+    """What a machine tells of a landing, against the physics; a foot `alone` meets its own mass, and no friction."""
+    landing, base = case.landing, case.base
+    geometry, foot = machine.geometry_of(case.joints), landing.feet.index(landing.foot)
+    assert isinstance(geometry, Geometry)
+    axes, normal = axes_of(base.orientation), np.array(landing.normal)
+    places = [add(base.position, to_world(axes, point)) for point in geometry.points]
+    loaded = [landing.feet.index(name) for name in landing.standing]
+    stood = tuple([i for i in loaded if normal @ landing.before.velocities[i] <= RISES and not alone])
+    velocity = landing.before.velocities[foot]
+    scene = scene._replace(mass=machine.body.mass, normal=landing.normal, friction=0.0 if alone else scene.friction)
+    told = touchdown_of(scene, machine, base, places, stood, (foot,), {foot: LandingPoint(velocity)}, 0.0)
+    if not isinstance(told, Touchdown):
+        return None
+    own = next(contact for contact in told.contacts if contact.point == foot)
+    pressed = float(normal @ own.impulse)
+    impulses = [pressed / float(normal @ state.impulses[foot]) for state in landing.after]
+    (_, second, last), peak = landing.after[:3], landing.after[-1]
+    assert peak is not None
+    change = np.concatenate([np.subtract(told.linear, base.linear), np.subtract(told.angular, base.angular)])
+    true_change = np.subtract(last.twist, landing.before.twist) - case.drift
+    order = [case.joints.names.index(name) for name in machine.joints]
+    true_jumps = (np.subtract(last.rates, landing.before.rates) - case.joint_drift)[order]
+    pushed = np.array(last.impulses) - np.array(second.impulses)
+    slip = np.array(last.velocities[foot]) - (normal @ last.velocities[foot]) * normal
+    states = {contact.point: contact.state for contact in told.contacts}
+    return Judged(
+        impulses=impulses,
+        trunk=compared(WEIGHTS * change, WEIGHTS * true_change),
+        joints=compared(np.array(told.jumps), true_jumps),
+        slip=(states[foot] is ContactState.SLIPS) == bool(np.linalg.norm(slip) > SLIPS),
+        lifts=[(states[i] is ContactState.LEAVES) == bool(not pushed[i].any()) for i in stood],
+    )
+
+
+def compared(told: Array, true: Array) -> tuple[float, float]:
+    """The size of what is told over that of what is true, and the part of the latter that is wrong."""
+    size = float(np.linalg.norm(true))
+    return float(np.linalg.norm(told)) / size, float(np.linalg.norm(told - true)) / size
+
+
+def models(scene: Scene, robot: Robot) -> dict[str, tuple[ArticulatedMachine, bool]]:
+    """The machines that are compared, and whether they meet the mass of their foot alone."""
+    free = robot._replace(armature=(), drives="free", kp=(), kd=())
+    rotors = free._replace(joints=robot.joints, armature=robot.armature)
+    made = {"one rigid body": free._replace(drives="held"), "free joints": free, "armature": rotors, "scene": robot}
+    machines = {name: (ArticulatedMachine(one), False) for name, one in made.items()}
+    return machines | {"foot's own mass": (machines["free joints"][0], True)}
+
+
+def row(name: str, run: str, found: Sequence[Judged]) -> tuple[str, ...]:
+    """The medians of what was judged, as texts."""
+
+    def middle(numbers: Sequence[float]) -> str:
+        return f"{np.median(numbers):.2f}"
+
+    def right(answers: Sequence[bool]) -> str:
+        return f"{100.0 * np.mean(answers):.0f}" if answers else "-"
+
+    impulses = [middle([one.impulses[k] for one in found]) for k in range(4)]
+    moved = [middle([getattr(one, of)[k] for one in found]) for of in ("trunk", "joints") for k in (0, 1)]
+    modes = right([one.slip for one in found]), right([lift for one in found for lift in one.lifts])
+    return run, name, str(len(found)), *impulses, *moved, *modes
+
+
+HEADERS: Final = (
+    *("run", "told by", "landings", "impulse\nto 1 ms", "\n2 ms", "\n5 ms", "\npeak"),
+    *("trunk\ntold", "\nwrong", "joints\ntold", "\nwrong", "slips\nright %", "lifts\nright %"),
+)
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Print the table."""
+    if not arguments or len(arguments) % 2:
+        raise InputError("give a bag of simulate robot and its scene, or several such pairs")
+    rows = []
+    for bag, file in zip(arguments[::2], arguments[1::2], strict=True):
+        (scene,) = scenes_of(read_values(file)).values()
+        if scene.walking is None or scene.walking.robot is None:
+            raise InputError(f"{file} has no robot.urdf: give a scene that knows the joints")
+        landings = cases(bag)
+        judged = defaultdict(list)
+        for name, (machine, alone) in models(scene, scene.walking.robot).items():
+            judged[name] = [one for case in landings if (one := judge(scene, machine, case, alone))]
+        rows += [row(name, Path(bag).stem, found) for name, found in judged.items()]
+        rows.append((Path(bag).stem, "nothing", str(len(landings)), *["0.00"] * 5, "1.00", "0.00", "1.00", "-", "-"))
+    columns = [Column(name, itemgetter(k), left=k < 2) for k, name in enumerate(HEADERS)]
+    console = Console()
+    show(console, table_of(columns, rows))
+    say(console, "Impulses, trunk and joints: told over measured, and the part of the measured change that is wrong.")
+    return 0
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main(sys.argv[1:]))
+    except InputError as error:
+        sys.exit(str(error))
