@@ -47,6 +47,7 @@ WITHOUT_AND_WITH: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "schedule": (WALKER, {**WALKER, "feet.has_schedule": True}),
     "terrain": (WALKER, {**WALKER, "feet.terrain": 0.02}),
     "friction of feet": (WALKER, {**WALKER, "feet.friction": [0.5, 0.6]}),
+    "ball feet": (WALKER, {**WALKER, "feet.radius": [0.02]}),
     "restitution of feet": (WALKER, {**WALKER, "feet.restitution": [0.1]}),
     "margins": (CRATE, {**CRATE, "margins": True}),
     "uncertainty": (CRATE, {**CRATE, **SURE}),

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,20 +25,25 @@ SINGULAR = 1e-12
 class WholeBody:
     """A model of `urdf`, a file, with the points at the origins of its `frames` (links or joints) as contacts.
 
+    A link whose only collision shape is a sphere touches with the lowest point of that ball instead, which moves over
+    it as it rolls; `radii` (m) make balls about the origins in the place of the file's, where they are given.
     `joints` are the names of the joints that move, in the model's order, and `mass` in kg is that of all links. `place`
     it before anything else is read: `inertia` (n, n) is then M(q), with the `armature` of each joint (kg m^2, or kg),
-    `points` (k, 3) in m and `jacobians` (k, 3, n) are those of the frames' origins, along the base's axes.
+    `points` (k, 3) in m and `jacobians` (k, 3, n) are those of the contacts, along the base's axes.
 
     Raises:
         InputError: Pinocchio is not installed, there is no such file or frame, or the file is not the URDF of a machine
             whose joints have one degree of freedom each.
     """
 
-    def __init__(self, urdf: str, frames: Sequence[str]) -> None:
+    def __init__(self, urdf: str, frames: Sequence[str], radii: Sequence[float] = ()) -> None:
         self._pinocchio = _pinocchio()
         self._model = _model(self._pinocchio, urdf)
         self._data = self._model.createData()
         self._frames = [_frame(self._model, name, urdf) for name in frames]
+        balls = [(radius, (0.0, 0.0, 0.0)) for radius in radii] or _balls(urdf, frames)
+        self.radii = [radius for radius, _ in balls]
+        self._centers = np.array([center for _, center in balls]).reshape(-1, 3)
         # The first joint is the universe, the second the base's.
         moving = list(self._model.joints)[2:]
         self.joints: tuple[str, ...] = tuple(self._model.names)[2:]
@@ -57,8 +63,11 @@ class WholeBody:
         self.points: NDArray[np.float64] = np.zeros((len(frames), 3))
         self.jacobians: NDArray[np.float64] = np.zeros((len(frames), 3, self._model.nv))
 
-    def place(self, positions: NDArray[np.float64]) -> bool:
-        """Take the `positions` (rad or m) of `joints`; whether the inertia there has an inverse."""
+    def place(self, positions: NDArray[np.float64], down: Sequence[float] = (0.0, 0.0, -1.0)) -> bool:
+        """Take the `positions` (rad or m) of `joints`; whether the inertia there has an inverse.
+
+        The ground lies `down` from balls, a unit vector along the base's axes.
+        """
         for i, place in self._plain:
             self._q[place] = positions[i]
         for i, place in self._endless:
@@ -69,8 +78,12 @@ class WholeBody:
         pinocchio.updateFramePlacements(model, data)
         aligned = pinocchio.ReferenceFrame.LOCAL_WORLD_ALIGNED
         for k, frame in enumerate(self._frames):
-            self.points[k] = data.oMf[frame].translation
-            self.jacobians[k] = pinocchio.getFrameJacobian(model, data, frame, aligned)[:3]
+            jacobian = pinocchio.getFrameJacobian(model, data, frame, aligned)
+            self.points[k], self.jacobians[k] = data.oMf[frame].translation, jacobian[:3]
+            if self.radii[k]:
+                arm = data.oMf[frame].rotation @ self._centers[k] + self.radii[k] * np.asarray(down)
+                self.points[k] += arm
+                self.jacobians[k] += np.cross(jacobian[3:], arm, axis=0)
         # What moves without mass does so at every posture: once is enough.
         self._is_regular = self._is_regular or self._has_inverse()
         return self._is_regular
@@ -164,3 +177,22 @@ def _frame(model: Any, name: str, urdf: str) -> int:
         raise InputError(f"robot.frames: {urdf} has no link or joint {name!r}; give one for each contact point")
     number: int = model.getFrameId(name)
     return number
+
+
+def _balls(urdf: str, frames: Sequence[str]) -> list[tuple[float, tuple[float, ...]]]:
+    """Radius (m) and centre of the ball at each frame: the sphere that is the only collision shape of its link.
+
+    Where there is none the radius is zero.
+    """
+    root = ElementTree.parse(urdf).getroot()
+    children = {joint.get("name"): joint.find("child") for joint in root.iter("joint")}
+    of_joints = {name: child.get("link") for name, child in children.items() if child is not None}
+    links = {link.get("name"): link.findall("collision") for link in root.findall("link")}
+    found = []
+    for frame in frames:
+        shapes = links.get(frame, links.get(of_joints.get(frame), []))
+        sphere = shapes[0].find("geometry/sphere") if len(shapes) == 1 else None
+        origin = shapes[0].find("origin") if sphere is not None else None
+        center = tuple(map(float, ("" if origin is None else origin.get("xyz", "")).split())) or (0.0, 0.0, 0.0)
+        found.append((0.0 if sphere is None else float(sphere.get("radius", 0.0)), center))
+    return found

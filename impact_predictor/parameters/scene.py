@@ -127,7 +127,7 @@ def _check_feet(one: _Given) -> None:
         raise InputError(
             f"{one.named(points)} and {one.named(feet)} are both given: feet move, so their points come with messages"
         )
-    for name in ("feet.friction", "feet.restitution"):
+    for name in ("feet.friction", "feet.restitution", "feet.radius"):
         if len(values[name]) not in (0, 1, len(values[feet])):
             raise InputError(
                 f"{one.named(name)} has {len(values[name])} numbers{one.of}, but feet.names has {len(values[feet])}: "

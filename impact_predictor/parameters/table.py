@@ -404,6 +404,15 @@ _TABLE: Final = (
         high=10.0,
         fixed=TOPICS,
     ),
+    doubles(
+        "feet.radius",
+        (),
+        "Radius of the balls about the feet's points, in the order of feet.names, or one for all of them: the lowest "
+        "point of a ball touches. Left out, they are the spheres of robot.urdf, and without it the points touch.",
+        unit="m",
+        low=0.0,
+        high=10.0,
+    ),
     text(
         "robot.urdf",
         "",

@@ -46,6 +46,7 @@ SWITCHES: Final = {
     "terrain": "feet.names feet.terrain",
     "friction of feet": "feet.names feet.friction",
     "restitution of feet": "feet.names feet.restitution",
+    "ball feet": "feet.names feet.radius",
     "margins": "margins",
     "uncertainty": "uncertainty.samples",
     "several bodies": "bodies",
@@ -120,7 +121,9 @@ class Walking(NamedTuple):
     stand. Without a `robot` the legs have no mass and the body is rigid. `friction` and `restitution` of each foot, or
     one for all; empty where they are the scene's.
     The stamps of the feet are later than the trunk's by a `delay` in s, which is found by itself with `find_delay`.
-    The ground is told as a map whose heights are gathered in cells of `terrain` m; 0 where none is told.
+    Its points are the centres of balls of a `radius` in m, of each foot or one for all; empty where they are the
+    model's, and without one points. The ground is told as a map whose heights are gathered in cells of `terrain` m; 0
+    where none is told.
     """
 
     feet: tuple[str, ...]
@@ -133,6 +136,7 @@ class Walking(NamedTuple):
     find_delay: bool = False
     has_schedule: bool = False
     terrain: float = 0.0
+    radius: tuple[float, ...] = ()
     robot: Robot | None = None
     friction: tuple[float, ...] = ()
     restitution: tuple[float, ...] = ()

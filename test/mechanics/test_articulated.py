@@ -33,7 +33,11 @@ def model_of(name):
 def hyq():
     """Pinocchio, its model of the quadruped HyQ, and the robot with its feet as contacts."""
     pinocchio, path = needs_pinocchio(), model_of("hyq_no_sensors.urdf")
-    return pinocchio, pinocchio.buildModelFromUrdf(path, pinocchio.JointModelFreeFlyer()), WholeBody(path, FEET)
+    return (
+        pinocchio,
+        pinocchio.buildModelFromUrdf(path, pinocchio.JointModelFreeFlyer()),
+        WholeBody(path, FEET, (0.0,) * 4),
+    )
 
 
 def random_posture(source):
@@ -201,3 +205,21 @@ def test_a_model_without_pinocchio_says_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "pinocchio", None)
     with pytest.raises(InputError, match="needs Pinocchio, which is not installed"):
         WholeBody("robot.urdf", ())
+
+
+@pytest.mark.extras
+def test_a_ball_touches_with_its_lowest_point_which_rests_as_it_rolls(tmp_path):
+    needs_pinocchio()
+    ball = '<collision><origin xyz="0 0 -0.3"/><geometry><sphere radius="0.04"/></geometry></collision>'
+    path = one_link(tmp_path, INERTIAL.format(2.0), INERTIAL.format(1.0) + ball)
+    body = WholeBody(path, ["shoulder"])
+    assert body.radii == [0.04]
+    down = np.array((0.6, 0.0, -0.8))
+    assert body.place(np.array([0.5]), down)
+    center = -0.3 * np.array((np.sin(0.5), 0.0, np.cos(0.5)))
+    assert body.points[0] == pytest.approx(center + 0.04 * down)
+    # With the base at the velocity of a ball that rolls on the plane across `down`, its lowest point is at rest.
+    spin = np.array((0.0, 2.0, 0.0))
+    base = -np.cross(spin, center + 0.04 * down)
+    assert body.jacobians[0] @ np.concatenate([base, np.zeros(3), [2.0]]) == pytest.approx(np.zeros(3), abs=1e-12)
+    assert WholeBody(path, ["arm"], [0.0]).radii == [0.0]

@@ -42,7 +42,15 @@ def test_every_parameter_is_declared_so_that_a_node_can_declare_it() -> None:
 def test_every_default_is_allowed() -> None:
     defaults = {name: one.default for name, one in PARAMETERS.items() if one.default not in (None, ())}
     empty = {"body.contact_points", "bodies", "support.edges", "support.extent", "feet.names", "robot.frames"}
-    empty |= {"feet.friction", "feet.restitution", "robot.joints", "robot.armature", "robot.kp", "robot.kd"}
+    empty |= {
+        "feet.friction",
+        "feet.restitution",
+        "feet.radius",
+        "robot.joints",
+        "robot.armature",
+        "robot.kp",
+        "robot.kd",
+    }
     assert set(PARAMETERS) - set(defaults) == {*REQUIRED, *empty}
     validate({**REQUIRED, **defaults})
 

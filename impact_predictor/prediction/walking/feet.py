@@ -51,9 +51,11 @@ class FeetContacts(Contacts):
         super().__init__(scene)
         assert scene.walking is not None
         self._walking = walking = scene.walking
+        points = list(range(len(walking.feet) * walking.points))
+        self._radii = walking.at_points(walking.radius, points) if walking.radius else []
         self._articulated: ArticulatedMachine | None = None
         if walking.robot is not None:
-            self._articulated = ArticulatedMachine(walking.robot)
+            self._articulated = ArticulatedMachine(walking.robot, self._radii)
             self.scene = scene._replace(mass=self._articulated.body.mass)
             self.joints = self._articulated.body.joints
         self._machine: LeggedMachine = self._articulated or RigidMachine(scene)
@@ -95,7 +97,10 @@ class FeetContacts(Contacts):
             return self._terrain.set(message)
         if isinstance(message, Joints):
             assert self._articulated is not None
-            geometry = self._articulated.geometry_of(message)
+            down = times(self.scene.normal, -1.0)
+            if self._base.samples:
+                down = to_body(axes_of(self._base.samples[-1].orientation), down)
+            geometry = self._articulated.geometry_of(message, down)
             self.unknown_joints = self._articulated.unknown
             if isinstance(geometry, Status):
                 return geometry
@@ -242,6 +247,8 @@ class FeetContacts(Contacts):
         frames = []
         for i, arm in enumerate(geometry.points):
             x, y, z = place = add(position, to_world(axes, arm))
+            if self._radii and self._articulated is None:  # that tells the lowest points itself
+                x, y, z = place = add(place, scene.normal, -self._radii[i])
             gap = nx * x + ny * y + nz * z - scene.height
             if gap < -DEEP_TOLERANCES * scene.tolerance - DEEP * sqrt(dot(arm, arm)):
                 return Status.BELOW_GROUND

@@ -6,6 +6,7 @@ It is one rigid body on legs without mass, or a robot with its joints.
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Sequence
 from math import isfinite, isnan, nan
 from typing import NamedTuple
 
@@ -204,12 +205,12 @@ class ArticulatedMachine:
 
     is_rigid = False
 
-    def __init__(self, robot: Robot) -> None:
+    def __init__(self, robot: Robot, radii: Sequence[float] = ()) -> None:
         # Only where a scene has a robot.
         from ...mechanics.articulated import WholeBody
         from .drives import JointDrives
 
-        self.body = WholeBody(robot.urdf, robot.frames)
+        self.body = WholeBody(robot.urdf, robot.frames, radii)
         self.joints = self.body.joints
         self._drives = JointDrives(robot, self.joints)
         self.body.armature = self._drives.armature
@@ -220,12 +221,13 @@ class ArticulatedMachine:
         self._status = Status.NO_GEOMETRY
         solve_spatial_impact(np.eye(3), ContactPoints([ORIGIN], 0.0), NOTHING[:3])  # compiled as that of RigidMachine
 
-    def geometry_of(self, joints: Joints) -> Geometry | Status:
+    def geometry_of(self, joints: Joints, down: Vector3 = (0.0, 0.0, -1.0)) -> Geometry | Status:
         """The contact points of the robot with such joints, and their velocities where the joints have theirs.
 
         All joints of the model that move must be among them, in any order; others, of an arm or a gripper, are left
         out. Wrong ones, which a status tells, leave the last; where the inertia has no inverse there is no response
         until the next.
+        The ground lies `down` from the feet, along the base's axes.
         """
         names, positions, velocities = joints.names, joints.positions, joints.velocities
         if len(positions) != len(names) or len(velocities) not in (0, len(names)) or not self._know(names):
@@ -236,7 +238,7 @@ class ArticulatedMachine:
         if not all(map(isfinite, (*angles, *rates))):
             return Status.NOT_FINITE
         body = self.body
-        self._status = Status.ACCEPTED if body.place(np.array(angles)) else Status.SINGULAR_INERTIA
+        self._status = Status.ACCEPTED if body.place(np.array(angles), down) else Status.SINGULAR_INERTIA
         if self._status is not Status.ACCEPTED:
             return self._status
         moving = body.velocities(np.array(rates)).tolist() if velocities else ()

@@ -608,3 +608,19 @@ def test_stamps_of_one_instant_break_no_fit() -> None:
     for one in walk(machine(), crowded).predictions:
         assert one.status is Status.ACCEPTED
         assert all(foot.lead_time is None or math.isfinite(foot.lead_time) for foot in one.feet)
+
+
+def test_balls_touch_with_their_lowest_points() -> None:
+    messages = record([swing(0.3, 0.6, speed=0.3), stands, stands, stands], 0.8)
+    raised = []
+    for sample, geometry in messages:
+        up = to_body(axes_of(sample.orientation), (0.0, 0.0, 0.02))
+        raised.append(Message(sample, geometry._replace(points=tuple(add(one, up) for one in geometry.points))))
+    points, balls = walk(machine(), messages), walk(machine(radius=(0.02,)), raised)
+    assert np.array(balls.announced(0)) == pytest.approx(np.array(points.announced(0)), abs=1e-6)
+    # Without their radius the feet are seen to stand as high.
+    unknown = walk(machine(), raised)
+    assert [foot.stands for foot in unknown.predictions[-1].feet] == [True] * 4
+    (score,) = unknown.scores
+    assert score.landing is not None
+    assert score.landing.stamp == pytest.approx(START + 600 * MS, abs=MS)
