@@ -103,8 +103,7 @@ class Diagnostics:
     def taken(self, now: float, name: str) -> bool:
         """Count another accepted message: of the support, a tilt, or about feet."""
         self._others += 1
-        # A plan need not keep coming, so its silence tells nothing.
-        return name in self.publishers and self._heard(now, name)
+        return self._heard(now, name)
 
     def _heard(self, now: float, name: str) -> bool:
         """Note an accepted message; whether it changed the level, which it does when it was waited for."""
@@ -112,6 +111,14 @@ class Diagnostics:
         self._last[name] = now
         waited_for = self.level == ERROR or (self.level == WARN and now - was > STALE_AFTER)
         return waited_for and self._judge(now)
+
+    def _heard_last(self) -> dict[str, float]:
+        """When the last message came on each input that is to keep coming: a plan need not, so its silence is none."""
+        return {name: self._last[name] for name in self.publishers if name in self._last}
+
+    def has_heard(self, name: str) -> bool:
+        """Whether a message on an input was accepted."""
+        return name in self._last
 
     def refused(self, now: float, reason: Refusal) -> bool:
         """Count a refused message."""
@@ -161,7 +168,7 @@ class Diagnostics:
 
     def _values(self, now: float) -> dict[str, str]:
         rate, largest_gap, latency = self._second
-        since = now - max(self._last.values()) if self._last else None
+        since = now - max(last.values()) if (last := self._heard_last()) else None
         update, longest, total = [1e6 * cost for cost in self._costs] if self._costs else (None, None, None)
         figures: list[tuple[str, str, object]] = [
             ("samples.accepted", "d", self._accepted),
@@ -207,11 +214,12 @@ class Diagnostics:
             return WARN, f"{dropped} samples dropped in the last second: {why}"
         if self.misfits:
             return WARN, f"QoS does not match ({len(self.misfits)}): {self.misfits[0]}"
-        if len(self._last) < len(self.publishers):
+        last = self._heard_last()
+        if len(last) < len(self.publishers):
             return WARN, self._missing()
-        age = now - min(self._last.values(), default=now)
+        age = now - min(last.values(), default=now)
         if age > STALE_AFTER:
-            where = "" if len(self._last) == 1 else f" on {min(self._last, key=self._last.__getitem__)}"
+            where = "" if len(last) == 1 else f" on {min(last, key=last.__getitem__)}"
             return WARN, f"no sample{where} for {age:.1f} s"
         flaws = [feet.flaw for feet in self.feet.values() if feet.flaw]
         return (WARN, flaws[0]) if flaws else (OK, "predicting")

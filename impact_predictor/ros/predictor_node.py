@@ -21,7 +21,7 @@ from ..errors import InputError
 from ..mechanics.compiled import told_of_compiling
 from ..parameters.validation import Parameter, Value, check_change, is_of_every_node, parameter_of, validate
 from ..prediction.monitor import Monitor
-from ..prediction.scene import ODOM, Scene, inputs_of, scenes_of
+from ..prediction.scene import CONTACT_GEOMETRY, FEET_STATES, ODOM, Scene, inputs_of, scenes_of
 from .endpoints import Misfits
 from .process import sentence
 from .reporter import Reporter
@@ -76,7 +76,7 @@ class PredictorNode(Node):
                 self._told.append(InputTopic(self, reporter, self._monitor, one))
                 if self._told[-1].subscription is not None:
                     self._inputs[one.name] = self._told[-1].subscription
-        reporter.listen(list(self._inputs))
+        reporter.listen([name for name in self._inputs if not name.endswith(FEET_STATES)])
         outputs = chain.from_iterable(body.outputs.values() for body in self._bodies.values())
         self._misfits = Misfits(self, self._inputs.values(), outputs)
         # By a steady clock, so that the node reports while simulated time stands still.
@@ -111,7 +111,13 @@ class PredictorNode(Node):
         for one in self._told:
             one.look_for_history()
         diagnostics = self._reporter.diagnostics
-        diagnostics.publishers = {name: self.count_publishers(one.topic_name) for name, one in self._inputs.items()}
+        counts = {name: self.count_publishers(one.topic_name) for name, one in self._inputs.items()}
+        for name in [name for name in counts if name.endswith(FEET_STATES)]:
+            # One of both ways to tell of feet is enough.
+            other = name.removesuffix(FEET_STATES) + CONTACT_GEOMETRY
+            is_told = counts[name] or (diagnostics.has_heard(name) and not counts[other])
+            del counts[other if is_told else name]
+        diagnostics.publishers = counts
         diagnostics.misfits = self._misfits.look()
         self._reporter.second_over()
 

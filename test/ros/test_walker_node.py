@@ -53,7 +53,7 @@ class Machine:
                 self.publishers[topic].publish(encode(told))
 
 
-ENCODERS = {Joints: encode_joints, Wrench: encode_wrench, Schedule: encode_schedule}
+ENCODERS = {FeetStates: encode_feet, Joints: encode_joints, Wrench: encode_wrench, Schedule: encode_schedule}
 
 
 def trotting():
@@ -130,11 +130,16 @@ def test_diagnostics_say_which_feet_stand_how_late_they_land_and_which_sensor_di
         for geometry, sample in trot(RATE, 1000.0):
             yield [
                 *(("contact_wrench", Wrench(sample.stamp, name, (0.0, 0.0, force))) for name, force in felt.items()),
-                ("contact_geometry", geometry),
+                ("feet_states", FeetStates(geometry.stamp, "base", FEET, geometry.points)),
                 ("odom", sample),
             ]
 
-    types = {"contact_geometry": POLYGON, "odom": ODOMETRY, "contact_wrench": WRENCH, "schedule": JOINT_TRAJECTORY}
+    types = {
+        "feet_states": MULTI_DOF_JOINT_STATE,
+        "odom": ODOMETRY,
+        "contact_wrench": WRENCH,
+        "schedule": JOINT_TRAJECTORY,
+    }
     with running_node(SCENE, "-p", "feet.force:=50.0", "-p", "feet.has_schedule:=true"):
         machine = Machine(peer, types, steps())
         schedule = machine.publishers["schedule"]
