@@ -50,7 +50,11 @@ def test_the_names_of_robots_and_gaits_are_those_of_the_library() -> None:
         (("--armature", "nan"), "armature is nan; give a number from 0"),
         (("--rate", "5000"), "rate is 5000.0; give a number above 0, up to 4000"),
         (("--duration", "0"), "duration is 0.0; give a finite number above 0"),
-        (("--params-out", "x.yaml"), "--params-out and --by-joints are those of a bag: give -o BAG too"),
+        (
+            ("--params-out", "x.yaml"),
+            "--by-names and --terrain are those of a bag: give -o BAG too",
+        ),
+        (("--terrain", "-o", "x.mcap"), "--terrain is that of --blocks or --stairs: give one of them too"),
         (("spot",), "'spot' is not one of 'a1', 'anymal', 'bolt', 'go1', 'hyq', 'solo12', 'talos'"),
     ],
 )

@@ -63,7 +63,9 @@ EXAMPLES: Final = (
 @json_flag()
 @bag_option("the true landings")
 @text("--params-out", "FILE", "The scene for a replay. [default: the name of the bag, with .yaml]")
-@click.option("--by-joints", is_flag=True, help="The scene takes the feet from URDF and joints.")
+@click.option("--by-joints", is_flag=True, help="The scene takes feet and inertia from URDF and joints.")
+@click.option("--by-names", is_flag=True, help="Tell feet by their names, with velocities and forces.")
+@click.option("--terrain", is_flag=True, help="The scene takes the heights of blocks or stairs from a map.")
 def simulate_robot(
     name: str | None,
     gait: str | None,
@@ -85,6 +87,8 @@ def simulate_robot(
     output: str | None,
     params_out: str | None,
     by_joints: bool,
+    by_names: bool,
+    terrain: bool,
     **options: Any,
 ) -> int:
     """A robot that walks with drives which follow a gait, whatever happens: a1, anymal, bolt, go1 (unless named), hyq,
@@ -93,8 +97,12 @@ def simulate_robot(
     Those on two feet hang on a gantry, springs that hold the trunk upright: nothing balances them.
     The same options and seed make the same bytes.
     """
-    if output is None and (params_out is not None or by_joints):
-        raise click.UsageError("--params-out and --by-joints are those of a bag: give -o BAG too")
+    if output is None and (params_out is not None or by_joints or by_names or terrain):
+        raise click.UsageError(
+            "--params-out, --by-joints, --by-names and --terrain are those of a bag: give -o BAG too"
+        )
+    if terrain and not (options["blocks"] or options["stairs"]):
+        raise click.UsageError("--terrain is that of --blocks or --stairs: give one of them too")
     positive(swing=swing, contact_time=contact_time, duration=duration)
     refuse({"rate": rate}, lambda value: 0.0 < value <= MOST, f"a number above 0, up to {MOST:g}")
     chosen = {"speed": speed, "clearance": clearance, "armature": armature, "radius": options["radius"]}
@@ -115,7 +123,7 @@ def simulate_robot(
     machine = Machine(robot, ground, Physics(armature, friction, contact_time))
     is_biped = len(machine.feet) == BIPED
     told = PlannedGait(gait or ("step" if is_biped else "trot"), swing, strike, speed, clearance)
-    sensors = WalkSensors(rate, noise_position, noise_velocity, delay, drift, seed)
+    sensors = WalkSensors(rate, noise_position, noise_velocity, delay, drift, seed, by_names)
     with progress("simulated robot", "s", round(duration)) as tell:
         walked = walk(machine, ground, told, duration, is_biped, tell)
     landings = landings_of(walked)
@@ -123,7 +131,7 @@ def simulate_robot(
     if output is not None:
         write_messages(output, walk_messages(walked, landings, sensors))
         scene = Path(output).with_suffix(".yaml") if params_out is None else Path(params_out)
-        write_scene(scene, walked, by_joints=by_joints)
+        write_scene(scene, walked, by_joints=by_joints, on_terrain=terrain)
     if as_json:
         click.echo(json.dumps(walk_as_json(walked, landings), allow_nan=False))
     else:

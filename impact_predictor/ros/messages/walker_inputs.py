@@ -1,11 +1,11 @@
-"""Feet, joints, forces and plans as bytes of ROS 2 Jazzy: what simulations, searches and tests tell a predictor."""
+"""Feet, joints, forces, plans and heights as bytes of ROS 2 Jazzy: what simulations, searches and tests tell."""
 
 from __future__ import annotations
 
 import struct
 from collections.abc import Sequence
 
-from ...prediction.types import FeetStates, Joints, Schedule, Wrench
+from ...prediction.types import FeetStates, Joints, Schedule, Terrain, Wrench
 from ..cdr import LITTLE_ENDIAN, LITTLE_ENDIAN_HEADER, align8, stamp, string
 
 
@@ -48,6 +48,16 @@ def encode_schedule(schedule: Schedule) -> bytes:
             _add_doubles(data, numbers)
         data += stamp(time - schedule.stamp)
     return bytes(data)
+
+
+def encode_terrain(terrain: Terrain) -> bytes:
+    """A sensor_msgs/PointCloud2 with a row of points, which float32 rounds."""
+    data = _headed(terrain.stamp, terrain.frame_id)
+    data += struct.pack("<3I", 1, len(terrain.points), 3)
+    for k, name in enumerate("xyz"):
+        data += string(name) + struct.pack("<IB3xI", 4 * k, 7, 1)
+    points = terrain.points.astype("<f4").tobytes()
+    return bytes(data + struct.pack("<?3x3I", False, 12, len(points), len(points)) + points + b"\x01")
 
 
 def _headed(nanoseconds: int, frame_id: str) -> bytearray:

@@ -7,13 +7,16 @@ from typing import Final
 
 from ...errors import InputError
 from ..record import FRAME
+from .sensors import CELL
 from .walk import Walk
 
 HEAD: Final = "# The scene of a robot that `impact-predictor simulate robot` has made walk."
 
 
-def scene_of(walk: Walk, *, by_joints: bool) -> str:
-    """A ROS 2 parameter file; `by_joints` takes feet, mass and inertia from URDF and joint_states."""
+def scene_of(walk: Walk, *, by_joints: bool, on_terrain: bool) -> str:
+    """A ROS 2 parameter file; `by_joints` takes feet, mass and inertia from URDF and joint_states, `on_terrain` the
+    heights of the ground from terrain.
+    """
     machine = walk.machine
     center, inertia = machine.inertia()
     (xx, xy, xz), (_, yy, yz), (_, _, zz) = inertia.tolist()
@@ -41,6 +44,7 @@ def scene_of(walk: Walk, *, by_joints: bool) -> str:
         "    feet:",
         f"      names: [{feet}]",
         f"      points: {points}",
+        *([f"      terrain: {CELL!r}"] if on_terrain else []),
         *(robot if by_joints else body),
         "    contact:",
         f"      friction: {machine.physics.friction!r}",
@@ -51,7 +55,7 @@ def scene_of(walk: Walk, *, by_joints: bool) -> str:
     return "\n".join(lines) + "\n"
 
 
-def write_scene(path: Path, walk: Walk, *, by_joints: bool) -> None:
+def write_scene(path: Path, walk: Walk, *, by_joints: bool = False, on_terrain: bool = False) -> None:
     """Write the scene; a file that is no such scene stays as it is.
 
     Raises:
@@ -60,6 +64,6 @@ def write_scene(path: Path, walk: Walk, *, by_joints: bool) -> None:
     try:
         if path.exists() and not path.read_text(encoding="utf-8", errors="replace").startswith(HEAD):
             raise InputError(f"{path} is no scene of a simulated robot, so it stays as it is; give --params-out")
-        path.write_text(scene_of(walk, by_joints=by_joints), encoding="utf-8")
+        path.write_text(scene_of(walk, by_joints=by_joints, on_terrain=on_terrain), encoding="utf-8")
     except OSError as error:
         raise InputError(f"{path} cannot be written: {error.strerror}") from error

@@ -7,24 +7,30 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from ...prediction.types import Geometry, Joints, Sample, Schedule, Vector3, Wrench
+from ...prediction.types import FeetStates, Geometry, Joints, Sample, Schedule, Terrain, Vector3, Wrench
 from ...ros.cdr import diagnostic_array
 from ...ros.messages import (
     DIAGNOSTIC_ARRAY,
     JOINT_STATE,
     JOINT_TRAJECTORY,
+    MULTI_DOF_JOINT_STATE,
     ODOMETRY,
+    POINT_CLOUD,
     POLYGON,
     WRENCH,
     encode_odometry,
     encode_polygon,
 )
-from ...ros.messages.walker_inputs import encode_joints, encode_schedule, encode_wrench
+from ...ros.messages.walker_inputs import encode_feet, encode_joints, encode_schedule, encode_terrain, encode_wrench
 from ...stamps import NANOSECONDS
 from ..landing import LANDING_TOPIC, TrueLanding, encode_true_landing
 from ..record import FRAME, RecordedMessage
 from .description import Values
 from .walk import STANDS, RobotStates, Walk
+
+CELL: Final = 0.02
+"""Size in m of the cells whose heights are told, and how far they reach beyond the way of the base."""
+MARGIN: Final = 0.8
 
 FORCE_RATE: Final = 100.0
 """Messages in Hz of each force sensor, at most."""
@@ -35,7 +41,8 @@ class WalkSensors(NamedTuple):
 
     White noise with standard deviations of `position` (m) and `velocity` (m/s) is on each coordinate of base and feet,
     and on the joints as much as moves a foot so far. Feet, joints and forces are those of `delay` s before their stamp.
-    The told height of the base runs away from the true one with `drift` in m/s.
+    The told height of the base runs away from the true one with `drift` in m/s. Feet are told `by_names` on
+    feet_states, with velocities and forces, or in their order on contact_geometry, without.
     """
 
     rate: float = 400.0
@@ -44,14 +51,17 @@ class WalkSensors(NamedTuple):
     delay: float = 0.0
     drift: float = 0.0
     seed: int = 0
+    by_names: bool = False
 
 
 def walk_messages(walk: Walk, landings: list[TrueLanding], sensors: WalkSensors) -> list[Iterator[RecordedMessage]]:
-    """The streams of messages of a walk, each ordered by its log times: the truth, the plan and the sensors.
+    """The streams of messages of a walk, each ordered by its log times: the truth, the plan, the heights of ground that
+    is not plane, and the sensors.
 
     Feet and joints come before the base of the same stamp.
     """
-    return [iter(_truth(landings)), iter([_plan(walk)]), _sensed(walk, sensors)]
+    known = [_plan(walk), _terrain(walk)] if walk.ground.boxes else [_plan(walk)]
+    return [iter(_truth(landings)), iter(known), _sensed(walk, sensors)]
 
 
 def _truth(landings: list[TrueLanding]) -> list[RecordedMessage]:
@@ -65,7 +75,8 @@ def _sensed(walk: Walk, sensors: WalkSensors) -> Iterator[RecordedMessage]:
     stamps = [round(k * NANOSECONDS / sensors.rate) for k in range(1 + int(walk.duration * sensors.rate + 1e-9))]
     times = np.array(stamps) / NANOSECONDS
     now, then = walk.states(times), walk.states(times - sensors.delay)
-    points, velocities = (_rows(part) for part in _relative(then))
+    points, velocities, forces = (part.reshape(len(times), -1, 3) for part in _relative(then))
+    names = tuple([foot for foot in machine.feet for _ in machine.sole.points])
     position, velocity = sensors.position, sensors.velocity
     height = np.stack([0.0 * times, 0.0 * times, sensors.drift * times], axis=1)
     blurred = {
@@ -81,9 +92,6 @@ def _sensed(walk: Walk, sensors: WalkSensors) -> Iterator[RecordedMessage]:
     for k, stamp in enumerate(stamps):
         row = {name: rows[k] for name, rows in blurred.items()}
         parts = [tuple(part.tolist()) for part in (row["joints"], row["rates"], then.efforts[k])]
-        geometry, rates = (
-            encode_polygon(Geometry(stamp, machine.base, _tuples(row[name]))) for name in ("points", "velocities")
-        )
         sample = Sample(
             stamp=stamp,
             frame_id=FRAME,
@@ -99,13 +107,18 @@ def _sensed(walk: Walk, sensors: WalkSensors) -> Iterator[RecordedMessage]:
         if k % forces_every == 0:
             for foot, force in zip(machine.feet, _tuples(then.forces[k]), strict=True):
                 yield RecordedMessage(stamp, "/contact_wrench", WRENCH, encode_wrench(Wrench(stamp, foot, force)))
-        yield RecordedMessage(stamp, "/contact_velocities", POLYGON, rates)
-        yield RecordedMessage(stamp, "/contact_geometry", POLYGON, geometry)
+        places = _tuples(row["points"])
+        if sensors.by_names:
+            told = FeetStates(stamp, machine.base, names, places, _tuples(row["velocities"]), _tuples(forces[k]))
+            yield RecordedMessage(stamp, "/feet_states", MULTI_DOF_JOINT_STATE, encode_feet(told))
+        else:
+            geometry = encode_polygon(Geometry(stamp, machine.base, places))
+            yield RecordedMessage(stamp, "/contact_geometry", POLYGON, geometry)
         yield RecordedMessage(stamp, "/odom", ODOMETRY, encode_odometry(sample))
 
 
-def _relative(seen: RobotStates) -> tuple[Values, Values]:
-    """Positions and velocities of the points relative to the base, along its axes."""
+def _relative(seen: RobotStates) -> tuple[Values, Values, Values]:
+    """Positions and velocities of the points relative to the base, and their parts of the forces, along its axes."""
     x, y, z, w = seen.orientation.T
     axes = np.array(
         [
@@ -117,11 +130,8 @@ def _relative(seen: RobotStates) -> tuple[Values, Values]:
     points = np.einsum("ijn,nfpi->nfpj", axes, seen.points - seen.position[:, None, None])
     moved = np.einsum("ijn,nfpi->nfpj", axes, seen.point_velocities)
     carried = seen.twist[:, None, None, :3] + np.cross(seen.twist[:, None, None, 3:], points)
-    return points, moved - carried
-
-
-def _rows(points: Values) -> Values:
-    return points.reshape(len(points), -1, 3)
+    pressed = np.einsum("ijn,nfi->nfj", axes, seen.forces)[:, :, None] / points.shape[2]
+    return points, moved - carried, np.broadcast_to(pressed, points.shape)
 
 
 def _tuples(rows: Values) -> tuple[Vector3, ...]:
@@ -130,6 +140,16 @@ def _tuples(rows: Values) -> tuple[Vector3, ...]:
 
 def _covariance(deviation: float) -> tuple[float, ...]:
     return tuple(np.diag([deviation**2] * 3 + [0.0] * 3).ravel().tolist())
+
+
+def _terrain(walk: Walk) -> RecordedMessage:
+    """The heights about the way, in the middle of cells, as one message at the beginning."""
+    ways = walk.positions[:, :2]
+    low, high = ((end + side * MARGIN) / CELL for end, side in ((ways.min(axis=0), -1.0), (ways.max(axis=0), 1.0)))
+    x, y = (CELL * (np.arange(np.floor(low[k]), np.ceil(high[k])) + 0.5) for k in range(2))
+    across, aside = (part.ravel() for part in np.meshgrid(x, y))
+    points = np.stack([across, aside, walk.ground.heights(across, aside)], axis=1)
+    return RecordedMessage(0, "/terrain", POINT_CLOUD, encode_terrain(Terrain(0, FRAME, points)))
 
 
 def _plan(walk: Walk) -> RecordedMessage:

@@ -180,6 +180,32 @@ def test_a_bag_tells_where_trunk_and_feet_are_and_when_they_are_to_stand(level: 
     assert np.abs(efforts).max() > 1.0
 
 
+def test_feet_by_their_names_have_velocities_and_forces_too(level: Walk) -> None:
+    by_order, by_name = messages(level), messages(level, by_names=True)
+    assert "contact_geometry" not in by_name
+    assert "feet_states" not in by_order
+    total = []
+    for geometry, feet, sample in zip(
+        by_order["contact_geometry"], by_name["feet_states"], by_name["odom"], strict=True
+    ):
+        assert feet.names == FEET
+        assert np.array(feet.positions) == pytest.approx(np.array(geometry.points), abs=1e-6)
+        total.append(sum(to_world(axes_of(sample.orientation), force)[2] for force in feet.forces))
+    assert np.mean(total) == pytest.approx(9.81 * level.machine.mass, rel=0.1)
+
+
+def test_the_heights_of_blocks_are_told_where_the_feet_come_to_stand(dog: RobotFiles) -> None:
+    run = walked(dog, blocks(0.03, 2), 4.0)
+    (terrain,) = messages(run)["terrain"]
+    feet = run.states(np.array([run.duration])).points.reshape(-1, 3)
+    heights = []
+    for foot in feet[np.any(run.forces[-1] != 0.0, axis=1)]:
+        nearest = terrain.points[np.argmin(np.linalg.norm(terrain.points[:, :2] - foot[:2], axis=1))]
+        heights.append(foot[2] - nearest[2])
+    assert heights == pytest.approx([0.0] * len(heights), abs=2e-3)
+    assert set(np.round(terrain.points[:, 2], 6)) == {0.0, 0.03}
+
+
 def test_the_velocities_of_the_feet_are_theirs_against_the_trunk(level: Walk) -> None:
     seen = level.states(np.arange(0.5, 2.0, 0.01))
     later = level.states(np.arange(0.5, 2.0, 0.01) + STEP)
@@ -217,7 +243,7 @@ def test_noise_has_the_deviations_that_are_asked_for_and_a_seed_makes_it(level: 
 def test_a_replay_with_the_scene_finds_the_landings(tmp_path: Path, level: Walk) -> None:
     landings = landings_of(level)
     write_messages(tmp_path / "dog.mcap", walk_messages(level, landings, WalkSensors()))
-    write_scene(tmp_path / "dog.yaml", level, by_joints=False)
+    write_scene(tmp_path / "dog.yaml", level)
     scenes = scenes_of(read_values(str(tmp_path / "dog.yaml")))
     assert scenes[""].mass == pytest.approx(level.machine.mass)
     result = replay(tmp_path / "dog.mcap", scenes)
