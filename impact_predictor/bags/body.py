@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
-from math import dist, inf
+from math import dist
 from typing import Final, NamedTuple
 
 from ..prediction.scene import Scene, Walking
@@ -95,8 +95,8 @@ class BodyRecord:
     """One body: the answers to its samples, its gait, and what its contact points were told to be.
 
     `seen` is the last sample, `first` and `last` are those that were accepted. Of the contact points, `geometry` is
-    what was told last, `told` how often, and `moved` how often elsewhere than first. `nearest` is how near (m) a foot
-    came to the ground, and `is_pressed` whether a force on one was told.
+    what was told last, `told` how often, and `moved` how often elsewhere than first. `is_pressed` tells
+    whether a force on a foot was told.
     """
 
     def __init__(self, body: str, scene: Scene, write: Write | None) -> None:
@@ -107,7 +107,6 @@ class BodyRecord:
         self.last: Sample | None = None
         self.geometry: Geometry | None = None
         self.told = self.moved = 0
-        self.nearest = inf
         self.is_pressed = False
         self._first_geometry: Geometry | None = None
         self._write = write
@@ -124,7 +123,6 @@ class BodyRecord:
         if self.gait is not None:
             self.gait.take(prediction)
             self.is_pressed = self.is_pressed or any(foot.confirmed is not None for foot in prediction.feet)
-            self.nearest = min([self.nearest, *[abs(foot.gap) for foot in prediction.feet]])
         if prediction.touchdown is not None:
             self._costs.append((prediction.sample.stamp, cost))
         self._publish(prediction)

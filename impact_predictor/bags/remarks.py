@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from math import inf
 from typing import TYPE_CHECKING, Any, Final
 
 from ..prediction.checks import REMEDIES
@@ -36,9 +35,6 @@ MISSED: Final = {
     SCHEDULE: "feet.has_schedule asks for it: no landing is told to be early or late",
 }
 """What follows where nothing comes on an input of which feet can do without."""
-
-NEAR: Final = 4.0
-"""Feet that never come nearer to the ground than so many contact tolerances never reach it."""
 
 _COMPARE: Final = "compare support.height, the units of the points (m), and the frames of body and points"
 _MOST_NAMED: Final = 4
@@ -172,13 +168,10 @@ def remarks(
 
 def _doubts(run: Run, body: str) -> list[str]:
     """What is left out of the messages about contact points, and what speaks against the scene although they fit it."""
-    record, contacts = run.bodies[body], run.monitor.predictors[body].contacts
-    said, left_out = [], contacts.unknown_joints
+    said, left_out = list[str](), run.monitor.predictors[body].contacts.unknown_joints
     if left_out:
         unknown = listed(left_out, _MOST_NAMED)
         said.append(f"robot.urdf does not know {unknown}, so what is told of these joints is left out")
-    if NEAR * record.scene.tolerance < record.nearest < inf:
-        said.append(f"no foot came nearer to the ground than {record.nearest:.3g} m: {_COMPARE}")
     return said
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from math import cos, sin
 from pathlib import Path
@@ -119,11 +120,14 @@ def test_feet_that_are_told_of_too_seldom_are_told_with_the_interval(tmp_path: P
     assert f"the feet are told of every {rate:.2g} s, but feet.timeout is 0.1 s: tell of them with each sample" in note
 
 
-def test_feet_that_never_come_near_the_ground_are_told_with_their_height(tmp_path: Path) -> None:
+def test_feet_that_stand_elsewhere_than_on_the_ground_of_the_scene_are_told_with_the_height_to_set(
+    tmp_path: Path,
+) -> None:
     result = replayed(tmp_path, Scene.from_parameters(validate({**GIVEN, "support.height": -0.1})))
-    assert result.settled == ()
+    # They show the ground themselves.
+    assert result.settled
     (note,) = result.notes
-    assert "no foot came nearer to the ground than 0.1 m: compare support.height, the units of the points (m)" in note
+    assert re.search(r"feet stand 0\.1\d* m above the ground: set support\.height to -?0\.000\d, or feet\.radius", note)
 
 
 def test_points_that_move_are_taken_for_feet_that_the_scene_does_not_name(tmp_path: Path) -> None:

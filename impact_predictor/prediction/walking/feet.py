@@ -29,6 +29,7 @@ from ..vectors import add, axes_of, cross, dot, times, to_body, to_world
 from .announcement import ExpectedLanding
 from .clock import Delay, FeetClock
 from .cubic import PointFrame
+from .doubts import GroundDoubts
 from .forces import FootForces
 from .ground import Ground
 from .landings import LandingTracker
@@ -69,6 +70,7 @@ class FeetContacts(Contacts):
         self._dues: list[ExpectedLanding | None] = []
         self._clock = FeetClock(self._count, scene.normal, round(walking.dead_time * NANOSECONDS), walking.delay)
         self._ahead: Touchdown | Status | None = None
+        self._doubts = GroundDoubts(scene)
         self._begin()
 
     def _begin(self) -> None:
@@ -165,10 +167,11 @@ class FeetContacts(Contacts):
                 "joint_states lacks the effort of a joint of robot.urdf, so that nothing confirms that feet stand: "
                 "publish efforts, or set feet.force_source to sensor"
             )
-        return tuple(filter(None, found))
+        return tuple(filter(None, [*found, *self._doubts.texts(self._ground)]))
 
     def forget(self) -> None:
         self.settled.extend(self._landings.finish())
+        self._doubts.begin(self._ground)
         self.stamp = None
         self._begin()
 
@@ -232,6 +235,7 @@ class FeetContacts(Contacts):
             ]
             for i in [i for i, has_landed in enumerate(landed) if has_landed]:
                 self._landings.land(i)
+            self._doubts.see(found, any(point.stands for point in self._points), self._ground)
             for i, point in enumerate(self._points):
                 if point.stands:
                     self._clock.stand(i, point.since, found[i], base, geometry.points[i])
