@@ -97,6 +97,17 @@ def test_a_robot_trots_and_its_bag_comes_with_a_scene() -> None:
 
 
 @pytest.mark.extras
+@pytest.mark.parametrize("options", [("--by-joints",), ("--by-names",), ("--blocks", "0.01", "--terrain")])
+def test_feet_may_be_told_by_joints_or_names_and_the_ground_by_a_map(options: tuple[str, ...]) -> None:
+    pytest.importorskip("mujoco", reason="needs the extra robot")
+    pytest.importorskip("pinocchio", reason="needs the extra articulated")
+    assert run(*options, "--duration", "3", "-o", "trot.mcap").exit_code == 0
+    replayed = answered(CliRunner().invoke(main, ("replay", "trot.mcap", "--params", "trot.yaml", "--json")))
+    assert replayed["truth"]["touchdowns"] > 15
+    assert replayed["truth"]["missed"] <= 0.2 * replayed["truth"]["touchdowns"]
+
+
+@pytest.mark.extras
 def test_the_same_options_and_seed_make_the_same_bytes() -> None:
     pytest.importorskip("mujoco", reason="needs the extra robot")
     for name in ("one", "two"):

@@ -20,7 +20,10 @@ def scene_of(walk: Walk, *, by_joints: bool, on_terrain: bool) -> str:
     machine = walk.machine
     center, inertia = machine.inertia()
     (xx, xy, xz), (_, yy, yz), (_, _, zz) = inertia.tolist()
-    feet, points = ", ".join(machine.feet), len(machine.sole.points)
+    feet, radius = ", ".join(machine.feet), machine.sole.radius
+    # By joints a flat sole is known by the origin of its frame alone; a ball's points are told where it touches.
+    balls = [f"      radius: [{radius!r}]"] if by_joints and radius > 0.0 else []
+    points = 1 if by_joints else len(machine.sole.points)
     body = [
         "    body:",
         f"      mass: {machine.mass!r}",
@@ -44,6 +47,7 @@ def scene_of(walk: Walk, *, by_joints: bool, on_terrain: bool) -> str:
         "    feet:",
         f"      names: [{feet}]",
         f"      points: {points}",
+        *balls,
         *([f"      terrain: {CELL!r}"] if on_terrain else []),
         *(robot if by_joints else body),
         "    contact:",
