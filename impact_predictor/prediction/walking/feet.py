@@ -38,6 +38,8 @@ from .schedule import LandingSchedule
 from .stance import FootPoint
 from .terrain import TerrainMap
 
+STEP = 0.5  # part of a foot's distance from the base by which the next foothold may lie below all others
+
 
 class FeetContacts(Contacts):
     """The contacts of a machine that walks: the points of its feet, which move against its base.
@@ -249,12 +251,15 @@ class FeetContacts(Contacts):
         nx, ny, nz = scene.normal
         linear = to_world(axes, base.linear)
         frames = []
+        # The ground goes down where nobody has stood yet; what nobody has stood on is where the scene has it.
+        lowest = self._ground.lowest
+        lowest, deep = (0.0, DEEP) if lowest is None else (min(0.0, lowest), STEP)
         for i, arm in enumerate(geometry.points):
             x, y, z = place = add(position, to_world(axes, arm))
             if self._radii and self._articulated is None:  # that tells the lowest points itself
                 x, y, z = place = add(place, scene.normal, -self._radii[i])
             gap = nx * x + ny * y + nz * z - scene.height
-            if gap < -DEEP_TOLERANCES * scene.tolerance - DEEP * sqrt(dot(arm, arm)):
+            if gap < lowest - DEEP_TOLERANCES * scene.tolerance - deep * sqrt(dot(arm, arm)):
                 return Status.BELOW_GROUND
             velocity = rate = None
             if geometry.velocities:

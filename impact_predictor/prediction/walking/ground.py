@@ -119,6 +119,10 @@ class Relief:
                 off += weight * (one.level - datum - self._trend(one.u, one.v)[0])
         return Level(trend + off / precision, sqrt(square * (1.0 / precision + unsure)))
 
+    @property
+    def lowest(self) -> float | None:
+        return min([one.level - datum for one, datum in self._footholds], default=None)
+
     def _trend(self, u: float, v: float) -> tuple[float, float]:
         """The plane's height at a place, and the square of its standard deviation in parts of the scatter's."""
         x, y = u - self._u, v - self._v
@@ -166,6 +170,12 @@ class Ground:
         """How many footholds there were, and of how many the map told nothing."""
         self._seen = 0
         self._square = self._square_rate = 0.0
+
+    @property
+    def lowest(self) -> float | None:
+        """The level (m) of the lowest foothold that is remembered; None before there is one."""
+        level = self._relief.lowest
+        return None if level is None else self.drift + level
 
     def level_at(self, place: Vector3) -> Level:
         """The level of the ground under a place (m, in the frame of odom)."""

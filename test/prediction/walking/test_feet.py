@@ -624,3 +624,17 @@ def test_balls_touch_with_their_lowest_points() -> None:
     (score,) = unknown.scores
     assert score.landing is not None
     assert score.landing.stamp == pytest.approx(START + 600 * MS, abs=MS)
+
+
+def test_feet_step_down_below_the_ground_of_the_scene() -> None:
+    def deep(time: float) -> tuple[float, float]:
+        gap, rate = swing(0.3, 0.6)(time)
+        part = min(1.0, max(0.0, (time - 0.3) / 0.3))
+        return gap - 0.12 * part, rate - (0.4 if 0.0 < part < 1.0 else 0.0)
+
+    messages = record([deep, stands, stands, stands], 0.8)
+    seen = walk(machine(), messages)
+    assert {one.status for one in seen.predictions} == {Status.ACCEPTED}
+    (score,) = seen.scores
+    assert score.landing is not None
+    assert score.landing.stamp == pytest.approx(START + 600 * MS, abs=2 * MS)
