@@ -44,6 +44,7 @@ class WholeBody:
         balls = [(radius, (0.0, 0.0, 0.0)) for radius in radii] or _balls(urdf, frames)
         self.radii = [radius for radius, _ in balls]
         self._centers = np.array([center for _, center in balls]).reshape(-1, 3)
+        self._are_off = [any(center) for _, center in balls]
         # The first joint is the universe, the second the base's.
         moving = list(self._model.joints)[2:]
         self.joints: tuple[str, ...] = tuple(self._model.names)[2:]
@@ -60,8 +61,11 @@ class WholeBody:
         self.armature: NDArray[np.float64] = np.zeros(len(self.joints))
         self._inertia: NDArray[np.float64] | None = None
         self._is_regular = False
+        self._joint = np.arange(6, self._model.nv)
+        self._twists: NDArray[np.float64] = np.zeros((len(frames), 6, self._model.nv))
+        self._arms: NDArray[np.float64] = np.zeros((len(frames), 3))
         self.points: NDArray[np.float64] = np.zeros((len(frames), 3))
-        self.jacobians: NDArray[np.float64] = np.zeros((len(frames), 3, self._model.nv))
+        self.jacobians: NDArray[np.float64] = self._twists[:, :3]
 
     def place(self, positions: NDArray[np.float64], down: Sequence[float] = (0.0, 0.0, -1.0)) -> bool:
         """Take the `positions` (rad or m) of `joints`; whether the inertia there has an inverse.
@@ -78,22 +82,34 @@ class WholeBody:
         pinocchio.updateFramePlacements(model, data)
         aligned = pinocchio.ReferenceFrame.LOCAL_WORLD_ALIGNED
         for k, frame in enumerate(self._frames):
-            jacobian = pinocchio.getFrameJacobian(model, data, frame, aligned)
-            self.points[k], self.jacobians[k] = data.oMf[frame].translation, jacobian[:3]
-            if self.radii[k]:
-                arm = data.oMf[frame].rotation @ self._centers[k] + self.radii[k] * np.asarray(down)
-                self.points[k] += arm
-                self.jacobians[k] += np.cross(jacobian[3:], arm, axis=0)
+            place = data.oMf[frame]
+            self._twists[k] = pinocchio.getFrameJacobian(model, data, frame, aligned)
+            self.points[k] = place.translation
+            if self._are_off[k]:
+                self._arms[k] = place.rotation @ self._centers[k]
+        self.jacobians = self._twists[:, :3].copy()
+        if any(self.radii):
+            self._roll(self._arms + np.outer(self.radii, down))
         # What moves without mass does so at every posture: once is enough.
         self._is_regular = self._is_regular or self._has_inverse()
         return self._is_regular
+
+    def _roll(self, arms: NDArray[np.float64]) -> None:
+        """Put the contacts to the ends of some arms (k, 3): the lowest points of balls."""
+        x, y, z = arms.T
+        # The cross product of a spin with the arm; NumPy's own function takes ten times as long.
+        spun = np.zeros((len(arms), 3, 3))
+        spun[:, 0, 1], spun[:, 1, 2], spun[:, 2, 0] = z, x, y
+        spun[:, 1, 0], spun[:, 2, 1], spun[:, 0, 2] = -z, -x, -y
+        self.points += arms
+        self.jacobians += spun @ self._twists[:, 3:]
 
     @property
     def inertia(self) -> NDArray[np.float64]:
         """M(q) with the armature, which only impacts want."""
         if self._inertia is None:
-            inertia = self._pinocchio.crba(self._model, self._data, self._q)
-            self._inertia = inertia + np.diag(np.concatenate([np.zeros(6), self.armature]))
+            self._inertia = self._pinocchio.crba(self._model, self._data, self._q).copy()
+            self._inertia[self._joint, self._joint] += self.armature
         return self._inertia
 
     def _has_inverse(self) -> bool:
@@ -111,7 +127,7 @@ class WholeBody:
     def inertia_with(self, added: NDArray[np.float64]) -> NDArray[np.float64]:
         """M with more inertia `added` at each joint."""
         inertia = self.inertia.copy()
-        inertia.reshape(-1)[6 * len(inertia) + 6 :: len(inertia) + 1] += added
+        inertia[self._joint, self._joint] += added
         return inertia
 
     def foot_forces(self, efforts: NDArray[np.float64], gravity: Sequence[float]) -> NDArray[np.float64]:

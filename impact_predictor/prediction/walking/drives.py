@@ -46,16 +46,16 @@ class JointDrives:
         """What impulses are with them: less is known of the joints, and the legs give way as much, or as little, as
         they can."""
 
-    def inertia(self, body: WholeBody, direction: Array, scene: Scene) -> tuple[Array | None, float]:
-        """The inertia (joints) that gains add where a point of the body is struck, None without gains; and how long the
-        contact lasts, in s.
-
-        `direction` (n,) is the row of the generalized velocities that the blow stops, the point's along the normal.
+    def inertia(self, body: WholeBody, point: int, normal: Array, scene: Scene) -> tuple[Array | None, float]:
+        """The inertia (joints) that gains add where a point of the body is struck along a normal of its base's axes,
+        None without gains; and how long the contact lasts, in s.
         """
         if not self._have_gains:
             return None, scene.contact_time
         if not scene.stiffness:
             return self._over(scene.contact_time, min(scene.merge, scene.contact_time)), scene.contact_time
+
+        direction = normal @ body.jacobians[point]
 
         def next_time(time: float) -> float:
             """A quarter of the oscillation of the mass that the foot has when its contact lasts for another time."""

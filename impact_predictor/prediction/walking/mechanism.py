@@ -262,8 +262,7 @@ class ArticulatedMachine:
         frame = first, cross(scene.normal, first), scene.normal
         ways, local = np.array(frame), np.array([to_body(axes, way) for way in frame])
         c = -(np.asarray(contacts.velocities, float) @ ways.T)
-        struck = int(c[:, 2].argmin())
-        added, time = drives.inertia(self.body, local[2] @ self.body.jacobians[points[struck]], scene)
+        added, time = drives.inertia(self.body, points[int(c[:, 2].argmin())], local[2], scene)
         W, moved = self.body.mobility(points, local, added, drives.are_held)
         law, load, each = scene.law, np.zeros(c.shape), np.empty((3, len(points)))
         each[0], each[1], each[2] = contacts.friction, contacts.restitution, contacts.gaps
@@ -275,8 +274,9 @@ class ArticulatedMachine:
             each[1, rests], law = 0.0, "total"
         start = c.ravel()
         found = solve_delassus(W, each[0], each[1], each[2], start - W @ load.ravel(), law, scene.merge, GRAZES)
-        impulses = found.impulses - load
-        change, given = moved @ impulses.ravel(), impulses.ravel() @ (found.velocities.ravel() - start)
+        impulses, after = found.impulses - load, found.velocities.ravel()
+        pushed = impulses.ravel()
+        change, given = moved @ pushed, pushed @ (after - start)
         jumps = change[6:]
         opposed = 0.0 if added is None or given <= 0.0 else float(added @ (jumps * jumps) / given)
         return MachineOutcome(
@@ -285,7 +285,7 @@ class ArticulatedMachine:
             velocities=found.velocities @ ways,
             states=found.states,
             flags=found.flags,
-            energy_lost=-0.5 * float(impulses.ravel() @ (start + found.velocities.ravel())),
+            energy_lost=-0.5 * float(pushed @ (start + after)),
             law=found.law,
             bound=drives.bound,
             jumps=tuple(jumps.tolist()),
