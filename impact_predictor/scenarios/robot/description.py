@@ -121,13 +121,16 @@ def read_xml(path: Path) -> ET.Element:
 
 
 def simplify(root: ET.Element) -> None:
-    """Leave out what is seen, what the feet replace, and the masses of links that stand for nothing."""
+    """Leave out what is seen, what feet and drives replace, and the masses of links that stand for nothing."""
     for link in root.iter("link"):
         for part in [part for part in link if part.tag in ("visual", "collision")]:
             link.remove(part)
         inertial = link.find("inertial")
         if inertial is not None and not _has_mass(inertial):
             link.remove(inertial)
+    for joint in root.iter("joint"):
+        for part in joint.findall("dynamics"):
+            joint.remove(part)
     for part in [part for part in root if part.tag not in ("link", "joint")]:
         root.remove(part)
     ET.SubElement(ET.SubElement(root, "mujoco"), "compiler", fusestatic="false", balanceinertia="true")

@@ -76,7 +76,7 @@ class Machine:
         stiffness = STIFFNESS * weight / len(robot.feet)
         self.gains = stiffness, DAMPING * stiffness
         for joint in moving:
-            joint.armature, joint.damping, joint.frictionloss = self.armature, np.zeros(3), 0.0
+            joint.armature = self.armature
             self._drive(joint.name)
         self._compile()
 
@@ -137,13 +137,15 @@ class Machine:
     def inertia(self) -> tuple[Values, Values]:
         """With all joints locked in its posture: mass centre (3,) in the base's frame, and inertia (3, 3) about it."""
         self.at_rest(self.posture)
-        full = np.zeros((self.model.nv, self.model.nv))
-        self.mujoco.mj_crb(self.model, self.data)
-        self.mujoco.mj_fullM(self.model, self.data, full)
-        center: Values = self.data.subtree_com[1].copy()
-        x, y, z = center
-        lever = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-        return center, full[3:6, 3:6] + self.mass * lever @ lever
+        data, masses = self.data, self.model.body_mass
+        center: Values = masses @ data.xipos / self.mass
+        found = np.zeros((3, 3))
+        for mass, place, turned, own in zip(
+            masses, data.xipos, data.ximat.reshape(-1, 3, 3), self.model.body_inertia, strict=True
+        ):
+            lever = place - center
+            found += turned * own @ turned.T + mass * (lever @ lever * np.eye(3) - np.outer(lever, lever))
+        return center, found
 
     def _specified(self, tree: ET.Element, ground: SimulatedGround) -> Any:
         """The specification of robot and ground; feet alone touch the ground."""
