@@ -257,6 +257,16 @@ def test_what_rounds_to_nothing_has_no_sign_and_what_nobody_announced_has_no_tim
     assert second.split()[2:4] == ["-", "-"]
 
 
+def test_the_head_of_the_impulses_says_which_bound_they_are() -> None:
+    (row,) = rows_of([landed(1.0)])
+    for bound in (None, "upper bound", "estimate"):
+        head = " ".join(shown(landings_table([row._replace(bound=bound)]), 100).split("LF")[0].split())
+        assert [bound is not None and word in head for word in ("upper", "estimate")] == [
+            bound == "upper bound",
+            bound == "estimate",
+        ]
+
+
 def test_what_the_other_feet_get_stands_below_the_impulse_of_the_foot() -> None:
     """Of two feet that land together one may have braked: the impulse is at the other alone."""
     impact = TOUCHDOWN._replace(impulses=((3.0, 0.0), (0.0, 0.0)))

@@ -97,6 +97,8 @@ def test_landings_together_say_how_early_they_were_predicted_and_what_their_impa
         "Feet come down with 0.123 m/s in the median, at most 0.123 m/s; "
         "that gives at most 5.00 N s to a foot and 0.050 m/s to the body."
     )
+    bounds = [LANDED._replace(bound=bound) for bound in ("upper bound", "estimate")]
+    assert Tally(bounds).sentences()[-1].endswith("0.050 m/s to the body (estimate, upper bound).")
     weak = LANDED._replace(impulse=(0.0, 0.0), velocity_change=Twist(0.0, 0.0, 0.0), landing_speed=0.023)
     largest = Tally([weak, LANDED]).sentences()[-1]
     assert all(said in largest for said in ("0.073 m/s in", "most 0.123 m/s", "most 5.00 N s", "0.050 m/s to the body"))

@@ -10,6 +10,7 @@ from messages_of_rosbags import TYPES, TYPESTORE, header, padded, serialize
 
 from impact_predictor.mechanics.types import Flag, Mode, Twist
 from impact_predictor.prediction.types import (
+    Bound,
     Foot,
     Landing,
     Leftover,
@@ -68,6 +69,20 @@ def test_a_status_for_each_foot_follows_that_of_the_prediction_which_stays_as_it
         known = {name: value for name, value in known.items() if name not in ("position", "place")}
         texts = {name: value if name == "name" else json.loads(value) for name, value in status.values.items()}
         assert texts == known
+
+
+def test_each_foot_has_its_impulse_and_every_impulse_stands_beside_its_bound() -> None:
+    after = SpatialTwist((0.25, 0.0, 0.5), (0.0, -0.125, 0.0))
+    estimate = TOUCHDOWN._replace(after_6d=after, bound=Bound.ESTIMATE, drives=0.25, joints=("hip", "knee"))
+    foot = SWINGING._replace(impulse=(0.5, 0.0, 2.0), bound=Bound.ESTIMATE)
+    whole, one = told(foot, touchdown=estimate._replace(jumps=(1.5, -2.0)))
+    keys = ("bound", "impulse.drives", "joints", "joint_jumps", "trunk.vx", "trunk.vz", "trunk.wy")
+    assert [whole.values[key] for key in keys] == ["estimate", "0.5", "hip knee", "1.5 -2.0", "0.25", "0.5", "-0.125"]
+    keys = ("impulse.x", "impulse.y", "impulse.z", "bound")
+    assert [one.values[key] for key in keys] == ["0.5", "0.0", "2.0", "estimate"]
+    plain, other = told(SWINGING)
+    assert not {"bound", "impulse.drives", "joints", "joint_jumps", "trunk.vx"} & plain.values.keys()
+    assert not set(keys) & other.values.keys()
 
 
 def test_an_impact_that_is_no_sure_answer_is_a_warning() -> None:
