@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import operator
+from collections.abc import Sequence
 from math import hypot, sqrt
 from typing import NamedTuple
 
 from ...stamps import NANOSECONDS
 from ..types import Sample, Vector3
 from ..vectors import add, axes_of, cross, dot, lines, to_body, total
-from .cubic import PointFrame
+from .stance import FootPoint
 
 APART = 4_000_000  # ns between the frames that are looked at: more of them cost more than they tell
 LONGEST = 80  # frames after which a stance is taken to be another one ...
@@ -53,7 +54,7 @@ class FeetClock:
         """The delay in s that is taken out of the stamps."""
         self._normal, self._dead_time = normal, dead_time
         self._frames: list[list[tuple[int, float, float]]] = [[] for _ in range(points)]
-        self._stances = 0
+        self._seen = self._stances = 0
         # Sums over stances of n, m, n^2, n m, m^2, where n / m is the slope, and of n and m in the first halves.
         self._sums = [0.0] * 7
 
@@ -91,21 +92,24 @@ class FeetClock:
         self.taken = delay.time
         return True
 
-    def stand(self, i: int, since: int, frame: PointFrame, base: Sample, arm: Vector3) -> None:
-        """Take the frame of a point that stands since a stamp in ns, at an `arm` (m) from the origin of the base."""
-        frames = self._frames[i]
-        if frame.stamp < since + self._dead_time or (frames and frame.stamp < frames[-1][0] + APART):
+    def see(self, base: Sample, arms: Sequence[Vector3], points: Sequence[FootPoint]) -> None:
+        """Take the last frames of the points, which lie at their `arms` (m) from the origin of the base."""
+        stamp = base.stamp
+        if 0 <= stamp - self._seen < APART:
             return
-        swept = add(base.linear, cross(base.angular, arm))
-        frames.append((frame.stamp, frame.gap, dot(to_body(axes_of(base.orientation), self._normal), swept)))
-        if len(frames) >= LONGEST:
-            self._end(i, frame.stamp - self._dead_time)
-
-    def swing(self, i: int, since: int) -> None:
-        """Take that a point has stood until a stamp in ns."""
-        if self._frames[i]:
-            self._end(i, since)
-            self._frames[i].clear()
+        self._seen = stamp
+        normal = to_body(axes_of(base.orientation), self._normal)
+        for i, point in enumerate(points):
+            frames = self._frames[i]
+            if not point.stands:
+                if frames:
+                    self._end(i, point.since)
+                    frames.clear()
+            elif stamp >= point.since + self._dead_time:
+                swept = add(base.linear, cross(base.angular, arms[i]))
+                frames.append((stamp, point.trajectory.frames[-1].gap, dot(normal, swept)))
+                if len(frames) >= LONGEST:
+                    self._end(i, stamp - self._dead_time)
 
     def _end(self, i: int, stamp: int) -> None:
         """Learn from the frames of a point up to a dead time before a stamp in ns."""

@@ -238,11 +238,7 @@ class FeetContacts(Contacts):
             for i in [i for i, has_landed in enumerate(landed) if has_landed]:
                 self._landings.land(i)
             self._doubts.see(found, any(point.stands for point in self._points), self._ground)
-            for i, point in enumerate(self._points):
-                if point.stands:
-                    self._clock.stand(i, point.since, found[i], base, geometry.points[i])
-                else:
-                    self._clock.swing(i, point.since)
+            self._clock.see(base, geometry.points, self._points)
         return status
 
     def _frames(self, geometry: Geometry, base: Sample) -> list[PointFrame] | Status:
