@@ -109,7 +109,7 @@ class Relief:
         trend, unsure = self._trend(u, v)
         square = self._square + LEAST.gap**2
         error, precision, off = self._error / square, 1.0, 0.0
-        for one, datum in self._footholds:
+        for one, datum in self._footholds if error < 1.0 else ():  # else they tell nothing but the plane
             x, y = one.u - u, one.v - v
             far = (x * x + y * y) / NEIGHBOUR**2
             if far < FAR:
