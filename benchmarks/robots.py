@@ -1,13 +1,13 @@
-"""Robots that walk in MuJoCo: what their landings are, and how a replay finds them.
+"""Robots that walk in MuJoCo, and what their landings are.
 
     pip install -e '.[robot]'
     python benchmarks/robots.py [FOLDER [RUN...]]
 
 Prints a row for each run of `impact-predictor simulate robot` with the options that it shows, 12 s and seed 0: true
 landings, their speed in m/s (median and fastest), medians of the impulse of the landing foot in N s after 1, 2 and 5 ms
-and up to the first peak of its force, and how many ms after the landing that is. Then landings that a replay finds, and
-false alarms; `walker_times.py` tells how right their times are, beside simple answers, of the bags and scenes that stay
-in the FOLDER. Without one they are removed. Runs can be chosen by their numbers.
+and up to the first peak of its force, and how many ms after the landing that is. Bags and scenes stay in the FOLDER;
+`walker_times.py` and `walker_impacts.py` tell how right the predictions of them are, beside simple answers. Without a
+FOLDER they are removed. Runs can be chosen by their numbers.
 """
 
 from __future__ import annotations
@@ -24,10 +24,7 @@ from rich.console import Console
 from rich.progress import track
 
 from impact_predictor.bags.read import Bag
-from impact_predictor.bags.replay import Result, replay
 from impact_predictor.cli import main as command
-from impact_predictor.parameters.file import read_values
-from impact_predictor.prediction.scene import scenes_of
 from impact_predictor.report.table import plain_table, show
 from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY
 from impact_predictor.scenarios.landing import LANDING_TOPIC, TrueLanding, decode_true_landings
@@ -59,10 +56,8 @@ RUNS: Final = (
 )
 
 
-def row_of(name: str, landings: list[TrueLanding], result: Result) -> tuple[str, ...]:
+def row_of(name: str, landings: list[TrueLanding]) -> tuple[str, ...]:
     """What is printed of a run."""
-    truth = result.truth
-    assert truth is not None
     speeds = [landing.speed for landing in landings]
     impulses = np.median([[one.impulse(state) for state in one.after] for one in landings], axis=0)
     return (
@@ -71,36 +66,32 @@ def row_of(name: str, landings: list[TrueLanding], result: Result) -> tuple[str,
         f"{np.median(speeds):.2f} / {max(speeds):.2f}",
         *[f"{impulse:.2f}" for impulse in impulses],
         f"{1e3 * np.median([one.after[-1].time for one in landings]):.2f}",
-        f"{truth.found} of {truth.touchdowns}",
-        f"{truth.false}",
     )
 
 
-def made(name: str, folder: Path) -> tuple[list[TrueLanding], Result]:
-    """The true landings of a run, and what a replay of its bag finds."""
+def made(name: str, folder: Path) -> list[TrueLanding]:
+    """The true landings of a run."""
     bag = folder / f"{'_'.join(name.replace('--', '').split())}.mcap"
     answer = CliRunner().invoke(command, ["simulate", "robot", *shlex.split(name), "-o", str(bag)])
     if not bag.exists():
         raise SystemExit(f"{name}: {answer.output}")
     with Bag(bag) as opened:
         told = [one.data for one in opened.messages({LANDING_TOPIC: DIAGNOSTIC_ARRAY})]
-    landings = [landing for data in told for landing in decode_true_landings(data)]
-    scenes = scenes_of(read_values(str(bag.with_suffix(".yaml"))))
-    return landings, replay(bag, scenes)
+    return [landing for data in told for landing in decode_true_landings(data)]
 
 
 def main(arguments: list[str]) -> int:
     """Print the table."""
     chosen = [RUNS[int(number)] for number in arguments[1:]] or RUNS
     table = plain_table()
-    for column in ("run", "landings", "speed", "1 ms", "2 ms", "5 ms", "peak", "after", "found", "false"):
+    for column in ("run", "landings", "speed", "1 ms", "2 ms", "5 ms", "peak", "after"):
         table.add_column(column, justify="left" if column == "run" else "right", no_wrap=True)
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(arguments[0] if arguments else temporary)
         folder.mkdir(parents=True, exist_ok=True)
         for name in track(chosen, "runs", console=Console(stderr=True)):
-            table.add_row(*row_of(name, *made(name, folder)))
-    show(Console(width=140), table)
+            table.add_row(*row_of(name, made(name, folder)))
+    show(Console(width=120), table)
     return 0
 
 
