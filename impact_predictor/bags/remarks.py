@@ -138,9 +138,10 @@ def remarks(
     run: Run, inputs: Mapping[Input, StatusCounts], names: Mapping[Input, str], scenes: Mapping[str, Scene]
 ) -> list[str]:
     """What was left out of the predictions, and what looks wrong in bag or scene, one sentence each."""
-    # A message with an adapter is on several inputs: each topic and reason is told once.
+    # A message with an adapter is on several inputs, but one that is refused on all of them: each topic and reason is
+    # told once, with the input that has most messages.
     refused: dict[tuple[str, Status], str] = {}
-    for one, counts in inputs.items():
+    for one, counts in sorted(inputs.items(), key=lambda item: -sum(item[1].values())):
         for status in [one for one in MENDABLE if one in counts]:
             if words := _words(run, inputs, one, status):
                 count = f"{counts[status]:,} of {sum(counts.values()):,} messages on {names[one]}"
