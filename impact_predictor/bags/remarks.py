@@ -159,7 +159,9 @@ def remarks(
         contacts, walking = run.monitor.predictors[body].contacts, record.scene.walking
         doubts = list(contacts.doubts())
         if walking is not None and walking.find_delay:
-            doubts.append(f"the feet are {contacts.delay or 'not known to be late: too few of them have stood'}")
+            found = contacts.delay
+            known = f"{found}: {1e3 * found.taken:.1f} ms are taken out" if found else "not yet known to be late"
+            doubts.append(f"the feet are {known}")
         said += [f"{body}: {doubt}" if body else doubt for doubt in doubts]
     if run.comparison is not None and (later := run.comparison.later_landings()):
         landings = "1 true landing is" if later == 1 else f"{later:,} true landings are"

@@ -297,6 +297,7 @@ class FeetReport:
             ("joints_left_out", "", " ".join(joints) if joints else None),
             ("delay", ".5f", None if delay is None else delay.time),
             ("delay.deviation", ".5f", None if delay is None else delay.deviation),
+            ("delay.taken_out", ".5f", delay.taken if delay is not None and delay.taken else None),
             ("landings.unannounced", "d", self._unannounced or None),
             ("landings.median_time_error", ".4f", median(errors) if errors else None),
             ("landings.early", "d", sum([one < 0.0 for one in late]) if late else None),

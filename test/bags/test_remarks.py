@@ -220,6 +220,11 @@ def test_joints_that_the_model_does_not_know_are_left_out_and_named(tmp_path: Pa
     assert "/joint_states: robot.urdf does not know arm, gripper, so what is told of these joints is left out" in note
 
 
+def test_a_delay_that_is_to_be_found_is_told_whether_there_is_one_or_not(tmp_path: Path) -> None:
+    (note,) = replayed(tmp_path, Scene.from_parameters(validate({**GIVEN, "feet.find_delay": True}))).notes
+    assert re.search(r"the feet are (not yet known to be late|.* than the trunk: 0\.0 ms are taken out)$", note)
+
+
 @pytest.mark.extras
 @pytest.mark.parametrize(("pressed", "confirmed"), [(200.0, True), (20.0, False), (None, None)])
 def test_efforts_of_the_joints_confirm_a_landing_and_are_named_where_they_are_missing(

@@ -20,14 +20,14 @@ MEMORY = 100  # stances over which it is averaged
 LEAST = 2.5e-3  # s: below that it may be feet that yield or bounce a little, which move with the trunk ...
 CLOSER = 0.5e-3  # ... but a delay that is there is worth to be taken out better than that
 SURE = 3.0  # standard deviations that tell a delay from what is taken out
-PRECISE = 1e-3  # s: it is taken out when its standard deviation is below that
 
 
 class Delay(NamedTuple):
-    """How much later the feet are, and the standard deviation of that, in s."""
+    """How much later the feet are, the standard deviation of that, and how much of it is taken out, in s."""
 
     time: float
     deviation: float
+    taken: float = 0.0
 
     def __str__(self) -> str:
         way = "later" if self.time >= 0.0 else "earlier"
@@ -66,7 +66,7 @@ class FeetClock:
             return None
         time = n / m
         apart = n1 / m1 - (n - n1) / (m - m1)
-        return Delay(time, hypot(sqrt(max(0.0, nn - 2.0 * time * nm + time * time * mm)) / m, 0.5 * apart))
+        return Delay(time, hypot(sqrt(max(0.0, nn - 2.0 * time * nm + time * time * mm)) / m, 0.5 * apart), self.taken)
 
     @property
     def is_wrong(self) -> bool:
@@ -87,7 +87,7 @@ class FeetClock:
     def correct(self) -> bool:
         """Take out what is known of the delay; whether that is something else than before."""
         delay = self.delay
-        if delay is None or delay.deviation > PRECISE or not self.is_wrong:
+        if delay is None or not self.is_wrong:
             return False
         self.taken = delay.time
         return True
