@@ -3,7 +3,7 @@
     pip install -e '.[articulated,robots]'
     python benchmarks/walker_impacts.py BAG SCENE [BAG SCENE]...
 
-The bags are those of `impact-predictor simulate robot`, with the true landings, and the scenes have robot.urdf. Each
+The bags are those of `impact-predictor simulate robot --by-joints`, with their scenes and true landings. Each
 landing is computed from the true velocities right before it and the joints of that moment, so that nothing but the
 impact is judged: for all joints held (one rigid body), for free joints, for free joints with the armature, and as the
 scene has it. Below stands what stops the mass that the foot has with free joints, and that no impact changes anything.
@@ -12,7 +12,8 @@ Of each the impulse along the normal, told over measured, until 1, 2, 5 ms after
 force; the change of the trunk's twist until 5 ms (less what its acceleration of the 5 ms before gives), told over
 measured and the part of it that is wrong, angular velocities counted with 0.2 m; the same of the joints. All medians.
 Then the modes: a foot slips that moves with more than 0.05 m/s along the ground 5 ms after it landed, and a standing
-foot has lifted that gets no impulse between 2 and 5 ms. One that rises with 0.01 m/s before the landing stands no more.
+foot has lifted that gets no impulse between 2 and 5 ms; it is told to lift where it rises faster than gravity takes
+back in contact.time. One that rises with 0.01 m/s before the landing stands no more.
 """
 
 from __future__ import annotations
@@ -33,6 +34,7 @@ from impact_predictor.bags.read import Bag
 from impact_predictor.errors import InputError
 from impact_predictor.mechanics.types import ContactState
 from impact_predictor.parameters.file import read_values
+from impact_predictor.prediction.planar import hardly
 from impact_predictor.prediction.scene import Robot, Scene, scenes_of, triple
 from impact_predictor.prediction.types import Geometry, Joints, Sample, Touchdown
 from impact_predictor.prediction.vectors import add, axes_of, to_world
@@ -68,7 +70,7 @@ class Case(NamedTuple):
 
 class Judged(NamedTuple):
     """Told over measured impulses at each mark; of trunk and joints told over measured, and the part that is wrong;
-    whether the landing foot's slip is right, and of each standing foot whether it lifts.
+    whether the landing foot's slip is right, and of each standing foot whether it lifts; what they truly do.
     """
 
     impulses: list[float]
@@ -76,6 +78,8 @@ class Judged(NamedTuple):
     joints: tuple[float, float]
     slip: bool
     lifts: list[bool]
+    slips: bool
+    lifted: list[bool]
 
 
 def cases(bag_path: str) -> list[Case]:
@@ -134,13 +138,16 @@ def judge(scene: Scene, machine: ArticulatedMachine, case: Case, alone: bool = F
     true_jumps = (np.subtract(last.rates, landing.before.rates) - case.joint_drift)[order]
     pushed = np.array(last.impulses) - np.array(second.impulses)
     slip = np.array(last.velocities[foot]) - (normal @ last.velocities[foot]) * normal
-    states = {contact.point: contact.state for contact in told.contacts}
+    rises = {contact.point: float(normal @ contact.velocity) > hardly(scene) for contact in told.contacts}
+    slips, lifted = bool(np.linalg.norm(slip) > SLIPS), [not pushed[i].any() for i in stood]
     return Judged(
         impulses=impulses,
         trunk=compared(WEIGHTS * change, WEIGHTS * true_change),
         joints=compared(np.array(told.jumps), true_jumps),
-        slip=(states[foot] is ContactState.SLIPS) == bool(np.linalg.norm(slip) > SLIPS),
-        lifts=[(states[i] is ContactState.LEAVES) == bool(not pushed[i].any()) for i in stood],
+        slip=(own.state is ContactState.SLIPS) is slips,
+        lifts=[rises[i] is is_lifted for i, is_lifted in zip(stood, lifted, strict=True)],
+        slips=slips,
+        lifted=lifted,
     )
 
 
@@ -159,14 +166,16 @@ def models(scene: Scene, robot: Robot) -> dict[str, tuple[ArticulatedMachine, bo
     return machines | {"foot's own mass": (machines["free joints"][0], True)}
 
 
+def right(answers: Sequence[bool]) -> str:
+    """How many answers are right, in %."""
+    return f"{100.0 * np.mean(answers):.0f}" if answers else "-"
+
+
 def row(name: str, run: str, found: Sequence[Judged]) -> tuple[str, ...]:
     """The medians of what was judged, as texts."""
 
     def middle(numbers: Sequence[float]) -> str:
         return f"{np.median(numbers):.2f}"
-
-    def right(answers: Sequence[bool]) -> str:
-        return f"{100.0 * np.mean(answers):.0f}" if answers else "-"
 
     impulses = [middle([one.impulses[k] for one in found]) for k in range(4)]
     moved = [middle([getattr(one, of)[k] for one in found]) for of in ("trunk", "joints") for k in (0, 1)]
@@ -188,13 +197,20 @@ def main(arguments: Sequence[str]) -> int:
     for bag, file in zip(arguments[::2], arguments[1::2], strict=True):
         (scene,) = scenes_of(read_values(file)).values()
         if scene.walking is None or scene.walking.robot is None:
-            raise InputError(f"{file} has no robot.urdf: give a scene that knows the joints")
+            raise InputError(f"{file} has no robot.urdf: give a scene of `simulate robot --by-joints`")
+        if scene.walking.points != 1:
+            raise InputError(f"{file} has feet of several points, and the truth tells of the lowest: give others")
         landings = cases(bag)
         judged = defaultdict(list)
         for name, (machine, alone) in models(scene, scene.walking.robot).items():
             judged[name] = [one for case in landings if (one := judge(scene, machine, case, alone))]
-        rows += [row(name, Path(bag).stem, found) for name, found in judged.items()]
-        rows.append((Path(bag).stem, "nothing", str(len(landings)), *["0.00"] * 5, "1.00", "0.00", "1.00", "-", "-"))
+        rows += [row(name, Path(bag).stem, answers) for name, answers in judged.items()]
+        found = judged["scene"]
+        still = (
+            right([not one.slips for one in found]),
+            right([not is_lifted for one in found for is_lifted in one.lifted]),
+        )
+        rows.append((Path(bag).stem, "nothing", str(len(landings)), *["0.00"] * 5, "1.00", "0.00", "1.00", *still))
     columns = [Column(name, itemgetter(k), left=k < 2) for k, name in enumerate(HEADERS)]
     console = Console()
     show(console, table_of(columns, rows))

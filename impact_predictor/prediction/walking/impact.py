@@ -22,7 +22,7 @@ from ..planar import (
     planar_twist,
 )
 from ..scene import Scene
-from ..types import Leftover, PointOutcome, Sample, SpatialTwist, Status, Touchdown, Vector3
+from ..types import Bound, Leftover, PointOutcome, Sample, SpatialTwist, Status, Touchdown, Vector3
 from ..vectors import add, axes_of, cross, dot, mean, times, to_body, to_world
 from .mechanism import LeggedMachine
 
@@ -104,7 +104,9 @@ def touchdown_of(
     ahead = ahead_of(scene, feet, middle, striking, masses)
     axis = cross(normal, ahead)
     impulses = along_plane(others, ahead, normal), along_plane(struck, ahead, normal)
-    mode = mode_of_contacts(others, struck, normal, LIFTS * sqrt(fastest)) if strikes else Mode.NO_IMPACT
+    # An estimate goes on for the contact time: what rises no faster than gravity takes back in it does not lift.
+    least = hardly(scene) if found.bound is Bound.ESTIMATE else LIFTS * sqrt(fastest)
+    mode = mode_of_contacts(others, struck, normal, least) if strikes else Mode.NO_IMPACT
     flags = found.flags
     if strikes and is_slow(impulses[1][0] / scene.mass, scene.validity):
         flags |= Flag.SLOW_IMPACT
