@@ -52,8 +52,9 @@ def test_the_names_of_robots_and_gaits_are_those_of_the_library() -> None:
         (("--duration", "0"), "duration is 0.0; give a finite number above 0"),
         (
             ("--params-out", "x.yaml"),
-            "--by-names and --terrain are those of a bag: give -o BAG too",
+            "--params-out is that of a bag: give -o BAG too",
         ),
+        (("--delay", "0.005"), "--delay is that of a bag: give -o BAG too"),
         (("--terrain", "-o", "x.mcap"), "--terrain is that of --blocks or --stairs: give one of them too"),
         (("spot",), "'spot' is not one of 'a1', 'anymal', 'bolt', 'go1', 'hyq', 'solo12', 'talos'"),
     ],

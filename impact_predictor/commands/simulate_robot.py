@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import click
+from click.core import ParameterSource
 
 from ..mechanics.bodies import positive, refuse
 from .options import ACUTE, examples, json_flag, number, seed_option, text, together
@@ -22,6 +23,17 @@ NAMES: Final = ("a1", "anymal", "bolt", "go1", "hyq", "solo12", "talos")
 GAITS: Final = ("trot", "amble", "step")
 DURATION: Final = 12.0
 BIPED: Final = 2
+OF_BAG: Final = (
+    "rate",
+    "noise_position",
+    "noise_velocity",
+    "delay",
+    "drift",
+    "params_out",
+    "by_joints",
+    "by_names",
+    "terrain",
+)
 MOST: Final = 4000.0
 """Hz: the physics makes no more steps."""
 
@@ -97,10 +109,8 @@ def simulate_robot(
     Those on two feet hang on a gantry, springs that hold the trunk upright: nothing balances them.
     The same options and seed make the same bytes.
     """
-    if output is None and (params_out is not None or by_joints or by_names or terrain):
-        raise click.UsageError(
-            "--params-out, --by-joints, --by-names and --terrain are those of a bag: give -o BAG too"
-        )
+    scene = None if output is None else Path(params_out or Path(output).with_suffix(".yaml"))
+    check_bag(scene)
     if terrain and not (options["blocks"] or options["stairs"]):
         raise click.UsageError("--terrain is that of --blocks or --stairs: give one of them too")
     positive(swing=swing, contact_time=contact_time, duration=duration)
@@ -127,10 +137,8 @@ def simulate_robot(
     with progress("simulated robot", "s", round(duration)) as tell:
         walked = walk(machine, ground, told, duration, is_biped, tell)
     landings = landings_of(walked)
-    scene = None
-    if output is not None:
+    if output is not None and scene is not None:
         write_messages(output, walk_messages(walked, landings, sensors))
-        scene = Path(output).with_suffix(".yaml") if params_out is None else Path(params_out)
         write_scene(scene, walked, by_joints=by_joints, on_terrain=terrain)
     if as_json:
         click.echo(json.dumps(walk_as_json(walked, landings), allow_nan=False))
@@ -143,6 +151,24 @@ def simulate_robot(
         if output is not None:
             click.echo(f"Bag: {output}\nScene: {scene}")
     return 1 if walked.fallen else 0
+
+
+def check_bag(scene: Path | None) -> None:
+    """Refuse, before any work is done, options of a bag without one (and without a `scene`), and another file there.
+
+    Raises:
+        UsageError: such an option was given.
+        InputError: the scene would take the place of another file.
+    """
+    if scene is not None:
+        from ..scenarios.robot.scene import check_replaceable
+
+        check_replaceable(scene)
+        return
+    context = click.get_current_context()
+    for name in OF_BAG:
+        if context.get_parameter_source(name) is ParameterSource.COMMANDLINE:
+            raise click.UsageError(f"--{name.replace('_', '-')} is that of a bag: give -o BAG too")
 
 
 def robot_of(

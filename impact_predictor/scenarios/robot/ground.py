@@ -46,7 +46,7 @@ class SimulatedGround(NamedTuple):
     @property
     def normal(self) -> Vector3:
         """Out of the ground."""
-        return -sin(self.slope), 0.0, cos(self.slope)
+        return 0.0 - sin(self.slope), 0.0, cos(self.slope)
 
     def heights(self, x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.float64]:
         """How high it is, in m, at places (n,) of the world."""

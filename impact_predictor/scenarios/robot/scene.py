@@ -59,15 +59,23 @@ def scene_of(walk: Walk, *, by_joints: bool, on_terrain: bool) -> str:
     return "\n".join(lines) + "\n"
 
 
-def write_scene(path: Path, walk: Walk, *, by_joints: bool = False, on_terrain: bool = False) -> None:
-    """Write the scene; a file that is no such scene stays as it is.
+def check_replaceable(path: Path) -> None:
+    """Whether a scene may take a place.
 
     Raises:
-        InputError: there is another file, or it cannot be written.
+        InputError: there is a file that is no such scene.
+    """
+    if path.exists() and not (path.is_file() and path.read_bytes().startswith(HEAD.encode())):
+        raise InputError(f"{path} is no scene of a simulated robot, so it stays as it is; give --params-out")
+
+
+def write_scene(path: Path, walk: Walk, *, by_joints: bool = False, on_terrain: bool = False) -> None:
+    """Write the scene.
+
+    Raises:
+        InputError: it cannot be written.
     """
     try:
-        if path.exists() and not path.read_text(encoding="utf-8", errors="replace").startswith(HEAD):
-            raise InputError(f"{path} is no scene of a simulated robot, so it stays as it is; give --params-out")
         path.write_text(scene_of(walk, by_joints=by_joints, on_terrain=on_terrain), encoding="utf-8")
     except OSError as error:
         raise InputError(f"{path} cannot be written: {error.strerror}") from error
