@@ -48,7 +48,7 @@ def test_the_names_of_robots_and_gaits_are_those_of_the_library() -> None:
         (("--slope", "3", "--stairs", "0.05"), "--slope, --blocks and --stairs are three grounds; give one of them"),
         (("--strike", "-1"), "strike is -1.0; give a number from 0"),
         (("--armature", "nan"), "armature is nan; give a number from 0"),
-        (("--rate", "5000"), "rate is 5000.0; give a number above 0, up to 4000"),
+        (("--rate", "5000", "-o", "x.mcap"), "rate is 5000.0; give a number above 0, up to 4000"),
         (("--duration", "0"), "duration is 0.0; give a finite number above 0"),
         (
             ("--params-out", "x.yaml"),

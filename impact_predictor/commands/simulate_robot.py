@@ -24,15 +24,8 @@ GAITS: Final = ("trot", "amble", "step")
 DURATION: Final = 12.0
 BIPED: Final = 2
 OF_BAG: Final = (
-    "rate",
-    "noise_position",
-    "noise_velocity",
-    "delay",
-    "drift",
-    "params_out",
-    "by_joints",
-    "by_names",
-    "terrain",
+    *("rate", "noise_position", "noise_velocity", "delay", "drift"),
+    *("params_out", "by_joints", "by_names", "terrain"),
 )
 MOST: Final = 4000.0
 """Hz: the physics makes no more steps."""
