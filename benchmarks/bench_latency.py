@@ -2,9 +2,8 @@
 
     python benchmarks/bench_latency.py [SECONDS] [--real-time]
 
-Four processes over real DDS: a publisher of contact points and pose at 500 Hz, of the biped of
-examples/walker_controller on its way and of a trotting machine with four feet; the predictor with config/walker.yaml,
-and with config/walker_hyq.yaml; a bare node that takes the same messages as bytes and publishes the pose as often as
+Four processes over real DDS: a publisher of contact points and pose at 500 Hz, of a trotting machine with four feet;
+the predictor with config/walker_hyq.yaml; a bare node that takes the same messages as bytes and publishes the pose as often as
 the predictor answers; and a sink that listens to both. Half a second goes to the one, the next to the other,
 in turn: what the bare node takes is the machine's, ROS's and the publisher's, and the difference the predictor's.
 
@@ -20,13 +19,12 @@ and both nodes, which work in turn, have a processor without publisher and sink.
 from __future__ import annotations
 
 import gc
-import json
 import os
 import pickle
 import struct
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
@@ -35,7 +33,7 @@ from typing import Any, Final
 
 from trot import trot
 
-from impact_predictor.prediction.types import Geometry, Prediction, Sample
+from impact_predictor.prediction.types import Prediction
 from impact_predictor.ros.messages import ODOMETRY, OUTPUTS, POLYGON, encode_odometry, encode_polygon
 from impact_predictor.ros.process import Stop, message_class, run, spin
 from impact_predictor.ros.processes import Child, ros_environment
@@ -50,7 +48,6 @@ EXECUTORS: Final = ("single", "events")
 BY_CONTROLLER: Final = ("post_impact", "mode")
 """What a controller listens to."""
 CASES: Final = {
-    "biped": ("walker", BY_CONTROLLER),
     "four feet": ("walker_hyq", BY_CONTROLLER),
     "four feet, everything heard": ("walker_hyq", tuple(OUTPUTS)),
 }
@@ -72,27 +69,7 @@ PRIORITY: Final = 10
 """Of SCHED_FIFO, where it is asked for."""
 
 
-def biped(seconds: float, begin: int) -> Iterator[tuple[Geometry, Sample]]:
-    """Feet and trunk of the biped of the controller's example on even ground, `begin` the first stamp in ns."""
-    example = ROOT / "examples/walker_controller"
-    sys.path.insert(0, str(example))
-    from controller import Feedback, FeedbackGains
-    from machine import Ground, Walk
-    from sensors import geometry_of, sample_of
-    from values import Estimate, Machine
-
-    slope, friction, machine = 0.03, 0.45, Machine()
-    gains = json.loads((example / "gains.json").read_text(encoding="utf-8"))["informed"]["gains"]
-    controller = Feedback(machine, Estimate(slope, friction), FeedbackGains(**gains))
-    walk = Walk(machine, Ground(slope, friction, (0.0,)))
-    while walk.ticks < seconds * RATE:
-        command = controller.command(walk.seen, None)
-        geometry, sample = geometry_of(walk), sample_of(walk)
-        yield geometry._replace(stamp=geometry.stamp + begin), sample._replace(stamp=sample.stamp + begin)
-        walk.tick(command)
-
-
-RECORDS: Final = {"walker": biped, "walker_hyq": partial(trot, RATE)}
+RECORDS: Final = {"walker_hyq": partial(trot, RATE)}
 """What is published, by its scene."""
 
 

@@ -244,7 +244,7 @@ KINDS: dict[str, list[dict[str, Any]]] = {
     "cargo": [{"file": "deck_many"}, {"file": "deck_many", "support.motion": "imu"}],
     "walker": [
         {"file": "walker", "feet.has_schedule": True, "feet.force": 50.0, "feet.terrain": 0.02},
-        {"file": "walker", "robot.urdf": "machine.urdf", "robot.frames": ("left", "right")},
+        {"file": "walker", "robot.urdf": "machine.urdf", "robot.frames": ("FL", "FR", "HL", "HR")},
     ],
 }
 """Scenes that together have all that the policy allows for one of their kind: shipped ones, and what is changed."""

@@ -1,180 +1,218 @@
-"""How the biped is driven: where its next foot comes down, and how hard the rear one pushes off; no ROS in here.
+"""A trot whose feet brake before they land and bear once they have: one law, for any source that tells when they land.
 
-Two controllers with the same actuators and measurements. `Feedback` answers what it measures with tuned gains.
-`Predictive` besides listens to the predictor, and changes the step that is about to end by what its impact will do.
-Angles of a step are half of that between the legs: both lean by it when the foot lands.
+It knows nothing of the simulation, nor of who tells: copy it, and give it a `Source` of your own.
 """
 
 from __future__ import annotations
 
-from math import atan, cos, sin, sqrt
 from typing import Final, NamedTuple, Protocol
 
-from values import Announcement, Command, Estimate, Machine, Seen
+import numpy as np
+from numpy.typing import NDArray
 
-from impact_predictor import Mode
+Array = NDArray[np.float64]
 
-STILL: Final = 14
-"""Ticks that the leg is held before a prediction of its landing is believed, 28 ms.
+FEET: Final = ("FL", "FR", "HL", "HR")
+TICK: Final = 0.002
+"""Seconds from one command to the next."""
+GRAVITY: Final = 9.81
+HEIGHT: Final = 0.238
+"""m, of the trunk above the lowest points of the feet."""
+CLEARANCE: Final = 0.045
+SWING: Final = 0.18
+"""Planned seconds of a swing; pairs of feet swing in turn."""
+PATIENCE: Final = 0.06
+"""Seconds after a planned landing from which on a foot bears in any case."""
+RAMP: Final = 0.02
+"""Seconds over which a foot that has landed takes its load, from a fifth on."""
+PAIRS: Final = ((0, 3), (1, 2))
+HIPS: Final = np.array([[0.1946, 0.14695], [0.1946, -0.14695], [-0.1946, 0.14695], [-0.1946, -0.14695]])
+"""m, where the feet are to stand at rest."""
+STIFFNESS, DAMPING = 600.0, 14.0
+"""N/m and N s/m of a foot that swings."""
+START: Final = 0.3
+"""Seconds to stand before the first swing."""
 
-So long the predictor's fit may still follow the leg's last move. Its dead time, for which an announcement is kept, and
-the tick that it takes to arrive are in it.
-"""
 
-LEAST_TRIM: Final = 0.005
-"""rad by which a step is changed at least; for less the leg is held, and the announcements go on."""
+class Measured(NamedTuple):
+    """What the robot knows at a tick.
 
-USUAL_RATE: Final = 0.9
-"""rad/s over the upright leg, against which feedback is told the rate."""
+    `position`, `velocity` of the trunk (m, m/s) and its angular velocity `spin` (rad/s) in the world; `axes` turn from
+    the trunk to the world; `feet` and `feet_velocity` against the trunk along its axes, of the lowest points of the
+    balls; `felt` is what the contact sensors say.
+    """
 
-LARGEST_PAST: Final = 3.0
-"""rad/s that the sum of the rates of the steps before may come to."""
+    tick: int
+    position: Array
+    velocity: Array
+    axes: Array
+    spin: Array
+    feet: Array
+    feet_velocity: Array
+    felt: tuple[bool, ...]
 
-LEAST_RATE: Final = 0.3
-"""rad/s over the next leg, below which the machine is taken to stop."""
 
-SLIPS: Final = (Mode.SLIDE, Mode.PIVOT_SLIDE)
+class Command(NamedTuple):
+    """What a foot is to do, along the trunk's axes: its drives' stiffness (N/m) and damping (N s/m) pull it to a
+    `reference` that `moves` (m, m/s against the trunk), and a `force` (N) is added.
+    """
+
+    reference: Array
+    moves: Array
+    stiffness: float
+    damping: float
+    force: Array
 
 
-class Controller(Protocol):
-    """Anything that drives the machine."""
+class Gains(NamedTuple):
+    """What is tuned, of every source alike."""
 
-    def command(self, seen: Seen, ahead: Announcement | None) -> Command:
-        """The command of a tick, from what is measured, and from the touchdown that is announced, if there is one."""
+    descent: float = 0.5
+    """m/s, with which a swing is planned to end, and goes on after its plan."""
+    lead: float = 0.03
+    """Seconds before the landing that is told at which a foot begins to brake ..."""
+    speed: float = 0.15
+    """... evenly, to this speed at the ground, m/s ..."""
+    soft: float = 0.5
+    """... with this part of its stiffness."""
+    late: float = 0.03
+    """Seconds after the end of its braking from which on it bears though nothing is felt; negative before it."""
+
+
+class Landing(NamedTuple):
+    """What is told of a foot in the air: `time` in s until it lands, its `gap` (m) and `speed` (m/s) to the ground."""
+
+    time: float
+    gap: float
+    speed: float
+
+
+class Source(Protocol):
+    """Tells when feet land."""
+
+    senses: bool
+    """Whether a foot also bears as soon as its sensor feels the ground."""
+
+    def tell(self, measured: Measured, planned: Landing) -> list[Landing | None]:
+        """The landing of each foot, where it is known; by the plan it is the `planned` one."""
         ...
 
 
-class Reach:
-    """The longest step to make: shorter by `retract` (rad) than any that slips."""
+class Brake(NamedTuple):
+    """How a foot brakes: from a time on (s) from one speed to another (m/s), for so long (s)."""
 
-    def __init__(self, longest: float, retract: float) -> None:
-        self.longest = longest
-        self._retract = retract
-        self._steps, self._angle, self._slipped = 0, 0.0, False
+    since: float
+    first: float
+    last: float
+    lasts: float
 
-    def watch(self, seen: Seen) -> None:
-        """Learn from the foot that stands, which is felt to slip once it has landed."""
-        if seen.steps != self._steps:
-            self._steps, self._slipped = seen.steps, False
-            self._angle = -seen.lean
-        if seen.slips and seen.steps and not self._slipped:
-            self._slipped = True
-            self.shorten(self._angle)
-
-    def shorten(self, angle: float) -> None:
-        """A step of this angle slips."""
-        self.longest = min(self.longest, angle - self._retract)
+    def speed(self, now: float) -> float:
+        """The speed to the ground at a time in s."""
+        return self.first + min((now - self.since) / self.lasts, 1.0) * (self.last - self.first)
 
 
-class FeedbackGains(NamedTuple):
-    """Gains of `Feedback`; rates are against 0.9 rad/s.
+class Trot:
+    """Trots along x with a speed (m/s): `gains` and `source` say how its feet land. `mass` in kg."""
 
-    The first seven need nothing but what is measured; the last three use what the robot is told of the ground.
+    def __init__(self, mass: float, speed: float, gains: Gains, source: Source) -> None:
+        self._mass, self._speed, self._gains, self._source = mass, speed, gains, source
+        self.stands = [True] * 4
+        self._pair, self._since = 1, 0.0
+        self._from, self._landed = np.zeros((4, 3)), [-1.0] * 4
+        self._brakes: list[Brake | None] = [None] * 4
+        self._heights = [0.0] * 4
+        """m, of the references of feet that brake, against the trunk."""
+        self._velocity, self._lag = np.zeros(3), 0.0
+
+    def commands(self, measured: Measured) -> list[Command]:
+        """What each foot is to do at a tick."""
+        now, gains = measured.tick * TICK, self._gains
+        self._velocity += 0.1 * (measured.velocity - self._velocity)
+        self._lag = min(max(self._lag + 0.5 * TICK * (self._speed - self._velocity[0]), -0.15), 0.15)
+        elapsed = now - self._since
+        told = self._source.tell(measured, Landing(SWING - elapsed, gains.descent * (SWING - elapsed), gains.descent))
+        for i in [i for i in range(4) if not self.stands[i]]:
+            brake, landing = self._brakes[i], told[i]
+            if brake is None and landing is not None and landing.time <= gains.lead and elapsed > 0.5 * SWING:
+                first = max(landing.speed, 0.05)
+                last = min(gains.speed, first)
+                brake = Brake(now, first, last, max(2.0 * landing.gap / (first + last), TICK))
+                self._brakes[i], self._heights[i] = brake, measured.feet[i][2]
+            due = brake is not None and now >= brake.since + brake.lasts + gains.late
+            felt = self._source.senses and measured.felt[i] and elapsed > 0.4 * SWING
+            if due or felt or elapsed >= SWING + PATIENCE:
+                self.stands[i], self._landed[i] = True, now
+        if all(self.stands) and elapsed >= SWING and now > START:
+            self._pair, self._since, elapsed = 1 - self._pair, now, 0.0
+            for i in PAIRS[self._pair]:
+                self.stands[i], self._from[i], self._brakes[i] = False, measured.feet[i], None
+        bears = self._bear(measured, now)
+        return [bears[i] if self.stands[i] else self._swing(i, measured, now) for i in range(4)]
+
+    def _swing(self, i: int, measured: Measured, now: float) -> Command:
+        elapsed, start, brake, stiffness = now - self._since, self._from[i], self._brakes[i], STIFFNESS
+        part = min(elapsed / SWING, 1.0)
+        velocity = measured.axes.T @ self._velocity
+        # Where a foot keeps the speed, and a little further ahead to lose what is too much (Raibert).
+        goal = HIPS[i] + 0.5 * SWING * velocity[:2] + 0.06 * (velocity[:2] - (self._speed + self._lag, 0.0))
+        smooth, rate = part * part * (3.0 - 2.0 * part), 6.0 * part * (1.0 - part) / SWING
+        reference, moves = np.empty(3), np.empty(3)
+        reference[:2] = start[:2] + smooth * (goal - start[:2])
+        moves[:2] = rate * (goal - start[:2]) if part < 1.0 else -velocity[:2]
+        reference[2], moves[2] = planned_height(start[2], elapsed, self._gains.descent)
+        if brake is not None:
+            # The trunk carries the foot along, and it is the ground that it is to meet slowly.
+            carried = self._velocity + np.cross(measured.spin, measured.axes @ measured.feet[i])
+            moves[2] = -brake.speed(now) - measured.axes[:, 2] @ carried
+            self._heights[i] += TICK * moves[2]
+            reference[2], stiffness = self._heights[i], self._gains.soft * STIFFNESS
+        return Command(reference, moves, stiffness, DAMPING, np.zeros(3))
+
+    def _bear(self, measured: Measured, now: float) -> dict[int, Command]:
+        """How the feet that stand hold the trunk: least squares of the forces that make the wrench it wants."""
+        axes, velocity, mass = measured.axes, self._velocity, self._mass
+        standing = [i for i in range(4) if self.stands[i]]
+        arms = measured.feet[standing] @ axes.T
+        if not standing:
+            return {}
+        roll, pitch, yaw = axes[2, 1], -axes[2, 0], float(np.arctan2(axes[1, 0], axes[0, 0]))
+        ahead = (self._speed + self._lag) * axes[:, 0]
+        wrench = np.array(
+            [
+                8.0 * mass * (ahead[0] - velocity[0]),
+                8.0 * mass * (ahead[1] - velocity[1]) - 4.0 * measured.position[1],
+                mass * (GRAVITY + 150.0 * (HEIGHT + np.mean(arms[:, 2])) - 15.0 * velocity[2]),
+                *(axes @ (-16.0 * roll, -24.0 * pitch, -4.0 * yaw) - (0.9, 1.4, 0.4) * measured.spin),
+            ]
+        )
+        grasp = np.concatenate(
+            [np.vstack([np.eye(3), ((0.0, -z, y), (z, 0.0, -x), (-y, x, 0.0))]) for x, y, z in arms], axis=1
+        )
+        # A moment of 0.1 N m counts as much as a force of 1 N.
+        weights = np.array([1.0, 1.0, 1.0, 10.0, 10.0, 10.0])
+        grasp *= weights[:, None]
+        forces = grasp.T @ np.linalg.solve(grasp @ grasp.T + 1e-3 * np.eye(6), weights * wrench)
+        commands = {}
+        for i, (x, y, z) in zip(standing, forces.reshape(-1, 3).tolist(), strict=True):
+            z = min(max(z, 0.0), 1.5 * mass * GRAVITY) * min(0.2 + 0.8 * (now - self._landed[i]) / RAMP, 1.0)
+            x, y = (min(max(each, -0.6 * z), 0.6 * z) for each in (x, y))
+            commands[i] = Command(np.zeros(3), np.zeros(3), 0.0, 0.0, -axes.T @ (x, y, z))
+        return commands
+
+
+def planned_height(start: float, elapsed: float, descent: float) -> tuple[float, float]:
+    """Height against the trunk (m) of a foot that swings, and its rate (m/s), so many seconds after its liftoff.
+
+    Two cubics: up to rest at the top, and down to the level ground, where it arrives with the `descent`; it goes on
+    with that for 4 cm.
     """
-
-    angle: float = 0.2
-    angle_by_rate: float = 0.12
-    angle_by_past: float = 0.0
-    retract: float = 0.02
-    """By how much steps are shorter, once a foot has slipped, than the one that slipped."""
-    push: float = 14.0
-    push_by_rate: float = 20.0
-    push_by_past: float = 1.0
-    angle_by_slope: float = 0.0
-    push_by_slope: float = 0.0
-    grip: float = 1e6
-    """Part of the estimated friction that the legs may lean by."""
-
-
-class Feedback:
-    """Steps and pushes off by the rate that is measured, and by the sum of those of the steps before.
-
-    The rate is taken as what it would be over the upright leg on level ground, by the energy that is kept: it tells as
-    much early in a step as late.
-    """
-
-    def __init__(self, machine: Machine, estimate: Estimate, gains: FeedbackGains) -> None:
-        self._gains, self._machine, self._gravity = gains, machine, estimate.gravity
-        self._angle = gains.angle + gains.angle_by_slope * estimate.slope
-        self._push = gains.push - gains.push_by_slope * estimate.slope
-        self._reach = Reach(min(0.5 * machine.largest_angle, atan(gains.grip * estimate.friction)), gains.retract)
-        self._steps, self._past, self._last = 0, 0.0, 0.0
-
-    def command(self, seen: Seen, ahead: Announcement | None = None) -> Command:
-        gains = self._gains
-        self._reach.watch(seen)
-        if seen.steps != self._steps:
-            self._steps = seen.steps
-            self._past = min(max(self._past + self._last, -LARGEST_PAST), LARGEST_PAST)
-        fast = self._last = self._upright(seen) - USUAL_RATE
-        angle = self._angle + gains.angle_by_rate * fast + gains.angle_by_past * self._past
-        push = self._push - gains.push_by_rate * fast - gains.push_by_past * self._past
-        return Command(2.0 * min(angle, self._reach.longest), push)
-
-    def _upright(self, seen: Seen) -> float:
-        machine = self._machine
-        climb = machine.mass * self._gravity * machine.leg * (1.0 - cos(seen.lean))
-        return sqrt(max(0.0, seen.rate**2 - 2.0 * climb / machine.foot_inertia))
-
-
-class PredictiveGains(NamedTuple):
-    """Gains of `Predictive`."""
-
-    angle: float = 0.3
-    """With which the first step begins, and the smallest as long as the push-off is strong enough, rad."""
-    trust: float = 0.9
-    """Part of the estimated friction that the scene of the predictor is given."""
-    rate: float = 0.9
-    """The rate that the machine is to have over its next leg on level ground, rad/s ..."""
-    rate_by_slope: float = 10.0
-    """... and by how much more for each rad uphill, where speed is what carries it."""
-    retract: float = 0.02
-    """By how much a step is shortened at a time while a slip is announced, rad."""
-    extend: float = 0.2
-    """By how much it is lengthened for each rad/s by which the machine would be too fast."""
-
-
-class Predictive:
-    """Changes the step that is about to end by what the predictor announces of its impact.
-
-    It retracts the foot while a slip is announced; it puts it further ahead where the machine would go on too fast,
-    nearer where too slowly; and it winds up what is missing to carry the machine over its next leg.
-    """
-
-    def __init__(self, machine: Machine, estimate: Estimate, gains: PredictiveGains) -> None:
-        self._machine, self._estimate, self._gains = machine, estimate, gains
-        self._angle, self._push = gains.angle, 0.0
-        self._rate = gains.rate + gains.rate_by_slope * max(0.0, -estimate.slope)
-        # To begin with, the longest step that a point mass could make; with inertia, and after a slip, it is another.
-        self._reach = Reach(min(0.5 * machine.largest_angle, atan(estimate.friction)), gains.retract)
-        self._still, self._last = 0, 0.0
-
-    def command(self, seen: Seen, ahead: Announcement | None) -> Command:
-        self._still = self._still + 1 if seen.ready and abs(seen.angle - self._last) < 1e-6 else 0
-        self._last = seen.angle
-        if ahead is not None and self._still > STILL:
-            self._answer(ahead)
-        return Command(2.0 * min(self._angle, self._reach.longest), self._push)
-
-    def _answer(self, ahead: Announcement) -> None:
-        gains, machine, angle = self._gains, self._machine, 0.5 * self._last
-        # A push along the leg behind has this lever about the foot ahead.
-        lever = machine.leg * sin(2.0 * angle) / machine.foot_inertia
-        excess = ahead.rate - self._rate_to_arrive(angle, self._rate)
-        self._push = -excess / lever
-        if ahead.mode in SLIPS:
-            self._reach.shorten(angle)
-        else:
-            stops = ahead.rate + machine.largest_push * lever < self._rate_to_arrive(angle, LEAST_RATE)
-            # A short step costs least, but it brakes least too.
-            shortest = 0.0 if stops else min(gains.angle, angle)
-            wanted = min(max(angle + gains.extend * excess, shortest), self._reach.longest)
-            self._angle = wanted if abs(wanted - angle) > LEAST_TRIM else angle
-        self._angle = max(self._angle, 0.5 * machine.least_angle)
-
-    def _rate_to_arrive(self, angle: float, rate: float) -> float:
-        """The rate after the impact with which the machine comes over its leg at `rate`: energy is kept on the way."""
-        machine, ground = self._machine, self._estimate
-        # It is highest where the leg is upright, which is `slope` before the ground's normal.
-        climb = machine.mass * ground.gravity * machine.leg * (1.0 - cos(angle - ground.slope))
-        return sqrt(rate * rate + 2.0 * climb / machine.foot_inertia)
+    half, top = 0.5 * SWING, CLEARANCE - HEIGHT
+    if elapsed < half:
+        part = elapsed / half
+        return start + (top - start) * part**2 * (3.0 - 2.0 * part), 6.0 * (top - start) * part * (1.0 - part) / half
+    beyond = descent * (elapsed - SWING)
+    if beyond > 0.0:
+        return (-HEIGHT - beyond, -descent) if beyond < 0.04 else (-HEIGHT - 0.04, 0.0)
+    part = (elapsed - half) / half
+    square, cube = descent * half - 3.0 * CLEARANCE, 2.0 * CLEARANCE - descent * half
+    return top + square * part**2 + cube * part**3, (2.0 * square * part + 3.0 * cube * part**2) / half

@@ -1,197 +1,281 @@
-"""200 seeded walks over slopes and frictions, with the predictor and without it: tables, JSON and a picture.
+"""Walks of Solo12 with each source of landings: tunes the gains, and makes the walks that analysis.md asks for.
 
-    PYTHONPATH=. python examples/walker_controller/experiment.py --json walks.json --figure walks.png
+    PYTHONPATH=. python examples/walker_controller/experiment.py --seeds 60 --json walks.json --figure walks.png
+    PYTHONPATH=. python examples/walker_controller/experiment.py --tune predictor
 
-What is compared is paired: every controller makes the same walks. Gains are those of gains.json, which tune.py found on
-other seeds. It takes some minutes; `--read walks.json` prints and draws again what such a file holds.
+A walk of 5 s takes a second or two.
 """
 
 from __future__ import annotations
 
 import json
-from collections import Counter
-from math import degrees
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import click
 import numpy as np
-from machine import Failure
+from controller import Array, Gains, Source, Trot
 from rich.console import Console
 from rich.progress import track
 from rich.table import Table
-from scipy.stats import binomtest
-from tune import GAINS
-from walks import TRACK, trial, walk_with
+from robot import Robot, Trial
+from scipy.optimize import differential_evolution
+from scipy.stats import binomtest, qmc, wilcoxon
+from sources import GapOverSpeed, Plan, Predicted
 
-NAMES: Final = {
-    "feedback": "feedback, not told the ground",
-    "informed": "feedback, told slope and friction",
-    "predictive": "with the predictor, told the same",
+GAINS: Final = Path(__file__).with_name("gains.json")
+SPEED: Final = 0.35
+"""m/s, to walk with."""
+TICKS: Final = 2500
+FALL: Final = 5.0
+"""Cost of a walk that ends in a fall."""
+FIRST: Final = 1000
+"""The first seed of the walks that are judged ..."""
+TUNED: Final = (1, 2, 3)
+"""... and those on which the gains are tuned ..."""
+TUNED_TICKS: Final = 2000
+"""... over so many ticks ..."""
+POPULATION, GENERATIONS = 10, 3
+"""... with so many evaluations of differential evolution, of each arm alike."""
+BOUNDS: Final = {
+    "descent": (0.2, 0.9),
+    "lead": (0.0, 0.06),
+    "speed": (0.05, 0.6),
+    "soft": (0.2, 1.0),
+    "late": (-0.012, 0.06),
 }
-"""Of the controllers, as a reader sees them."""
-
-SEEDS: Final = range(200, 400)
-"""None of them was walked before all gains were fixed."""
-
-CONFIDENCE: Final = 0.95
-LOOKS: Final = {"slip": ("#0072b2", "v", "slips"), "stop": ("#d55e00", "s", "stops"), "fall": ("#000000", "X", "falls")}
+NEVER: Final = 9.0
+"""Seconds, or m/s, that no foot comes to."""
 
 
-def walks_of(seed: int) -> dict[str, Any]:
-    """The walks of all controllers over the ground of a seed."""
-    gains, one = json.loads(GAINS.read_text()), trial(seed)
-    ends = {name: walk_with(name, one, gains[name]["gains"]) for name in NAMES}
-    return {
-        "seed": seed,
-        "slope": round(one.ground.slope, 5),
-        "friction": round(one.ground.friction, 5),
-        **{
-            name: {
-                "failure": end.failure.value if end.failure else None,
-                "distance": round(end.distance, 3),
-                "time": round(end.time, 3),
-                "steps": end.steps,
-                "work": round(end.work, 2),
-            }
-            for name, end in ends.items()
-        },
+class Arm(NamedTuple):
+    """What is compared: a name for the reader, what tells landings, whose gains it has, and which are set instead."""
+
+    title: str
+    source: Callable[[], Source]
+    gains: str
+    fixed: dict[str, float]
+    most: int = 1000
+    """Walks that it makes at most."""
+
+
+ARMS: Final = {
+    "plan": Arm("plan alone", lambda: Plan(senses=False), "plan", {}),
+    "sensors": Arm("plan and contact sensors", lambda: Plan(senses=True), "sensors", {}),
+    "gap": Arm("gap over speed", GapOverSpeed, "gap", {}),
+    "predictor": Arm("predictor", Predicted, "predictor", {}),
+    "brakes": Arm("predictor, brakes only", Predicted, "predictor", {"late": NEVER}, 20),
+    "bears": Arm("predictor, bears only", Predicted, "predictor", {"speed": NEVER, "soft": 1.0, "late": -0.006}, 20),
+}
+TUNABLE: Final = [name for name, arm in ARMS.items() if arm.gains == name]
+PARTS: Final = ("cost", "peak", "turning", "lag")
+
+
+class Walk(NamedTuple):
+    """How a walk went, as analysis.md defines it."""
+
+    fell: bool
+    landings: int
+    peak: float
+    turning: float
+    lag: float
+
+    @property
+    def cost(self) -> float:
+        """What is tuned and compared."""
+        return FALL if self.fell else self.peak + self.turning + self.lag
+
+    def rounded(self) -> dict[str, Any]:
+        """Its fields, to five decimals."""
+        return {key: round(value, 5) if isinstance(value, float) else value for key, value in self._asdict().items()}
+
+
+def trial(seed: int) -> Trial:
+    """The walk of a seed: slabs of 10 by 20 cm up to 5 mm off the plane, and pushes of 50 ms, two or so a second."""
+    random = np.random.default_rng([2026, seed])
+    heights = random.uniform(-0.005, 0.005, (40, 6))
+    pushes, tick = [], 400
+    while tick < TICKS:
+        pushes.append((tick, random.normal(0.0, (10.0, 10.0, 10.0, 1.3, 1.3, 0.4))))
+        tick += 50 + int(random.exponential(250.0))
+    return Trial(seed, heights, tuple(pushes))
+
+
+def walk(arm: Arm, gains: Gains, trial: Trial, ticks: int = TICKS) -> Walk:
+    """Make a walk."""
+    robot = Robot(trial)
+    trot = Trot(robot.mass, SPEED, gains, arm.source())
+    measured = robot.measure()
+    peaks: list[float] = []
+    lifted: list[int | None] = [None] * 4
+    # Of each foot the index of its last landing in `peaks`, and how many ticks that still lasts.
+    open_: list[tuple[int, int]] = [(0, 0)] * 4
+    turning, speeds = [], []
+    for tick in range(ticks):
+        stood = trot.stands.copy()
+        robot.tick(trot.commands(measured))
+        measured = robot.measure()
+        forces = robot.forces.max(axis=0).tolist()
+        for i in range(4):
+            if stood[i] and not trot.stands[i]:
+                lifted[i] = tick
+            since = lifted[i]
+            if since is not None and tick - since > 45 and forces[i] > 1.0:
+                peaks.append(0.0)
+                lifted[i], open_[i] = None, (len(peaks) - 1, 5)
+            number, left = open_[i]
+            if left:
+                peaks[number], open_[i] = max(peaks[number], forces[i]), (number, left - 1)
+        turning.append(float(np.hypot(*robot.data.qvel[3:5])))
+        speeds.append(float(robot.data.qvel[0]))
+        if robot.fallen:
+            break
+    weight = 9.81 * robot.mass
+    return Walk(
+        fell=bool(robot.fallen),
+        landings=len(peaks),
+        peak=float(np.mean(peaks or [0.0])) / weight,
+        turning=float(np.sqrt(np.mean(np.square(turning)))),
+        lag=abs(float(np.mean(speeds[500:] or [0.0])) / SPEED - 1.0),
+    )
+
+
+def tune(name: str) -> dict[str, Any]:
+    """The best gains of an arm."""
+    arm, trials = ARMS[name], [trial(seed) for seed in TUNED]
+
+    def evaluate(values: Any) -> float:
+        gains = Gains(*map(float, values))
+        return float(np.mean([walk(arm, gains, one, TUNED_TICKS).cost for one in trials]))
+
+    low, high = np.array(list(BOUNDS.values())).T
+    found = differential_evolution(
+        evaluate,
+        list(BOUNDS.values()),
+        init=qmc.scale(qmc.LatinHypercube(len(BOUNDS), seed=1).random(POPULATION), low, high),
+        maxiter=GENERATIONS - 1,
+        polish=False,
+        seed=1,
+        tol=0.0,
+        callback=lambda best, convergence: print(name, np.round(best, 4).tolist(), flush=True),
+    )
+    tuned = dict(zip(BOUNDS, (round(float(value), 4) for value in found.x), strict=True))
+    return {"gains": tuned, "cost": round(float(found.fun), 4), "evaluations": int(found.nfev)}
+
+
+def compare(walks: list[dict[str, Any]], one: str, other: str) -> dict[str, Any]:
+    """How the walks of an arm differ from those of another: mean differences with intervals, and tests, in pairs."""
+    pairs = [(Walk(**each[one]), Walk(**each[other])) for each in walks if other in each]
+    upright = [pair for pair in pairs if not (pair[0].fell or pair[1].fell)]
+    only = [sum(a.fell > b.fell for a, b in pairs), sum(b.fell > a.fell for a, b in pairs)]
+    found: dict[str, Any] = {
+        "fell_only": only,
+        "p_mcnemar": _rounded(binomtest(only[0], sum(only)).pvalue if sum(only) else 1.0),
     }
-
-
-def summary(walks: list[dict[str, Any]]) -> dict[str, Any]:
-    """Failures of each controller with Wilson's interval, and of each baseline against the predictor, in pairs.
-
-    `work` in J is the mean over the walks that all controllers finish, which are `all_arrive`.
-    """
-    count = len(walks)
-    finished = [walk for walk in walks if all(walk[name]["failure"] is None for name in NAMES)]
-    found: dict[str, Any] = {"walks": count, "confidence": CONFIDENCE, "all_arrive": len(finished)}
-    for name in NAMES:
-        reasons = Counter(walk[name]["failure"] for walk in walks if walk[name]["failure"])
-        failed = sum(reasons.values())
-        interval = binomtest(failed, count).proportion_ci(CONFIDENCE, "wilson")
-        found[name] = {
-            "failed": failed,
-            **{one.value: reasons[one.value] for one in Failure},
-            "share": round(failed / count, 4),
-            "interval": [round(interval.low, 4), round(interval.high, 4)],
-            "work": round(float(np.mean([walk[name]["work"] for walk in finished])), 2),
-        }
-    found["pairs"] = {name: pairs(walks, name) for name in NAMES if name != "predictive"}
+    for part in PARTS:
+        differences = np.array([getattr(a, part) - getattr(b, part) for a, b in (pairs if part == "cost" else upright)])
+        found[part] = [_rounded(value) for value in (differences.mean(), *_interval(differences))]
+        if part == "cost":
+            found["p_wilcoxon"] = _rounded(wilcoxon(differences).pvalue if differences.any() else 1.0)
     return found
 
 
-def pairs(walks: list[dict[str, Any]], name: str) -> dict[str, Any]:
-    """How the walks of a baseline and those with the predictor end, in pairs.
-
-    McNemar's exact test: of the walks that only one of the two fails, half would be the predictor's if it made no
-    difference.
-    """
-    both = Counter((walk[name]["failure"] is None, walk["predictive"]["failure"] is None) for walk in walks)
-    saved, lost = both[False, True], both[True, False]
-    p = binomtest(lost, saved + lost).pvalue if saved + lost else 1.0
+def summary(walks: list[dict[str, Any]]) -> dict[str, Any]:
+    """What analysis.md asks of the walks."""
+    found: dict[str, Any] = {}
+    for name in ARMS:
+        made = [Walk(**each[name]) for each in walks if name in each]
+        parts = {part: [getattr(one, part) for one in made if part == "cost" or not one.fell] for part in PARTS}
+        found[name] = {
+            "walks": len(made),
+            "falls": sum(one.fell for one in made),
+            **{
+                part: [_rounded(v) for v in (np.mean(values), *_interval(np.array(values)))]
+                for part, values in parts.items()
+            },
+        }
     return {
-        "both_arrive": both[True, True],
-        "both_fail": both[False, False],
-        "saved_by_the_predictor": saved,
-        "lost_by_it": lost,
-        "p_mcnemar": float(f"{p:.3g}"),
+        "arms": found,
+        "predictor less": {name: compare(walks, "predictor", name) for name in ARMS if name != "predictor"},
     }
 
 
-def tables(found: dict[str, Any]) -> list[Table]:
-    """What a reader wants to know of the walks."""
-    ends = Table(title=f"How {found['walks']} walks fail; push-off in the {found['all_arrive']} that none fails")
-    ends.add_column("controller")
-    for title in (*(one.value for one in Failure), "failed", "of all (95 %)", "push-off, J"):
-        ends.add_column(title, justify="right")
-    for name, title in NAMES.items():
-        one = found[name]
-        low, high = one["interval"]
-        reasons = [str(one[reason.value]) for reason in Failure]
-        share = f"{one['share']:.1%} ({low:.1%} to {high:.1%})"
-        ends.add_row(title, *reasons, str(one["failed"]), share, f"{one['work']:.1f}")
-    paired = Table(title="The same walks in pairs, against the predictor")
-    for title in ("baseline", "only the baseline fails", "only the predictor fails", "both fail", "p (McNemar)"):
-        paired.add_column(title, justify="left" if title == "baseline" else "right")
-    for name, one in found["pairs"].items():
-        counts = one["saved_by_the_predictor"], one["lost_by_it"], one["both_fail"]
-        paired.add_row(NAMES[name], *map(str, counts), f"{one['p_mcnemar']:.2g}")
-    return [ends, paired]
+def _interval(values: Array) -> tuple[float, float]:
+    draws = np.random.default_rng(0).integers(0, len(values), (10_000, len(values)))
+    low, high = np.quantile(values[draws].mean(axis=1), (0.025, 0.975))
+    return float(low), float(high)
+
+
+def _rounded(value: float) -> float:
+    return float(f"{value:.3g}")
+
+
+def tables(found: dict[str, Any], count: int) -> list[Table]:
+    """The summary for a reader."""
+    means = Table(
+        "arm", *PARTS, "falls", title=f"Means of {count} walks, 95 % intervals; parts of the walks that end upright"
+    )
+    for name, arm in ARMS.items():
+        one = found["arms"][name]
+        means.add_row(arm.title, *("{:.3g} ({:.3g} to {:.3g})".format(*one[part]) for part in PARTS), str(one["falls"]))
+    paired = Table("predictor less", *PARTS, "only one falls", "p: cost, falls", title="Differences, in pairs")
+    for name, one in found["predictor less"].items():
+        parts = ("{:+.3g} ({:+.3g} to {:+.3g})".format(*one[part]) for part in PARTS)
+        falls = "{}, {}".format(*one["fell_only"])
+        paired.add_row(ARMS[name].title, *parts, falls, f"{one['p_wilcoxon']:.2g}, {one['p_mcnemar']:.2g}")
+    return [means, paired]
 
 
 def draw(walks: list[dict[str, Any]], found: dict[str, Any], path: Path) -> None:
-    """One map of slope and friction for each controller, and below them how many walks fail."""
+    """The parts of the cost of every walk, with means and their intervals."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(13.0, 7.8), layout="constrained")
-    grid = figure.add_gridspec(2, len(NAMES), height_ratios=(2.6, 1.0))
-    first = None
-    for column, (name, title) in enumerate(NAMES.items()):
-        axes = figure.add_subplot(grid[0, column], sharex=first, sharey=first)
-        first = first or axes
-        arrived = [walk for walk in walks if walk[name]["failure"] is None]
-        axes.plot(*places(arrived), "o", mfc="none", color="#999999", ms=4.5, label="arrives")
-        for reason, (colour, mark, word) in LOOKS.items():
-            failed = [walk for walk in walks if walk[name]["failure"] == reason]
-            axes.plot(*places(failed), mark, color=colour, ms=7, label=word)
-        axes.set_title(f"{title}\n{found[name]['failed']} of {len(walks)} walks fail", fontsize=12)
-        axes.set_xlabel("slope, degrees:  uphill < 0 < downhill")
-        axes.axvline(0.0, color="#cccccc", lw=0.8, zorder=0)
-        if column == 0:
-            axes.set_ylabel("friction coefficient of the ground")
-            handles, words = axes.get_legend_handles_labels()
-            figure.legend(handles, words, loc="outside lower center", ncols=len(words), title="each mark is one walk")
-    bars(figure.add_subplot(grid[1, :]), found)
-    title = f"A simulated biped is to walk {TRACK:g} m in gusts, over {len(walks)} grounds, with three controllers each"
-    figure.suptitle(title, fontsize=13)
+    titles = ("cost", "peak of a landing, weights", "turning of the trunk, rad/s", "lag of the speed, parts of it")
+    figure = Figure(figsize=(13.0, 4.0), layout="constrained")
+    rows = np.arange(len(ARMS))[::-1]
+    for axes, part, title in zip(figure.subplots(1, 4, sharey=True), PARTS, titles, strict=True):
+        for row, name in zip(rows, ARMS, strict=True):
+            made = [Walk(**each[name]) for each in walks if name in each]
+            values = [getattr(one, part) for one in made if part == "cost" or not one.fell]
+            spread = row + 0.25 * np.random.default_rng(0).uniform(-1.0, 1.0, len(values))
+            colour = "#d55e00" if name == "predictor" else "#0072b2"
+            axes.plot(values, spread, ".", color=colour, alpha=0.3, ms=4)
+            mean, low, high = found["arms"][name][part]
+            axes.errorbar(mean, row, xerr=[[mean - low], [high - mean]], fmt="D", color="black", ms=4, capsize=3)
+        axes.set_xlabel(title)
+        axes.grid(axis="x", color="#dddddd")
+    axes.set_yticks(rows, [arm.title for arm in ARMS.values()])
     figure.savefig(path, dpi=110)
 
 
-def places(walks: list[dict[str, Any]]) -> tuple[list[float], list[float]]:
-    return [degrees(walk["slope"]) for walk in walks], [walk["friction"] for walk in walks]
-
-
-def bars(axes: Any, found: dict[str, Any]) -> None:
-    """How many walks fail, by reason, with the interval; and what the pairs say."""
-    for row, name in enumerate(NAMES):
-        one, left = found[name], 0.0
-        for reason, (colour, _, _) in LOOKS.items():
-            width = 100.0 * one[reason] / found["walks"]
-            axes.barh(row, width, left=left, color=colour, alpha=0.75, height=0.55)
-            left += width
-        low, high = (100.0 * end for end in one["interval"])
-        axes.plot([low, high], [row, row], color="#555555", lw=1.5, marker="|", ms=10)
-        text = f"{left:.1f} %  (95 %: {low:.1f} to {high:.1f});  push-off {one['work']:.1f} J a walk"
-        pair = found["pairs"].get(name)
-        if pair:
-            saved, lost, p = pair["saved_by_the_predictor"], pair["lost_by_it"], pair["p_mcnemar"]
-            text += f"\n{saved} walks fail only here, {lost} only with the predictor (McNemar p = {p:.1g})"
-        axes.text(max(high, left) + 0.5, row, text, va="center", fontsize=10.5)
-    axes.set_yticks(range(len(NAMES)), [name.replace(", ", ",\n") for name in NAMES.values()])
-    axes.invert_yaxis()
-    axes.set_xlim(0.0, 2.2 * max(100.0 * found[name]["interval"][1] for name in NAMES))
-    axes.set_xlabel("walks that fail, % (colours as above; the line is the 95 % interval)")
-    axes.spines[["top", "right"]].set_visible(False)
-
-
 @click.command()
-@click.option("--json", "target", type=click.Path(path_type=Path), help="File for every walk and the summary.")
-@click.option("--figure", type=click.Path(path_type=Path), help="File for the picture.")
-@click.option("--read", type=click.Path(path_type=Path, exists=True), help="Take the walks of such a file.")
-def main(target: Path | None, figure: Path | None, read: Path | None) -> None:
-    """Walk with and without the predictor, and tell how often it failed."""
+@click.option("--seeds", default=60, show_default=True, help="How many walks each arm makes.")
+@click.option("--json", "file", type=click.Path(path_type=Path), help="Write the walks and what they tell.")
+@click.option("--read", type=click.Path(exists=True, path_type=Path), help="Tell the walks of such a file again.")
+@click.option("--figure", type=click.Path(path_type=Path), help="Draw the costs.")
+@click.option("--tune", "names", multiple=True, type=click.Choice(TUNABLE), help="Tune the gains of an arm instead.")
+def main(seeds: int, file: Path | None, read: Path | None, figure: Path | None, names: tuple[str, ...]) -> None:
+    """Make the walks of every arm and compare them, or tune the gains."""
+    known = json.loads(GAINS.read_text(encoding="utf-8")) if GAINS.exists() else {}
+    if names:
+        known |= {name: tune(name) for name in names}
+        GAINS.write_text(json.dumps(known, indent=2, sort_keys=True) + "\n", encoding="utf-8")
+        return
     if read:
-        walks = json.loads(read.read_text())["walks"]
+        walks = json.loads(read.read_text(encoding="utf-8"))["walks"]
     else:
-        walks = [walks_of(seed) for seed in track(SEEDS, "walking", transient=True)]
+        gains = {name: Gains(**{**known[arm.gains]["gains"], **arm.fixed}) for name, arm in ARMS.items()}
+        walks = []
+        for seed in track(range(FIRST, FIRST + seeds), "walks"):
+            arms = {name: arm for name, arm in ARMS.items() if seed < FIRST + arm.most}
+            ends = {name: walk(arm, gains[name], trial(seed)) for name, arm in arms.items()}
+            walks.append({"seed": seed, **{name: end.rounded() for name, end in ends.items()}})
     found = summary(walks)
-    console = Console()
-    for table in tables(found):
-        console.print(table)
-    if target:
-        target.write_text(json.dumps({"summary": found, "walks": walks}) + "\n")
+    if file:
+        lines = ",\n".join(json.dumps(each) for each in walks)
+        file.write_text(f'{{"summary": {json.dumps(found)},\n"walks": [\n{lines}\n]}}\n', encoding="utf-8")
+    Console(width=150).print(*tables(found, len(walks)))
     if figure:
         draw(walks, found, figure)
 

@@ -91,7 +91,7 @@ def test_contact_points_that_were_told_stay_known_when_the_scene_changes():
 def test_a_machine_that_walks_goes_on_with_the_next_message_about_its_feet():
     given = read_parameters(ROOT / "config/walker.yaml")
     monitor = Monitor(scenes_of(validate(given)))
-    feet = ((0.0, 0.1, -0.5), (0.0, -0.1, -0.5))
+    feet = tuple((x, y, -0.5) for x in (0.2, -0.2) for y in (0.1, -0.1))
     base = Sample(0, "", "", (0.0, 0.0, 0.5), (0.0, 0.0, 0.0, 1.0), *2 * [(0.0, 0.0, 0.0)], NOTHING, NOTHING)
     base = base._replace(frame_id=monitor.scenes[""].frame)
 
