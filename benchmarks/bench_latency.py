@@ -3,8 +3,8 @@
     python benchmarks/bench_latency.py [SECONDS] [--real-time]
 
 Four processes over real DDS: a publisher of contact points and pose at 500 Hz, of a trotting machine with four feet;
-the predictor with config/walker_hyq.yaml; a bare node that takes the same messages as bytes and publishes the pose as often as
-the predictor answers; and a sink that listens to both. Half a second goes to the one, the next to the other,
+the predictor with config/walker_hyq.yaml; a bare node that takes the same messages as bytes and publishes the pose as
+often as the predictor answers; and a sink that listens to both. Half a second goes to the one, the next to the other,
 in turn: what the bare node takes is the machine's, ROS's and the publisher's, and the difference the predictor's.
 
 Each sample has its own stamp. The publisher notes the time right before it publishes the contact points of a stamp, so

@@ -19,7 +19,7 @@ ROOT = Path(__file__).parents[1]
 EXAMPLE = ROOT / "examples" / "walker_controller"
 IN_PHYSICS = pytest.mark.skipif(
     any(importlib.util.find_spec(name) is None for name in ("mujoco", "cmeel")),
-    reason="needs MuJoCo and example-robot-data: make test-extras",
+    reason="needs MuJoCo and example-robot-data: pip install '.[robot]'",
 )
 needs_ros = pytest.mark.skipif(importlib.util.find_spec("rclpy") is None, reason="needs ROS 2")
 PATIENCE = 120.0
