@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from impact_predictor.prediction.scene import Scene
+from impact_predictor.prediction.types import Sample
 from impact_predictor.prediction.walking.cubic import PointFrame
 from impact_predictor.prediction.walking.ground import Ground, Level
 from impact_predictor.prediction.walking.stance import FootPoint
@@ -134,3 +135,24 @@ def test_a_level_through_which_a_foot_has_come_lies_deeper() -> None:
     deep = level.below(-0.1, 1e-3)
     assert deep.height == pytest.approx(-0.1, abs=2e-3)
     assert 0.0 <= deep.deviation < 2e-3
+
+
+@pytest.mark.parametrize("held", [True, False])
+def test_a_foot_that_is_held_up_goes_on_with_its_base_and_does_not_stand(held: bool) -> None:
+    """It comes down from 10 to 4 cm and brakes to rest there, on a step, or with a base that walks on at 0.3 m/s."""
+    scene = SCENE._replace(frame="world")
+    point, other, ground = FootPoint(scene, DEAD_TIME), FootPoint(scene, DEAD_TIME), Ground(scene)
+    for k in range(160):
+        time = 2.5e-3 * k
+        s = min(1.0, time / 0.2)
+        gap, ahead = 0.04 + 0.06 * (1.0 - s * s * (3.0 - 2.0 * s)), 0.3 * max(0.0, time - 0.2)
+        stamp, place = round(1e9 * time), (ahead if held else 0.0, 0.2, gap)
+        base = Sample(
+            stamp, "world", "base", (0.3 * time, 0.0, 0.5), (0.0, 0.0, 0.0, 1.0), (0.3, 0.0, 0.0), *[(0.0,) * 3] * 3
+        )
+        other.add(PointFrame(stamp, 0.0, None, (0.0, 0.0, 0.0), None), ground, base)
+        point.add(PointFrame(stamp, gap, None, place, None), ground, base)
+    assert other.stands
+    assert point.stands is not held
+    if not held:
+        assert point.since == pytest.approx(200 * MS, abs=25 * MS)
