@@ -184,7 +184,9 @@ def names_on(values: dict[str, Any]) -> set[str]:
 
 def test_each_feature_is_switched_alone_and_its_reasons_name_a_parameter() -> None:
     features = features_of(validate(CRATE))
-    assert {feature.name for feature in features} == {*WITHOUT_AND_WITH, "articulated inertia"}
+    assert {feature.name for feature in features} == {*WITHOUT_AND_WITH, "articulated inertia", "drives"}
+    legs = {**WALKER, "robot.urdf": "robot.urdf", "robot.frames": WALKER["feet.names"]}
+    assert names_on(validate({**legs, "robot.drives": "held"})) - names_on(validate(legs)) == {"drives"}
     for name, (without, those) in WITHOUT_AND_WITH.items():
         assert names_on(validate(those)) - names_on(validate(without)) == {name}
     for feature in features:
