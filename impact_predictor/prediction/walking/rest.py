@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Sequence
-from itertools import takewhile
 from math import sqrt
 
 from ...stamps import NANOSECONDS
@@ -41,11 +40,19 @@ def falls(frames: Sequence[PointFrame], slow: float, noise: GapNoise) -> bool:
     return rate < -slow - SURE * unsure
 
 
+def is_slow(frames: Sequence[PointFrame], slow: float, noise: GapNoise) -> bool:
+    """Whether a point may rest, or bounce where it struck, over two frames or more."""
+    rate, unsure = rate_of(frames, noise)
+    return abs(rate) <= slow + SURE * unsure + YIELDS
+
+
 def since(frames: deque[PointFrame], stamp: int) -> list[PointFrame]:
     """The frames from a stamp in ns on, and at least the last two."""
-    found = list(takewhile(lambda frame: frame.stamp >= stamp, reversed(frames)))
-    if len(found) < 2:
-        found = [frames[-1], frames[-2]]
+    found = list[PointFrame]()
+    for frame in reversed(frames):
+        if frame.stamp < stamp and len(found) > 1:
+            break
+        found.append(frame)
     return found[::-1]
 
 

@@ -13,7 +13,7 @@ from ..vectors import total
 from .announcement import ExpectedLanding, LandingAnnouncement
 from .cubic import GapNoise, PointFrame
 from .ground import Foothold, Ground, Level
-from .rest import falls, hovers, rate_of, settles, since, stop_of
+from .rest import falls, hovers, is_slow, rate_of, settles, since, stop_of
 from .trajectory import NEAREST, Arrival, ArrivalFit, FootTrajectory
 
 FAR = 3.0  # a point was off the ground when its gap was so many standard deviations above it
@@ -150,12 +150,13 @@ class FootPoint:
         """Stamp in ns since which the point may be on the ground; None where it is in the air."""
         frames, noise = self.trajectory.frames, ground.noise
         frame = frames[-1]
-        self._stopped = self._stop(near, ground, base)
+        may_rest = len(frames) > 3 and is_slow([frames[-2], frame], self._slow, noise)
+        self._stopped = self._stop(near, ground, base) if may_rest else None
         if near:
             return frame.stamp
         if self._stopped is not None:
             return self._stopped - self._contact_time
-        if len(frames) < 4 or not (alone or base is not None):
+        if not may_rest or not (alone or base is not None):
             return None
         settled, still = settles(frames, self._dead_time, self._slow, noise)
         if not settled:
@@ -168,8 +169,6 @@ class FootPoint:
     def _stop(self, near: bool, ground: Ground, base: Sample | None) -> int | None:
         """Stamp in ns at which the point stopped as only the ground stops a foot, if it has rested since."""
         frames, noise = self.trajectory.frames, ground.noise
-        if len(frames) < 4:
-            return None
         if self._stopped is None:
             return stop_of(frames, self._contact_time, self._slow, noise)
         rested = since(frames, frames[-1].stamp - self._contact_time)
