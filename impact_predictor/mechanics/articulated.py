@@ -60,7 +60,6 @@ class WholeBody:
         self._q: NDArray[np.float64] = self._pinocchio.neutral(self._model)
         self.armature: NDArray[np.float64] = np.zeros(len(self.joints))
         self._inertia: NDArray[np.float64] | None = None
-        self._is_regular = False
         self._joint = np.arange(6, self._model.nv)
         self._twists: NDArray[np.float64] = np.zeros((len(frames), 6, self._model.nv))
         self._arms: NDArray[np.float64] = np.zeros((len(frames), 3))
@@ -90,9 +89,8 @@ class WholeBody:
         self.jacobians = self._twists[:, :3].copy()
         if any(self.radii):
             self._roll(self._arms + np.outer(self.radii, down))
-        # What moves without mass does so at every posture: once is enough.
-        self._is_regular = self._is_regular or self._has_inverse()
-        return self._is_regular
+        # A leg whose mass is at its end moves without mass where it is stretched, and only there.
+        return self._has_inverse()
 
     def _roll(self, arms: NDArray[np.float64]) -> None:
         """Put the contacts to the ends of some arms (k, 3): the lowest points of balls."""
