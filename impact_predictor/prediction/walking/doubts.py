@@ -42,12 +42,12 @@ class GroundDoubts:
     def see(self, frames: Sequence[PointFrame], stands: bool, ground: Ground) -> None:
         """Take the points at one instant, and whether any of them stands."""
         stamp, gaps = frames[0].stamp, self._gaps
-        self._nearest = min(self._nearest, min([abs(frame.gap) for frame in frames]))
-        self._lifted = None if stands else stamp if self._lifted is None else self._lifted
-        if self._lifted is not None:
-            self._longest = max(self._longest, stamp - self._lifted)
         if stands:
-            self._drift = ground.drift
+            self._lifted, self._drift = None, ground.drift
+        else:
+            self._lifted = stamp if self._lifted is None else self._lifted
+            self._longest = max(self._longest, stamp - self._lifted)
+            self._nearest = min([self._nearest, *[abs(frame.gap) for frame in frames]])
         gaps.append(frames[0].gap)
         if len(gaps) == 4:
             # A third difference leaves the motion out, and has twenty times the square of the noise.
