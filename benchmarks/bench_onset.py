@@ -2,7 +2,7 @@
 
     python benchmarks/bench_onset.py
 
-Prints microseconds, the least and the median: the margins at one message of the deck and at 50 times ahead, the whole
+Prints microseconds, the least and the median: the margins at one message of the deck and at all times ahead of 96 courses, the whole
 of `Watch.update_support` with and without a look ahead, `Watch.update_body` of a unit that rests and of one that rocks,
 and `Watch.reports` with nothing due and with a report of each unit.
 """
@@ -18,6 +18,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from impact_predictor.prediction.deck.forecast import COURSES, STEP, DeckOutlook
 from impact_predictor.prediction.scene import MovingDeck, Scene, Watching
 from impact_predictor.prediction.types import Felt, Moment, Sample
 from impact_predictor.prediction.watch.onset import Onset, motion_of, motions
@@ -27,7 +28,6 @@ from impact_predictor.prediction.watch.watch import Watch
 TURNS = 1000
 CASES = ((1, 0), (50, 0), (50, 10))
 """Units, and how many of them are cylinders."""
-LOOK = np.linspace(0.0, 5.0, 50)
 LEVEL = (0.0, 0.0, 0.0, 1.0)
 ORIGIN = (0.0, 0.0, 0.0)
 
@@ -49,9 +49,12 @@ def felt(time: float) -> Felt:
     return Felt((0.1, -3.0 * sin(time), -9.6), (0.1 * cos(time), 0.0, 0.0), (-0.1 * sin(time), 0.0, 0.0))
 
 
-def forecast(times: np.ndarray) -> tuple[np.ndarray, ...]:
-    values = [felt(time) for time in times.tolist()]
-    return tuple(np.array([one[k] for one in values]) for k in range(3))
+def outlook(horizon: float) -> DeckOutlook:
+    """As many courses, and as many times of each, as of a sea that is learnt."""
+    times = np.arange(0.0, horizon, STEP / 1e9)
+    values = np.array([felt(time) for time in times.tolist()])
+    gravity, angular, turning = np.tile(values, (2 * COURSES, 1, 1, 1)).transpose(2, 0, 1, 3)
+    return DeckOutlook(times=times, gravity=gravity, angular=angular, turning=turning, is_learnt=True)
 
 
 def timed(*actions: Callable[[int], object]) -> list[tuple[float, float]]:
@@ -68,7 +71,7 @@ def timed(*actions: Callable[[int], object]) -> list[tuple[float, float]]:
 def measure(count: int, drums: int) -> list[tuple[str, float, float]]:
     scenes = {f"unit_{k}": DRUM if k < drums else BOX for k in range(count)}
     onset = Onset([Standing(scene).stance for scene in scenes.values()])
-    now, ahead = motion_of(felt(0.5)), motions(*forecast(LOOK))
+    now, ahead = motion_of(felt(0.5)), motions(*(part.reshape(-1, 3) for part in outlook(10.0)[1:4]))
     found = list(
         zip(
             ("margins, one message", "margins, 50 times"),
@@ -76,7 +79,7 @@ def measure(count: int, drums: int) -> list[tuple[str, float, float]]:
             strict=True,
         )
     )
-    watch = Watch(scenes, forecast)
+    watch = Watch(scenes, outlook)
     updates: dict[str, list[int]] = {"deck message": [], "deck message, looks ahead": []}
     reports: dict[str, list[int]] = {"reports, nothing due": [], "reports, due": []}
     for turn in range(TURNS):
@@ -90,7 +93,7 @@ def measure(count: int, drums: int) -> list[tuple[str, float, float]]:
         reports["reports, due" if due else "reports, nothing due"].append(perf_counter_ns() - start)
     for name, cost in (*updates.items(), *reports.items()):
         found.append((name, (1e-3 * min(cost), 1e-3 * median(cost))))
-    body = Watch({"unit": BOX._replace(source="odom")}, forecast)
+    body = Watch({"unit": BOX._replace(source="odom")}, outlook)
     rests = Sample(0, "deck", "unit", BOX.place, LEVEL, ORIGIN, ORIGIN, (), ())
     rocks = [rests._replace(orientation=(sin(half), 0.0, 0.0, cos(half))) for half in (0.05, 0.06)]
     resting = timed(lambda turn: body.update_body("unit", rests._replace(stamp=turn), None))

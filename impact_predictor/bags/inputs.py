@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Final
 
 from ..errors import InputError
-from ..prediction.scene import CONTACT_GEOMETRY, IMU, ODOM, POINTS, STATES, Input
+from ..prediction.scene import CONTACT_GEOMETRY, FEET_STATES, IMU, ODOM, POINTS, STATES, Input
 from ..ros.messages import INPUT_TYPES
 from ..wording import listed
 from .read import listing
@@ -94,7 +94,10 @@ def _adapted(
     """
     adapted: dict[Input, str] = {}
     for state in [one for one in inputs if one.kind == ODOM and one.body is not None]:
-        missing = [one for one in inputs if one.body == state.body and one.kind != IMU and one not in found]
+        # Adapters tell feet in the order of the scene.
+        missing = [
+            one for one in inputs if one.body == state.body and one.kind not in (IMU, FEET_STATES) and one not in found
+        ]
         if not missing or recorded.get(found.get(state, "")) == INPUT_TYPES[ODOM].name:
             continue
         from .adapters import known  # only for bags without the usual messages

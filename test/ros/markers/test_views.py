@@ -8,16 +8,17 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
-from numpy.typing import NDArray
 from rosbags.typesys import Stores, get_typestore
 from ruamel.yaml import YAML
 
 from impact_predictor.bags.replay import NODE
+from impact_predictor.prediction.deck.forecast import single
+from impact_predictor.prediction.deck.motion import resting
 from impact_predictor.prediction.scene import MovingDeck, Scene, Watching
 from impact_predictor.prediction.types import Felt, Moment
 from impact_predictor.prediction.watch.watch import Report, Watch
@@ -79,16 +80,11 @@ def report() -> Report:
         source="none",
     )
     felt = Felt((0.0, 0.0, -9.81), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-    watch = Watch({"": scene}, at_rest)
+    watch = Watch({"": scene}, partial(single, resting((0.0, 0.0, -9.81)), None))
     place = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0))
     watch.update_support(Moment(10**9, "world", "deck", *place, felt, lambda _: felt))
     (found,) = watch.reports()
     return found
-
-
-def at_rest(times: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
-    still = np.zeros((len(times), 3))
-    return still + np.array((0.0, 0.0, -9.81)), still, still
 
 
 def leaves(tree: Any) -> Iterator[str]:
