@@ -2,9 +2,9 @@
 
     python benchmarks/bench_onset.py
 
-Prints microseconds, the least and the median: the margins at one message of the deck and at all times ahead of 96 courses, the whole
-of `Watch.update_support` with and without a look ahead, `Watch.update_body` of a unit that rests and of one that rocks,
-and `Watch.reports` with nothing due and with a report of each unit.
+Prints microseconds, the least and the median: the margins at one message of the deck and at all times ahead of 96
+courses, the whole of `Watch.update_support` with and without a look ahead, `Watch.update_body` of a unit that rests and
+of one that rocks, and `Watch.reports` with nothing due and with a report of each unit.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ def measure(count: int, drums: int) -> list[tuple[str, float, float]]:
     now, ahead = motion_of(felt(0.5)), motions(*(part.reshape(-1, 3) for part in outlook(10.0)[1:4]))
     found = list(
         zip(
-            ("margins, one message", "margins, 50 times"),
+            ("margins, one message", "margins, all courses"),
             timed(lambda _: onset.margins(now), lambda _: onset.margins(ahead)),
             strict=True,
         )
