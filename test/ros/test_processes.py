@@ -19,6 +19,15 @@ def wait(child):
     return child
 
 
+@pytest.mark.parametrize("program", ["node", "player"])
+def test_a_program_of_ros_loads_numpy_only_once_it_waits_for_signals(program):
+    # The threads of numpy's library begin with it: one that began before takes the signal, and Python raises.
+    code = f"import sys, impact_predictor.ros.{program}; print('numpy' in sys.modules)"
+    with python(code) as child:
+        wait(child).end()
+        assert child.said() == "False\n"
+
+
 def test_a_process_that_ends_in_order_is_no_error():
     with python("print('done', flush=True)") as child:
         wait(child).end()

@@ -11,8 +11,6 @@ from collections.abc import Callable
 from functools import lru_cache
 from typing import Any, Final, NamedTuple
 
-import numpy as np
-
 from ...prediction.types import FeetStates, Geometry, Imu, Joints, Sample, Schedule, Terrain, Wrench
 from ...stamps import NANOSECONDS
 from ..cdr import (
@@ -219,6 +217,8 @@ def decode_terrain(data: bytes) -> Terrain:
     told = [fields.get(name, (0, 0)) for name in "xyz"]
     if height * row > size or width * step > row or any(kind not in _FLOATS for _, kind in told):
         raise MalformedMessage(f"not a {POINT_CLOUD} with the floats x, y and z")
+    import numpy as np  # only a scene with a terrain asks: what starts before ROS does has no threads of numpy's
+
     formats, offsets = [mark + _FLOATS[kind] for _, kind in told], [offset for offset, _ in told]
     try:
         layout = np.dtype({"names": list("xyz"), "formats": formats, "offsets": offsets, "itemsize": step})
