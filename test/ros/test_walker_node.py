@@ -93,7 +93,7 @@ def test_feet_that_are_too_many_or_below_the_ground_are_named_and_the_node_predi
 
     def below(message):
         if isinstance(message, Geometry):
-            return message._replace(points=tuple((x, y, z - 0.3) for x, y, z in message.points))
+            return message._replace(points=tuple((x, y, z - 1.5) for x, y, z in message.points))
         return message
 
     def no_feet(message):

@@ -37,13 +37,13 @@ ROUGH = 0.2  # contact tolerances by which levels are taken to scatter until foo
 GUESSED = 0.3  # ... and how much that counts beside one
 
 
-class Level(NamedTuple):
+class GroundLevel(NamedTuple):
     """Where the ground is under a place: its `height` in m over the scene's plane, with its standard `deviation`."""
 
     height: float
     deviation: float
 
-    def below(self, gap: float, deviation: float) -> Level:
+    def below(self, gap: float, deviation: float) -> GroundLevel:
         """The level under a point that has come down to a gap with a standard deviation (m), and has met no ground.
 
         It is a normal deviate that is known to be less than another one, the gap.
@@ -56,7 +56,7 @@ class Level(NamedTuple):
         )
         part = self.deviation**2 / spread**2
         left = 1.0 - part * min(1.0, ratio * (off + ratio))
-        return Level(self.height - part * spread * ratio, self.deviation * sqrt(left))
+        return GroundLevel(self.height - part * spread * ratio, self.deviation * sqrt(left))
 
 
 class Foothold:
@@ -104,7 +104,7 @@ class Relief:
         self._footholds.append((foothold, datum))
         self._fit(list(self._footholds)[-PLANE:])
 
-    def at(self, u: float, v: float) -> Level:
+    def at(self, u: float, v: float) -> GroundLevel:
         """The level at a place, over the datum there."""
         trend, unsure = self._trend(u, v)
         square = self._square + LEAST.gap**2
@@ -117,7 +117,7 @@ class Relief:
                 weight = alike / (1.0 + error - alike * alike)
                 precision += alike * weight
                 off += weight * (one.level - datum - self._trend(one.u, one.v)[0])
-        return Level(trend + off / precision, sqrt(square * (1.0 / precision + unsure)))
+        return GroundLevel(trend + off / precision, sqrt(square * (1.0 / precision + unsure)))
 
     @property
     def lowest(self) -> float | None:
@@ -177,20 +177,20 @@ class Ground:
         level = self._relief.lowest
         return None if level is None else self.drift + level
 
-    def level_at(self, place: Vector3) -> Level:
+    def level_at(self, place: Vector3) -> GroundLevel:
         """The level of the ground under a place (m, in the frame of odom)."""
         u, v = dot(self._u, place), dot(self._v, place)
         told = self._told(place)
         if told is None:
             height, deviation = self._relief.at(u, v)
-            return Level(self.drift + height, deviation)
+            return GroundLevel(self.drift + height, deviation)
         datum, edge = told
         height, deviation = self._residual.at(u, v)
-        return Level(self.drift + datum + height, sqrt(deviation * deviation + edge * edge))
+        return GroundLevel(self.drift + datum + height, sqrt(deviation * deviation + edge * edge))
 
-    def level_of(self, foothold: Foothold) -> Level:
+    def level_of(self, foothold: Foothold) -> GroundLevel:
         """The level of a foothold now."""
-        return Level(self.drift + foothold.level, 0.0)
+        return GroundLevel(self.drift + foothold.level, 0.0)
 
     def begin(self, frames: Sequence[PointFrame]) -> Foothold:
         """The foothold of a point that stands, and has rested there for some frames."""

@@ -12,7 +12,7 @@ from ..types import Sample
 from ..vectors import total
 from .announcement import ExpectedLanding, LandingAnnouncement
 from .cubic import GapNoise, PointFrame
-from .ground import Foothold, Ground, Level
+from .ground import Foothold, Ground, GroundLevel
 from .rest import falls, hovers, is_slow, rate_of, settles, since, stop_of
 from .trajectory import NEAREST, Arrival, ArrivalFit, FootTrajectory
 
@@ -130,7 +130,7 @@ class FootPoint:
             return None
         return self.announcement.revise(self.trajectory, stamp, ground, self._near)
 
-    def _arrive(self, level: Level, ground: Ground, rests: int | None, changed: bool) -> None:
+    def _arrive(self, level: GroundLevel, ground: Ground, rests: int | None, changed: bool) -> None:
         """Look when the point arrived, once it rests, until it stands."""
         frame = self.trajectory.frames[-1]
         if rests is None:
@@ -180,7 +180,7 @@ class FootPoint:
         held = late and not near and base is not None and hovers(rested, base)
         return None if held else self._stopped
 
-    def _changes(self, near: bool, rests: int | None, level: Level, ground: Ground) -> bool:
+    def _changes(self, near: bool, rests: int | None, level: GroundLevel, ground: Ground) -> bool:
         """Whether the last frame changes the stance."""
         frames = self.trajectory.frames
         frame = frames[-1]
@@ -204,7 +204,7 @@ class FootPoint:
         self.stands, self._other = not self.stands, None
         return True
 
-    def _left(self, level: Level, noise: GapNoise) -> int:
+    def _left(self, level: GroundLevel, noise: GapNoise) -> int:
         """The stamp in ns of the last frame in which the point was on the ground: the tolerance is left later."""
         for frame in reversed(self.trajectory.frames):
             if frame.stamp < self.since or frame.gap - level.height <= FAR * noise.gap:

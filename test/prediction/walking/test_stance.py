@@ -11,7 +11,7 @@ import pytest
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.prediction.types import Sample
 from impact_predictor.prediction.walking.cubic import PointFrame
-from impact_predictor.prediction.walking.ground import Ground, Level
+from impact_predictor.prediction.walking.ground import Ground, GroundLevel
 from impact_predictor.prediction.walking.stance import FootPoint
 
 MS = 1_000_000
@@ -126,7 +126,7 @@ def test_a_slope_that_nobody_told_of_is_learnt() -> None:
 
 
 def test_a_level_through_which_a_foot_has_come_lies_deeper() -> None:
-    level = Level(0.0, 0.01)
+    level = GroundLevel(0.0, 0.01)
     assert level.below(0.05, 1e-3) == pytest.approx(level, abs=1e-5)
     # The mean of the lower half of a normal deviate, and what it scatters about that.
     assert level.below(0.0, 1e-9) == pytest.approx(
