@@ -121,9 +121,9 @@ def simulate_robot(
     from ..scenarios.robot.sensors import WalkSensors, walk_messages
     from ..scenarios.robot.walk import landings_of, walk
 
-    robot = robot_of(name, options.pop("urdf"), options.pop("feet"), options.pop("srdf"), options.pop("radius"))
+    files = [options.pop(one) for one in ("urdf", "feet", "srdf", "radius")]
     ground = ground_of(seed, **options)
-    machine = Machine(robot, ground, Physics(armature, friction, contact_time))
+    machine = Machine(robot_of(name, *files), ground, Physics(armature, friction, contact_time))
     is_biped = len(machine.feet) == BIPED
     told = PlannedGait(gait or ("step" if is_biped else "trot"), swing, strike, speed, clearance)
     sensors = WalkSensors(rate, noise_position, noise_velocity, delay, drift, seed, by_names)
