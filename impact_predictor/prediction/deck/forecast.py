@@ -79,6 +79,8 @@ class WaveForecast:
         self._gravity, self._is_felt = gravity, is_felt
         self._width = width = 6 if is_felt else 8
         self._square, self._right = np.zeros((width * ORDER + 1,) * 2), np.zeros((width * ORDER + 1, width))
+        # Rows count from the first one: the squares of a large constant would hide those of what changes.
+        self._origin: NDArray[np.float64] | None = None
         self._factors: NDArray[np.float64] | None = None
         self._bounds = np.zeros(width), np.zeros(width)
         self._courses: deque[NDArray[np.float64]] = deque(maxlen=COURSES)
@@ -119,7 +121,7 @@ class WaveForecast:
     def outlook(self, stamp: int, horizon: float) -> DeckOutlook:
         """The courses from a stamp in ns, not before that of the last state, over a horizon in s."""
         errors = np.array(self._courses)
-        rows = np.concatenate([self._rows[-1:], self._forecast()])
+        rows = np.concatenate([self._rows[-1:], self._forecast()]) + self._origin
         # An error may as well have been the other way: so a few courses go further.
         errors = np.concatenate([np.zeros((len(errors), 1, self._width)), errors], axis=1)
         felt = self._felt(np.concatenate([rows + errors, rows - errors]))
@@ -163,7 +165,9 @@ class WaveForecast:
 
     def _take(self, row: NDArray[np.float64]) -> None:
         """Take the mean of a step."""
-        self._rows = np.concatenate([self._rows[-(ORDER + REACH) :], row[None]])
+        if self._origin is None:
+            self._origin = row
+        self._rows = np.concatenate([self._rows[-(ORDER + REACH) :], (row - self._origin)[None]])
         self._new += 1
         if self._made and self._made[0][0] + REACH == self._tick:
             self._courses.append(self._rows[-REACH:] - self._made.popleft()[1])
@@ -190,5 +194,8 @@ class WaveForecast:
         ridge = RIDGE * weight * variances
         reach = FURTHEST * np.sqrt(variances[:width])
         self._bounds = means[:width] - reach, means[:width] + reach
-        factors = np.linalg.solve(self._square + np.diag(np.append(ridge, 0.0)), self._right)
+        try:
+            factors = np.linalg.solve(self._square + np.diag(np.append(ridge, 0.0)), self._right)
+        except np.linalg.LinAlgError:  # numbers so large that rounding is more than the ridge
+            factors = np.full(self._right.shape, np.nan)
         self._factors = np.asarray(factors) if np.isfinite(factors).all() else None
