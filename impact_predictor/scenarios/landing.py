@@ -7,7 +7,8 @@ from typing import Final, NamedTuple
 
 from ..prediction.types import Vector3
 from ..prediction.vectors import dot
-from ..ros.cdr import OK, MalformedMessage, decode_diagnostic_array, diagnostic_array, diagnostic_status, pairs_of
+from ..ros.cdr import OK, diagnostic_array, diagnostic_status, pairs_of
+from .truth import truths_of
 
 LANDING_TOPIC: Final = "/truth/landings"
 
@@ -70,10 +71,7 @@ def decode_true_landings(data: bytes) -> list[TrueLanding]:
     Raises:
         MalformedMessage: the bytes are no such message, or tell no landings.
     """
-    try:
-        return [_landing(status.values) for status in decode_diagnostic_array(data)]
-    except (KeyError, ValueError) as error:
-        raise MalformedMessage(f"not a true landing: {error}") from None
+    return truths_of(data, "landing", _landing)
 
 
 def _landing(values: dict[str, str]) -> TrueLanding:

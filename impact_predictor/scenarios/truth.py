@@ -5,9 +5,9 @@ They travel on topics of their own, as diagnostic_msgs/DiagnosticArray, and are 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from math import cos, hypot, inf, sin
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeVar
 
 from ..mechanics.impact import approach
 from ..mechanics.types import Mode, Outcome, TwoPointBody
@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 TRUTH_TOPIC: Final = "/truth/impacts"
 ONSET_TOPIC: Final = "/truth/onsets"
+
+Happened = TypeVar("Happened")
 
 _VECTORS: Final = ("linear_before", "angular_before", "linear_after", "angular_after")
 _NUMBERS: Final = ("approach", "half_distance", "energy_lost", "border")
@@ -137,10 +139,19 @@ def decode_true_impacts(data: bytes) -> list[TrueImpact]:
     Raises:
         MalformedMessage: the bytes are no such message, or tell no impacts.
     """
+    return truths_of(data, "impact", _impact)
+
+
+def truths_of(data: bytes, what: str, read: Callable[[dict[str, str]], Happened]) -> list[Happened]:
+    """What is read of the values of each status in the bytes of a diagnostic_msgs/DiagnosticArray.
+
+    Raises:
+        MalformedMessage: the bytes are no such message, or do not tell `what` they should.
+    """
     try:
-        return [_impact(status.values) for status in decode_diagnostic_array(data)]
+        return [read(status.values) for status in decode_diagnostic_array(data)]
     except (KeyError, ValueError) as error:
-        raise MalformedMessage(f"not a true impact: {error}") from None
+        raise MalformedMessage(f"not a true {what}: {error}") from None
 
 
 def _impact(values: dict[str, str]) -> TrueImpact:
@@ -171,10 +182,8 @@ def decode_true_onsets(data: bytes) -> list[TrueOnset]:
     Raises:
         MalformedMessage: the bytes are no such message, or tell no onsets.
     """
-    try:
-        return [
-            TrueOnset(int(one["stamp"]), one["body"], one["slides"] == "true", one["lifts"] == "true")
-            for one in (status.values for status in decode_diagnostic_array(data))
-        ]
-    except (KeyError, ValueError) as error:
-        raise MalformedMessage(f"not a true onset: {error}") from None
+    return truths_of(data, "onset", _onset)
+
+
+def _onset(values: dict[str, str]) -> TrueOnset:
+    return TrueOnset(int(values["stamp"]), values["body"], values["slides"] == "true", values["lifts"] == "true")
