@@ -193,7 +193,7 @@ class RigidMachine:
         assert found.twist is not None
         x, y, z, p, q, r = found.twist.tolist()
         found.twist[:3] = add((x, y, z), cross((p, q, r), center), -1.0)
-        return MachineOutcome(found.twist, *found[1:], bound=Bound.UPPER)
+        return MachineOutcome(**found._asdict(), bound=Bound.UPPER)
 
 
 class ArticulatedMachine:
