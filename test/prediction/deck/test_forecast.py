@@ -141,17 +141,14 @@ def test_a_velocity_that_stays_hides_nothing_however_large_it_is(speed: float) -
     assert gravity.reshape(-1, 3) == pytest.approx(np.tile(GRAVITY, (gravity.size // 3, 1)), abs=1e-15 * speed)
 
 
-@pytest.mark.parametrize("speed", [1e8, 1e12, 1e150])
-def test_numbers_that_nobody_can_square_are_no_error(speed: float) -> None:
-    forecast, rng = WaveForecast(GRAVITY, is_felt=False), np.random.default_rng(0)
+@pytest.mark.parametrize("speed", [1e4, 1e9, 1e150])
+def test_a_leap_whose_squares_hide_all_else_is_no_error(speed: float) -> None:
+    forecast = WaveForecast(GRAVITY, is_felt=False)
     with np.errstate(over="ignore", invalid="ignore"):
         for time in np.arange(0.0, 120.0, 0.1):
-            moved = state(float(time), GRAVITY, (0.0, 0.0, 0.0))._replace(
-                velocity=(speed * rng.choice([0, 1]), 0.0, 0.0)
-            )
-            forecast.add(moved)
-        if forecast.is_trusted:
-            assert all(np.isfinite(part).all() for part in forecast.outlook(120 * 10**9, 15.0))
+            still = state(float(time), GRAVITY, (0.0, 0.0, 0.0))
+            forecast.add(still._replace(velocity=(speed if time > 3.0 else 0.0, 0.0, 0.0)))
+    assert not forecast.is_trusted
 
 
 def test_a_forecast_stays_finite_where_nothing_repeats() -> None:
