@@ -233,6 +233,9 @@ class Foot(NamedTuple):
     negative before it, None without a plan; `confirmed` whether a force sensor agrees, None without one. `position` of
     its lowest point, and the `place` where it lands, in m, in the frame of the sample. `impulse` in N s is what it gets
     in the impact of the touchdown ahead, and `bound` what that is; None where it takes no part.
+
+    Of a landing that is announced: `landing_deviation`, the standard deviation of its time in s; the probability that
+    the foot `lands` within the horizon, and that it then `strikes` the ground and does not brake to rest on it.
     """
 
     name: str
@@ -248,6 +251,9 @@ class Foot(NamedTuple):
     place: Vector3 | None = None
     impulse: Vector3 | None = None
     bound: Bound | None = None
+    landing_deviation: float | None = None
+    lands: float | None = None
+    strikes: float | None = None
 
 
 class Landing(NamedTuple):

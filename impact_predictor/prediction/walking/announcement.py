@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import erf, sqrt
 from typing import NamedTuple
 
 from ...stamps import NANOSECONDS
@@ -9,28 +10,35 @@ from ..planar import hardly
 from ..scene import Scene
 from ..types import Vector3
 from ..vectors import add, dot
-from .cubic import Fit
+from .cubic import PointFrame
+from .descent import LEAST_RATE, DescentEstimator
 from .ground import Ground
 from .rest import falls
 from .trajectory import FootTrajectory
 
-# A landing is announced when it is no further ahead than so many times as long as the point has descended: from less
-# the cubic of a foot that need not follow one tells nothing.
-AHEAD = 1.5
-SOON = 0.5  # ... where noise leaves doubt that it lands at all
-LASTS = 0.8  # ... once it has shown in every sample for the dead time
+AHEAD = 1.5  # a landing is announced when it is no further ahead than so many times as long as the point has come down,
+SURE = 0.01  # ... once its time has a standard deviation below so many s ...
+UNSURE = 2.0  # ... and kept until it has one that is so many times larger
 
-THROUGH = (
-    0.5  # contact tolerances below the expected level a point that still comes down has surely met no ground there
-)
+BEYOND = 2.0  # standard deviations by which the ground may lie elsewhere, and a landing is told all the same
+
+# A point that still comes down so many contact tolerances below the expected level has surely met no ground there.
+THROUGH = 0.5
 
 
 class ExpectedLanding(NamedTuple):
-    """A landing that is announced: `stamp` in ns, and where and how fast the point will be then (m, m/s)."""
+    """A landing that is announced: `stamp` in ns, and where and how fast the point will be then (m, m/s).
+
+    `deviation` in s is the standard deviation of its time; the foot lands within the horizon with the probability
+    `lands`, and then strikes the ground, and does not brake to rest on it, with the probability `strikes`.
+    """
 
     stamp: int
     position: Vector3
     velocity: Vector3
+    deviation: float
+    lands: float
+    strikes: float
 
 
 class LandingAnnouncement:
@@ -42,68 +50,77 @@ class LandingAnnouncement:
         """The landing last announced, until the point stands or the announcement is withdrawn."""
         self.closed = False
         """Whether it was to land by now and is near the ground: it stands, though not yet for the dead time."""
-        self.fit: Fit | None = None
-        """The cubic of the last descent through the air, until it has been learnt from."""
         self._scene, self._dead_time = scene, dead_time
-        # Stamps in ns since when the announcement is in doubt, and a landing shows.
-        self._doubted: int | None = None
-        self._shown: int | None = None
+        self._estimator = DescentEstimator()
+        self._doubted: int | None = None  # stamp in ns since which no landing shows
 
     def awaits(self, stamp: int) -> bool:
-        """Whether a landing is surely ahead of a stamp in ns."""
-        return self.due is not None and self._doubted is None and self.due.stamp > stamp
+        """Whether a landing is ahead of a stamp in ns, or so little before it that few frames show it."""
+        return self.due is not None and self.due.stamp + self._dead_time // 2 > stamp
 
     def end(self) -> None:
         """Announce nothing any more: the point stands."""
-        self.due = self._doubted = self._shown = None
+        self.due = self._doubted = None
         self.closed = False
+        self._estimator.rest()
+
+    def learn(self, stamp: int, last: PointFrame, ground: Ground) -> None:
+        """Take that the point has landed at a stamp in ns, after its `last` frame in the air."""
+        self._count(ground, came=1.0)
+        self._estimator.learn(stamp, last.stamp, ground.level_at(last.position), ground.prior)
 
     def revise(self, trajectory: FootTrajectory, stamp: int, ground: Ground, near: bool) -> ExpectedLanding | None:
         """The landing of a point in the air that is ahead of a stamp in ns.
 
         It is `near` where its gap is about that of the ground, or less.
         """
-        due = self.due
+        due, filtered = self.due, trajectory.filter
         self.closed = due is not None and due.stamp <= stamp and near and not self._falls_on(trajectory, due, ground)
-        if self.closed:
+        if self.closed or filtered is None:
             return None  # What its trajectory shows is the ground already.
-        fit = trajectory.fit(ground.noise, ground.prior)
-        if fit is not None and not near:
-            self.fit = fit
         # Near the ground it may be landing already where it breaks off its course: its last announcement stands.
-        if due is None or not (near and trajectory.broke):
-            self._announce(trajectory, fit, stamp, near, ground)
+        if due is None or not (near and filtered.broke):
+            self._announce(trajectory, stamp, ground)
         due = self.due
         return due if due is not None and due.stamp > stamp else None
 
-    def _announce(self, trajectory: FootTrajectory, fit: Fit | None, stamp: int, near: bool, ground: Ground) -> None:
-        """Announce the landing that a fit shows, if that is sure enough, or withdraw what was announced."""
-        due, landing = self.due, None
-        if fit is not None:
-            place = trajectory.frames[-1].position if due is None else due.position
-            level = ground.level_at(place)
-            if fit.gap[0] < level.height:  # It has met no ground there.
-                level = level.below(fit.gap[0], fit.deviation_of(0, 0.0))
-            landing = fit.landing(level.height, self._scene.tolerance, self._scene.horizon)
-        if fit is None or landing is None:
-            self._shown = None
-            if self._doubted_for(stamp):
-                self.due = self._doubted = None
+    def _announce(self, trajectory: FootTrajectory, stamp: int, ground: Ground) -> None:
+        """Announce the landing that the filter shows, if that is sure enough, or withdraw what was announced."""
+        filtered, scene, due = trajectory.filter, self._scene, self.due
+        assert filtered is not None
+        level, gap = (
+            ground.level_at(trajectory.frames[-1].position if due is None else due.position),
+            filtered.rows[0][0],
+        )
+        if gap < level.height:  # It has met no ground there.
+            level = level.below(gap, sqrt(filtered.covariance[0]))
+        found = self._estimator.estimate(filtered, level, ground.prior)
+        most = SURE * (1.0 if due is None else UNSURE)
+        # Where nobody knows the ground, a landing is told all the same, with the deviation that it then has.
+        unsure = BEYOND * level.deviation / max(LEAST_RATE, -filtered.rows[0][1])
+        # From a short descent its filter tells little, and not how little.
+        descended = AHEAD * (filtered.stamp - trajectory.top) / NANOSECONDS
+        if found is not None and due is None and found.time > descended:
+            found = None
+        if found is None or found.time > scene.horizon or found.deviation**2 > most * most + unsure * unsure:
+            if due is not None:
+                self._doubted = stamp if self._doubted is None else self._doubted
+                if stamp - self._doubted >= self._dead_time:
+                    self._count(ground, came=0.0)
+                    self.due = self._doubted = None
             return
-        self._shown = stamp if self._shown is None else self._shown
-        descended, wait = fit.stamp - trajectory.top, landing.time * NANOSECONDS
-        sure = landing.sure and (due is not None or wait < AHEAD * descended)
-        sure |= landing.precise and wait < SOON * descended
-        sure |= stamp - self._shown >= self._dead_time and wait < LASTS * descended
-        # So near to the ground a little noise makes the curve of a foot that brakes pass through it at once.
-        leaps = near and due is not None and due.stamp - fit.stamp - wait > self._dead_time
-        if sure and not (trajectory.broke or leaps):
-            self._doubted = None
-        elif not self._doubted_for(stamp):
-            return
-        position, velocity = trajectory.motion(fit, landing.time)
-        velocity = add(velocity, self._scene.normal, landing.rate - dot(velocity, self._scene.normal))
-        self.due = ExpectedLanding(fit.stamp + round(landing.time * NANOSECONDS), position, velocity)
+        self._doubted = None
+        position, velocity = filtered.motion(found.time)
+        velocity = add(velocity, scene.normal, found.rate - dot(velocity, scene.normal))
+        within = 0.5 * (1.0 + erf((scene.horizon - found.time) / (found.deviation * sqrt(2.0))))
+        self.due = ExpectedLanding(
+            stamp=filtered.stamp + round(found.time * NANOSECONDS),
+            position=position,
+            velocity=velocity,
+            deviation=found.deviation,
+            lands=ground.prior.came_true * within,
+            strikes=found.strikes,
+        )
 
     def _falls_on(self, trajectory: FootTrajectory, due: ExpectedLanding, ground: Ground) -> bool:
         """Whether the point surely comes down still, through the ground where that was expected."""
@@ -112,10 +129,7 @@ class LandingAnnouncement:
             return False
         return falls(frames, 2.0 * hardly(self._scene), ground.noise)
 
-    def _doubted_for(self, stamp: int) -> bool:
-        """Whether what is announced has not surely shown for the dead time."""
-        if self.due is None:
-            return False
-        if self._doubted is None:
-            self._doubted = stamp
-        return stamp - self._doubted >= self._dead_time
+    def _count(self, ground: Ground, came: float) -> None:
+        if self.due is not None:
+            ground.prior.announced += 1.0
+            ground.prior.came += came

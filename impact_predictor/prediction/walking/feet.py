@@ -206,8 +206,9 @@ class FeetContacts(Contacts):
         status = order_of(geometry.stamp, last)
         if status is Status.ACCEPTED:
             self.geometry, self.frame_id = geometry, geometry.frame_id
-            if self._walking.find_delay and self._clock.correct():
-                # What was learnt of ground, noise and swings has the old delay in it.
+            # What is announced is to come true first; then what was learnt has the old delay in it.
+            is_free = self._walking.find_delay and all(point.due is None for point in self._points)
+            if is_free and self._clock.correct():
                 self._waiting.clear()
                 self.forget()
             self._waiting.append(geometry._replace(stamp=geometry.stamp - round(self._clock.taken * NANOSECONDS)))
@@ -272,11 +273,12 @@ class FeetContacts(Contacts):
         since = min(landed) if landed else max([point.since for point in points])
         gaps = [point.trajectory.frames[-1].gap for point in points]
         lowest = points[gaps.index(min(gaps))].trajectory
-        lead_time = speed = late = place = None
+        lead_time = speed = late = place = deviation = lands = strikes = None
         if dues:
             due = min(dues, key=attrgetter("stamp"))
             lead_time, speed = (due.stamp - stamp) / NANOSECONDS, -dot(self.scene.normal, due.velocity)
             late, place = self._schedule.late(name, due.stamp), due.position
+            deviation, lands, strikes = due.deviation, due.lands, due.strikes
         impulse = bound = None
         if isinstance(self._ahead, Touchdown):
             impulse = impulse_at(self._ahead, range(own.start, own.stop))
@@ -297,4 +299,7 @@ class FeetContacts(Contacts):
             place=place,
             impulse=impulse,
             bound=bound,
+            landing_deviation=deviation,
+            lands=lands,
+            strikes=strikes,
         )

@@ -13,8 +13,8 @@ from ..scene import Scene
 from ..types import Vector3
 from ..vectors import cross, dot, total
 from .cubic import GapNoise, PointFrame
+from .descent import LandingPrior
 from .terrain import TerrainMap
-from .trajectory import DescentPrior
 
 LEAST = GapNoise(gap=1e-5, rate=2e-4)  # by so much a planned course differs from a cubic over few frames: no noise
 GUESS = 0.2  # until feet have stood their gaps are taken to scatter by this part of the contact tolerance ...
@@ -158,7 +158,7 @@ class Ground:
 
     def __init__(self, scene: Scene, terrain: TerrainMap | None = None) -> None:
         self.noise = GapNoise(GUESS * scene.tolerance, GUESS_RATE)
-        self.prior = DescentPrior()
+        self.prior = LandingPrior()
         self.drift = 0.0
         """By how much in m the ground that feet show has moved along the normal, since the scene was written."""
         self._tolerance = scene.tolerance
@@ -226,8 +226,8 @@ class Ground:
         # Differences of two frames leave the motion of the base's drift out, and have twice the square of the noise.
         self._square += share * (0.5 * (frame.gap - before.gap) ** 2 - self._square)
         rate = self.noise.rate
-        if frame.rate is not None:
-            self._square_rate += share * (frame.rate**2 - self._square_rate)
+        if frame.rate is not None and before.rate is not None:
+            self._square_rate += share * (0.5 * (frame.rate - before.rate) ** 2 - self._square_rate)
             rate = max(LEAST.rate, sqrt(self._square_rate))
         if self._seen >= FEWEST:
             self.noise = GapNoise(max(LEAST.gap, sqrt(self._square)), rate)

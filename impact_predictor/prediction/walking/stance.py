@@ -102,16 +102,15 @@ class FootPoint:
             if changed:
                 self._standing.clear()
                 self._foothold = None
-            trajectory.follow()
+            trajectory.follow(ground.noise, near)
             return False
         landed = changed and self._has_moved
         if landed and self._arriving is not None:
-            if announcement.fit is not None:
-                ground.prior.learn(announcement.fit)
             self.arrival = self._arriving.arrival()
             self.since = self.arrival.stamp
+            announcement.learn(self.since, trajectory.frames[-self.arrival.age], ground)
         if changed:
-            self._arriving = announcement.fit = self._stopped = None
+            self._arriving = self._stopped = None
         if self._foothold is None:
             # It has sunk in and come back while it was not believed yet.
             lasted = since(trajectory.frames, frame.stamp - self._contact_time) if self.since else [frame]
@@ -136,9 +135,7 @@ class FootPoint:
         if rests is None:
             self._arriving = None
         elif (self._arriving is None or not self._arriving.add(frame)) and (changed or not self.stands):
-            fit = self.announcement.fit
-            begin = self.trajectory.top if fit is None else max(self.trajectory.top, fit.begin)
-            frames = self.trajectory.last(NEAREST)
+            frames, begin = self.trajectory.last(NEAREST), self.trajectory.begin
             # Where the ground was not expected it is known only now that the point rests since then.
             air = [one for one in frames if one.stamp <= max(rests, frames[0].stamp)]
             unsure = max(self._scene.tolerance, 2.0 * level.deviation)

@@ -1,34 +1,22 @@
-"""The way of a point of a foot over the ground: the cubic that it follows, and when it reached the ground.
-
-A cubic is the simplest curve that has a foot brake before it lands, and begin to brake before that.
-"""
+"""The way of a point of a foot over the ground: its last frames, its motion in the air, and when it arrived."""
 
 from __future__ import annotations
 
 from collections import deque
 from collections.abc import Sequence
 from itertools import islice
-from math import inf, sqrt
+from math import inf
 from typing import NamedTuple
 
 from ...stamps import NANOSECONDS
 from ..types import Vector3
-from .cubic import SCALE, CubicSums, Fit, GapNoise, PointFrame, factored, shifted, square_of, value_of
+from .cubic import SCALE, CubicSums, GapNoise, PointFrame, factored, square_of, value_of
+from .point_filter import SNAP, PointFilter
 
-FEWEST = 5  # frames that a cubic is fitted to at least: four would leave nothing to tell how well it fits ...
-MOST = 200  # ... and at most: half a second at 400 Hz
-SHORTER = 3  # quarters of the frames that are kept where one cubic does not fit them all
-MISFIT = 4.0  # a cubic does not fit where the residuals' mean square is so many standard deviations above the noise's
-BROKE = 2.0  # the last frame did not follow the others where it makes them scatter so many times more about their cubic
-TURNED = 3.0  # a rate is surely not zero when it is so many standard deviations from it
+FEWEST = 5  # frames that a cubic is fitted to at least: four would leave nothing to tell how well it fits
+MOST = 200  # frames that are kept: half a second at 400 Hz
 
-JERK = 1000.0  # standard deviation in m/s^3 of how the acceleration of a foot changes, as long as none has landed
-DIFFERENCE = 0.2  # a foot comes down otherwise than before by this part of the mean at least
-FORGETS = 0.98  # part of what was known before that counts beside one more landing
-TELLING = 0.01  # a descent tells something by itself from this part of what is known in the end
-LEAST_DEVIATION = 100.0  # m/s^3 by which the next descent may differ: a machine may change its gait
-JERK_UNIT = SCALE**3 / 6.0  # the third power's coefficient in a fit of a jerk of 1 m/s^3
-
+LEAST_SPAN = 0.03  # s over which one cubic is taken to follow a descent
 LEAST = 6  # frames in the air in which an arrival is looked for; they may be from before the foot began to descend
 NEAREST = 42  # the most of them that are looked at, besides those that may have been on the ground already
 FULL = 150  # frames after which a point that hovers near the ground is looked at anew
@@ -36,51 +24,18 @@ SHARE = 4  # frames that are caught up with while the next one comes in
 SAME = 0.01  # a later arrival is believed where it leaves less by this part of the noise's square
 
 
-class DescentPrior:
-    """Mean and deviation of the jerk of feet that come down: what noise hides of it in one descent, many show."""
-
-    def __init__(self) -> None:
-        self._mean = 0.0
-        self._square = JERK * JERK
-        self._precision = 1.0 / self._square
-
-    def learn(self, fit: Fit) -> None:
-        """Take the cubic of a descent that has ended on the ground.
-
-        What the descent itself tells is learnt, without the prior that was in its fit: else that would confirm itself.
-        """
-        weight, expected = fit.prior
-        whole = 1.0 / fit.factor[9] ** 2
-        own = whole - weight
-        if own <= TELLING * whole:
-            return
-        jerk = (whole * fit.gap[3] * SCALE**3 - weight * expected) / own / JERK_UNIT
-        doubt = fit.deviation / sqrt(own) / JERK_UNIT
-        # What noise adds to a jerk is none of the prior: an unsure one counts less, and spreads less than it seems to.
-        precision = 1.0 / (doubt * doubt + LEAST_DEVIATION * LEAST_DEVIATION)
-        self._precision = FORGETS * self._precision + precision
-        share, off = precision / self._precision, jerk - self._mean
-        self._mean += share * off
-        self._square = max(0.0, self._square + share * (off * off - doubt * doubt - self._square))
-
-    def coefficient(self, noise: float) -> tuple[float, float]:
-        """Weight and value of the third power's coefficient, before the frames of noise (m) are seen."""
-        deviation = max(LEAST_DEVIATION, sqrt(self._square) + DIFFERENCE * abs(self._mean))
-        return (noise / (deviation * JERK_UNIT)) ** 2, self._mean * JERK_UNIT
-
-
 class FootTrajectory:
-    """The last frames of a point over its ground, and the longest stretch of them that one cubic fits."""
+    """The last frames of a point over its ground, and the filter of its motion while it is in the air."""
 
     def __init__(self) -> None:
         self.frames: deque[PointFrame] = deque(maxlen=MOST)
-        self._sums: CubicSums | None = None
-        self._falls = False
-        self._deviation = 0.0
+        self.filter: PointFilter | None = None
+        self._snap = SNAP
         self.top = 0
         """Stamp in ns of the highest place that the point descends from."""
-        self.broke = False
-        """Whether the last frame did not follow the cubic of those before it."""
+        self._rises = False
+        self.begin = 0
+        """Stamp in ns since which the point has come down along one cubic, until it was near the ground."""
 
     @property
     def rate(self) -> float:
@@ -91,95 +46,31 @@ class FootTrajectory:
         before = self.frames[-2]
         return (last.gap - before.gap) / (last.stamp - before.stamp) * NANOSECONDS
 
-    def follow(self) -> None:
-        """Fit the last frame together with those that were followed before it."""
-        frame = self.frames[-1]
-        if self._sums is None:
-            self._sums = CubicSums([frame])
+    def follow(self, noise: GapNoise, near: bool) -> None:
+        """Filter the last frame with those before it; one that is `near` the ground may be in the air no more."""
+        frame, filtered = self.frames[-1], self.filter
+        if filtered is None:
+            filtered = self.filter = PointFilter(frame, noise, self._snap)
         else:
-            self._sums.add(frame)
+            filtered.add(frame, noise, learns=not near)
+        rises = filtered.rows[0][1] >= 0.0
+        if rises:
+            self.top = frame.stamp
+        elif self._rises:
+            filtered.turn()
+        self._rises = rises
+        if not near:
+            span = max(LEAST_SPAN, filtered.span(noise))
+            self.begin = max(self.top, frame.stamp - round(span * NANOSECONDS))
 
     def rest(self) -> None:
         """Follow the point no more; what comes later is another trajectory."""
-        self._sums = None
-        self._falls = False
-        self._deviation = 0.0
-
-    def fit(self, noise: GapNoise, prior: DescentPrior) -> Fit | None:
-        """The cubic of the last frames once the point descends; None before, and while there are too few of them."""
-        sums = self._sums
-        if sums is None or sums.count < FEWEST:
-            return None
-        rate = self.frames[-1].rate
-        if not self._falls and rate is not None and rate > TURNED * noise.rate:
-            return None
-        if sums.count >= MOST:
-            sums = self._sums = CubicSums(self.last(SHORTER * MOST // 4))
-        fit = self._fit_of(sums, noise, prior)
-        self.broke = fit is not None and not fit.fits and fit.deviation > BROKE * self._deviation
-        count = sums.count
-        while fit is not None and not (fit.fits or count == FEWEST):
-            count = max(FEWEST, SHORTER * count // 4)
-            fit = self._fit_of(CubicSums(self.last(count), places=False), noise, prior)
-        if count < sums.count:
-            self._sums = CubicSums(self.last(count))
-        if fit is None:
-            return None
-        self._deviation = fit.deviation
-        return fit if self._descends(fit) else None
-
-    def motion(self, fit: Fit, time: float) -> tuple[Vector3, Vector3]:
-        """Position and velocity of the point `time` s after the fit's stamp, by the cubic through the same frames."""
-        assert self._sums is not None
-        # What is expected of the gap says nothing of the motion along the ground.
-        factor = factored(self._sums.normal(fit.ratio)) or fit.factor
-        return self._sums.motion(factor, fit.ratio, fit.end + time / SCALE)
+        if self.filter is not None:
+            self._snap = self.filter.snap
+        self.filter = None
 
     def last(self, count: int) -> list[PointFrame]:
         return list(islice(self.frames, max(0, len(self.frames) - count), None))
-
-    def _fit_of(self, sums: CubicSums, noise: GapNoise, prior: DescentPrior) -> Fit | None:
-        """The cubic nearest to the gaps, and to their rates where all are measured."""
-        ratio = noise.ratio if sums.measured else 0.0
-        weight, expected = prior.coefficient(noise.gap)
-        found = sums.fit(ratio, weight, expected)
-        if found is None:
-            return None
-        cubic, factor, left = found
-        free = (2 if sums.measured else 1) * sums.count - 3
-        share = left / (free * noise.gap * noise.gap)
-        fits = share <= 1.0 + MISFIT * sqrt(2.0 / free)
-        stamp = self.frames[-1].stamp
-        end = (stamp - sums.first.stamp) / (SCALE * NANOSECONDS)
-        return Fit(
-            stamp=stamp,
-            end=end,
-            gap=shifted((sums.first.gap + cubic[0], *cubic[1:]), end, 1.0 / SCALE),
-            factor=factor,
-            ratio=ratio,
-            deviation=noise.gap if fits else noise.gap * sqrt(share),
-            fits=fits,
-            prior=(weight, expected),
-        )
-
-    def _descends(self, fit: Fit) -> bool:
-        """Whether the point descends, and has not just begun to.
-
-        At its highest place a planner goes over from lifting the foot to lowering it, by another curve: what came
-        before tells nothing of the landing, and is left out of the fits from then on.
-        """
-        _, slope, bend, _ = fit.gap
-        if slope > TURNED * fit.deviation_of(1, 0.0):
-            self._falls = False
-        elif not self._falls and slope < -TURNED * fit.deviation_of(1, 0.0):
-            self._falls = True
-            top = fit.stamp + 0.5 * slope / -bend * NANOSECONDS if bend < 0.0 else 0.0
-            self.top = round(top)
-            since = sum([frame.stamp >= top for frame in self.frames])
-            if self._sums is not None and since < self._sums.count:
-                self._sums = CubicSums(self.last(max(1, since)))
-            return False
-        return self._falls
 
 
 class Arrival(NamedTuple):

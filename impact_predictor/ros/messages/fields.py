@@ -260,6 +260,9 @@ FOOT: Final = Table[Foot](
         "lead_time", "s", "until it lands; left out where no landing lies within the horizon", lambda it: it.lead_time
     ),
     Field("landing_speed", "m/s", "speed at which it lands", lambda it: it.landing_speed),
+    Field("landing_deviation", "s", "standard deviation of lead_time", lambda it: it.landing_deviation),
+    Field("lands", "", "probability that it lands within the horizon", lambda it: it.lands),
+    Field("strikes", "", "probability that it strikes, and does not brake to rest", lambda it: it.strikes),
     Field("late", "s", "after the planned landing; left out without a plan", lambda it: it.late),
     Field("confirmed", "", "whether its force sensor agrees; left out without one", lambda it: it.confirmed),
     *_vector("place", "m", "where it lands, in the frame of the sample", lambda it: it.place),

@@ -1,0 +1,75 @@
+"""When a point that comes down lands: its filter, and what is learnt of landings."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from impact_predictor.prediction.walking.cubic import GapNoise, PointFrame
+from impact_predictor.prediction.walking.descent import Descent, DescentEstimator, LandingPrior
+from impact_predictor.prediction.walking.ground import GroundLevel
+from impact_predictor.prediction.walking.point_filter import PointFilter
+
+MS = 1_000_000
+EXACT = GapNoise(1e-5, 2e-4)
+LEVEL = GroundLevel(0.0, 1e-5)
+
+
+def frame(time: float, coefficients: tuple[float, ...], noise: float = 0.0) -> PointFrame:
+    """A frame of a gap that is a polynomial of the time (s) after the landing."""
+    gap = sum(c * time**k for k, c in enumerate(coefficients)) + noise
+    rate = sum(k * c * time ** (k - 1) for k, c in enumerate(coefficients) if k)
+    return PointFrame(round((1.0 + time) * 1e9), gap, rate, (0.0, 0.0, gap), (0.0, 0.0, rate))
+
+
+def test_the_filter_follows_a_cubic_exactly() -> None:
+    course = (0.0, -0.5, 10.0, -80.0)
+    filtered = PointFilter(frame(-0.15, course), EXACT)
+    for k in range(1, 50):
+        filtered.add(frame(-0.15 + 2.5e-3 * k, course), EXACT)
+    time = -0.15 + 2.5e-3 * 49
+    expected = (frame(time, course).gap, frame(time, course).rate, 20.0 - 480.0 * time, -480.0)
+    assert filtered.rows[0] == pytest.approx(expected, rel=0.01)
+    assert not filtered.broke
+    position, velocity = filtered.motion(-time)
+    assert position == pytest.approx((0.0, 0.0, 0.0), abs=1e-4)
+    assert velocity[2] == pytest.approx(-0.5, abs=0.01)
+
+
+def walked(speeds: np.ndarray, braking: float = 5.0) -> list[list[tuple[float, Descent]]]:
+    """What is told of landings with speeds, one after the other: (s until the landing, the descent)."""
+    prior, estimator, rng, told = LandingPrior(), DescentEstimator(), np.random.default_rng(0), []
+    noise = GapNoise(2e-4, 5e-3)
+    for speed in speeds.tolist():
+        course = (0.0, -speed, braking, 0.0 if speed else -60.0)
+        own, filtered = [], PointFilter(frame(-0.1, course), noise)
+        for k in range(1, 40):
+            time = -0.1 + 2.5e-3 * k
+            one = frame(time, course, rng.normal(0.0, noise.gap))
+            filtered.add(one._replace(rate=(one.rate or 0.0) + rng.normal(0.0, noise.rate)), noise)
+            found = estimator.estimate(filtered, LEVEL, prior)
+            if found is not None:
+                own.append((-time, found))
+        estimator.learn(10**9, round((1.0 - 2.5e-3) * 1e9), LEVEL, prior)
+        estimator.rest()
+        told.append(own)
+    return told
+
+
+def test_strikes_that_repeat_are_told_to_strike_and_earlier_each_time() -> None:
+    told = walked(np.full(12, 0.6))
+    assert all(one.strikes > 0.9 for own in told[2:] for left, one in own if left < 0.05)
+    ahead = [min(one.deviation for left, one in own if left > 0.04) for own in told]
+    assert ahead[-1] < ahead[0]
+
+
+def test_a_foot_that_brakes_to_rest_is_told_to_do_so() -> None:
+    told = walked(np.zeros(8), braking=20.0)
+    assert all(one.strikes < 0.5 and one.rate == 0.0 for own in told[2:] for left, one in own if 0.01 < left < 0.03)
+
+
+def test_the_deviation_is_true() -> None:
+    told = walked(np.random.default_rng(1).normal(0.6, 0.05, 60))
+    off = [(one.time - left) / one.deviation for own in told[3:] for left, one in own if left < 0.03]
+    assert np.mean(np.abs(off) < 1.0) > 0.68
+    assert np.mean(np.abs(off) < 2.0) > 0.95
