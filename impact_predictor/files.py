@@ -10,14 +10,14 @@ from pathlib import Path
 from .errors import InputError
 
 
-def named(path: str | os.PathLike[str], what: str, suffixes: Sequence[str]) -> Path:
+def named(path: str | os.PathLike[str], what: str, suffixes: Sequence[str] = ()) -> Path:
     """The path of a file that is yet to be made, checked before the work that it is for.
 
     Raises:
         InputError: the suffix is not one of its format, or there is no such folder.
     """
     path = Path(path)
-    if path.suffix.lower() not in suffixes:
+    if suffixes and path.suffix.lower() not in suffixes:
         raise InputError(f"{path} is no {what}; give a name that ends in {' or '.join(suffixes)}")
     if not path.absolute().parent.is_dir():
         raise InputError(f"the folder of {path} does not exist; make it, or give another name")

@@ -106,7 +106,7 @@ def test_json_is_all_that_is_printed_and_the_options_reach_the_law(folder: Path)
         (["plate", "--slip", "inf"], "slip is inf; give a number of at most 1e6"),
         (["plate", "--friction-new", "-1"], "friction_new is -1.0; give a finite"),
         (["plate", "--restitution", "3"], "restitution is 3.0; give a number from 0 to 1"),
-        (["plate", "-o", "map.pdf"], "neither picture nor data; give a name that ends in .png, .svg or .csv"),
+        (["plate", "-o", "map.pdf"], "map.pdf is no picture or data; give a name that ends in .png or .svg or .csv"),
         (["plate", "-o", "no/map.png"], "the folder of no/map.png does not exist"),
         (["plate", "--resolution", "1"], "1 is not in the range 2<=x<=5000"),
         (["plate", "--x", "delta", "0"], "'--x' requires 3 arguments"),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
@@ -15,6 +15,8 @@ from .outcomes import DAMAGED, FAILED
 from .replay import read_scenes
 
 if TYPE_CHECKING:
+    from rich.table import Table
+
     from ..bags.replay import Result
     from ..calibration.scene_file import NewValues
     from ..prediction.monitor import Monitor
@@ -67,17 +69,16 @@ def calibrate(
     from ..bags.replay import remapping
     from ..calibration.fit import calibrate as fit
     from ..calibration.touchdowns import touchdowns_of
+    from ..files import named
     from ..prediction.monitor import Monitor
-    from ..report.calibration import as_json as fields_of
-    from ..report.calibration import unscored
-    from ..wording import words
+    from ..report import calibration as report
+    from ..wording import listed, words
     from .progress import compiling_is_said, progress
 
     scenes, topics = read_scenes(params), remapping(remap)
-    if output is not None and not Path(output).resolve().parent.is_dir():
-        raise InputError(f"the folder of {output} does not exist; make it, or give another name")
+    if output is not None:
+        named(output, "parameter file")
     if figure is not None:
-        from ..files import named
         from ..report.plot import PICTURE
 
         named(figure, *PICTURE)
@@ -92,7 +93,7 @@ def calibrate(
         with progress("fit", "impacts") as tell, compiling_is_said():
             calibration = fit(records, [name for name, wanted in asked.items() if wanted], seed, tell)
     except InputError as error:
-        if reasons := unscored(scores):
+        if reasons := report.unscored(scores):
             counts = ", ".join(f"{count:,} {words(reason)}" for reason, count in reasons.items())
             raise InputError(f"{error}; not scored are {counts}") from None
         raise
@@ -103,25 +104,32 @@ def calibrate(
     if figure is not None:
         from ..report.figures import write_calibration
 
-        write_calibration(
-            figure, calibration, ", ".join(Path(bag).name for bag in bags[:3]) + ", ..." * (len(bags) > 3)
-        )
+        write_calibration(figure, calibration, listed([Path(bag).name for bag in bags], 3))
     if as_json:
-        click.echo(json.dumps(fields_of(calibration, bags, scores), allow_nan=False))
+        click.echo(json.dumps(report.as_json(calibration, bags, scores), allow_nan=False))
     else:
-        from rich.console import Console
+        say_fit(report.tables(calibration), report.sentences(calibration, scores), Scene=output, Picture=figure)
+    return status_of(bags, results)
 
-        from ..report.calibration import sentences, tables
-        from ..report.table import say, show
 
-        console = Console()
-        for table in tables(calibration):
-            show(console, table)
-            console.print()
-        say(console, *sentences(calibration, scores))
-        for label, name in (("Scene", output), ("Picture", figure)):
-            if name is not None:
-                click.echo(f"{label}: {name}")
+def say_fit(tables: Iterable[Table], sentences: Iterable[str], **files: str | None) -> None:
+    """Print what a fit found, and which files have been written."""
+    from rich.console import Console
+
+    from ..report.table import say, show
+
+    console = Console()
+    for table in tables:
+        show(console, table)
+        console.print()
+    say(console, *sentences)
+    for what, file in files.items():
+        if file is not None:
+            click.echo(f"{what}: {file}")
+
+
+def status_of(bags: Sequence[str], results: Sequence[Result]) -> int:
+    """The exit status where some bags could not be used, or not all of them."""
     if len(results) < len(bags):
         return FAILED
     return DAMAGED if any(result.damaged for result in results) else 0

@@ -37,14 +37,15 @@ def explain(params: str, as_json: bool) -> None:
     from rich.console import Console
     from rich.markup import escape
 
-    from ..report.table import plain_table, show
+    from ..report.table import Column, show, table_of
 
-    table = plain_table()
-    table.add_column("feature", no_wrap=True)
-    table.add_column("")
-    table.add_column("why", min_width=40)
-    for one in sorted(features, key=lambda feature: not feature.on):
-        table.add_row(one.name, "on" if one.on else "off", escape(one.why), style="" if one.on else "dim")
+    columns = [
+        Column("feature", lambda one: one.name, left=True),
+        Column("", lambda one: "on" if one.on else "off", left=True),
+        Column("why", lambda one: escape(one.why), left=True, fold=40),
+    ]
+    rows = sorted(features, key=lambda feature: not feature.on)
+    table = table_of(columns, rows, lambda one: "" if one.on else "dim")
     console = Console()
     console.print(f"[bold]{escape(scene)}[/]: what this scene has, and what it leaves out\n", highlight=False)
     show(console, table)

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 from typing import Final
 
 import click
 
-from ..errors import InputError
-from .calibrate import read_all, write_scene
+from .calibrate import read_all, say_fit, status_of, write_scene
 from .options import BAGS, PARAMS, choice, examples, json_flag, remap_option, seed_option, text
-from .outcomes import DAMAGED, FAILED
 from .replay import read_scenes
 
 MOMENTS: Final = {"isotropic": 1, "principal": 3, "full": 6}
@@ -56,13 +53,14 @@ def identify(
     from ..bags.replay import remapping
     from ..calibration.identify import identify as find
     from ..calibration.motions import RecordingMonitor
+    from ..files import named
     from ..prediction.scene import inertia_matrix
     from ..report import identification as report
     from .progress import progress
 
     scenes, topics = read_scenes(params), remapping(remap)
-    if output is not None and not Path(output).resolve().parent.is_dir():
-        raise InputError(f"the folder of {output} does not exist; make it, or give another name")
+    if output is not None:
+        named(output, "parameter file")
     bags = tuple(bags_of(bags))
     monitors, results = read_all(bags, scenes, topics, RecordingMonitor)
     scene = next(iter(scenes.values()))
@@ -75,17 +73,5 @@ def identify(
     if as_json:
         click.echo(json.dumps(report.as_json(found, bags), allow_nan=False))
     else:
-        from rich.console import Console
-
-        from ..report.table import say, show
-
-        console = Console()
-        for table in report.tables(found):
-            show(console, table)
-            console.print()
-        say(console, *report.sentences(found))
-        if output is not None:
-            click.echo(f"Scene: {output}")
-    if len(results) < len(bags):
-        return FAILED
-    return DAMAGED if any(result.damaged for result in results) else 0
+        say_fit(report.tables(found), report.sentences(found), Scene=output)
+    return status_of(bags, results)

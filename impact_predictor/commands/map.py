@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
-from ..errors import InputError, need
+from ..errors import need
+from ..files import named
 from .options import LAW, examples, json_flag, number, together
 
 if TYPE_CHECKING:
@@ -142,7 +143,9 @@ def answer(
     """Compute a map, write its files and say what it shows."""
     files = output or (() if as_json else (Path(f"map_{name}.png"),))
     for file in files:
-        check_output(file)
+        named(file, "picture or data", SUFFIXES)
+        if file.suffix.lower() in PICTURES:
+            need("contourpy", "matplotlib")
 
     from ..report.map import map_modes
     from .progress import compiling_is_said, progress
@@ -172,17 +175,3 @@ def answer(
     show(Console(), shares_table(modes))
     for file in files:
         click.echo(f"{'Picture' if file.suffix.lower() in PICTURES else 'Data'}: {file}")
-
-
-def check_output(file: Path) -> None:
-    """Refuse a file that no map can be written into.
-
-    Raises:
-        InputError: its suffix names no known format, there is no such folder, or what draws is not installed.
-    """
-    if file.suffix.lower() not in SUFFIXES:
-        raise InputError(f"{file} is neither picture nor data; give a name that ends in .png, .svg or .csv")
-    if not file.parent.is_dir():
-        raise InputError(f"the folder of {file} does not exist; make it, or give another name")
-    if file.suffix.lower() in PICTURES:
-        need("contourpy", "matplotlib")

@@ -5,14 +5,11 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from io import BytesIO
 from math import cos, sin
-from pathlib import Path
 from typing import Any, Final, NamedTuple, Protocol
 
 import matplotlib
 import numpy as np
-from matplotlib.animation import AbstractMovieWriter
 from matplotlib.axes import Axes as Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure as Figure
@@ -108,34 +105,6 @@ def frames_of(longest: float) -> list[float]:
     return [k * step for k in range(2 + int(longest / step))]
 
 
-class GifWriter(AbstractMovieWriter):
-    """Saves the frames that are grabbed as one GIF; all have the same colours.
-
-    So only what changes is stored: a quarter of what PillowWriter stores.
-    """
-
-    def setup(self, fig: Figure, outfile: str | Path, dpi: float | None = None) -> None:
-        """Begin without a frame."""
-        super().setup(fig, outfile, dpi)
-        self.frames: list[Image.Image] = []
-
-    def grab_frame(self, **savefig_kwargs: Any) -> None:
-        """Add what the figure shows now."""
-        pixels = BytesIO()
-        self.fig.savefig(pixels, format="rgba", dpi=self.dpi, **savefig_kwargs)
-        self.frames.append(Image.frombytes("RGBA", self.frame_size, pixels.getvalue()).convert("RGB"))
-
-    def finish(self) -> None:
-        """Save the frames, if there are any; the last one is seen for 1.5 s before the film begins again."""
-        if not self.frames:
-            return
-        some = self.frames[:: max(1, len(self.frames) // 24)]
-        colours = Image.fromarray(np.concatenate([np.asarray(one) for one in some])).quantize(128)
-        first, *others = [one.quantize(palette=colours, dither=Image.Dither.NONE) for one in self.frames]
-        durations = [round(1000 * STEP)] * len(others) + [1500]
-        first.save(self.outfile, "GIF", save_all=True, append_images=others, duration=durations, loop=0, optimize=True)
-
-
 def write_film(path: str | os.PathLike[str], film: Film, tell: Callable[[int], object] = lambda frames: None) -> None:
     """Draw a film as a GIF; `tell` takes how many frames are done.
 
@@ -147,25 +116,33 @@ def write_film(path: str | os.PathLike[str], film: Film, tell: Callable[[int], o
     pace = f"slowed down {slower:.3g} times" if slower > 1.0 else f"sped up {1.0 / slower:.3g} times"
     pace = "real time" if abs(slower - 1.0) < 1e-6 else pace
     with matplotlib.rc_context(STYLE), whole(path) as partial:
-        figure = Figure(figsize=(7.0, film.height + 2.5), layout="constrained")
+        figure = Figure(figsize=(7.0, film.height + 2.5), dpi=90, layout="constrained")
+        canvas: Any = FigureCanvasAgg(figure)
+        frames: list[Image.Image] = []
         grid = figure.add_gridspec(2, len(film.scenes), height_ratios=(film.height + 0.6, 1.2))
         stages = [figure.add_subplot(grid[0, k], aspect="equal") for k in range(len(film.scenes))]
         curves = figure.add_subplot(grid[1, :])
         film.draw_curves(curves)
         clock, now = headline(figure, "t"), curves.axvline(film.times[0], color=STRUCK, linewidth=1.5)
-        writer = GifWriter()
-        with writer.saving(figure, partial, dpi=90):
-            for done, time in enumerate(film.times, 1):
-                for axes, scene in zip(stages, film.scenes, strict=True):
-                    for artist in (*axes.lines, *axes.patches, *axes.texts):
-                        artist.remove()
-                    axes.set_axis_off()
-                    axes.set_title(f"{scene.title}\n{scene.draw(axes, time) or ' '}", fontsize=10, loc="center")
-                now.set_xdata([time, time])
-                clock.set_text(f"{pace}: {time:.4g} s")
-                writer.grab_frame()
-                figure.set_layout_engine("none")  # what is seen does not jump
-                tell(done)
+        for done, time in enumerate(film.times, 1):
+            for axes, scene in zip(stages, film.scenes, strict=True):
+                for artist in (*axes.lines, *axes.patches, *axes.texts):
+                    artist.remove()
+                axes.set_axis_off()
+                axes.set_title(f"{scene.title}\n{scene.draw(axes, time) or ' '}", fontsize=10, loc="center")
+            now.set_xdata([time, time])
+            clock.set_text(f"{pace}: {time:.4g} s")
+            canvas.draw()
+            figure.set_layout_engine("none")  # what is seen does not jump
+            frames.append(Image.fromarray(np.array(canvas.buffer_rgba())).convert("RGB"))
+            tell(done)
+        # All have the same colours, so that only what changes is stored: a quarter of what PillowWriter stores.
+        some = frames[:: max(1, len(frames) // 24)]
+        colours = Image.fromarray(np.concatenate([np.asarray(one) for one in some])).quantize(128)
+        first, *others = [one.quantize(palette=colours, dither=Image.Dither.NONE) for one in frames]
+        # The last one is seen for 1.5 s before the film begins again.
+        durations = [round(1000 * STEP)] * len(others) + [1500]
+        first.save(partial, "GIF", save_all=True, append_images=others, duration=durations, loop=0, optimize=True)
 
 
 def box(left: float, right: float, bottom: float, top: float) -> NDArray[np.float64]:
