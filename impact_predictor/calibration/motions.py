@@ -62,7 +62,7 @@ class Recorder(Contacts):
 
     def tell(self, message: ContactInput) -> Status:
         assert isinstance(message, Geometry)
-        status = check_points(message.points)
+        status = check_points(message.points, self.scene.most_points)
         if status is Status.ACCEPTED:
             self.points, self.geometry, self.frame_id = message.points, message, message.frame_id
         return status

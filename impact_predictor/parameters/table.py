@@ -76,6 +76,14 @@ _TABLE: Final = (
         "How long a contact is compressed: impacts on points that close within it overlap; 0 keeps them apart.",
         high=1.0,
     ),
+    integer(
+        "contact.most_points",
+        1000,
+        "Number of contact points above which a message about them is refused.",
+        unit="1",
+        low=2,
+        high=100_000,
+    ),
     double(
         "contact.stiffness",
         0.0,

@@ -159,10 +159,9 @@ def points_flaw(numbers: tuple[float, ...]) -> str:
     points = [numbers[k : k + 3] for k in range(0, len(numbers), 3)]
     if len(points) == 1:
         return "a body needs at least two contact points"
-    for k, point in enumerate(points):
-        if point in points[:k]:
-            return f"the points {points.index(point)} and {k} coincide"
-    return ""
+    places = {point: k for k, point in reversed(list(enumerate(points)))}
+    twins = (f"the points {places[point]} and {k} coincide" for k, point in enumerate(points) if places[point] != k)
+    return next(twins, "")
 
 
 def normal_flaw(normal: tuple[float, ...]) -> str:

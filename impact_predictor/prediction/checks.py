@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import islice
 from math import isfinite
 from typing import Final
 
@@ -52,16 +53,21 @@ def followed(stamp: int, last: int | None) -> tuple[Status, int | None]:
     return status, None if last is not None and last - stamp > PAUSE else last
 
 
-def check_points(points: tuple[Vector3, ...]) -> Status:
-    """Whether points can be contact points: at least two, finite, and no two of them one."""
+def check_points(points: tuple[Vector3, ...], most: int) -> Status:
+    """Whether points can be contact points: at least two and at `most` so many, finite, and no two of them one."""
+    if len(points) > most:
+        return Status.TOO_MANY_POINTS
     if not sum([dot(point, point) for point in points], 0.0) < LARGEST:
         return Status.NOT_FINITE
     if len(points) < 2:
         return Status.TOO_FEW_POINTS
     least = COINCIDENT * max([max(abs(x), abs(y), abs(z)) for x, y, z in points])
-    for i, (x, y, z) in enumerate(points):
-        for u, v, w in points[:i]:
-            if abs(x - u) <= least and abs(y - v) <= least and abs(z - w) <= least:
+    ordered = sorted(points)
+    for i, (x, y, z) in enumerate(ordered, 1):
+        for u, v, w in islice(ordered, i, None):
+            if u - x > least:
+                break
+            if abs(y - v) <= least and abs(z - w) <= least:
                 return Status.COINCIDENT_POINTS
     return Status.ACCEPTED
 
@@ -77,6 +83,8 @@ REMEDIES: Final[dict[Status, str]] = {
     "where robot.urdf is given publish joint_states",
     Status.TOO_FEW_POINTS: "a body needs at least two contact points",
     Status.COINCIDENT_POINTS: "two of its points coincide",
+    Status.TOO_MANY_POINTS: "it has more points than contact.most_points; publish those that can touch the ground, or "
+    "raise it",
     Status.MALFORMED: "its bytes are not a message of the topic's type; look at who else publishes there",
     Status.NO_SUPPORT: "nothing is known of the support's motion yet; look whether its source publishes",
     Status.SUPPORT_STALE: "the support's last message is too old; look whether its source still publishes",

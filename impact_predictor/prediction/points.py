@@ -68,7 +68,7 @@ class PointContacts(Contacts):
 
     def tell(self, message: ContactInput) -> Status:
         assert isinstance(message, Geometry)
-        status = check_points(message.points)
+        status = check_points(message.points, self.scene.most_points)
         if status is Status.ACCEPTED:
             if message.points != self.points:
                 self.points = message.points

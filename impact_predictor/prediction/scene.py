@@ -152,7 +152,8 @@ class Scene(NamedTuple):
     `inertia` is about the mass centre; `points` are the contact points, empty where they come with the samples;
     `normal` is the support's unit normal and `height` its distance from the origin along it, in the frame of the
     samples; `tolerance` the gap in m below which a point touches; `contact_time` in s how long a contact lasts, and
-    `merge` its compression, unless its `stiffness` in N/m tells that of a foot (0: it is not known);
+    `merge` its compression, unless its `stiffness` in N/m tells that of a foot (0: it is not known); more than
+    `most_points` contact points in a message are refused;
     `twist_window` in s the time over which the source averages its twist, 0 for a twist of the very instant;
     `horizon` in s how far ahead a touchdown is announced; `samples` how many points carry uncertainty through an
     impact, 0 for none, with the standard deviations of friction and restitution; `margins` whether a touchdown keeps
@@ -181,6 +182,7 @@ class Scene(NamedTuple):
     contact_time: float = 0.005
     merge: float = 0.0015
     stiffness: float = 0.0
+    most_points: int = 1000
     poses: bool = False
     gap_deviation: float = -1.0
     law_deviation: float = 0.15
@@ -224,6 +226,7 @@ class Scene(NamedTuple):
             contact_time=values["contact.time"],
             merge=values["contact.merge"],
             stiffness=values["contact.stiffness"],
+            most_points=values["contact.most_points"],
             poses=values["odom.twist"] == "poses",
             gap_deviation=values["uncertainty.gap"],
             law_deviation=values["uncertainty.law"],

@@ -44,6 +44,7 @@ class Status(IntEnum):
     BELOW_GROUND = 20
     WRONG_JOINTS = 21
     SINGULAR_INERTIA = 22
+    TOO_MANY_POINTS = 23
 
 
 class Bound(Enum):

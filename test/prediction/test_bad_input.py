@@ -137,6 +137,8 @@ def test_the_geometry_must_be_of_the_samples_body() -> None:
         ((), Status.TOO_FEW_POINTS),
         (((0.0, 0.0, 0.0),), Status.TOO_FEW_POINTS),
         (((0.0, 0.0, 0.0), (0.0, 0.0, 0.0)), Status.COINCIDENT_POINTS),
+        (((0.0, 5e-10, 0.0), (0.5, 0.0, 0.0), (4e-10, 0.0, 1.0), (6e-10, 0.0, 0.0)), Status.COINCIDENT_POINTS),
+        (tuple((0.1 * k, 0.0, 0.0) for k in range(1001)), Status.TOO_MANY_POINTS),
         (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (1.0, 1e-12, 0.0)), Status.COINCIDENT_POINTS),
         (((0.1, 0.0, 0.0), (0.1, 1e-10, 0.0)), Status.COINCIDENT_POINTS),
         (((1.0, 0.0, 0.0), (math.nan, 1.0, 0.0)), Status.NOT_FINITE),
