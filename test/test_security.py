@@ -155,8 +155,46 @@ def test_a_chunk_without_content_as_large_as_a_disk_is_not_read(tmp_path: Path) 
     with bag.open("wb") as file:
         file.write(MCAP + channel("/odom") + struct.pack("<BQ", 6, len(head) + LARGEST + 1) + head)
         file.truncate(8 * LARGEST)
-    with pytest.raises(InputError, match="more than the 1,073,741,824 that any may have"):
+    with pytest.raises(InputError, match="more than the 268,435,456 that any may have"):
         list(read_messages(bag, {"/odom": ODOMETRY}))
+
+
+def test_many_chunks_that_become_a_thousand_times_as_long_end_soon(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(chunks, "LARGEST", 1 << 20)
+    zeros, bag = bytes(1 << 19), tmp_path / "bomb.mcap"
+    inner = message() + record(0x80, zeros)
+    whole, bomb = message(b"first"), chunk(inner, says=len(inner))
+    bag.write_bytes(
+        MCAP
+        + channel("/odom")
+        + record(6, struct.pack("<QQQI", 1, 1, len(whole), 0) + text("") + struct.pack("<Q", len(whole)) + whole)
+        + 100 * bomb
+    )
+    messages = read_messages(bag, {"/odom": ODOMETRY})
+    assert next(messages).data == b"first"
+    with pytest.raises(InputError, match="it decompresses to more than 100 times its size"):
+        list(messages)
+
+
+def test_a_blob_of_a_database_that_is_larger_than_any_message_is_damage(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("impact_predictor.bags.sqlite_file.LARGEST", 1 << 20)
+    bag = tmp_path / "run.db3"
+    database = sqlite3.connect(bag)
+    database.executescript(
+        SQLITE + "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER, timestamp INTEGER, data BLOB);"
+        "INSERT INTO messages VALUES(1, 1, 1, x'0102'), (2, 1, 2, zeroblob(64000000)), (3, 1, 3, x'03');"
+    )
+    database.close()
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    messages = read_messages(bag, {"/odom": ODOMETRY})
+    assert next(messages).data == b"\1\2"
+    with pytest.raises(InputError, match="a message has 64,000,000 bytes, more than"):
+        list(messages)
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 32_000
 
 
 COMPUTED = {

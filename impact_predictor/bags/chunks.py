@@ -33,8 +33,11 @@ _DECOMPRESSORS: Final[dict[str, Callable[[], Any]]] = {
 }
 _PIECE: Final = 1 << 20
 
-LARGEST: Final = 1 << 30
+LARGEST: Final = 1 << 28
 """Bytes above which nothing is read or decompressed at once: a bag of a few bytes may claim any number."""
+
+EXPANSION: Final = 100
+"""A file may become so many times as long when it is decompressed, besides `LARGEST`: else it would take hours."""
 
 UNKNOWN: Final = -1
 """Number of messages that nothing tells."""
@@ -49,6 +52,20 @@ class Flaw(Exception):
     def __init__(self, place: int, what: str) -> None:
         super().__init__(what)
         self.place = place
+
+
+class Expansion:
+    """What the compressed parts of a file may still become."""
+
+    def __init__(self, size: int) -> None:
+        """Of a file of so many bytes."""
+        self._left = EXPANSION * size + LARGEST
+
+    def take(self, count: int, place: int = 0) -> None:
+        """Take that the part at a place has become so many bytes; raises Flaw where all together are too many."""
+        self._left -= count
+        if self._left < 0:
+            raise Flaw(place, f"it decompresses to more than {EXPANSION} times its size")
 
 
 class BagChannel(NamedTuple):
@@ -95,7 +112,7 @@ class Chunk(NamedTuple):
     crc: int = 0
     channels: frozenset[int] | None = None
 
-    def unpacked(self, file: BinaryIO) -> bytes:
+    def unpacked(self, file: BinaryIO, expansion: Expansion) -> bytes:
         """Its bytes without compression; of a chunk that was cut off, those that there are.
 
         Raises:
@@ -114,6 +131,8 @@ class Chunk(NamedTuple):
             raise Flaw(self.place, f"a chunk is compressed by {self.compression!r}, which is not known") from error
         except Exception as error:
             raise Flaw(self.place, "a chunk cannot be decompressed") from error
+        if self.compression:
+            expansion.take(len(data), self.place)
         if self.whole and len(data) != self.size:
             raise Flaw(self.place, f"a chunk has {len(data)} bytes instead of {self.size}")
         if self.whole and self.crc and zlib.crc32(data) != self.crc:
@@ -137,6 +156,7 @@ class ChunkedFile(ABC):
         self._channels: dict[int, BagChannel] = {}
         self._chunks: list[Chunk] = []
         self._counts: dict[int, int] = defaultdict(int)
+        self._expansion = Expansion(self.size)
         known = True
         try:
             self._scan()
@@ -169,6 +189,7 @@ class ChunkedFile(ABC):
         """
         by_time = itemgetter(0, 1)
         waiting: list[RawMessage] = []
+        self._expansion = Expansion(self.size)
         flaw: Flaw | None = None
         for chunk in sorted(self._chunks, key=lambda one: (one.start, one.place)):
             if chunk.channels is not None and chunk.channels.isdisjoint(wanted):
@@ -189,7 +210,7 @@ class ChunkedFile(ABC):
             raise flaw
 
     def _loaded(self, chunk: Chunk, wanted: Collection[int]) -> list[RawMessage]:
-        data = chunk.unpacked(self._file)
+        data = chunk.unpacked(self._file, self._expansion)
         try:
             messages = self._messages(chunk, data, wanted)
         except _DAMAGE as error:
@@ -204,7 +225,7 @@ class ChunkedFile(ABC):
             if chunk.channels is not None and chunk.channels <= self._channels.keys():
                 continue
             try:
-                self._chunks[number] = self._learn_from(chunk, chunk.unpacked(self._file))
+                self._chunks[number] = self._learn_from(chunk, chunk.unpacked(self._file, self._expansion))
             except _DAMAGE as error:
                 if chunk.whole:
                     raise Flaw(chunk.place, "a chunk is damaged") from error
@@ -271,11 +292,13 @@ def decompress_file(source: Path, target: Path) -> bool:
     Raises:
         OSError: a file cannot be read or written.
     """
+    expansion = Expansion(source.stat().st_size)
     with zstd.open(source, "rb") as packed, target.open("wb") as file:
         try:
             # Not `read`: it keeps back what comes right before the damage.
             while piece := packed.read1(_PIECE):
+                expansion.take(len(piece))
                 file.write(piece)
-        except (EOFError, zstd.ZstdError):
+        except (EOFError, zstd.ZstdError, Flaw):
             return False
     return True

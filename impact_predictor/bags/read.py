@@ -13,7 +13,7 @@ from typing import Any, Final, NamedTuple
 from ..errors import InputError
 from ..ros.messages import MalformedMessage
 from ..wording import counted, listed
-from .chunks import UNKNOWN, ZSTD_MAGIC, BagChannel, Flaw, decompress_file, decompressed_message
+from .chunks import UNKNOWN, ZSTD_MAGIC, BagChannel, Expansion, Flaw, decompress_file, decompressed_message
 from .find import COMPRESSED, files_of, storage_of
 from .mcap_file import McapFile
 from .ros1_file import Ros1File
@@ -147,11 +147,13 @@ class Bag:
         read = first = last = 0
         for one in self._files:
             chosen = {channel.id: channel for channel in one.channels if _is_wanted(channel, wanted)}
+            expansion = Expansion(one.size)
             try:
                 for log_time, _, id_, data in one.messages(chosen):
                     channel = chosen[id_]
                     if data[:4] == ZSTD_MAGIC:
                         data = decompressed_message(data)
+                        expansion.take(len(data))
                     if to_cdr is not None and channel.encoding == "ros1":
                         data = bytes(to_cdr(data, channel.type_name))
                     yield BagMessage(channel.topic, log_time, data)

@@ -15,7 +15,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import BinaryIO, Final, NamedTuple
 
-from .chunks import BagChannel, Flaw, RawMessage
+from .chunks import LARGEST, BagChannel, Flaw, RawMessage
 
 _DAMAGED: Final = "SQLite finds it damaged"
 _LEAF: Final = 0x0D
@@ -71,8 +71,12 @@ class SqliteFile:
             if self._cut:
                 raise sqlite3.DatabaseError
             rows = f"topic_id IN ({', '.join('?' for _ in wanted)}) ORDER BY timestamp, id"
-            select = f"SELECT timestamp, id, topic_id, data FROM messages WHERE {rows}"
+            # SQLite holds several copies of what it reads.
+            data = f"CASE WHEN length(data) <= {LARGEST} THEN data ELSE length(data) END"
+            select = f"SELECT timestamp, id, topic_id, {data} FROM messages WHERE {rows}"
             for log_time, row, topic, data in self._database.execute(select, tuple(wanted)):
+                if isinstance(data, int) and data > LARGEST:
+                    raise Flaw(0, f"a message has {data:,} bytes, more than the {LARGEST:,} that any may have")
                 if not (isinstance(log_time, int) and isinstance(data, bytes)):
                     raise sqlite3.DatabaseError("a message has no time or no bytes")
                 yield RawMessage(log_time, 0, topic, data)
@@ -158,6 +162,8 @@ class SqliteFile:
 
     def _data(self, file: BinaryIO, row: _MessageRow) -> bytes | None:
         """The data of a message, or None where they are not all there."""
+        if row.size > LARGEST:
+            return None
         file.seek(row.place)
         record = bytearray(file.read(row.local))
         following = file.read(4)

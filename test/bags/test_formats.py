@@ -14,7 +14,7 @@ from rosbags.rosbag2 import StoragePlugin
 from rosbags.rosbag2.enums import CompressionMode
 
 from impact_predictor.bags import read as reading
-from impact_predictor.bags.chunks import Chunk
+from impact_predictor.bags.chunks import Chunk, Expansion
 from impact_predictor.bags.read import BagMessage, read_messages, topics
 from impact_predictor.bags.replay import replay
 from impact_predictor.errors import InputError
@@ -139,9 +139,9 @@ def test_chunks_without_wanted_topics_are_not_even_decompressed(
     opened: list[int] = []
     unpacked = Chunk.unpacked
 
-    def counted(chunk: Chunk, file: BinaryIO) -> bytes:
+    def counted(chunk: Chunk, file: BinaryIO, expansion: Expansion) -> bytes:
         opened.append(chunk.place)
-        return unpacked(chunk, file)
+        return unpacked(chunk, file, expansion)
 
     monkeypatch.setattr(Chunk, "unpacked", counted)
     assert read(path) == MESSAGES
