@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Sequence
+from errno import EPIPE
 from typing import Any, Final
 
 import click
@@ -43,6 +45,7 @@ class Program(click.Group):
         """Run a command and end the process with its exit status."""
         try:
             status = self._run(args, prog_name, complete_var, standalone_mode=False, **extra)
+            sys.stdout.flush()
         except InputError as error:
             click.echo(f"error: {error}", err=True)
             status = WRONG_INPUT
@@ -51,6 +54,14 @@ class Program(click.Group):
             status = error.exit_code
         except click.Abort:
             status = INTERRUPTED
+        except OSError as error:
+            # Files that cannot be written are an InputError; a reader of a pipe that has gone is click's matter.
+            if error.errno == EPIPE or error.filename is not None:
+                raise
+            click.echo(f"error: the output cannot be written: {error.strerror or error}", err=True)
+            # What is left of it cannot be written at the end of the process either.
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            status = WRONG_INPUT
         sys.exit(status)
 
     def _run(self, *arguments: Any, **extra: Any) -> Any:

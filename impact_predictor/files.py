@@ -1,4 +1,4 @@
-"""Files that have their name only when they are whole."""
+"""Files that have their name only when they are whole, and texts that are read only where they are files and short."""
 
 from __future__ import annotations
 
@@ -6,8 +6,25 @@ import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from stat import S_ISDIR, S_ISREG
 
 from .errors import InputError
+
+
+def text_of(path: Path, most: int = 1 << 20) -> str:
+    """The text of a file of at `most` so many bytes.
+
+    Raises:
+        InputError: it is larger, or no file: a pipe may never end.
+        OSError: it cannot be read.
+        UnicodeDecodeError: it is not UTF-8.
+    """
+    about = path.stat()
+    if not (S_ISREG(about.st_mode) or S_ISDIR(about.st_mode)):
+        raise InputError("it is no file, but a pipe or a device; give a file")
+    if about.st_size > most:
+        raise InputError(f"it has {about.st_size:,} bytes, more than the {most:,} that are read; give a shorter one")
+    return path.read_text(encoding="utf-8")
 
 
 def named(path: str | os.PathLike[str], what: str, suffixes: Sequence[str] = ()) -> Path:

@@ -357,3 +357,19 @@ def test_a_reader_that_goes_away_is_no_reason_for_a_traceback(arguments: list[st
     assert process.stderr.read() == b""
     process.stderr.close()
     process.wait()
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that takes nothing")
+def test_an_output_that_cannot_be_written_is_one_sentence() -> None:
+    with Path("/dev/full").open("w") as full:
+        solved = subprocess.run(
+            [sys.executable, "-m", "impact_predictor", *PLATE, "--omega", "-1"],
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            check=False,
+        )
+    assert (solved.returncode, solved.stderr) == (
+        2,
+        "error: the output cannot be written: No space left on device\n",
+    )

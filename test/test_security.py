@@ -4,6 +4,7 @@ graph is what it does.
 
 from __future__ import annotations
 
+import os
 import resource
 import sqlite3
 import struct
@@ -195,6 +196,32 @@ def test_a_blob_of_a_database_that_is_larger_than_any_message_is_damage(
     with pytest.raises(InputError, match="a message has 64,000,000 bytes, more than"):
         list(messages)
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 32_000
+
+
+@pytest.mark.parametrize("name", ["run.mcap", "run.db3", "run/metadata.yaml", "scene.yaml"])
+def test_a_pipe_in_the_place_of_a_file_is_refused_at_once_though_nobody_ever_writes_into_it(
+    tmp_path: Path, name: str
+) -> None:
+    bag = folder(tmp_path / "run", "{}")
+    (tmp_path / name).unlink(missing_ok=True)
+    os.mkfifo(tmp_path / name)
+    if name == "scene.yaml":
+        with pytest.raises(InputError, match=r"scene\.yaml: it is no file, but a pipe or a device"):
+            read_values(tmp_path / name)
+    elif name.startswith("run/"):
+        # Where the metadata are none the files of the folder are read.
+        assert topics(bag) == {"/odom": ODOMETRY}
+    else:
+        with pytest.raises(InputError, match="is not a bag, but a pipe or a device"):
+            topics(tmp_path / name)
+
+
+def test_a_parameter_file_that_is_far_too_long_is_not_read(tmp_path: Path) -> None:
+    scene = tmp_path / "scene.yaml"
+    with scene.open("w") as file:
+        file.truncate(1 << 40)
+    with pytest.raises(InputError, match="more than the 1,048,576 that are read"):
+        read_values(scene)
 
 
 COMPUTED = {

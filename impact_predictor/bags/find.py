@@ -11,6 +11,7 @@ from pathlib import Path, PurePath
 from typing import Any, Final
 
 from ..errors import InputError
+from ..files import text_of
 
 STORAGES: Final = (".mcap", ".db3")
 """Suffixes of the files in a rosbag2 folder, each also with `COMPRESSED` behind it."""
@@ -20,6 +21,7 @@ ACTIVE: Final = ".active"
 """Follows the name of a ROS 1 bag until its recorder closes it."""
 
 METADATA: Final = "metadata.yaml"
+_LARGEST_METADATA: Final = 1 << 22
 KINDS: Final = "an .mcap, .db3 or ROS 1 .bag file, or a rosbag2 folder"
 
 _UNFINISHED: Final = ".partial"
@@ -110,6 +112,8 @@ def files_of(path: Path) -> tuple[list[Path], dict[tuple[str, str], int], str]:
     if not path.is_dir():
         if not storage_of(path):
             raise InputError(f"{path} is not a bag; give {KINDS}")
+        if not path.is_file():
+            raise InputError(f"{path} is not a bag, but a pipe or a device; give {KINDS}")
         return [path], {}, ""
     flaw = ""
     if (path / METADATA).exists():
@@ -143,7 +147,7 @@ def _metadata(path: Path) -> tuple[list[str], dict[tuple[str, str], int]]:
     from ruamel.yaml.error import YAMLError
 
     try:
-        about: Any = YAML(typ="safe").load(path.read_text())["rosbag2_bagfile_information"]
+        about: Any = YAML(typ="safe").load(text_of(path, _LARGEST_METADATA))["rosbag2_bagfile_information"]
         names = list(about["relative_file_paths"])
         topics = [(one["topic_metadata"], one["message_count"]) for one in about["topics_with_message_count"]]
         counts = {(topic["name"], topic["type"]): count for topic, count in topics}

@@ -72,8 +72,8 @@ class SqliteFile:
                 raise sqlite3.DatabaseError
             rows = f"topic_id IN ({', '.join('?' for _ in wanted)}) ORDER BY timestamp, id"
             # SQLite holds several copies of what it reads.
-            data = f"CASE WHEN length(data) <= {LARGEST} THEN data ELSE length(data) END"
-            select = f"SELECT timestamp, id, topic_id, {data} FROM messages WHERE {rows}"
+            bounded = f"CASE WHEN length(data) <= {LARGEST} THEN data ELSE length(data) END"
+            select = f"SELECT timestamp, id, topic_id, {bounded} FROM messages WHERE {rows}"
             for log_time, row, topic, data in self._database.execute(select, tuple(wanted)):
                 if isinstance(data, int) and data > LARGEST:
                     raise Flaw(0, f"a message has {data:,} bytes, more than the {LARGEST:,} that any may have")

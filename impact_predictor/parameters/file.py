@@ -29,6 +29,7 @@ from ruamel.yaml.events import (
 )
 
 from ..errors import InputError
+from ..files import text_of
 from .validation import Value, validate
 
 Scalar = bool | int | float | str
@@ -92,7 +93,7 @@ def read_parameters(path: str | os.PathLike[str], node: str = "impact_predictor"
     """
     path = Path(path)
     try:
-        root = _parse(path.read_text(encoding="utf-8"))
+        root = _parse(text_of(path))
         sections: dict[str, list[ParameterEntry]] = {}
         for name, entries in _sections(root) if root is not None else ():
             # A section that goes on further down keeps its place in the order, as in rcl.
