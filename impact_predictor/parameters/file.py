@@ -7,6 +7,7 @@ which reading was meant.
 
 from __future__ import annotations
 
+import logging
 import math
 import os
 import re
@@ -30,7 +31,7 @@ from ruamel.yaml.events import (
 
 from ..errors import InputError
 from ..files import text_of
-from .validation import Value, validate
+from .validation import Value, foreign, validate
 
 Scalar = bool | int | float | str
 FileValue = Scalar | list[Scalar]
@@ -129,7 +130,12 @@ def read_values(path: str | os.PathLike[str]) -> dict[str, Value]:
     """
     given = read_parameters(path)
     try:
-        return validate(given)
+        values = validate(given)
+        for name in foreign(given):
+            logging.getLogger(__name__).warning(
+                "note: %s of %s is no parameter of impact_predictor, and passed over", name, os.fspath(path)
+            )
+        return values
     except InputError as error:
         raise InputError(f"the parameter file {os.fspath(path)}: {error}") from error
 

@@ -20,6 +20,10 @@ _TAKEN: Final = frozenset(name.partition(".")[0] for name in (*PARAMETERS, *_OF_
 """First words of parameters, which the name of a body would hide."""
 
 
+NEARLY: Final = 0.75
+"""How like one of ours the name of an unknown parameter is, from 0 to 1, when it is taken for misspelt, not foreign."""
+
+
 def is_of_every_node(name: str) -> bool:
     """Whether a parameter belongs to ROS itself, so that it may stand beside those of this program."""
     return name in _OF_EVERY_NODE or name.startswith(_QOS_OVERRIDES)
@@ -30,15 +34,16 @@ def validate(values: Mapping[str, object]) -> dict[str, Value]:
 
     With `bodies`, those that are given for one of them follow as <body>.<parameter>, and of a parameter without default
     that is given for each of them alone there is no common value; nor of one that the model of a machine tells, where
-    it is not given. Parameters that every ROS node has are passed over.
+    it is not given. Parameters that every ROS node has are passed over, and `foreign` ones.
     `impact_predictor.prediction.scene.scenes_of` makes the scenes of them.
 
     Raises:
-        InputError: a name is unknown, a value has the wrong type or is out of range, one without default is missing, or
-            values do not fit together.
+        InputError: a name is nearly that of a parameter, a value has the wrong type or is out of range, one without
+            default is missing, or values do not fit together.
     """
-    given = {name: value for name, value in values.items() if not is_of_every_node(name)}
-    bodies: Any = check(PARAMETERS["bodies"], given.get("bodies", ()))
+    bodies: Any = check(PARAMETERS["bodies"], values.get("bodies", ()))
+    passed_over = set(foreign(values))
+    given = {name: value for name, value in values.items() if not (is_of_every_node(name) or name in passed_over)}
     for body in bodies:
         if body in _TAKEN:
             raise InputError(f"a body cannot be named {body}, as parameters begin with that; give it another name")
@@ -61,6 +66,31 @@ def validate(values: Mapping[str, object]) -> dict[str, Value]:
     for body in of_each:
         check_body(body, values_of(checked, body), set(given))
     return checked
+
+
+def foreign(values: Mapping[str, Any]) -> list[str]:
+    """The names of values that are surely meant for other nodes: several may share a file."""
+    bodies = values.get("bodies", ())
+    of_nodes = [name for name in values if not is_of_every_node(name)]
+    return [name for name in of_nodes if name not in PARAMETERS and not _is_nearly_ours(name, bodies)]
+
+
+def _is_nearly_ours(name: str, bodies: Sequence[str]) -> bool:
+    first, _, common = name.partition(".")
+    return (
+        not name.isprintable()
+        or first in (*_TAKEN, *bodies, "")
+        or common in PARAMETERS
+        or not RETIRED.keys().isdisjoint((name, common))
+        or bool(_near(name, bodies, NEARLY))
+    )
+
+
+def _near(name: str, bodies: Sequence[str], likeness: float) -> list[str]:
+    """The names of parameters that are like a name."""
+    of_bodies = [f"{body}.{one.name}" for body in bodies for one in PARAMETERS.values() if not one.shared]
+    known = [one for one in PARAMETERS if one.endswith(f".{name}")]
+    return known or difflib.get_close_matches(name, [*PARAMETERS, *of_bodies], n=1, cutoff=likeness)
 
 
 def parameter_of(name: str) -> Parameter:
@@ -110,7 +140,5 @@ def _hint(name: str, bodies: Sequence[str]) -> str:
     body, _, common = name.partition(".")
     if common in PARAMETERS and body not in _TAKEN:
         return f", for {body} is not among the bodies: {', '.join(bodies)}" if bodies else ", for bodies is not given"
-    of_bodies = [f"{body}.{one.name}" for body in bodies for one in PARAMETERS.values() if not one.shared]
-    known = [one for one in PARAMETERS if one.endswith(f".{name}")]
-    close = known or difflib.get_close_matches(name, [*PARAMETERS, *of_bodies], n=1, cutoff=0.5)
+    close = _near(name, bodies, 0.5)
     return f", did you mean {close[0]}?" if close else f"; there are {', '.join(PARAMETERS)}"

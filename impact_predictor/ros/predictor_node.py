@@ -7,19 +7,22 @@ from array import array
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
 from difflib import get_close_matches
+from functools import partial
 from itertools import chain
 from typing import Any, Final
 
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor, SetParametersResult
+from rcl_interfaces.srv import SetParameters, SetParametersAtomically
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 from rclpy.exceptions import ParameterException
 from rclpy.node import Node
 from rclpy.parameter import Parameter as NodeParameter
+from rclpy.service import Service
 
 from ..errors import InputError
 from ..mechanics.compiled import told_of_compiling
-from ..parameters.validation import Parameter, Value, check_change, is_of_every_node, parameter_of, validate
+from ..parameters.validation import Parameter, Value, check_change, foreign, is_of_every_node, parameter_of, validate
 from ..prediction.monitor import Monitor
 from ..prediction.scene import CONTACT_GEOMETRY, FEET_STATES, ODOM, Scene, inputs_of, scenes_of
 from .endpoints import Misfits
@@ -28,6 +31,7 @@ from .reporter import Reporter
 from .topics import BodyTopics, InputTopic
 
 _QOS_OVERRIDES: Final = "qos_overrides."
+_TYPES: Final = frozenset(one.value for one in NodeParameter.Type)
 
 
 class PredictorNode(Node):
@@ -81,7 +85,18 @@ class PredictorNode(Node):
         self._misfits = Misfits(self, self._inputs.values(), outputs)
         # By a steady clock, so that the node reports while simulated time stands still.
         self.create_timer(1.0, self._on_second, clock=Clock(clock_type=ClockType.STEADY_TIME))
-        _check_qos_overrides(self)
+        for name in self._settings.foreign:
+            self.get_logger().warning(f"{name} is no parameter of impact_predictor, and passed over")
+        for said in _overrides_of_others(self):
+            self.get_logger().warning(said)
+
+    def create_service(
+        self, srv_type: Any, srv_name: str, callback: Callable[[Any, Any], Any], **options: Any
+    ) -> Service:
+        """As of any node; but parameters of a type that ROS does not have are refused, and do not end the node."""
+        if srv_type in (SetParameters, SetParametersAtomically):
+            callback = partial(_of_known_types, callback)
+        return super().create_service(srv_type, srv_name, callback, **options)
 
     def set_parameters_atomically(self, parameter_list: list[NodeParameter]) -> SetParametersResult:
         """Set parameters while the node runs: all of them, for the next sample, or none, with the reason.
@@ -94,18 +109,19 @@ class PredictorNode(Node):
         except InputError as error:
             return SetParametersResult(successful=False, reason=str(error))
         # What is left are parameters of ROS itself, which it may refuse, and values that it cannot refuse any more.
-        others = [one for one in parameter_list if is_of_every_node(one.name)]
+        ours = self._settings.ours(parameter_list)
+        others = [one for one in parameter_list if one.name not in ours]
         if others:
             result = super().set_parameters_atomically(others)
             if not result.successful:
                 return result
         change()
-        ours = self._settings.take([one for one in parameter_list if one not in others], values)
-        if not ours:
+        taken = self._settings.take([one for one in parameter_list if one.name in ours], values)
+        if not taken:
             return SetParametersResult(successful=True)
         self._reporter.markers.begin_anew()
-        self.get_logger().info(f"from now on {', '.join(f'{one.name} is {one.value}' for one in ours)}")
-        return super().set_parameters_atomically(ours)
+        self.get_logger().info(f"from now on {', '.join(f'{one.name} is {one.value}' for one in taken)}")
+        return super().set_parameters_atomically(taken)
 
     def _on_second(self) -> None:
         for one in self._told:
@@ -146,6 +162,8 @@ class NodeParameters:
         self._node = node
         self._given = {name: _plain(parameter.value) for name, parameter in parameters.items()}
         self.values = validate(self._given)
+        self.foreign = foreign(self._given)
+        """Parameters in the place of ours that are surely meant for other nodes."""
         for name, depth in self._given.items():
             if name.startswith(_QOS_OVERRIDES) and name.endswith(".depth") and not (type(depth) is int and depth > 0):
                 raise InputError(
@@ -158,12 +176,17 @@ class NodeParameters:
                 self._declare(name, value)
 
     def _declare(self, name: str, value: Value) -> None:
-        parameter = parameter_of(name)
-        plain: Any = value
-        if isinstance(value, tuple):
-            # An empty list does not say of what; declared by its type alone, the parameter is not set.
-            plain = list(value) or NodeParameter.Type[parameter.kind.upper()]
-        self._node.declare_parameter(name, plain, _descriptor(parameter))
+        # An empty list does not say of what; and one parameter that is declared without a value is enough for the
+        # parameter services to tell none at all.
+        if value != ():
+            plain = list(value) if isinstance(value, tuple) else value
+            self._node.declare_parameter(name, plain, _descriptor(parameter_of(name)))
+
+    def ours(self, parameters: Sequence[NodeParameter]) -> dict[str, Any]:
+        """The values of parameters that are neither of every node nor foreign."""
+        values = {one.name: _plain(one.value) for one in parameters if not is_of_every_node(one.name)}
+        passed_over = foreign({**self._given, **values})
+        return {name: value for name, value in values.items() if name not in passed_over}
 
     def changed(self, parameters: Sequence[NodeParameter]) -> dict[str, Value]:
         """The values that would hold with others for some parameters; nothing is changed.
@@ -171,7 +194,10 @@ class NodeParameters:
         Raises:
             InputError: one is refused as at the start, or cannot change while the node runs.
         """
-        others = _ours(parameters)
+        others = self.ours(parameters)
+        for one in parameters:
+            if not (one.name in others or is_of_every_node(one.name) or self._node.has_parameter(one.name)):
+                raise InputError(f"there is no parameter {one.name}")
         for name, value in others.items():
             if value is None:
                 raise InputError(f"the parameter {name} cannot be deleted while the node runs; give it another value")
@@ -181,7 +207,7 @@ class NodeParameters:
 
     def take(self, parameters: Sequence[NodeParameter], values: dict[str, Value]) -> list[NodeParameter]:
         """Take values that `changed` has made; the parameters that the node itself has still to set."""
-        others = _ours(parameters)
+        others = self.ours(parameters)
         for name in others:
             if not self._node.has_parameter(name):
                 self._declare(name, values[name])
@@ -190,9 +216,18 @@ class NodeParameters:
         return [one for one in parameters if one.name not in others or was.get(one.name) != values[one.name]]
 
 
-def _ours(parameters: Sequence[NodeParameter]) -> dict[str, Any]:
-    """The values of parameters that are not of every node."""
-    return {one.name: _plain(one.value) for one in parameters if not is_of_every_node(one.name)}
+def _of_known_types(callback: Callable[[Any, Any], Any], request: Any, response: Any) -> Any:
+    """The answer to a request to set parameters, refused where a type is unknown, which rclpy would raise at."""
+    for one in request.parameters:
+        if one.value.type not in _TYPES:
+            reason = f"the parameter {one.name} has the type {one.value.type}, which ROS does not have"
+            refused = SetParametersResult(successful=False, reason=reason)
+            if hasattr(response, "results"):
+                response.results = [refused] * len(request.parameters)
+            else:
+                response.result = refused
+            return response
+    return callback(request, response)
 
 
 def _plain(value: Any) -> Any:
@@ -218,18 +253,14 @@ def _descriptor(parameter: Parameter) -> ParameterDescriptor:
     )
 
 
-def _check_qos_overrides(node: Node) -> None:
-    """Find overrides of QoS that fit no topic of a node that has all its topics.
-
-    Raises:
-        InputError: there is one.
-    """
+def _overrides_of_others(node: Node) -> list[str]:
+    """What is to say of overrides of QoS that fit no topic of a node that has all its topics."""
     known = [f"{one.topic_name}.subscription" for one in node.subscriptions]
     known += [f"{one.topic_name}.publisher" for one in node.publishers if one.topic_name != "/parameter_events"]
-    for name in node.get_parameters_by_prefix("qos_overrides"):
-        endpoint = name.rpartition(".")[0]
-        if endpoint not in known:
-            near = get_close_matches(endpoint, known, 5, 0.0)
-            raise InputError(
-                f"the parameter {_QOS_OVERRIDES}{name} is of no topic of this node; near it there are {', '.join(near)}"
-            )
+    overrides = {name: name.rpartition(".")[0] for name in node.get_parameters_by_prefix("qos_overrides")}
+    return [
+        f"the parameter {_QOS_OVERRIDES}{name} is of no topic of this node; near it there are "
+        f"{', '.join(get_close_matches(endpoint, known, 5, 0.0))}"
+        for name, endpoint in overrides.items()
+        if endpoint not in known
+    ]

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import array
 import math
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from impact_predictor.errors import InputError
-from impact_predictor.parameters.validation import PARAMETERS, is_of_every_node, validate
+from impact_predictor.parameters.file import read_values
+from impact_predictor.parameters.validation import PARAMETERS, foreign, is_of_every_node, validate
 
 NO_BODY = "no body has it: about each axis, inertia is at most the sum of that about the two axes across it"
 REQUIRED: dict[str, Any] = {"body.mass": 0.37, "body.inertia": [8.1e-4], "contact.friction": 0.18}
@@ -103,7 +105,8 @@ def test_a_value_that_is_not_allowed_is_told_with_those_that_are(
         ({"body.masss": 1.0}, "there is no parameter body.masss, did you mean body.mass?"),
         ({"friction": 1.0}, "there is no parameter friction, did you mean contact.friction?"),
         ({"transverse_slip": False}, "there is no parameter transverse_slip any more: friction opposes the whole slip"),
-        ({"zzz": 1.0}, f"there is no parameter zzz; there are {', '.join(PARAMETERS)}"),
+        ({"body.zzz": 1.0}, "there is no parameter body.zzz"),
+        ({"crate.horizon": 0.1}, "there is no parameter crate.horizon, for bodies is not given"),
         # One line, whatever the name is.
         *[({name: 1.0}, f"there is no parameter {name!r}") for name in ("a\nb", "", "a\0b")],
     ],
@@ -182,3 +185,22 @@ def test_parameters_of_every_node_are_passed_over() -> None:
     }
     assert all(is_of_every_node(name) for name in of_ros)
     assert validate({**REQUIRED, **of_ros}) == validate(REQUIRED)
+
+
+@pytest.mark.parametrize(
+    "name", ["zzz", "controller.gains.p", "FollowPath.max_vel_x", "robot_description", "use_gpu", "camera_name"]
+)
+def test_a_parameter_of_another_node_in_a_shared_file_is_passed_over(name: str) -> None:
+    others = {**REQUIRED, name: 1.0, "use_sim_time": True}
+    assert foreign(others) == [name]
+    assert validate(others) == validate(REQUIRED)
+
+
+def test_a_file_that_is_shared_with_another_node_is_read_with_a_note(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    scene = tmp_path / "scene.yaml"
+    given = "controller: {p: 2.0}, body: {mass: 1.0, inertia: [1.0]}, contact: {friction: 0.5}"
+    scene.write_text(f"/**:\n  ros__parameters: {{{given}}}\n")
+    assert read_values(scene)["body.mass"] == 1.0
+    assert caplog.messages == [f"note: controller.p of {scene} is no parameter of impact_predictor, and passed over"]

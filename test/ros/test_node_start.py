@@ -111,7 +111,6 @@ def sentence_of(finished):
         (("--params-file", SCENE, "-p", "executor:=fast"), "'single' or 'events'"),
         (("--params-file", SCENE, "-p", "qos_overrides./odom.subscription.reliability:=maybe"), "maybe"),
         (("--params-file", SCENE, "-p", "qos_overrides./odom.subscription.depth:=many"), "whole number of messages"),
-        (("--params-file", SCENE, "-p", "qos_overrides./odm.subscription.depth:=9"), "is of no topic of this node"),
         (("--params-file", "nowhere.yaml"), "nowhere.yaml"),
         (("--params-file", __file__), "test_node_start.py"),
     ],

@@ -10,6 +10,9 @@ pytest.importorskip("rclpy", reason="the node needs ROS 2: source it, or install
 import rclpy
 from graph import peer_of_node, running_node
 from nav_msgs.msg import Odometry
+from rcl_interfaces.msg import Parameter as ParameterMessage
+from rcl_interfaces.msg import ParameterValue
+from rcl_interfaces.srv import SetParameters, SetParametersAtomically
 from rclpy.parameter import Parameter
 from rclpy.parameter_client import AsyncParameterClient
 from rclpy.qos import QoSProfile
@@ -200,5 +203,20 @@ def test_parameters_are_taken_all_together_for_the_next_sample_or_refused_in_the
         # As from a file: what does not change may be given again, also where it could not change.
         results = told(client.set_parameters(settings(executor=executor, law="path", horizon=0.5)))
         assert all(one.successful for one in results.results)
+        names = told(client.list_parameters([], 10)).result.names
+        values = told(client.get_parameters(names)).values
+        # As `ros2 param dump` asks for them: one without a value, and none would be told.
+        assert len(values) == len(names) > 30
+        assert all(one.type for one in values)
+        for service, kind in (
+            ("set_parameters", SetParameters),
+            ("set_parameters_atomically", SetParametersAtomically),
+        ):
+            unknown = ParameterMessage(name="horizon", value=ParameterValue(type=77))
+            asked = peer.node.create_client(kind, f"/impact_predictor/{service}")
+            answer_of = told(asked.call_async(kind.Request(parameters=[unknown])))
+            (refused,) = answer_of.results if service == "set_parameters" else [answer_of.result]
+            assert refused.reason == "the parameter horizon has the type 77, which ROS does not have"
+        assert "there is no parameter zzz" in refusal(zzz=0.5)
         assert "from now on contact.friction is 1.5, contact.restitution is 0.9" in node.complained()
         assert "Traceback" not in node.complained()
