@@ -2,9 +2,9 @@
 
     python benchmarks/bench_walker.py [RUNS]
 
-Once without noise and once with that of `walker_noise.py`. Each run goes over the whole record; of each sample the
-fastest run counts, so that other programs disturb little. Messages are decoded before. Samples are told apart by how
-many landings they announce.
+Once without noise and once with that of `walker_times.py --world`. Each run goes over the whole record; of each sample
+the fastest run counts, so that other programs disturb little. Messages are decoded before. Samples are told apart by
+how many landings they announce.
 """
 
 from __future__ import annotations
@@ -16,8 +16,7 @@ from time import perf_counter_ns
 import numpy as np
 from rich.console import Console
 from rich.table import Table
-from walker_noise import plan, scene
-from walker_sensors import noisy
+from walker_times import noisy, plan, scene
 
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene
@@ -46,7 +45,7 @@ def main() -> int:
     clean = [(one.sample, one.geometry) for one in plan() if one.sample is not None and one.geometry is not None]
     records: dict[str, Record] = {
         "no noise": clean,
-        "1 mm, 0.02 m/s": [noisy(sample, geometry, rng) for sample, geometry in clean],
+        "1 mm, 0.02 m/s": [noisy(sample, geometry, rng, on_robot=False) for sample, geometry in clean],
         "no velocities of the feet": [(sample, geometry._replace(velocities=())) for sample, geometry in clean],
     }
     table = Table("us per sample", "landings ahead", "samples", "median", "mean", "99 %")

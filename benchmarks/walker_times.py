@@ -1,19 +1,23 @@
 """How right the told landing times of walking machines are, beside the answers that anybody would try first.
 
-    python benchmarks/walker_times.py [--json FILE] [--seed N] [BAG SCENE]...
+    python benchmarks/walker_times.py [--json FILE] [--seed N [--world]] [BAG SCENE]...
 
-Each BAG has /odom, /contact_geometry and the true landings on /truth/landings; without bags it is the plan of HyQ.
+Each BAG has /odom, /contact_geometry or /feet_states, and the true landings on /truth/landings; a schedule and the
+terrain are told too. Without bags it is the plan of HyQ.
 Prints for each record, 50, 20 and 10 ms before its true landings: the median error of the told time and what 90 % are
 below, the part of the landings that is told by then, and for the product how often the truth lies within one and two
 told standard deviations. `false` counts rows of samples that told a landing, no more than 50 ms ahead, that did not
-come within 30 ms. The simple answers are asked at the same samples, of feet that the product takes to swing:
+come within 30 ms. Of true landings `noticed` is the part after which the foot is told to stand within 10 ms, and
+`stamped` that which is dated within 2 ms; `none` counts landings that are told to have happened, and did not within
+50 ms. The simple answers are asked at the same samples, of feet that the product takes to swing:
 
 - speed: the gap over its speed in the last 10 ms,
 - parabola, cubic: those nearest to the gaps of the last 30 and 60 ms (least squares),
 - clock: the planned landing next to come, or without a plan the last true landing and the true stride before it.
 
 `worse` is the mean error 20 ms ahead less that of the gap over its speed, where both are told, with the 95 % interval
-of a bootstrap over landings. With a seed all samples get the noise of `walker_sensors.py`.
+of a bootstrap over landings. With a seed all samples get noise of 1 mm on each coordinate and 0.02 m/s on each part of
+each velocity, of the trunk and of the feet, which are told relative to the noisy trunk, or with --world beside it.
 """
 
 from __future__ import annotations
@@ -29,27 +33,50 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 from rich.console import Console
-from walker_noise import plan, scene
-from walker_sensors import noisy
 
+from impact_predictor.bags.adapters import Adapted, readers
 from impact_predictor.bags.read import Bag
 from impact_predictor.parameters.file import read_values
 from impact_predictor.prediction.predictor import Predictor
-from impact_predictor.prediction.scene import CONTACT_GEOMETRY, ODOM, SCHEDULE, Scene, scenes_of
-from impact_predictor.prediction.types import Geometry, Sample, Schedule
+from impact_predictor.prediction.scene import (
+    CONTACT_GEOMETRY,
+    FEET_STATES,
+    ODOM,
+    SCHEDULE,
+    TERRAIN,
+    Scene,
+    Walking,
+    scenes_of,
+)
+from impact_predictor.prediction.types import FeetStates, Geometry, Sample, Schedule, Score, Terrain, Vector3
 from impact_predictor.prediction.vectors import axes_of, to_world
 from impact_predictor.report.table import plain_table, show
 from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY, INPUT_TYPES
 from impact_predictor.scenarios.landing import LANDING_TOPIC, decode_true_landings
 
-KINDS: Final = (ODOM, CONTACT_GEOMETRY, SCHEDULE)
+ROOT: Final = Path(__file__).resolve().parents[1]
+PLAN: Final = ROOT / "examples/hyq/hyq.bag", "/xpp/state_des", "xpp_msgs/msg/RobotStateCartesian"
+KINDS: Final = (ODOM, CONTACT_GEOMETRY, FEET_STATES, SCHEDULE, TERRAIN)
+POSITION: Final = 1e-3
+"""Standard deviation of the noise of each coordinate, in m ..."""
+VELOCITY: Final = 0.02
+"""... and of each part of a velocity, in m/s."""
 LEAD_TIMES: Final = (0.05, 0.02, 0.01)
 TOLD: Final = 0.05
 """A row of samples tells a landing when it does so no further ahead than this, in s."""
 TRUE: Final = 0.03
 """Seconds from the told landing within which a true one makes it no false alarm."""
 RESAMPLED: Final = 2000
+NOTICED: Final = 10_000_000
+"""Nanoseconds after a landing within which it is noticed ..."""
+STAMPED: Final = 2_000_000
+"""... within which its stamp is right ..."""
+HAPPENED: Final = 50_000_000
+"""... and within which it has happened at all."""
 LINES: Final = ("product", "speed", "parabola", "cubic", "clock")
+
+
+Message = Sample | Geometry | FeetStates | Schedule | Terrain
 
 
 class Walk(NamedTuple):
@@ -57,7 +84,7 @@ class Walk(NamedTuple):
 
     name: str
     scene: Scene
-    messages: Sequence[Sample | Geometry | Schedule]
+    messages: Sequence[Message]
     landings: Mapping[str, Sequence[int]]
 
 
@@ -76,6 +103,14 @@ class Line(NamedTuple):
     deviations: Mapping[float, np.ndarray]
     rows: int
     false: int
+
+
+class Replayed(NamedTuple):
+    """What each line tells of each foot, in order, the stamps in ns at which feet stand, and the scores."""
+
+    told: dict[str, dict[str, list[Told]]]
+    stands: dict[str, list[int]]
+    scores: list[Score]
 
 
 class FootCourse:
@@ -113,41 +148,50 @@ class FootCourse:
         return min(falls, default=None)
 
 
-def told_by(walk: Walk) -> dict[str, dict[str, list[Told]]]:
-    """What each line tells of each foot, in order."""
+def replayed(walk: Walk) -> Replayed:
     machine, walker, courses = walk.scene, Predictor(walk.scene), defaultdict[str, FootCourse](FootCourse)
     assert machine.walking is not None
+    stands, scores = defaultdict[str, list[int]](list), list[Score]()
     told: dict[str, dict[str, list[Told]]] = {line: defaultdict(list) for line in LINES}
     planned: dict[str, list[int]] = defaultdict(list)
-    geometry: Geometry | None = None
+    points: Sequence[Vector3] = ()
     for message in walk.messages:
-        if isinstance(message, Schedule):
+        if not isinstance(message, Sample):
             walker.tell(message)
-            for foot, landings in landings_of(message).items():
-                planned[foot] = [stamp for stamp in planned[foot] if stamp < message.times[0]] + landings
-            continue
-        if isinstance(message, Geometry):
-            walker.tell(message)
-            geometry = message
+            if isinstance(message, Schedule):
+                for foot, landings in landings_of(message).items():
+                    planned[foot] = [stamp for stamp in planned[foot] if stamp < message.times[0]] + landings
+            elif isinstance(message, Geometry | FeetStates):
+                points = points_of(message, machine.walking)
             continue
         now, axes = message.stamp, axes_of(message.orientation)
         gaps = []
-        for arm in () if geometry is None else geometry.points:
+        for arm in points:
             place = np.add(message.position, to_world(axes, arm))
             gaps.append(float(np.dot(machine.normal, place)) - machine.height)
         each = machine.walking.points
-        for number, foot in enumerate(walker.update(message).feet):
+        prediction = walker.update(message)
+        scores += [] if prediction.score is None else [prediction.score]
+        for number, foot in enumerate(prediction.feet):
             course = courses[foot.name]
             course.add(now, min(gaps[number * each : (number + 1) * each]))
             if foot.stands:
+                stands[foot.name].append(now)
                 continue
             answers: dict[str, float | None] = {"product": foot.lead_time, **course.lead_times()}
             answers["clock"] = clock(walk.landings.get(foot.name, ()), planned.get(foot.name, []), now)
             for line, lead_time in answers.items():
                 if lead_time is not None and 0.0 < lead_time <= machine.horizon:
-                    deviation = getattr(foot, "landing_deviation", None) if line == "product" else None
+                    deviation = foot.landing_deviation if line == "product" else None
                     told[line][foot.name].append(Told(now, now + round(lead_time * 1e9), deviation))
-    return told
+    return Replayed(told, stands, [*scores, *walker.finish()])
+
+
+def points_of(message: Geometry | FeetStates, walking: Walking) -> Sequence[Vector3]:
+    """Where the points of the feet are, in the order of the scene."""
+    if isinstance(message, Geometry):
+        return message.points
+    return [message.positions[i] for foot in walking.feet for i, name in enumerate(message.names) if name == foot]
 
 
 def clock(landings: Sequence[int], planned: Sequence[int], now: int) -> float | None:
@@ -197,11 +241,19 @@ def line_of(walk: Walk, told: Mapping[str, Sequence[Told]], samples: Sequence[in
     )
 
 
-def compared(walk: Walk) -> dict[str, Line]:
-    """Each line on the same samples."""
-    told = told_by(walk)
-    samples = [message.stamp for message in walk.messages if isinstance(message, Sample)]
-    return {line: line_of(walk, told[line], samples) for line in LINES}
+def happened(walk: Walk, found: Replayed) -> dict[str, Any]:
+    """How the landings are told that have happened."""
+    noticed = stamped = none = 0
+    for foot, landings in walk.landings.items():
+        stamps = [one.landing.stamp for one in found.scores if one.landing is not None and one.landing.foot == foot]
+        none += sum(min((abs(stamp - one) for one in landings), default=HAPPENED) >= HAPPENED for stamp in stamps)
+        stamped += sum(min((abs(stamp - one) for stamp in stamps), default=HAPPENED) <= STAMPED for one in landings)
+        stands = found.stands[foot]
+        for landing in landings:
+            k = bisect_right(stands, landing)
+            noticed += k < len(stands) and stands[k] <= landing + NOTICED
+    count = max(1, sum(map(len, walk.landings.values())))
+    return {"noticed": noticed / count, "stamped": stamped / count, "none": none}
 
 
 def worse(line: Line, other: Line, lead: float) -> tuple[float, float, float] | None:
@@ -218,7 +270,9 @@ def worse(line: Line, other: Line, lead: float) -> tuple[float, float, float] | 
 
 def figures(walk: Walk) -> list[dict[str, Any]]:
     """What is printed of a record, in ms and parts of 1, a row for each line."""
-    lines, found = compared(walk), []
+    replay, found = replayed(walk), list[dict[str, Any]]()
+    samples = [message.stamp for message in walk.messages if isinstance(message, Sample)]
+    lines = {name: line_of(walk, told, samples) for name, told in replay.told.items()}
     for name, line in lines.items():
         row: dict[str, Any] = {"record": walk.name, "line": name, "landings": sum(map(len, walk.landings.values()))}
         for lead in LEAD_TIMES:
@@ -233,7 +287,7 @@ def figures(walk: Walk) -> list[dict[str, Any]]:
                 off = np.abs(errors[sure]) / deviations[sure]
                 ahead |= {"within_one": float((off <= 1.0).mean()), "within_two": float((off <= 2.0).mean())}
             row[f"{1e3 * lead:.0f}"] = ahead
-        row |= {"rows": line.rows, "false": line.false}
+        row |= {"rows": line.rows, "false": line.false} | (happened(walk, replay) if name == LINES[0] else {})
         if name != "speed" and (apart := worse(line, lines["speed"], 0.02)) is not None:
             row["worse"] = [1e3 * one for one in apart]
         found.append(row)
@@ -247,7 +301,7 @@ def table_of(rows: Iterable[Mapping[str, Any]]) -> Any:
     for lead in LEAD_TIMES:
         for header in (f"{1e3 * lead:.0f} ms\nahead", "90 %\nms", "told\n%"):
             table.add_column(header, justify="right", no_wrap=True)
-    for header in ("20 ms: in\n1, 2 sd", "false\nof rows", "worse\nms"):
+    for header in ("20 ms: in\n1, 2 sd", "false\nof rows", "worse\nms", "noticed,\nstamped %", "none"):
         table.add_column(header, justify="right", no_wrap=True)
     for row in rows:
         cells = [f"{row['record']} ({row['landings']})" if row["line"] == LINES[0] else "", row["line"]]
@@ -262,19 +316,33 @@ def table_of(rows: Iterable[Mapping[str, Any]]) -> Any:
         cells.append(f"{row['false']} / {row['rows']}")
         cells.append("{:+.1f} ({:+.1f}, {:+.1f})".format(*row["worse"]) if "worse" in row else "")
         if row["line"] == LINES[0]:
+            cells += [f"{100.0 * row['noticed']:.0f}, {100.0 * row['stamped']:.0f}", str(row["none"])]
             table.add_section()
         table.add_row(*cells)
     return table
 
 
+def plan() -> list[Adapted]:
+    """The plan of HyQ."""
+    path, topic, kind = PLAN
+    with Bag(path) as bag:
+        read = readers(bag, {topic: kind})[topic]
+        return [read(message.data) for message in bag.messages({topic: kind})]
+
+
+def scene() -> Scene:
+    """The scene of HyQ, as it is shipped."""
+    return scenes_of(read_values(str(ROOT / "config/walker_hyq.yaml")))[""]
+
+
 def hyq() -> Walk:
     """The plan of HyQ, whose own contact flags are the truth."""
-    machine, record = scene(), plan()
+    machine = scene()
     assert machine.walking is not None
     landings: dict[str, list[int]] = {foot: [] for foot in machine.walking.feet}
-    messages: list[Sample | Geometry | Schedule] = []
+    messages: list[Message] = []
     before: tuple[bool, ...] = ()
-    for one in record:
+    for one in plan():
         assert one.sample is not None
         assert one.geometry is not None
         for foot, stood, now in zip(machine.walking.feet, before, one.stands):  # noqa: B905 (the first has none before)
@@ -285,7 +353,34 @@ def hyq() -> Walk:
     return Walk("HyQ, plan", machine, messages, landings)
 
 
-def with_noise(walk: Walk, seed: int) -> Walk:
+def noisy(
+    sample: Sample, geometry: Geometry, rng: np.random.Generator, *, on_robot: bool = True
+) -> tuple[Sample, Geometry]:
+    """A sample and the geometry of its stamp, with white noise on all positions and velocities of base and feet.
+
+    The feet are told `on_robot`, as by the joints, with these deviations relative to the base, and the base's own on
+    top of them; or in the world, as by motion capture.
+    """
+    count = len(geometry.points)
+    place, speed = (rng.normal(0.0, deviation, (1 + count, 3)) for deviation in (POSITION, VELOCITY))
+    feet, rates = place[1:], speed[1:]
+    if not on_robot:
+        feet = feet - place[0]
+        rates = rates - speed[0] - np.cross(sample.angular, feet)
+    shift = to_world(axes_of(sample.orientation), tuple(place[0].tolist()))
+    return (
+        sample._replace(
+            position=tuple((np.array(sample.position) + shift).tolist()),
+            linear=tuple((np.array(sample.linear) + speed[0]).tolist()),
+        ),
+        geometry._replace(
+            points=tuple(map(tuple, (np.array(geometry.points) + feet).tolist())),
+            velocities=tuple(map(tuple, (np.array(geometry.velocities) + rates).tolist())),
+        ),
+    )
+
+
+def with_noise(walk: Walk, seed: int, *, on_robot: bool = True) -> Walk:
     """The same record with noise on feet and trunk."""
     rng, messages, geometry = np.random.default_rng(seed), list(walk.messages), None
     for k, message in enumerate(messages):
@@ -294,18 +389,21 @@ def with_noise(walk: Walk, seed: int) -> Walk:
         elif isinstance(message, Sample) and geometry is not None:
             known = messages[geometry]
             assert isinstance(known, Geometry)
-            messages[k], messages[geometry] = noisy(message, known, rng, on_robot=True)
+            messages[k], messages[geometry] = noisy(message, known, rng, on_robot=on_robot)
             geometry = None
     return walk._replace(name=f"{walk.name}, noise", messages=messages)
 
 
 def recorded(bag_path: str, scene_path: str) -> Walk:
-    """A bag with its scene; the feet are those of /contact_geometry."""
+    """A bag with its scene."""
     machine = scenes_of(read_values(scene_path))[""]
     assert machine.walking is not None
     landings: dict[str, list[int]] = {foot: [] for foot in machine.walking.feet}
-    messages: list[Sample | Geometry | Schedule] = []
-    decoders: dict[str, tuple[str, Callable[[bytes], Any]]] = {f"/{kind}": INPUT_TYPES[kind] for kind in KINDS}
+    messages: list[Message] = []
+    left_out = {SCHEDULE: not machine.walking.has_schedule, TERRAIN: machine.walking.terrain == 0.0}
+    decoders: dict[str, tuple[str, Callable[[bytes], Any]]] = {
+        f"/{kind}": INPUT_TYPES[kind] for kind in KINDS if not left_out.get(kind)
+    }
     with Bag(bag_path) as bag:
         wanted = {topic: kind for topic, (kind, _) in decoders.items()} | {LANDING_TOPIC: DIAGNOSTIC_ARRAY}
         for message in bag.messages({topic: kind for topic, kind in wanted.items() if topic in bag.topics()}):
@@ -321,13 +419,16 @@ def main() -> int:
     parser = argparse.ArgumentParser()
     parser.add_argument("--json", type=Path)
     parser.add_argument("--seed", type=int)
+    parser.add_argument("--world", action="store_true")
     parser.add_argument("records", nargs="*", metavar="BAG SCENE")
     told = parser.parse_args()
     if len(told.records) % 2:
         parser.error("give the scene of each bag after it")
     walks = [recorded(*pair) for pair in zip(told.records[::2], told.records[1::2], strict=True)] or [hyq()]
-    rows = [row for walk in walks for row in figures(walk if told.seed is None else with_noise(walk, told.seed))]
-    show(Console(width=160), table_of(rows))
+    if told.seed is not None:
+        walks = [with_noise(walk, told.seed, on_robot=not told.world) for walk in walks]
+    rows = [row for walk in walks for row in figures(walk)]
+    show(Console(width=170), table_of(rows))
     if told.json is not None:
         told.json.write_text(json.dumps(rows, indent=1), encoding="utf-8")
     return 0

@@ -7,9 +7,8 @@ from math import cos, sin, tau
 
 import numpy as np
 import pytest
-from walker_noise import errors_of, plan
-from walker_noise import scene as hyq
-from walker_sensors import noisy
+from walker_times import noisy, plan
+from walker_times import scene as hyq
 
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene, Walking
@@ -58,7 +57,7 @@ class Walk:
         for k in range(round(400 * self.duration)):
             sample, geometry = self.base(k / 400), self.feet(k / 400)
             if rng is not None:
-                sample, geometry = noisy(sample, geometry, rng, on_robot=True)
+                sample, geometry = noisy(sample, geometry, rng)
             predictor.tell(geometry._replace(velocities=()))
             predictor.update(sample)
         return predictor
@@ -120,7 +119,7 @@ def test_with_the_delay_taken_out_the_landings_of_hyq_are_those_of_feet_in_time(
         else:
             landings.add(predictor.update(message))
     matches = landings.compare().matches
-    errors = np.abs(errors_of([one for one in matches if one.predictions], 0.02))
+    errors = np.abs([error for one in matches if (error := one.time_error(0.02)) is not None])
     assert [one.stamp is not None for one in matches] == [True] * 49
     # In time they are 1.2 / 2.2 ms; where the delay is to be found the first landings come too early for it.
     assert np.median(errors) < (4e-3 if find else 1.25e-3)

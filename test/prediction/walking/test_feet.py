@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
-from walker_sensors import noisy
+from walker_times import noisy
 
 from impact_predictor.prediction.checks import PAUSE
 from impact_predictor.prediction.predictor import Predictor
@@ -105,9 +105,7 @@ def record(
         twist = to_body(axes, linear)
         sample = Sample(stamp, "world", "base", position, orientation, twist, angular, ZEROS, ZEROS)
         geometry = Geometry(stamp, "base", tuple(points), tuple(velocities))
-        messages.append(
-            Message(sample, geometry) if rng is None else Message(*noisy(sample, geometry, rng, on_robot=True))
-        )
+        messages.append(Message(sample, geometry) if rng is None else Message(*noisy(sample, geometry, rng)))
     return messages
 
 
