@@ -20,7 +20,7 @@ from impact_predictor.ros.messages import ODOMETRY
 from impact_predictor.scenarios.deck.cargo import units_of
 
 ROOT = Path(__file__).parents[1]
-SCENES = ("deck_crate.yaml", "deck_drum.yaml", "deck_many.yaml")
+SCENES = ("deck_crate.yaml", "deck_drum.yaml", "deck_lashed.yaml", "deck_many.yaml")
 
 
 @pytest.fixture(autouse=True)
@@ -54,7 +54,7 @@ def test_a_shipped_scene_stands_on_its_deck(name: str) -> None:
         assert unit.mount.beside == x
         assert unit.scene.watching is not None
         assert unit.scene.deck is not None
-    assert len(found) == (7 if name == "deck_many.yaml" else 1)
+    assert len(found) == {"deck_many.yaml": 7, "deck_lashed.yaml": 2}.get(name, 1)
 
 
 def test_the_json_has_the_impacts_of_all_and_of_each_unit() -> None:

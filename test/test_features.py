@@ -31,6 +31,7 @@ CYLINDER = {**BODY, "body.radius": 0.3, "support.edges": [0.0, -0.2, 0.0, 0.0, 0
 WALKER = {**BODY, "feet.names": ["left", "right"]}
 DECK = {**CRATE, "support.motion": "odom"}
 WATCHED = {**DECK, "onset.watch": True, "place.position": [0.0, 0.0, 0.2]}
+LASHED = {"lashings.points": [0.3, 0.0, 0.1], "lashings.anchors": [1.0, 0.0, 0.0], "lashings.msl": [100.0]}
 SURE = {"uncertainty.samples": 16, "uncertainty.friction": 0.02}
 WITHOUT_AND_WITH: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "friction": (CRATE, {**CRATE, "contact.friction": 0.4}),
@@ -39,6 +40,10 @@ WITHOUT_AND_WITH: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "geometry topic": (CRATE, BODY),
     "moving support": (CRATE, DECK),
     "onset watch": (CRATE, {**CRATE, "onset.watch": True}),
+    "lashings": (WATCHED, {**WATCHED, **LASHED}),
+    "chocks": (WATCHED, {**WATCHED, "chocks.points": [0.3, 0.0, 0.0], "chocks.normals": [-1.0, 0.0, 0.0]}),
+    "wind": (WATCHED, {**WATCHED, "wind.pressure": 100.0, "wind.area": [0.2, 0.3]}),
+    "friction band": (WATCHED, {**WATCHED, "contact.friction_band": [0.0, 0.3]}),
     "cylinder": (CRATE, CYLINDER),
     "three dimensions": (CYLINDER, CRATE),
     "tilt": (WATCHED, {**WATCHED, "source": "imu"}),

@@ -26,6 +26,11 @@ OF_FEET = {
 
 ROBOT = tuple(name for name in PARAMETERS if name.startswith("robot.") and name != "robot.urdf")
 
+SECURING = ("lashings.points", "chocks.points", "wind.pressure", "contact.friction_band")
+"""What the margins under watch know of besides friction."""
+
+NO_LENGTH = 1e-3  # m: a lashing that is shorter has no direction
+
 OFF = 0.01
 """A body may be placed this part of its size above or below its support: its place was measured with a tape."""
 
@@ -60,6 +65,7 @@ def check_body(body: str, values: Mapping[str, Any], given: Collection[str]) -> 
     _check_feet(one)
     _check_source(one)
     _check_cylinder(one)
+    _check_securing(one)
     is_felt = values["support.motion"] != "fixed" or values["onset.watch"]
     if is_felt and sum(g * n for g, n in zip(values["gravity"], values["support.normal"], strict=True)) > 0.0:
         raise InputError(
@@ -104,6 +110,64 @@ def _check_cylinder(one: _Given) -> None:
     # Points that are common to the other bodies may stand beside the radius of one.
     if one.values[points] and one.is_own(points) >= one.is_own(radius):
         raise InputError(f"{one.named(points)} and {one.named(radius)} are both given: a cylinder has no points")
+
+
+def _check_securing(one: _Given) -> None:
+    """Whether lashings, chocks, wind and the band of friction make sense for a body."""
+    values = one.values
+    for name in SECURING:
+        if values[name] and one.is_own(name) and (values["body.radius"] or not values["onset.watch"]):
+            wanted = "not for a cylinder" if values["body.radius"] else "so set onset.watch: true"
+            raise InputError(f"{one.named(name)} counts in the margins{one.of} under watch alone, {wanted}")
+    for group, other in (("lashings", "anchors"), ("chocks", "normals")):
+        points, others = values[f"{group}.points"], values[f"{group}.{other}"]
+        if len(points) != len(others):
+            raise InputError(
+                f"{one.named(f'{group}.points')} has {len(points) // 3} points{one.of}, but {group}.{other} has "
+                f"{len(others) // 3}: give one for each"
+            )
+        for name in ("lashings.msl", "lashings.preload", "lashings.stiffness", "chocks.strength"):
+            if name.startswith(group) and len(values[name]) not in (0, 1, len(points) // 3):
+                raise InputError(
+                    f"{one.named(name)} has {len(values[name])} numbers{one.of}, but {group}.points has "
+                    f"{len(points) // 3} points: give one number for each, or one for all of them"
+                )
+    if values["lashings.points"]:
+        _check_lashings(one)
+    chocks = values["chocks.normals"]
+    if any(not hypot(*chocks[k : k + 3]) for k in range(0, len(chocks), 3)):
+        raise InputError(f"{one.named('chocks.normals')}{one.of} has a direction of length zero: tell where it pushes")
+    if values["wind.pressure"] and not values["wind.area"]:
+        raise InputError(f"{one.named('wind.pressure')} is given{one.of}, but no wind.area that it acts on: give both")
+    if band := values["contact.friction_band"]:
+        lowest, highest = band
+        if not lowest <= values["contact.friction"] <= highest:
+            raise InputError(
+                f"{one.named('contact.friction_band')}{one.of} is {lowest:g} to {highest:g}, and contact.friction is "
+                f"{values['contact.friction']:g}: it must lie between them"
+            )
+
+
+def _check_lashings(one: _Given) -> None:
+    values = one.values
+    points, anchors, msl = values["lashings.points"], values["lashings.anchors"], values["lashings.msl"]
+    count = len(points) // 3
+    if not msl or min(msl) <= 0.0:
+        raise InputError(f"lashings.msl{one.of} must be above 0 N: give what each of the {count} lashings may bear")
+    preload = values["lashings.preload"] or (0.0,)
+    x, y, z = values["place.position"]
+    turn, back = cos(values["place.yaw"]), sin(values["place.yaw"])
+    for k in range(count):
+        its, most = preload[k % len(preload)], msl[k % len(msl)]
+        if its > most:
+            raise InputError(f"lashing {k}{one.of} has an MSL of {most:g} N, below its preload of {its:g} N")
+        (px, py, pz), (ax, ay, az) = points[3 * k : 3 * k + 3], anchors[3 * k : 3 * k + 3]
+        if hypot(x + turn * px - back * py - ax, y + back * px + turn * py - ay, z + pz - az) < NO_LENGTH:
+            raise InputError(f"lashing {k}{one.of} has no length: its point and its anchor are at one place")
+        if values["support.extent"]:
+            least_x, greatest_x, least_y, greatest_y = values["support.extent"]
+            if not (least_x <= ax <= greatest_x and least_y <= ay <= greatest_y):
+                raise InputError(f"lashing {k}{one.of} goes nowhere: its anchor is outside support.extent")
 
 
 def _check_feet(one: _Given) -> None:

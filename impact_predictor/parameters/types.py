@@ -41,6 +41,11 @@ class Parameter(NamedTuple):
     of_model: bool = False
 
 
+def _several(name: str, description: str, unit: str) -> Parameter:
+    """A load for each of several things, or one for all."""
+    return Parameter("double_array", name, (), description, unit, 0.0, 1e12, fixed=COMPUTED)
+
+
 boolean = partial(Parameter, "bool")
 integer = partial(Parameter, "integer")
 double = partial(Parameter, "double")
@@ -50,6 +55,8 @@ ratio = partial(Parameter, "double", unit="1", low=0.0)
 seconds = partial(Parameter, "double", unit="s", low=0.0)
 text = partial(Parameter, "string")
 texts = partial(Parameter, "string_array")
+
+newtons = partial(_several, unit="N")
 
 TOPICS: Final = "the topics follow from it"
 SUPPORT: Final = "all that is known of the support rests on it"
@@ -162,6 +169,11 @@ def points_flaw(numbers: tuple[float, ...]) -> str:
     places = {point: k for k, point in reversed(list(enumerate(points)))}
     twins = (f"the points {places[point]} and {k} coincide" for k, point in enumerate(points) if places[point] != k)
     return next(twins, "")
+
+
+def threes_flaw(numbers: tuple[float, ...]) -> str:
+    """Of points or directions, x y z of each."""
+    return f"it must have three numbers for each, not {len(numbers)} in all" if len(numbers) % 3 else ""
 
 
 def normal_flaw(normal: tuple[float, ...]) -> str:

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from math import hypot
+from math import hypot, inf
 from typing import Any, Final, NamedTuple
 
 from ..mechanics.impact.answer import VALIDITY
@@ -35,6 +35,10 @@ SWITCHES: Final = {
     "geometry topic": "!body.contact_points !body.radius !robot.urdf",
     "moving support": "support.motion",
     "onset watch": "onset.watch",
+    "lashings": "lashings.points",
+    "chocks": "chocks.points",
+    "wind": "wind.pressure",
+    "friction band": "contact.friction_band",
     "cylinder": "body.radius",
     "three dimensions": "!body.radius",
     "tilt": "source",
@@ -92,6 +96,38 @@ class Watching(NamedTuple):
     hold: float = 5.0
     horizon: float = 10.0
     vain: float = 0.6
+
+
+class Lashing(NamedTuple):
+    """From a `point` on the body (m, in its frame) to an `anchor` on the support (m, in the support's frame).
+
+    It bears up to its maximum securing load `msl` (N); at rest it has a `preload` (N), and it grows by `stiffness`
+    (N/m), or, where that is 0, to its MSL on a hundredth of its length.
+    """
+
+    point: Vector3
+    anchor: Vector3
+    msl: float
+    preload: float = 0.0
+    stiffness: float = 0.0
+
+
+class Chock(NamedTuple):
+    """A one-sided contact at a `point` (m) that pushes the body along its `normal`, a unit vector, with up to
+    `strength` (N), both in the support's frame.
+    """
+
+    point: Vector3
+    normal: Vector3
+    strength: float = inf
+
+
+class Wind(NamedTuple):
+    """A wind of a `pressure` (N/m^2) from any side on the areas (m^2) along x and along y, at `center` (m, body)."""
+
+    pressure: float
+    area: tuple[float, float]
+    center: Vector3
 
 
 class Robot(NamedTuple):
@@ -165,7 +201,8 @@ class Scene(NamedTuple):
     zero makes it a cylinder along the line between pairs of `edges` of the support, on which it lies, in the place of
     `points`: x y z of one point of each edge, in the support's frame. `watching` tells to watch its margins. `walking`
     makes it a machine whose contact points are its feet, which move against the body; with a robot, `mass` is that of
-    its model once this is read, and `inertia` is not used.
+    its model once this is read, and `inertia` is not used. `lashings`, `chocks` and `wind` count in the margins under
+    watch, and so do the lowest and the highest friction of the `friction_band`.
     """
 
     mass: float
@@ -202,6 +239,10 @@ class Scene(NamedTuple):
     edges: tuple[Vector3, ...] = ()
     watching: Watching | None = None
     walking: Walking | None = None
+    lashings: tuple[Lashing, ...] = ()
+    chocks: tuple[Chock, ...] = ()
+    wind: Wind | None = None
+    friction_band: tuple[float, ...] = ()
 
     @classmethod
     def from_parameters(cls, values: Mapping[str, Any]) -> Scene:
@@ -246,6 +287,10 @@ class Scene(NamedTuple):
             edges=triples(values["support.edges"]),
             watching=_record(Watching, "onset", values) if values["onset.watch"] else None,
             walking=_record(Walking, "feet", values, feet=feet, robot=robot) if feet else None,
+            lashings=_lashings(values),
+            chocks=_chocks(values),
+            wind=_record(Wind, "wind", values) if values["wind.pressure"] else None,
+            friction_band=values["contact.friction_band"],
         )
 
     @property
@@ -301,6 +346,28 @@ def _record(record: Any, group: str, values: Mapping[str, Any], **others: Any) -
     """A record whose fields are the parameters of a group, or `others`."""
     names = [name for name in record._fields if name not in others]
     return record(**{name: values[f"{group}.{name}"] for name in names}, **others)
+
+
+def each_of(numbers: Sequence[float], count: int, default: float) -> tuple[float, ...]:
+    """What is given for each of some things, for all of them, or not at all."""
+    return tuple(numbers) if len(numbers) == count else (*numbers, default)[:1] * count
+
+
+def _lashings(values: Mapping[str, Any]) -> tuple[Lashing, ...]:
+    points = triples(values["lashings.points"])
+    loads = [each_of(values[f"lashings.{name}"], len(points), 0.0) for name in ("msl", "preload", "stiffness")]
+    ends = triples(values["lashings.anchors"])
+    return tuple([Lashing(*one) for one in zip(points, ends, *loads, strict=True)])
+
+
+def _chocks(values: Mapping[str, Any]) -> tuple[Chock, ...]:
+    found = []
+    points = triples(values["chocks.points"])
+    strengths = each_of(values["chocks.strength"], len(points), inf)
+    for point, (x, y, z), strength in zip(points, triples(values["chocks.normals"]), strengths, strict=True):
+        length = hypot(x, y, z)
+        found.append(Chock(point, (x / length, y / length, z / length), strength))
+    return tuple(found)
 
 
 def inertia_matrix(numbers: Sequence[float]) -> InertiaTensor:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from math import hypot, nan, pi, sqrt
+from math import hypot, inf, nan, pi, sqrt
 from typing import Any
 
 import pytest
 
 from impact_predictor.errors import InputError
 from impact_predictor.parameters.validation import PARAMETERS, parameter_of, validate
-from impact_predictor.prediction.scene import MovingDeck, Watching, scenes_of
+from impact_predictor.prediction.scene import Chock, Lashing, MovingDeck, Watching, Wind, scenes_of
 
 BODY: dict[str, Any] = {"body.mass": 100.0, "body.inertia": [20.0], "contact.friction": 0.5}
 BOX = [x for a in (-0.5, 0.5) for b in (-0.5, 0.5) for x in (a, b, -0.8)]
@@ -18,6 +18,14 @@ UP = [0.0, 0.0, 9.81]
 EXTENT = [-5.0, 5.0, -2.0, 2.0]
 STANDS = [0.0, 0.0, 0.8]
 BLIND: dict[str, Any] = {"source": "none", "onset.watch": True, "body.contact_points": BOX}
+STOOD = {"place.position": STANDS}
+LASHED = {
+    **BLIND,
+    **STOOD,
+    "lashings.points": [0.0, 0.5, 0.0, 0.0, -0.5, 0.0],
+    "lashings.anchors": [0.0, 3.0, 0.0, 0.0, -3.0, 0.0],
+    "lashings.msl": [1e4],
+}
 HIGH = sqrt(0.3**2 - 0.2**2)
 DRUM: dict[str, Any] = {"body.radius": 0.3, "support.edges": EDGES}
 BLIND_DRUM = {**DRUM, "source": "none", "onset.watch": True}
@@ -58,6 +66,32 @@ REFUSED: list[tuple[dict[str, Any], str]] = [
     ({"bodies": ["crate", "drum"], "crate.body.masss": 1.0}, "did you mean crate.body.mass?"),
     ({"bodies": ["crate", "drum"], "body.masss": 1.0}, "did you mean body.mass?"),
     ({"bodies": ["a"], "a.body.mass": -1.0}, "the parameter a.body.mass is -1.0, but"),
+    # What holds a body besides friction
+    ({**LASHED, "onset.watch": False, "source": "odom"}, "lashings.points counts in the margins under watch alone, so"),
+    ({**BLIND_DRUM, "wind.pressure": 9.0}, "wind.pressure counts in the margins under watch alone, not for a cylinder"),
+    ({**LASHED, "lashings.anchors": [0.0, 3.0, 0.0]}, "lashings.points has 2 points, but lashings.anchors has 1: give"),
+    ({**LASHED, "lashings.anchors": [0.0, 3.0]}, "but it must have three numbers for each, not 2 in all"),
+    ({**LASHED, "lashings.msl": None}, "lashings.msl must be above 0 N: give what each of the 2 lashings may bear"),
+    ({**LASHED, "lashings.msl": [1.0, 2.0, 3.0]}, "lashings.msl has 3 numbers, but lashings.points has 2 points: give"),
+    ({**LASHED, "lashings.preload": [0.0, 2e4]}, "lashing 1 has an MSL of 10000 N, below its preload of 20000 N"),
+    (
+        {**LASHED, "lashings.anchors": [0.0, 0.5, 0.8, 0.0, -3.0, 0.0]},
+        "lashing 0 has no length: its point and its anch",
+    ),
+    (
+        {**LASHED, "support.motion": "odom", "support.extent": EXTENT},
+        "lashing 0 goes nowhere: its anchor is outside support.extent",
+    ),
+    ({**BLIND, **STOOD, "chocks.points": [0.0, 0.5, 0.1]}, "chocks.points has 1 points, but chocks.normals has 0"),
+    (
+        {**BLIND, **STOOD, "chocks.points": [0.0, 0.5, 0.1], "chocks.normals": [0.0, 0.0, 0.0]},
+        "chocks.normals has a direction of length zero",
+    ),
+    ({**BLIND, **STOOD, "wind.pressure": 100.0}, "wind.pressure is given, but no wind.area that it acts on: give both"),
+    (
+        {**BLIND, **STOOD, "contact.friction_band": [0.1, 0.3]},
+        "contact.friction_band is 0.1 to 0.3, and contact.friction is 0.5: it must lie between them",
+    ),
     # Bodies whose pose is not measured
     (
         {"source": "imu", "body.contact_points": BOX},
@@ -311,3 +345,23 @@ def test_a_moving_support_and_a_watch_reach_the_scene() -> None:
 def test_the_defaults_of_a_moving_support_and_of_a_watch_are_those_of_their_types() -> None:
     (scene,) = scenes_of(validate({**BODY, "support.motion": "odom", "onset.watch": True})).values()
     assert (scene.deck, scene.watching) == (MovingDeck(), Watching())
+
+
+def test_lashings_chocks_and_wind_reach_the_scene_with_what_is_left_out() -> None:
+    given = {
+        **LASHED,
+        "lashings.preload": [1e3, 0.0],
+        "chocks.points": [0.0, 0.5, 0.1],
+        "chocks.normals": [0.0, -2.0, 0.0],
+        "wind.pressure": 100.0,
+        "wind.area": [1.0, 2.0],
+        "contact.friction_band": [0.3, 0.6],
+    }
+    (scene,) = scenes_of(validate({**BODY, **given})).values()
+    assert scene.lashings == (
+        Lashing((0.0, 0.5, 0.0), (0.0, 3.0, 0.0), 1e4, 1e3, 0.0),
+        Lashing((0.0, -0.5, 0.0), (0.0, -3.0, 0.0), 1e4, 0.0, 0.0),
+    )
+    assert scene.chocks == (Chock((0.0, 0.5, 0.1), (0.0, -1.0, 0.0), inf),)
+    assert scene.wind == Wind(100.0, (1.0, 2.0), (0.0, 0.0, 0.0))
+    assert scene.friction_band == (0.3, 0.6)

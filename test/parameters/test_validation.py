@@ -52,6 +52,16 @@ def test_every_default_is_allowed() -> None:
         "robot.armature",
         "robot.kp",
         "robot.kd",
+        "contact.friction_band",
+        "lashings.points",
+        "lashings.anchors",
+        "lashings.msl",
+        "lashings.preload",
+        "lashings.stiffness",
+        "chocks.points",
+        "chocks.normals",
+        "chocks.strength",
+        "wind.area",
     }
     assert set(PARAMETERS) - set(defaults) == {*REQUIRED, *empty}
     validate({**REQUIRED, **defaults})

@@ -8,7 +8,17 @@ import pytest
 
 from impact_predictor.mechanics.types import Validity
 from impact_predictor.parameters.validation import validate
-from impact_predictor.prediction.scene import MovingDeck, Robot, Scene, Walking, Watching, inertia_matrix
+from impact_predictor.prediction.scene import (
+    Chock,
+    Lashing,
+    MovingDeck,
+    Robot,
+    Scene,
+    Walking,
+    Watching,
+    Wind,
+    inertia_matrix,
+)
 
 BODY = {"body.mass": 2.0, "body.inertia": [0.1, 0.2, 0.25, 0.01, 0.02, 0.03], "contact.friction": 0.4}
 
@@ -47,6 +57,10 @@ FIELDS: list[tuple[str, Any, str, Any]] = [
     ("body.radius", 0.3, "radius", 0.3),
     ("support.edges", [0.0, -0.2, 0.0, 0.0, 0.2, 0.0], "edges", ((0.0, -0.2, 0.0), (0.0, 0.2, 0.0))),
     ("onset.watch", True, "watching", Watching()),
+    ("lashings.points", [1.0, 2.0, 3.0], "lashings", (Lashing((1.0, 2.0, 3.0), (1.0, 5.0, 0.0), 1e4, 1e3, 1e6),)),
+    ("chocks.points", [1.0, 2.0, 3.0], "chocks", (Chock((1.0, 2.0, 3.0), (0.0, 0.6, 0.8), 5e3),)),
+    ("wind.pressure", 300.0, "wind", Wind(300.0, (2.0, 3.0), (0.0, 0.0, 1.0))),
+    ("contact.friction_band", [0.1, 0.6], "friction_band", (0.1, 0.6)),
     ("feet.names", ["left", "right"], "walking", Walking(("left", "right"))),
 ]
 
@@ -56,6 +70,16 @@ NEEDS: dict[str, dict[str, Any]] = {
     "source": {"onset.watch": True, "body.contact_points": [0.0, 0.0, 0.0, 1.0, 0.0, 0.0]},
     "body.radius": {"support.edges": [0.0, -0.2, 0.0, 0.0, 0.2, 0.0]},
     "support.edges": {"body.radius": 0.3},
+    "lashings.points": {
+        "onset.watch": True,
+        "lashings.anchors": [1.0, 5.0, 0.0],
+        "lashings.msl": [1e4],
+        "lashings.preload": [1e3],
+        "lashings.stiffness": [1e6],
+    },
+    "chocks.points": {"onset.watch": True, "chocks.normals": [0.0, 3.0, 4.0], "chocks.strength": [5e3]},
+    "wind.pressure": {"onset.watch": True, "wind.area": [2.0, 3.0], "wind.center": [0.0, 0.0, 1.0]},
+    "contact.friction_band": {"onset.watch": True},
 }
 
 

@@ -13,7 +13,7 @@ Everything is linear in g, W' and the products of W, so that one matrix serves a
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Final, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,9 @@ from numpy.typing import NDArray
 from ..types import Felt
 from ..vectors import add
 from .stance import StandingBody, unit_across
+
+if TYPE_CHECKING:
+    from .secured import Secured
 
 FULL: Final = 99.0
 """The ratio of a body that nothing holds: it weighs nothing on the support, or its mass centre is beyond an edge."""
@@ -92,8 +95,12 @@ class Onset:
             ratios[self._smooth, 0] = np.where(used[self._smooth, 0] > 0.0, FULL, 0.0)
         if rolling is not None:
             ratios[self._drums, 0] = rolling
-        np.clip(ratios, 0.0, FULL, out=ratios)
         lifted = weight[:, 0] <= 0.0
+        if self._secured is not None:
+            at, secured = self._secured
+            held = secured.ratios(motion, weight[at], used[at, 1:], self._limits[at, 1:])
+            ratios[at, 0], ratios[at, 1:], lifted[at] = held
+        np.clip(ratios, 0.0, FULL, out=ratios)
         np.copyto(ratios, FULL, where=lifted[:, None])
         tips = ratios[:, 1:]
         edge = tips.argmax(axis=1)
@@ -174,6 +181,12 @@ class Onset:
         self._axes, self._outward, self._height, self._mass, self._absent = axes, outward, height, mass, absent
         self._smooth = np.flatnonzero(friction == 0.0)
         self._drums = [number for number, stance in enumerate(stances) if stance.radius > 0.0 and stance.edges]
+        at = [number for number, stance in enumerate(stances) if stance.holders or stance.wind]
+        self._secured: tuple[list[int], Secured] | None = None
+        if at:
+            from .secured import Secured
+
+            self._secured = at, Secured([stances[k] for k in at], felt[at], width)
         if self._drums:
             # The directions from the edges of cylinders to their axes along (ahead, normal), whether they lie on both.
             drums = [stances[number] for number in self._drums]

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from math import hypot
+from math import hypot, inf
 from operator import itemgetter
 from typing import NamedTuple
 
 from ..scene import InertiaTensor, Scene
 from ..types import Vector3
-from ..vectors import Axes, add, any_across, axes_of, cross, dot, times, to_body, to_world, turned
+from ..vectors import Axes, add, any_across, axes_of, cross, dot, times, to_body, to_world, total, turned
 
+STRETCH = 0.01  # of its length, by a lashing of unknown stiffness under its MSL: chains and wires
 NARROW = 1e-6  # a support polygon narrower than this part of its length is a line: it has the extent of rounding
 
 
@@ -25,11 +26,37 @@ class Edge(NamedTuple):
     name: str
 
 
+class Holder(NamedTuple):
+    """What can put a force along a unit vector on a body at a point (m), from `preload` up to `strength` (N).
+
+    Of a lashing it grows by `stiffness` (N/m) as the body moves against it; of a chock, inf, at once.
+    """
+
+    point: Vector3
+    direction: Vector3
+    strength: float
+    preload: float
+    stiffness: float
+
+
+class WindLoad(NamedTuple):
+    """The forces (N) of winds along two axes in the support's frame, and where they act (m)."""
+
+    forces: tuple[float, float]
+    axes: tuple[Vector3, Vector3]
+    center: Vector3
+
+    def along(self, way: Vector3) -> float:
+        """The force in N of a wind along a unit vector."""
+        return total([force * abs(dot(axis, way)) for force, axis in zip(self.forces, self.axes, strict=True)])
+
+
 class StandingBody(NamedTuple):
     """A body on its support, in the support's frame.
 
     `center` of mass in m, `inertia` about it in kg m^2 along the support's axes, `normal` of the support, the `edges`
-    about which it can tip now; a cylinder of `radius` (m) lies on its two edges, in the place of feet.
+    about which it can tip now; a cylinder of `radius` (m) lies on its two edges, in the place of feet. `holders` hold
+    it besides friction, and the `wind` pushes it.
     """
 
     mass: float
@@ -39,6 +66,8 @@ class StandingBody(NamedTuple):
     inertia: InertiaTensor
     edges: tuple[Edge, ...]
     radius: float = 0.0
+    holders: tuple[Holder, ...] = ()
+    wind: WindLoad | None = None
 
 
 class BodyPose(NamedTuple):
@@ -54,6 +83,27 @@ class BodyPose(NamedTuple):
     def body(self, point: Vector3) -> Vector3:
         """A point of the support's frame in the body's."""
         return to_body(self.axes, add(point, self.position, -1.0))
+
+
+def holders_of(scene: Scene, pose: BodyPose) -> tuple[Holder, ...]:
+    """The lashings and the chocks of a body in a pose."""
+    found = []
+    for lashing in scene.lashings:
+        point = pose.place(lashing.point)
+        line = add(lashing.anchor, point, -1.0)
+        length = hypot(*line) or 1.0
+        stiffness = lashing.stiffness or lashing.msl / (STRETCH * length)
+        found.append(Holder(point, times(line, 1.0 / length), lashing.msl, lashing.preload, stiffness))
+    return (*found, *[Holder(chock.point, chock.normal, chock.strength, 0.0, inf) for chock in scene.chocks])
+
+
+def wind_load(scene: Scene, pose: BodyPose) -> WindLoad | None:
+    """The load of the wind on a body in a pose, if it knows of one."""
+    if scene.wind is None:
+        return None
+    pressure, (along, across), center = scene.wind
+    axes = to_world(pose.axes, (1.0, 0.0, 0.0)), to_world(pose.axes, (0.0, 1.0, 0.0))
+    return WindLoad((pressure * along, pressure * across), axes, pose.place(center))
 
 
 def placed(scene: Scene) -> BodyPose:

@@ -10,7 +10,7 @@ from ..planar import edge_of
 from ..scene import Scene
 from ..types import Quaternion, Sample, Vector3
 from ..vectors import add, axes_of, cross, dot, tensor_to_world, times, to_body, to_world, total
-from .stance import BodyPose, StandingBody, edges_of, outline, placed, side
+from .stance import BodyPose, StandingBody, edges_of, holders_of, outline, placed, side, wind_load
 
 COARSE: Final = 5e-4
 """Part of a body's size below which no gap counts, however fine the contact tolerance: neither cargo nor decks are so
@@ -225,6 +225,8 @@ class Standing:
             inertia=tensor_to_world(pose.axes, scene.inertia),
             edges=tuple([edge for edge, _ in found]),
             radius=scene.radius,
+            holders=holders_of(scene, pose),
+            wind=wind_load(scene, pose),
         )
         return True
 
