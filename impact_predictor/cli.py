@@ -16,6 +16,7 @@ from .commands.calibrate import calibrate
 from .commands.demo import demo
 from .commands.explain import explain
 from .commands.identify import identify
+from .commands.lashings import lashings
 from .commands.map import map_
 from .commands.options import examples
 from .commands.replay import replay
@@ -93,5 +94,5 @@ def main() -> None:
     """Predict the next touchdown of a body that turns about one contact, and what the impact does to it."""
 
 
-for _command in (demo, solve, map_, simulate, replay, identify, calibrate, explain, report, bench):
+for _command in (demo, solve, map_, simulate, replay, identify, calibrate, lashings, explain, report, bench):
     main.add_command(_command)

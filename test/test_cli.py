@@ -72,6 +72,7 @@ COMMANDS = [
     ["solve", "cylinder"],
     ["solve", "body"],
     ["replay"],
+    ["lashings"],
 ]
 
 
