@@ -27,7 +27,7 @@ from impact_predictor.bags.write import BagWriter
 from impact_predictor.commands.replay import read_scenes
 from impact_predictor.fleet.cluster import Fleet, connected
 from impact_predictor.fleet.job import Job
-from impact_predictor.report.answers import parquet_table
+from impact_predictor.report.tables import TOUCHDOWNS, table_file, touchdown_rows
 from impact_predictor.resources import find
 from impact_predictor.ros.messages import ODOMETRY, POLYGON
 
@@ -90,14 +90,14 @@ class Measured(NamedTuple):
 def measure(job: Job, bags: Sequence[str], workers: int, folder: Path) -> Measured:
     """Replay some bags."""
     answers = []
-    with connected(workers) as client, parquet_table(folder / "table.parquet") as table:
+    with connected(workers) as client, table_file(folder / "table.parquet", TOUCHDOWNS) as table:
         # What is loaded and compiled once is no part of the rate.
         for _ in Fleet(client, job, bags[: 2 * workers], [None] * 2 * workers).outcomes(lambda _: None):
             pass
         begin = perf_counter()
         for outcome in Fleet(client, job, bags, [None] * len(bags)).outcomes(lambda _: None):
             assert outcome.result is not None, outcome.error
-            table.add(outcome.answer)
+            table.add(touchdown_rows(outcome.answer))
             answers.append(outcome.answer)
         rate = len(bags) / (perf_counter() - begin)
         worker = max(client.run(peak).values())

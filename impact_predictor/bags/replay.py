@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from ..scenarios.comparison import BodyTruth, Truth
     from ..scenarios.matching import Match
     from .body import Gait
+    from .watched import WatchLog
 
 
 class Result(NamedTuple):
@@ -44,7 +45,7 @@ class Result(NamedTuple):
     or "". `truth` is how the predictions compare with the truth, where the bag carries it, and `truths` the same for
     each body. `gaits` are those of the bodies that walk. `extent` has the stamps in ns of the first and the last sample
     that was accepted, `costs` the time in s that the answer to each took, and `matches` every true touchdown and every
-    false alarm, where the bag carries the truth.
+    false alarm, where the bag carries the truth. `watch` is the log of a watch over a moving deck.
     """
 
     bag: str
@@ -64,6 +65,7 @@ class Result(NamedTuple):
     costs: Sequence[float] = ()
     matches: Sequence[Match] = ()
     recorded: Mapping[str, Announced] = MappingProxyType({})
+    watch: WatchLog | None = None
 
 
 def replay(
@@ -150,6 +152,7 @@ def replay(
         costs=run.costs,
         matches=() if compared is None else compared.matches,
         recorded=run.recorded,
+        watch=run.watch,
     )
 
 

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from ..ros.markers.scene import MarkerScene
     from ..scenarios.comparison import Comparison
     from .adapters import AdapterReader
+    from .watched import WatchLog, WatchRecorder
 
 Take = Callable[[Any, int], Status]
 """Takes a message and its log time (ns); what became of it."""
@@ -68,6 +69,12 @@ class Run:
         self.monitor = Monitor(scenes) if monitor is None else monitor
         self._write = write
         self._drawing: MarkerScene | None = None
+        self.watched: WatchRecorder | None = None
+        if self.monitor.watch is not None and self.monitor.deck is not None:
+            from .watched import WatchRecorder
+
+            names = [name for name, scene in scenes.items() if scene.watching is not None]
+            self.watched = WatchRecorder(self.monitor.watch, self.monitor.deck, names)
         self.bodies = {body: BodyRecord(body, scenes[body], write) for body in self.monitor.predictors}
         takes = {one: self._take_of(one) for one in topics}
         self._takers: dict[str, Callable[[int, bytes], None]] = {
@@ -123,6 +130,13 @@ class Run:
         firsts = [one.first.stamp for one in self.bodies.values() if one.first is not None]
         lasts = [one.last.stamp for one in self.bodies.values() if one.last is not None]
         return (min(firsts), max(lasts)) if firsts else None
+
+    @property
+    def watch(self) -> WatchLog | None:
+        """The log of the watch; None where none watches over a moving deck."""
+        if self.watched is None:
+            return None
+        return self.watched.log(None if self.comparison is None else self.comparison.events())
 
     @property
     def recorded(self) -> dict[str, Announced]:
@@ -238,6 +252,9 @@ class Run:
     def _report(self, log_time: int) -> None:
         """Write what is to be said of the units now."""
         reports = self.monitor.reports()
+        if self.watched is not None:
+            self.watched.take(reports)
+            self.watched.look()
         if not reports:
             return
         if self.comparison is not None:

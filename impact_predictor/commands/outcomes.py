@@ -18,8 +18,8 @@ from ..wording import counted
 if TYPE_CHECKING:
     from ..bags.replay import Result
     from ..fleet.job import BagOutcome
-    from ..report.answers import TouchdownTable
     from ..report.figures import ReplayPicture
+    from ..report.tables import RowTable
     from ..report.touchdowns import TouchdownRow
 
 CHANGED: Final = 1
@@ -39,6 +39,7 @@ class Wanted(NamedTuple):
     figure: str | None
     report: str | None
     table: str | None
+    series: str | None
     every: bool
     as_json: bool
     baseline: str | None
@@ -49,6 +50,11 @@ class Wanted(NamedTuple):
     def answers(self) -> bool:
         """Whether the JSON of each bag is needed."""
         return self.as_json or self.report is not None or self.table is not None
+
+    @property
+    def logs(self) -> bool:
+        """Whether the log of each watch is needed."""
+        return not self.as_json or self.series is not None or self.figure is not None
 
 
 class ReplayReport:
@@ -68,7 +74,8 @@ class ReplayReport:
         self._notes: Counter[str] = Counter()
         self._picture: ReplayPicture | None = None
         self._answers: list[dict[str, Any]] | None = None
-        self._table: TouchdownTable | None = None
+        self._table: RowTable | None = None
+        self._series: RowTable | None = None
         self._earlier = {} if wanted.baseline is None else earlier_runs(wanted.baseline, bags)
         if wanted.figure is not None:
             from ..report.figures import ReplayPicture
@@ -81,9 +88,14 @@ class ReplayReport:
             named(wanted.report, "page", (".html",) if Path(wanted.report).suffix else ("",))
             self._answers = []
         if wanted.table is not None:
-            from ..report.answers import parquet_table
+            from ..report.tables import TOUCHDOWNS, table_file
 
-            self._table = stack.enter_context(parquet_table(wanted.table))
+            self._table = stack.enter_context(table_file(wanted.table, TOUCHDOWNS))
+        if wanted.series is not None:
+            from ..report.tables import table_file
+            from ..report.watch import SERIES
+
+            self._series = stack.enter_context(table_file(wanted.series, SERIES))
         if not wanted.as_json:
             from ..report.summary import Tally
 
@@ -107,7 +119,13 @@ class ReplayReport:
             before = ("[" if not self.number else ", ") if self._bags > 1 else ""
             click.echo(f"{before}{json.dumps(answer, allow_nan=False)}", nl=False)
         if self._table is not None:
-            self._table.add(answer)
+            from ..report.tables import touchdown_rows
+
+            self._table.add(touchdown_rows(answer))
+        if self._series is not None and result is not None and result.watch is not None:
+            from ..report.watch import series_of
+
+            self._series.add(series_of(result.bag, result.watch))
         if self._answers is not None:
             self._answers.append(answer)
         self.number += 1
@@ -134,9 +152,10 @@ class ReplayReport:
             self._say_file("Page", page)
 
     def say_table(self) -> None:
-        """Say where the table is, when the stack has ended it."""
-        if self._wanted.table is not None:
-            self._say_file("Table", self._wanted.table)
+        """Say where the tables are, when the stack has ended them."""
+        for file in (self._wanted.table, self._wanted.series):
+            if file is not None:
+                self._say_file("Table", file)
 
     @property
     def status(self) -> int:

@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 @text(
     "--figure",
     "FILE",
-    "Draw errors and velocities, of a walking machine its gait, into a .png or .svg file.",
+    "Draw errors and velocities, of a walking machine its gait, of cargo its margins, into a .png or .svg file.",
 )
 @text(
     "--report",
@@ -55,7 +55,12 @@ if TYPE_CHECKING:
 @text(
     "--table",
     "FILE",
-    "Write the touchdowns of all bags into one .parquet file; docs/fleets.md has its columns.",
+    "Write the touchdowns of all bags into one .parquet or .csv file; docs/fleets.md has its columns.",
+)
+@text(
+    "--series",
+    "FILE",
+    "Write what a watch over a deck saw, four rows a second, into one .parquet or .csv file: docs/deck.md.",
 )
 @click.option("--all", "every", is_flag=True, help="List every touchdown, not only the first scored ones.")
 @json_flag("Print JSON only: an object, or a list for several bags; docs/replay.md has its keys and units.")
@@ -107,7 +112,7 @@ def replay(
     if not (asked.baseline_time >= 0.0 and asked.baseline_error >= 0.0):
         raise InputError("--baseline-time and --baseline-error are numbers of 0 or more")
     bags = tuple(bags_of(bags))
-    job = Job(read_scenes(params), remapping(remap), markers, asked.answers)
+    job = Job(read_scenes(params), remapping(remap), markers, asked.answers, asked.logs)
     stopped: BaseException | None = None
     with ExitStack() as stack:
         report = ReplayReport(bags, asked, stack)

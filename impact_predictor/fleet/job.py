@@ -12,12 +12,15 @@ from ..prediction.scene import Scene
 
 
 class Job(NamedTuple):
-    """What is asked of every bag: arguments of `bags.replay.replay`, and whether the `answers` in JSON are wanted."""
+    """What is asked of every bag: arguments of `bags.replay.replay`, and whether the `answers` in JSON are wanted, and
+    logs of watches over a deck.
+    """
 
     scenes: Mapping[str, Scene]
     remap: Mapping[str, str]
     markers: bool = False
     answers: bool = False
+    logs: bool = False
 
 
 class BagOutcome(NamedTuple):
@@ -50,7 +53,8 @@ def replay_bag(job: Job, bag: str, output: Path | None, progress: Callable[[int]
         from ..report.answers import as_json
 
         answer = as_json(result)
-    return BagOutcome(bag, result._replace(costs=(), matches=()), answer)
+    kept = result._replace(costs=(), matches=(), watch=result.watch if job.logs else None)
+    return BagOutcome(bag, kept, answer)
 
 
 def renamed(outcome: BagOutcome, names: Mapping[str, str]) -> BagOutcome:

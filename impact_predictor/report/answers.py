@@ -1,33 +1,24 @@
-"""What a replay answers to programs: JSON of a bag, and the touchdowns of many bags as one Parquet file.
+"""What a replay answers to programs: the JSON of a bag.
 
-SI units, stamps in ns, relative errors as fractions of 1; docs/replay.md has the keys, docs/fleets.md the columns.
+SI units, stamps in ns, relative errors as fractions of 1; docs/replay.md has the keys.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
-from pathlib import Path
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Final
 
-from ..errors import need
-from ..files import named, whole
 from ..prediction.types import Status
 from ..stamps import NANOSECONDS
 from .skill import skill_as_json
 from .summary import SpanErrors, errors_ahead, errors_of, spread_of, to_json, velocity_errors_ahead
-from .touchdowns import FIELDS, PARTS, row_as_json, rows_of
+from .touchdowns import row_as_json, rows_of
+from .watch import watch_as_json
 
 if TYPE_CHECKING:
-    from pyarrow.parquet import ParquetWriter
-
     from ..bags.replay import Result
     from ..scenarios.matching import Match, Truth
 
-_GROUP: Final = 10_000
-"""Rows that are written at a time: few enough for any memory, many enough to be read fast."""
-_UNITS: Final = {"v": "m/s", "w": "rad/s", "o": "rad/s", "n": "N s", "t": "N s"}
-"""Of the parts of twists and impulses, by their first letters."""
 _SHORT: Final = {"from": "from", "to": "to", "count": "count", "median": "p50", "p90": "p90"}
 """What the JSON has of a spread under `error_by_lead_time`."""
 
@@ -48,6 +39,7 @@ def as_json(result: Result) -> dict[str, Any]:
             body: {key: getattr(gait, key) for key in ("feet", "stances", "true_stances")}
             for body, gait in result.gaits.items()
         },
+        "watch": {} if result.watch is None else watch_as_json(result.watch),
         "notes": list(result.notes),
         "unpredictable": result.unpredictable,
     }
@@ -126,79 +118,3 @@ def _match(match: Match) -> dict[str, Any]:
         "velocity_error": match.velocity_error,
         "shown": match.shown,
     }
-
-
-def _columns_of(key: str) -> dict[str, tuple[str, str]]:
-    """The columns of a field: for each name the type in Arrow, and the unit."""
-    field, stem = FIELDS[key], key.removesuffix("_twist").replace("_twist_6d", "_6d")
-    if field.type == "lift":
-        types = ("bool", ""), ("bool", ""), ("float64", "1")
-        return {f"{key}_{part}": of for part, of in zip(PARTS["lift"], types, strict=True)}
-    if field.type in PARTS:
-        return {f"{stem}_{part}": ("float64", field.unit or _UNITS[part[0]]) for part in PARTS[field.type]}
-    return {} if field.type == "json" else {key: ("string" if field.type == "mode" else field.type, field.unit)}
-
-
-class TouchdownTable:
-    """Writes the touchdowns of bags in the order in which these are added; the bytes depend on the answers alone."""
-
-    def __init__(self, writer: ParquetWriter) -> None:
-        self._writer = writer
-        self._rows: list[dict[str, Any]] = []
-
-    def add(self, answer: Mapping[str, Any]) -> None:
-        """Add the touchdowns of a bag, from the JSON of its replay (`as_json`, or its `bag` and `error`).
-
-        A bag without any has one row that tells of the bag.
-        """
-        failure = answer.get("error") or answer.get("unpredictable")
-        damage = answer.get("damaged")
-        for touchdown in answer.get("touchdowns") or [{}]:
-            row = {
-                "bag": answer["bag"],
-                "bag_status": "failed" if failure else "damaged" if damage else "ok",
-                "bag_problem": failure or damage,
-                "bag_samples": answer.get("samples"),
-            }
-            for key, field in FIELDS.items():
-                value = touchdown.get(key)
-                row |= zip(_columns_of(key), value if field.type in PARTS and value else (value,), strict=False)
-            self._rows.append(row)
-        if len(self._rows) >= _GROUP:
-            self.flush()
-
-    def flush(self) -> None:
-        """Write the rows as one group, wherever the borders of the bags are."""
-        import pyarrow
-
-        if self._rows:
-            table = pyarrow.Table.from_pylist(self._rows, schema=self._writer.schema)
-            self._writer.write_table(table, row_group_size=len(self._rows))
-        self._rows = []
-
-
-@contextmanager
-def parquet_table(path: str | Path) -> Iterator[TouchdownTable]:
-    """A table in a Parquet file; it has its name when it is whole, and after an exception an older one stays.
-
-    Raises:
-        InputError: pyarrow is missing, the name does not end in .parquet, or its folder does not exist; or it cannot be
-            written.
-    """
-    path = named(path, "Parquet table", (".parquet",))
-    need("pyarrow")
-    import pyarrow
-    from pyarrow.parquet import ParquetWriter
-
-    types = {"list<string>": pyarrow.list_(pyarrow.string()), "list<int32>": pyarrow.list_(pyarrow.int32())}
-    columns = dict.fromkeys(("bag", "bag_status", "bag_problem"), ("string", "")) | {"bag_samples": ("int64", "")}
-    for key in FIELDS:
-        columns |= _columns_of(key)
-    schema = pyarrow.schema(
-        pyarrow.field(name, types.get(kind) or pyarrow.type_for_alias(kind), metadata={"unit": unit} if unit else {})
-        for name, (kind, unit) in columns.items()
-    )
-    with whole(path) as partial, ParquetWriter(partial, schema, compression="zstd") as writer:
-        table = TouchdownTable(writer)
-        yield table
-        table.flush()

@@ -128,9 +128,11 @@ def _draw_unit(axes: plot.Axes, deck: MovingSupport, unit: UnitMotion) -> None:
         label = f"impact: {words(mode.name)}"
         axes.plot(at, [0.0] * len(at), "o", color=MODES[mode].colour, markeredgecolor=EDGE, label=label)
     used, warn = margin_used(deck, unit.unit, times), Watching().warn
+    moves = (np.abs(tilt) > _TILTS) | (np.abs(unit.states[3]) > _SLIDES) | (unit.toppled & (times >= unit.ended))
+    used[moves] = np.maximum(used[moves], 1.0)
     for least, colour, label in (
         (warn, MARGINS[1], f"{warn:.0%} of the margin used"),
-        (1.0, MARGINS[2], "margin used up: slides or tips"),
+        (1.0, MARGINS[2], "margin used up, or it moves"),
     ):
         over, bottom = times[used >= least], axes.get_xaxis_transform()
         axes.plot(over, [0.06] * len(over), "|", color=colour, markersize=9, transform=bottom, label=label)

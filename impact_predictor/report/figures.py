@@ -23,6 +23,7 @@ from .touchdowns import TouchdownRow, rows_of
 
 if TYPE_CHECKING:
     from ..bags.replay import Result
+    from ..bags.watched import WatchLog
     from ..calibration.fit import Calibration
 
 _BLUE, _VERMILION = PALETTE[:2]
@@ -31,7 +32,8 @@ MOST: Final = 3
 
 
 class ReplayPicture:
-    """Takes the replays of bags one by one: of machines that walk it shows their gait, else predicted velocities.
+    """Takes the replays of bags one by one: of machines that walk it shows their gait, of the first watch over a deck
+    its motion and margins, else predicted velocities.
 
     Only what it shows is kept of each.
     """
@@ -45,6 +47,7 @@ class ReplayPicture:
         self.path = named(path, *PICTURE)
         self._names: list[str] = []
         self._machines: list[list[FootLandings]] = []
+        self._watch: WatchLog | None = None
         self._tally = Tally()
         self._scored: list[TouchdownRow] = []
         self._ahead: list[tuple[float, float]] = []  # lead time and error
@@ -54,6 +57,7 @@ class ReplayPicture:
         bag, rows = Path(result.bag).name, rows_of(result.settled)
         self._names.append(bag)
         self._tally.add(rows)
+        self._watch = self._watch or result.watch
         for body, gait in list(result.gaits.items())[: MOST - len(self._machines)]:
             mine = [row for row in rows if row.body == (body or row.body)]
             self._machines.append(feet_of(f"{bag} {body}".rstrip(), gait, mine))
@@ -70,6 +74,11 @@ class ReplayPicture:
         names = listed(self._names, MOST)
         if self._machines:
             write_gait(self.path, list(chain.from_iterable(self._machines)), names)
+            return
+        if self._watch is not None:
+            from .watch_figure import write_watch
+
+            write_watch(self.path, self._watch, names)
             return
         write_touchdowns(
             self.path, self._scored, errors_ahead(self._ahead), f"{names}: {self._tally.sentences()[0].rstrip('.')}"

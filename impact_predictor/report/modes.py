@@ -44,3 +44,5 @@ EDGE: Final = "#1a1a1a"
 """Colour of the outline of a marker."""
 PALETTE: Final = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00")
 """Colours of what is no mode, in turn: those of Okabe and Ito, which people of any colour vision tell apart."""
+LEVELS: Final = {"OK": "#b7d9c0", "WARN": "#f2a91a", "ERROR": "#d62728", "STALE": "#9aa3ad"}
+"""Colours of the levels of a watch."""

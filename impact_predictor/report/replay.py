@@ -21,6 +21,7 @@ from .skill import skill_tables
 from .summary import SpanErrors, Tally, errors_of, velocity_errors_ahead
 from .table import MOST_ROWS, Column, first_stamp, more, say, show, table_of
 from .touchdowns import TouchdownRow, rows_of
+from .watch import unit_as_json, warned_of
 
 if TYPE_CHECKING:
     from ..bags.replay import Result
@@ -58,7 +59,10 @@ def print_replay(console: Console, result: Result, every: bool = False) -> None:
     if result.truth is not None:
         say(console, *truth_sentences(result.truth))
     warned = [one.warned for one in result.truths.values() if one.warned is not None]
-    if events := sum(one.events for one in warned):
+    if (log := result.watch) is not None:
+        found, said = warned_of(unit_as_json(log, place) for place in range(len(log.names)))
+        say(console, f"Of events {found} were warned of: {said}.")
+    elif events := sum(one.events for one in warned):
         stood = sum(one.events_warned for one in warned)
         say(console, f"A warning stood before {stood:,} of {counted(events, 'event')}.")
     say(console, *_costs(result))

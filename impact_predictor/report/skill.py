@@ -9,6 +9,8 @@ from math import hypot
 from operator import attrgetter
 from typing import Any, Final, NamedTuple
 
+import numpy as np
+
 from ..prediction.recorded import Announced
 from ..prediction.skill import SIMPLE
 from ..prediction.types import KINDS
@@ -171,14 +173,12 @@ def component_scores(rows: Iterable[TouchdownRow]) -> list[ComponentScore]:
         if row.error_6d is not None and row.predicted_twist_6d and row.measured_twist_6d and row.before_twist_6d
     ]
     found = []
-    for k, name in enumerate(COMPONENTS if len(pairs) > 2 else ()):
-        told, seen = [one[k] for one, _ in pairs], [other[k] for _, other in pairs]
-        middle, mean = sum(told) / len(pairs), sum(seen) / len(pairs)
-        spread, variance = (sum((x - m) ** 2 for x in xs) for xs, m in ((told, middle), (seen, mean)))
-        both = sum((x - middle) * (y - mean) for x, y in zip(told, seen, strict=True))
-        wrong = sum((x - y) ** 2 for x, y in zip(told, seen, strict=True))
+    for name, (told, seen) in zip(COMPONENTS, np.transpose(pairs) if len(pairs) > 2 else (), strict=False):
+        spread, variance = told.var(), seen.var()
         if spread and variance:
-            found.append(ComponentScore(name, middle - mean, both / spread, 1.0 - wrong / variance))
+            slope = float(np.mean((told - told.mean()) * (seen - seen.mean())) / spread)
+            r2 = float(1.0 - np.mean((told - seen) ** 2) / variance)
+            found.append(ComponentScore(name, float(np.mean(told - seen)), slope, r2))
     return found
 
 
@@ -209,20 +209,21 @@ def lift_scores(rows: Iterable[TouchdownRow]) -> list[LiftScore]:
     scored, found = [row for row in rows if row.error_6d is not None], []
     for name in ("old", "new"):
         lifts = [lift for row in scored if (lift := getattr(row, f"lift_{name}")) is not None]
-        sure = [(measured, chance) for _, measured, chance in lifts if chance is not None]
-        rate = sum(measured for measured, _ in sure) / len(sure) if sure else 0.0
-        brier, base = [
-            sum((measured - chance) ** 2 for measured, chance in pairs) / len(sure) if sure else None
-            for pairs in (sure, [(measured, rate) for measured, _ in sure])
-        ]
-        if lifts:
-            counts = Counter((measured, told) for told, measured, _ in lifts)
-            fifths = [[pair for pair in sure if min(int(5.0 * pair[1]), 4) == fifth] for fifth in range(5)]
-            means = [[sum(numbers) / len(pairs) for numbers in zip(*pairs, strict=True)] for pairs in fifths if pairs]
-            reliability = zip(map(len, filter(None, fifths)), means, strict=True)
-            found.append(
-                LiftScore(name, counts, brier, base, tuple((n, chance, share) for n, (share, chance) in reliability))
+        if not lifts:
+            continue
+        sure = np.array([(chance, measured) for _, measured, chance in lifts if chance is not None]).reshape(-1, 2)
+        chances, measured = sure.T
+        fifths = np.minimum(5.0 * chances, 4.0).astype(int)
+        groups = [sure[fifths == fifth] for fifth in range(5) if fifth in fifths]
+        found.append(
+            LiftScore(
+                name=name,
+                counts=Counter((measured, told) for told, measured, _ in lifts),
+                brier=float(np.mean((measured - chances) ** 2)) if len(sure) else None,
+                base=float(measured.var()) if len(sure) else None,
+                reliability=tuple((len(group), *group.mean(axis=0).tolist()) for group in groups),
             )
+        )
     return found
 
 
@@ -236,7 +237,7 @@ def skill_as_json(rows: Sequence[TouchdownRow], recorded: Mapping[str, Announced
     kinds = kind_scores(rows, recorded)
     if not kinds:
         return {}
-    names = ("prediction", *SIMPLE)
+    names, fields = ("prediction", *SIMPLE), ComponentScore._fields[1:]
     return {
         "skill": {name: _short(one) for name, one in zip(names, (kinds[-1].errors, *kinds[-1].simple), strict=True)},
         "kinds": {
@@ -245,9 +246,7 @@ def skill_as_json(rows: Sequence[TouchdownRow], recorded: Mapping[str, Announced
             | {"time_error": _short(one.times)}
             for one in kinds
         },
-        "components": {
-            one.name: {"bias": one.bias, "slope": one.slope, "r2": one.r2} for one in component_scores(rows)
-        },
+        "components": {name: dict(zip(fields, one, strict=True)) for name, *one in component_scores(rows)},
         "lifts": {
             one.name: {
                 "lifted": {"told": one.counts[True, True], "not_told": one.counts[True, False]},

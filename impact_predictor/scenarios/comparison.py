@@ -15,7 +15,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
 from math import dist, hypot, inf
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple, TypeVar
 
 from ..prediction.planar import hardly
 from ..prediction.scene import Scene
@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 
 SEEN: Final = 2
 """Samples between two impacts of which the last one shows the second ahead: a body that rocks rises before it falls."""
+
+HappenedTo = TypeVar("HappenedTo", TrueImpact, TrueOnset)
 
 APART: Final = 5_000_000_000
 """ns without slide, lift or impact after which the next one is an event of its own: half a roll of a ship, as long as
@@ -162,12 +164,7 @@ class Comparison:
 
     def compare(self) -> Compared:
         """Compare the predictions of all bodies that have samples with what truly happened to them."""
-        impacts: dict[str, list[TrueImpact]] = defaultdict(list)
-        onsets: dict[str, list[TrueOnset]] = defaultdict(list)
-        for impact in self.impacts:
-            impacts[self._names.get(impact.body, impact.body)].append(impact)
-        for onset in self.onsets:
-            onsets[self._names.get(onset.body, onset.body)].append(onset)
+        impacts, onsets = self._of_bodies(self.impacts), self._of_bodies(self.onsets)
         matches: dict[str, list[Match]] = {}
         for body in self._samples:
             walks = self._knows_landings and self._scene(body).walking is not None
@@ -176,8 +173,7 @@ class Comparison:
             elif self._knows_impacts:
                 matches[body] = self._matched_impacts(body, impacts[body])
         warned: dict[str, Warned] = {}
-        # A body alone may have no name; it goes by its frame.
-        alone = next(iter([*self._names.values(), *impacts]), "")
+        alone = self._alone()
         for name, scene in self._scenes.items():
             if self._knows_impacts and scene.watching is not None:
                 warned[name or alone] = self._warned(name, impacts[name or alone], onsets[name or alone])
@@ -190,6 +186,28 @@ class Comparison:
             },
             everything,
         )
+
+    def events(self) -> dict[str, list[int]] | None:
+        """The stamps in ns at which something begins to happen to each watched body; None where no truth is known."""
+        if not self._knows_impacts:
+            return None
+        impacts, onsets, alone = self._of_bodies(self.impacts), self._of_bodies(self.onsets), self._alone()
+        found = {}
+        for name in self._scenes:
+            struck = [impact.stamp for impact in impacts[name or alone]]
+            found[name] = events_of([*struck, *[onset.stamp for onset in onsets[name or alone]]])
+        return found
+
+    def _of_bodies(self, happened: Iterable[HappenedTo]) -> dict[str, list[HappenedTo]]:
+        """What happened to each body by its name."""
+        found: dict[str, list[HappenedTo]] = defaultdict(list)
+        for one in happened:
+            found[self._names.get(one.body, one.body)].append(one)
+        return found
+
+    def _alone(self) -> str:
+        """A body alone may have no name; it goes by its frame."""
+        return next(iter([*self._names.values(), *[one.body for one in self.impacts]]), "")
 
     def _scene(self, body: str) -> Scene:
         return self._scenes[body if body in self._scenes else ""]

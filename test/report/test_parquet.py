@@ -11,7 +11,7 @@ import pytest
 from touchdowns import LANDED, UNMEASURED
 
 from impact_predictor.errors import InputError
-from impact_predictor.report.answers import parquet_table
+from impact_predictor.report.tables import TOUCHDOWNS, table_file, touchdown_rows
 from impact_predictor.report.touchdowns import row_as_json, row_of
 
 parquet = pytest.importorskip("pyarrow.parquet", reason="needs the extra fleet (make test-extras)")
@@ -30,9 +30,9 @@ ANSWERS: list[dict[str, Any]] = [
 
 
 def written(path: Path) -> Any:
-    with parquet_table(path) as table:
+    with table_file(path, TOUCHDOWNS) as table:
         for answer in ANSWERS:
-            table.add(answer)
+            table.add(touchdown_rows(answer))
     return parquet.read_table(path)
 
 
@@ -57,12 +57,12 @@ def test_the_documented_lines_read_the_table(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    with parquet_table("results.parquet") as table:
+    with table_file("results.parquet", TOUCHDOWNS) as table:
         for answer in ANSWERS:
-            table.add(answer)
+            table.add(touchdown_rows(answer))
         for error in (0.1, 0.3):
             scored = TOUCHDOWN | {"scored": True, "relative_error": error}
-            table.add({"bag": "e.mcap", "samples": 3, "touchdowns": [scored]})
+            table.add(touchdown_rows({"bag": "e.mcap", "samples": 3, "touchdowns": [scored]}))
     (code,) = re.findall(r"```python\n(.*?)```", DOCS.read_text(encoding="utf-8"), re.DOTALL)
     exec(code, {})
     failed, errors = map(literal_eval, capsys.readouterr().out.splitlines())
@@ -93,16 +93,16 @@ def test_a_table_that_is_not_whole_leaves_the_older_one(tmp_path: Path) -> None:
     path = tmp_path / "t.parquet"
     written(path)
     before = path.read_bytes()
-    with pytest.raises(KeyError), parquet_table(path) as table:
-        table.add(ANSWERS[0])
+    with pytest.raises(KeyError), table_file(path, TOUCHDOWNS) as table:
+        table.add(touchdown_rows(ANSWERS[0]))
         raise KeyError
     assert path.read_bytes() == before
     assert list(tmp_path.iterdir()) == [path]
 
 
 @pytest.mark.parametrize(
-    ("name", "said"), [("t.csv", r"ends in \.parquet"), ("none/t.parquet", "folder of .* does not")]
+    ("name", "said"), [("t.txt", r"ends in \.parquet or \.csv"), ("none/t.parquet", "folder of .* does not")]
 )
 def test_a_wrong_name_is_told_at_once(tmp_path: Path, name: str, said: str) -> None:
-    with pytest.raises(InputError, match=said), parquet_table(tmp_path / name):
+    with pytest.raises(InputError, match=said), table_file(tmp_path / name, TOUCHDOWNS):
         pass

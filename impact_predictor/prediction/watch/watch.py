@@ -11,6 +11,7 @@ from math import inf
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...stamps import NANOSECONDS
 from ..scene import MovingDeck, Scene
@@ -139,6 +140,11 @@ class Watch:
         number = self._numbers[body]
         self._bodies[number].status = status
         self._changed(number, False)
+
+    @property
+    def margins(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """The parts (n,) of the margins against sliding and tipping that are used up now, of all bodies in order."""
+        return self._margins.slide, self._margins.tip
 
     def reports(self) -> tuple[Report, ...]:
         """A report of each body where a second of stamps is over or a level has changed since this was last asked."""

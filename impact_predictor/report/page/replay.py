@@ -20,6 +20,7 @@ from ..summary import PER_DECADE, WHY, without_bag
 from . import GREY, Cell, Chart, PageTable, Section, marks, page, part_words, script_inside, time_words, write_html
 from .facts import NOTHING, BagAnswer, ReplayFacts
 from .timeline import FALSE, MANY, MISSED, ORDER, look_of, timeline
+from .watch import watch_headline, watched
 
 DRAWN: Final = 8
 """Bags of which a timeline is drawn; of more the worst."""
@@ -100,6 +101,7 @@ def page_of_replay(
     charts = [timeline(facts.names[place], answers[place], f"bag-{place + 1}") for place in drawn]
     parts = (
         bags(facts, each, order, links or {place: f"#bag-{place + 1}" for place in drawn}),
+        watched([facts.names[place] for place in order], [answers[place] for place in order], DRAWN),
         Section("when", "When the touchdowns came", [READING], charts),
         skill(facts),
         velocities(facts, each),
@@ -109,8 +111,12 @@ def page_of_replay(
         unused(facts),
         scene(values or {}),
     )
-    known = [one for one in facts.headlines() if one.answer != "–"] if drawn else []
-    title = ", ".join(f"{one.question} {one.answer}" for one in known[:-1]) or "No touchdown was predicted"
+    headlines = [*(facts.headlines() if drawn else ()), watch_headline(answers)]
+    known = [one for one in headlines if one.answer != "–"]
+    title = (
+        ", ".join(f"{one.question} {one.answer}" for one in known if "cost" not in one.question)
+        or "No touchdown was predicted"
+    )
     what = facts.names[0] if len(answers) == 1 else f"{len(answers):,} records"
     samples = counted(sum(answer.get("samples", 0) for answer in answers), "sample")
     lead = f"{what}, {samples}, went through the predictor as if live."

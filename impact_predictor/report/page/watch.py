@@ -1,0 +1,245 @@
+"""What a page says of the watch over a deck: motion and forecast, margins and levels, warnings and statistics."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from statistics import median
+from typing import Any, Final
+
+from ...bags.watched import FELT
+from ...stamps import NANOSECONDS
+from ...wording import NONE, counted, fixed, words
+from ..modes import EDGE, LEVELS, PALETTE
+from ..watch import warned_of
+from . import Cell, Chart, Headline, PageTable, Section, part_words, safe
+from .facts import BagAnswer
+
+SHOWN: Final = 6
+"""Units whose margins are drawn; of more those that came nearest to an onset."""
+LEAD: Final = 5.0
+"""Seconds ahead of the forecast that is shown unless another one is asked for."""
+HIGH: Final = 1.5
+"""Parts of the margin up to which it is drawn."""
+
+READING: Final = (
+    "Above stand the angles of the deck and what is felt on it; the band is where nine tenths of what came should lie, "
+    "as forecast so long before. Below, for each unit, a ribbon of its levels, and the part that is used of its "
+    "margins: at 1 it slides or tips. A triangle is an event, with how long a warning had stood. Click the name of a "
+    "forecast to see it, drag over a part of the time to magnify it, double-click to see all of it."
+)
+TRUE: Final = "An event is a slide, lift or impact after 5 s without one, as the bag tells it."
+SEEN: Final = "The bag tells of no events: one is taken where a margin is used up after 5 s in which none was."
+NEAR: Final = "How near each unit came to an onset, and how long in s a warning, and ERROR, had stood at its events."
+VAIN: Final = "A warning, WARN or ERROR, is vain if no event begins in it."
+ERRS: Final = (
+    "Root mean squares of the errors of what is felt on the deck, beside those of what was felt when it was forecast "
+    "and of the mean of the record."
+)
+OF_NOW: Final = frozenset(
+    ("slide_ratio", "tip_ratio", "time_to_tip", "time_to_slide", "onset_probability", "energy_to_topple", "tilt")
+)
+"""What a report says of its moment alone."""
+ANGLES: Final = {"roll": "roll, port up", "pitch": "pitch, bow down"}
+
+
+def watch_headline(answers: Iterable[BagAnswer]) -> Headline:
+    """How many events were warned of, how early, and how many warnings were vain; "–" where nothing was watched."""
+    units = [unit for answer in answers for unit in answer.get("watch", {}).get("units", {}).values()]
+    found, said = warned_of(units)
+    return Headline("events warned of", found if units else "–", said)
+
+
+def watched(names: Sequence[str], answers: Sequence[BagAnswer], most: int) -> Section:
+    """The watch of each bag that has one, the charts of `most` of them."""
+    known = [(name, answer) for name, answer in zip(names, answers, strict=True) if answer.get("watch")]
+    charts = [chart_of(f"The watch over {name}", answer) for name, answer in known[:most] if answer["watch"]["stamps"]]
+    truths = {answer["watch"]["knows_events"] for _, answer in known}
+    said = [READING, *(text for truth, text in ((True, TRUE), (False, SEEN)) if truth in truths), VAIN]
+    rows = [
+        unit_row(f"{bag}, {unit}" if len(known) > 1 else unit or "the unit", one)
+        for bag, answer in known
+        for unit, one in answer["watch"]["units"].items()
+    ]
+    head = ["unit", "most used: slide", "tip", "events", "warned of", "warning stood, s", "ERROR stood, s"]
+    tables = [PageTable([*head, "warnings", "vain"], rows, NEAR)]
+    tables += statistics(known)
+    tables += [skill_table(answer["watch"]["skill"], name if len(known) > 1 else "") for name, answer in known[:most]]
+    return Section("watch", "The watch over the deck", said, [*charts, *[one for one in tables if one.rows]])
+
+
+def unit_row(name: str, unit: Mapping[str, Any]) -> list[Cell | str]:
+    """How near a unit came to an onset, and how it was warned of."""
+    events, warnings = unit["events"], unit["warnings"]
+    leads = [[one[key] for one in events if one[key] is not None] for key in ("warned_ahead", "error_ahead")]
+    stood = [Cell(fixed(median(of), 1), f"at least {min(of):.1f}") if of else NONE for of in leads]
+    used = [fixed(unit["most"][key], 2) for key in ("slide", "tip")]
+    numbers = [f"{number:,}" for number in (len(warnings), sum(one["vain"] for one in warnings))]
+    return [name, *used, f"{len(events):,}", f"{len(leads[0]):,}", *stood, *numbers]
+
+
+def statistics(known: Sequence[tuple[str, BagAnswer]]) -> list[PageTable]:
+    """What the watch reported last of each unit, as numbers."""
+    units = [(bag, *one) for bag, answer in known for one in answer["watch"]["units"].items()]
+    keys = [key for key in dict.fromkeys(key for *_, unit in units for key in unit["reported"]) if key not in OF_NOW]
+    rows = [
+        [f"{bag}, {name}" if len(known) > 1 else name or "the unit"]
+        + [f"{unit['reported'][key]:.4g}" if key in unit["reported"] else NONE for key in keys]
+        for bag, name, unit in units
+    ]
+    return (
+        [PageTable(["unit", *map(words, keys)], rows, "Statistics, as the watch reported them last.")] if keys else []
+    )
+
+
+def skill_table(skill: Iterable[Mapping[str, Any]], name: str) -> PageTable:
+    """The errors of forecasts beside those of simple answers; only what the deck feels at all."""
+    rows = [
+        [
+            f"{one['of']}, {one['lead']:g} s ahead",
+            *(f"{one[key]:.3f}" for key in ("forecast", "now", "mean")),
+            part_words(one["within"]),
+            f"{one['count']:,}",
+        ]
+        for one in skill
+        if one["mean"] > 1e-3
+    ]
+    head = ["felt", "forecast, m/s²", "as when forecast", "the mean", "within the band of 90 %", "forecasts"]
+    return PageTable(head, rows, f"{name}: {ERRS}" if name else ERRS)
+
+
+def chart_of(title: str, answer: BagAnswer) -> Chart:
+    """The deck, its forecast, and the levels and margins of its units over time, on one axis of time."""
+    watch, traces = answer["watch"], list[dict[str, Any]]()
+    stamps = watch["stamps"]
+    start = stamps[0] if answer.get("begin") is None else min(stamps[0], answer["begin"])
+    times = [(stamp - start) / NANOSECONDS for stamp in stamps]
+    shown = sorted(watch["units"], key=lambda name: (-len(watch["units"][name]["events"]), -_most(watch, name)))[:SHOWN]
+    felt = [name for name in FELT if _swing(watch["deck"][name]) > 0.1 * max(_swing(watch["deck"][of]) for of in FELT)]
+    # Panels from above: a title for the axis, and how high each is.
+    panels: list[tuple[str, float]] = [("angle, °", 1.2), *((f"felt {name}, m/s²", 1.6) for name in felt)]
+    for name, colour in zip(ANGLES, PALETTE, strict=False):
+        degrees = [None if one is None else 57.29578 * one for one in watch["deck"][name]]
+        traces.append(_line(ANGLES[name], times, degrees, 1, colour))
+    for place, name in enumerate(felt, 2):
+        traces += _forecasts(watch, name, times, start, place)
+        traces.append(_line(f"felt {name}", times, watch["deck"][name], place, EDGE))
+    for name in shown:
+        panels += [("", 0.16), (f"{name or 'margin used'}", 1.2)]
+        traces += _unit_traces(watch["units"][name], times, start, len(panels))
+    # Each name stands in the legend once.
+    met = set[str]()
+    for trace in traces:
+        if trace.get("name") in met:
+            trace["showlegend"] = False
+        elif trace.get("showlegend", True):
+            met.add(trace["name"])
+    layout: dict[str, Any] = {"height": round(150 + 105 * sum(high for _, high in panels)), "barmode": "overlay"}
+    gaps = [0.02 if text else 0.005 for text, _ in panels[:-1]]
+    top, unit = 1.0, (1.0 - sum(gaps)) / sum(high for _, high in panels)
+    for place, (text, high) in enumerate(panels, 1):
+        axis: dict[str, Any] = {"title": safe(text), "domain": [max(0.0, top - high * unit), top]}
+        if not text:
+            axis |= {"showticklabels": False, "showgrid": False, "fixedrange": True, "range": [-0.5, 0.5]}
+        elif place > 1 + len(felt):
+            axis |= {"range": [0.0, HIGH], "fixedrange": True}
+        layout["yaxis" if place == 1 else f"yaxis{place}"] = axis
+        top -= high * unit + (0.02 if text else 0.005)
+    layout["xaxis"] = {
+        "title": "time in the record, s",
+        "range": [0.0, max(1.0, times[-1])],
+        "anchor": f"y{len(panels)}",
+    }
+    layout["showlegend"] = True
+    more = len(watch["units"]) - len(shown)
+    caption = f"Of {counted(more, 'more unit')}, which came less near to an onset, the table tells." if more else ""
+    return Chart(title, traces, layout, caption)
+
+
+def _unit_traces(unit: Mapping[str, Any], times: Sequence[float], start: int, place: int) -> list[dict[str, Any]]:
+    """The ribbon of the levels of a unit above its margins, with its events."""
+    traces: list[dict[str, Any]] = []
+    for level, colour in LEVELS.items():
+        spells = [
+            ((begin - start) / NANOSECONDS, (end - start) / NANOSECONDS)
+            for of, begin, end in unit["levels"]
+            if of == level
+        ]
+        if spells:
+            look = {"base": [begin for begin, _ in spells], "width": 1.0, "marker": {"color": colour}}
+            texts = [f"{level} from {begin:.1f} s to {end:.1f} s" for begin, end in spells]
+            bar = {"type": "bar", "orientation": "h", "hovertext": texts, "hoverinfo": "text", "name": level, **look}
+            traces.append(
+                bar | {"x": [end - begin for begin, end in spells], "y": [0] * len(spells), "yaxis": f"y{place - 1}"}
+            )
+    traces.append(
+        _line("margin used against tipping", times, unit["tip"], place, PALETTE[1])
+        | {"fill": "tozeroy", "fillcolor": f"{PALETTE[1]}40"}
+    )
+    traces.append(_line("margin used against sliding", times, unit["slide"], place, PALETTE[0]))
+    dotted = {"line": {"color": PALETTE[2], "width": 1.3, "dash": "dot"}}
+    traces.append(_line("probability of an onset", times, unit["probability"], place, EDGE) | dotted)
+    full = {"x": [times[0], times[-1]], "y": [1.0, 1.0], "line": {"color": LEVELS["ERROR"], "width": 1}}
+    traces.append(
+        {"type": "scatter", "mode": "lines", "yaxis": f"y{place}", "hoverinfo": "skip", "showlegend": False, **full}
+    )
+    if unit["events"]:
+        at = [(one["stamp"] - start) / NANOSECONDS for one in unit["events"]]
+        texts = [
+            f"event at {time:.1f} s<br>"
+            + ("not warned of" if one["warned_ahead"] is None else f"a warning had stood {one['warned_ahead']:.1f} s")
+            for time, one in zip(at, unit["events"], strict=True)
+        ]
+        look = {"symbol": "triangle-down", "size": 11, "color": EDGE}
+        traces.append(
+            {
+                "type": "scatter",
+                "mode": "markers",
+                "name": "event",
+                "x": at,
+                "y": [1.0] * len(at),
+                "marker": look,
+                "yaxis": f"y{place}",
+                "hovertext": texts,
+                "hoverinfo": "text",
+            }
+        )
+    return traces
+
+
+def _forecasts(
+    watch: Mapping[str, Any], name: str, times: Sequence[float], start: int, place: int
+) -> list[dict[str, Any]]:
+    """The bands of the forecasts of what is felt, drawn at the times for which they were made."""
+    told, traces = watch["forecasts"], list[dict[str, Any]]()
+    for lead, (low, middle, high) in zip(told["leads"], told[name], strict=True):
+        at = [(made - start) / NANOSECONDS + lead for made in told["made"]]
+        said, seen = f"forecast {lead:g} s before", True if lead == LEAD else "legendonly"
+        group = {
+            "type": "scatter",
+            "mode": "lines",
+            "yaxis": f"y{place}",
+            "legendgroup": said,
+            "visible": seen,
+            "x": at,
+        }
+        edge = group | {"line": {"width": 0}, "hoverinfo": "skip", "showlegend": False}
+        traces += [
+            edge | {"y": low},
+            edge | {"y": high, "fill": "tonexty", "fillcolor": f"{PALETTE[4]}50"},
+            group | {"y": middle, "name": said, "line": {"color": PALETTE[0], "width": 1.2, "dash": "dash"}},
+        ]
+    return traces
+
+
+def _line(name: str, times: Sequence[float], values: Sequence[float | None], place: int, colour: str) -> dict[str, Any]:
+    line = {"type": "scatter", "mode": "lines", "name": name, "x": times, "y": values, "yaxis": f"y{place}"}
+    return line | {"line": {"color": colour, "width": 1.3}, "hovertemplate": "%{x:.1f} s: %{y:.3g}"}
+
+
+def _swing(values: Iterable[float | None]) -> float:
+    known = [one for one in values if one is not None]
+    return max(known, default=0.0) - min(known, default=0.0)
+
+
+def _most(watch: Mapping[str, Any], name: str) -> float:
+    return float(max(watch["units"][name]["most"].values()))
