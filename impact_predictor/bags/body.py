@@ -9,7 +9,6 @@ from typing import Final, NamedTuple
 
 from ..prediction.scene import Scene, Walking
 from ..prediction.types import Geometry, Prediction, Sample, Score, Status
-from ..prediction.vectors import add, axes_of, dot, to_world
 from ..ros.messages import OUTPUTS
 from ..stamps import NANOSECONDS
 
@@ -94,7 +93,7 @@ def _note(ended: list[FootStance], since: dict[int, int], foot: int, stands: boo
 class BodyRecord:
     """One body: the answers to its samples, its gait, and what its contact points were told to be.
 
-    `seen` is the last sample, `first` and `last` are those that were accepted. Of the contact points, `geometry` is
+    `first` and `last` are the samples that were accepted. Of the contact points, `geometry` is
     what was told last, `told` how often, and `moved` how often elsewhere than first. `is_pressed` tells
     whether a force on a foot was told.
     """
@@ -102,7 +101,6 @@ class BodyRecord:
     def __init__(self, body: str, scene: Scene, write: Write | None) -> None:
         self.body, self.scene = body, scene
         self.gait = None if scene.walking is None else Gait(scene.walking)
-        self.seen: Sample | None = None
         self.first: Sample | None = None
         self.last: Sample | None = None
         self.geometry: Geometry | None = None
@@ -143,15 +141,6 @@ class BodyRecord:
         first = self._first_geometry = self._first_geometry or geometry
         self.geometry, self.told = geometry, self.told + 1
         self.moved += any(dist(*pair) > MOVED for pair in zip(first.points, geometry.points, strict=False))
-
-    @property
-    def depth(self) -> float | None:
-        """How deep (m) the lowest contact point lies in the ground, by the last sample; None where nobody knows."""
-        if self.seen is None or self.geometry is None:
-            return None
-        axes = axes_of(self.seen.orientation)
-        places = [add(self.seen.position, to_world(axes, point)) for point in self.geometry.points]
-        return self.scene.height - min(dot(self.scene.normal, place) for place in places)
 
     @property
     def interval(self) -> float:

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from ..prediction.checks import REMEDIES
 from ..prediction.scene import CONTACT_GEOMETRY, POINTS, SCHEDULE, STATES, TERRAIN, WRENCH, Input, Scene, inputs_of
-from ..prediction.types import FeetStates, Geometry, Joints, Schedule, Status, Wrench
+from ..prediction.types import Status
 from ..ros.messages import INPUT_TYPES
 from ..wording import listed
-from .body import BodyRecord
 
 if TYPE_CHECKING:
     from .run import Run
@@ -36,42 +35,7 @@ MISSED: Final = {
 }
 """What follows where nothing comes on an input of which feet can do without."""
 
-_COMPARE: Final = "compare support.height, the units of the points (m), and the frames of body and points"
 _MOST_NAMED: Final = 4
-
-
-def flaw_of(record: BodyRecord, status: Status, message: Any, joints: Sequence[str]) -> str:
-    """What is wrong with a message about a body that was refused, as far as more is known of it; else "".
-
-    `joints` are those of the robot's model.
-    """
-    walking = record.scene.walking
-    if status is Status.BELOW_GROUND and record.depth is not None:
-        return f"the lowest foot lies {record.depth:.3g} m below the ground: {_COMPARE}"
-    if status is Status.FEET_CHANGED and isinstance(message, Schedule):
-        return "joint_names has a name that is none of feet.names"
-    if status is Status.WRONG_FRAME and isinstance(message, Wrench):
-        return "frame_id is none of feet.names"
-    if status is Status.FEET_CHANGED and isinstance(message, FeetStates) and walking is not None:
-        each, has = "once" if walking.points == 1 else "twice", listed(message.names, _MOST_NAMED) or "none"
-        return f"joint_names must have each of {listed(walking.feet, _MOST_NAMED)} {each}, but has {has}"
-    if status is Status.FEET_CHANGED and isinstance(message, Geometry) and walking is not None:
-        number, wanted = len(message.points), len(walking.feet) * walking.points
-        if number == wanted:
-            return f"{len(message.velocities)} velocities came with {number} points: give one for each, or none"
-        return (
-            f"{number} points came, but feet.names ({len(walking.feet)}) x feet.points ({walking.points}) wants "
-            f"{wanted}: correct these, or the message"
-        )
-    if status is Status.WRONG_JOINTS and isinstance(message, Joints):
-        lacking = [name for name in joints if name not in message.names]
-        if not lacking:
-            return "a joint is there twice, or without its position: tell each joint once, with its position"
-        unknown = [name for name in message.names if name not in joints]
-        others = f", while robot.urdf does not know its {listed(unknown, _MOST_NAMED)}" if unknown else ""
-        lacks = listed(lacking, _MOST_NAMED)
-        return f"it lacks {lacks} of robot.urdf{others}: tell every joint of the model by its name there"
-    return ""
 
 
 def why_unpredictable(

@@ -11,6 +11,7 @@ from time import perf_counter
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
+from ..prediction.flaws import flaw_of
 from ..prediction.monitor import Monitor
 from ..prediction.recorded import Announced
 from ..prediction.scene import CONTACT_GEOMETRY, IMU, JOINTS, ODOM, SCHEDULE, WRENCH, Input, Scene
@@ -20,7 +21,6 @@ from .body import NODE as NODE
 from .body import BodyRecord, Write
 from .body import Settled as Settled
 from .read import BagMessage, UnusableMessage
-from .remarks import flaw_of
 
 if TYPE_CHECKING:
     from ..ros.markers.scene import MarkerScene
@@ -194,13 +194,11 @@ class Run:
         """Note what became of a message, and what is wrong with the first one that is refused so."""
         self.statuses[one][status] += 1
         if status is not Status.ACCEPTED and one.body in self.bodies and (one, status) not in self.flaws:
-            known = self.monitor.predictors[one.body].contacts.joints
-            flaw = flaw_of(self.bodies[one.body], status, message, known)
+            flaw = flaw_of(self.monitor.predictors[one.body], status, message)
             if flaw:
                 self.flaws[one, status] = flaw
 
     def _answer(self, record: BodyRecord, sample: Sample, log_time: int) -> Status:
-        record.seen = sample
         began = perf_counter()
         prediction = self.monitor.update(record.body, sample)
         cost = perf_counter() - began

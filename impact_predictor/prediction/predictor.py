@@ -50,6 +50,8 @@ class Contacts(ABC):
         """The joints that the robot's model moves by, where it has one."""
         self.unknown_joints: tuple[str, ...] = ()
         """Joints that were told last and that the model does not know."""
+        self.depth: float | None = None
+        """How deep in m the lowest contact was in the ground when a message was refused for that; None before."""
 
     @abstractmethod
     def tell(self, message: ContactInput) -> Status:
@@ -131,6 +133,12 @@ class Predictor:
         self.contacts = contacts_for(scene)
         self.scene = self.contacts.scene
         self._deck = deck
+
+    @property
+    def frames(self) -> tuple[str, ...]:
+        """The frames in which samples may be; none where any will do."""
+        of_deck = () if self._deck is None else self._deck.frames
+        return tuple(dict.fromkeys(one for one in (*of_deck, self.scene.frame) if one))
 
     def become(self, other: Predictor) -> None:
         """Go on as the predictor of another scene of the body: what was told stays known, and the track begins anew."""

@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 STALE_AFTER: Final = 1.0
 """Seconds without a sample after which the input counts as stale."""
 
+SILENT: Final = 5.0
+"""Seconds without a message on an input after which the log says so."""
+
 REMEMBERED: Final = 1000
 """Touchdowns whose errors count for a median."""
 
@@ -32,8 +35,9 @@ class Refusal(NamedTuple):
     input: str
     status: Status
 
-    def __str__(self) -> str:
-        return f"{self.input} {self.status.name}: {REMEDIES[self.status]}"
+    def said(self, flaw: str = "") -> str:
+        """It as words, with the `flaw` of the message as far as it is known."""
+        return f"{self.input} {self.status.name}: {flaw or REMEDIES[self.status]}"
 
 
 def shown(figures: Iterable[tuple[str, str, object]]) -> dict[str, str]:
@@ -64,10 +68,13 @@ class Diagnostics:
         self._body = ""
         self._accepted = 0
         self._refused: Counter[Refusal] = Counter()
+        self._flaws: dict[Refusal, str] = {}
         self._others = 0
         self.dropped = 0
         """Samples that were dropped because newer ones waited behind them."""
         self._last: dict[str, float] = {}
+        self._first = now
+        self._silent: set[str] = set()
         self._last_stamps: dict[str, int] = {}
         self._touchdowns = 0
         self._scored = 0
@@ -116,13 +123,21 @@ class Diagnostics:
         """When the last message came on each input that is to keep coming: a plan need not, so its silence is none."""
         return {name: self._last[name] for name in self.publishers if name in self._last}
 
+    def fallen_silent(self, now: float) -> list[str]:
+        """The inputs that have told nothing for a while, each once until it is heard again."""
+        silent = {name for name in self.publishers if now - self._last.get(name, self._first) > SILENT}
+        fallen = sorted(silent - self._silent)
+        self._silent = silent
+        return fallen
+
     def has_heard(self, name: str) -> bool:
         """Whether a message on an input was accepted."""
         return name in self._last
 
-    def refused(self, now: float, reason: Refusal) -> bool:
-        """Count a refused message."""
+    def refused(self, now: float, reason: Refusal, flaw: str = "") -> bool:
+        """Count a refused message, with what more is known of its flaw."""
         self._refused[reason] += 1
+        self._flaws[reason] = flaw
         self._refused_now[reason] += 1
         return self.level == OK and self._judge(now)
 
@@ -204,10 +219,11 @@ class Diagnostics:
         if refused:
             count = refused.total()
             reason, _ = refused.most_common(1)[0]
+            said = reason.said(self._flaws[reason])
             only_refused = not self._updates and (at_its_end or self.level == ERROR)
             if only_refused and reason.status is not Status.NO_GEOMETRY:
-                return ERROR, f"nothing but refused messages ({count}); {reason}"
-            return WARN, f"{count} messages refused in the last second; {reason}"
+                return ERROR, f"nothing but refused messages ({count}); {said}"
+            return WARN, f"{count} messages refused in the last second; {said}"
         if dropped := self.dropped - self._dropped_before:
             cost = f"{median(self._totals) * 1e3:.2g} ms" if self._totals else "too long"
             why = f"they come faster than answers, of {cost} each"

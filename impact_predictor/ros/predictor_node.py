@@ -9,6 +9,7 @@ from contextlib import nullcontext
 from difflib import get_close_matches
 from functools import partial
 from itertools import chain
+from time import perf_counter
 from typing import Any, Final
 
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor, SetParametersResult
@@ -25,12 +26,15 @@ from ..mechanics.compiled import told_of_compiling
 from ..parameters.validation import Parameter, Value, check_change, foreign, is_of_every_node, parameter_of, validate
 from ..prediction.monitor import Monitor
 from ..prediction.scene import CONTACT_GEOMETRY, FEET_STATES, ODOM, Scene, inputs_of, scenes_of
+from ..wording import listed
+from .diagnostics import SILENT
 from .endpoints import Misfits
-from .process import sentence
+from .process import flaw_of_file, sentence
 from .reporter import Reporter
 from .topics import BodyTopics, InputTopic
 
 _QOS_OVERRIDES: Final = "qos_overrides."
+_OF_ROS: Final = ("/clock", "/parameter_events")
 _TYPES: Final = frozenset(one.value for one in NodeParameter.Type)
 
 
@@ -89,6 +93,12 @@ class PredictorNode(Node):
             self.get_logger().warning(f"{name} is no parameter of impact_predictor, and passed over")
         for said in _overrides_of_others(self):
             self.get_logger().warning(said)
+        names = ", ".join(scenes)
+        inputs = sorted({one.topic_name for one in self.subscriptions} - set(_OF_ROS))
+        self.get_logger().info(
+            f"{f'the bodies {names} are' if names else 'one body is'} predicted from {listed(inputs)}; "
+            f"executor {self.executor_kind}"
+        )
 
     def create_service(
         self, srv_type: Any, srv_name: str, callback: Callable[[Any, Any], Any], **options: Any
@@ -134,6 +144,10 @@ class PredictorNode(Node):
             is_told = counts[name] or (diagnostics.has_heard(name) and not counts[other])
             del counts[other if is_told else name]
         diagnostics.publishers = counts
+        for name in diagnostics.fallen_silent(perf_counter()):
+            topic = self._inputs[name].topic_name
+            why = f"{counts[name]} publish there" if counts[name] else "nobody publishes there"
+            self.get_logger().warning(f"nothing has come on {topic} for {SILENT:.0f} s: {why}")
         diagnostics.misfits = self._misfits.look()
         self._reporter.second_over()
 
@@ -161,9 +175,13 @@ class NodeParameters:
         parameters: Mapping[str, Any] = node.get_parameters_by_prefix("")
         self._node = node
         self._given = {name: _plain(parameter.value) for name, parameter in parameters.items()}
-        self.values = validate(self._given)
         self.foreign = foreign(self._given)
         """Parameters in the place of ours that are surely meant for other nodes."""
+        if all(is_of_every_node(name) or name in self.foreign for name in self._given):
+            name = node.get_fully_qualified_name()
+            flaw = flaw_of_file(None, name) or "give --params-file scene.yaml, as config/cube_tosses.yaml"
+            raise InputError(f"no parameter of the scene was given to {name}: {flaw}")
+        self.values = validate(self._given)
         for name, depth in self._given.items():
             if name.startswith(_QOS_OVERRIDES) and name.endswith(".depth") and not (type(depth) is int and depth > 0):
                 raise InputError(

@@ -88,7 +88,7 @@ def run(work: Callable[[Stop], int], args: list[str] | None) -> int:
         try:
             rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
         except RuntimeError as error:
-            return _refuse(_flaw_of_file(args) or f"ROS refuses the arguments: {sentence(error)}")
+            return _refuse(flaw_of_file(args) or f"ROS refuses the arguments: {sentence(error)}")
         try:
             return work(stop)
         except InputError as error:
@@ -117,15 +117,15 @@ def only_for_ros(args: list[str] | None, usage: str) -> int | None:
     return None
 
 
-def _flaw_of_file(args: list[str] | None) -> str:
-    """What is wrong with the parameter file of the arguments, said as offline, or "": rcl says it less clearly."""
+def flaw_of_file(args: list[str] | None, node: str = "impact_predictor") -> str:
+    """What is wrong with the parameter file of the arguments for a node, said as offline, or "": rcl says less."""
     words = sys.argv if args is None else args
     for option, path in pairwise(words):
         if option == "--params-file":
             from ..parameters.file import read_parameters
 
             try:
-                read_parameters(path)
+                read_parameters(path, node)
             except InputError as flaw:
                 return str(flaw)
     return ""

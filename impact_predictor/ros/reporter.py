@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from rclpy.node import Node
 
+from ..prediction.flaws import flaw_of
 from ..prediction.monitor import Monitor
 from ..prediction.scene import CONTACT_GEOMETRY, IMU, Input
 from ..prediction.types import Geometry, Prediction, Status
@@ -120,12 +121,14 @@ class Reporter:
             self._time = message.stamp, now
         self._publish(self.diagnostics.taken(now, name))
 
-    def refuse(self, name: str, status: Status) -> None:
-        """A message on an input was refused."""
+    def refuse(self, name: str, status: Status, body: str | None = None, message: Any = None) -> None:
+        """A message on an input, about a body, was refused."""
         reason = Refusal(name, status)
-        changed = self.diagnostics.refused(perf_counter(), reason)
+        predictor = None if body is None else self._monitor.predictors.get(body)
+        flaw = "" if predictor is None else flaw_of(predictor, status, message)
+        changed = self.diagnostics.refused(perf_counter(), reason, flaw)
         if self.diagnostics.is_news(reason):
-            self._node.get_logger().warning(f"refused a message on {reason}")
+            self._node.get_logger().warning(f"refused a message on {reason.said(flaw)}")
         self._publish(changed)
 
     def second_over(self) -> None:

@@ -57,7 +57,7 @@ class InputTopic:
         if status is Status.ACCEPTED:
             self._reporter.took(self._input, message)
         else:
-            self._reporter.refuse(self._input.name, status)
+            self._reporter.refuse(self._input.name, status, self.body, message)
 
 
 def _route(monitor: Monitor, one: Input) -> Callable[[Any], Status]:
@@ -109,7 +109,7 @@ class BodyTopics:
             if prediction.status is Status.NO_GEOMETRY:
                 for one in self._told:
                     one.look_for_history()
-            self._reporter.refuse(self._topic, prediction.status)
+            self._reporter.refuse(self._topic, prediction.status, self._body, sample)
             return
         self._last_sample = sample
         for outlet, encode in self._encoders:

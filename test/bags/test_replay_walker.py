@@ -73,7 +73,10 @@ def test_every_input_tells_what_became_of_its_messages(tmp_path: Path, messages:
         assert counts[Status.ACCEPTED] > 0, name
     assert result.inputs["contact_wrench"][Status.WRONG_FRAME] == 1
     (note,) = result.notes
-    assert "messages on /contact_wrench were refused as WRONG_FRAME: frame_id is none of feet.names" in note
+    assert (
+        "messages on /contact_wrench were refused as WRONG_FRAME: frame_id is 'hand', which is none of feet.names"
+        in note
+    )
     assert result.samples == 401
     assert result.statuses[Status.ACCEPTED] == 400
 

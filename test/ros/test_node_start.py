@@ -12,7 +12,7 @@ from subprocess import PIPE
 import pytest
 
 from impact_predictor.ros.node import USAGE, main
-from impact_predictor.ros.processes import ros_environment
+from impact_predictor.ros.processes import Child, ros_environment
 
 needs_ros = pytest.mark.skipif(
     importlib.util.find_spec("rclpy") is None,
@@ -44,7 +44,7 @@ def test_a_signal_ends_the_node_with_status_0_whenever_it_comes_and_leaves_nothi
         node = subprocess.Popen([*NODE, *arguments], stdout=PIPE, stderr=PIPE, text=True, env=alone)
         shared = send(node, number, moment)
         said, complaint = node.communicate(timeout=PATIENCE)
-        lines = [line for line in complaint.splitlines() if "numba compiles the impact laws" not in line]
+        lines = [line for line in complaint.splitlines() if "[INFO]" not in line]
         assert (node.returncode, said, lines) == (0, "", [])
         assert not [name for name in shared if Path(name).exists()]
 
@@ -102,7 +102,7 @@ def sentence_of(finished):
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        ((), "the parameter body.mass is missing"),
+        ((), "no parameter of the scene was given to /impact_predictor: give --params-file"),
         (("--params-file", SCENE, "-p", "body.mas:=1.0"), "no parameter body.mas, did you mean body.mass"),
         (("--params-file", SCENE, "-p", "body.mass:=0.0"), "body.mass is 0.0, but"),
         (("--params-file", SCENE, "-p", "body.mass:=1"), "write 1.0 for 1"),
@@ -119,6 +119,37 @@ def test_a_bad_parameter_is_one_sentence_and_a_status_that_is_not_0(arguments, s
     finished = run_node("--ros-args", *map(str, arguments))
     assert finished.returncode == 1
     assert said in sentence_of(finished)
+
+
+@needs_ros
+@pytest.mark.slow
+def test_a_file_for_another_node_is_named_with_the_node_that_it_leaves_out(tmp_path):
+    scene = tmp_path / "scene.yaml"
+    scene.write_text(SCENE.read_text().replace("/**:", "/robot/foot_watch:"))
+    finished = run_node("--ros-args", "--params-file", str(scene), "-r", "__ns:=/robot")
+    assert finished.returncode == 1
+    said = sentence_of(finished)
+    assert "no parameter of the scene was given to /robot/impact_predictor" in said
+    assert f"{scene}: it has parameters for /robot/foot_watch, but none for /robot/impact_predictor" in said
+
+
+@needs_ros
+@pytest.mark.slow
+def test_the_node_says_what_it_listens_to_what_is_not_for_it_and_where_nothing_comes():
+    of_others = ("-p", "camera.exposure:=3", "-p", "qos_overrides./odm.subscription.depth:=9")
+    arguments = ("--ros-args", "--params-file", SCENE, "-r", "odom:=/cube/odom", *of_others)
+    with Child("node", ros_environment(), "-m", "impact_predictor.ros.node", *map(str, arguments)) as node:
+        end = time.monotonic() + PATIENCE
+        while "nothing has come on /cube/odom for 5 s: nobody publishes there" not in node.complained():
+            node.check()
+            assert time.monotonic() < end, node.complained()
+            time.sleep(0.1)
+        said = node.complained()
+        node.end()
+    assert "one body is predicted from /contact_geometry, /cube/odom; executor single" in said
+    assert "camera.exposure is no parameter of impact_predictor, and passed over" in said
+    assert "qos_overrides./odm.subscription.depth is of no topic of this node; near it there are" in said
+    assert said.count("nothing has come on") == 1
 
 
 def test_without_rclpy_the_node_says_in_one_sentence_what_to_do():

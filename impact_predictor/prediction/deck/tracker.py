@@ -57,7 +57,8 @@ class Deck:
 
             self._imu = DeckImu(deck.imu_position, gravity, normal)
         self._waves: WaveForecast | None = None
-        self._frames = ("", "")
+        self.frames = ("", "")
+        """The frame in which the support's motion is told, and that of the support itself."""
         self._seen: SupportState | None = None
         self._history: deque[SupportState] = deque()
         self._latest: Moment | None = None
@@ -183,13 +184,13 @@ class Deck:
         if last is not None:
             if stamp - last > self._timeout:
                 self._forget(Status.SUPPORT_STALE)
-            elif frames != self._frames:
+            elif frames != self.frames:
                 return Status.WRONG_FRAME
             elif last - stamp > PAUSE:
                 self._forget(Status.NO_SUPPORT)
                 self._asked = None
         if status is Status.ACCEPTED:
-            self._frames = frames
+            self.frames = frames
             self._heard = self._asked
         return status
 
@@ -241,8 +242,8 @@ class Deck:
         felt = Felt(to_body(known.axes, known.felt), known.angular, known.turning)
         return Moment(
             stamp=known.stamp,
-            frame_id=self._frames[0],
-            child_frame_id=self._frames[1],
+            frame_id=self.frames[0],
+            child_frame_id=self.frames[1],
             position=known.position,
             orientation=known.orientation,
             linear=to_body(known.axes, known.velocity),

@@ -1,0 +1,63 @@
+"""What is wrong with a message that was refused, as far as more can be said of it than its status says."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+from ..wording import listed
+from .predictor import Predictor
+from .types import FeetStates, Geometry, Joints, Sample, Schedule, Status, Terrain, Wrench
+
+_MOST_NAMED: Final = 4
+
+
+def flaw_of(predictor: Predictor, status: Status, message: Any) -> str:
+    """What is wrong with a message about a body that its predictor has just refused, as far as more is known; else "".
+
+    `message` is None where its bytes are none of its type.
+    """
+    contacts, walking = predictor.contacts, predictor.scene.walking
+    if status is Status.WRONG_FRAME:
+        return _wrong_frame(predictor, message)
+    if status is Status.BELOW_GROUND and contacts.depth is not None:
+        return (
+            f"the lowest foot lies {contacts.depth:.3g} m below the ground: compare support.height, the units of the "
+            "points (m), and the frames of body and points"
+        )
+    if status is Status.FEET_CHANGED and isinstance(message, Schedule):
+        return "joint_names has a name that is none of feet.names"
+    if status is Status.FEET_CHANGED and isinstance(message, FeetStates) and walking is not None:
+        each, has = "once" if walking.points == 1 else "twice", listed(message.names, _MOST_NAMED) or "none"
+        return f"joint_names must have each of {listed(walking.feet, _MOST_NAMED)} {each}, but has {has}"
+    if status is Status.FEET_CHANGED and isinstance(message, Geometry) and walking is not None:
+        number, wanted = len(message.points), len(walking.feet) * walking.points
+        if number == wanted:
+            return f"{len(message.velocities)} velocities came with {number} points: give one for each, or none"
+        return (
+            f"{number} points came, but feet.names ({len(walking.feet)}) x feet.points ({walking.points}) wants "
+            f"{wanted}: correct these, or the message"
+        )
+    if status is Status.WRONG_JOINTS and isinstance(message, Joints):
+        lacking = [name for name in contacts.joints if name not in message.names]
+        if not lacking:
+            return "a joint is there twice, or without its position: tell each joint once, with its position"
+        unknown = [name for name in message.names if name not in contacts.joints]
+        others = f", while robot.urdf does not know its {listed(unknown, _MOST_NAMED)}" if unknown else ""
+        lacks = listed(lacking, _MOST_NAMED)
+        return f"it lacks {lacks} of robot.urdf{others}: tell every joint of the model by its name there"
+    return ""
+
+
+def _wrong_frame(predictor: Predictor, message: Any) -> str:
+    if isinstance(message, Wrench):
+        return f"frame_id is {message.frame_id!r}, which is none of feet.names"
+    if isinstance(message, Terrain):
+        return f"frame_id is {message.frame_id!r}, but support.frame is {predictor.scene.frame!r}"
+    if not isinstance(message, Sample):
+        return ""
+    frames = predictor.frames
+    if frames and message.frame_id not in frames:
+        named = " or ".join(map(repr, frames))
+        return f"frame_id is {message.frame_id!r}, but {named} is wanted: correct it, or support.frame"
+    points = predictor.contacts.frame_id
+    return f"child_frame_id is {message.child_frame_id!r}, but the contact points are in {points!r}: let both be one"
