@@ -5,10 +5,8 @@ ros2 launch impact_predictor walker.launch.py params_file:=my_robot.yaml joint_s
 """
 
 from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument
-from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
-from launch_ros.actions import Node
-from launch_ros.substitutions import FindPackageShare
+
+from impact_predictor.ros.launching import described
 
 INPUTS = {
     "odom": "Topic of the trunk's state.",
@@ -22,23 +20,4 @@ INPUTS = {
 
 
 def generate_launch_description() -> LaunchDescription:
-    scene = PathJoinSubstitution([FindPackageShare("impact_predictor"), "config", LaunchConfiguration("scene")])
-    return LaunchDescription(
-        [
-            DeclareLaunchArgument("scene", default_value="walker", description="Name of a shipped scene."),
-            DeclareLaunchArgument(
-                "params_file", default_value=[scene, ".yaml"], description="ROS 2 parameter file of a scene."
-            ),
-            DeclareLaunchArgument("namespace", default_value="", description="Namespace of the node and its topics."),
-            *[DeclareLaunchArgument(name, default_value=name, description=text) for name, text in INPUTS.items()],
-            Node(
-                package="impact_predictor",
-                executable="predictor",
-                name="impact_predictor",
-                namespace=LaunchConfiguration("namespace"),
-                output="screen",
-                parameters=[LaunchConfiguration("params_file")],
-                remappings=[(name, LaunchConfiguration(name)) for name in INPUTS],
-            ),
-        ]
-    )
+    return described(INPUTS, scene="walker")

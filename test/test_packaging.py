@@ -71,10 +71,11 @@ def test_every_file_of_config_examples_and_launch_is_installed_under_share(setup
         installed.items()
     )
     assert Path("examples/cube_tosses/cube_tosses.mcap") in shipped
-    # The launch file starts with one.
-    default = re.search(r'"config", "(.+?)"', (ROOT / "launch/predictor.launch.py").read_text())
-    assert default is not None
-    assert Path("config", default[1]) in shipped
+    # The launch files start with some.
+    defaults = [re.search(r'scene="(\w+)"', path.read_text()) for path in (ROOT / "launch").glob("*.launch.py")]
+    named = {Path("config", f"{default[1]}.yaml") for default in defaults if default}
+    assert len(named) == 2
+    assert named <= set(shipped)
 
 
 def test_ros_from_pypi_is_pinned_wherever_setup_py_asks_for_it(setup_arguments):
