@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from ..prediction.deck.tracker import Deck
     from ..prediction.watch.watch import Report, Watch
 
-Reals = NDArray[np.float64]
-
 STEP: Final = 250_000_000
 """ns between two rows; after more than `GAP` of them without a message a row of NaN says that nothing is known."""
 GAP: Final = 8
@@ -57,10 +55,10 @@ class WatchLog(NamedTuple):
 
     names: tuple[str, ...]
     stamps: NDArray[np.int64]
-    deck: Reals
-    units: Reals
+    deck: NDArray[np.float64]
+    units: NDArray[np.float64]
     made: NDArray[np.int64]
-    forecasts: Reals
+    forecasts: NDArray[np.float64]
     spells: tuple[LevelSpell, ...]
     last: Mapping[str, Mapping[str, str]]
     events: Mapping[str, Sequence[int]] = {}
@@ -73,12 +71,12 @@ class WatchRecorder:
     def __init__(self, watch: Watch, deck: Deck, names: Iterable[str]) -> None:
         self._watch, self._deck = watch, deck
         self._names = {name: place for place, name in enumerate(names)}
-        self._rows: list[tuple[int, Sequence[float], Reals]] = []
-        self._forecasts: list[tuple[int, Reals]] = []
+        self._rows: list[tuple[int, Sequence[float], NDArray[np.float64]]] = []
+        self._forecasts: list[tuple[int, NDArray[np.float64]]] = []
         self._spells: list[LevelSpell] = []
         self._begun: dict[str, int] = {}
         self._last: dict[str, dict[str, str]] = {}
-        self._now: Reals = np.full((len(self._names), len(UNIT)), np.nan)
+        self._now: NDArray[np.float64] = np.full((len(self._names), len(UNIT)), np.nan)
         self._stamp = 0
 
     def look(self) -> None:
