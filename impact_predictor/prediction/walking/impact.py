@@ -24,7 +24,7 @@ from ..planar import (
 from ..scene import Scene
 from ..types import Bound, Leftover, PointOutcome, Sample, SpatialTwist, Status, Touchdown, Vector3
 from ..vectors import add, axes_of, cross, dot, mean, times, to_body, to_world
-from .mechanism import LeggedMachine
+from .mechanism import NOTHING, LeggedMachine
 
 USABLE = 0.2
 """The machine turns about the line of its standing points where the landing one is further from it than this part of
@@ -58,6 +58,7 @@ def touchdown_of(
     new: tuple[int, ...],
     landing: Mapping[int, LandingPoint],
     lead_time: float,
+    rates: tuple[float, ...] = NOTHING,
 ) -> Touchdown | Status:
     """The touchdown of the `new` points of one foot, with its impact.
 
@@ -67,6 +68,8 @@ def touchdown_of(
     The old contacts, which give the impact plane and the mode, are those that land together with the new ones, else
     those that stood of the same foot, else all that stood. Feet that have braked before they land make no impact
     (Mode.NO_IMPACT). A status, where the machine has no response.
+
+    The twist of the base changes with `rates`, linear and angular along the axes of the world.
     """
     walking, normal, those = scene.walking, scene.normal, sorted({*stood, *landing})
     assert walking is not None
@@ -81,15 +84,17 @@ def touchdown_of(
         moves.append(velocity)
         gaps.append(-approach * delay)
         fastest, strikes = max(fastest, dot(velocity, velocity)), strikes or approach < 0.0
+    arms = [add(places[i], base.position, -1.0) for i in those]
     met = ContactPoints(
-        positions=[add(places[i], base.position, -1.0) for i in those],
+        positions=arms,
         friction=walking.at_points(walking.friction or (scene.friction,), those),
         restitution=walking.at_points(walking.restitution or (scene.restitution,), those),
         normals=normal,
         velocities=[times(velocity, -1.0) for velocity in moves],
         gaps=gaps,
     )
-    found = machine.struck(those, met, axes, scene)
+    pulls = [add((a, b, c), cross((u, v, w), arm)) for a, b, c, u, v, w in [rates] for arm in arms] if strikes else []
+    found = machine.struck(those, met, axes, scene, pulls)
     if isinstance(found, Status):
         return found
     x, y, z, p, q, r = found.twist.tolist()

@@ -22,7 +22,7 @@ from .cubic import PointFrame
 from .forces import FootForces
 from .ground import Ground
 from .impact import LandingPoint, touchdown_of
-from .mechanism import BaseMotion, LeggedMachine, TwistLine, extrapolated
+from .mechanism import NOTHING, BaseMotion, LeggedMachine, TwistLine, extrapolated
 from .schedule import LandingSchedule
 from .stance import FootPoint
 
@@ -196,6 +196,7 @@ class LandingTracker:
             new=collision.new,
             landing=collision.landing,
             lead_time=collision.lead_time,
+            rates=collision.line[1] if collision.line else NOTHING,
         )
 
     def _measure(self, after: Pending) -> None:
@@ -250,7 +251,7 @@ class LandingTracker:
         others = [j for j in range(len(points)) if j not in new and j not in together]
         return FootCollision(
             sample=self._base.at(stamp),
-            line=None,
+            line=self._base.line_until(stamp),
             time=0.0,
             lead_time=0.0,
             places=[frame.position for frame in frames],

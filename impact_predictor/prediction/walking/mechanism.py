@@ -88,12 +88,21 @@ class BaseMotion:
 
         A base that turns about a foot gains speed until the next one lands, and a line averages the noise of twists.
         """
-        twists = self._twists
-        if self._line is None and len(twists) >= FEWEST and twists[-1][0] - twists[0][0] >= LEAST_SPAN:
-            ages = [(stamp - twists[-1][0]) / NANOSECONDS for stamp, _ in twists]
-            found = lines(ages, zip(*[twist for _, twist in twists], strict=True))
-            self._line = tuple([now for now, _ in found]), tuple([rate for _, rate in found])
+        if self._line is None:
+            self._line = _line(self._twists)
         return self._line
+
+    def line_until(self, stamp: int) -> TwistLine | None:
+        """The line of the twists up to a stamp in ns, at the last of them."""
+        return _line([twist for twist in self._twists if twist[0] <= stamp])
+
+
+def _line(twists: Sequence[tuple[int, tuple[float, ...]]]) -> TwistLine | None:
+    if len(twists) < FEWEST or twists[-1][0] - twists[0][0] < LEAST_SPAN:
+        return None
+    ages = [(stamp - twists[-1][0]) / NANOSECONDS for stamp, _ in twists]
+    found = lines(ages, zip(*[twist for _, twist in twists], strict=True))
+    return tuple([now for now, _ in found]), tuple([rate for _, rate in found])
 
 
 def twist_of(sample: Sample) -> tuple[float, ...]:
@@ -104,7 +113,7 @@ def twist_of(sample: Sample) -> tuple[float, ...]:
 
 def extrapolated(sample: Sample, line: TwistLine | None, time: float) -> Sample:
     """A base `time` s after a sample, whose stamp it keeps; its twists lie on a line, or are those that it has."""
-    if line is None and time == 0.0:
+    if time == 0.0:
         return sample
     (x, y, z, u, v, w), (a, b, c, p, q, r) = line or (twist_of(sample), NOTHING)
     half = 0.5 * time
@@ -179,12 +188,20 @@ class RigidMachine:
         axes = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
         self.struck([0], ContactPoints([ORIGIN], 0.0), axes, scene)
 
-    def struck(self, points: list[int], contacts: ContactPoints, axes: Axes, scene: Scene) -> MachineOutcome | Status:
+    def struck(
+        self,
+        points: list[int],
+        contacts: ContactPoints,
+        axes: Axes,
+        scene: Scene,
+        pulls: Sequence[Vector3] = (),
+    ) -> MachineOutcome | Status:
         """What an impact at some points of the feet does to the machine; a status where it has no response.
 
         The `contacts` are told from the base's origin, as if the machine were at rest and the support came with the
         velocities of the feet; they and the outcome are along the axes of the world, those of the base are `axes`.
-        The twist of the outcome is the change of that of the base, at its origin. The `scene` has normal and law.
+        The twist of the outcome is the change of that of the base, at its origin. The `scene` has normal and law. Each
+        contact gains as many m/s in a second as `pulls` have: what lasts for some time is not over before they show.
         """
         center = to_world(axes, self._scene.center_of_mass)
         body = Body(self._scene.mass, six_numbers(tensor_to_world(axes, self._scene.inertia)))
@@ -254,7 +271,14 @@ class ArticulatedMachine:
             return None
         return [(x, y, z) for x, y, z in self.body.foot_forces(np.array(efforts), gravity).tolist()]
 
-    def struck(self, points: list[int], contacts: ContactPoints, axes: Axes, scene: Scene) -> MachineOutcome | Status:
+    def struck(
+        self,
+        points: list[int],
+        contacts: ContactPoints,
+        axes: Axes,
+        scene: Scene,
+        pulls: Sequence[Vector3] = (),
+    ) -> MachineOutcome | Status:
         """See `RigidMachine`; the contacts are where the model has them, at the last joint positions."""
         if self._status is not Status.ACCEPTED:
             return self._status
@@ -270,6 +294,8 @@ class ArticulatedMachine:
             # What stands carries the weight as long as the impact lasts: a small blow takes off a part of that load,
             # and lifts nothing. Load and blow go on together, so that the law is that of the whole impulse.
             rests = ~c.any(axis=1)
+            if len(pulls):
+                c += time * (np.array(pulls) @ ways.T) * ~rests[:, None]
             load[rests] = ways @ scene.gravity * (-scene.mass * time / max(int(rests.sum()), 1))
             each[1, rests], law = 0.0, "total"
         start = c.ravel()

@@ -50,6 +50,16 @@ def test_a_base_goes_on_at_the_acceleration_that_its_twists_show(lead_time: floa
     assert then.angular == pytest.approx(true.angular, abs=1e-12)
 
 
+def test_the_line_of_an_earlier_moment_knows_nothing_of_later_samples() -> None:
+    samples = [sample(k * PERIOD) for k in range(20)]
+    line = motion_of(samples[:12] + [sample(one.stamp, shift=1.0) for one in samples[12:]]).line_until(
+        samples[11].stamp
+    )
+    assert line is not None
+    assert line[1] == pytest.approx((*RAMP[1], 0.0, 0.0, 5.0), abs=1e-9)
+    assert motion_of(samples).line_until(samples[FEWEST - 2].stamp) is None
+
+
 @pytest.mark.parametrize(("period", "count"), [(PERIOD, FEWEST - 1), (100_000, 2 * FEWEST)])
 def test_from_few_samples_or_ones_that_come_at_once_the_twist_of_now_is_kept(period: int, count: int) -> None:
     samples = [sample(k * period) for k in range(count)]

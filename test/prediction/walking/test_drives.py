@@ -55,11 +55,11 @@ def scene_of(**told):
     return Scene(**{"mass": MASS, "inertia": AXES, "friction": 0.0, **told})
 
 
-def struck(made, scene=None, points=(0,), speed=0.5):
+def struck(made, scene=None, points=(0,), speed=0.5, pulls=()):
     """The impact of the front foot, which comes down; the hind one, where it is among the points, stands."""
     scene = scene or scene_of()
     support = [(0.0, 0.0, speed if i == 0 else 0.0) for i in points]
-    return made.struck(list(points), ContactPoints((), scene.friction, velocities=support), AXES, scene)
+    return made.struck(list(points), ContactPoints((), scene.friction, velocities=support), AXES, scene, pulls)
 
 
 def effective_mass(made, added=0.0):
@@ -114,6 +114,16 @@ def test_a_soft_contact_is_compressed_for_a_quarter_of_its_oscillation(urdf):
     assert time > 0.005  # longer than the contact time, so that the drives work as long
     same = struck(made, scene_of(contact_time=time, merge=time))
     assert told.impulses[0][2] == pytest.approx(same.impulses[0][2], rel=0.01)
+
+
+def test_an_estimate_stops_what_the_foot_gains_while_the_contact_lasts_too(urdf):
+    falls = [(0.0, 0.0, -9.81)] * 2
+    made, bare, scene = machine(urdf, armature=(0.01,)), machine(urdf), scene_of(contact_time=0.01)
+    gained = struck(made, scene, pulls=falls[:1])
+    assert gained.impulses[0][2] == pytest.approx((0.5 + 0.0981) * effective_mass(made), rel=1e-6)
+    # A foot that stands carries the weight all the while, and bounds tell of the blow alone.
+    assert struck(made, scene, (0, 1), pulls=falls).velocities[1][2] == pytest.approx(0.0, abs=1e-9)
+    assert struck(bare, scene, pulls=falls[:1]).impulses[0] == pytest.approx(struck(bare, scene).impulses[0], rel=1e-12)
 
 
 def test_what_is_known_of_the_joints_is_between_the_bounds(urdf):

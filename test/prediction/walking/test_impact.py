@@ -59,7 +59,7 @@ def random_landing(source, **changes):
     return scene, base, feet, old, (new,), tuple((velocity @ axes).tolist())
 
 
-def landing(scene, base, feet, stood, new, velocity, together=None, delays=None, machine=None):
+def landing(scene, base, feet, stood, new, velocity, together=None, delays=None, machine=None, rates=(0.0,) * 6):
     """The touchdown of feet in the base's frame; those that land `together` with the new one have their velocities."""
     delays, axes = delays or {}, axes_of(base.orientation)
     struck = {**dict.fromkeys(new, velocity), **(together or {})}
@@ -72,6 +72,7 @@ def landing(scene, base, feet, stood, new, velocity, together=None, delays=None,
         new=new,
         landing={i: LandingPoint(one, delays.get(i, 0.0)) for i, one in struck.items()},
         lead_time=0.05,
+        rates=rates,
     )
 
 
@@ -274,10 +275,12 @@ def test_a_landing_that_gravity_matters_in_is_flagged():
 
 def test_what_a_mechanism_cannot_answer_is_handed_on():
     class Unknown:
-        def struck(self, points, contacts, axes, scene):
+        def struck(self, points, contacts, axes, scene, pulls):
+            assert pulls == [(0.0, -z, y - 1.0) for _, y, z in contacts.positions]
             return Status.SINGULAR_INERTIA
 
-    found = landing(scene_of(), base_of(), FEET, (1, 2), (0,), (0.0, 0.0, -0.2), machine=Unknown())
+    rates = (0.0, 0.0, -1.0, 1.0, 0.0, 0.0)
+    found = landing(scene_of(), base_of(), FEET, (1, 2), (0,), (0.0, 0.0, -0.2), machine=Unknown(), rates=rates)
     assert found is Status.SINGULAR_INERTIA
 
 
