@@ -38,7 +38,7 @@ from impact_predictor.parameters.file import read_values
 from impact_predictor.prediction.planar import hardly
 from impact_predictor.prediction.scene import Robot, Scene, scenes_of, triple
 from impact_predictor.prediction.types import Geometry, Joints, Sample, Touchdown
-from impact_predictor.prediction.vectors import add, axes_of, to_world
+from impact_predictor.prediction.vectors import add, axes_of, cross, to_world
 from impact_predictor.prediction.walking.impact import LandingPoint, touchdown_of
 from impact_predictor.prediction.walking.mechanism import ArticulatedMachine, twist_of
 from impact_predictor.report.table import Column, say, show, table_of
@@ -113,7 +113,8 @@ def cases(bag_path: str) -> list[Case]:
         earlier = joints[j - (k - before)]
         ahead = 1e-9 * (landing.stamp - joints[j].stamp)
         rates = np.array(landing.before.rates)
-        posture = joints[j]._replace(positions=tuple((np.array(joints[j].positions) + ahead * rates).tolist()))
+        placed = np.array(joints[j].positions) + ahead * rates
+        posture = joints[j]._replace(positions=tuple(placed.tolist()), velocities=landing.before.rates)
         base = bases[k]._replace(linear=triple(landing.before.twist[:3]), angular=triple(landing.before.twist[3:]))
         share = 1e-9 * SPAN / (1e-9 * (landing.stamp - bases[before].stamp))
         drift = share * (np.array(landing.before.twist) - [*bases[before].linear, *bases[before].angular])
@@ -132,16 +133,25 @@ def judge(scene: Scene, machine: ArticulatedMachine, case: Case, alone: bool = F
     assert isinstance(geometry, Geometry)
     axes, normal = axes_of(base.orientation), np.array(landing.normal)
     places = [add(base.position, to_world(axes, point)) for point in geometry.points]
-    loaded = [landing.feet.index(name) for name in landing.standing]
-    moves, others = landing.before.velocities, {} if alone else case.others
-    stood = tuple([i for i in loaded if normal @ moves[i] <= RISES and not alone and i not in others])
-    lands = {i: LandingPoint(moves[i], delay) for i, delay in {foot: 0.0, **others}.items()}
+    carried = [add(base.linear, cross(base.angular, point)) for point in geometry.points]
+    moves = [to_world(axes, add(*both)) for both in zip(carried, geometry.velocities, strict=True)]
+    each, heights, rises = len(places) // len(landing.feet), np.array(places) @ normal, np.array(moves) @ normal
+    feet = [range(i * each, (i + 1) * each) for i in range(len(landing.feet))]
+    others = {} if alone else case.others
+    loaded = [i for name in landing.standing if not alone for i in feet[landing.feet.index(name)]]
+    stood = tuple([i for i in loaded if rises[i] <= RISES and i // each not in others])
+    lands = {}
+    for number, delay in {foot: 0.0, **others}.items():
+        gaps = {i: float(heights[i] - heights[feet[number]].min()) for i in feet[number]}
+        later = {i: delay + gap / max(-rises[i], SLOW) for i, gap in gaps.items()}
+        lands |= {i: LandingPoint(moves[i], time) for i, time in later.items() if time <= scene.contact_time}
+    new = tuple([i for i in lands if i // each == foot])
     scene = scene._replace(mass=machine.body.mass, normal=landing.normal, friction=0.0 if alone else scene.friction)
-    told = touchdown_of(scene, machine, base, places, stood, (foot,), lands, 0.0, case.rates)
+    told = touchdown_of(scene, machine, base, places, stood, new, lands, 0.0, case.rates)
     if not isinstance(told, Touchdown):
         return None
-    own = next(contact for contact in told.contacts if contact.point == foot)
-    pressed = float(normal @ own.impulse)
+    own = [contact for contact in told.contacts if contact.point in new]
+    pressed = sum(float(normal @ contact.impulse) for contact in own)
     impulses = [pressed / float(normal @ state.impulses[foot]) for state in landing.after]
     (_, second, last), peak = landing.after[:3], landing.after[-1]
     assert peak is not None
@@ -150,15 +160,16 @@ def judge(scene: Scene, machine: ArticulatedMachine, case: Case, alone: bool = F
     order = [case.joints.names.index(name) for name in machine.joints]
     true_jumps = (np.subtract(last.rates, landing.before.rates) - case.joint_drift)[order]
     pushed = np.array(last.impulses) - np.array(second.impulses)
-    told_slip, slip = (np.array(one) - (normal @ one) * normal for one in (own.velocity, last.velocities[foot]))
-    rises = {contact.point: float(normal @ contact.velocity) > hardly(scene) for contact in told.contacts}
-    slips, lifted = bool(np.linalg.norm(slip) > SLIPS), [not pushed[i].any() for i in stood]
+    told_slip, slip = (np.array(one) - (normal @ one) * normal for one in (own[0].velocity, last.velocities[foot]))
+    holds = {c.point // each for c in told.contacts if float(normal @ c.velocity) <= hardly(scene)}
+    standing = sorted({i // each for i in stood})
+    slips, lifted = bool(np.linalg.norm(slip) > SLIPS), [not pushed[i].any() for i in standing]
     return Judged(
         impulses=impulses,
         trunk=compared(WEIGHTS * change, WEIGHTS * true_change),
         joints=compared(np.array(told.jumps), true_jumps),
         slip=bool(np.linalg.norm(told_slip) > SLIPS) is slips,
-        lifts=[rises[i] is is_lifted for i, is_lifted in zip(stood, lifted, strict=True)],
+        lifts=[(i not in holds) is is_lifted for i, is_lifted in zip(standing, lifted, strict=True)],
         slips=slips,
         lifted=lifted,
         off=float(np.linalg.norm(told_slip - slip)),
@@ -176,7 +187,8 @@ def models(scene: Scene, robot: Robot) -> dict[str, tuple[ArticulatedMachine, bo
     free = robot._replace(armature=(), drives="free", kp=(), kd=())
     rotors = free._replace(joints=robot.joints, armature=robot.armature)
     made = {"one rigid body": free._replace(drives="held"), "free joints": free, "armature": rotors, "scene": robot}
-    machines = {name: (ArticulatedMachine(one), False) for name, one in made.items()}
+    radii = scene.walking.radius * (len(robot.frames) // max(len(scene.walking.radius), 1))
+    machines = {name: (ArticulatedMachine(one, radii), False) for name, one in made.items()}
     return machines | {"foot's own mass": (machines["free joints"][0], True)}
 
 
@@ -218,8 +230,6 @@ def main(arguments: Sequence[str]) -> int:
         (scene,) = scenes_of(read_values(file)).values()
         if scene.walking is None or scene.walking.robot is None:
             raise InputError(f"{file} has no robot.urdf: give a scene of `simulate robot --by-joints`")
-        if scene.walking.points != 1:
-            raise InputError(f"{file} has feet of several points, and the truth tells of the lowest: give others")
         landings = cases(bag)
         judged = defaultdict(list)
         for name, (machine, alone) in models(scene, scene.walking.robot).items():

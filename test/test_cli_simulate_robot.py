@@ -42,7 +42,7 @@ def test_the_names_of_robots_and_gaits_are_those_of_the_library() -> None:
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        (("--feet", "a,b"), "--feet, --srdf and --radius are those of a robot by --urdf"),
+        (("--feet", "a,b"), "--feet, --srdf, --radius and --sole are those of a robot by --urdf"),
         (("go1", "--urdf", "x.urdf", "--feet", "a,b"), "--urdf takes the place of a name, and needs --feet"),
         (("--urdf", "x.urdf"), "--urdf takes the place of a name, and needs --feet"),
         (("--slope", "3", "--stairs", "0.05"), "--slope, --blocks and --stairs are three grounds; give one of them"),
@@ -109,6 +109,17 @@ def test_feet_may_be_told_by_joints_or_names_and_the_ground_by_a_map(options: tu
 
 
 @pytest.mark.extras
+def test_flat_feet_told_by_joints_land_with_heel_or_toe() -> None:
+    pytest.importorskip("mujoco", reason="needs the extra robot")
+    pytest.importorskip("pinocchio", reason="needs the extra articulated")
+    result = run("talos", "--swing", "0.4", "--strike", "0.3", "--by-joints", "--duration", "4", "-o", "steps.mcap")
+    assert result.exit_code == 0, result.stderr
+    replayed = answered(CliRunner().invoke(main, ("replay", "steps.mcap", "--params", "steps.yaml", "--json")))
+    points = [one["point"] for one in replayed["touchdowns"] if one["landing_speed"] > 0.4]
+    assert set(points) == {"heel", "toe"}
+
+
+@pytest.mark.extras
 def test_the_same_options_and_seed_make_the_same_bytes() -> None:
     pytest.importorskip("mujoco", reason="needs the extra robot")
     for name in ("one", "two"):
@@ -124,6 +135,8 @@ def test_a_humanoid_steps_and_one_that_falls_ends_with_status_1() -> None:
     result = run("talos", "--swing", "0.4", "--strike", "0.3", "--duration", "2.5")
     assert result.exit_code == 0, result.stderr
     assert "left_sole_link" in result.stdout
+    result = run("--urdf", "humanoid.urdf", "--feet", "l_sole,r_sole", "--sole", "0.1,-0.1,0.1")
+    assert "--sole is 0.1,-0.1,0.1: give heel, toe and width in m, as in -0.1,0.1,0.12" in result.stderr
     result = run("--duration", "1", "--slope", "30")
     assert result.exit_code == 1
     assert "it falls after" in result.stdout

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from math import isfinite, radians
+from math import inf, isfinite, radians
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -16,7 +16,7 @@ from .progress import progress
 from .simulated import bag_option
 
 if TYPE_CHECKING:
-    from ..scenarios.robot.description import RobotFiles
+    from ..scenarios.robot.description import RobotFiles, Sole
     from ..scenarios.robot.ground import SimulatedGround
 
 NAMES: Final = ("a1", "anymal", "bolt", "go1", "hyq", "solo12", "talos")
@@ -45,6 +45,7 @@ EXAMPLES: Final = (
 @text("--feet", "LINKS", "Links of its feet, left and right ones in turn, front ones first: LF,RF,LH,RH.")
 @text("--srdf", "FILE", "Its postures; its legs are bent as their limits allow unless given.")
 @number("--radius", "Radius of its feet, m: balls about the links' origins (those of the URDF unless given).")
+@text("--sole", "X,X,Y", "Flat soles in its place, m: where heel and toe are along their links' x axes, and the width.")
 @click.option("--gait", type=click.Choice(GAITS), help="[default: trot on four feet, step on two]")
 @number("--swing", "Duration of a swing, s.", 0.2)
 @number("--strike", "Speed with which a swing is planned to end on the ground, m/s; 0 brakes to rest.", 0.6)
@@ -121,7 +122,7 @@ def simulate_robot(
     from ..scenarios.robot.sensors import WalkSensors, walk_messages
     from ..scenarios.robot.walk import landings_of, walk
 
-    files = [options.pop(one) for one in ("urdf", "feet", "srdf", "radius")]
+    files = [options.pop(one) for one in ("urdf", "feet", "srdf", "radius", "sole")]
     ground = ground_of(seed, **options)
     machine = Machine(robot_of(name, *files), ground, Physics(armature, friction, contact_time))
     is_biped = len(machine.feet) == BIPED
@@ -165,23 +166,37 @@ def check_bag(scene: Path | None) -> None:
 
 
 def robot_of(
-    name: str | None, urdf: str | None, feet: str | None, srdf: str | None, radius: float | None
+    name: str | None, urdf: str | None, feet: str | None, srdf: str | None, radius: float | None, sole: str | None
 ) -> RobotFiles:
     """The robot that the options name."""
     from ..scenarios.robot.description import RobotFiles, Sole, robot_named
 
     if urdf is None:
-        if (feet, srdf, radius) != (None, None, None):
-            raise click.UsageError("--feet, --srdf and --radius are those of a robot by --urdf")
+        if (feet, srdf, radius, sole) != (None, None, None, None):
+            raise click.UsageError("--feet, --srdf, --radius and --sole are those of a robot by --urdf")
         return robot_named(name or NAMES[3])
     if name is not None or feet is None:
         raise click.UsageError("--urdf takes the place of a name, and needs --feet")
+    ball = None if radius is None else Sole(radius=radius)
     return RobotFiles(
         urdf=Path(urdf),
         feet=tuple(feet.split(",")),
         srdf=None if srdf is None else Path(srdf),
-        sole=None if radius is None else Sole(radius=radius),
+        sole=ball if sole is None else flat(sole),
     )
+
+
+def flat(sole: str) -> Sole:
+    """A sole from --sole."""
+    from ..scenarios.robot.description import Sole
+
+    try:
+        heel, toe, width = map(float, sole.split(","))
+    except ValueError:
+        heel, toe, width = 0.0, 0.0, 0.0
+    if not (heel < toe < inf and 0.0 < width < inf):
+        raise click.UsageError(f"--sole is {sole}: give heel, toe and width in m, as in -0.1,0.1,0.12")
+    return Sole(heel=heel, toe=toe, width=width)
 
 
 def ground_of(seed: int, slope: float, blocks: float, stairs: float) -> SimulatedGround:

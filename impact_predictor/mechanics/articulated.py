@@ -26,7 +26,8 @@ class WholeBody:
     """A model of `urdf`, a file, with the points at the origins of its `frames` (links or joints) as contacts.
 
     A link whose only collision shape is a sphere touches with the lowest point of that ball instead, which moves over
-    it as it rolls; `radii` (m) make balls about the origins in the place of the file's, where they are given.
+    it as it rolls; `radii` (m) make balls in the place of the file's, where they are given. With `soles` each frame has
+    as many contacts, one after the other: these points (m) along its axes, in the place of its origin.
     `joints` are the names of the joints that move, in the model's order, and `mass` in kg is that of all links. `place`
     it before anything else is read: `inertia` (n, n) is then M(q), with the `armature` of each joint (kg m^2, or kg),
     `points` (k, 3) in m and `jacobians` (k, 3, n) are those of the contacts, along the base's axes.
@@ -36,13 +37,21 @@ class WholeBody:
             whose joints have one degree of freedom each.
     """
 
-    def __init__(self, urdf: str, frames: Sequence[str], radii: Sequence[float] = ()) -> None:
+    def __init__(
+        self,
+        urdf: str,
+        frames: Sequence[str],
+        radii: Sequence[float] = (),
+        soles: Sequence[tuple[float, float, float]] = (),
+    ) -> None:
         self._pinocchio = _pinocchio()
         self._model = _model(self._pinocchio, urdf)
         self._data = self._model.createData()
+        places = list(soles) * len(frames) or [(0.0, 0.0, 0.0)] * len(frames)
+        balls = [(0.0, place) for place in places] if soles or radii else _balls(urdf, frames)
+        frames = [name for name in frames for _ in soles or (name,)]
         self._frames = [_frame(self._model, name, urdf) for name in frames]
-        balls = [(radius, (0.0, 0.0, 0.0)) for radius in radii] or _balls(urdf, frames)
-        self.radii = [radius for radius, _ in balls]
+        self.radii = list(radii) or [radius for radius, _ in balls]
         self._centers = np.array([center for _, center in balls]).reshape(-1, 3)
         self._are_off = [any(center) for _, center in balls]
         # The first joint is the universe, the second the base's.
@@ -87,7 +96,7 @@ class WholeBody:
             if self._are_off[k]:
                 self._arms[k] = place.rotation @ self._centers[k]
         self.jacobians = self._twists[:, :3].copy()
-        if any(self.radii):
+        if any(self.radii) or any(self._are_off):
             self._roll(self._arms + np.outer(self.radii, down))
         # A leg whose mass is at its end moves without mass where it is stretched, and only there.
         return self._has_inverse()

@@ -206,10 +206,16 @@ def _check_feet(one: _Given) -> None:
     for name in ROBOT:
         if not values["robot.urdf"] and values[name] != PARAMETERS[name].default and one.is_own(name):
             raise InputError(f"{one.named(name)} is for the model of a machine: give its file as robot.urdf")
-    if values["robot.urdf"] and frames != len(values[feet]) * values["feet.points"]:
+    soles, points = len(values["robot.soles"]), values["feet.points"]
+    if soles not in (0, 3 * points):
+        raise InputError(
+            f"{one.named('robot.soles')} has {soles} numbers{one.of}, but feet.points is {points}: give x y z of each "
+            "point of a foot, which all feet have alike"
+        )
+    if values["robot.urdf"] and frames != len(values[feet]) * (1 if soles else points):
         raise InputError(
             f"{named} has {frames} names{one.of}, but feet.names has {len(values[feet])} and feet.points "
-            f"is {values['feet.points']}: give one frame for each point of each foot"
+            f"is {points}: give one frame for each point of each foot, or for each foot with robot.soles"
         )
 
     gains = [name for name in ("robot.kp", "robot.kd") if values[name]]

@@ -499,8 +499,19 @@ _TABLE: Final = (
     texts(
         "robot.frames",
         (),
-        "The frame in robot.urdf of each contact point of the feet, in the order of feet.names.",
+        "The frame in robot.urdf of each contact point of the feet, in the order of feet.names; of each foot where "
+        "robot.soles is given.",
         flaw=feet_flaw,
+        fixed=TOPICS,
+    ),
+    doubles(
+        "robot.soles",
+        (),
+        "x y z of each contact point of a foot along the axes of its frame, the same of all feet: heel, toe. Left out, "
+        "the frames' origins touch.",
+        unit="m",
+        low=-100.0,
+        high=100.0,
         fixed=TOPICS,
     ),
     texts(

@@ -133,6 +133,7 @@ class Wind(NamedTuple):
 class Robot(NamedTuple):
     """The model of an articulated machine: a file `urdf`, and the frame in it of each point of the feet, in order.
 
+    With `soles` each foot has one frame, along whose axes these are x y z (m) of its points, of every foot the same.
     `armature` (kg m^2) of each joint is the inertia of its rotor, seen from the joint. Its `drives` are "free", "held",
     or "pd", with the gains `kp` (N m/rad) and `kd` (N m s/rad) of each joint. One number is that of all joints; several
     are in the order of the names `joints`. Of prismatic joints the units are kg, N/m and N s/m.
@@ -145,6 +146,7 @@ class Robot(NamedTuple):
     drives: str = "free"
     kp: tuple[float, ...] = ()
     kd: tuple[float, ...] = ()
+    soles: tuple[float, ...] = ()
 
 
 class Walking(NamedTuple):

@@ -223,3 +223,17 @@ def test_a_ball_touches_with_its_lowest_point_which_rests_as_it_rolls(tmp_path):
     base = -np.cross(spin, center + 0.04 * down)
     assert body.jacobians[0] @ np.concatenate([base, np.zeros(3), [2.0]]) == pytest.approx(np.zeros(3), abs=1e-12)
     assert WholeBody(path, ["arm"], [0.0]).radii == [0.0]
+
+
+@pytest.mark.extras
+def test_a_sole_has_a_heel_and_a_toe_that_move_with_its_frame(tmp_path):
+    needs_pinocchio()
+    path = one_link(tmp_path, INERTIAL.format(2.0), INERTIAL.format(1.0))
+    heel, toe, radius = (-0.1, 0.0, -0.3), (0.15, 0.02, -0.3), 0.01
+    for radii in ((), (radius, radius)):
+        body = WholeBody(path, ["shoulder"], radii, [heel, toe])
+        assert body.place(np.array([0.5]))
+        turned = np.array([[np.cos(0.5), 0.0, np.sin(0.5)], [0.0, 1.0, 0.0], [-np.sin(0.5), 0.0, np.cos(0.5)]])
+        expected = np.array([heel, toe]) @ turned.T - np.array((0.0, 0.0, radius if radii else 0.0))
+        assert body.points == pytest.approx(expected, abs=1e-12)
+        assert body.velocities(np.array([2.0])) == pytest.approx(np.cross((0.0, 2.0, 0.0), expected), abs=1e-12)

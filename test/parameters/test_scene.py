@@ -188,6 +188,11 @@ REFUSED: list[tuple[dict[str, Any], str]] = [
         "robot.frames has 3 names, but feet.names has 2 and feet.points is 1: give one frame for each point of each",
     ),
     ({**FEET, "robot.urdf": "a.urdf"}, "robot.frames has 0 names, but"),
+    ({**MODEL, "robot.soles": [0.1, 0.0]}, "robot.soles has 2 numbers, but feet.points is 1: give x y z of each point"),
+    (
+        {**MODEL, "feet.points": 2, "robot.frames": ["a", "b"], "robot.soles": [0.1] * 6},
+        "give one frame for each point of each foot, or for each foot with robot.soles",
+    ),
     ({**FEET, "robot.frames": ["a", "b"]}, "robot.frames is for the model of a machine: give its file as robot.urdf"),
     ({**FEET, "robot.armature": [0.1]}, "robot.armature is for the model of a machine: give its file as robot.urdf"),
     ({**MODEL, "robot.armature": [-0.1]}, "robot.armature is [-0.1], but it must be a list of finite doubles"),
@@ -244,6 +249,7 @@ def test_what_does_not_fit_together_is_refused_in_one_sentence(given: dict[str, 
         {"feet.names": ["left foot", "LF_FOOT-1"]},
         {**WITH_WALKER, "feet.points": 2, "robot.urdf": "a.urdf", "walker.robot.frames": ["heel", "toe"]},
         {**FEET, "feet.points": 2, "robot.urdf": "a.urdf", "robot.frames": ["a", "b", "c", "d"]},
+        {**MODEL, "feet.points": 2, "robot.soles": [-0.1, 0.0, 0.0, 0.1, 0.0, 0.0]},
     ],
 )
 def test_what_fits_together_is_taken(given: dict[str, Any]) -> None:

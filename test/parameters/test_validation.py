@@ -62,6 +62,7 @@ def test_every_default_is_allowed() -> None:
         "chocks.normals",
         "chocks.strength",
         "wind.area",
+        "robot.soles",
     }
     assert set(PARAMETERS) - set(defaults) == {*REQUIRED, *empty}
     validate({**REQUIRED, **defaults})

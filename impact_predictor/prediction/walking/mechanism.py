@@ -18,7 +18,7 @@ from ...mechanics.impact.spatial import Body, ContactPoints, solve_delassus, sol
 from ...mechanics.types import ContactState, Flag
 from ...stamps import NANOSECONDS
 from ..planar import GRAZES, ORIGIN, direction_of
-from ..scene import Robot, Scene, six_numbers
+from ..scene import Robot, Scene, six_numbers, triples
 from ..types import Bound, Geometry, Joints, Sample, Status, Vector3
 from ..vectors import (
     Axes,
@@ -227,7 +227,7 @@ class ArticulatedMachine:
         from ...mechanics.articulated import WholeBody
         from .drives import JointDrives
 
-        self.body = WholeBody(robot.urdf, robot.frames, radii)
+        self.body = WholeBody(robot.urdf, robot.frames, radii, triples(robot.soles))
         self.joints = self.body.joints
         self._drives = JointDrives(robot, self.joints)
         self.body.armature = self._drives.armature
@@ -288,18 +288,19 @@ class ArticulatedMachine:
         c = -(np.asarray(contacts.velocities, float) @ ways.T)
         added, time = drives.inertia(self.body, points[int(c[:, 2].argmin())], local[2], scene)
         W, moved = self.body.mobility(points, local, added, drives.are_held)
-        law, load, each = scene.law, np.zeros(c.shape), np.empty((3, len(points)))
+        law, merge, load, each = scene.law, scene.merge, np.zeros(c.shape), np.empty((3, len(points)))
         each[0], each[1], each[2] = contacts.friction, contacts.restitution, contacts.gaps
         if drives.bound is Bound.ESTIMATE and c.any():
             # What stands carries the weight as long as the impact lasts: a small blow takes off a part of that load,
-            # and lifts nothing. Load and blow go on together, so that the law is that of the whole impulse.
+            # and lifts nothing. Load and blow go on together, so that the law is that of the whole impulse, to which
+            # belong the compressions that end in that time.
             rests = ~c.any(axis=1)
             if len(pulls):
                 c += time * (np.array(pulls) @ ways.T) * ~rests[:, None]
             load[rests] = ways @ scene.gravity * (-scene.mass * time / max(int(rests.sum()), 1))
-            each[1, rests], law = 0.0, "total"
+            each[1, rests], law, merge = 0.0, "total", max(merge, time - merge)
         start = c.ravel()
-        found = solve_delassus(W, each[0], each[1], each[2], start - W @ load.ravel(), law, scene.merge, GRAZES)
+        found = solve_delassus(W, each[0], each[1], each[2], start - W @ load.ravel(), law, merge, GRAZES)
         impulses, after = found.impulses - load, found.velocities.ravel()
         pushed = impulses.ravel()
         change, given = moved @ pushed, pushed @ (after - start)

@@ -21,9 +21,8 @@ def scene_of(walk: Walk, *, by_joints: bool, on_terrain: bool) -> str:
     center, inertia = machine.inertia()
     (xx, xy, xz), (_, yy, yz), (_, _, zz) = inertia.tolist()
     feet, radius = ", ".join(machine.feet), machine.sole.radius
-    # By joints a flat sole is known by the origin of its frame alone; a ball's points are told where it touches.
     balls = [f"      radius: [{radius!r}]"] if by_joints and radius > 0.0 else []
-    points = 1 if by_joints else len(machine.sole.points)
+    soles = [f"      soles: {machine.sole.points.ravel().tolist()}"] if radius == 0.0 else []
     body = [
         "    body:",
         f"      mass: {machine.mass!r}",
@@ -35,6 +34,7 @@ def scene_of(walk: Walk, *, by_joints: bool, on_terrain: bool) -> str:
         "    robot:",
         f"      urdf: {machine.files.urdf.resolve()}",
         f"      frames: [{feet}]",
+        *soles,
         f"      armature: [{float(machine.armature)!r}]",
         "      drives: pd",
         f"      kp: [{float(stiffness)!r}]",
@@ -46,7 +46,7 @@ def scene_of(walk: Walk, *, by_joints: bool, on_terrain: bool) -> str:
         "  ros__parameters:",
         "    feet:",
         f"      names: [{feet}]",
-        f"      points: {points}",
+        f"      points: {len(machine.sole.points)}",
         *balls,
         *([f"      terrain: {CELL!r}"] if on_terrain else []),
         *(robot if by_joints else body),
