@@ -399,10 +399,10 @@ _TABLE: Final = (
     integer(
         "feet.points",
         1,
-        "Contact points of each foot, which follow each other: 1, or 2 for a sole of heel and toe.",
+        "Contact points of each foot, which follow each other: 1, 2 for a sole of heel and toe, or up to 4 corners.",
         unit="1",
         low=1,
-        high=2,
+        high=4,
         fixed=TOPICS,
     ),
     seconds(

@@ -152,12 +152,12 @@ class Robot(NamedTuple):
 class Walking(NamedTuple):
     """How a machine's feet are told to stand or to swing; SI units.
 
-    `feet` are their names and each has `points` contact points (1, or 2 for heel and toe), which follow each other in
-    the geometry in this order. A change of stance is believed after `dead_time` s; contact points older than `timeout`
-    s tell nothing any more. From `force` (N) on its `force_source`, the "sensor" or the "effort" of the joints, says
-    that a foot stands; 0 where neither does. `has_schedule` tells that a planner does publish when the feet are to
-    stand. Without a `robot` the legs have no mass and the body is rigid. `friction` and `restitution` of each foot, or
-    one for all; empty where they are the scene's.
+    `feet` are their names and each has `points` contact points (1, 2 for heel and toe, or corners), which follow each
+    other in the geometry in this order. A change of stance is believed after `dead_time` s; contact points older than
+    `timeout` s tell nothing any more. From `force` (N) on its `force_source`, the "sensor" or the "effort" of the
+    joints, says that a foot stands; 0 where neither does. `has_schedule` tells that a planner does publish when the
+    feet are to stand. Without a `robot` the legs have no mass and the body is rigid. `friction` and `restitution` of
+    each foot, or one for all; empty where they are the scene's.
     The stamps of the feet are later than the trunk's by a `delay` in s, which is found by itself with `find_delay`.
     Its points are the centres of balls of a `radius` in m, of each foot or one for all; empty where they are the
     model's, and without one points. The ground is told as a map whose heights are gathered in cells of `terrain` m; 0
