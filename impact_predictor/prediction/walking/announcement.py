@@ -67,7 +67,7 @@ class LandingAnnouncement:
     def learn(self, stamp: int, last: PointFrame, ground: Ground) -> None:
         """Take that the point has landed at a stamp in ns, after its `last` frame in the air."""
         self._count(ground, came=1.0)
-        self._estimator.learn(stamp, last.stamp, ground.level_at(last.position), ground.prior)
+        self._estimator.learn(stamp, last.stamp, ground.level_at(last.position).raised(ground.sinks), ground.prior)
 
     def revise(self, trajectory: FootTrajectory, stamp: int, ground: Ground, near: bool) -> ExpectedLanding | None:
         """The landing of a point in the air that is ahead of a stamp in ns.
@@ -94,7 +94,7 @@ class LandingAnnouncement:
         )
         if gap < level.height:  # It has met no ground there.
             level = level.below(gap, sqrt(filtered.covariance[0]))
-        found = self._estimator.estimate(filtered, level, ground.prior)
+        found = self._estimator.estimate(filtered, level.raised(ground.sinks), ground.prior)
         most = SURE * (1.0 if due is None else UNSURE)
         # Where nobody knows the ground, a landing is told all the same, with the deviation that it then has.
         unsure = BEYOND * level.deviation / max(LEAST_RATE, -filtered.rows[0][1])

@@ -23,6 +23,7 @@ DRIFT = 1.0  # contact tolerances in a second by which standing feet may shift t
 UNSURE = 0.02  # contact tolerances by which that is not known
 MEMORY = 100  # frames of standing feet over which noise is averaged ...
 FEWEST = 10  # ... and from how many on that is believed
+SINKS = 0.5  # contact tolerances that a foot may sink in
 STEADY = 15  # frames over which the level of a foothold is averaged ...
 FOLLOWS = 15  # ... and over which the drift is
 
@@ -42,6 +43,9 @@ class GroundLevel(NamedTuple):
 
     height: float
     deviation: float
+
+    def raised(self, height: float) -> GroundLevel:
+        return GroundLevel(self.height + height, self.deviation)
 
     def below(self, gap: float, deviation: float) -> GroundLevel:
         """The level under a point that has come down to a gap with a standard deviation (m), and has met no ground.
@@ -161,6 +165,9 @@ class Ground:
         self.prior = LandingPrior()
         self.drift = 0.0
         """By how much in m the ground that feet show has moved along the normal, since the scene was written."""
+        self.sinks = 0.0
+        """By how much in m what stands has sunk in: feet touch the ground that much higher."""
+        self._first = list[Foothold]()  # those on which the machine stood before it walked
         self._tolerance = scene.tolerance
         self._u = direction_of(scene.normal, [])
         self._v = cross(scene.normal, self._u)
@@ -192,8 +199,8 @@ class Ground:
         """The level of a foothold now."""
         return GroundLevel(self.drift + foothold.level, 0.0)
 
-    def begin(self, frames: Sequence[PointFrame]) -> Foothold:
-        """The foothold of a point that stands, and has rested there for some frames."""
+    def begin(self, frames: Sequence[PointFrame], first: bool = False) -> Foothold:
+        """The foothold of a point that stands, and has rested there for some frames, or since the `first` one."""
         place, gap = frames[-1].position, total([frame.gap for frame in frames]) / len(frames)
         if not self._relief.known:
             self.drift = gap
@@ -202,6 +209,10 @@ class Ground:
         off, square = gap - level.height, level.deviation**2 + unsure**2
         self.drift += max(-unsure, min(off * unsure * unsure / (square + unsure * unsure), unsure))
         found = Foothold(dot(self._u, place), dot(self._v, place), gap - self.drift, len(frames))
+        if first or not self._seen:
+            self._first.append(found)
+        else:
+            self._first.clear()
         told = self._told(place)
         self.footholds += 1
         self._relief.add(found, 0.0)
@@ -223,6 +234,10 @@ class Ground:
         if foothold.count < STEADY:
             foothold.count += 1
             foothold.level += off / foothold.count
+        if self._first:
+            # The scene has the height at which feet touch, as nothing else can: if it is about right.
+            sunk = -self.drift - total([one.level for one in self._first]) / len(self._first)
+            self.sinks = sunk if 0.0 < sunk < SINKS * self._tolerance else 0.0
         # Differences of two frames leave the motion of the base's drift out, and have twice the square of the noise.
         self._square += share * (0.5 * (frame.gap - before.gap) ** 2 - self._square)
         rate = self.noise.rate

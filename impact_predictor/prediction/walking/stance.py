@@ -106,7 +106,7 @@ class FootPoint:
             return False
         landed = changed and self._has_moved
         if landed and self._arriving is not None:
-            self.arrival = self._arriving.arrival()
+            self.arrival = self._arriving.arrival(ground.sinks)
             self.since = self.arrival.stamp
             announcement.learn(self.since, trajectory.frames[-self.arrival.age], ground)
         if changed:
@@ -114,7 +114,7 @@ class FootPoint:
         if self._foothold is None:
             # It has sunk in and come back while it was not believed yet.
             lasted = since(trajectory.frames, frame.stamp - self._contact_time) if self.since else [frame]
-            self._foothold = ground.begin(lasted)
+            self._foothold = ground.begin(lasted, first=not self.since)
         trajectory.rest()
         if near or changed:
             self._standing.append(frame)

@@ -12,6 +12,7 @@ from ...stamps import NANOSECONDS
 from ..types import Vector3
 from .cubic import SCALE, CubicSums, GapNoise, PointFrame, factored, square_of, value_of
 from .point_filter import SNAP, PointFilter
+from .rest import rate_of
 
 FEWEST = 5  # frames that a cubic is fitted to at least: four would leave nothing to tell how well it fits
 MOST = 200  # frames that are kept: half a second at 400 Hz
@@ -21,6 +22,11 @@ LEAST = 6  # frames in the air in which an arrival is looked for; they may be fr
 NEAREST = 42  # the most of them that are looked at, besides those that may have been on the ground already
 FULL = 150  # frames after which a point that hovers near the ground is looked at anew
 SHARE = 4  # frames that are caught up with while the next one comes in
+CLEAR = 3.0  # standard deviations of the noise of a gap from which on a frame shows that it has sunk in
+BENDS = 100.0  # m/s^2 by which a foot may be accelerated as it arrives
+SINKS_FOR = 0.005  # s for which a foot sinks in at most, ...
+LEAST_SPEED = 0.1  # ... and m/s with which at least
+COURSE = 10_000_000  # ns before an arrival over which the speed is taken
 SAME = 0.01  # a later arrival is believed where it leaves less by this part of the noise's square
 
 
@@ -145,15 +151,18 @@ class ArrivalFit:
         if found is None:
             return
         cubic, factor, left = found
+        # Between these two frames another foot may strike, or this one.
+        time = (frames[k].stamp - frames[k - 1].stamp) / NANOSECONDS
+        bends = (0.5 * BENDS * time * time / self._noise.gap) ** 2
         ends = []
         for one in frames[k - 1 : k + 1]:
             s = (one.stamp - frames[0].stamp) / (SCALE * NANOSECONDS)
             off = frames[0].gap - self._level + value_of(cubic, s)
-            ends.append((off, square_of(factor, (1.0, s, s * s, s * s * s))))
+            ends.append((off, square_of(factor, (1.0, s, s * s, s * s * s)) + bends))
         self._tried.append(ArrivalCandidate(last=k - 1, left=left, here=ends[0], there=ends[1], near=self._near))
 
-    def arrival(self) -> Arrival:
-        """The arrival, once the point rests.
+    def arrival(self, sinks: float = 0.0) -> Arrival:
+        """The arrival, once the point rests, at a ground into which it `sinks` (m).
 
         In the air the frames follow one cubic, then they rest at the level of the cubic's end: of all pairs of
         neighbours that the arrival may lie between it is the one where both together leave least (least squares). A
@@ -162,7 +171,7 @@ class ArrivalFit:
         """
         self._catch_up(FULL)
         frames, noise = self._frames, self._noise
-        best, last, air = inf, self._first, 0
+        best, last, air, level = inf, self._first, 0, 0.0
         stamp = frames[min(last + 1, len(frames) - 1)].stamp
         # What comes to rest does so near the level of the others, by half a tolerance or so: as good as so many frames.
         known = (2.0 * noise.gap / self._tolerance) ** 2
@@ -176,9 +185,13 @@ class ArrivalFit:
                 part, cost = here / (here - there), 0.0
             left = one.left + square - near * rest + min(cost, later)
             if left < best - SAME * noise.gap**2:
-                best, air, last = left, one.last + 1, one.last if part > 0.0 else one.last - 1
+                best, air, last, level = left, one.last + 1, one.last if part > 0.0 else one.last - 1, rest
                 before = frames[one.last].stamp
                 stamp = before + round(part * (frames[one.last + 1].stamp - before))
+        if sinks > 0.0:
+            stamp = self._touched(last, stamp, self._level + level + sinks, sinks)
+        while last > 1 and frames[last].stamp > stamp:
+            last -= 1
         velocity = frames[last].velocity
         sums = None if air == 0 or self._sums.measured else CubicSums(frames[:air])
         factor = None if sums is None else factored(sums.normal(0.0))
@@ -186,3 +199,18 @@ class ArrivalFit:
             s = (frames[last].stamp - frames[0].stamp) / (SCALE * NANOSECONDS)
             _, velocity = sums.motion(factor, 0.0, s)
         return Arrival(stamp, len(frames) - last, velocity)
+
+    def _touched(self, last: int, stamp: int, surface: float, sinks: float) -> int:
+        """The stamp in ns at which a point has touched a surface (m) into which it has sunk until another stamp."""
+        frames, k = self._frames, last + 1
+        if sinks < CLEAR * self._noise.gap:
+            course = [one for one in frames[:k] if one.stamp > frames[last].stamp - COURSE]
+            speed = -rate_of(course, self._noise)[0] if len(course) > 1 else 0.0
+            return stamp - round(min(sinks / max(speed, LEAST_SPEED), SINKS_FOR) * NANOSECONDS)
+        while k > 1 and frames[k - 1].gap < surface:
+            k -= 1
+        before, after = frames[k - 1], frames[k]
+        if after.gap >= surface:
+            return stamp
+        part = (before.gap - surface) / (before.gap - after.gap)
+        return before.stamp + round(part * (after.stamp - before.stamp))

@@ -277,6 +277,17 @@ def test_a_landing_is_stamped_by_what_was_measured_after_it_and_not_by_what_was_
     assert score.landing.history[-1][1] == pytest.approx(0.03, abs=4e-3)
 
 
+def test_a_foot_that_sinks_in_as_the_standing_ones_have_lands_when_it_touches() -> None:
+    def sunk(course: Height) -> Height:
+        return lambda time: (course(time)[0] - 6e-4, course(time)[1])
+
+    courses = [sunk(one) for one in (swing(0.3, 0.6, speed=0.4), stands, stands, stands)]
+    (score,) = walk(machine(), record(courses, 0.8)).scores
+    assert score.landing is not None
+    # It comes down with 0.4 m/s and brakes, so that it has touched 1.4 ms before it has sunk in.
+    assert score.landing.stamp == pytest.approx(START + 598.6 * MS, abs=0.4 * MS)
+
+
 def test_a_landing_that_was_not_announced_is_told_without_a_history() -> None:
     def drops(time: float) -> tuple[float, float]:
         if not 0.3 < time < 0.5:
