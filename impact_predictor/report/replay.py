@@ -61,7 +61,7 @@ def print_replay(console: Console, result: Result, every: bool = False) -> None:
     warned = [one.warned for one in result.truths.values() if one.warned is not None]
     if (log := result.watch) is not None:
         found, said = warned_of(unit_as_json(log, place) for place in range(len(log.names)))
-        say(console, f"Of events {found} were warned of: {said}.")
+        say(console, f"Events warned of: {found}; {said}.")
     elif events := sum(one.events for one in warned):
         stood = sum(one.events_warned for one in warned)
         say(console, f"A warning stood before {stood:,} of {counted(events, 'event')}.")

@@ -103,7 +103,9 @@ def warned_of(units: Iterable[Mapping[str, Any]]) -> tuple[str, str]:
     leads = [one["warned_ahead"] for one in events if one["warned_ahead"] is not None]
     ahead = f"a warning had stood {median(leads):.1f} s in the median, {min(leads):.1f} s at least; " if leads else ""
     vain = f"{sum(one['vain'] for one in warnings):,} of {counted(len(warnings), 'warning')} vain"
-    return f"{len(leads):,} of {len(events):,}", f"{ahead}{vain}"
+    return f"{len(leads):,} of {len(events):,}" if events else "none happened", ahead + (
+        vain if warnings else "no warning"
+    )
 
 
 def _stood(spells: Sequence[LevelSpell], stamp: int) -> float | None:

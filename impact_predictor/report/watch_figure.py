@@ -35,7 +35,7 @@ def write_watch(path: str | os.PathLike[str], log: WatchLog, title: str) -> None
     with picture(path, 11.0, 3.6 + 1.35 * len(shown)) as figure:
         angles, felt, *panels = figure.subplots(2 + len(shown), 1, sharex=True)
         warned, said = warned_of(units)
-        headline(figure, f"{title}: {warned} events warned of; {said}")
+        headline(figure, f"{title}: events warned of: {warned}; {said}")
         for name, colour in zip(DECK[:2], PALETTE, strict=False):
             angles.plot(times, np.degrees(log.deck[:, DECK.index(name)]), color=colour, linewidth=1.0, label=name)
         angles.set_ylabel("angle (°)")
@@ -55,7 +55,7 @@ def _draw_felt(axes: Axes, log: WatchLog, times: Any) -> None:
     axes.fill_between(due, low, high, color=PALETTE[4], alpha=0.35, linewidth=0.0, label=f"{said}: 90 % band")
     axes.plot(due, middle, "--", color=PALETTE[0], linewidth=1.0, label=said)
     axes.plot(times, log.deck[:, DECK.index(FELT[part])], color=EDGE, linewidth=1.0, label="felt")
-    axes.set_ylabel(f"{FELT[part]} (m/s²)")
+    axes.set_ylabel(f"felt {FELT[part]}\n(m/s²)")
 
 
 def _draw_unit(axes: Axes, log: WatchLog, place: int, times: Any) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from math import degrees
 from statistics import median
 from typing import Any, Final
 
@@ -11,7 +12,7 @@ from ...stamps import NANOSECONDS
 from ...wording import NONE, counted, fixed, words
 from ..modes import EDGE, LEVELS, PALETTE
 from ..watch import warned_of
-from . import Cell, Chart, Headline, PageTable, Section, part_words, safe
+from . import Cell, Chart, Headline, PageTable, Section, marks, part_words, safe
 from .facts import BagAnswer
 
 SHOWN: Final = 6
@@ -39,6 +40,7 @@ OF_NOW: Final = frozenset(
     ("slide_ratio", "tip_ratio", "time_to_tip", "time_to_slide", "onset_probability", "energy_to_topple", "tilt")
 )
 """What a report says of its moment alone."""
+RIBBON: Final = {"showticklabels": False, "showgrid": False, "fixedrange": True, "range": [-0.5, 0.5]}
 ANGLES: Final = {"roll": "roll, port up", "pitch": "pitch, bow down"}
 
 
@@ -110,48 +112,39 @@ def skill_table(skill: Iterable[Mapping[str, Any]], name: str) -> PageTable:
 def chart_of(title: str, answer: BagAnswer) -> Chart:
     """The deck, its forecast, and the levels and margins of its units over time, on one axis of time."""
     watch, traces = answer["watch"], list[dict[str, Any]]()
-    stamps = watch["stamps"]
+    stamps, units, deck = watch["stamps"], watch["units"], watch["deck"]
     start = stamps[0] if answer.get("begin") is None else min(stamps[0], answer["begin"])
     times = [(stamp - start) / NANOSECONDS for stamp in stamps]
-    shown = sorted(watch["units"], key=lambda name: (-len(watch["units"][name]["events"]), -_most(watch, name)))[:SHOWN]
-    felt = [name for name in FELT if _swing(watch["deck"][name]) > 0.1 * max(_swing(watch["deck"][of]) for of in FELT)]
-    # Panels from above: a title for the axis, and how high each is.
-    panels: list[tuple[str, float]] = [("angle, °", 1.2), *((f"felt {name}, m/s²", 1.6) for name in felt)]
-    for name, colour in zip(ANGLES, PALETTE, strict=False):
-        degrees = [None if one is None else 57.29578 * one for one in watch["deck"][name]]
-        traces.append(_line(ANGLES[name], times, degrees, 1, colour))
-    for place, name in enumerate(felt, 2):
-        traces += _forecasts(watch, name, times, start, place)
-        traces.append(_line(f"felt {name}", times, watch["deck"][name], place, EDGE))
+    shown = sorted(units, key=lambda name: (-len(units[name]["events"]), -max(units[name]["most"].values())))[:SHOWN]
+    felt = [name for name in FELT if _swing(deck[name]) > 0.1 * max(_swing(deck[of]) for of in FELT)]
+    # Panels from above: the title of each, its height, and what else its axis has.
+    panels: list[tuple[str, float, dict[str, Any]]] = [("angle, °", 1.2, {})]
+    for (name, said), colour in zip(ANGLES.items(), PALETTE, strict=False):
+        turned = [None if one is None else degrees(one) for one in deck[name]]
+        traces.append(_line(said, times, turned, 1, colour))
+    for name in felt:
+        panels.append((f"felt {name}, m/s²", 1.6, {}))
+        traces += _forecasts(watch["forecasts"], name, start, len(panels))
+        traces.append(_line(f"felt {name}", times, deck[name], len(panels), EDGE))
     for name in shown:
-        panels += [("", 0.16), (f"{name or 'margin used'}", 1.2)]
-        traces += _unit_traces(watch["units"][name], times, start, len(panels))
+        panels += [("", 0.16, RIBBON), (safe(name) or "margin used", 1.2, {"range": [0.0, HIGH], "fixedrange": True})]
+        traces += _unit_traces(units[name], times, start, len(panels))
     # Each name stands in the legend once.
     met = set[str]()
     for trace in traces:
-        if trace.get("name") in met:
-            trace["showlegend"] = False
-        elif trace.get("showlegend", True):
-            met.add(trace["name"])
-    layout: dict[str, Any] = {"height": round(150 + 105 * sum(high for _, high in panels)), "barmode": "overlay"}
-    gaps = [0.02 if text else 0.005 for text, _ in panels[:-1]]
-    top, unit = 1.0, (1.0 - sum(gaps)) / sum(high for _, high in panels)
-    for place, (text, high) in enumerate(panels, 1):
-        axis: dict[str, Any] = {"title": safe(text), "domain": [max(0.0, top - high * unit), top]}
-        if not text:
-            axis |= {"showticklabels": False, "showgrid": False, "fixedrange": True, "range": [-0.5, 0.5]}
-        elif place > 1 + len(felt):
-            axis |= {"range": [0.0, HIGH], "fixedrange": True}
-        layout["yaxis" if place == 1 else f"yaxis{place}"] = axis
-        top -= high * unit + (0.02 if text else 0.005)
-    layout["xaxis"] = {
-        "title": "time in the record, s",
-        "range": [0.0, max(1.0, times[-1])],
-        "anchor": f"y{len(panels)}",
-    }
-    layout["showlegend"] = True
-    more = len(watch["units"]) - len(shown)
-    caption = f"Of {counted(more, 'more unit')}, which came less near to an onset, the table tells." if more else ""
+        trace["showlegend"] = trace.get("showlegend", True) and trace["name"] not in met
+        met.add(trace["name"])
+    gaps = [0.02 if text else 0.005 for text, _, _ in panels]
+    heights = [high for _, high, _ in panels]
+    top, unit = 1.0, (1.0 - sum(gaps[:-1])) / sum(heights)
+    across = {"title": "time in the record, s", "range": [0.0, max(1.0, times[-1])], "anchor": f"y{len(panels)}"}
+    layout = {"height": round(150 + 105 * sum(heights)), "barmode": "overlay", "showlegend": True, "xaxis": across}
+    for place, ((text, high, more), gap) in enumerate(zip(panels, gaps, strict=True), 1):
+        domain = [max(0.0, top - high * unit), top]
+        layout[f"yaxis{place if place > 1 else ''}"] = {"title": text, "domain": domain, **more}
+        top -= high * unit + gap
+    left = len(units) - len(shown)
+    caption = f"Of {counted(left, 'more unit')}, which came less near to an onset, the table tells." if left else ""
     return Chart(title, traces, layout, caption)
 
 
@@ -159,87 +152,62 @@ def _unit_traces(unit: Mapping[str, Any], times: Sequence[float], start: int, pl
     """The ribbon of the levels of a unit above its margins, with its events."""
     traces: list[dict[str, Any]] = []
     for level, colour in LEVELS.items():
-        spells = [
-            ((begin - start) / NANOSECONDS, (end - start) / NANOSECONDS)
-            for of, begin, end in unit["levels"]
+        spans = [
+            ((one - start) / NANOSECONDS, (other - start) / NANOSECONDS)
+            for of, one, other in unit["levels"]
             if of == level
         ]
-        if spells:
-            look = {"base": [begin for begin, _ in spells], "width": 1.0, "marker": {"color": colour}}
-            texts = [f"{level} from {begin:.1f} s to {end:.1f} s" for begin, end in spells]
-            bar = {"type": "bar", "orientation": "h", "hovertext": texts, "hoverinfo": "text", "name": level, **look}
-            traces.append(
-                bar | {"x": [end - begin for begin, end in spells], "y": [0] * len(spells), "yaxis": f"y{place - 1}"}
-            )
-    traces.append(
-        _line("margin used against tipping", times, unit["tip"], place, PALETTE[1])
-        | {"fill": "tozeroy", "fillcolor": f"{PALETTE[1]}40"}
-    )
-    traces.append(_line("margin used against sliding", times, unit["slide"], place, PALETTE[0]))
-    dotted = {"line": {"color": PALETTE[2], "width": 1.3, "dash": "dot"}}
-    traces.append(_line("probability of an onset", times, unit["probability"], place, EDGE) | dotted)
-    full = {"x": [times[0], times[-1]], "y": [1.0, 1.0], "line": {"color": LEVELS["ERROR"], "width": 1}}
-    traces.append(
-        {"type": "scatter", "mode": "lines", "yaxis": f"y{place}", "hoverinfo": "skip", "showlegend": False, **full}
-    )
-    if unit["events"]:
-        at = [(one["stamp"] - start) / NANOSECONDS for one in unit["events"]]
-        texts = [
-            f"event at {time:.1f} s<br>"
-            + ("not warned of" if one["warned_ahead"] is None else f"a warning had stood {one['warned_ahead']:.1f} s")
-            for time, one in zip(at, unit["events"], strict=True)
-        ]
-        look = {"symbol": "triangle-down", "size": 11, "color": EDGE}
-        traces.append(
-            {
-                "type": "scatter",
-                "mode": "markers",
-                "name": "event",
-                "x": at,
-                "y": [1.0] * len(at),
-                "marker": look,
-                "yaxis": f"y{place}",
-                "hovertext": texts,
-                "hoverinfo": "text",
-            }
-        )
-    return traces
+        if spans:
+            points = [(end - begin, 0.0, f"{level} from {begin:.1f} s to {end:.1f} s") for begin, end in spans]
+            look = {"base": [begin for begin, _ in spans], "width": 1.0, "marker": {"color": colour}}
+            traces.append(marks(level, points, type="bar", orientation="h", yaxis=f"y{place - 1}", **look))
+    full = _line("", [times[0], times[-1]], [1.0, 1.0], place, LEVELS["ERROR"], hoverinfo="skip", showlegend=False)
+    filled = {"fill": "tozeroy", "fillcolor": f"{PALETTE[1]}40"}
+    traces += [
+        _line("margin used against tipping", times, unit["tip"], place, PALETTE[1], **filled),
+        _line("margin used against sliding", times, unit["slide"], place, PALETTE[0]),
+        _line("probability of an onset", times, unit["probability"], place, PALETTE[2], dash="dot"),
+        full,
+    ]
+    events = []
+    for one in unit["events"]:
+        at, ahead = (one["stamp"] - start) / NANOSECONDS, one["warned_ahead"]
+        said = "not warned of" if ahead is None else f"a warning had stood {ahead:.1f} s"
+        events.append((at, 1.0, f"event at {at:.1f} s\n{said}"))
+    look = {"symbol": "triangle-down", "size": 11, "color": EDGE}
+    return [*traces, marks("event", events, marker=look, yaxis=f"y{place}")] if events else traces
 
 
-def _forecasts(
-    watch: Mapping[str, Any], name: str, times: Sequence[float], start: int, place: int
-) -> list[dict[str, Any]]:
+def _forecasts(told: Mapping[str, Any], name: str, start: int, place: int) -> list[dict[str, Any]]:
     """The bands of the forecasts of what is felt, drawn at the times for which they were made."""
-    told, traces = watch["forecasts"], list[dict[str, Any]]()
+    traces = []
     for lead, (low, middle, high) in zip(told["leads"], told[name], strict=True):
         at = [(made - start) / NANOSECONDS + lead for made in told["made"]]
-        said, seen = f"forecast {lead:g} s before", True if lead == LEAD else "legendonly"
-        group = {
-            "type": "scatter",
-            "mode": "lines",
-            "yaxis": f"y{place}",
-            "legendgroup": said,
-            "visible": seen,
-            "x": at,
-        }
-        edge = group | {"line": {"width": 0}, "hoverinfo": "skip", "showlegend": False}
+        said = f"forecast {lead:g} s before"
+        group = {"legendgroup": said, "visible": True if lead == LEAD else "legendonly"}
+        edge: dict[str, Any] = {**group, "hoverinfo": "skip", "showlegend": False, "line": {"width": 0}}
         traces += [
-            edge | {"y": low},
-            edge | {"y": high, "fill": "tonexty", "fillcolor": f"{PALETTE[4]}50"},
-            group | {"y": middle, "name": said, "line": {"color": PALETTE[0], "width": 1.2, "dash": "dash"}},
+            _line("", at, low, place, "", **edge),
+            _line("", at, high, place, "", **edge, fill="tonexty", fillcolor=f"{PALETTE[4]}50"),
+            _line(said, at, middle, place, PALETTE[0], dash="dash", **group),
         ]
     return traces
 
 
-def _line(name: str, times: Sequence[float], values: Sequence[float | None], place: int, colour: str) -> dict[str, Any]:
+def _line(
+    name: str,
+    times: Sequence[float],
+    values: Sequence[float | None],
+    place: int,
+    colour: str,
+    dash: str = "solid",
+    **look: Any,
+) -> dict[str, Any]:
     line = {"type": "scatter", "mode": "lines", "name": name, "x": times, "y": values, "yaxis": f"y{place}"}
-    return line | {"line": {"color": colour, "width": 1.3}, "hovertemplate": "%{x:.1f} s: %{y:.3g}"}
+    drawn = {"line": {"color": colour, "width": 1.3, "dash": dash}, "hovertemplate": "%{x:.1f} s: %{y:.3g}"}
+    return line | drawn | look
 
 
 def _swing(values: Iterable[float | None]) -> float:
     known = [one for one in values if one is not None]
     return max(known, default=0.0) - min(known, default=0.0)
-
-
-def _most(watch: Mapping[str, Any], name: str) -> float:
-    return float(max(watch["units"][name]["most"].values()))
