@@ -119,6 +119,7 @@ def remarks(
     for one in inputs:
         if one.kind in POINTS and one.body is not None:
             said += [f"{names[one]}: {doubt}" for doubt in _doubts(run, one.body)]
+    said += run.monitor.deck.doubts() if run.monitor.deck is not None else ()
     for body, record in run.bodies.items():
         contacts, walking = run.monitor.predictors[body].contacts, record.scene.walking
         doubts = list(contacts.doubts())

@@ -74,7 +74,8 @@ _TABLE: Final = (
     double(
         "contact.tolerance",
         0.005,
-        "Gap to the support below which a point counts as touching.",
+        "Gap to the support below which a point counts as touching, if what is measured scatters less; 0 takes the "
+        "scatter alone.",
         unit="m",
         low=0.0,
         high=1.0,
@@ -276,8 +277,9 @@ _TABLE: Final = (
     seconds(
         "support.window",
         0.2,
-        "Time over which the accelerations of the support are estimated from what is measured of it.",
-        low=0.005,
+        "Time over which the accelerations of the support are estimated from what is measured of it; 0 takes the one "
+        "that errs least, by the noise and the motion that the messages show.",
+        low=0.0,
         high=10.0,
         shared=True,
         fixed=SUPPORT,

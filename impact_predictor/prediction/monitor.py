@@ -116,7 +116,8 @@ class Monitor:
             if prediction.status is not Status.ACCEPTED:
                 self._refused(watch, body, prediction.status, sample.stamp)
             elif self._heard(watch, body, sample.stamp):
-                watch.update_body(body, prediction.relative or sample, prediction.touchdown)
+                slack = self.predictors[body].contacts.slack
+                watch.update_body(body, prediction.relative or sample, prediction.touchdown, slack)
         return prediction
 
     def update_imu(self, body: str, imu: Imu) -> Status:
@@ -169,6 +170,14 @@ class Monitor:
     def reports(self) -> tuple[Report, ...]:
         """What the watch has to say now; mostly nothing."""
         return () if self.watch is None else self.watch.reports()
+
+    def doubts(self) -> tuple[str, ...]:
+        """What speaks against the parameters of a scene, as what is measured shows it, a sentence each."""
+        found = [] if self.deck is None else list(self.deck.doubts())
+        for body, predictor in self.predictors.items():
+            if predictor.scene.walking is None:  # of feet it is told with what else is known of them
+                found += [f"{body}: {doubt}" if body else doubt for doubt in predictor.contacts.doubts()]
+        return tuple(found)
 
     def finish(self) -> dict[str, tuple[Score, ...]]:
         """End the record: the scores that were not handed out yet, by the names of their bodies."""

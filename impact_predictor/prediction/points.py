@@ -15,7 +15,7 @@ from .impact import SLOWEST, Collision, ImpactModel, collision_after
 from .planar import ImpactPlane, Posture, center_of, contacts_of, edge_of, hardly, inertia_about, plane_of, posture_of
 from .predictor import DEEP, DEEP_TOLERANCES, Contacts
 from .recorded import AFTER, BEFORE, Announced, RecordedTouchdown, TouchdownRecorder
-from .scatter import Scatter
+from .scatter import SLACK, Scatter
 from .scene import Scene
 from .score import Pending, PointRecord, Track
 from .spatial import SpatialModel
@@ -34,6 +34,14 @@ PLANE = 2
 HIGH = 1.0
 """A body is off its moving support when all of it is farther above than this part of its size. No impact throws it
 there: for a body of 1 m that takes 4.4 m/s, and one that topples keeps a contact, or one near it."""
+
+GUESS = 0.01
+"""Part of a body's size that gaps over a moving support, whose noise is in them, may scatter by until that is known,
+where no contact tolerance is given."""
+
+SURELY = 2.0  # times the rates that are not told from none: a point that is faster moves
+WORTH = 1e-4
+"""m: that gaps scatter by less is not worth a word."""
 
 
 class PointContacts(Contacts):
@@ -118,6 +126,8 @@ class PointContacts(Contacts):
         if track is not None and set(collision.contacts.new).isdisjoint(track.last.new):
             track = None
         if track is None:
+            if self._rests():
+                return None
             track = self._track = Track()
         elif 0 <= sample.stamp - track.stamp < self.scene.twist_window * NANOSECONDS or (
             self._recent[-2][0].stamp <= track.stamp <= sample.stamp
@@ -131,6 +141,15 @@ class PointContacts(Contacts):
         self._told.append((sample.stamp, track))
         return touchdown
 
+    def _rests(self) -> bool:
+        """Whether what seems to strike is noise: this sample or the one before shows no point off the support, and this
+        one none that surely approaches.
+        """
+        _, posture = self._recent[-1]
+        if self.scatter.is_known and min(posture.rates) < -SURELY * self.scatter.rate:
+            return False
+        return any(max(posture.gaps) <= self.slack for _, posture in list(self._recent)[-2:])
+
     def forget(self) -> None:
         for pending in self._pending:
             self._settle(pending)
@@ -141,6 +160,21 @@ class PointContacts(Contacts):
         self.scatter.forget()
         self._track = self._landed = self._last = None
         self.stamp = None
+
+    @property
+    def slack(self) -> float:
+        is_guessed = self._moment is not None and self.scene.tolerance == 0.0 and not self.scatter.is_known
+        return GUESS * self.size if is_guessed else self.scatter.gap
+
+    def doubts(self) -> tuple[str, ...]:
+        given, gap = self.scene.tolerance, self.scatter.gap
+        if not 0.0 < given < gap or gap < WORTH:
+            return ()
+        said = (
+            f"points that stand scatter by {gap / SLACK:.2g} m, too much for a contact.tolerance of {given:g}: set it "
+            f"to {gap:.2g}, or to 0.0, so that it follows what is measured"
+        )
+        return (said,)
 
     @property
     def recorded(self) -> Mapping[str, Announced]:

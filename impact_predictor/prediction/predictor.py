@@ -83,6 +83,11 @@ class Contacts(ABC):
         """How much later than the body its feet are told; None where it has none, or nothing has shown it yet."""
         return None
 
+    @property
+    def slack(self) -> float:
+        """Gaps in m that cannot be told from none, by what the samples show."""
+        return 0.0
+
     def doubts(self) -> tuple[str, ...]:
         """What looks wrong in that which is told about the contacts, and what to do; a clause each."""
         return ()

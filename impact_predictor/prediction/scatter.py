@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Sequence
 from math import sqrt
 
 from ..stamps import NANOSECONDS
 from .checks import PAUSE
 from .planar import Posture, hardly
 from .scene import Scene
+from .vectors import total
 
 SLACK = 3.0
 """What is less than so many standard deviations is not told from none."""
@@ -43,12 +45,18 @@ class Scatter:
         """Standard deviation of the gaps of standing points in m, once it is known."""
         self._tolerance, self._slowest = scene.tolerance, hardly(scene)
         self._last: list[tuple[int, Posture]] = []
-        self._taken = 0
+        self._heard = self._taken = 0
         self._steps, self._middles = deque[float](maxlen=ENOUGH), deque[float](maxlen=ENOUGH)
         self._seen, self._mean, self._squares = 0, 0.0, 0.0
 
+    @property
+    def is_known(self) -> bool:
+        """Whether enough samples have shown it."""
+        return self._heard >= OFTEN + 2
+
     def take(self, stamp: int, posture: Posture) -> None:
         """Take the next sample, with a stamp in ns."""
+        self._heard += 1
         last, gaps, rates = self._last, posture.gaps, posture.rates
         last.append((stamp, posture))
         slow = max(self._slowest, self.rate)
@@ -87,3 +95,38 @@ class Scatter:
         if self._seen >= ENOUGH:
             self.deviation = sqrt(self._squares / self._seen)
             self.gap = max(self.noise, SLACK * self.deviation)
+
+
+AVERAGED = 200
+"""Differences over which noise is averaged."""
+
+
+class DifferenceNoise:
+    """The noise of samples of a motion, as the mean `square` of it of one axis, from `seen` third differences.
+
+    They leave a parabola out, whatever the stamps are.
+    """
+
+    def __init__(self) -> None:
+        self.square, self.seen = 0.0, 0
+        self._last: deque[tuple[int, Sequence[float]]] = deque(maxlen=4)
+
+    def clear(self) -> None:
+        """Begin a new record; what was learnt stays."""
+        self._last.clear()
+
+    def add(self, stamp: int, values: Sequence[float]) -> None:
+        """Take a sample at a stamp in ns, later than the last."""
+        last = self._last
+        last.append((stamp, values))
+        if len(last) < 4:
+            return
+        (begin, a), (second, b), (third, c), (_, d) = last
+        u, v = (second - begin) / (stamp - begin), (third - begin) / (stamp - begin)
+        # Divided by its largest factor: samples that come at once count as pairs.
+        of_b, of_c = (1.0 - v) * v, -u * (1.0 - u)
+        of_a, of_d = -(v - u) * (1.0 - u) * (1.0 - v), u * v * (v - u)
+        scale = len(values) * (of_a * of_a + of_b * of_b + of_c * of_c + of_d * of_d)
+        found = [of_a * p + of_b * q + of_c * r + of_d * s for p, q, r, s in zip(a, b, c, d, strict=True)]
+        self.seen = min(self.seen + 1, AVERAGED)
+        self.square += (total([one * one for one in found]) / scale - self.square) / self.seen

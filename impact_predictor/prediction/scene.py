@@ -71,8 +71,9 @@ class MovingDeck(NamedTuple):
     """How a moving support is observed; SI units.
 
     `source` is "odom" (pose and twist) or "imu", which lies at `imu_position` in the support's frame with its axes;
-    `window` in s over which accelerations are estimated; a message older than `timeout` s tells nothing any more;
-    `extent` is (least x, greatest x, least y, greatest y) of the deck in its frame, () for one without end.
+    `window` in s over which accelerations are estimated, 0 for the one that errs least; a message older than `timeout`
+    s tells nothing any more; `extent` is (least x, greatest x, least y, greatest y) of the deck in its frame, () for
+    one without end.
     """
 
     source: str = "odom"
@@ -189,9 +190,9 @@ class Scene(NamedTuple):
 
     `inertia` is about the mass centre; `points` are the contact points, empty where they come with the samples;
     `normal` is the support's unit normal and `height` its distance from the origin along it, in the frame of the
-    samples; `tolerance` the gap in m below which a point touches; `contact_time` in s how long a contact lasts, and
-    `merge` its compression, unless its `stiffness` in N/m tells that of a foot (0: it is not known); more than
-    `most_points` contact points in a message are refused;
+    samples; `tolerance` the gap in m below which a point touches, if gaps scatter less; `contact_time` in s how long a
+    contact lasts, and `merge` its compression, unless its `stiffness` in N/m tells that of a foot (0: it is not known);
+    more than `most_points` contact points in a message are refused;
     `twist_window` in s the time over which the source averages its twist, 0 for a twist of the very instant;
     `horizon` in s how far ahead a touchdown is announced; `samples` how many points carry uncertainty through an
     impact, 0 for none, with the standard deviations of friction and restitution; `margins` whether a touchdown keeps

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter, deque
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from ..prediction.checks import REMEDIES
@@ -64,6 +64,8 @@ class Diagnostics:
         """How many publish on each input."""
         self.feet: dict[str, FeetReport] = {}
         """What is counted of the feet of bodies that walk."""
+        self.doubts: Callable[[], tuple[str, ...]] = tuple
+        """What speaks against the parameters of the scene."""
         self._name = name
         self._body = ""
         self._accepted = 0
@@ -237,7 +239,7 @@ class Diagnostics:
         if age > STALE_AFTER:
             where = "" if len(last) == 1 else f" on {min(last, key=last.__getitem__)}"
             return WARN, f"no sample{where} for {age:.1f} s"
-        flaws = [feet.flaw for feet in self.feet.values() if feet.flaw]
+        flaws = [*[feet.flaw for feet in self.feet.values() if feet.flaw], *self.doubts()]
         return (WARN, flaws[0]) if flaws else (OK, "predicting")
 
     def _missing(self) -> str:

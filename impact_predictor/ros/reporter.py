@@ -91,6 +91,7 @@ class Reporter:
         self.markers = MarkerTopic(self._node, self._monitor)
         self._support = inputs[0] if self._monitor.deck is not None else ""
         self.diagnostics = Diagnostics(self._name, perf_counter(), inputs)
+        self.diagnostics.doubts = self._monitor.doubts
         self.diagnostics.lost = None if self.on_lost is None else 0
         for body, scene in self._monitor.scenes.items():
             if scene.walking is not None:

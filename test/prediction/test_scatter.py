@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from impact_predictor.prediction.planar import Posture, contacts_of
-from impact_predictor.prediction.scatter import SLACK, Scatter
+from impact_predictor.prediction.scatter import SLACK, DifferenceNoise, Scatter
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.prediction.spatial import SpatialModel
 
@@ -103,3 +103,11 @@ def test_what_noise_hides_is_not_told_from_standing(
 ) -> None:
     contacts = contacts_of(SCENE, over_floor(gaps, rates), NOISY)
     assert (None if contacts is None else (contacts.old, contacts.new)) == expected
+
+
+def test_third_differences_tell_noise_from_motion_whatever_the_stamps_are() -> None:
+    rng, noise = np.random.default_rng(2), DifferenceNoise()
+    for stamp in np.cumsum(rng.uniform(0.01, 0.05, 400)):
+        motion = np.array((np.sin(stamp), 5.0 - stamp * stamp))
+        noise.add(round(1e9 * stamp), (motion + 0.02 * rng.normal(size=2)).tolist())
+    assert noise.square == pytest.approx(0.02**2, rel=0.25)

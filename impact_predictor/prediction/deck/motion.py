@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from collections import deque
 from functools import partial
-from itertools import repeat
 from math import sin, sqrt
-from operator import mul, sub
 from typing import NamedTuple
 
 from ...stamps import NANOSECONDS
 from ..types import Felt, Moment, Quaternion, Vector3
-from ..vectors import Axes, add, axes_of, combine, cross, dot, lines, times, to_body, total, turned
+from ..vectors import Axes, add, axes_of, combine, cross, dot, times, to_body, turned
 
 NOWHERE: Vector3 = (0.0, 0.0, 0.0)
 """Place, velocity and acceleration of a support that nobody measures."""
@@ -26,9 +23,6 @@ SLOW = 1e-6, 1e-6
 """Mean squares of the angular velocity (rad/s) and of its derivative then: waves of 6 s, too low to be seen."""
 
 QUARTER = 1.4  # rad after which a wave is no longer like what it was: nearly a quarter of it
-
-FLAT = 1e-6
-"""Of the determinant of evenly spread samples: with less their stamps lie in two clumps, which tell no curvature."""
 
 
 class SupportState(NamedTuple):
@@ -142,77 +136,3 @@ def between(first: SupportState, second: SupportState, stamp: int) -> SupportSta
 
 def blend(first: Vector3, second: Vector3, part: float) -> Vector3:
     return add(first, add(second, first, -1.0), part)
-
-
-class MotionWindow:
-    """The samples of several channels over the last `span` s, with one more so that they reach over all of it.
-
-    A parabola through them has its slope at the last sample: exact for a derivative that changes linearly, so its lag
-    is of the second order. With n samples over T s of noise s the slope has the standard deviation 13.9 s/(T sqrt(n)),
-    four times that of a straight line, whose slope however is T/2 old; for a derivative of frequency w rad/s it is
-    0.1 (w T)^2 of it off.
-    """
-
-    def __init__(self, span: float, channels: int) -> None:
-        self._span = round(span * NANOSECONDS)
-        self._stamps: deque[int] = deque()
-        self._channels: tuple[deque[float], ...] = tuple([deque() for _ in range(channels)])
-
-    def clear(self) -> None:
-        self._stamps.clear()
-        for channel in self._channels:
-            channel.clear()
-
-    def add(self, stamp: int, values: tuple[float, ...]) -> bool:
-        """Take a sample later than the last, stamp in ns; tells whether there are enough for a slope.
-
-        These are three, which span the window.
-        """
-        stamps = self._stamps
-        stamps.append(stamp)
-        for channel, value in zip(self._channels, values, strict=True):
-            channel.append(value)
-        begin = stamp - self._span
-        while len(stamps) > 3 and stamps[1] <= begin:
-            stamps.popleft()
-            for channel in self._channels:
-                channel.popleft()
-        return len(stamps) > 2 and stamps[0] <= begin
-
-    def slopes(self) -> list[float]:
-        """The derivatives of the channels at the last sample, per s."""
-        first, last = self._stamps[0], self._stamps[-1]
-        scale = 2.0 / (last - first)
-        weights = slope_weights([1.0 + scale * (stamp - last) for stamp in self._stamps])
-        scale *= NANOSECONDS
-        # Less its last value: a large constant would leave its rounding in the slope.
-        return [scale * total(map(mul, weights, map(sub, channel, repeat(channel[-1])))) for channel in self._channels]
-
-    def ends(self) -> list[float]:
-        """The values of the channels at the last sample, on the straight lines through them.
-
-        Exact for a value that changes linearly. The noise is 2/sqrt(n) of a sample's.
-        """
-        last = self._stamps[-1]
-        return [end for end, _ in lines([(stamp - last) / NANOSECONDS for stamp in self._stamps], self._channels)]
-
-
-def slope_weights(x: list[float]) -> list[float]:
-    """What the values at x count in the slope, at 1, of their least-squares parabola.
-
-    x lies within -1 .. 1 and has both ends of it.
-    """
-    squares = [each * each for each in x]
-    count = len(x)
-    s1, s2, s3, s4 = total(x), total(squares), total(map(mul, x, squares)), total(map(mul, squares, squares))
-    # The normal equations, by minors: the weights c0 + c1 x + c2 x^2 have the moments 0, 1, 2.
-    m0, m1, m2 = s1 * s4 - s2 * s3, s1 * s3 - s2 * s2, count * s3 - s1 * s2
-    determinant = count * (s2 * s4 - s3 * s3) - s1 * m0 + s2 * m1
-    if determinant < FLAT * count * count * count:
-        part = 1.0 / (count * s2 - s1 * s1)
-        return [part * (count * each - s1) for each in x]
-    part = 1.0 / determinant
-    c0 = part * (2.0 * m1 - m0)
-    c1 = part * (count * s4 - s2 * s2 - 2.0 * m2)
-    c2 = part * (2.0 * (count * s2 - s1 * s1) - m2)
-    return [c0 + c1 * each + c2 * square for each, square in zip(x, squares, strict=True)]

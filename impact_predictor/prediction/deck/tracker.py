@@ -12,7 +12,8 @@ from ..checks import LARGEST, PAUSE, check_orientation, order_of
 from ..scene import MovingDeck
 from ..types import Felt, Imu, Moment, Sample, Status, Vector3
 from ..vectors import add, axes_of, dot, rotation_between, times, to_body, to_world
-from .motion import MeanMotion, MotionWindow, SupportState, ahead, between, later, resting
+from .motion import MeanMotion, SupportState, ahead, between, later, resting
+from .window import END, SLOPE, TURNING, MotionWindow
 
 if TYPE_CHECKING:
     from .forecast import DeckOutlook, WaveForecast
@@ -49,7 +50,8 @@ class Deck:
         self.deck = deck
         self._gravity, self._normal = gravity, normal
         self._timeout = round(deck.timeout * NANOSECONDS)
-        self._window = MotionWindow(deck.window, 6)
+        self._linear = MotionWindow(deck.window, SLOPE if deck.source == "odom" else END)
+        self._angular = MotionWindow(deck.window, TURNING)
         self._jumps = JumpDetector()
         self._imu: DeckImu | None = None
         if deck.source == "imu":
@@ -91,10 +93,10 @@ class Deck:
         )
         if not self._spans(seen, seen.velocity):
             return self._refused()
-        ax, ay, az, tx, ty, tz = self._window.slopes()
-        felt = add(self._gravity, (ax, ay, az), -1.0)
+        acceleration, turning = self._linear.slopes(), self._angular.slopes()
+        felt = add(self._gravity, acceleration, -1.0)
         upright = dot(to_world(axes, self._normal), self._gravity) < 0.0
-        known = seen._replace(acceleration=(ax, ay, az), felt=felt, turning=(tx, ty, tz))
+        known = seen._replace(acceleration=acceleration, felt=felt, turning=turning)
         return self._know(known, Status.ACCEPTED if upright else Status.GRAVITY_WRONG)
 
     def update_imu(self, imu: Imu) -> Status:
@@ -117,10 +119,9 @@ class Deck:
         # In a frame that does not turn what is felt changes with the support's acceleration alone.
         if not self._spans(seen, to_world(seen.axes, sensor.felt(imu))):
             return self._refused()
-        _, _, _, tx, ty, tz = self._window.slopes()
-        fx, fy, fz, *_ = self._window.ends()
-        felt = add((fx, fy, fz), to_world(seen.axes, sensor.euler((tx, ty, tz))))
-        return self._know(seen._replace(felt=felt, turning=(tx, ty, tz)), verdict)
+        turning = self._angular.slopes()
+        felt = add(self._linear.ends(), to_world(seen.axes, sensor.euler(turning)))
+        return self._know(seen._replace(felt=felt, turning=turning), verdict)
 
     @property
     def last(self) -> Moment | None:
@@ -156,6 +157,17 @@ class Deck:
                 return self._moment(between(first, second, stamp))
             second = first
         return self._before
+
+    @property
+    def window(self) -> float:
+        """The window in s over which linear accelerations are found now."""
+        return self._linear.span
+
+    def doubts(self) -> tuple[str, ...]:
+        """What speaks against the window that is given, a sentence each."""
+        given = self.deck.window
+        found = [window.balance.doubt(given) for window in (self._linear, self._angular)] if given else []
+        return tuple([one for one in found if one][:1])
 
     def learn(self) -> None:
         """Learn from now on how the support goes on in waves, for `outlook`."""
@@ -198,7 +210,8 @@ class Deck:
         """Begin anew; until accelerations are known again `state` says why they are not."""
         self._state = state
         self._seen = self._latest = None
-        self._window.clear()
+        self._linear.clear()
+        self._angular.clear()
         self._history.clear()
         if self._waves is not None:
             self._waves.clear()
@@ -208,7 +221,8 @@ class Deck:
         if self._seen is not None and not self._jumps.follows(self._seen, seen):
             self._forget(Status.SUPPORT_JUMPED)
         self._seen = seen
-        return self._window.add(seen.stamp, (*signal, *seen.angular))
+        spans = self._linear.add(seen.stamp, signal)
+        return self._angular.add(seen.stamp, seen.angular) and spans
 
     def _refused(self) -> Status:
         """What becomes of a message that does not fill the window yet: after a jump it is not trusted."""

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Sequence
 from math import inf, sqrt
 
 from ...stamps import NANOSECONDS
+from ..scatter import AVERAGED, DifferenceNoise
 from ..scene import Scene
 from .cubic import PointFrame
 from .ground import Ground
@@ -15,7 +15,6 @@ LONGEST = NANOSECONDS  # ns for which none may stand: runners fly for a part of 
 NEAR = 4.0  # contact tolerances by which the ground that feet show may lie off the scene's
 SURE = 3.0  # standard deviations of a gap that the contact tolerance must be ...
 ROOM = 4.0  # ... and that it had better be
-AVERAGED = 200  # frames over which noise is averaged
 SHOWN = 20  # footholds from which on a map that tells nothing under them is worth a word
 
 
@@ -29,38 +28,32 @@ class GroundDoubts:
         self._longest = 0
         self._drift = 0.0
         self._footholds = self._unmapped = 0
-        self._square, self._seen = 0.0, 0
-        self._gaps: deque[float] = deque(maxlen=4)
+        self._noise = DifferenceNoise()
 
     def begin(self, ground: Ground | None) -> None:
         """Know that the feet are learnt anew, and what was known of the ground until then."""
         self._lifted = None
-        self._gaps.clear()
+        self._noise.clear()
         if ground is not None:
             self._footholds, self._unmapped = self._footholds + ground.footholds, self._unmapped + ground.unmapped
 
     def see(self, frames: Sequence[PointFrame], stands: bool, ground: Ground) -> None:
         """Take the points at one instant, and whether any of them stands."""
-        stamp, gaps = frames[0].stamp, self._gaps
+        stamp = frames[0].stamp
         if stands:
             self._lifted, self._drift = None, ground.drift
         else:
             self._lifted = stamp if self._lifted is None else self._lifted
             self._longest = max(self._longest, stamp - self._lifted)
             self._nearest = min([self._nearest, *[abs(frame.gap) for frame in frames]])
-        gaps.append(frames[0].gap)
-        if len(gaps) == 4:
-            # A third difference leaves the motion out, and has twenty times the square of the noise.
-            a, b, c, d = gaps
-            self._seen = min(self._seen + 1, AVERAGED)
-            self._square += ((d - a + 3.0 * (b - c)) ** 2 / 20.0 - self._square) / self._seen
+        self._noise.add(stamp, (frames[0].gap,))
 
     def texts(self, ground: Ground) -> list[str]:
         """What is doubtful, one sentence each, with the parameter to change."""
         scene, found = self._scene, list[str]()
         assert scene.walking is not None
-        off, noise = self._drift, sqrt(self._square)
-        is_noisy = self._seen == AVERAGED and SURE * noise > scene.tolerance
+        off, noise = self._drift, sqrt(self._noise.square)
+        is_noisy = self._noise.seen == AVERAGED and SURE * noise > scene.tolerance
         if self._longest > LONGEST and self._nearest > scene.tolerance:
             found.append(f"no foot came nearer to the ground than {self._nearest:.3g} m: {self._raise(self._nearest)}")
         elif self._longest > LONGEST and not is_noisy:

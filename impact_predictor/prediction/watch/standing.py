@@ -58,7 +58,7 @@ class Standing:
         self.kinetic = 0.0
         self._seen = False
         size = 2.0 * scene.radius or hypot(*edge_of(list(scene.points)))
-        self._touch = max(scene.tolerance, COARSE * size)
+        self._fine = self._touch = max(scene.tolerance, COARSE * size)
         self._clear = CLEAR * self._touch
         self._axis = (0.0, 0.0, 0.0)
         self._feet: list[Vector3] = []
@@ -75,8 +75,10 @@ class Standing:
         """The name of an edge about which it can tip, by its number; "" where there is none."""
         return self.stance.edges[number].name if 0 <= number < len(self.stance.edges) else ""
 
-    def update(self, sample: Sample) -> bool:
-        """Take a sample relative to the support; whether the stance has changed."""
+    def update(self, sample: Sample, slack: float = 0.0) -> bool:
+        """Take a sample relative to the support, gaps up to `slack` m being none; whether the stance has changed."""
+        self._touch = max(self._fine, slack)
+        self._clear = CLEAR * self._touch
         pose = BodyPose(sample.position, axes_of(sample.orientation))
         feet, gaps = self._gaps(pose)
         if not self._scene.radius and (not self._seen or max(gaps) - min(gaps) > self._clear):

@@ -107,12 +107,14 @@ class Watch:
             watched.check_silence(moment.stamp, self._timeout)
         self._judge()
 
-    def update_body(self, body: str, relative: Sample, touchdown: Touchdown | None) -> None:
-        """Take a body's pose and twist relative to the support, and the touchdown that they announce."""
+    def update_body(self, body: str, relative: Sample, touchdown: Touchdown | None, slack: float = 0.0) -> None:
+        """Take a body's pose and twist relative to the support, the touchdown that they announce, and the gaps in m
+        that cannot be told from none.
+        """
         number = self._numbers[body]
         watched = self._bodies[number]
         self._hear(number, relative.stamp)
-        stance = watched.standing.update(relative)
+        stance = watched.standing.update(relative, slack)
         if watched.struck(relative.stamp, touchdown):
             self._counts.struck(number)
         self._changed(number, stance)
