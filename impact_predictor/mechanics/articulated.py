@@ -21,6 +21,9 @@ from ..errors import InputError
 SINGULAR = 1e-12
 """A pivot of the inertia matrix below this part of its diagonal is rounding: something moves that has no mass."""
 
+CROSSED = np.array([[0, 0, 0, 0, 0, 1, 0, -1, 0], [0, 0, -1, 0, 0, 0, 1, 0, 0], [0, 1, 0, -1, 0, 0, 0, 0, 0]], float)
+"""Times an arm it is the matrix, row by row, of the cross product of a spin with it; NumPy's function takes longer."""
+
 
 class WholeBody:
     """A model of `urdf`, a file, with the points at the origins of its `frames` (links or joints) as contacts.
@@ -52,6 +55,7 @@ class WholeBody:
         frames = [name for name in frames for _ in soles or (name,)]
         self._frames = [_frame(self._model, name, urdf) for name in frames]
         self.radii = list(radii) or [radius for radius, _ in balls]
+        self._balls = np.array(self.radii)[:, None]
         self._centers = np.array([center for _, center in balls]).reshape(-1, 3)
         self._are_off = [any(center) for _, center in balls]
         # The first joint is the universe, the second the base's.
@@ -97,19 +101,14 @@ class WholeBody:
                 self._arms[k] = place.rotation @ self._centers[k]
         self.jacobians = self._twists[:, :3].copy()
         if any(self.radii) or any(self._are_off):
-            self._roll(self._arms + np.outer(self.radii, down))
+            self._roll(self._arms + self._balls * np.array(down))
         # A leg whose mass is at its end moves without mass where it is stretched, and only there.
         return self._has_inverse()
 
     def _roll(self, arms: NDArray[np.float64]) -> None:
         """Put the contacts to the ends of some arms (k, 3): the lowest points of balls."""
-        x, y, z = arms.T
-        # The cross product of a spin with the arm; NumPy's own function takes ten times as long.
-        spun = np.zeros((len(arms), 3, 3))
-        spun[:, 0, 1], spun[:, 1, 2], spun[:, 2, 0] = z, x, y
-        spun[:, 1, 0], spun[:, 2, 1], spun[:, 0, 2] = -z, -x, -y
         self.points += arms
-        self.jacobians += spun @ self._twists[:, 3:]
+        self.jacobians += (arms @ CROSSED).reshape(-1, 3, 3) @ self._twists[:, 3:]
 
     @property
     def inertia(self) -> NDArray[np.float64]:
@@ -121,10 +120,10 @@ class WholeBody:
 
     def _has_inverse(self) -> bool:
         try:
-            pivots = np.diagonal(np.linalg.cholesky(self.inertia)) ** 2
+            roots = np.linalg.cholesky(self.inertia).diagonal()
         except np.linalg.LinAlgError:
             return False
-        return bool(np.all(pivots > SINGULAR * np.diagonal(self.inertia)))
+        return bool((roots * roots > SINGULAR * self.inertia.diagonal()).all())
 
     def velocities(self, rates: NDArray[np.float64]) -> NDArray[np.float64]:
         """Velocities (k, 3) of the points relative to the base, by the `rates` of `joints` (rad/s or m/s)."""

@@ -93,7 +93,8 @@ def touchdown_of(
         velocities=[times(velocity, -1.0) for velocity in moves],
         gaps=gaps,
     )
-    pulls = [add((a, b, c), cross((u, v, w), arm)) for a, b, c, u, v, w in [rates] for arm in arms] if strikes else []
+    (a, b, c, u, v, w), lasts = rates, strikes and not machine.is_rigid and any(rates)
+    pulls = [add((a, b, c), cross((u, v, w), arm)) for arm in arms] if lasts else []
     found = machine.struck(those, met, axes, scene, pulls)
     if isinstance(found, Status):
         return found

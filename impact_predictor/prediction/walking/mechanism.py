@@ -25,6 +25,7 @@ from ..vectors import (
     add,
     axes_of,
     cross,
+    dot,
     lines,
     rotation_between,
     tensor_to_world,
@@ -290,15 +291,17 @@ class ArticulatedMachine:
         W, moved = self.body.mobility(points, local, added, drives.are_held)
         law, merge, load, each = scene.law, scene.merge, np.zeros(c.shape), np.empty((3, len(points)))
         each[0], each[1], each[2] = contacts.friction, contacts.restitution, contacts.gaps
-        if drives.bound is Bound.ESTIMATE and c.any():
+        rests = [i for i, row in enumerate(c.tolist()) if not any(row)]
+        if drives.bound is Bound.ESTIMATE and len(rests) < len(points):
             # What stands carries the weight as long as the impact lasts: a small blow takes off a part of that load,
             # and lifts nothing. Load and blow go on together, so that the law is that of the whole impulse, to which
             # belong the compressions that end in that time.
-            rests = ~c.any(axis=1)
-            if len(pulls):
-                c += time * (np.array(pulls) @ ways.T) * ~rests[:, None]
-            load[rests] = ways @ scene.gravity * (-scene.mass * time / max(int(rests.sum()), 1))
-            each[1, rests], law, merge = 0.0, "total", max(merge, time - merge)
+            weight = [dot(way, scene.gravity) * (-scene.mass * time / max(len(rests), 1)) for way in frame]
+            if pulls:
+                c += [[0.0] * 3 if i in rests else to_body(frame, times(pull, time)) for i, pull in enumerate(pulls)]
+            for i in rests:
+                load[i], each[1, i] = weight, 0.0
+            law, merge = "total", max(merge, time - merge)
         start = c.ravel()
         found = solve_delassus(W, each[0], each[1], each[2], start - W @ load.ravel(), law, merge, GRAZES)
         impulses, after = found.impulses - load, found.velocities.ravel()

@@ -275,6 +275,8 @@ def test_a_landing_that_gravity_matters_in_is_flagged():
 
 def test_what_a_mechanism_cannot_answer_is_handed_on():
     class Unknown:
+        is_rigid = False
+
         def struck(self, points, contacts, axes, scene, pulls):
             assert pulls == [(0.0, -z, y - 1.0) for _, y, z in contacts.positions]
             return Status.SINGULAR_INERTIA
