@@ -49,8 +49,9 @@ class WatchLog(NamedTuple):
     """What became of a watch: `stamps` (n,) of the rows in ns; `deck` (n, 5) and `units` (n, units, 4), the columns of
     `DECK` and of `UNIT`, NaN where nothing is known; `spells` of the levels; the `last` values reported of each unit.
 
-    `forecasts` (m, leads, felt, quantiles) in m/s^2 were made at the rows `made` (m,). `events` has the stamps at which
-    something began to happen to each unit, as the bag tells it where it `knows_events`, else as the watch saw it.
+    `forecasts` (m, leads, felt, quantiles) in m/s^2 were made at the rows `made` (m,). `events` tells when (ns)
+    something began to happen to each unit, and what, as the bag tells it where it `knows_events`, else as the watch saw
+    it.
     """
 
     names: tuple[str, ...]
@@ -61,7 +62,7 @@ class WatchLog(NamedTuple):
     forecasts: NDArray[np.float64]
     spells: tuple[LevelSpell, ...]
     last: Mapping[str, Mapping[str, str]]
-    events: Mapping[str, Sequence[int]] = {}
+    events: Mapping[str, Mapping[int, str]] = {}
     knows_events: bool = False
 
 
@@ -108,7 +109,7 @@ class WatchRecorder:
             self._now[place, 3] = float(chance) if chance[0].isdecimal() else np.nan
             self._last[report.body] = report.values
 
-    def log(self, events: Mapping[str, Sequence[int]] | None = None) -> WatchLog:
+    def log(self, events: Mapping[str, Mapping[int, str]] | None = None) -> WatchLog:
         """All of it at the end, with the events of each unit where the bag tells them."""
         for name in self._names:
             self._end(name, self._stamp)
@@ -145,9 +146,16 @@ def deck_row(moment: Moment) -> tuple[float, ...]:
     return atan2(up[1], up[2]), -asin(min(1.0, max(-1.0, up[0]))), along, across, -down
 
 
-def seen_events(log: WatchLog) -> dict[str, list[int]]:
-    """The stamps at which a margin of each unit was used up, after five seconds in which none was."""
+def seen_events(log: WatchLog) -> dict[str, dict[int, str]]:
+    """When (ns) a margin of each unit was used up, after five seconds in which none was, and which."""
     from ..scenarios.comparison import events_of
 
-    used = np.fmax(log.units[:, :, 1], log.units[:, :, 2]) >= 1.0
-    return {name: events_of(log.stamps[used[:, place]].tolist()) for place, name in enumerate(log.names)}
+    found = {}
+    for place, name in enumerate(log.names):
+        _, slide, tip, _ = log.units[:, place].T
+        stamps, tips = (
+            log.stamps[np.fmax(slide, tip) >= 1.0].tolist(),
+            dict(zip(log.stamps.tolist(), tip >= slide, strict=True)),
+        )
+        found[name] = {stamp: f"{'tips' if tips[stamp] else 'slides'}, by its margin" for stamp in events_of(stamps)}
+    return found

@@ -60,7 +60,7 @@ def unit_as_json(log: WatchLog, place: int) -> dict[str, Any]:
     name = log.names[place]
     spells = [one for one in log.spells if one.unit == name]
     known = next((one.begin for one in spells if one.level != Level.STALE), None)
-    events = [stamp for stamp in log.events.get(name, ()) if known is not None and stamp >= known]
+    events = {at: what for at, what in log.events.get(name, {}).items() if known is not None and at >= known}
     warnings = warnings_of(spells)
     reported: dict[str, float] = {}
     for key, text in log.last.get(name, {}).items():
@@ -75,10 +75,11 @@ def unit_as_json(log: WatchLog, place: int) -> dict[str, Any]:
         "events": [
             {
                 "stamp": stamp,
+                "what": what,
                 "warned_ahead": _stood(warnings, stamp),
                 "error_ahead": _stood([one for one in spells if one.level == Level.ERROR], stamp),
             }
-            for stamp in events
+            for stamp, what in events.items()
         ],
         "most": {key: float(np.nanmax(log.units[:, place, k], initial=0.0)) for k, key in ((1, "slide"), (2, "tip"))},
         "reported": reported,

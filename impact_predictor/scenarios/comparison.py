@@ -27,7 +27,7 @@ from .landing import TrueLanding
 from .matching import LEAD_TIMES as LEAD_TIMES
 from .matching import NEAREST, Announcement, Match, Rows, match, truth_of
 from .matching import Truth as Truth
-from .truth import TrueImpact, TrueOnset
+from .truth import TrueImpact, TrueOnset, said_of
 
 if TYPE_CHECKING:
     from ..prediction.watch.watch import Report
@@ -187,15 +187,16 @@ class Comparison:
             everything,
         )
 
-    def events(self) -> dict[str, list[int]] | None:
-        """The stamps in ns at which something begins to happen to each watched body; None where no truth is known."""
+    def events(self) -> dict[str, dict[int, str]] | None:
+        """When (ns) something begins to happen to each watched body, and what; None where no truth is known."""
         if not self._knows_impacts:
             return None
         impacts, onsets, alone = self._of_bodies(self.impacts), self._of_bodies(self.onsets), self._alone()
         found = {}
         for name in self._scenes:
-            struck = [impact.stamp for impact in impacts[name or alone]]
-            found[name] = events_of([*struck, *[onset.stamp for onset in onsets[name or alone]]])
+            what = {impact.stamp: f"impact, {impact.mode.name}" for impact in impacts[name or alone]}
+            what |= {onset.stamp: said_of(onset) for onset in onsets[name or alone]}
+            found[name] = {stamp: what[stamp] for stamp in events_of(what)}
         return found
 
     def _of_bodies(self, happened: Iterable[HappenedTo]) -> dict[str, list[HappenedTo]]:

@@ -163,16 +163,20 @@ def _impact(values: dict[str, str]) -> TrueImpact:
     return TrueImpact(stamp=int(values["stamp"]), body=values["body"], mode=Mode[values["mode"]], **told)
 
 
+def said_of(onset: TrueOnset) -> str:
+    """What a body begins to do, in words."""
+    return " and ".join(word for word, holds in (("slides", onset.slides), ("lifts", onset.lifts)) if holds)
+
+
 def encode_true_onset(onset: TrueOnset, frame_id: str) -> bytes:
     """A diagnostic_msgs/DiagnosticArray stamped with the onset."""
-    said = " and ".join(word for word, holds in (("slides", onset.slides), ("lifts", onset.lifts)) if holds)
     values = {
         "stamp": str(onset.stamp),
         "body": onset.body,
         "slides": "true" if onset.slides else "false",
         "lifts": "true" if onset.lifts else "false",
     }
-    status = diagnostic_status(OK, "truth/onset", said, onset.body, pairs_of(values))
+    status = diagnostic_status(OK, "truth/onset", said_of(onset), onset.body, pairs_of(values))
     return diagnostic_array(onset.stamp, frame_id, [status])
 
 

@@ -90,12 +90,12 @@ def test_levels_last_until_the_next_one_and_an_unknown_probability_is_none() -> 
         recorder.take([one])
     deck.last = moment(4 * STEP)
     recorder.look()
-    log = recorder.log({"crate": [5]})
+    log = recorder.log({"crate": {5: "slides"}})
     assert [(one.level, one.begin, one.end) for one in log.spells] == [(0, STEP, 3 * STEP), (1, 3 * STEP, 4 * STEP)]
     assert log.units[-1, 0, 0] == Level.WARN
     assert np.isnan(log.units[-1, 0, 3])
     assert log.last["crate"]["tips_per_hour"] == "3.5"
-    assert (log.events, log.knows_events) == ({"crate": [5]}, True)
+    assert (log.events, log.knows_events) == ({"crate": {5: "slides"}}, True)
 
 
 def test_where_the_bag_tells_no_events_they_are_where_a_margin_is_used_up() -> None:
@@ -105,4 +105,7 @@ def test_where_the_bag_tells_no_events_they_are_where_a_margin_is_used_up() -> N
         deck.last = moment(stamp)
         recorder.look()
     log = recorder.log()
-    assert (log.events, log.knows_events) == ({"crate": [2 * STEP, 40 * STEP]}, False)
+    assert (log.events, log.knows_events) == (
+        {"crate": dict.fromkeys((2 * STEP, 40 * STEP), "slides, by its margin")},
+        False,
+    )

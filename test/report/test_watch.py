@@ -45,7 +45,7 @@ def log(rows: int = 200, **given: Any) -> WatchLog:
         forecasts=np.stack([0.0 * told, told], axis=2),
         spells=SPELLS,
         last={"crate": {"tips_per_hour": "3.5", "time_to_tip": "inf", "edge": "port"}},
-        events={"crate": [10 * S, 50 * S]},
+        events={"crate": {10 * S: "slides", 50 * S: "lifts"}},
         knows_events=True,
     )
     return usual._replace(**given)
@@ -54,8 +54,8 @@ def log(rows: int = 200, **given: Any) -> WatchLog:
 def test_events_have_how_long_a_warning_stood_and_warnings_whether_they_were_vain() -> None:
     (unit,) = json.loads(json.dumps(watch_as_json(log()), allow_nan=False))["units"].values()
     assert unit["events"] == [
-        {"stamp": 10 * S, "warned_ahead": 6.0, "error_ahead": 1.0},
-        {"stamp": 50 * S, "warned_ahead": None, "error_ahead": None},
+        {"stamp": 10 * S, "what": "slides", "warned_ahead": 6.0, "error_ahead": 1.0},
+        {"stamp": 50 * S, "what": "lifts", "warned_ahead": None, "error_ahead": None},
     ]
     assert unit["warnings"] == [
         {"begin": 4 * S, "end": 12 * S, "vain": False},
@@ -120,7 +120,7 @@ def test_the_page_has_deck_forecast_levels_margins_events_and_statistics() -> No
 
 def test_a_name_cannot_break_the_page() -> None:
     evil = "<script>x</script>"
-    other = log(names=(evil,), spells=tuple(one._replace(unit=evil) for one in SPELLS), events={evil: [10 * S]})
+    other = log(names=(evil,), spells=tuple(one._replace(unit=evil) for one in SPELLS), events={evil: {10 * S: evil}})
     assert evil not in page_of_replay([answer(watch=watch_as_json(other))])
 
 

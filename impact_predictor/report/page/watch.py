@@ -129,6 +129,11 @@ def chart_of(title: str, answer: BagAnswer) -> Chart:
     for name in shown:
         panels += [("", 0.16, RIBBON), (safe(name) or "margin used", 1.2, {"range": [0.0, HIGH], "fixedrange": True})]
         traces += _unit_traces(units[name], times, start, len(panels))
+        struck = [one for one in answer["touchdowns"] if one["body"] == name or not name]
+        points = [((one["stamp"] - start) / NANOSECONDS, 0.07, f"touchdown, {one['mode']}") for one in struck]
+        if points:
+            look = {"symbol": "line-ns-open", "size": 9, "color": EDGE}
+            traces.append(marks("touchdown", points, marker=look, yaxis=f"y{len(panels)}"))
     # Each name stands in the legend once.
     met = set[str]()
     for trace in traces:
@@ -173,7 +178,7 @@ def _unit_traces(unit: Mapping[str, Any], times: Sequence[float], start: int, pl
     for one in unit["events"]:
         at, ahead = (one["stamp"] - start) / NANOSECONDS, one["warned_ahead"]
         said = "not warned of" if ahead is None else f"a warning had stood {ahead:.1f} s"
-        events.append((at, 1.0, f"event at {at:.1f} s\n{said}"))
+        events.append((at, 1.0, f"{at:.1f} s: {one['what']}\n{said}"))
     look = {"symbol": "triangle-down", "size": 11, "color": EDGE}
     return [*traces, marks("event", events, marker=look, yaxis=f"y{place}")] if events else traces
 
