@@ -8,7 +8,7 @@ from math import dist
 from typing import Final, NamedTuple
 
 from ..prediction.scene import Scene, Walking
-from ..prediction.types import Geometry, Prediction, Sample, Score, Status
+from ..prediction.types import Geometry, Prediction, Sample, Score
 from ..ros.messages import OUTPUTS
 from ..stamps import NANOSECONDS
 
@@ -103,6 +103,7 @@ class BodyRecord:
         self.gait = None if scene.walking is None else Gait(scene.walking)
         self.first: Sample | None = None
         self.last: Sample | None = None
+        self._answer: Prediction | None = None
         self.geometry: Geometry | None = None
         self.told = self.moved = 0
         self.is_pressed = False
@@ -116,7 +117,7 @@ class BodyRecord:
 
     def answered(self, prediction: Prediction, log_time: int, cost: float) -> None:
         """Write the answer to an accepted sample of a log time in ns, which took a time in s."""
-        self.last, self._log_time = prediction.sample, log_time
+        self.last, self._answer, self._log_time = prediction.sample, prediction, log_time
         self.first = self.first or self.last
         if self.gait is not None:
             self.gait.take(prediction)
@@ -132,8 +133,8 @@ class BodyRecord:
 
     def end(self, score: Score) -> Settled:
         """The touchdown of a score that came with the end, written with the time of the last sample."""
-        if self.last is not None:
-            self._publish(Prediction(Status.ACCEPTED, self.last, None, score), "/score")
+        if self._answer is not None:
+            self._publish(self._answer._replace(score=score), "/score")
         return self.settle(score)
 
     def take_geometry(self, geometry: Geometry) -> None:

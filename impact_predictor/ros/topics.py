@@ -13,7 +13,7 @@ from rclpy.node import Node
 
 from ..prediction.monitor import Monitor
 from ..prediction.scene import CONTACT_GEOMETRY, IMU, SCHEDULE, TERRAIN, Input
-from ..prediction.types import Prediction, Sample, Score, Status
+from ..prediction.types import Prediction, Score, Status
 from .endpoints import LONGEST, Backlog, LatchedTopic, Outlet, publisher, subscription
 from .messages import INPUT_TYPES, OUTPUTS, MalformedMessage, decode_odometry
 from .reporter import Reporter
@@ -79,7 +79,7 @@ class BodyTopics:
         """Listen to the states on an input; `told` is what else the answers depend on."""
         self._reporter, self._told = reporter, list(told)
         self._topic, self._body = one.name, one.body or ""
-        self._last_sample: Sample | None = None
+        self._last: Prediction | None = None
         self._update = monitor.predictors[self._body].update
         if monitor.watch is not None:
             self._update = partial(monitor.update, self._body)
@@ -111,19 +111,18 @@ class BodyTopics:
                     one.look_for_history()
             self._reporter.refuse(self._topic, prediction.status, self._body, sample)
             return
-        self._last_sample = sample
+        self._last = prediction
         for outlet, encode in self._encoders:
             _publish(outlet, encode, prediction)
         self._reporter.answered(self._topic, self._body, prediction, latency, update, began)
 
     def publish_scores(self, scores: tuple[Score, ...]) -> None:
         """Publish the scores that the end of the record settles, and see them received."""
-        if self._last_sample is None or not scores:
+        if self._last is None or not scores:
             return
         outlet = Outlet(self.outputs["score"])
         for score in scores:
-            prediction = Prediction(Status.ACCEPTED, self._last_sample, None, score)
-            _publish(outlet, OUTPUTS["score"].encode, prediction)
+            _publish(outlet, OUTPUTS["score"].encode, self._last._replace(score=score))
         self.outputs["score"].wait_for_all_acked(LAST_WORDS)
 
 

@@ -234,13 +234,14 @@ def test_a_prediction_tells_its_uncertainty_and_its_margins_where_they_are_asked
         ({}, 0),
         ({"flags": Flag.REVERSED_SLIP | Flag.SHARED_FRICTION}, 0),
         ({"leftover": Leftover.ONE_POINT}, 0),
-        ({"flags": Flag.JAMMED}, 1),
+        ({"leftover": Leftover.OUT_OF_PLANE, "unique": False}, 0),
+        ({"flags": Flag.JAMMED}, 0),
         ({"flags": Flag.REVERSED_SLIP | Flag.LAST_RESORT}, 1),
-        ({"leftover": Leftover.OUT_OF_PLANE}, 1),
-        ({"unique": False}, 1),
+        ({"flags": Flag.NOT_CONVERGED}, 1),
+        ({"flags": Flag.INVALID_INPUT}, 1),
     ],
 )
-def test_an_answer_that_deserves_less_trust_is_a_warning(changes: dict[str, Any], level: int) -> None:
+def test_only_an_answer_in_which_the_law_failed_is_a_warning(changes: dict[str, Any], level: int) -> None:
     assert decode_diagnostic_array(encode_prediction(a_prediction(**changes)))[0].level == level
 
 
@@ -302,7 +303,7 @@ def test_a_score_leaves_out_what_was_not_measured(measured: Twist | None, error:
         a_prediction(), measured=measured, relative_error=error, scored=False, leftover=Leftover.TOO_SHORT
     )
     status = read(encode_score(prediction))
-    assert status.level == 1
+    assert status.level == 0
     assert status.message.endswith("not scored: TOO_SHORT")
     assert ("measured.vx" in status.values) == (measured is not None)
     assert ("relative_error" in status.values) == (error is not None)

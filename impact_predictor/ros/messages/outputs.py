@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from ...mechanics.types import Flag, Mode
-from ...prediction.types import Foot, Landing, Leftover, Prediction, Score, Status
+from ...prediction.types import Foot, Landing, Prediction, Score, Status
 from ...stamps import NANOSECONDS
 from ..cdr import LITTLE_ENDIAN_HEADER, OK, WARN, StatusBytes, diagnostic_array, diagnostic_status, pairs_of
 from .fields import FOOT, LANDING, MARGINS, PREDICTION, SCORE, TOUCHDOWN, UNCERTAINTY, text
@@ -61,25 +61,18 @@ def encode_mode(prediction: Prediction) -> bytes:
     return _MODES[Mode.NO_IMPACT if touchdown is None else touchdown.mode]
 
 
-_DOUBTFUL_FLAGS: Final = int(
-    Flag.JAMMED
-    | Flag.ENERGY_GAINED
-    | Flag.BOTH_STRUCK
-    | Flag.LAST_RESORT
-    | Flag.NO_SOLUTION
-    | Flag.INVALID_INPUT
-    | Flag.NOT_CONVERGED
-    | Flag.POINT_APPROACHES
+_FAILURES: Final = int(
+    Flag.ENERGY_GAINED | Flag.LAST_RESORT | Flag.NO_SOLUTION | Flag.INVALID_INPUT | Flag.NOT_CONVERGED
 )
-_DOUBTFUL_LEFTOVERS: Final = int(Leftover.OUT_OF_PLANE | Leftover.ONE_CORNER_FIRST | Leftover.TOO_SLOW)
+"""Flags of an answer that somebody should look at; the others tell of what happens, or how sure that is."""
 
 
 def encode_prediction(prediction: Prediction) -> bytes:
     """A diagnostic_msgs/DiagnosticArray with everything about the answer to one sample, stamped like the sample.
 
     The tables of `fields` have its keys: PREDICTION, with a touchdown TOUCHDOWN, UNCERTAINTY and MARGINS where the
-    scene asks for them, and FOOT in a status for each foot of a walking machine. The level is WARN where the answer
-    deserves less trust.
+    scene asks for them, and FOOT in a status for each foot of a walking machine. The level is WARN where the law
+    failed.
     """
     sample, touchdown = prediction.sample, prediction.touchdown
     pairs: list[bytes] = []
@@ -90,8 +83,7 @@ def encode_prediction(prediction: Prediction) -> bytes:
         message = "no touchdown within the horizon" if accepted else f"sample refused: {text(prediction.status)}"
     else:
         # As integers: what & makes of two flags is a flag again, which takes longer.
-        is_odd = int(touchdown.flags) & _DOUBTFUL_FLAGS or int(touchdown.leftover) & _DOUBTFUL_LEFTOVERS
-        level = WARN if is_odd or not touchdown.unique else OK
+        level = WARN if int(touchdown.flags) & _FAILURES else OK
         message = f"{text(touchdown.mode)} in {touchdown.lead_time * 1e3:.1f} ms"
         TOUCHDOWN.add_to(pairs, touchdown)
         if touchdown.uncertainty is not None:
@@ -99,7 +91,12 @@ def encode_prediction(prediction: Prediction) -> bytes:
         if touchdown.planar is not None:
             MARGINS.add_to(pairs, touchdown.planar.margins)
     first = diagnostic_status(level, "impact_predictor/prediction", message, sample.child_frame_id, pairs)
-    return diagnostic_array(sample.stamp, sample.frame_id, [first, *map(_foot_status, prediction.feet)])
+    return diagnostic_array(sample.stamp, frame_of(prediction), [first, *map(_foot_status, prediction.feet)])
+
+
+def frame_of(prediction: Prediction) -> str:
+    """The frame of what is told of an answer: over a moving support its own, else that of the sample."""
+    return (prediction.relative or prediction.sample).frame_id
 
 
 def _foot_status(foot: Foot) -> StatusBytes:
@@ -119,22 +116,22 @@ def encode_score(prediction: Prediction) -> bytes | None:
     """A diagnostic_msgs/DiagnosticArray of the touchdown that the sample settled, or None where it settled none.
 
     Stamped, like its post-impact state, with the predicted touchdown. The tables SCORE and LANDING of `fields` have its
-    keys. The level is WARN where it is not scored, or where the force sensor of a foot that has landed does not agree.
+    keys. The level is WARN where the force sensor of a foot that has landed does not agree.
     """
     score = prediction.score
     if score is None:
         return None
     pairs: list[bytes] = []
     SCORE.add_to(pairs, score)
-    message, trusted = _score_message(score), score.scored
+    message, level = _score_message(score), OK
     landing = score.landing
     if landing is not None:
         LANDING.add_to(pairs, landing)
         message = f"{_landing_message(landing)}: {message}"
-        trusted = landing.confirmed is not False
-    sample, level = prediction.sample, OK if trusted else WARN
+        level = WARN if landing.confirmed is False else OK
+    sample = prediction.sample
     status = diagnostic_status(level, "impact_predictor/score", message, sample.child_frame_id, pairs)
-    return diagnostic_array(score.stamp, sample.frame_id, [status])
+    return diagnostic_array(score.stamp, frame_of(prediction), [status])
 
 
 def _score_message(score: Score) -> str:

@@ -17,9 +17,10 @@ from rosbags.typesys import Stores, get_typestore
 from ruamel.yaml import YAML
 
 from impact_predictor.bags.replay import NODE
+from impact_predictor.parameters.file import read_values
 from impact_predictor.prediction.deck.forecast import single
 from impact_predictor.prediction.deck.motion import resting
-from impact_predictor.prediction.scene import MovingDeck, Scene, Watching
+from impact_predictor.prediction.scene import ODOM, MovingDeck, Scene, Watching, inputs_of, scenes_of
 from impact_predictor.prediction.types import Felt, Moment
 from impact_predictor.prediction.watch.watch import Report, Watch
 from impact_predictor.ros.messages import (
@@ -32,8 +33,12 @@ from impact_predictor.ros.messages import (
 
 CONFIG = Path(__file__).parents[3] / "config"
 TYPESTORE = get_typestore(Stores.ROS2_JAZZY)
+BODIES = [
+    one.body for one in inputs_of(scenes_of(read_values(CONFIG / "deck_many.yaml"))) if one.kind == ODOM and one.body
+]
 PUBLISHED = {
     **{f"{NODE}/{name}": output.type_name for name, output in OUTPUTS.items()},
+    **{f"{NODE}/{body}/{name}": output.type_name for body in BODIES for name, output in OUTPUTS.items()},
     f"{NODE}/markers": MARKER_ARRAY,
     "/diagnostics": DIAGNOSTIC_ARRAY,
 }
