@@ -25,8 +25,9 @@ HIGH: Final = 1.5
 READING: Final = (
     "Above stand the angles of the deck and what is felt on it; the band is where nine tenths of what came should lie, "
     "as forecast so long before. Below, for each unit, a ribbon of its levels, and the part that is used of its "
-    "margins: at 1 it slides or tips. A triangle is an event, with how long a warning had stood. Click the name of a "
-    "forecast to see it, drag over a part of the time to magnify it, double-click to see all of it."
+    "margins: at 1 it slides or tips. A triangle is an event, with how long a warning had stood, a stroke below "
+    "it a predicted touchdown. Click the name of a forecast to see it, drag over a part of the time to magnify it, "
+    "double-click to see all of it."
 )
 TRUE: Final = "An event is a slide, lift or impact after 5 s without one, as the bag tells it."
 SEEN: Final = "The bag tells of no events: one is taken where a margin is used up after 5 s in which none was."
