@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Sequence
-from math import isfinite, isnan, nan
+from math import hypot, isfinite, isnan, nan
 from typing import NamedTuple
 
 import numpy as np
@@ -17,7 +17,7 @@ from ...errors import InputError
 from ...mechanics.impact.spatial import Body, ContactPoints, solve_delassus, solve_spatial_impact
 from ...mechanics.types import ContactState, Flag
 from ...stamps import NANOSECONDS
-from ..planar import GRAZES, ORIGIN, direction_of
+from ..planar import GRAZES, ORIGIN, direction_of, hardly
 from ..scene import Robot, Scene, six_numbers, triples
 from ..types import Bound, Geometry, Joints, Sample, Status, Vector3
 from ..vectors import (
@@ -308,12 +308,18 @@ class ArticulatedMachine:
         pushed = impulses.ravel()
         change, given = moved @ pushed, pushed @ (after - start)
         jumps = change[6:]
+        # What slips no faster than gravity moves it in a contact time hardly slips: its load stops it.
+        least = hardly(scene) if drives.bound is Bound.ESTIMATE else 0.0
+        states = [
+            ContactState.STICKS if one is ContactState.SLIPS and hypot(x, y) <= least else one
+            for one, (x, y, _) in zip(found.states, found.velocities.tolist(), strict=True)
+        ]
         opposed = 0.0 if added is None or given <= 0.0 else float(added @ (jumps * jumps) / given)
         return MachineOutcome(
             twist=(change[:6].reshape(2, 3) @ np.array(axes)).ravel(),
             impulses=impulses @ ways,
             velocities=found.velocities @ ways,
-            states=found.states,
+            states=tuple(states),
             flags=found.flags,
             energy_lost=-0.5 * float(pushed @ (start + after)),
             law=found.law,

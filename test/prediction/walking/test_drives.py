@@ -126,6 +126,20 @@ def test_an_estimate_stops_what_the_foot_gains_while_the_contact_lasts_too(urdf)
     assert struck(bare, scene, pulls=falls[:1]).impulses[0] == pytest.approx(struck(bare, scene).impulses[0], rel=1e-12)
 
 
+@pytest.mark.parametrize(("slip", "state"), [(0.04, ContactState.STICKS), (0.06, ContactState.SLIPS)])
+def test_an_estimate_tells_no_slip_that_is_slower_than_gravity_in_a_contact_time(urdf, slip, state):
+    made, scene = machine(urdf, armature=(0.01,)), scene_of(contact_time=0.005)
+
+    def after(ahead):
+        contacts = ContactPoints((), 0.0, velocities=[(-ahead, 0.0, 0.5)])
+        return made.struck([0], contacts, AXES, scene)
+
+    # Without friction the slip after the impact is that before it and what the blow adds.
+    found = after(slip - after(0.0).velocities[0][0])
+    assert found.velocities[0] == pytest.approx((slip, 0.0, 0.0), abs=1e-12)
+    assert found.states == (state,)
+
+
 def test_what_is_known_of_the_joints_is_between_the_bounds(urdf):
     kinds = [{}, {"armature": (0.01,)}, {"armature": (0.01,), "drives": "pd", "kd": (2.0,)}, {"drives": "held"}]
     found = [struck(machine(urdf, **kind)) for kind in kinds]
