@@ -22,6 +22,12 @@ EXTRAS: Final = {
 """Modules that not every installation has: what brings each, and the extra of this package that does so."""
 
 
+REQUIRED: Final = {"backports": "backports.zstd", "ruamel": "ruamel.yaml"} | {
+    name: name for name in ("lz4", "mcap", "numpy", "rich", "rosbags")
+}
+"""What every installation by pip has, and one of colcon has not: ROS knows some of these by no name."""
+
+
 class InputError(ValueError):
     """A file, a parameter or an argument is wrong; the message is one sentence: what, where, what to do."""
 
@@ -29,6 +35,12 @@ class InputError(ValueError):
 def missing(module: str) -> InputError | None:
     """What is to be installed for a module that cannot be imported; None where it is none that may be missing."""
     name = module.partition(".")[0]
+    if name in REQUIRED:
+        return InputError(
+            f"this needs {REQUIRED[name]}, which is not installed: `pip install {' '.join(REQUIRED.values())}`; where "
+            "pip refuses that, as beside a ROS of Debian or Ubuntu, in `python3 -m venv --system-site-packages venv`, "
+            "and then start `venv/bin/python -m impact_predictor`"
+        )
     if name not in EXTRAS:
         return None
     package, extra = EXTRAS[name]

@@ -11,7 +11,7 @@ from xml.etree import ElementTree
 import pytest
 
 import impact_predictor
-from impact_predictor.errors import EXTRAS, missing
+from impact_predictor.errors import EXTRAS, REQUIRED, missing
 
 ROOT = Path(__file__).parents[1]
 
@@ -118,6 +118,14 @@ def test_every_import_is_declared_or_in_the_extra_that_the_error_sentence_names(
             package, extra = EXTRAS[module]
             assert package in names_of(extras[extra]), f"{package} is not in the extra {extra}"
             assert f"`pip install {package}`" in str(missing(f"{module}.any"))
+
+
+def test_what_a_workspace_of_colcon_may_lack_is_named_with_a_way_that_debian_allows(setup_arguments):
+    # Without click nothing starts that could say so.
+    assert {*REQUIRED.values(), "click"} == names_of(setup_arguments["install_requires"])
+    said = str(missing("rosbags.interfaces"))
+    assert said.startswith("this needs rosbags, which is not installed: `pip install ")
+    assert "`python3 -m venv --system-site-packages venv`" in said
 
 
 def test_what_no_code_imports_is_not_declared(setup_arguments):
