@@ -13,7 +13,6 @@ import sys
 from collections import deque
 from collections.abc import Callable, Sequence
 from itertools import product
-from math import pi
 from pathlib import Path
 from time import perf_counter_ns
 from typing import NamedTuple
@@ -27,21 +26,19 @@ from rich.progress import track
 from rich.table import Table
 
 from impact_predictor.bags.read import read_messages
-from impact_predictor.mechanics.motion import PlanarState
 from impact_predictor.prediction.deck.tracker import Deck
 from impact_predictor.prediction.scene import MovingDeck
 from impact_predictor.prediction.types import Felt, Imu, Sample, Vector3
 from impact_predictor.ros.messages import IMU, ODOMETRY, decode_imu, decode_odometry
 from impact_predictor.scenarios.deck.sea import SeaState, waves_of
-from impact_predictor.scenarios.deck.vessel import SecondOrder, Vessel, deck_in
-from impact_predictor.scenarios.sensors import ACROSS, Mount, poses
+from impact_predictor.scenarios.deck.vessel import Vessel, deck_in
 
 Array = NDArray[np.float64]
 
 ROOT = Path(__file__).resolve().parents[1]
 BAG = ROOT / "examples/vessel_deck"
 UP: Vector3 = (0.0, 0.0, 1.0)
-SHIP = Vessel(SecondOrder(2.0 * pi / 11.0, 0.1, 0.8, "slope"), SecondOrder(2.0 * pi / 7.0, 0.4), height=8.0)
+SHIP = Vessel(length=90.0, breadth=16.0, draught=5.0, roll_period=11.0, roll_damping=0.1, height=8.0)
 LEADS = (0.25, 0.5, 1.0, 2.0, 3.0, 5.0, 8.0)
 WINDOWS = (0.1, 0.2, 0.5, 1.0)
 NOISES = (0.0, 0.002, 0.02)
@@ -78,18 +75,15 @@ def recorded() -> tuple[Record, list[Imu]]:
 
 def simulated(name: str, vessel: Vessel, sea: SeaState, seconds: float) -> Record:
     times = np.arange(0.0, seconds, 0.05)
-    support = deck_in(waves_of(sea, seed=1), vessel)
-    motion = support.motion(times)
-    state = PlanarState(motion.x, motion.y, motion.angle, motion.vx, motion.vy, motion.rate)
-    columns = [part.tolist() for part in poses(state, ACROSS, Mount())]
+    deck = deck_in(waves_of(sea, seed=1), vessel)
+    state = deck.at(times)
+    columns = [part.tolist() for part in state.poses]
     samples = [
         Sample(round(1e9 * time), "world", "deck", *map(tuple, pose), ZEROS, ZEROS)
         for time, *pose in zip(times.tolist(), *columns, strict=True)
     ]
-    ahead, up, rate, turning = support.felt_exactly(times)
-    rest = np.zeros_like(times)
-    felt = np.stack([rest, ahead, up, rate, rest, rest, turning, rest, rest], 1)
-    return Record(name, (0.0, 0.0, -support.gravity), samples, felt)
+    felt = np.hstack([state.gravity, state.poses.angular, state.turning])
+    return Record(name, (0.0, 0.0, -deck.gravity), samples, felt)
 
 
 def noisy(samples: Sequence[Sample], noise: float) -> list[Sample]:

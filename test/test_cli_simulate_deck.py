@@ -58,8 +58,8 @@ def test_a_shipped_scene_stands_on_its_deck(name: str) -> None:
 
 
 def test_the_json_has_the_impacts_of_all_and_of_each_unit() -> None:
-    answer = simulated("--params", "config/deck_many.yaml", "--duration", "60", "--hs", "1.8")
-    assert set(answer) == {"duration", "impacts", "accumulation_time", "end", "deck", "units"}
+    answer = simulated("--params", "config/deck_many.yaml", "--duration", "60", "--hs", "1.5")
+    assert set(answer) == {"duration", "impacts", "accumulation_time", "end", "deck", "standing", "units"}
     assert answer["end"] == "TIME_UP"
     assert list(answer["units"]) == list(scenes("deck_many.yaml"))
     times = [impact["time"] for impact in answer["impacts"]]
@@ -81,13 +81,13 @@ def test_people_read_what_each_unit_did() -> None:
 
 
 def test_the_bag_is_that_of_the_default_scene_and_its_truth() -> None:
-    result = run("--duration", "30", "--rate", "20", "--deck-rate", "40", "--hs", "1.8", "-o", "crate.mcap")
+    result = run("--duration", "30", "--rate", "20", "--deck-rate", "40", "-o", "crate.mcap")
     assert result.stdout.splitlines()[-1] == "Bag: crate.mcap"
     found = topics("crate.mcap")
     assert found["/odom"] == found["/support/odom"] == ODOMETRY
     assert [len(samples_of("crate.mcap", topic)) for topic in ("/odom", "/support/odom")] == [601, 1201]
     told = impacts_of("crate.mcap")
-    answer = simulated("--duration", "30", "--hs", "1.8")
+    answer = simulated("--duration", "30")
     assert [impact.stamp / 1e9 for impact in told] == [impact["time"] for impact in answer["impacts"]]
     assert [impact.mode.name for impact in told] == [impact["mode"] for impact in answer["impacts"]]
 
@@ -105,6 +105,7 @@ def test_sea_vessel_and_seed_reach_the_simulation(folder: Path) -> None:
         ["--spectrum", "pm"],
         ["--gamma", "2"],
         ["--roll-period", "6"],
+        ["--breadth", "8"],
         ["--roll-damping", "0.1"],
         ["--rao", "rao.csv"],
     ):
@@ -115,8 +116,8 @@ def test_sea_vessel_and_seed_reach_the_simulation(folder: Path) -> None:
 
 
 def test_a_recorded_deck_carries_the_units_as_long_as_it_lasts() -> None:
-    assert run("--duration", "40", "--hs", "1.8", "-o", "sea.mcap").exit_code == 0
-    first = simulated("--duration", "40", "--hs", "1.8")
+    assert run("--duration", "40", "--hs", "1.2", "-o", "sea.mcap").exit_code == 0
+    first = simulated("--duration", "40", "--hs", "1.2")
     again = simulated("--record", "sea.mcap", "--record-topic", "/support/odom")
     assert again["duration"] == 40.0
     # Looked for at other times.
@@ -129,7 +130,7 @@ def test_a_recorded_deck_carries_the_units_as_long_as_it_lasts() -> None:
 
 
 def test_compliant_contacts_tell_impacts_too() -> None:
-    options = ["--duration", "20", "--hs", "1.8"]
+    options = ["--duration", "20", "--hs", "1.2"]
     first = []
     for contacts in ("rigid", "compliant"):
         impacts = simulated(*options, "--contacts", contacts)["impacts"]
@@ -137,6 +138,27 @@ def test_compliant_contacts_tell_impacts_too() -> None:
     rigid, compliant = first
     assert compliant["time"] == pytest.approx(rigid["time"], abs=5e-3)
     assert compliant["mode"] == rigid["mode"]
+
+
+def test_waves_from_the_quarter_move_units_every_way() -> None:
+    sea = ["--heading", "45", "--hs", "4", "--tp", "6", "--duration", "120", "--params", "config/deck_many.yaml"]
+    answer = simulated(*sea)
+    assert answer["deck"]["most_pitched"] > 0.05
+    assert sum(len(unit["onsets"]) for unit in answer["units"].values()) > 5
+    assert simulated(*sea, "--spread", "20")["deck"] != answer["deck"]
+
+
+def test_a_unit_that_toppled_stands_again() -> None:
+    sea = ["--duration", "200", "--hs", "2"]
+    once, again = simulated(*sea), simulated(*sea, "--restand", "20")
+    (fallen,), (risen,) = once["units"].values(), again["units"].values()
+    assert (fallen["end"], fallen["toppled"]) == ("OVERTURNED", 1)
+    assert once["standing"] == pytest.approx(fallen["time"] / 200.0)
+    assert risen["end"] == "TIME_UP"
+    assert risen["toppled"] > 1
+    assert 1.0 - 20.0 * risen["toppled"] / 200.0 == pytest.approx(again["standing"], abs=20.0 / 200.0)
+    assert risen["onsets"][: len(fallen["onsets"])] == fallen["onsets"]
+    assert "Cargo stands in" in run(*sea).stdout
 
 
 def test_the_noise_is_that_of_the_options() -> None:
@@ -168,7 +190,7 @@ def test_every_example_works() -> None:
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [
-        (["--hs", "20"], "the deck rolls to 180 degrees, which no cargo is simulated on"),
+        (["--hs", "20"], "degrees, which no cargo is simulated on; give a lower sea"),
         (["--hs", "0"], "the significant wave height is 0.0"),
         (["--duration", "0"], "the duration is 0.0"),
         (["--deck-rate", "-1"], "the deck rate is -1.0"),
@@ -179,7 +201,10 @@ def test_every_example_works() -> None:
         (["--record-topic", "/deck/odom"], "--record-topic is of a recorded deck: give --record"),
         (["--deck-rate", "1", "-o", "slow.mcap"], "--deck-rate 1 is too slow: after support.timeout, 0.5 s,"),
         (["--params", "config/rocking_plate.yaml"], "the support of the parameter file is fixed"),
-        (["--params", "config/deck_drum.yaml", "--contacts", "compliant", "--duration", "1"], "unit is a drum"),
+        (["--heading", "45", "--contacts", "rigid"], "rigid units move across the vessel alone: give --heading 90"),
+        (["--length", "0"], "length is 0.0"),
+        (["--spread", "-1"], "the waves head 90 degrees with a spread of -1"),
+        (["--restand", "0"], "units stand again after 0.0 s"),
         (["-o", "taken"], "taken is there and is not an output of impact_predictor"),
     ],
 )

@@ -12,12 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..mechanics.motion import End, PlanarState
-from ..mechanics.motion.support import MovingSupport
 from ..prediction.scene import Watching
 from ..prediction.watch.onset import Onset, motions
 from ..prediction.watch.standing import Standing
 from ..ros.markers.body import box_of
 from ..scenarios.deck.cargo import CargoUnit
+from ..scenarios.deck.motion import DeckMotion
 from ..scenarios.deck.voyage import Followed
 from ..stamps import NANOSECONDS
 from ..wording import counted, words
@@ -68,18 +68,15 @@ class UnitMotion:
         return PlanarState(*(float(np.interp(time, self.times[:known], part[:known])) for part in self.states))
 
 
-def margin_used(deck: MovingSupport, unit: CargoUnit, times: NDArray[np.float64]) -> NDArray[np.float64]:
+def margin_used(deck: DeckMotion, unit: CargoUnit, times: NDArray[np.float64]) -> NDArray[np.float64]:
     """The larger part that is used of the margins of a unit against sliding and tipping, where it began: 1 at the
-    onset. `deck` is the support's motion, of its own frame.
+    onset.
     """
     stance = Standing(unit.scene).stance
-    none = np.zeros_like(times)
     if stance is None:
-        return none
-    felt = deck.felt_at(times)
-    gravity = np.stack([none, felt[:, 0], felt[:, 1]], axis=1)
-    angular, turning = (np.stack([felt[:, k], none, none], axis=1) for k in (2, 3))
-    margins = Onset([stance]).margins(motions(gravity, angular, turning))
+        return np.zeros_like(times)
+    state = deck.at(times)
+    margins = Onset([stance]).margins(motions(state.gravity, state.poses.angular, state.turning))
     return np.asarray(np.maximum(margins.slide, margins.tip)[0])
 
 
@@ -93,7 +90,7 @@ def _greatest(values: NDArray[np.float64]) -> float:
     return float(np.nanmax(np.abs(values)))
 
 
-def write_deck_figure(path: str | os.PathLike[str], deck: MovingSupport, units: Sequence[UnitMotion]) -> None:
+def write_deck_figure(path: str | os.PathLike[str], deck: DeckMotion, units: Sequence[UnitMotion]) -> None:
     """Draw the deck above, and below the units that moved most, into a PNG or SVG file.
 
     Raises:
@@ -102,7 +99,7 @@ def write_deck_figure(path: str | os.PathLike[str], deck: MovingSupport, units: 
     shown, times = busiest(units, 6), units[0].times
     with plot.picture(path, 10.0, 2.6 + 1.25 * len(shown)) as figure:
         upper, *panels = figure.subplots(1 + len(shown), 1, sharex=True)
-        upper.plot(times, np.degrees(deck.motion(times).angle), color=ROLL)
+        upper.plot(times, np.degrees(deck.axes(times)[0, 3]), color=ROLL)
         upper.set_ylabel("deck roll (°)")
         more = f": the {len(shown)} that moved most" if shown != units else ""
         upper.set_title(f"{counted(len(units), 'unit')} on a rolling deck{more}", fontweight="bold")
@@ -113,7 +110,7 @@ def write_deck_figure(path: str | os.PathLike[str], deck: MovingSupport, units: 
         plot.common_legend(figure)
 
 
-def _draw_unit(axes: plot.Axes, deck: MovingSupport, unit: UnitMotion) -> None:
+def _draw_unit(axes: plot.Axes, deck: DeckMotion, unit: UnitMotion) -> None:
     """Draw the tilt of a unit, how far it slid, its impacts, and along the bottom how much of its margin is used."""
     times, tilt = unit.times, np.degrees(unit.tilt)
     ended = f", topples at {unit.ended:.0f} s" if unit.toppled else ""
@@ -151,7 +148,7 @@ def deck_frames(units: Sequence[UnitMotion]) -> list[float]:
     return np.arange(begin, min(begin + LONGEST, float(times[-1])) + 1e-9, plot.STEP).tolist()
 
 
-def deck_film(deck: MovingSupport, units: Sequence[UnitMotion]) -> plot.Film:
+def deck_film(deck: DeckMotion, units: Sequence[UnitMotion]) -> plot.Film:
     """The film of a deck in real time: the busiest units, its roll and the impacts below."""
     times, near = deck_frames(units), busiest(units, 3)
     return plot.Film(
@@ -162,8 +159,8 @@ def deck_film(deck: MovingSupport, units: Sequence[UnitMotion]) -> plot.Film:
     )
 
 
-def _draw_roll(deck: MovingSupport, units: Sequence[UnitMotion], times: NDArray[np.float64], axes: plot.Axes) -> None:
-    axes.plot(times, np.degrees(deck.motion(times).angle), color=ROLL)
+def _draw_roll(deck: DeckMotion, units: Sequence[UnitMotion], times: NDArray[np.float64], axes: plot.Axes) -> None:
+    axes.plot(times, np.degrees(deck.axes(times)[0, 3]), color=ROLL)
     struck = [time for unit in units for time in unit.struck]
     axes.plot(struck, [0.0] * len(struck), "|", color=plot.STRUCK)
     axes.set(xlim=(times[0], times[-1]), xlabel="time (s); red: impacts", ylabel="roll (°)")
@@ -172,7 +169,7 @@ def _draw_roll(deck: MovingSupport, units: Sequence[UnitMotion], times: NDArray[
 class UnitScene(BodyScene):
     """One unit on its piece of the deck, seen from astern by a camera that stays upright: port is on the left."""
 
-    def __init__(self, deck: MovingSupport, motion: UnitMotion, times: Sequence[float]) -> None:
+    def __init__(self, deck: DeckMotion, motion: UnitMotion, times: Sequence[float]) -> None:
         """Look at the motion at some times (s), to know how much room it needs."""
         self._motion, unit, scene = motion, motion.unit, motion.unit.scene
         self._used, outline = margin_used(deck, unit, motion.times), np.zeros((0, 2))
@@ -181,7 +178,7 @@ class UnitScene(BodyScene):
             corners = np.array([(one - x, other - y) for one in (low[0], high[0]) for other in (low[1], high[1])])
             across = corners @ (np.sin(scene.yaw), np.cos(scene.yaw))
             outline = plot.box(across.min(), across.max(), low[2] - z, high[2] - z)
-        super().__init__(unit.name, unit.body, outline, deck, unit.start, motion.at, times[::5])
+        super().__init__(unit.name, unit.body, outline, deck.across(0.0, (0.0, 0.0)), unit.start, motion.at, times[::5])
 
     def draw(self, axes: plot.Axes, time: float) -> str:
         """Draw the unit at a time in s, red while it moves, else by its margin; what it does, in words."""

@@ -94,6 +94,8 @@ def rolling_sentences(rolling: Rolling) -> list[str]:
 
 
 def _end(one: Followed) -> str:
+    if one.toppled and one.end is End.TIME_UP:
+        return f"toppled\n{counted(one.toppled, 'time')}"
     return "stands" if one.end is End.TIME_UP else f"{words(one.end.name)}\nat {one.time:.1f} s"
 
 
@@ -103,10 +105,13 @@ def _first(onsets: Iterable[TrueOnset]) -> str:
 
 def print_voyage(console: Console, voyage: Voyage) -> None:
     """Print what happened to each unit and to all: what they did first, how often they struck, and where they are."""
+    angles = f"rolls up to {degrees(voyage.most_rolled):.1f} degrees"
+    if voyage.most_pitched:
+        angles += f", pitches up to {degrees(voyage.most_pitched):.1f}"
     say(
         console,
-        f"{voyage.duration / 60.0:.4g} min on a deck that rolls up to {degrees(voyage.most_rolled):.1f} degrees and "
-        f"pushes to the side with up to {voyage.most_lateral:.2f} of the weight.",
+        f"{voyage.duration / 60.0:.4g} min on a deck that {angles} "
+        f"and pushes along with up to {voyage.most_lateral:.2f} of the weight.",
     )
     columns = [
         Column("unit", lambda one: one.unit.name, left=True),
@@ -123,6 +128,8 @@ def print_voyage(console: Console, voyage: Voyage) -> None:
     modes = Counter(impact.mode.name for impact in impacts).most_common()
     counts = ", ".join(f"{count:,} {mode}" for mode, count in modes) or "none"
     say(console, f"{counted(len(impacts), 'impact')}, {60.0 * len(impacts) / voyage.duration:.3g} a minute: {counts}.")
+    if any(one.toppled for one in voyage.units):
+        say(console, f"Cargo stands in {voyage.standing:.0%} of the time; --restand puts up again what has toppled.")
 
 
 def print_walk(console: Console, walk: Walk, landings: Sequence[TrueLanding]) -> None:

@@ -78,7 +78,8 @@ def voyage_as_json(voyage: Voyage) -> dict[str, Any]:
     """A voyage as JSON: times in s, angular velocities as magnitudes in rad/s, angles in rad, displacements in m.
 
     `impacts` are those of all units in order of time; `accumulation_time` is when impacts last accumulated so that a
-    contact stayed closed, null if they never did. `units` has the same for each unit.
+    contact stayed closed, null if they never did; `standing` is the part of the time of all units in which they had not
+    toppled. `units` has the same for each unit.
     """
     units: dict[str, dict[str, Any]] = {
         one.unit.name: {
@@ -90,6 +91,7 @@ def voyage_as_json(voyage: Voyage) -> dict[str, Any]:
             "onsets": [{"time": it.stamp / NANOSECONDS, "slides": it.slides, "lifts": it.lifts} for it in one.onsets],
             "most_turned": one.most_turned,
             "moved": one.moved,
+            "toppled": one.toppled,
         }
         for one in voyage.units
     }
@@ -102,7 +104,12 @@ def voyage_as_json(voyage: Voyage) -> dict[str, Any]:
         "impacts": sorted(impacts, key=itemgetter("time")),
         "accumulation_time": max((one.sums[-1] for one in voyage.units if one.sums), default=None),
         "end": end.name,
-        "deck": {"most_rolled": voyage.most_rolled, "most_lateral": voyage.most_lateral},
+        "deck": {
+            "most_rolled": voyage.most_rolled,
+            "most_pitched": voyage.most_pitched,
+            "most_lateral": voyage.most_lateral,
+        },
+        "standing": voyage.standing,
         "units": units,
     }
 

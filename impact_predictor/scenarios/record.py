@@ -13,14 +13,27 @@ from numpy.typing import NDArray
 
 from ..bags.write import BagWriter
 from ..mechanics.motion import End, PlanarState, Trajectory
-from ..mechanics.motion.support import MovingSupport
 from ..mechanics.types import Vector
 from ..prediction.scene import MovingDeck
 from ..prediction.types import Geometry
 from ..ros.cdr import diagnostic_array
 from ..ros.messages import DIAGNOSTIC_ARRAY, IMU, ODOMETRY, POLYGON, encode_imu, encode_odometry, encode_polygon
 from ..stamps import NANOSECONDS
-from .sensors import ACROSS, AT_ONCE, FORWARD, NO_NOISE, InertialSensor, Mount, Odometer, SensorNoise, stamps_of
+from .sensors import (
+    AT_ONCE,
+    FORWARD,
+    NO_NOISE,
+    InertialSensor,
+    Mount,
+    Odometer,
+    Poses,
+    SensorNoise,
+    carried,
+    poses,
+    rotated,
+    rotations,
+    stamps_of,
+)
 from .truth import (
     ONSET_TOPIC,
     TRUTH_TOPIC,
@@ -34,6 +47,7 @@ from .wheel import RollEnd, Rolling
 
 if TYPE_CHECKING:
     from .deck.cargo import Span
+    from .deck.motion import DeckMotion
     from .deck.voyage import Followed
 
 FRAME: Final = "world"
@@ -153,26 +167,21 @@ def write_messages(
 
 
 def deck_messages(
-    followed: Sequence[Followed],
-    deck: MovingSupport,
-    alone: bool,
-    duration: float,
-    sensors: Sensors,
-    truths: Sequence[str] = (TRUTH_TOPIC, ONSET_TOPIC),
+    followed: Sequence[Followed], deck: DeckMotion, alone: bool, duration: float, sensors: Sensors
 ) -> list[Iterator[RecordedMessage]]:
     """The streams of messages of a deck and its units, each ordered by its log times.
 
     The deck's are on `/support/odom` or `/support/imu`, a unit's on `/<name>/odom` or `/<name>/imu` as its scene tells;
-    the unit of a scene file without bodies, `alone`, is on `/odom` or `/imu`. The topics of the `truths` that are told
-    begin with an empty message: where nothing happened, that is the truth.
+    the unit of a scene file without bodies, `alone`, is on `/odom` or `/imu`. The topics of the truth begin with an
+    empty message: where nothing happened, that is the truth.
     """
     watched = followed[0].unit.scene.deck or MovingDeck()
     nothing = diagnostic_array(0, DECK, ())
     return [
-        iter([RecordedMessage(0, topic, DIAGNOSTIC_ARRAY, nothing) for topic in truths]),
+        iter([RecordedMessage(0, topic, DIAGNOSTIC_ARRAY, nothing) for topic in (TRUTH_TOPIC, ONSET_TOPIC)]),
         _deck(deck, watched, duration, sensors),
         *(
-            _unit(one, "" if alone else f"/{one.unit.name}", duration, sensors, number)
+            _unit(one, deck, "" if alone else f"/{one.unit.name}", duration, sensors, number)
             for number, one in enumerate(followed, 1)
         ),
     ]
@@ -187,16 +196,17 @@ def _messages_of(actor: Actor, namespace: str, rate: float) -> Iterator[Recorded
     geometry = Geometry(0, actor.name, tuple((x, 0.0, y) for x, y in actor.points))
     yield RecordedMessage(0, f"{namespace}/contact_geometry", POLYGON, encode_polygon(geometry))
     stamps = [round(k * NANOSECONDS / rate) for k in range(actor.samples(rate))]
-    odometer = Odometer(FRAME, actor.name, FORWARD, Mount())
-    yield from _by_time(_odometry(odometer, stamps, actor.world, f"{namespace}/odom"), _truth(actor.impacts, (), FRAME))
+    odometer = Odometer(FRAME, actor.name)
+    seen = _odometry(odometer, stamps, lambda times: poses(actor.world(times), FORWARD, Mount()), f"{namespace}/odom")
+    yield from _by_time(seen, _truth(actor.impacts, (), FRAME))
 
 
 def _odometry(
-    odometer: Odometer, stamps: list[int], state: Callable[[NDArray[np.float64]], PlanarState], topic: str
+    odometer: Odometer, stamps: list[int], seen: Callable[[NDArray[np.float64]], Poses], topic: str
 ) -> Iterator[RecordedMessage]:
-    """An odometer's messages at stamps (ns) from the states at an array of times in s."""
+    """An odometer's messages at stamps (ns) from the poses at an array of times in s."""
     for block in _blocks(stamps):
-        for sample in odometer.samples(block, state(np.array(block) / NANOSECONDS)):
+        for sample in odometer.samples(block, seen(np.array(block) / NANOSECONDS)):
             yield RecordedMessage(sample.stamp, topic, ODOMETRY, encode_odometry(sample))
 
 
@@ -211,58 +221,57 @@ def _truth(impacts: Iterable[TrueImpact], onsets: Iterable[TrueOnset], frame: st
     return sorted(messages, key=lambda message: message.log_time)
 
 
-def _deck(deck: MovingSupport, watched: MovingDeck, duration: float, sensors: Sensors) -> Iterator[RecordedMessage]:
+def _deck(deck: DeckMotion, watched: MovingDeck, duration: float, sensors: Sensors) -> Iterator[RecordedMessage]:
     rng = np.random.default_rng((sensors.seed, 0))
     stamps = stamps_of(0.0, duration, sensors.deck_rate, last=True)
     if watched.source == "odom":
-        odometer = Odometer(FRAME, DECK, ACROSS, Mount(), sensors.noise, rng)
-        yield from _odometry(odometer, stamps, partial(_state_of, deck), "/support/odom")
+        odometer = Odometer(FRAME, DECK, sensors.noise, rng)
+        yield from _odometry(odometer, stamps, lambda times: deck.at(times).poses, "/support/odom")
         return
-    place = deck.at(*watched.imu_position[1:])
-    sensor = InertialSensor(DECK, ACROSS, Mount(), deck.gravity, sensors.noise, rng)
+    sensor = InertialSensor(DECK, sensors.noise, rng)
     for block in _blocks(stamps):
-        motion = place.motion(np.array(block) / NANOSECONDS)
-        state = _state_of(place, np.array(block) / NANOSECONDS)
-        for imu in sensor.of_force(block, state, motion.ax, motion.ay + deck.gravity):
+        state = deck.at(np.array(block) / NANOSECONDS)
+        for imu in sensor.measurements(block, state.poses, -state.felt_at(watched.imu_position)):
             yield RecordedMessage(imu.stamp, "/support/imu", IMU, encode_imu(imu))
 
 
-def _state_of(support: MovingSupport, times: NDArray[np.float64]) -> PlanarState:
-    """The support as a body."""
-    motion = support.motion(times)
-    return PlanarState(motion.x, motion.y, motion.angle, motion.vx, motion.vy, motion.rate)
-
-
-def _unit(one: Followed, namespace: str, duration: float, sensors: Sensors, number: int) -> Iterator[RecordedMessage]:
+def _unit(
+    one: Followed, deck: DeckMotion, namespace: str, duration: float, sensors: Sensors, number: int
+) -> Iterator[RecordedMessage]:
     """A unit's messages, and its truth."""
     unit, rng = one.unit, np.random.default_rng((sensors.seed, number))
     name, source = unit.name, unit.scene.source
     # Nobody measures where a deck is of which only an inertial sensor tells: its units are seen from it.
     relative = unit.scene.deck is not None and unit.scene.deck.source == "imu"
-    seen = one.on_deck if relative else one.in_world
     frame = unit.scene.frame or DECK if relative else FRAME
-    odometer = Odometer(frame, name, ACROSS, unit.mount, sensors.noise, rng)
-    inertial = InertialSensor(name, ACROSS, unit.mount, one.support.gravity, sensors.noise, rng)
+    odometer, inertial = Odometer(frame, name, sensors.noise, rng), InertialSensor(name, sensors.noise, rng)
     for span in one.spans():
+        seen = span.poses if relative else partial(_in_world, deck, span)
         last = span.end is not End.TIME_UP or span.time >= duration
         stamps = stamps_of(span.start, span.time, sensors.rate, last) if source != "none" else []
         sensed: Iterator[RecordedMessage] = iter(())
         if source == "odom":
-            sensed = _odometry(odometer, stamps, partial(seen, span), f"{namespace}/odom")
+            sensed = _odometry(odometer, stamps, seen, f"{namespace}/odom")
         elif source == "imu":
-            sensed = _inertial(one, span, stamps, inertial, f"{namespace}/imu", 0.5 / sensors.rate)
+            sensed = _inertial(deck, span, stamps, inertial, f"{namespace}/imu", 0.5 / sensors.rate)
         yield from _by_time(sensed, _truth(span.impacts, span.onsets, DECK))
 
 
+def _in_world(deck: DeckMotion, span: Span, times: NDArray[np.float64]) -> Poses:
+    return carried(deck.at(times).poses, span.poses(times))
+
+
 def _inertial(
-    one: Followed, span: Span, stamps: list[int], sensor: InertialSensor, topic: str, half: float
+    deck: DeckMotion, span: Span, stamps: list[int], sensor: InertialSensor, topic: str, half: float
 ) -> Iterator[RecordedMessage]:
     """An inertial sensor's messages in a span; `half` the time of a sample in s, cut off where the span ends."""
     for block in _blocks(stamps):
         times = np.array(block) / NANOSECONDS
         before, after = np.maximum(times - half, span.start), np.minimum(times + half, span.time)
-        now, early, late = (one.in_world(span, moment) for moment in (times, before, after))
-        for imu in sensor.measurements(block, now, early, late, after - before):
+        now, early, late = (_in_world(deck, span, moment) for moment in (times, before, after))
+        speeds = [rotated(rotations(one.orientation), one.linear) for one in (early, late)]
+        force = (speeds[1] - speeds[0]) / (after - before)[:, None] + (0.0, 0.0, deck.gravity)
+        for imu in sensor.measurements(block, now, rotated(rotations(now.orientation), force, back=True)):
             yield RecordedMessage(imu.stamp, topic, IMU, encode_imu(imu))
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from math import cos, sin
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -99,15 +99,53 @@ def poses(state: PlanarState, plane: MotionPlane, mount: Mount) -> Poses:
     orientation = np.stack(
         [qx * yaw_c + qy * yaw_s, qy * yaw_c - qx * yaw_s, half_c * yaw_s + qz * yaw_c, half_c * yaw_c - qz * yaw_s], 1
     )
-    linear = in_frame(plane, mount, angle, vx + omega * dy, vy - omega * dx)
+    ahead_speed, up_speed = vx + omega * dy, vy - omega * dx
+    turned_back = np.outer(c * ahead_speed + s * up_speed, ahead) + np.outer(c * up_speed - s * ahead_speed, up)
+    linear = _unyawed(turned_back, mount.yaw)
     return Poses(position, orientation, linear, np.outer(omega, _unyawed(np.array(plane.axis), mount.yaw)))
 
 
-def in_frame(plane: MotionPlane, mount: Mount, angle: Any, ahead: Any, up: Any) -> NDArray[np.float64]:
-    """A vector of the plane (arrays (n,) along its directions in the world) along the axes of the body's frame."""
-    c, s = np.cos(angle), np.sin(angle)
-    turned_back = np.outer(c * ahead + s * up, plane.ahead) + np.outer(c * up - s * ahead, plane.up)
-    return _unyawed(turned_back, mount.yaw)
+def rotations(orientation: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The matrices (n, 3, 3) that turn vectors of a frame into the world's, for unit quaternions (n, 4)."""
+    x, y, z, w = orientation.T
+    rows = [
+        [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
+        [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
+        [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
+    ]
+    return np.moveaxis(np.array(rows), -1, 0)
+
+
+def rotated(matrices: NDArray[np.float64], vectors: NDArray[np.float64], back: bool = False) -> NDArray[np.float64]:
+    """Vectors (n, 3), each by the matrix of its own (n, 3, 3), or by the transposed one."""
+    found: NDArray[np.float64] = np.einsum("nji,nj->ni" if back else "nij,nj->ni", matrices, vectors)
+    return found
+
+
+def product(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Quaternions (n, 4) that turn as the second ones and then as the first ones do."""
+    (x, y, z, w), (a, b, c, d) = first.T, second.T
+    return np.stack(
+        [
+            w * a + x * d + y * c - z * b,
+            w * b - x * c + y * d + z * a,
+            w * c + x * b - y * a + z * d,
+            w * d - x * a - y * b - z * c,
+        ],
+        axis=1,
+    )
+
+
+def carried(frame: Poses, seen: Poses) -> Poses:
+    """In the world, the poses of a body that are `seen` from a frame that moves."""
+    deck, own = rotations(frame.orientation), rotations(seen.orientation)
+    drift = rotated(own, seen.linear) + frame.linear + np.cross(frame.angular, seen.position)
+    return Poses(
+        position=frame.position + rotated(deck, seen.position),
+        orientation=product(frame.orientation, seen.orientation),
+        linear=rotated(own, drift, back=True),
+        angular=seen.angular + rotated(own, frame.angular, back=True),
+    )
 
 
 def stamps_of(start: float, end: float, rate: float, last: bool) -> list[int]:
@@ -118,26 +156,19 @@ def stamps_of(start: float, end: float, rate: float, last: bool) -> list[int]:
 
 
 class Odometer:
-    """Makes samples of a body's frame from its planar states in the world."""
+    """Makes samples of a body's frame from its poses."""
 
     def __init__(
-        self,
-        frame: str,
-        child_frame: str,
-        plane: MotionPlane,
-        mount: Mount,
-        noise: SensorNoise = NO_NOISE,
-        rng: np.random.Generator | None = None,
+        self, frame: str, child_frame: str, noise: SensorNoise = NO_NOISE, rng: np.random.Generator | None = None
     ) -> None:
-        self.frames = frame, child_frame
-        self.plane, self.mount, self.noise = plane, mount, noise
+        self.frames, self.noise = (frame, child_frame), noise
         self._rng = rng if any((noise.position, noise.orientation, noise.velocity, noise.rate)) else None
         self._of_pose = _covariance(noise.position, noise.orientation)
         self._of_twist = _covariance(noise.velocity, noise.rate)
 
-    def samples(self, stamps: list[int], state: PlanarState) -> Iterator[Sample]:
-        """The samples at stamps (ns) from the states then, arrays (n,)."""
-        seen, noise, rng = poses(state, self.plane, self.mount), self.noise, self._rng
+    def samples(self, stamps: list[int], seen: Poses) -> Iterator[Sample]:
+        """The samples at stamps (ns) from the poses then."""
+        noise, rng = self.noise, self._rng
         if rng is not None:
             seen = Poses(
                 position=_blurred(seen.position, noise.position, rng),
@@ -166,32 +197,13 @@ class InertialSensor:
     is a peak in it, and the sum of its samples is the change of the velocity.
     """
 
-    def __init__(
-        self,
-        frame: str,
-        plane: MotionPlane,
-        mount: Mount,
-        gravity: float,
-        noise: SensorNoise = NO_NOISE,
-        rng: np.random.Generator | None = None,
-    ) -> None:
-        self.frame, self.plane, self.mount, self.gravity, self.noise = frame, plane, mount, gravity, noise
+    def __init__(self, frame: str, noise: SensorNoise = NO_NOISE, rng: np.random.Generator | None = None) -> None:
+        self.frame, self.noise = frame, noise
         self._rng = rng if any((noise.orientation, noise.gyro, noise.accelerometer)) else None
 
-    def measurements(
-        self, stamps: list[int], state: PlanarState, before: PlanarState, after: PlanarState, span: NDArray[np.float64]
-    ) -> Iterator[Imu]:
-        """The measurements at stamps (ns) from the states then, and before and after then, `span` s apart (arrays)."""
-        early, late = (self._origin_velocity(one) for one in (before, after))
-        ahead, up = ((two - one) / span for one, two in zip(early, late, strict=True))
-        return self.of_force(stamps, state, ahead, up + self.gravity)
-
-    def of_force(
-        self, stamps: list[int], state: PlanarState, ahead: NDArray[np.float64], up: NDArray[np.float64]
-    ) -> Iterator[Imu]:
-        """The measurements from the specific force of the origin, along the world's axes in the plane."""
-        seen, noise, rng = poses(state, self.plane, self.mount), self.noise, self._rng
-        force = in_frame(self.plane, self.mount, state.angle, ahead, up)
+    def measurements(self, stamps: list[int], seen: Poses, force: NDArray[np.float64]) -> Iterator[Imu]:
+        """The measurements at stamps (ns) from the poses then, and the specific force (n, 3) along the body's axes."""
+        noise, rng = self.noise, self._rng
         orientation, angular = seen.orientation, seen.angular
         if rng is not None:
             orientation = _misaligned(orientation, noise.orientation, rng)
@@ -200,15 +212,6 @@ class InertialSensor:
         rows = zip(stamps, orientation.tolist(), angular.tolist(), force.tolist(), strict=True)
         for stamp, quaternion, rates, felt in rows:
             yield Imu(stamp, self.frame, tuple(quaternion), tuple(rates), tuple(felt))
-
-    def _origin_velocity(self, state: PlanarState) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """The velocity of the frame's origin in the plane, along its two directions in the world."""
-        to_ahead, to_up, _ = _center(self.plane, self.mount)
-        c, s = np.cos(state.angle), np.sin(state.angle)
-        return (
-            state.vx + state.omega * (s * to_ahead + c * to_up),
-            state.vy - state.omega * (c * to_ahead - s * to_up),
-        )
 
 
 def _center(plane: MotionPlane, mount: Mount) -> tuple[float, float, float]:
@@ -234,10 +237,7 @@ def _blurred(values: NDArray[np.float64], deviation: float, rng: np.random.Gener
 def _misaligned(orientation: NDArray[np.float64], deviation: float, rng: np.random.Generator) -> NDArray[np.float64]:
     """Unit quaternions (n, 4) after small random turns about every axis of the body, in rad."""
     half = 0.5 * rng.normal(0.0, deviation, (len(orientation), 3))
-    (x, y, z, w), (a, b, c) = orientation.T, half.T
-    turned = orientation + np.stack(
-        [w * a + y * c - z * b, w * b - x * c + z * a, w * c + x * b - y * a, -x * a - y * b - z * c], axis=1
-    )
+    turned = orientation + product(orientation, np.pad(half, ((0, 0), (0, 1))))
     unit: NDArray[np.float64] = turned / np.linalg.norm(turned, axis=1, keepdims=True)
     return unit
 

@@ -12,7 +12,6 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from PIL import Image
 
-from impact_predictor.mechanics.motion.support import MovingSupport
 from impact_predictor.prediction.scene import MovingDeck, Scene
 from impact_predictor.prediction.types import Vector3
 from impact_predictor.report.deck_pictures import (
@@ -27,6 +26,7 @@ from impact_predictor.report.deck_pictures import (
     write_deck_figure,
 )
 from impact_predictor.report.plot import write_film
+from impact_predictor.scenarios.deck.motion import DeckMotion, planar_deck
 from impact_predictor.scenarios.deck.voyage import sail
 
 DURATION = 60.0
@@ -53,16 +53,16 @@ ROLL = (
 
 
 @pytest.fixture(scope="module")
-def deck() -> MovingSupport:
-    return harmonic_support(ROLL, [Wave(0.5, 0.5 * pi)], [Wave(0.7, 2.0 * pi / 4.5, 2.0)]).at(0.0, 2.0)
+def deck() -> DeckMotion:
+    return planar_deck(harmonic_support(ROLL, [Wave(0.5, 0.5 * pi)], [Wave(0.7, 2.0 * pi / 4.5, 2.0)]).at(0.0, 2.0))
 
 
 @pytest.fixture(scope="module")
-def units(deck: MovingSupport) -> list[UnitMotion]:
+def units(deck: DeckMotion) -> list[UnitMotion]:
     return motions_of(deck, SCENES)
 
 
-def motions_of(deck: MovingSupport, scenes: dict[str, Scene], duration: float = DURATION) -> list[UnitMotion]:
+def motions_of(deck: DeckMotion, scenes: dict[str, Scene], duration: float = DURATION) -> list[UnitMotion]:
     return [UnitMotion(one) for one in sail(scenes, deck, duration, times=picture_times(duration)).units]
 
 
@@ -81,7 +81,7 @@ def test_units_rock_slide_topple_and_stay(units: list[UnitMotion]) -> None:
 
 
 def test_a_margin_is_used_up_when_a_unit_leaves_its_rest_and_not_before(
-    deck: MovingSupport, units: list[UnitMotion]
+    deck: DeckMotion, units: list[UnitMotion]
 ) -> None:
     for one, followed in zip(units, sail(SCENES, deck, DURATION).units, strict=True):
         used = margin_used(deck, one.unit, one.times)
@@ -91,7 +91,7 @@ def test_a_margin_is_used_up_when_a_unit_leaves_its_rest_and_not_before(
             assert margin_used(deck, one.unit, np.array([begun])) == pytest.approx(1.0, abs=1e-3)
 
 
-def outline_of(deck: MovingSupport, scene: Scene) -> NDArray[np.float64]:
+def outline_of(deck: DeckMotion, scene: Scene) -> NDArray[np.float64]:
     """What the film draws of a unit before it moves, from where its old contact stands, on a deck that is level."""
     (motion,) = motions_of(deck, {"one": scene}, 1.0)
     axes = Figure().add_subplot()
@@ -100,7 +100,7 @@ def outline_of(deck: MovingSupport, scene: Scene) -> NDArray[np.float64]:
 
 
 def test_a_box_and_a_drum_are_seen_along_the_deck() -> None:
-    level = harmonic_support([Wave(0.0, 1.0)])
+    level = planar_deck(harmonic_support([Wave(0.0, 1.0)]))
     corners = outline_of(level, box(1.0, 2.0, 0.5, (0.0, 0.0, 1.0), yaw=0.5 * pi))
     assert (*corners.min(axis=0), *corners.max(axis=0)) == pytest.approx((0.0, 0.0, 1.2, 2.0))
     drum = Scene(
@@ -114,7 +114,7 @@ def test_a_box_and_a_drum_are_seen_along_the_deck() -> None:
     assert np.hypot(*(outline_of(level, drum) - centre).T) == pytest.approx(0.4)
 
 
-def test_the_film_shows_the_seconds_about_the_fastest(deck: MovingSupport, units: list[UnitMotion]) -> None:
+def test_the_film_shows_the_seconds_about_the_fastest(deck: DeckMotion, units: list[UnitMotion]) -> None:
     frames, tank = deck_frames(units), units[-1]
     assert frames[-1] - frames[0] == pytest.approx(LONGEST, abs=0.1)
     assert frames[0] <= tank.ended <= frames[-1]  # it topples, which is faster than what else happens
@@ -126,7 +126,7 @@ def test_the_busiest_units_are_drawn_in_their_order(units: list[UnitMotion]) -> 
     assert [one.unit.name for one in busiest(units, 2)] == ["cabinet", "tank"]
 
 
-def test_the_film_says_what_a_unit_does(deck: MovingSupport, units: list[UnitMotion]) -> None:
+def test_the_film_says_what_a_unit_does(deck: DeckMotion, units: list[UnitMotion]) -> None:
     crate, cabinet, pallet, tank = (UnitScene(deck, one, one.times) for one in units)
     axes = Figure().add_subplot()
     said = [one.draw(axes, time) for one in (crate, cabinet, pallet, tank) for time in units[0].times[::4]]
@@ -141,7 +141,7 @@ def test_moments_of_a_long_motion_are_not_too_many() -> None:
 
 
 def test_the_pictures_are_written_the_same_every_time(
-    deck: MovingSupport, units: list[UnitMotion], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    deck: DeckMotion, units: list[UnitMotion], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("impact_predictor.report.deck_pictures.LONGEST", 0.6)
     told: list[int] = []

@@ -23,7 +23,7 @@ from ...prediction.planar import inertia_about
 from ...prediction.scene import Scene
 from ...prediction.types import Vector3
 from ...stamps import NANOSECONDS
-from ..sensors import ACROSS, Mount
+from ..sensors import ACROSS, Mount, Poses, poses
 from ..truth import TrueImpact, TrueOnset, border_of, true_impact
 
 ALONE: Final = "unit"
@@ -63,17 +63,21 @@ class CargoUnit(NamedTuple):
 class Span(NamedTuple):
     """A part of a motion, from `start` to `time` (s).
 
-    `state` tells the mass centre's at an array of times, seen from the unit's foot; `impacts` and `onsets` are those in
-    it, `sums` the times at which accumulating impacts ended; `end` is how the motion ended, TIME_UP where it may go on.
+    `poses` tells those of the unit's frame at an array of times, seen from the deck, and `state` the mass centre's in
+    the transverse plane, seen from the unit's foot; `impacts` and `onsets` are those in it, `sums` the times at which
+    accumulating impacts ended; `end` is how the motion ended, TIME_UP where it may go on; the
+    unit `lies` if it has toppled before.
     """
 
     start: float
     time: float
     state: Callable[[NDArray[np.float64]], PlanarState]
+    poses: Callable[[NDArray[np.float64]], Poses]
     impacts: tuple[TrueImpact, ...]
     onsets: tuple[TrueOnset, ...]
     sums: tuple[float, ...]
     end: End
+    lies: bool = False
 
 
 def units_of(scenes: Mapping[str, Scene]) -> list[CargoUnit]:
@@ -181,9 +185,12 @@ def _ahead(vector: Vector3, yaw: float) -> Vector3:
     return c * x - s * y, s * x + c * y, z
 
 
-def follow(unit: CargoUnit, support: MovingSupport, duration: float, law: str = "path") -> Iterator[Span]:
-    """The motion of a unit, one span after the other; `support` has its origin at the unit's foot."""
-    time, state, end, rested = 0.0, unit.start, End.TIME_UP, True
+def follow(unit: CargoUnit, support: MovingSupport, duration: float, begin: float = 0.0) -> Iterator[Span]:
+    """The motion of a unit that stands at the time `begin`, one span after the other, until `duration` (s).
+
+    `support` has its origin at the unit's foot.
+    """
+    time, state, end, rested, law = begin, unit.start, End.TIME_UP, True, unit.scene.law
     borders: dict[tuple[float, ...], float] = {}
     while time < duration and end is End.TIME_UP:
         # Times of a motion are told to the last digit only where they count from near it.
@@ -197,6 +204,7 @@ def follow(unit: CargoUnit, support: MovingSupport, duration: float, law: str = 
             start=time,
             time=until,
             state=partial(_state_at, run, time),
+            poses=partial(_poses_at, unit, run, time),
             impacts=tuple(impacts),
             onsets=tuple(_onsets(unit.name, run, rested, time)),
             sums=tuple(time + one.time for one in run.accumulations),
@@ -213,6 +221,11 @@ def _later(support: MovingSupport, since: float) -> MovingSupport:
 
 def _state_at(run: Trajectory, since: float, times: NDArray[np.float64]) -> PlanarState:
     return run.state(times - since)
+
+
+def _poses_at(unit: CargoUnit, run: Trajectory, since: float, times: NDArray[np.float64]) -> Poses:
+    state, (y, z) = run.state(times - since), unit.foot
+    return poses(state._replace(x=state.x + y, y=state.y + z), ACROSS, unit.mount)
 
 
 def _onsets(name: str, run: Trajectory, rested: bool, since: float) -> Iterator[TrueOnset]:

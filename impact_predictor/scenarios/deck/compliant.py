@@ -1,49 +1,75 @@
-"""Cargo on compliant contacts: a truth that shares no impact law, no modes and no events with a prediction.
+"""Cargo on compliant contacts, in three dimensions: a truth that shares no impact law, no modes and no events with a
+prediction.
 
-Stiff springs with dampers and regularised friction move the unit (`mechanics.compliant`). Its impacts are read from the
-gaps and velocities of its contacts alone: an impact begins where a contact closes that was open, and is over when the
-normal forces have fallen to those of rest. Contacts that move out of the support then have opened. Onsets are not told:
-a regularised contact creeps before it slides.
+Stiff springs with dampers and friction move the unit (`stepping`). Its impacts are read from the gaps and velocities of
+its points alone: one begins where points close that were open, and is over when the normal forces have fallen to those
+of rest. A unit on its feet is left at rest until the part of its margins that is used up, by a rough rule, is near one;
+from there on the steps tell what it does.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import cos, pi, sin
-from typing import Any, Final
+from math import ceil, cos, inf, sin, sqrt
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
+from scipy.interpolate import CubicSpline
 
 from ...errors import InputError
-from ...mechanics.compliant import CompliantMotion, compliant_motion
+from ...mechanics.compiled import door
 from ...mechanics.impact import solve_impact
 from ...mechanics.motion import End, PlanarState
-from ...mechanics.motion.support import MovingSupport, from_world
 from ...mechanics.types import Contact, Mode, Twist, TwoPointBody
 from ...stamps import NANOSECONDS
-from ..sensors import ACROSS
-from ..truth import TrueImpact, border_of, half_distance
-from .cargo import CargoUnit, Span
+from ..sensors import Poses, rotated, rotations
+from ..truth import TrueImpact, TrueOnset, border_of
+from . import stepping
+from .cargo import SPAN, CargoUnit, Span
+from .motion import DeckMotion
 
-SPAN: Final = 10.0
-"""Seconds that are integrated at once."""
+STEP: Final = 1e-4
+"""s, where nothing strikes."""
 
-STIFFNESS: Final = 1e9
-"""N/m of each contact: some tonnes sink in by hundredths of a millimetre, and an impact takes about a millisecond."""
+CHUNK: Final = 0.5
+"""Seconds that are followed at once while a unit moves."""
 
-REGULARISATION: Final = 1e-4
-"""Slip (m/s) at which friction is 0.71 of its full."""
+KEPT: Final = 10
+"""One in so many states is kept."""
 
-METHOD: Final = "BDF"
-"""Integrator: with contacts as stiff as these others get stuck now and then."""
+STIFFNESS: Final = 1e6
+"""N/m of each contact for each kg: the weight sinks in by micrometres, an impact takes about a millisecond."""
+
+NODES: Final = 24
+"""Moments in the shortest swing of the deck at which it is asked what is felt; cubic splines go through them."""
+
+DAMPING: Final = 8.0
+"""Of a contact, as part of the critical one: what strikes keeps 0.4 % of its speed."""
+
+NEAR: Final = 0.8
+"""Part of the margins used up from which a unit is followed."""
+
+LOOKS: Final = 0.05
+"""s between the moments at which they are looked at."""
+
+FEET: Final = 1e-6
+"""m: points that are as low as the lowest one, and farther from each other."""
+
+ACROSS_ONLY: Final = 0.05
+"""Part of a turn about the deck's x axis below which the other turns are none."""
+
+RESTED: Final = 0.1
+"""Seconds without slip or lift after which a unit stands."""
 
 SLOWEST: Final = 1e-3
 """Approach in m/s of the slowest contact that counts as striking."""
 
-OPEN: Final = 1e-3
+OPEN: Final = 2e-3
 """Seconds that a contact must have been open before it strikes."""
+
+TOGETHER: Final = 5e-3
+"""Points that close within so many seconds strike together."""
 
 LONGEST: Final = 0.02
 """Seconds after which an impact is over in any case."""
@@ -52,148 +78,267 @@ PRESSED: Final = 2.0
 """Weights with which the contacts press no more when an impact is over."""
 
 PART: Final = 0.02
-"""A velocity above this part of the approach is one: out of the support the contact opens, along it it slips."""
+"""A velocity above this part of the approach is one: out of the deck the contact opens, along it it slips."""
 
 
-def follow_compliant(unit: CargoUnit, support: MovingSupport, duration: float, law: str = "path") -> Iterator[Span]:
-    """The motion of a unit on compliant contacts, one span after the other; as `deck.follow`.
+SETTLES: Final = 0.05
+"""Seconds in which the springs take the load of a unit that is followed from rest."""
 
-    `law` judges how near the state before an impact is to another mode, and nothing else.
+
+def make_advance(law_code: str) -> Any:
+    """The function that makes steps; numba keeps what it compiled under the value of `law_code`."""
+
+    def advance(
+        steps: int, n: int, given: Any, felt: Any, y: Any, points: Any, work: Any, rows: Any, marks: Any
+    ) -> int:
+        law_code  # noqa: B018
+        return stepping.advance(steps, n, given, felt, y, points, work, rows, marks)
+
+    return advance
+
+
+class _Stretch(NamedTuple):
+    """Steps of a motion at `times` (k,): `rows` (k, 15) and `marks` (k, 2, n) as in `stepping`."""
+
+    times: NDArray[np.float64]
+    rows: NDArray[np.float64]
+    marks: NDArray[np.int64]
+
+    def until(self, count: int) -> _Stretch:
+        return _Stretch(self.times[:count], self.rows[:count], self.marks[:count])
+
+
+class _States(NamedTuple):
+    """States (k, 13) of a unit at `times` (k,): mass centre, quaternion and velocities in the deck's frame."""
+
+    unit: CargoUnit
+    times: NDArray[np.float64]
+    rows: NDArray[np.float64]
+
+    def at(self, times: Any) -> NDArray[np.float64]:
+        """The states (13, n) at some times, linear between those that are kept."""
+        found = np.array([np.interp(times, self.times, column) for column in self.rows.T])
+        found[3:7] /= np.sqrt(np.square(found[3:7]).sum(0))
+        return found
+
+    def poses(self, times: NDArray[np.float64]) -> Poses:
+        """The poses of the unit's frame, seen from the deck."""
+        center, found = self.unit.mount.center, self.at(times)
+        matrices = rotations(found[3:7].T)
+        linear, angular = (rotated(matrices, part.T, back=True) for part in (found[7:10], found[10:]))
+        return Poses(found[:3].T - matrices @ center, found[3:7].T, linear - np.cross(angular, center), angular)
+
+    def across(self, times: Any) -> PlanarState:
+        """The part of the motion across the deck, seen from the unit's foot."""
+        _, y, z, qx, qy, qz, qw, _, vy, vz, spin, _, _ = self.at(times)
+        foot_y, foot_z = self.unit.foot
+        # Of a turn about x and one about z before it.
+        angle = 2.0 * np.arctan2(np.copysign(np.hypot(qx, qy), qx * qw - qy * qz), np.hypot(qz, qw))
+        return PlanarState(y - foot_y, z - foot_z, angle, vy, vz, spin)
+
+
+def follow_compliant(unit: CargoUnit, deck: DeckMotion, duration: float, begin: float = 0.0) -> Iterator[Span]:
+    """The motion of a unit on points from where it stands, one span after the other; as `cargo.follow`.
 
     Raises:
-        InputError: the unit lies on edges, or the motion cannot be integrated.
+        InputError: it stands on a line.
     """
-    if unit.scene.radius > 0.0:
-        raise InputError(f"{unit.name} is a drum; compliant contacts are of points: simulate it with --contacts rigid")
-    time, state, end = 0.0, unit.start, End.TIME_UP
-    last_open = [-1.0, -1.0]
-    while time < duration and end is End.TIME_UP:
-        motion = compliant_motion(
-            unit.body,
-            state,
-            support,
-            min(SPAN, duration - time),
-            start_time=time,
-            stiffness=STIFFNESS,
-            regularisation=REGULARISATION,
-            method=METHOD,
+    return _Compliant(unit, deck).follow(duration, begin)
+
+
+class _Compliant:
+    def __init__(self, unit: CargoUnit, deck: DeckMotion) -> None:
+        scene, half = unit.scene, 0.5 * unit.scene.yaw
+        self.unit, self.deck, self.scene, self.inertia = unit, deck, scene, np.array(scene.inertia)
+        self.points = np.array(scene.points) - np.array(scene.center_of_mass)
+        feet = self.points[self.points[:, 2] <= self.points[:, 2].min() + FEET]
+        if np.linalg.matrix_rank(feet - feet[0], tol=FEET) < 2:
+            raise InputError(f"{unit.name} stands on a line and would fall; give it three contact points or more")
+        stiffness = STIFFNESS * scene.mass
+        damping = DAMPING * 2.0 * sqrt(stiffness * scene.mass / len(feet))
+        numbers = [STEP, scene.height, scene.mass, scene.friction, scene.restitution, stiffness, damping]
+        self.numbers = np.array([*numbers, *self.inertia.ravel(), *np.linalg.inv(self.inertia).ravel()])
+        self.advance = door(make_advance, (stepping,))
+        place = unit.mount.beside, unit.start.x + unit.foot[0], unit.start.y + unit.foot[1]
+        c, s = cos(0.5 * unit.start.angle), sin(0.5 * unit.start.angle)
+        turn = s * cos(half), -s * sin(half), c * sin(half), c * cos(half)
+        self.y = np.array([*place, *turn, *[0.0] * 6])
+        self.work = np.zeros(11 * len(self.points) + 1)
+        self.closed = self._gaps(self.y[None])[0] <= FEET
+        self.opened = np.full(len(self.points), -inf)  # s, when
+        self.moved, self.settled = -inf, -inf  # s, when it last did, and from when on that counts
+        self.leans = unit.start.angle != 0.0
+
+    def follow(self, duration: float, begin: float) -> Iterator[Span]:
+        time, end = begin, End.TIME_UP
+        while time < duration and end is End.TIME_UP:
+            until = min(duration, time + SPAN)
+            times = np.append(np.arange(time, until, LOOKS), until)
+            over = np.flatnonzero((self._used(times) > NEAR) | self.leans)
+            self.leans = False
+            rested = float(times[max(0, over[0] - 1)]) if len(over) else until
+            if rested > time:
+                self.y[7:] = 0.0
+                yield self._span(time, np.array([time, rested]), np.stack([self.y, self.y]))
+                time, self.settled = rested, rested + SETTLES
+            while len(over) and time < duration and end is End.TIME_UP:
+                before, stretch = self.y.copy(), self._steps(time, duration)
+                if len(toppled := np.flatnonzero(rotations(stretch.rows[:, 3:7])[:, 2, 2] < 0.0)):
+                    end, stretch = End.OVERTURNED, stretch.until(int(toppled[0]) + 1)
+                kept = np.append(np.arange(KEPT - 1, len(stretch.times) - 1, KEPT), len(stretch.times) - 1)
+                rows = np.concatenate([before[None], stretch.rows[kept, :13]])
+                yield self._span(time, np.append(time, stretch.times[kept]), rows, stretch, end)
+                time = float(stretch.times[-1])
+                ahead = np.arange(time, time + CHUNK, LOOKS)
+                if time - self.moved > RESTED and not (self._used(ahead) > NEAR).any():
+                    break
+
+    def _span(
+        self,
+        start: float,
+        times: NDArray[np.float64],
+        rows: NDArray[np.float64],
+        stretch: _Stretch | None = None,
+        end: End = End.TIME_UP,
+    ) -> Span:
+        states = _States(self.unit, times, rows)
+        return Span(
+            start=start,
+            time=float(times[-1]),
+            state=states.across,
+            poses=states.poses,
+            impacts=() if stretch is None else tuple(self._impacts(stretch)),
+            onsets=() if stretch is None else tuple(self._onsets(stretch)),
+            sums=(),
+            end=end,
         )
-        if not motion.complete:
-            raise InputError(
-                f"{unit.name} cannot be followed on compliant contacts beyond {motion.time:g} s; try rigid"
-            )
-        until, seen, times = motion.time, _Stretch(unit, support, motion), motion.way.ts
-        over = np.abs(seen.state(times).angle - unit.start.angle) > 0.5 * pi
-        if over.any():
-            end, until = End.OVERTURNED, float(times[over.argmax()])
-        impacts = tuple(seen.impacts(times[times <= until], last_open, law))
-        yield Span(start=time, time=until, state=seen.state, impacts=impacts, onsets=(), sums=(), end=end)
-        state, time = PlanarState(*[float(part) for part in seen.state(until)]), until
 
+    def _used(self, times: NDArray[np.float64]) -> NDArray[np.float64]:
+        """About how much of its margins a unit that stands uses at some times: by the box about its feet."""
+        matrix, state = rotations(self.y[None, 3:7])[0], self.deck.at(times)
+        arms = self.points @ matrix.T
+        feet = arms[arms[:, 2] <= arms[:, 2].min() + 1e-3 * np.ptp(arms)]
+        felt = state.felt_at(self.y[:3])
+        turning = state.turning @ (matrix @ self.inertia @ matrix.T) / self.scene.mass
+        along, down = felt[:, :2], np.maximum(-felt[:, 2], 1e-9)[:, None]
+        slide = np.hypot(*along.T) / (max(self.scene.friction, 1e-9) * down[:, 0])
+        # Where the deck must press for it to keep its turn: beyond the feet it tips.
+        press = (-feet[:, 2].mean() * along + np.stack([-turning[:, 1], turning[:, 0]], axis=1)) / down
+        low, high = np.minimum(feet[:, :2].min(0), -1e-9), np.maximum(feet[:, :2].max(0), 1e-9)
+        used: NDArray[np.float64] = np.maximum(slide, np.maximum(press / high, press / low).max(axis=1))
+        return used
 
-class _Stretch:
-    """A stretch of compliant motion, seen from the support."""
+    def _steps(self, start: float, duration: float) -> _Stretch:
+        """The steps of a while, and of as much longer as it takes that no impact is cut off."""
+        parts, time, n = list[_Stretch](), start, len(self.points)
+        while not parts or (time < duration and self._closes(parts[-1])):
+            end = min(duration, time + (CHUNK if not parts else 2.0 * LONGEST))
+            steps = max(1, ceil((end - time) / STEP))
+            self.numbers[0] = (end - time) / steps
+            nodes = np.linspace(time, end, 4 + ceil((end - time) * NODES / self.deck.period))
+            state = self.deck.at(nodes)
+            felt = CubicSpline(nodes, np.hstack([state.gravity, state.poses.angular, state.turning]))
+            told = felt(time + self.numbers[0] * (np.arange(steps) + 0.5)).ravel()
+            most = steps * stepping.FINE
+            rows, marks = np.empty(15 * most), np.empty(2 * n * most, np.int64)
+            count = self.advance(steps, n, self.numbers, told, self.y, self.points.ravel(), self.work, rows, marks)
+            states, told = rows.reshape(-1, 15)[:count], marks.reshape(-1, 2, n)[:count]
+            parts.append(_Stretch(np.append(time + states[:-1, 14], end), states, told))
+            time = end
+        return _Stretch(*map(np.concatenate, zip(*parts, strict=True)))
 
-    def __init__(self, unit: CargoUnit, support: MovingSupport, motion: CompliantMotion) -> None:
-        self.unit, self.support, self.motion = unit, support, motion
-        old = unit.body.old
-        assert old is not None
-        self.points = (old.x, old.y), (unit.body.new.x, unit.body.new.y)
+    def _gaps(self, rows: NDArray[np.float64]) -> NDArray[np.float64]:
+        up = rotations(rows[:, 3:7])[:, 2]
+        gaps: NDArray[np.float64] = up @ self.points.T + rows[:, 2:3] - self.scene.height
+        return gaps
 
-    def state(self, times: NDArray[np.float64] | float) -> PlanarState:
-        """The mass centre's states at a time or an array of times."""
-        return from_world(self.support.motion(times), PlanarState(*self.motion.way(times)))
+    def _closes(self, stretch: _Stretch) -> bool:
+        """Whether a point closes right before the end of a stretch."""
+        closed = self._gaps(stretch.rows)[stretch.times > stretch.times[-1] - LONGEST - TOGETHER] <= 0.0
+        return bool((closed[1:] & ~closed[:-1]).any())
 
-    def contact(self, i: int, state: PlanarState) -> tuple[Any, Any, Any]:
-        """Gap (m), its rate and the slip (m/s) of a contact in a state of numbers or arrays."""
-        _, y, angle, vx, vy, omega = state
-        (px, py), c, s = self.points[i], np.cos(angle), np.sin(angle)
-        return y + s * px + c * py, vy + omega * (c * px - s * py), vx - omega * (s * px + c * py)
+    def _onsets(self, stretch: _Stretch) -> Iterator[TrueOnset]:
+        """When a unit that stood begins to slide on all of its feet, or to stand on fewer than three."""
+        presses, slips = stretch.marks.sum(axis=2).T
+        slides, lifts = (slips == presses) & (presses > 0), presses < 3
+        for k in np.flatnonzero((slides | lifts) & (stretch.times > self.settled)).tolist():
+            time = float(stretch.times[k])
+            if time - self.moved > RESTED:
+                yield TrueOnset(round(time * NANOSECONDS), self.unit.name, bool(slides[k]), bool(lifts[k]))
+            self.moved = time
 
-    def impacts(self, times: NDArray[np.float64], last_open: list[float], law: str) -> Iterator[TrueImpact]:
-        """The impacts between the steps `times` of the integrator, in order.
-
-        `last_open` is since when each contact has been open, below zero for a closed one; it is kept up to date.
-        """
-        states = self.state(times)
-        closings: list[tuple[float, int]] = []
-        for i in (0, 1):
-            gaps, _, _ = self.contact(i, states)
-            is_open = gaps > 0.0
-            if is_open[0] and last_open[i] < 0.0:
-                last_open[i] = float(times[0])
-            for k in np.flatnonzero(is_open[1:] != is_open[:-1]).tolist():
-                if is_open[k + 1]:
-                    last_open[i] = float(times[k + 1])
-                    continue
-                at = self._closing(i, float(times[k]), float(times[k + 1]))
-                if last_open[i] >= 0.0 and at - last_open[i] > OPEN:
-                    closings.append((at, i))
-                last_open[i] = -1.0
-        for at, new in sorted(closings):
-            impact = self._impact(at, new, float(times[-1]), law)
-            if impact is not None:
+    def _impacts(self, stretch: _Stretch) -> Iterator[TrueImpact]:
+        """The impacts of a stretch, in order; which points are closed since when is kept up to date."""
+        closed = self._gaps(stretch.rows) <= 0.0
+        before = np.concatenate([self.closed[None], closed[:-1]])
+        closings = []
+        for k, i in np.argwhere(closed != before).tolist():
+            if not closed[k, i]:
+                self.opened[i] = stretch.times[k]
+            elif stretch.times[k] - self.opened[i] > OPEN:
+                closings.append((k, i))
+        self.closed = closed[-1]
+        while closings:
+            first = closings[0][0]
+            new = sorted({i for k, i in closings if stretch.times[k] - stretch.times[first] <= TOGETHER})
+            old = [i for i in np.flatnonzero(closed[first]).tolist() if i not in new]
+            closings = [one for one in closings if stretch.times[one[0]] - stretch.times[first] > TOGETHER]
+            if (impact := self._impact(stretch, first, old, new)) is not None:
                 yield impact
 
-    def _closing(self, i: int, low: float, high: float) -> float:
-        """When a contact closes between two times."""
-
-        def gap(time: float) -> float:
-            width, _, _ = self.contact(i, self.state(time))
-            return float(width)
-
-        # One time by itself is rounded otherwise than in an array of them.
-        return float(brentq(gap, low, high, xtol=1e-16)) if gap(low) > 0.0 > gap(high) else high
-
-    def _over(self, start: float, end: float) -> float:
-        """When the contacts press no more than at rest."""
-        weight = PRESSED * self.unit.body.mass * self.support.gravity
-        steps = self.motion.way.ts
-        pressed = False
-        for time in steps[(steps > start) & (steps <= min(end, start + LONGEST))].tolist():
-            force = sum(normal for normal, _ in self.motion.forces(time))
-            if pressed and force < weight:
-                return float(time)
-            pressed = pressed or force > weight
-        return min(end, start + LONGEST)
-
-    def _impact(self, at: float, new: int, last: float, law: str) -> TrueImpact | None:
-        """The impact of a contact that closes; None where it comes too slowly."""
-        unit, before = self.unit, self.state(at)
-        (gap, _, _), (_, rate, _) = self.contact(1 - new, before), self.contact(new, before)
-        approach, stood = -float(rate), float(gap) <= 0.0
+    def _impact(self, stretch: _Stretch, first: int, old: list[int], new: list[int]) -> TrueImpact | None:
+        """The impact of some points that close at a step; None where they come too slowly."""
+        load = stretch.rows[first : np.searchsorted(stretch.times, stretch.times[first] + LONGEST), 13]
+        pressed = int((load > PRESSED).argmax())
+        over = np.flatnonzero(load[pressed:] < PRESSED)
+        last = first + (pressed + int(over[0]) if len(over) else len(load) - 1)
+        rows = stretch.rows[[first, last]]
+        matrices = rotations(rows[:, 3:7])
+        arms = np.einsum("tij,pj->tpi", matrices, self.points)
+        # Velocities (2, points, 3) right before and after it.
+        moves = rows[:, None, 7:10] + np.cross(rows[:, None, 10:13], arms)
+        approach = float(-moves[0, new, 2].mean())
         if approach <= SLOWEST:
             return None
-        after, least = self.state(self._over(at, last)), PART * approach
-        (_, old_rate, _), (_, new_rate, slip) = self.contact(1 - new, after), self.contact(new, after)
-        slips = abs(float(slip)) > least + 10.0 * REGULARISATION
-        body = self._body(before, new, stood)
-        twist, twist_after = (Twist(float(one.vx), float(one.vy), float(one.omega)) for one in (before, after))
+        least, struck = PART * approach, arms[0, new].mean(0)
+        after, slips = moves[1, :, 2], np.hypot(*moves[1, new, :2].mean(0)) > least
+        stood = bool(old) and float(after[old].mean()) <= least
+        tensors = matrices @ self.inertia @ matrices.swapaxes(1, 2)
+        energies = 0.5 * self.scene.mass * np.square(rows[:, 7:10]).sum(1)
+        energies += 0.5 * np.einsum("ti,tij,tj->t", rows[:, 10:13], tensors, rows[:, 10:13])
+        vectors = [tuple(part) for row in rows.tolist() for part in (row[7:10], row[10:13])]
         return TrueImpact(
-            stamp=round(at * NANOSECONDS),
-            body=unit.name,
-            mode=_mode(stood and float(old_rate) <= least, float(new_rate) <= least, slips),
-            old=unit.contacts[1 - new] if stood else (),
-            new=unit.contacts[new],
+            stamp=round(float(stretch.times[first]) * NANOSECONDS),
+            body=self.unit.name,
+            mode=_mode(stood, float(after[new].mean()) <= least, bool(slips)),
+            old=tuple(old),
+            new=tuple(new),
             approach=approach,
-            half_distance=half_distance(body),
-            energy_lost=_energy(body, twist) - _energy(body, twist_after),
-            linear_before=ACROSS.vector(twist.vx, twist.vy),
-            angular_before=ACROSS.spin(twist.omega),
-            linear_after=ACROSS.vector(twist_after.vx, twist_after.vy),
-            angular_after=ACROSS.spin(twist_after.omega),
-            border=border_of(solve_impact(body, twist, law)),
+            half_distance=float(np.linalg.norm(0.5 * (struck - arms[0, old].mean(0)) if old else struck)),
+            energy_lost=float(energies[0] - energies[1]),
+            linear_before=vectors[0],
+            angular_before=vectors[1],
+            linear_after=vectors[2],
+            angular_after=vectors[3],
+            border=self._border(rows[0], old, new),
         )
 
-    def _body(self, state: PlanarState, new: int, stood: bool) -> TwoPointBody:
-        """The unit as an impact law sees it."""
-        body, (c, s) = self.unit.body, (cos(state.angle), sin(state.angle))
+    def _border(self, row: NDArray[np.float64], old: list[int], new: list[int]) -> float:
+        """As `border_of`, of a unit that turns about its edges along the deck; inf of another."""
+        _, other = self.unit.contacts
+        if np.hypot(row[11], row[12]) > ACROSS_ONLY * abs(row[10]) or not row[10]:
+            return inf
+        angle, body = _States(self.unit, np.zeros(1), row[None, :13]).across(0.0).angle, self.unit.body
+        c, s = cos(angle), sin(angle)
         contacts = []
-        for contact in (body.old, body.new):
-            assert contact is not None
-            x, y = c * contact.x - s * contact.y, s * contact.x + c * contact.y
-            contacts.append(Contact(x, y, contact.friction, (0.0, 1.0), contact.restitution))
-        return TwoPointBody(body.mass, body.inertia, contacts[1 - new] if stood else None, contacts[new])
+        for one in (body.old, body.new):
+            assert one is not None
+            x, y = c * one.x - s * one.y, s * one.x + c * one.y
+            contacts.append(Contact(x, y, one.friction, (0.0, 1.0), one.restitution))
+        if not set(new) & set(other):
+            contacts.reverse()
+        seen = TwoPointBody(body.mass, body.inertia, contacts[0] if old else None, contacts[1])
+        return border_of(solve_impact(seen, Twist(float(row[8]), float(row[9]), float(row[10])), self.scene.law))
 
 
 def _mode(old_stays: bool, new_stays: bool, slips: bool) -> Mode:
@@ -202,9 +347,3 @@ def _mode(old_stays: bool, new_stays: bool, slips: bool) -> Mode:
     if old_stays:
         return Mode.SLIDE if slips else Mode.STOP
     return Mode.PIVOT_SLIDE if slips else Mode.PIVOT
-
-
-def _energy(body: TwoPointBody, twist: Twist) -> float:
-    """Kinetic energy relative to the support, in J."""
-    vx, vy, omega = twist
-    return 0.5 * (body.mass * (vx * vx + vy * vy) + body.inertia * omega * omega)

@@ -88,6 +88,20 @@ def waves_of(state: SeaState, seed: int, count: int = WAVES) -> Waves:
     return Waves(frequencies, np.sqrt(2.0 * energies), rng.uniform(0.0, 2.0 * pi, count))
 
 
+def directions(waves: Waves, mean: float, spread: float, seed: int) -> NDArray[np.float64]:
+    """The directions (n,) of waves about a mean one, normally distributed, in degrees: each wave has its own.
+
+    Raises:
+        InputError: the mean is no angle, or the spread is out of its range.
+    """
+    if not -360.0 <= mean <= 360.0 or not 0.0 <= spread <= 60.0:
+        raise InputError(
+            f"the waves head {mean:g} degrees with a spread of {spread:g}; give angles, and 0 to 60 of spread"
+        )
+    found: NDArray[np.float64] = np.random.default_rng((seed, 1)).normal(mean, spread, len(waves.frequencies))
+    return found
+
+
 def checked(state: SeaState) -> SeaState:
     """The sea state, if its numbers make sense.
 

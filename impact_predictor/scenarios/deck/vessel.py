@@ -1,145 +1,190 @@
-"""Decks as supports that move in their transverse plane: of a vessel that answers to waves from the side, or recorded.
+"""How a vessel answers to waves, and its deck in a sea, or a recorded one.
 
 A response is a complex number for each frequency: what it multiplies the amplitude of a wave by, and by how much it
-leads the surface at the origin. Waves travel towards +y of the vessel (to port) in deep water, so the surface is
-amplitude * exp(i (frequency t - k y)) with the wave number k = frequency^2 / g. Roll is about +x and raises port.
+leads the surface at the origin. Waves travel in deep water in a direction b, counted from the bow to port: 0 comes from
+astern, 90 degrees from starboard, 180 from ahead. So the surface is amplitude * exp(i (frequency t - k (x cos b + y sin
+b))) with the wave number k = frequency^2 / g. Motions as in `motion`.
 """
 
 from __future__ import annotations
 
 import csv
 import os
-from itertools import pairwise
-from math import inf, pi
+from collections.abc import Callable
+from math import pi
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import make_interp_spline
 
 from ...bags.read import read_messages, topics
 from ...errors import InputError
 from ...mechanics.motion.support import MovingSupport, SupportMotion, sampled_support
 from ...ros.messages import ODOMETRY, MalformedMessage, decode_odometry
 from ...stamps import NANOSECONDS
+from .motion import ACROSS, AXES, DeckMotion
 from .sea import Waves
 
 
-class SecondOrder(NamedTuple):
-    """A damped oscillator: natural frequency (rad/s), part of the critical damping, and its answer to a slow drive.
+class Vessel(NamedTuple):
+    """A box of `length`, `breadth` and `draught` (m) that neither sails nor is moored, its deck `height` m above the
+    point about which it turns. Without a word it is a stiff pontoon.
 
-    `drive` is what drives it: the height of the "surface" (heave), its "slope" (roll), or the "drift" of the water to
-    and fro (sway).
+    Heave and pitch are the closed forms of Jensen, Mansour and Olsen, "Estimation of ship motions using closed-form
+    expressions", Ocean Engineering 31 (2004). Roll is a damped oscillator, of `roll_period` (s) and with `roll_damping`
+    of the critical one, that follows the plane which fits the surface across it best. Surge, sway and yaw are those of
+    the water that the box displaces (Newman, Marine Hydrodynamics, 1977, on bodies that are small beside the waves).
     """
 
-    frequency: float
-    damping: float
-    gain: float = 1.0
-    drive: str = "surface"
+    length: float = 24.0
+    breadth: float = 10.0
+    draught: float = 1.2
+    roll_period: float = 4.0
+    roll_damping: float = 0.3
+    height: float = 1.0
 
-    def at(self, frequencies: NDArray[np.float64], gravity: float) -> NDArray[np.complex128]:
-        ratio = frequencies / self.frequency
-        answer: NDArray[np.complex128] = np.divide(self.gain, 1.0 - ratio * ratio + 2j * self.damping * ratio)
-        if self.drive == "slope":
-            return answer * (-1j * frequencies**2 / gravity)
-        return answer * -1j if self.drive == "drift" else answer
+    def responses(
+        self, frequencies: NDArray[np.float64], heading: NDArray[np.float64], gravity: float
+    ) -> NDArray[np.complex128]:
+        """The responses (n, 6) to waves of some frequencies (rad/s) in some directions (degrees)."""
+        k, b = frequencies**2 / gravity, np.radians(heading)
+        # A wave straight from the side or from ahead moves nothing the other way.
+        cosine, sine = (np.where(np.abs(part) < 1e-12, 0.0, part) for part in (np.cos(b), np.sin(b)))
+        along, across, deep = 0.5 * k * self.length * cosine, 0.5 * k * self.breadth * sine, k * self.draught
+        width = k * self.breadth
+        damping = 4.0 * np.square(np.sin(0.5 * width) * np.exp(-deep)) / width
+        # Their force is that of a strip that moves against the surface, and its size is their f.
+        strip = np.exp(-deep * np.abs(cosine)) * (1.0 - deep + 1j * damping) / (1.0 - 2.0 * deep + 1j * damping)
+        heave = strip * _mean(along)
+        pitch = strip * 1j * k * cosine * _slope(along)
+        ratio = frequencies * self.roll_period / (2.0 * pi)
+        oscillator = 1.0 / (1.0 - ratio * ratio + 2j * self.roll_damping * ratio)
+        roll = -1j * k * sine * np.exp(-deep) * _slope(across) * _mean(along) * oscillator
+        drift = -1j * (1.0 - np.exp(-deep)) / deep
+        water = drift * _mean(along) * _mean(across)
+        long, wide = self.length**2, self.breadth**2
+        turn = (long * _slope(along) * _mean(across) - wide * _slope(across) * _mean(along)) / (long + wide)
+        yaw = -1j * k * sine * cosine * drift * turn
+        return np.stack([water * cosine, water * sine, heave, roll, pitch, yaw], axis=1)
+
+
+def _mean(x: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The mean of cos over -x..x."""
+    found: NDArray[np.float64] = np.sinc(x / pi)
+    return found
+
+
+def _slope(x: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The slope of the straight line that fits sin best over -x..x."""
+    safe = np.where(np.abs(x) < 1e-2, 1.0, x)
+    return np.where(safe == x, 3.0 * (np.sin(safe) - safe * np.cos(safe)) / safe**3, 1.0 - 0.1 * x * x)
 
 
 class ResponseTable(NamedTuple):
-    """A response amplitude operator at increasing frequencies (rad/s): amplitude per wave amplitude, and phase (rad).
+    """The responses (n, 6) of a vessel at increasing frequencies (n,) in rad/s, to waves from where they come.
 
-    Between them it is linear in the complex plane; outside it is that of the first or last one.
+    Between them they are linear in the complex plane; outside they are the first or last ones. The deck lies `height` m
+    above the point of which they are.
     """
 
-    frequencies: tuple[float, ...]
-    amplitudes: tuple[float, ...]
-    phases: tuple[float, ...]
+    frequencies: NDArray[np.float64]
+    answers: NDArray[np.complex128]
+    height: float
 
-    def at(self, frequencies: NDArray[np.float64], gravity: float) -> NDArray[np.complex128]:
-        answers = np.array(self.amplitudes) * np.exp(1j * np.array(self.phases))
-        found: NDArray[np.complex128] = np.interp(frequencies, self.frequencies, answers)
-        return found
-
-
-PONTOON_ROLL: Final = SecondOrder(2.0 * pi / 4.0, 0.3, 0.6, "slope")
-"""A pontoon narrower than the waves takes a part of their slope."""
-
-
-class Vessel(NamedTuple):
-    """The responses of a vessel in roll (rad per m), heave and sway (m per m), of the point about which it rolls.
-
-    The deck lies `height` m above that point. Without a word it is a stiff pontoon of some ten metres.
-    """
-
-    roll: SecondOrder | ResponseTable = PONTOON_ROLL
-    heave: SecondOrder | ResponseTable = SecondOrder(2.0 * pi / 3.0, 0.5, 1.0, "surface")
-    sway: SecondOrder | ResponseTable = SecondOrder(2.0 * pi / 3.0, 0.7, 1.0, "drift")
-    height: float = 1.0
+    def responses(
+        self, frequencies: NDArray[np.float64], heading: NDArray[np.float64], gravity: float
+    ) -> NDArray[np.complex128]:
+        """The responses at other frequencies."""
+        columns = [np.interp(frequencies, self.frequencies, answer) for answer in self.answers.T]
+        return np.stack(columns, axis=1)
 
 
 class RecordedDeck(NamedTuple):
-    """A recorded deck; its time counts from the first sample, and it lasts `duration` s."""
+    """A recorded deck; its time counts from the first sample, and it lasts `duration` s.
 
-    support: MovingSupport
+    Its `motion` in all axes, and the `plane` in which it rolls, sways and heaves alone.
+    """
+
+    motion: DeckMotion
+    plane: MovingSupport
     duration: float
     topic: str
 
 
-def deck_in(waves: Waves, vessel: Vessel, gravity: float = 9.81) -> MovingSupport:
-    """The vessel's deck in a sea from the side, in its y-z plane: x of the support is y of the deck, y is z."""
+def deck_in(
+    waves: Waves, vessel: Vessel | ResponseTable, heading: float | NDArray[np.float64] = 90.0, gravity: float = 9.81
+) -> DeckMotion:
+    """The vessel's deck in a sea whose waves travel in a direction (degrees), or each in its own."""
     frequencies = waves.frequencies
-    swings = waves.amplitudes * np.exp(1j * waves.phases)
-    places = np.stack([r.at(frequencies, gravity) * swings for r in (vessel.roll, vessel.sway, vessel.heave)], axis=1)
-    rates = 1j * frequencies[:, None] * places
-    moves = np.hstack([places, rates, 1j * frequencies[:, None] * rates])
-    # The real part of each complex swing times exp(i frequency t): all motions share its sine and cosine.
-    parts = np.concatenate([moves.real, -moves.imag])
+    answers = vessel.responses(frequencies, np.broadcast_to(heading, frequencies.shape), gravity)
+    swings = answers * (waves.amplitudes * np.exp(1j * waves.phases))[:, None]
+    period, sections = 2.0 * pi / float(frequencies.max()), _harmonics(frequencies, swings[:, ACROSS])
 
-    def motion(time: Any) -> SupportMotion:
+    def plane(time: Any) -> SupportMotion:
+        (roll, sway, heave), (roll_rate, sway_rate, heave_rate), (roll_up, sway_up, heave_up) = sections(time)
+        return SupportMotion(roll, roll_rate, roll_up, sway, heave, sway_rate, heave_rate, sway_up, heave_up)
+
+    alone = not swings[:, [k for k in range(len(AXES)) if k not in ACROSS]].any()
+    support = MovingSupport(plane, period, gravity, (0.0, vessel.height)) if alone else None
+    return DeckMotion(_harmonics(frequencies, swings), period, gravity, vessel.height, support)
+
+
+def _harmonics(frequencies: NDArray[np.float64], swings: NDArray[np.complex128]) -> Callable[[Any], Any]:
+    """The sums of the real parts of swings (n, c) times exp(i frequency t), their rates and accelerations, by the time
+    or an array of times.
+    """
+    rates = 1j * frequencies[:, None] * swings
+    moves = np.hstack([swings, rates, 1j * frequencies[:, None] * rates])
+    # All motions share the sine and cosine.
+    parts, count = np.concatenate([moves.real, -moves.imag]), swings.shape[1]
+
+    def values(time: Any) -> Any:
         turns = np.multiply.outer(np.asarray(time, dtype=float), frequencies)
         both = np.concatenate([np.cos(turns), np.sin(turns)], axis=-1)
         # Not as a product of matrices: its threads would wait for each other on a busy machine.
         now = np.einsum("...i,ij->j...", both, parts)
         # Numbers at a single time are Python's: they go through motions whose steps are too short for numpy.
-        roll, sway, heave, roll_rate, sway_rate, heave_rate, *accelerations = now if now.ndim > 1 else now.tolist()
-        roll_up, sway_up, heave_up = accelerations
-        return SupportMotion(roll, roll_rate, roll_up, sway, heave, sway_rate, heave_rate, sway_up, heave_up)
+        return now.reshape(3, count, *now.shape[1:]) if now.ndim > 1 else now.reshape(3, count).tolist()
 
-    return MovingSupport(motion, 2.0 * pi / float(frequencies.max()), gravity, (0.0, vessel.height))
+    return values
 
 
-def read_vessel(path: str, height: float) -> Vessel:
-    """A vessel of tables in a CSV file: frequency, roll, roll_phase, heave, heave_phase, sway, sway_phase.
+def read_vessel(path: str, height: float) -> ResponseTable:
+    """A vessel of tables in a CSV file: frequency, and of each of the `AXES` that it has two columns, as in roll and
+    roll_phase.
 
     The first line names the columns; units are rad/s, rad/m, m/m and rad.
 
     Raises:
         InputError: the file cannot be read, or its numbers are no tables.
     """
-    names = ("frequency", *(f"{motion}{part}" for motion in ("roll", "heave", "sway") for part in ("", "_phase")))
     try:
         with Path(path).open(newline="", encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
-        columns: dict[str, Any] = {name: tuple(float(row[name]) for row in rows) for name in names}
+        names = ["frequency", *(f"{axis}{part}" for axis in AXES for part in ("", "_phase") if axis in rows[0])]
+        columns = {name: np.array([float(row[name]) for row in rows]) for name in names}
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror or error}") from error
-    except (KeyError, TypeError, ValueError, csv.Error) as error:
-        raise InputError(f"{path} is no table of responses ({error}); give numbers under {','.join(names)}") from error
-    frequencies = columns["frequency"]
-    finite = all(-inf < number < inf for column in columns.values() for number in column)
-    if len(rows) < 2 or not finite or not all(0.0 < one < two for one, two in pairwise(frequencies)):
+    except (IndexError, KeyError, TypeError, ValueError, csv.Error) as error:
+        wanted = "frequency, and an amplitude and a phase for each motion, as in roll,roll_phase"
+        raise InputError(f"{path} is no table of responses ({error}); give numbers under {wanted}") from error
+    frequencies, answers = columns["frequency"], np.zeros((len(rows), len(AXES)), dtype=complex)
+    for number, axis in enumerate(AXES):
+        if axis in columns:
+            answers[:, number] = columns[axis] * np.exp(1j * columns[f"{axis}_phase"])
+    finite = all(np.isfinite(column).all() for column in columns.values())
+    if len(rows) < 2 or not finite or not frequencies[0] > 0.0 or not (np.diff(frequencies) > 0.0).all():
         raise InputError(f"{path}: give finite numbers at two or more frequencies above 0, in increasing order")
-    roll, heave, sway = (
-        ResponseTable(frequencies, columns[motion], columns[f"{motion}_phase"]) for motion in ("roll", "heave", "sway")
-    )
-    return Vessel(roll, heave, sway, height)
+    return ResponseTable(frequencies, answers, height)
 
 
 def read_deck(path: str | os.PathLike[str], topic: str = "", gravity: float = 9.81) -> RecordedDeck:
-    """The deck of a bag's odometry in its transverse plane.
+    """The deck of a bag's odometry.
 
-    Roll is the angle about the deck's x axis, sway the place across its mean heading and heave the height, both from
-    the first sample on; pitch, yaw and surge are left out. Without `topic` the bag's only nav_msgs/Odometry is taken.
+    Its place counts from the first sample, its yaw, surge and sway from its mean heading; splines of degree 5 go
+    through the samples. Without `topic` the bag's only nav_msgs/Odometry is taken.
 
     Raises:
         InputError: the bag cannot be read, or has no such samples.
@@ -164,8 +209,18 @@ def read_deck(path: str | os.PathLike[str], topic: str = "", gravity: float = 9.
     x, y, z, w = np.array([sample.orientation for sample in samples]).T
     places = np.array([sample.position for sample in samples])
     roll = np.unwrap(np.arctan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y)))
-    heading = np.arctan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+    pitch = np.arcsin(np.clip(2.0 * (w * y - z * x), -1.0, 1.0))
+    heading = np.unwrap(np.arctan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)))
     mean = np.angle(np.exp(1j * heading).mean())
-    moved = places - places[0]
-    sway = np.cos(mean) * moved[:, 1] - np.sin(mean) * moved[:, 0]
-    return RecordedDeck(sampled_support(times, roll, sway, moved[:, 2], gravity), float(times[-1]), topic)
+    moved, c, s = places - places[0], np.cos(mean), np.sin(mean)
+    surge, sway, heave = c * moved[:, 0] + s * moved[:, 1], c * moved[:, 1] - s * moved[:, 0], moved[:, 2]
+    plane = sampled_support(times, roll, sway, heave, gravity)
+    yaw = heading - mean - 2.0 * pi * np.round((heading[0] - mean) / (2.0 * pi))
+    spline = make_interp_spline(times, np.column_stack([surge, sway, heave, roll, pitch, yaw]), k=5)
+    splines = spline, spline.derivative(), spline.derivative(2)
+
+    def axes(at: NDArray[np.float64]) -> NDArray[np.float64]:
+        return np.array([one(np.clip(at, times[0], times[-1])).T for one in splines])
+
+    motion = DeckMotion(axes, plane.period, gravity)
+    return RecordedDeck(motion, plane, float(times[-1]), topic)

@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-from math import cos, pi, sin
+from math import cos, exp, hypot, pi, radians, sin
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from harmonic_deck import Wave, harmonic_support
 from touchdowns import SAMPLE
 
 from impact_predictor.bags.write import BagWriter
 from impact_predictor.errors import InputError
 from impact_predictor.ros.messages import ODOMETRY, encode_odometry
 from impact_predictor.scenarios.deck.sea import SeaState, Waves, waves_of
-from impact_predictor.scenarios.deck.vessel import ResponseTable, SecondOrder, Vessel, deck_in, read_deck, read_vessel
+from impact_predictor.scenarios.deck.vessel import ResponseTable, Vessel, deck_in, read_deck, read_vessel
+from impact_predictor.scenarios.sensors import rotated, rotations
 
 G = 9.81
-NONE = ResponseTable((0.1, 10.0), (0.0, 0.0), (0.0, 0.0))
 TIMES = np.linspace(0.0, 300.0, 1001)
 COLUMNS = "frequency,roll,roll_phase,heave,heave_phase,sway,sway_phase"
 
@@ -30,52 +29,90 @@ def one_wave(frequency: float, amplitude: float = 1.0, phase: float = 0.0) -> Wa
     return Waves(np.array([frequency]), np.array([amplitude]), np.array([phase]))
 
 
-def test_a_second_order_response_solves_its_equation() -> None:
-    # x'' + 2 z w0 x' + w0^2 x = gain w0^2 cos(w t): the deck's own derivatives, put into it.
-    natural, damping, gain, frequency = 1.3, 0.2, 0.8, 0.9
-    vessel = Vessel(NONE, SecondOrder(natural, damping, gain), NONE, height=0.0)
-    motion = deck_in(one_wave(frequency, 2.0, 0.4), vessel).motion(TIMES)
-    left = motion.ay + 2.0 * damping * natural * motion.vy + natural**2 * motion.y
-    assert left == pytest.approx(gain * natural**2 * 2.0 * np.cos(frequency * TIMES + 0.4), abs=1e-12)
+def answers(vessel: Vessel | ResponseTable, frequency: float, heading: float) -> Any:
+    return vessel.responses(np.array([frequency]), np.array([heading]), G)[0]
 
 
-def test_a_slow_wave_is_followed_by_the_surface_its_slope_and_its_drift() -> None:
-    # Far below the natural frequencies, with k = w^2 / g and the wave towards port.
-    frequency, amplitude = 1e-2, 3.0
-    system = SecondOrder(50.0, 0.1)
-    vessel = Vessel(system._replace(drive="slope"), system, system._replace(drive="drift"), 0.0)
-    motion = deck_in(one_wave(frequency, amplitude), vessel).motion(TIMES)
+@pytest.mark.parametrize("heading", [0.0, 30.0, 90.0, 180.0, 240.0])
+def test_a_long_wave_carries_the_vessel_as_it_carries_the_water(heading: float) -> None:
+    frequency = 0.02
+    k, c, s = frequency**2 / G, cos(radians(heading)), sin(radians(heading))
+    # The water goes round; the surface a cos(w t - k (x c + y s)) slopes ahead and to port; its drift does not turn.
+    expected = [-1j * c, -1j * s, 1.0, -1j * k * s, 1j * k * c, -1j * k * s * c * -1j * (100.0 - 4.0) / 104.0]
+    found = answers(Vessel(length=10.0, breadth=2.0, roll_period=0.1), frequency, heading)
+    assert found[:5] == pytest.approx(expected[:5], rel=1e-3, abs=1e-9)
+    assert found[5] == pytest.approx(expected[5], rel=1e-3, abs=1e-9)
+
+
+def test_heave_and_pitch_have_the_printed_amplitudes() -> None:
+    # Jensen, Mansour and Olsen (2004) at no speed, written out: F and G of the force, and eta.
+    length, breadth, draught, frequency, heading = 80.0, 18.0, 5.0, 0.7, 150.0
     k = frequency**2 / G
-    # eta = a cos(w t - k y): at y = 0 its slope is a k sin(w t), and the water drifts with a sin(w t).
-    # The system is 2 damping w / w0 behind.
-    assert motion.y == pytest.approx(amplitude * np.cos(frequency * TIMES), abs=2e-4)
-    assert motion.angle == pytest.approx(amplitude * k * np.sin(frequency * TIMES), abs=1e-8)
-    assert motion.x == pytest.approx(amplitude * np.sin(frequency * TIMES), abs=2e-4)
+    effective = k * abs(cos(radians(heading)))
+    strip = 2.0 * sin(0.5 * k * breadth) * exp(-k * draught)
+    f = hypot(1.0 - k * draught, strip**2 / (k * breadth))
+    eta = 1.0 / hypot(1.0 - 2.0 * k * draught, strip**2 / (k * breadth))
+    x = 0.5 * effective * length
+    heave = exp(-effective * draught) * f * 2.0 / (effective * length) * sin(x)
+    pitch = exp(-effective * draught) * f * 24.0 / ((effective * length) ** 2 * length) * (sin(x) - x * cos(x))
+    found = np.abs(answers(Vessel(length, breadth, draught), frequency, heading))
+    assert found[2] == pytest.approx(eta * abs(heave), rel=1e-12)
+    assert found[4] == pytest.approx(eta * abs(pitch), rel=1e-12)
+
+
+def test_roll_swings_at_its_natural_period() -> None:
+    vessel = Vessel()
+    frequency = 2.0 * pi / vessel.roll_period
+    # At resonance an oscillator answers with 1 / (2 damping) of the slope, a quarter of a period later.
+    still = answers(vessel._replace(roll_period=1e-9), frequency, 90.0)[3]
+    assert answers(vessel, frequency, 90.0)[3] == pytest.approx(still / (2j * vessel.roll_damping), rel=1e-9)
+
+
+def test_waves_from_the_side_or_ahead_move_nothing_the_other_way() -> None:
+    waves = waves_of(SeaState(2.0, 6.0), 4, count=40)
+    for heading, still in ((90.0, (0, 4, 5)), (180.0, (1, 3, 5))):
+        deck = deck_in(waves, Vessel(), heading)
+        moves = np.abs(deck.axes(TIMES)).max(axis=(0, 2))
+        assert [k for k, most in enumerate(moves) if most == 0.0] == list(still)
+        assert (deck.plane is None) is (heading == 180.0)
 
 
 def test_a_table_is_met_at_its_frequencies_and_linear_between_them() -> None:
-    table = ResponseTable((0.5, 1.0), (0.2, 0.4), (0.0, 0.5 * pi))
-    at = table.at(np.array([0.3, 0.5, 0.75, 1.0, 2.0]), G)
-    assert at == pytest.approx([0.2, 0.2, 0.1 + 0.2j, 0.4j, 0.4j], abs=1e-15)
+    table = ResponseTable(np.array([0.5, 1.0]), np.array([[0.2] * 6, [0.4j] * 6]), 1.0)
+    at = table.responses(np.array([0.3, 0.5, 0.75, 1.0, 2.0]), np.zeros(5), G)
+    assert at == pytest.approx(np.outer([0.2, 0.2, 0.1 + 0.2j, 0.4j, 0.4j], np.ones(6)), abs=1e-15)
 
 
-def test_the_deck_is_the_sum_of_its_waves_above_the_axis_of_the_roll() -> None:
-    waves, vessel = waves_of(SeaState(2.0, 6.0), 4, count=40), Vessel(height=3.0)
-    roll, sway, heave = (
-        [
-            Wave(amplitude * abs(answer), frequency, phase + np.angle(answer) + 0.5 * pi)
-            for frequency, amplitude, phase, answer in zip(*waves, response.at(waves.frequencies, G), strict=True)
-        ]
-        for response in (vessel.roll, vessel.sway, vessel.heave)
+def test_a_deck_in_a_quartering_sea_is_what_its_derivatives_say() -> None:
+    deck, step = deck_in(waves_of(SeaState(2.0, 6.0), 4), Vessel(height=3.0), 40.0), 1e-4
+    times = np.linspace(0.0, 60.0, 101)
+    early, now, late = (deck.at(times + shift) for shift in (-step, 0.0, step))
+    turns = [rotations(one.poses.orientation) for one in (early, now, late)]
+    assert rotated(turns[1], now.poses.linear) == pytest.approx(
+        (late.poses.position - early.poses.position) / (2.0 * step), abs=1e-7
     )
-    expected = harmonic_support(roll, sway, heave).at(0.0, 3.0)
-    deck = deck_in(waves, vessel)
-    assert deck.period == pytest.approx(expected.period)
-    for ours, theirs in zip(deck.motion(TIMES), expected.motion(TIMES), strict=True):
-        assert ours == pytest.approx(theirs, abs=1e-11)
+    spun = np.einsum("nij,nkj->nik", (turns[2] - turns[0]) / (2.0 * step), turns[1])
+    spin = np.stack([spun[:, 2, 1], spun[:, 0, 2], spun[:, 1, 0]], axis=1)
+    assert rotated(turns[1], now.poses.angular) == pytest.approx(spin, abs=1e-7)
+    assert now.turning == pytest.approx((late.poses.angular - early.poses.angular) / (2.0 * step), abs=1e-7)
+    speeds = [rotated(turn, one.poses.linear) for turn, one in zip(turns[::2], (early, late), strict=True)]
+    weight = np.array((0.0, 0.0, -G)) - (speeds[1] - speeds[0]) / (2.0 * step)
+    assert rotated(turns[1], now.gravity) == pytest.approx(weight, abs=1e-6)
+    # Ahead of the midships the plane across the vessel heaves with the pitch.
+    section, place = deck.across(5.0, (0.0, 0.0)).motion(times), rotated(turns[1], np.tile((5.0, 0.0, 0.0), (101, 1)))
+    assert np.array((section.x, section.y)) == pytest.approx((now.poses.position + place).T[1:], abs=1e-12)
+    assert np.abs(deck.axes(times)).max(axis=(0, 2)).min() > 1e-3
+
+
+def test_a_deck_across_waves_is_its_plane() -> None:
+    deck = deck_in(waves_of(SeaState(2.0, 6.0), 4), Vessel(height=3.0))
+    assert deck.plane is not None
+    motion, state, felt = deck.plane.motion(TIMES), deck.at(TIMES), np.array(deck.plane.felt_exactly(TIMES))
+    assert np.array((motion.x, motion.y)) == pytest.approx(state.poses.position.T[1:], abs=1e-12)
+    assert felt[:2] == pytest.approx(state.gravity.T[1:], abs=1e-12)
+    assert felt[2:] == pytest.approx(np.stack([state.poses.angular[:, 0], state.turning[:, 0]]), abs=1e-12)
     # One time as well as an array of them, and what is felt from the polynomials.
-    assert deck.motion(7.0) == pytest.approx(expected.motion(7.0), abs=1e-11)
-    assert deck.felt(7.0) == pytest.approx(expected.felt_exactly(7.0), abs=1e-9)
+    assert deck.plane.felt(7.0) == pytest.approx(deck.plane.felt_exactly(7.0), abs=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -116,9 +153,11 @@ def test_roll_sway_and_heave_come_back(tmp_path: Path, heading: float) -> None:
     assert deck.duration == pytest.approx(DURATION)
     assert deck.topic == "/deck/odom"
     times = np.linspace(1.0, 19.0, 37)
-    motion = deck.support.motion(times)
+    motion = deck.plane.motion(times)
     # A spline of degree 5 over samples every 0.1 s.
     assert np.array((motion.angle, motion.x, motion.y)) == pytest.approx(np.array(moved(times)), abs=1e-8)
+    assert deck.motion.axes(times)[0, [3, 1, 2]] == pytest.approx(np.array(moved(times)), abs=1e-8)
+    assert deck.motion.axes(times)[:, [0, 4, 5]] == pytest.approx(0.0, abs=1e-8)
     assert motion.ax == pytest.approx(-0.5 * FREQUENCY**2 * np.cos(FREQUENCY * times), abs=1e-6)
 
 
