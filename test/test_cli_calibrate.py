@@ -177,3 +177,19 @@ def test_cube_tosses_are_predicted_better_with_what_is_fitted_to_others(tmp_path
     # What all of them tell, and four times as much as a third of them scatters.
     assert answer["coefficients"]["friction"]["value"] == pytest.approx(0.173, abs=0.012)
     assert answer["coefficients"]["restitution"]["value"] == pytest.approx(0.322, abs=0.024)
+
+
+def test_the_friction_of_a_crate_that_slides_on_a_deck_is_told_as_an_interval(tmp_path: Path) -> None:
+    scene, bag = tmp_path / "scene.yaml", str(tmp_path / "deck.mcap")
+    given = find("config/deck_crate.yaml").read_text(encoding="utf-8")
+    scene.write_text(changed(given, {"contact.friction": NewValues((0.3,), "")}), encoding="utf-8")
+    sail = ["simulate", "deck", "--params", str(scene), "--duration", "60", "--rate", "20", "--deck-rate", "20"]
+    assert CliRunner().invoke(main, (*sail, "-o", bag)).exit_code == 0
+    result = run(bag, "--params", str(scene), "--json")
+    assert result.exit_code == 0
+    held, slid = json.loads(result.stdout)["friction_seen"][""]
+    assert 0.2 < held < 0.3 < slid < 0.4
+    assert result.stderr.startswith("note: nothing is fitted: no touchdowns can be fitted to")
+    said = run(bag, "--params", str(scene)).stdout
+    assert said == f"Friction of the body, from when it held and when it slid: {held:.3f} to {slid:.3f}.\n"
+    assert run(bag, "--params", str(scene), "-o", str(tmp_path / "fitted.yaml")).exit_code == 2

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from ..calibration.scene_file import NewValues
     from ..prediction.monitor import Monitor
     from ..prediction.scene import Scene
+    from ..prediction.watch.slips import FrictionSeen
 
 M = TypeVar("M", bound="Monitor")
 
@@ -85,7 +87,10 @@ def calibrate(
     bags = tuple(bags_of(bags))
     # How sure a prediction is matters to no fit.
     scenes = {body: scene._replace(samples=0, margins=False) for body, scene in scenes.items()}
-    _, results = read_all(bags, scenes, topics, Monitor)
+    monitors, results = read_all(bags, scenes, topics, Monitor)
+    seen = friction_seen(monitors)
+    told = {"friction_seen": {body: [one.held, one.slid if one.slid < inf else None] for body, one in seen.items()}}
+    said = [f"Friction of {body or 'the body'}, from when it held and when it slid: {seen[body]}." for body in seen]
     records = [touchdowns_of(result.settled, scenes) for result in results]
     asked = {"inertia": inertia, "exponent": speed_dependent, "radius": rounding}
     scores = [settled.score for result in results for settled in result.settled]
@@ -95,8 +100,15 @@ def calibrate(
     except InputError as error:
         if reasons := report.unscored(scores):
             counts = ", ".join(f"{count:,} {words(reason)}" for reason, count in reasons.items())
-            raise InputError(f"{error}; not scored are {counts}") from None
-        raise
+            error = InputError(f"{error}; not scored are {counts}")
+        if not seen or output or figure:
+            raise error from None
+        click.echo(f"note: nothing is fitted: {error}", err=True)
+        if as_json:
+            click.echo(json.dumps(told))
+        else:
+            say_fit((), said)
+        return status_of(bags, results)
     if output is not None:
         from ..calibration.scene_file import changes_of
 
@@ -106,10 +118,23 @@ def calibrate(
 
         write_calibration(figure, calibration, listed([Path(bag).name for bag in bags], 3))
     if as_json:
-        click.echo(json.dumps(report.as_json(calibration, bags, scores), allow_nan=False))
+        fields = report.as_json(calibration, bags, scores) | (told if seen else {})
+        click.echo(json.dumps(fields, allow_nan=False))
     else:
-        say_fit(report.tables(calibration), report.sentences(calibration, scores), Scene=output, Picture=figure)
+        sentences = [*report.sentences(calibration, scores), *said]
+        say_fit(report.tables(calibration), sentences, Scene=output, Picture=figure)
     return status_of(bags, results)
+
+
+def friction_seen(monitors: Iterable[Monitor]) -> dict[str, FrictionSeen]:
+    """What the watches have seen of the friction of each body, if anything."""
+    from ..prediction.watch.slips import FrictionSeen
+
+    found: dict[str, FrictionSeen] = {}
+    for watch in [monitor.watch for monitor in monitors if monitor.watch is not None]:
+        for body, seen in watch.friction_seen().items():
+            found[body] = seen.and_also(found.get(body, FrictionSeen()))
+    return {body: seen for body, seen in found.items() if seen != FrictionSeen()}
 
 
 def say_fit(tables: Iterable[Table], sentences: Iterable[str], **files: str | None) -> None:

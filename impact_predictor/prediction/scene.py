@@ -297,6 +297,11 @@ class Scene(NamedTuple):
         )
 
     @property
+    def held_by_friction(self) -> bool:
+        """Whether nothing else holds the body on its support, or pushes it."""
+        return not (self.lashings or self.chocks or self.wind or self.radius)
+
+    @property
     def needs_geometry(self) -> bool:
         """Whether the contact points come from a topic of their own."""
         return not (self.points or self.radius or (self.walking is not None and self.walking.robot is not None))

@@ -15,6 +15,7 @@ from ...stamps import NANOSECONDS
 from ..checks import REMEDIES
 from ..scene import Scene, Watching
 from ..types import Status, Touchdown, Vector3
+from .slips import FrictionSeen
 from .standing import BodyMotion, Standing
 
 
@@ -144,6 +145,9 @@ class WatchedBody:
         """What else raised it."""
         self.raised = 0
         """The stamp in ns of what is the later one of both."""
+        self.band: tuple[float, float] | None = None
+        """The parts used up of the margins against sliding with the highest and with the lowest friction."""
+        self.friction_seen = FrictionSeen()
         self._strike: tuple[int, Mode] | None = None
         rolls = scene.radius > 0.0
         self._verbs = ("rolls", "rolling", "spins", "spinning") if rolls else ("tips", "tipping", "slides", "sliding")
@@ -248,6 +252,8 @@ class WatchedBody:
             words.append("weighs nothing on the deck: it lifts off")
         elif used is not None:
             words.append(self._margins(used))
+            if self.band is not None and used.slide < 1.0 <= self.band[1]:
+                words.append(f"slides if friction is {self.scene.friction_band[0]:g}")
         past = ""
         if held is not None:
             rose = [self.why] if self.why else []
@@ -261,6 +267,7 @@ class WatchedBody:
         used, tilt, (tips, slides, impacts) = outlook.used or NOTHING, self.standing.tilt, per_hour
         margins = {
             "slide_ratio": f"{used.slide:.3f}",
+            **({} if self.band is None else {"slide_ratio_band": "{:.3f} to {:.3f}".format(*self.band)}),
             "tip_ratio": f"{used.tip:.3f}",
             "edge": used.edge or "none",
             "time_to_tip": f"{outlook.time_to_tip:.2f}",
@@ -270,6 +277,7 @@ class WatchedBody:
         }
         return {
             **(dict.fromkeys(margins, UNKNOWN) if outlook.used is None else margins),
+            "friction_seen": str(self.friction_seen),
             "tilt": UNKNOWN if tilt is None else f"{tilt:.4f}",
             "slides_per_hour": f"{slides:.1f}",
             "tips_per_hour": f"{tips:.1f}",

@@ -68,6 +68,11 @@ class Standing:
         self._rest(placed(scene))
 
     @property
+    def unseen(self) -> float:
+        """How far in m it may slide before that is seen."""
+        return SLID * self._touch
+
+    @property
     def solid(self) -> bool:
         return len(self._feet) > 1
 

@@ -17,10 +17,13 @@ from ...stamps import NANOSECONDS
 from ..scene import MovingDeck, Scene
 from ..types import Moment, Quaternion, Sample, Status, Touchdown, Vector3
 from .levels import ERROR, GRAVITY, NOTHING, OK, WARN, BodyOutlook, Level, Levels, MarginsUsed, WatchedBody, rank_of
-from .onset import Onset, OnsetCounts, first_times, motion_of, motions
+from .onset import FULL, Onset, OnsetCounts, first_times, motion_of, motions
+from .slips import FrictionSeen, Slips
+from .standing import BodyMotion
 
 if TYPE_CHECKING:
     from ..deck.forecast import DeckOutlook
+    from .stance import StandingBody
 
 __all__ = ["Level", "Report", "Watch"]
 
@@ -67,6 +70,11 @@ class Watch:
         self._onset = Onset([body.standing.stance for body in bodies])
         self._levels = Levels(watchings)
         self._counts = OnsetCounts(np.array([one.hysteresis for one in watchings]))
+        self._told = np.array([one.source == "odom" and one.held_by_friction for one in scenes.values()])
+        self._slips = Slips(self._told)
+        self._friction = np.array([scene.friction for scene in scenes.values()])
+        self._banded = [number for number, body in enumerate(bodies) if body.scene.friction_band]
+        self._band: tuple[list[StandingBody], Onset] | None = None
         self._timeout = int((bodies[0].scene.deck or MovingDeck()).timeout * NANOSECONDS)
         self._horizons = np.array([one.horizon for one in watchings])
         self._horizon = float(self._horizons.max())
@@ -101,6 +109,11 @@ class Watch:
         self._used = np.maximum(margins.slide, margins.tip)
         seconds = since / NANOSECONDS if since and since <= self._timeout else 0.0
         self._counts.update(margins.tip, margins.slide, seconds)
+        if self._told.any():
+            stands = [
+                one.status is Status.ACCEPTED and one.standing.motion is BodyMotion.STANDS for one in self._bodies
+            ]
+            self._slips.update(moment.stamp, margins.slide * self._friction, np.array(stands) & (margins.slide < FULL))
         if self._looked is None or not 0 <= moment.stamp - self._looked < FORECAST_EVERY:
             self._look_ahead(moment.stamp)
         for watched in self._bodies:
@@ -115,6 +128,9 @@ class Watch:
         watched = self._bodies[number]
         self._hear(number, relative.stamp)
         stance = watched.standing.update(relative, slack)
+        self._slips.unseen[number] = watched.standing.unseen
+        if watched.standing.slid.startswith("slides"):
+            self._slips.slid(number)
         if watched.struck(relative.stamp, touchdown):
             self._counts.struck(number)
         self._changed(number, stance)
@@ -148,6 +164,10 @@ class Watch:
         """The parts (n,) of the margins against sliding and tipping that are used up now, of all bodies in order."""
         return self._margins.slide, self._margins.tip
 
+    def friction_seen(self) -> dict[str, FrictionSeen]:
+        """What is seen of the friction of each body."""
+        return {name: self._slips.seen(number) for name, number in self._numbers.items()}
+
     def reports(self) -> tuple[Report, ...]:
         """A report of each body where a second of stamps is over or a level has changed since this was last asked."""
         now, last = self._now, self._reported
@@ -156,9 +176,24 @@ class Watch:
         self._levels.changed = False
         self._reported = now
         work, edges = self._onset.barriers(self._motion)
+        bands = self._bands()
+        for number, body in enumerate(self._bodies):
+            body.band, body.friction_seen = bands.get(number), self._slips.seen(number)
         return tuple(
             [self._report(number, now, float(work[number]), int(edges[number])) for number in range(len(self._bodies))]
         )
+
+    def _bands(self) -> dict[int, tuple[float, float]]:
+        """The parts used up of the margins against sliding with the highest and with the lowest friction."""
+        stances = [self._bodies[number].standing.stance for number in self._banded]
+        if not stances:
+            return {}
+        if self._band is None or any(one is not other for one, other in zip(stances, self._band[0], strict=True)):
+            ends = [self._bodies[number].scene.friction_band[::-1] for number in self._banded]
+            pairs = zip(stances, ends, strict=True)
+            self._band = stances, Onset([stance._replace(friction=f) for stance, its in pairs for f in its])
+        slides = self._band[1].margins(self._motion).slide.tolist()
+        return {number: (slides[2 * k], slides[2 * k + 1]) for k, number in enumerate(self._banded)}
 
     def _go_on(self, stamp: int) -> None:
         """Let time go on; where it has begun anew so does all that waits for a stamp."""

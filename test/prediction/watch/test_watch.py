@@ -16,8 +16,9 @@ from impact_predictor.mechanics.types import Mode
 from impact_predictor.prediction.checks import REMEDIES
 from impact_predictor.prediction.deck.forecast import DeckOutlook
 from impact_predictor.prediction.deck.motion import resting
-from impact_predictor.prediction.scene import MovingDeck, Scene, Watching
+from impact_predictor.prediction.scene import Chock, MovingDeck, Scene, Watching
 from impact_predictor.prediction.types import Quaternion, Status, Touchdown, Vector3
+from impact_predictor.prediction.watch.slips import NOISE
 from impact_predictor.prediction.watch.standing import CONFIRMED
 from impact_predictor.prediction.watch.watch import Level, Report, Watch
 
@@ -38,7 +39,7 @@ TALL = Scene(
 DRUM = TALL._replace(points=(), radius=0.3, edges=((0.0, -0.1, 0.0), (0.0, 0.1, 0.0)), place=(0.0, 0.0, 0.28))
 KEYS = [
     *("slide_ratio", "tip_ratio", "edge", "time_to_tip", "time_to_slide", "onset_probability"),
-    *("energy_to_topple", "tilt"),
+    *("energy_to_topple", "friction_seen", "tilt"),
     *("slides_per_hour", "tips_per_hour", "impacts_per_hour", "status"),
 ]
 LEVEL: Quaternion = (0.0, 0.0, 0.0, 1.0)
@@ -117,6 +118,47 @@ class Run:
 
 def touchdown(lead_time: float) -> Touchdown:
     return TOUCHDOWN._replace(lead_time=lead_time, mode=Mode.PIVOT)
+
+
+def listing(degrees: float) -> Vector3:
+    return 0.0, G * math.sin(math.radians(degrees)), -G * math.cos(math.radians(degrees))
+
+
+def test_friction_is_between_the_highest_list_on_which_a_unit_held_and_the_lowest_on_which_it_slid() -> None:
+    run = Run(TALL._replace(source="odom"))
+    # Of a size of 0.77 m, 4 times 5 mm are not seen, which half a second of 0.016 g makes.
+    ten, twelve, fourteen = [math.tan(math.radians(degrees)) for degrees in (10.0, 12.0, 14.0)]
+    unseen = 8.0 * 0.02 / 9.80665 + NOISE
+    run.deck(each=run.see)
+    assert run.report().values["friction_seen"] == "unknown"
+    for degrees in (4.0, 10.0, 0.0):
+        run.deck(listing(degrees), 3.0, run.see)
+    assert run.report().values["friction_seen"] == f"above {ten - unseen:.3f}"
+    run.deck(listing(14.0), 0.5, run.see)
+    run.deck(listing(14.0), 0.5, lambda: run.see((0.0, 0.1, 0.5)))
+    assert run.watch.friction_seen()["u0"] == pytest.approx((ten - unseen, fourteen + NOISE))
+    run.deck(listing(12.0), 4.5, lambda: run.see((0.0, 0.1, 0.5)))
+    assert run.watch.friction_seen()["u0"] == pytest.approx((twelve - unseen, fourteen + NOISE))
+    assert run.report().values["friction_seen"] == f"{twelve - unseen:.3f} to {fourteen + NOISE:.3f}"
+
+
+def test_nothing_is_seen_of_the_friction_of_a_unit_that_more_holds_or_that_is_not_measured() -> None:
+    chock = Chock((0.0, 0.3, 0.1), (0.0, -1.0, 0.0))
+    for scene in (TALL, TALL._replace(source="odom", chocks=(chock,))):
+        run = Run(scene)
+        run.deck(listing(10.0), 4.0, run.see if scene.source == "odom" else None)
+        assert run.report().values["friction_seen"] == "unknown"
+
+
+def test_a_band_of_friction_has_the_margin_of_both_ends_and_is_told_where_the_lowest_does_not_do() -> None:
+    run = Run(TALL._replace(friction_band=(0.2, 1.8)))
+    run.deck((0.0, 0.45 * G, -G))
+    report = run.report()
+    assert report.values["slide_ratio"] == "0.500"
+    assert report.values["slide_ratio_band"] == "0.250 to 2.250"
+    assert report.message.endswith("slides if friction is 0.2")
+    run.deck((0.0, 0.09 * G, -G))
+    assert not run.report().message.endswith("slides if friction is 0.2")
 
 
 def test_a_unit_without_a_sensor_is_watched_by_the_motion_of_the_deck_alone() -> None:
