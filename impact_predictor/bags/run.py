@@ -261,7 +261,12 @@ class Run:
             self._drawing.take_reports(reports)
         if self._write is not None:
             stamp = max(report.stamp for report in reports)
-            self._write("/diagnostics", DIAGNOSTIC_ARRAY, log_time, encode_reports(reports, stamp))
+            self._write(
+                "/diagnostics",
+                DIAGNOSTIC_ARRAY,
+                log_time,
+                encode_reports(reports, stamp, deck=self.monitor.deck_report(reports)),
+            )
 
     def _draw(self, stamp: int, log_time: int) -> None:
         if self._drawing is not None and self._write is not None:

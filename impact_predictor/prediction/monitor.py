@@ -171,6 +171,17 @@ class Monitor:
         """What the watch has to say now; mostly nothing."""
         return () if self.watch is None else self.watch.reports()
 
+    def deck_report(self, reports: tuple[Report, ...]) -> Report | None:
+        """What is to be said of a moving support besides reports on the bodies that it carries."""
+        if self.deck is None or not reports:
+            return None
+        forecast = self.deck.forecast
+        doubts = [*self.deck.doubts(), *([] if forecast is None else [f"forecast: {forecast.value}"])]
+        first = reports[0]
+        return first._replace(
+            level=type(first.level).OK, body=self.deck.frames[1], message="; ".join(doubts), values=self.deck.values()
+        )
+
     def doubts(self) -> tuple[str, ...]:
         """What speaks against the parameters of a scene, as what is measured shows it, a sentence each."""
         found = [] if self.deck is None else list(self.deck.doubts())

@@ -15,7 +15,7 @@ from ..stamps import NANOSECONDS
 from .cdr import diagnostic_array
 from .diagnostics import Diagnostics, FeetReport, Refusal
 from .endpoints import Outlet, publisher
-from .messages.outputs import DIAGNOSTIC_ARRAY, MARKER_ARRAY, encode_reports, unit_status
+from .messages.outputs import DIAGNOSTIC_ARRAY, MARKER_ARRAY, encode_reports, report_statuses
 
 if TYPE_CHECKING:
     from ..prediction.watch.watch import Report
@@ -149,11 +149,11 @@ class Reporter:
         reports = self._due()
         if changed and self._outlet.listeners():
             statuses = [self.diagnostics.report(perf_counter())]
-            statuses += [unit_status(report, self._name) for report in reports]
+            statuses += report_statuses(reports, self._monitor.deck_report(reports), self._name)
             self._outlet.send(diagnostic_array(self._node.get_clock().now().nanoseconds, "", statuses))
         elif reports:
             stamp = max(report.stamp for report in reports)
-            self._outlet.send(encode_reports(reports, stamp, self._name))
+            self._outlet.send(encode_reports(reports, stamp, self._name, self._monitor.deck_report(reports)))
 
     def _due(self) -> tuple[Report, ...]:
         """The reports on the units that are due, if anybody listens."""

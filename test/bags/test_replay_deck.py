@@ -162,7 +162,8 @@ def test_a_bag_gives_what_the_monitor_gives_in_the_order_of_the_recording(
                         expected[f"{NODE}/{body}/{name}"].append((log_time, encoded))
         if reports := monitor.reports():
             stamp = max(report.stamp for report in reports)
-            expected["/diagnostics"].append((log_time, encode_reports(reports, stamp)))
+            data = encode_reports(reports, stamp, deck=monitor.deck_report(reports))
+            expected["/diagnostics"].append((log_time, data))
     monitor.finish()
     for topic, messages in expected.items():
         assert [(message.log_time, message.data) for message in read(output, topic)] == messages, topic

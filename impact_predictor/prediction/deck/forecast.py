@@ -10,7 +10,8 @@ twice as much. How unsure a forecast is its own past errors show, whole courses 
 from __future__ import annotations
 
 from collections import deque
-from typing import NamedTuple
+from enum import Enum
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +39,38 @@ SPACED = 8  # rows between two courses of errors that are kept: nearer ones are 
 COURSES = 48
 SINGLE = 51  # times at which a motion that is not learnt is looked at
 ENOUGH = 12  # courses from which a forecast is trusted
+
+
+LEADS: Final = (1.0, 2.0, 5.0, 10.0)
+"""s ahead at which forecasts are compared with what came."""
+
+_ROWS: Final = [round(lead / SECONDS) - 1 for lead in LEADS]
+_DECIDES: Final = 1  # the lead at which a forecast must be better than the simple answers
+
+
+class ForecastStatus(Enum):
+    """Whether a forecast is trusted, or why not, in words."""
+
+    LEARNING = "the sea is not learnt yet: it takes one to two minutes"
+    INTERRUPTED = "eight seconds of messages are needed after a jump or a gap"
+    NO_SKILL = "no better than the motion of now or the mean: it moves too little or without a period, or has changed"
+    TRUSTED = "trusted"
+
+
+class ForecastSkill(NamedTuple):
+    """How wrong forecasts of late were `LEADS` ahead, as root mean squares of the felt gravity in m/s^2, beside those
+    who expect that it stays (`persistence`), and its `mean`.
+    """
+
+    forecast: tuple[float, ...]
+    persistence: tuple[float, ...]
+    mean: tuple[float, ...]
+
+    @property
+    def skill(self) -> list[float]:
+        """The part of the mean square error that the better simple answer makes and the forecast does not."""
+        pairs = zip(self.forecast, map(min, self.persistence, self.mean), strict=True)
+        return [1.0 - (told / simple) ** 2 if simple > 0.0 else 0.0 for told, simple in pairs]
 
 
 class DeckOutlook(NamedTuple):
@@ -84,6 +117,9 @@ class WaveForecast:
         self._factors: NDArray[np.float64] | None = None
         self._bounds = np.zeros(width), np.zeros(width)
         self._courses: deque[NDArray[np.float64]] = deque(maxlen=COURSES)
+        self._squares: deque[NDArray[np.float64]] = deque(maxlen=COURSES)
+        self.skill: ForecastSkill | None = None
+        """What became of the forecasts of the last minutes; None until there are enough."""
         self.clear()
 
     def clear(self) -> None:
@@ -95,9 +131,14 @@ class WaveForecast:
         self._tick = self._new = 0
 
     @property
-    def is_trusted(self) -> bool:
-        """Whether it has seen enough to forecast, and of what became of its forecasts."""
-        return self._factors is not None and len(self._rows) >= ORDER and len(self._courses) >= ENOUGH
+    def status(self) -> ForecastStatus:
+        """Whether it has seen enough to forecast, and its forecasts were better than simple answers."""
+        if self._factors is None or self.skill is None:
+            return ForecastStatus.LEARNING
+        if len(self._rows) < ORDER:
+            return ForecastStatus.INTERRUPTED
+        is_worse = self.skill.skill[_DECIDES] <= 0.0 and self.skill.forecast[_DECIDES] > LEAST
+        return ForecastStatus.NO_SKILL if is_worse else ForecastStatus.TRUSTED
 
     def add(self, state: SupportState) -> None:
         """Take the next state."""
@@ -170,13 +211,25 @@ class WaveForecast:
         self._rows = np.concatenate([self._rows[-(ORDER + REACH) :], (row - self._origin)[None]])
         self._new += 1
         if self._made and self._made[0][0] + REACH == self._tick:
-            self._courses.append(self._rows[-REACH:] - self._made.popleft()[1])
+            _, told = self._made.popleft()
+            self._courses.append(self._rows[-REACH:] - told)
+            self._compare(told)
         if len(self._rows) <= ORDER:
             self._new = 0
         elif self._new == REFIT:
             self._fit()
         if self._factors is not None and self._tick % SPACED == 0 and len(self._rows) >= ORDER:
             self._made.append((self._tick, self._forecast()))
+
+    def _compare(self, told: NDArray[np.float64]) -> None:
+        """Learn what a forecast was worth, now that what it told has come."""
+        assert self._origin is not None
+        came, told = [self._felt(rows[None] + self._origin)[0][0] for rows in (self._rows[-REACH - 1 :], told)]
+        there = came[1:][_ROWS]
+        errors = np.stack([told[_ROWS] - there, came[0] - there, came.mean(axis=0) - there])
+        self._squares.append(np.square(errors).sum(axis=2))
+        if len(self._squares) >= ENOUGH:
+            self.skill = ForecastSkill(*np.sqrt(np.mean(self._squares, axis=0)).tolist())
 
     def _fit(self) -> None:
         """Learn the rows since the last fit."""

@@ -16,7 +16,7 @@ from .motion import MeanMotion, SupportState, ahead, between, later, resting
 from .window import END, SLOPE, TURNING, MotionWindow
 
 if TYPE_CHECKING:
-    from .forecast import DeckOutlook, WaveForecast
+    from .forecast import DeckOutlook, ForecastStatus, WaveForecast
     from .imu import DeckImu
 
 BOUNDS = (
@@ -183,12 +183,32 @@ class Deck:
         quarter of a wave, because nothing is known from them later. While nothing is known of the support (`last` is
         None) it counts as level and at rest.
         """
-        from .forecast import single
+        from .forecast import ForecastStatus, single
 
         last = self.last
-        if last is not None and self._waves is not None and self._waves.is_trusted:
+        if last is not None and self.forecast is ForecastStatus.TRUSTED and self._waves is not None:
             return self._waves.outlook(last.stamp, horizon)
         return single(last or resting(self._still), self._mean, horizon)
+
+    @property
+    def forecast(self) -> ForecastStatus | None:
+        """Whether the forecast of the sea is trusted, or why not; None where it is not asked for."""
+        return None if self._waves is None else self._waves.status
+
+    def values(self) -> dict[str, str]:
+        """What a report tells of the support: windows in s, and the skill and errors (m/s^2) of the forecast."""
+        found = {"window.linear": f"{self._linear.span:.3f}", "window.angular": f"{self._angular.span:.3f}"}
+        if self._waves is None:
+            return found
+        found["forecast"] = self._waves.status.name
+        skill = self._waves.skill
+        if skill is not None:
+            from .forecast import LEADS
+
+            told = {"skill": skill.skill, **{f"error.{name}": errors for name, errors in skill._asdict().items()}}
+            for name, numbers in told.items():
+                found |= {f"{name}.{lead:g}_s": f"{one:.3f}" for lead, one in zip(LEADS, numbers, strict=True)}
+        return found
 
     def _in_order(self, stamp: int, frames: tuple[str, str]) -> Status:
         last = None if self._seen is None else self._seen.stamp

@@ -148,9 +148,20 @@ def _landing_message(landing: Landing) -> str:
     return f"{name} has landed, time error {landing.history[-1][1] * 1e3:.1f} ms"
 
 
-def encode_reports(reports: Iterable[Report], nanoseconds: int, node: str = NODE) -> bytes:
-    """A diagnostic_msgs/DiagnosticArray with one status for each unit that a node watches, stamped in ns."""
-    return diagnostic_array(nanoseconds, "", [unit_status(report, node) for report in reports])
+def encode_reports(reports: Iterable[Report], nanoseconds: int, node: str = NODE, deck: Report | None = None) -> bytes:
+    """A diagnostic_msgs/DiagnosticArray with one status for each unit that a node watches and one for the deck, stamped
+    in ns.
+    """
+    return diagnostic_array(nanoseconds, "", report_statuses(reports, deck, node))
+
+
+def report_statuses(reports: Iterable[Report], deck: Report | None, node: str = NODE) -> list[StatusBytes]:
+    """The statuses of the units under watch, and of the deck that carries them."""
+    found = [unit_status(report, node) for report in reports]
+    if deck is not None:
+        pairs = pairs_of(deck.values)
+        found.append(diagnostic_status(deck.level, f"{node}/deck", deck.message, deck.body, pairs))
+    return found
 
 
 def unit_status(report: Report, node: str = NODE) -> StatusBytes:

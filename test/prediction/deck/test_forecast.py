@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 from vessel import read_vessel
 
-from impact_predictor.prediction.deck.forecast import REACH, STEP, DeckOutlook, WaveForecast
+from impact_predictor.prediction.deck.forecast import REACH, STEP, DeckOutlook, ForecastStatus, WaveForecast
 from impact_predictor.prediction.deck.motion import SupportState
 from impact_predictor.prediction.deck.tracker import Deck
 from impact_predictor.prediction.scene import MovingDeck
 from impact_predictor.prediction.types import Sample
-from impact_predictor.prediction.vectors import axes_of, to_body
+from impact_predictor.prediction.vectors import add, axes_of, to_body
 
 GRAVITY = (0.0, 0.0, -9.81)
 UP = (0.0, 0.0, 1.0)
@@ -136,7 +136,7 @@ def test_a_velocity_that_stays_hides_nothing_however_large_it_is(speed: float) -
     forecast = WaveForecast(GRAVITY, is_felt=False)
     for time in np.arange(0.0, 120.0, 0.1):
         forecast.add(state(float(time), GRAVITY, (0.0, 0.0, 0.0))._replace(velocity=(speed, 0.0, 0.0)))
-    assert forecast.is_trusted
+    assert forecast.status is ForecastStatus.TRUSTED
     gravity = forecast.outlook(120 * 10**9, 15.0).gravity
     assert gravity.reshape(-1, 3) == pytest.approx(np.tile(GRAVITY, (gravity.size // 3, 1)), abs=1e-15 * speed)
 
@@ -148,7 +148,7 @@ def test_a_leap_whose_squares_hide_all_else_is_no_error(speed: float) -> None:
         for time in np.arange(0.0, 120.0, 0.1):
             still = state(float(time), GRAVITY, (0.0, 0.0, 0.0))
             forecast.add(still._replace(velocity=(speed if time > 3.0 else 0.0, 0.0, 0.0)))
-    assert not forecast.is_trusted
+    assert forecast.status is not ForecastStatus.TRUSTED
 
 
 def test_a_forecast_stays_finite_where_nothing_repeats() -> None:
@@ -161,3 +161,43 @@ def test_a_forecast_stays_finite_where_nothing_repeats() -> None:
     assert all(np.isfinite(part).all() for part in outlook)
     assert len(outlook.times) == pytest.approx(REACH, abs=1)
     assert np.diff(outlook.times) == pytest.approx(STEP / 1e9)
+
+
+def sea(seconds: float, noise: float, change: float = 0.0) -> Iterator[SupportState]:
+    """A deck in waves about 7 s long, from which on a `change` it is thrown about."""
+    rng = np.random.default_rng(3)
+    waves = [(2.0 * np.pi / 7.0 * (1.0 + 0.05 * k), phase) for k, phase in enumerate(rng.uniform(0.0, 6.0, 5))]
+    for time in np.arange(0.0, seconds, 0.05).tolist():
+        roll = 0.02 * sum(float(np.sin(w * time + phase)) for w, phase in waves)
+        sway = 0.0 if not 0.0 < change <= time else 1.0
+        felt = add((0.0, 0.0, -9.81), (0.0, 9.81 * roll, 0.0))
+        yield state(time, add(felt, tuple(rng.normal(size=3).tolist()), noise + sway), (0.0, 0.0, 0.0))
+
+
+def test_the_skill_of_forecasts_is_that_of_errors_against_what_came() -> None:
+    forecast, told = WaveForecast(GRAVITY, is_felt=True), []
+    states = list(sea(400.0, 0.02))
+    for k, one in enumerate(states):
+        forecast.add(one)
+        if k > 6000 and k % 40 == 0:
+            told.append((k, forecast.outlook(one.stamp, 6.0)))
+    assert forecast.status is ForecastStatus.TRUSTED
+    assert forecast.skill is not None
+    errors = []
+    for k, outlook in told[:-3]:
+        there = np.interp(5.0, outlook.times, outlook.gravity.mean(0)[:, 1])
+        errors.append(there - states[k + 100].felt[1])
+    error = float(np.sqrt(np.mean(np.square(errors))))
+    assert error < 3.0 * forecast.skill.forecast[2] + 0.02
+    # Waves of a sum of sines: half of the time what is comes with the other sign.
+    assert forecast.skill.persistence[2] > forecast.skill.mean[2] > 3.0 * forecast.skill.forecast[2]
+    assert forecast.skill.skill[2] > 0.9
+
+
+def test_a_forecast_that_is_no_better_than_simple_answers_is_not_trusted_and_says_so() -> None:
+    noise = WaveForecast(GRAVITY, is_felt=True)
+    for one in sea(300.0, 0.02, change=100.0):
+        noise.add(one)
+    assert noise.status is ForecastStatus.NO_SKILL
+    noise.clear()
+    assert noise.status is ForecastStatus.INTERRUPTED
