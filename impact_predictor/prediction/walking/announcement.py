@@ -17,6 +17,7 @@ from .rest import falls
 from .trajectory import FootTrajectory
 
 AHEAD = 1.5  # a landing is announced when it is no further ahead than so many times as long as the point has come down,
+LEAST_DESCENT = 0.02  # ... and that for so many s,
 SURE = 0.01  # ... once its time has a standard deviation below so many s ...
 UNSURE = 2.0  # ... and kept until it has one that is so many times larger
 
@@ -88,19 +89,19 @@ class LandingAnnouncement:
         """Announce the landing that the filter shows, if that is sure enough, or withdraw what was announced."""
         filtered, scene, due = trajectory.filter, self._scene, self.due
         assert filtered is not None
-        level, gap = (
-            ground.level_at(trajectory.frames[-1].position if due is None else due.position),
-            filtered.rows[0][0],
-        )
+        # From a short descent its filter tells little, and not how little.
+        descended = (filtered.stamp - trajectory.top) / NANOSECONDS
+        if due is None and descended < LEAST_DESCENT:
+            return
+        level = ground.level_at(trajectory.frames[-1].position if due is None else due.position)
+        gap = filtered.rows[0][0]
         if gap < level.height:  # It has met no ground there.
             level = level.below(gap, sqrt(filtered.covariance[0]))
         found = self._estimator.estimate(filtered, level.raised(ground.sinks), ground.prior)
         most = SURE * (1.0 if due is None else UNSURE)
         # Where nobody knows the ground, a landing is told all the same, with the deviation that it then has.
         unsure = BEYOND * level.deviation / max(LEAST_RATE, -filtered.rows[0][1])
-        # From a short descent its filter tells little, and not how little.
-        descended = AHEAD * (filtered.stamp - trajectory.top) / NANOSECONDS
-        if found is not None and due is None and found.time > descended:
+        if found is not None and due is None and found.time > AHEAD * descended:
             found = None
         if found is None or found.time > scene.horizon or found.deviation**2 > most * most + unsure * unsure:
             if due is not None:

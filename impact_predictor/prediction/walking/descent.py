@@ -37,9 +37,11 @@ NEVER = 0.5  # landings of a kind that are taken to have been seen before any wa
 FURTHEST = 0.3  # s ahead beyond which no landing is looked for ...
 MIDDLE = 0.15  # ... and where the search for it begins at most
 STEPS = 4  # Gauss-Newton steps for a sample at most: the next begins where the last has ended
-EXACT = 2e-4  # a step in s that is small enough to be the last one
+EXACT = 5e-4  # a step in s that is small enough to be the last one
 FALLS = 3.0  # a point comes down when its rate is so many standard deviations below zero ...
 LEAST_RATE = 0.02  # ... and at least so many m/s
+UNLIKELY = 1e-3  # a kind whose odds are below that ...
+SAMPLES_LEFT_OUT = 3  # ... is not looked at for so many samples
 MEMORY_OF_SWING = 200  # samples of a descent that are remembered
 SHORT = 0.015  # s from the last frame in the air to its landing from which that can be told
 
@@ -255,34 +257,43 @@ class DescentEstimator:
         self._errors = LeadTimeErrors()
         self._times: list[float | None] = [None, None]
         self._told: deque[tuple[int, Cubic, Triangle, float, float, float, float]] = deque(maxlen=MEMORY_OF_SWING)
+        self._left_out = [0, 0]
         self._stamp = 0
 
     def rest(self) -> None:
         """Forget the descent: the point stands."""
         self._told.clear()
-        self._times = [None, None]
+        self._times, self._left_out = [None, None], [0, 0]
 
     def estimate(self, filtered: PointFilter, level: GroundLevel, prior: LandingPrior) -> Descent | None:
         """The landing of a point that comes down on a level; None of one that does not, or not before long."""
         (x, v, a, j), *_ = filtered.rows
         gap, unsure = (x - level.height, v, a, j), level.deviation**2
         if v > -max(LEAST_RATE, FALLS * sqrt(filtered.covariance[2])):
-            self._times = [None, None]
+            self._times, self._left_out = [None, None], [0, 0]
             return None
         passed = (filtered.stamp - self._stamp) / NANOSECONDS
         self._stamp = filtered.stamp
         found = []
         for k, (kind, share) in enumerate(zip(prior.kinds, prior.shares, strict=True)):
             start = self._times[k]
-            one = solution_of(kind, gap, filtered, unsure, None if start is None or start <= passed else start - passed)
+            start = self._times[k] = None if start is None or start <= passed else start - passed
+            if self._left_out[k] > 0:
+                self._left_out[k] -= 1
+                continue
+            one = solution_of(kind, gap, filtered, unsure, start)
             self._times[k] = None if one is None else one.time
             if one is not None:
                 found.append((one.evidence + log(share), k, one))
         if not found:
+            self._left_out = [0, 0]
             return None
         most, likelier, best = max(found)
         weights = [exp(evidence - most) for evidence, _, _ in found]
         whole = total(weights)
+        for weight, (_, k, _) in zip(weights, found, strict=True):
+            if weight < UNLIKELY:
+                self._left_out[k] = SAMPLES_LEFT_OUT
         strikes = total([weight for weight, (_, k, _) in zip(weights, found, strict=True) if k == STRIKE]) / whole
         spread = [one.variance + (one.time - best.time) ** 2 for _, _, one in found]
         variance = total([weight * each for weight, each in zip(weights, spread, strict=True)]) / whole

@@ -251,20 +251,22 @@ class FeetContacts(Contacts):
         # The ground goes down where nobody has stood yet; what nobody has stood on is where the scene has it.
         lowest = self._ground.lowest
         lowest, deep = (0.0, DEEP) if lowest is None else (min(0.0, lowest), STEP)
+        (ax, ay, az), (bx, by, bz), (cx, cy, cz) = axes
+        px, py, pz = position
         for i, arm in enumerate(geometry.points):
-            x, y, z = place = add(position, to_world(axes, arm))
+            u, v, w = arm
+            # The base, and its axes times the arm, written out: this is done for each point of each sample.
+            x, y, z = px + (u * ax + v * bx + w * cx), py + (u * ay + v * by + w * cy), pz + (u * az + v * bz + w * cz)
             if self._radii and self._articulated is None:  # that tells the lowest points itself
-                x, y, z = place = add(place, scene.normal, -self._radii[i])
+                x, y, z = add((x, y, z), scene.normal, -self._radii[i])
             gap = nx * x + ny * y + nz * z - scene.height
             if gap < lowest - DEEP_TOLERANCES * scene.tolerance - deep * sqrt(dot(arm, arm)):
-                gaps = [dot(scene.normal, add(position, to_world(axes, one))) for one in geometry.points]
-                self.depth = scene.height - min(gaps)
                 return Status.BELOW_GROUND
             velocity = rate = None
             if geometry.velocities:
                 velocity = add(linear, to_world(axes, add(cross(spin, arm), geometry.velocities[i])))
                 rate = nx * velocity[0] + ny * velocity[1] + nz * velocity[2]
-            frames.append(PointFrame(geometry.stamp, gap, rate, place, velocity))
+            frames.append(PointFrame(geometry.stamp, gap, rate, (x, y, z), velocity))
         return frames
 
     def _foot(self, number: int, stamp: int) -> Foot:
@@ -273,8 +275,11 @@ class FeetContacts(Contacts):
         points, dues = self._points[own], [due for due in self._dues[own] if due is not None]
         landed = [since for point in points if (since := point.landed) is not None]
         since = min(landed) if landed else max([point.since for point in points])
-        gaps = [point.trajectory.frames[-1].gap for point in points]
-        lowest = points[gaps.index(min(gaps))].trajectory
+        lowest = points[0].trajectory
+        for point in points[1:]:
+            if point.trajectory.frames[-1].gap < lowest.frames[-1].gap:
+                lowest = point.trajectory
+        frame = lowest.frames[-1]
         lead_time = speed = late = place = deviation = lands = strikes = None
         if dues:
             due = min(dues, key=attrgetter("stamp"))
@@ -291,13 +296,13 @@ class FeetContacts(Contacts):
             name=name,
             stands=bool(landed),
             since=since,
-            gap=lowest.frames[-1].gap,
+            gap=frame.gap,
             approach=-lowest.rate,
             lead_time=lead_time,
             landing_speed=speed,
             late=late,
             confirmed=self._forces.agree(name, bool(landed), stamp),
-            position=lowest.frames[-1].position,
+            position=frame.position,
             place=place,
             impulse=impulse,
             bound=bound,

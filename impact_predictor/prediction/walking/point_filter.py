@@ -104,12 +104,14 @@ class PointFilter:
             p32 - k3 * c2,
             p33 - k3 * c3,
         )
-        corrected = []
-        for row, value in zip(rows, measured, strict=True):
-            e = value - row[order]
-            x, v, a, j = row
-            corrected.append((x + k0 * e, v + k1 * e, a + k2 * e, j + k3 * e))
-        self.rows = corrected
+        e0, e1, e2, e3 = [value - row[order] for row, value in zip(rows, measured, strict=True)]
+        (x0, v0, a0, j0), (x1, v1, a1, j1), (x2, v2, a2, j2), (x3, v3, a3, j3) = rows
+        self.rows = [
+            (x0 + k0 * e0, v0 + k1 * e0, a0 + k2 * e0, j0 + k3 * e0),
+            (x1 + k0 * e1, v1 + k1 * e1, a1 + k2 * e1, j1 + k3 * e1),
+            (x2 + k0 * e2, v2 + k1 * e2, a2 + k2 * e2, j2 + k3 * e2),
+            (x3 + k0 * e3, v3 + k1 * e3, a3 + k2 * e3, j3 + k3 * e3),
+        ]
         return surprise
 
 

@@ -66,4 +66,5 @@ class LandingSchedule:
 
     def _after_planned(self, foot: str, stamp: int) -> int | None:
         """How many ns after the nearest planned landing of a foot a stamp is."""
-        return min([stamp - planned for planned in self._landings[foot]], key=abs, default=None)
+        landings = self._landings[foot]
+        return min([stamp - planned for planned in landings], key=abs) if landings else None

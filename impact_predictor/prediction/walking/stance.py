@@ -111,16 +111,16 @@ class FootPoint:
             announcement.learn(self.since, trajectory.frames[-self.arrival.age], ground)
         if changed:
             self._arriving = self._stopped = None
+            announcement.end()
+            trajectory.rest()
         if self._foothold is None:
             # It has sunk in and come back while it was not believed yet.
             lasted = since(trajectory.frames, frame.stamp - self._contact_time) if self.since else [frame]
             self._foothold = ground.begin(lasted, first=not self.since)
-        trajectory.rest()
         if near or changed:
             self._standing.append(frame)
             if frame.stamp - self._standing[0].stamp > SETTLED * self._dead_time:
                 ground.add(self._standing.popleft(), self._standing[0], self._foothold)
-        announcement.end()
         return landed
 
     def revise(self, stamp: int, ground: Ground) -> ExpectedLanding | None:
