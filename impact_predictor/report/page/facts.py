@@ -14,6 +14,7 @@ from ...wording import counted
 from ..skill import ALL
 from ..summary import WHY, Distribution, SpanErrors, from_json, quantile, spread_of, together
 from ..touchdowns import TouchdownRow, row_of_json
+from ..watch import warned_of
 from . import Headline, part_words, time_words
 
 BagAnswer = Mapping[str, Any]
@@ -33,7 +34,7 @@ class ReplayFacts:
     those whose velocities are compared with measured ones; `uncompared` counts the reasons (names of `Leftover`) why
     others are not, feet, which are driven, aside. `true` are true touchdowns and false alarms, `truth` counts true
     touchdowns, missed ones, false alarms and those that cannot be seen; both are empty where no bag tells the truth.
-    `costs` are in microseconds.
+    `costs` are in microseconds, and `units` are those under watch.
     """
 
     def __init__(self, answers: Sequence[BagAnswer]) -> None:
@@ -57,6 +58,8 @@ class ReplayFacts:
             self.true += true
             told = answer.get("truth", {})
             self.truth.update({key: told[key] for key in ("touchdowns", "missed", "false", "unresolved") if told})
+        watches = [answer["watch"]["units"].values() for answer in answers if answer.get("watch")]
+        self.units = [unit for units in watches for unit in units]
         self.scored = [row for row in self.rows if row.is_scored]
         self.velocity_errors = spread_of(errors)
         self.costs = together(from_json(answer.get("cost_us")) for answer in answers)
@@ -81,11 +84,14 @@ class ReplayFacts:
         return [one for one in found if one.errors.number]
 
     def badness(self) -> tuple[float, float]:
-        """How bad bags are: those that are unusable most, then what was missed or false counts, then the errors."""
+        """How bad bags are: those that are unusable most, then what was missed, false or not warned of, then the
+        errors.
+        """
         if any("error" in answer or answer.get("unpredictable") for answer in self.answers):
             return inf, inf
-        wrong = (self.truth["missed"] + self.truth["false"]) / max(1, self.truth["touchdowns"])
-        return wrong, self.velocity_errors.p50 or 0.0
+        unwarned = [event["warned_ahead"] is None for unit in self.units for event in unit["events"]]
+        wrong = self.truth["missed"] + self.truth["false"] + sum(unwarned)
+        return wrong / max(1, self.truth["touchdowns"] + len(unwarned)), self.velocity_errors.p50 or 0.0
 
     def headlines(self) -> list[Headline]:
         """How many, how right (medians), how early and at what cost; "–" where nothing tells it."""
@@ -116,11 +122,13 @@ class ReplayFacts:
         ]
         first, early, latest = (time_words(quantile(times, part) if times else None) for part in (0.5, 0.1, 0.0))
         half, most = (time_words(one and 1e-6 * one) for one in (cost.p50, cost.p99))
+        warned, leads = warned_of(self.units) if self.units else ("–", "")
         return [
-            Headline("touchdowns", f"{len(self.rows):,}", compared),
+            Headline("touchdowns", f"{len(self.rows):,}" if self.rows or not self.units else "–", compared),
             Headline("found", found, missed),
             Headline("velocity error", part_words(errors.p50), right),
             Headline("time error", time_words(late.p50), f"median {span}; 90 % below {time_words(late.p90)}"),
             Headline("first ahead", first, f"median; 90 % at least {early}, the latest {latest}"),
+            Headline("events warned of", warned, leads),
             Headline("cost of a sample", half, f"median; 99 % below {most}"),
         ]

@@ -20,7 +20,7 @@ from ..summary import PER_DECADE, WHY, without_bag
 from . import GREY, Cell, Chart, PageTable, Section, marks, page, part_words, script_inside, time_words, write_html
 from .facts import NOTHING, BagAnswer, ReplayFacts
 from .timeline import FALSE, MANY, MISSED, ORDER, look_of, timeline
-from .watch import watch_headline, watched
+from .watch import watched
 
 DRAWN: Final = 8
 """Bags of which a timeline is drawn; of more the worst."""
@@ -111,8 +111,7 @@ def page_of_replay(
         unused(facts),
         scene(values or {}),
     )
-    headlines = [*(facts.headlines() if drawn else ()), watch_headline(answers)]
-    known = [one for one in headlines if one.answer != "–"]
+    known = [one for one in facts.headlines() if one.answer != "–"] if drawn or facts.units else []
     title = (
         ", ".join(f"{one.question} {one.answer}" for one in known if "cost" not in one.question)
         or "No touchdown was predicted"
@@ -129,7 +128,8 @@ def bags(facts: ReplayFacts, each: Sequence[ReplayFacts], order: Sequence[int], 
     for place in order:
         answer = facts.answers[place]
         remark = next((kind for key, kind in REMARKS.items() if key != "notes" and answer.get(key)), "")
-        cells = [Cell(one.answer, one.more if one.question == "found" else "") for one in each[place].headlines()]
+        more = ("found", "events warned of")
+        cells = [Cell(one.answer, one.more if one.question in more else "") for one in each[place].headlines()]
         name = Cell(facts.names[place], remark, to=links.get(place, ""))
         rows.append([name, *(cells if "error" not in answer else [])])
     said = (

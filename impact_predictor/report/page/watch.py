@@ -11,8 +11,7 @@ from ...bags.watched import FELT
 from ...stamps import NANOSECONDS
 from ...wording import NONE, counted, fixed, words
 from ..modes import EDGE, LEVELS, PALETTE
-from ..watch import warned_of
-from . import Cell, Chart, Headline, PageTable, Section, marks, part_words, safe
+from . import Cell, Chart, PageTable, Section, marks, part_words, safe
 from .facts import BagAnswer
 
 SHOWN: Final = 6
@@ -43,13 +42,6 @@ OF_NOW: Final = frozenset(
 """What a report says of its moment alone."""
 RIBBON: Final = {"showticklabels": False, "showgrid": False, "fixedrange": True, "range": [-0.5, 0.5]}
 ANGLES: Final = {"roll": "roll, port up", "pitch": "pitch, bow down"}
-
-
-def watch_headline(answers: Iterable[BagAnswer]) -> Headline:
-    """How many events were warned of, how early, and how many warnings were vain; "–" where nothing was watched."""
-    units = [unit for answer in answers for unit in answer.get("watch", {}).get("units", {}).values()]
-    found, said = warned_of(units)
-    return Headline("events warned of", found if units else "–", said)
 
 
 def watched(names: Sequence[str], answers: Sequence[BagAnswer], most: int) -> Section:
