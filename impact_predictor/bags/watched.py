@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..prediction.deck.forecast import LEADS
 from ..prediction.types import Moment
 from ..prediction.vectors import axes_of, dot, times, to_body
 
@@ -19,9 +20,8 @@ if TYPE_CHECKING:
 STEP: Final = 250_000_000
 """ns between two rows; after more than `GAP` of them without a message a row of NaN says that nothing is known."""
 GAP: Final = 8
-LEADS: Final = (1.0, 2.0, 5.0, 10.0)
-"""Seconds ahead of which a forecast is kept, once in so many rows as `FORECAST_EVERY`."""
 FORECAST_EVERY: Final = 2
+"""Rows from one forecast that is kept to the next; it is kept `LEADS` ahead."""
 QUANTILES: Final = (0.05, 0.5, 0.95)
 """What is kept of the courses of a forecast: nine tenths of them are between the ends."""
 DECK: Final = ("roll", "pitch", "along", "across", "down")
@@ -62,6 +62,8 @@ class WatchLog(NamedTuple):
     forecasts: NDArray[np.float64]
     spells: tuple[LevelSpell, ...]
     last: Mapping[str, Mapping[str, str]]
+    tracked: Mapping[str, str] = {}
+    """What was reported last of the deck itself."""
     events: Mapping[str, Mapping[int, str]] = {}
     knows_events: bool = False
 
@@ -122,6 +124,7 @@ class WatchRecorder:
             forecasts=np.array([one for _, one in self._forecasts]).reshape(-1, len(LEADS), len(FELT), len(QUANTILES)),
             spells=tuple(sorted(self._spells, key=lambda spell: spell.begin)),
             last=self._last,
+            tracked=self._deck.values(),
         )
         return log._replace(events=seen_events(log) if events is None else events, knows_events=events is not None)
 

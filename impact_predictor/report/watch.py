@@ -12,7 +12,8 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from ..bags.watched import DECK, FELT, LEADS, QUANTILES, STEP, UNIT, LevelSpell, WatchLog
+from ..bags.watched import DECK, FELT, QUANTILES, STEP, UNIT, LevelSpell, WatchLog
+from ..prediction.deck.forecast import LEADS
 from ..prediction.watch.levels import Level
 from ..stamps import NANOSECONDS
 from ..wording import counted
@@ -44,6 +45,7 @@ def watch_as_json(log: WatchLog) -> dict[str, Any]:
             },
         },
         "skill": forecast_skill(log),
+        "tracked": {"forecast": log.tracked.get("forecast"), **_known(log.tracked)},
         "knows_events": log.knows_events,
         "units": {
             name: {
@@ -62,10 +64,6 @@ def unit_as_json(log: WatchLog, place: int) -> dict[str, Any]:
     known = next((one.begin for one in spells if one.level != Level.STALE), None)
     events = {at: what for at, what in log.events.get(name, {}).items() if known is not None and at >= known}
     warnings = warnings_of(spells)
-    reported: dict[str, float] = {}
-    for key, text in log.last.get(name, {}).items():
-        with suppress(ValueError):
-            reported |= {key: float(text)} if isfinite(float(text)) else {}
     return {
         "levels": [[Level(one.level).name, one.begin, one.end] for one in spells],
         "warnings": [
@@ -82,8 +80,17 @@ def unit_as_json(log: WatchLog, place: int) -> dict[str, Any]:
             for stamp, what in events.items()
         ],
         "most": {key: float(np.nanmax(log.units[:, place, k], initial=0.0)) for k, key in ((1, "slide"), (2, "tip"))},
-        "reported": reported,
+        "reported": _known(log.last.get(name, {})),
     }
+
+
+def _known(values: Mapping[str, str]) -> dict[str, float]:
+    """The numbers among the values of a report."""
+    found: dict[str, float] = {}
+    for key, text in values.items():
+        with suppress(ValueError):
+            found |= {key: float(text)} if isfinite(float(text)) else {}
+    return found
 
 
 def warnings_of(spells: Sequence[LevelSpell]) -> list[LevelSpell]:

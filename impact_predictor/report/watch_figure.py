@@ -7,7 +7,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from ..bags.watched import DECK, FELT, LEADS, WatchLog
+from ..bags.watched import DECK, FELT, WatchLog
+from ..prediction.deck.forecast import LEADS
 from ..prediction.watch.levels import Level
 from ..stamps import NANOSECONDS
 from ..wording import counted

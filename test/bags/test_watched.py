@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from impact_predictor.bags.watched import DECK, LEADS, STEP, WatchRecorder, deck_row
-from impact_predictor.prediction.deck.forecast import DeckOutlook
+from impact_predictor.bags.watched import DECK, STEP, WatchRecorder, deck_row
+from impact_predictor.prediction.deck.forecast import LEADS, DeckOutlook
 from impact_predictor.prediction.types import Felt, Moment
 from impact_predictor.prediction.watch.watch import Level, Report
 
@@ -41,7 +41,7 @@ def report(stamp: int, level: Level, chance: str = "0.25") -> Report:
 
 def kept() -> tuple[WatchRecorder, Any, Any]:
     watch: Any = SimpleNamespace(margins=(np.array([0.2]), np.array([0.3])))
-    deck: Any = SimpleNamespace(last=None, outlook=outlook)
+    deck: Any = SimpleNamespace(last=None, outlook=outlook, values=lambda: {"forecast": "TRUSTED"})
     return WatchRecorder(watch, deck, ["crate"]), watch, deck
 
 

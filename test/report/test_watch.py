@@ -12,7 +12,8 @@ import pytest
 from read_page import PageReader, traces
 from replay_answers import answer
 
-from impact_predictor.bags.watched import FELT, LEADS, QUANTILES, STEP, LevelSpell, WatchLog
+from impact_predictor.bags.watched import FELT, QUANTILES, STEP, LevelSpell, WatchLog
+from impact_predictor.prediction.deck.forecast import LEADS
 from impact_predictor.prediction.watch.levels import Level
 from impact_predictor.report.page.replay import page_of_replay
 from impact_predictor.report.watch import MOST, SERIES, forecast_skill, series_of, warned_of, watch_as_json
@@ -45,6 +46,7 @@ def log(rows: int = 200, **given: Any) -> WatchLog:
         forecasts=np.stack([0.0 * told, told], axis=2),
         spells=SPELLS,
         last={"crate": {"tips_per_hour": "3.5", "time_to_tip": "inf", "edge": "port"}},
+        tracked={"forecast": "NO_SKILL", "window.linear": "0.300", "window.angular": "0.400"},
         events={"crate": {10 * S: "slides", 50 * S: "lifts"}},
         knows_events=True,
     )
@@ -114,6 +116,8 @@ def test_the_page_has_deck_forecast_levels_margins_events_and_statistics() -> No
     assert drawn["layout"]["xaxis"]["anchor"] == "y4"
     near, statistics, skill = page.tables["watch"]
     assert near[1][3:5] == ["2", "1"]
+    assert "The forecast at the end: no better than" in page.text
+    assert "found over 0.3 s and 0.4 s." in page.text
     assert statistics == [["unit", "tips per hour"], ["crate", "3.5"]]
     assert skill[3][:2] == ["across, 5 s ahead", "0.100"]
 

@@ -86,3 +86,11 @@ def test_what_follows_soon_is_the_same_event() -> None:
 def test_each_event_is_looked_at_for_a_warning_of_its_own() -> None:
     warned = warned_of((OK, WARN, OK), [2, 2 * APART], [lift(4 * APART)])
     assert (warned.events, warned.events_warned) == (3, 1)
+
+
+def test_events_tell_what_begins_and_are_unknown_without_a_truth() -> None:
+    made = Comparison({"crate": WATCHED})
+    made.impacts += [impact(2 * APART), impact(2 * APART + 1)]
+    made.onsets += [slide(5), lift(4 * APART)]
+    assert made.events() == {"crate": {5: "slides", 2 * APART: "impact, PIVOT", 4 * APART: "lifts"}}
+    assert Comparison({"crate": WATCHED}, knows_impacts=False).events() is None

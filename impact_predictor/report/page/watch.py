@@ -8,6 +8,7 @@ from statistics import median
 from typing import Any, Final
 
 from ...bags.watched import FELT
+from ...prediction.deck.forecast import ForecastStatus
 from ...stamps import NANOSECONDS
 from ...wording import NONE, counted, fixed, words
 from ..modes import EDGE, LEVELS, PALETTE
@@ -141,8 +142,13 @@ def chart_of(title: str, answer: BagAnswer) -> Chart:
         domain = [max(0.0, top - high * unit), top]
         layout[f"yaxis{place if place > 1 else ''}"] = {"title": text, "domain": domain, **more}
         top -= high * unit + gap
-    left = len(units) - len(shown)
-    caption = f"Of {counted(left, 'more unit')}, which came less near to an onset, the table tells." if left else ""
+    left, tracked = len(units) - len(shown), watch["tracked"]
+    caption = f"Of {counted(left, 'more unit')}, which came less near to an onset, the table tells. " if left else ""
+    if tracked["forecast"]:
+        caption += f"The forecast at the end: {ForecastStatus[tracked['forecast']].value}. "
+    if "window.linear" in tracked:
+        spans = f"{tracked['window.linear']:g} s and {tracked['window.angular']:g} s"
+        caption += f"Linear and angular accelerations are found over {spans}."
     return Chart(title, traces, layout, caption)
 
 
