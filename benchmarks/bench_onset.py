@@ -1,4 +1,4 @@
-"""What it costs to watch the margins of 1 and of 50 units, boxes alone or with cylinders among them.
+"""What it costs to watch the margins of 1 and of 50 units, boxes alone, with cylinders among them, or lashed.
 
     python benchmarks/bench_onset.py
 
@@ -19,15 +19,15 @@ from rich.console import Console
 from rich.table import Table
 
 from impact_predictor.prediction.deck.forecast import COURSES, STEP, DeckOutlook
-from impact_predictor.prediction.scene import MovingDeck, Scene, Watching
+from impact_predictor.prediction.scene import Chock, Lashing, MovingDeck, Scene, Watching
 from impact_predictor.prediction.types import Felt, Moment, Sample
 from impact_predictor.prediction.watch.onset import Onset, motion_of, motions
 from impact_predictor.prediction.watch.standing import Standing
 from impact_predictor.prediction.watch.watch import Watch
 
 TURNS = 1000
-CASES = ((1, 0), (50, 0), (50, 10))
-"""Units, and how many of them are cylinders."""
+CASES = ((1, 0, 0), (50, 0, 0), (50, 10, 0), (1, 0, 1), (50, 0, 50))
+"""Units, how many of them are cylinders, and how many have eight lashings and a chock."""
 LEVEL = (0.0, 0.0, 0.0, 1.0)
 ORIGIN = (0.0, 0.0, 0.0)
 
@@ -42,6 +42,15 @@ BOX = Scene(
     watching=Watching(),
 )
 DRUM = BOX._replace(points=(), radius=0.3, edges=((0.0, -0.1, 0.0), (0.0, 0.1, 0.0)), place=(0.0, 0.0, 0.28))
+
+LASHED = BOX._replace(
+    lashings=tuple(
+        Lashing((x, 0.3 * side, 0.0), (x, 1.2 * side, 0.0), 500.0, 50.0)
+        for side in (-1.0, 1.0)
+        for x in (-0.4, -0.2, 0.2, 0.4)
+    ),
+    chocks=(Chock((0.4, 0.0, 0.1), (-1.0, 0.0, 0.0), 300.0),),
+)
 
 
 def felt(time: float) -> Felt:
@@ -68,8 +77,8 @@ def timed(*actions: Callable[[int], object]) -> list[tuple[float, float]]:
     return [(1e-3 * min(cost), 1e-3 * median(cost)) for cost in costs]
 
 
-def measure(count: int, drums: int) -> list[tuple[str, float, float]]:
-    scenes = {f"unit_{k}": DRUM if k < drums else BOX for k in range(count)}
+def measure(count: int, drums: int, lashed: int) -> list[tuple[str, float, float]]:
+    scenes = {f"unit_{k}": DRUM if k < drums else LASHED if k < lashed else BOX for k in range(count)}
     onset = Onset([Standing(scene).stance for scene in scenes.values()])
     now, ahead = motion_of(felt(0.5)), motions(*(part.reshape(-1, 3) for part in outlook(10.0)[1:4]))
     found = list(
@@ -103,7 +112,9 @@ def measure(count: int, drums: int) -> list[tuple[str, float, float]]:
 
 
 def main() -> None:
-    table = Table("us: least / median", *(f"{count} ({drums} round)" for count, drums in CASES))
+    table = Table(
+        "us: least / median", *(f"{count} ({drums} round, {lashed} lashed)" for count, drums, lashed in CASES)
+    )
     rows = zip(*(measure(*case) for case in CASES), strict=True)
     for row in rows:
         table.add_row(row[0][0], *(f"{least:.1f} / {middle:.1f}" for _, least, middle in row))

@@ -21,7 +21,6 @@ from numpy.typing import NDArray
 
 from ..types import Vector3
 from ..vectors import add, cross, dot, times, total
-from .onset import FULL
 from .stance import Edge, Holder, StandingBody, unit_across
 
 SHIFT: Final = 0.1
@@ -29,6 +28,10 @@ SHIFT: Final = 0.1
 
 WAYS: Final = 24
 """Ways along the support in which it may slide: of any other 0.9 % of what acts is left out at most."""
+
+BLOCK: Final = 128  # times at once: more do not stay in the cache of a processor
+
+_LEAST: Final = 1e-9  # m/s^2, and m^2/s^2, of what is divided by
 
 _BLOCKS: Final = 0.02
 """A chock holds what moves against it by this part of the motion: less slides along it."""
@@ -69,21 +72,35 @@ class Secured:
         lifts, at a support's `motions`: of bodies of `weight` (n, 1, times) that are tipped by `tips` (n, edges, times)
         with `levers` (n, edges, 1), all for 1 kg.
         """
-        numbers = (self._rows.reshape(-1, motion.shape[0]) @ motion).reshape(*self._rows.shape[:2], -1)
-        acts, outwards = numbers[:, : self._count], numbers[:, self._count :]
-        slide = _parts(acts + self._wind, self._friction * weight + self._held).max(axis=1)
-        tips, bears = tips + self._tipping, levers * weight
-        chocked = np.maximum(
-            _parts(tips, bears + self._preload + self._chocked),
-            _parts(tips - self._height * np.maximum(outwards + self._blown, 0.0), bears + self._preload),
-        )
-        tip = np.minimum(_parts(tips, bears + self._stretched), chocked)
+        count, rows = motion.reshape(len(motion), -1).shape[1], self._rows.reshape(-1, len(motion))
+        slide, tip = np.empty((len(weight), count)), np.empty((*tips.shape[:2], count))
+        for k in range(0, count, BLOCK):
+            at = slice(k, k + BLOCK)
+            now = motion.reshape(len(motion), -1)[:, at]
+            numbers = (rows @ now).reshape(*self._rows.shape[:2], -1)
+            slide[:, at], tip[:, :, at] = self._block(numbers, weight[:, :, at], tips[:, :, at], levers)
         return slide, tip, weight[:, 0] + self._lift <= 0.0
+
+    def _block(
+        self,
+        numbers: NDArray[np.float64],
+        weight: NDArray[np.float64],
+        tips: NDArray[np.float64],
+        levers: NDArray[np.float64],
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        acts, outwards = numbers[:, : self._count], numbers[:, self._count :]
+        acts += self._wind
+        slide = _parts(acts, self._friction * weight + self._held).max(axis=1)
+        tips, bears = tips + self._tipping, levers * weight
+        eased = tips - self._height * np.maximum(outwards + self._blown, 0.0)
+        tip = np.maximum(_parts(tips, bears + (self._preload + self._chocked)), _parts(eased, bears + self._preload))
+        return slide, np.minimum(tip, _parts(tips, bears + self._stretched))
 
 
 def _parts(acts: NDArray[np.float64], holds: NDArray[np.float64]) -> NDArray[np.float64]:
-    found: NDArray[np.float64] = np.where(acts > 0.0, FULL, 0.0)
-    np.divide(acts, holds, out=found, where=holds > 0.0)
+    """The parts used up; far above FULL where nothing holds."""
+    np.maximum(holds, _LEAST, out=holds)
+    found: NDArray[np.float64] = acts / holds
     return found
 
 
