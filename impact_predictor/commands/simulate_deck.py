@@ -108,6 +108,8 @@ def simulate_deck(
 
     check_options(recorded=record is not None)
     scenes = scenes_of(read_values(find(SCENE) if params is None else params))
+    if held := [name for name, scene in scenes.items() if scene.lashings or scene.chocks or scene.wind]:
+        click.echo(f"note: without lashings, chocks and wind move here: {', '.join(held)}", err=True)
     noise = SensorNoise(*[options.pop(parameter_of(name)) for name, _ in _NOISE])
     deck, longest = deck_of(record, contacts, seed, gravity_of(scenes), **options)
     if contacts == "rigid" and deck.plane is None:
