@@ -53,6 +53,7 @@ RUNS: Final = (
     "hyq --stairs 0.05",
     "bolt",
     "talos --swing 0.4 --strike 0.3",
+    "talos --swing 0.4 --strike 0.3 --gantry 10",
 )
 
 

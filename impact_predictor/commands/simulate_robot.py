@@ -54,6 +54,7 @@ EXAMPLES: Final = (
 @number("--slope", "Slope of the ground, degrees; positive is uphill.", 0.0, **ACUTE)
 @number("--blocks", "Height of blocks on half of the ground, m.", 0.0)
 @number("--stairs", "Rise of stairs ahead, m; negative go down.", 0.0)
+@number("--gantry", "Springs that hold the trunk of a robot on two feet upright, weight times height to a rad.", 1.0)
 @number("--armature", "Inertia of each drive at its joint, kg m^2 (that of a robot of its size unless given).")
 @number("--friction", "Coulomb friction coefficient of the feet.", 0.8)
 @number("--contact-time", "Time constant with which a contact stops a foot, s: less is stiffer.", 0.002)
@@ -79,6 +80,7 @@ def simulate_robot(
     strike: float,
     speed: float | None,
     clearance: float | None,
+    gantry: float,
     armature: float | None,
     friction: float,
     contact_time: float,
@@ -110,7 +112,13 @@ def simulate_robot(
     positive(swing=swing, contact_time=contact_time, duration=duration)
     refuse({"rate": rate}, lambda value: 0.0 < value <= MOST, f"a number above 0, up to {MOST:g}")
     chosen = {"speed": speed, "clearance": clearance, "armature": armature, "radius": options["radius"]}
-    given = {"strike": strike, "friction": friction, "blocks": options["blocks"], "noise-position": noise_position}
+    given = {
+        "strike": strike,
+        "gantry": gantry,
+        "friction": friction,
+        "blocks": options["blocks"],
+        "noise-position": noise_position,
+    }
     given |= {name: value for name, value in chosen.items() if value is not None}
     refuse({**given, "noise-velocity": noise_velocity}, lambda value: value >= 0.0, "a number from 0")
     refuse({"delay": delay, "drift": drift, "stairs": options["stairs"]}, isfinite, "a finite number")
@@ -129,7 +137,7 @@ def simulate_robot(
     told = PlannedGait(gait or ("step" if is_biped else "trot"), swing, strike, speed, clearance)
     sensors = WalkSensors(rate, noise_position, noise_velocity, delay, drift, seed, by_names)
     with progress("simulated robot", "s", round(duration)) as tell:
-        walked = walk(machine, ground, told, duration, is_biped, tell)
+        walked = walk(machine, ground, told, duration, gantry if is_biped else 0.0, tell)
     landings = landings_of(walked)
     if output is not None and scene is not None:
         write_messages(output, walk_messages(walked, landings, sensors))

@@ -20,8 +20,8 @@ SETTLE: Final = 0.6
 """Seconds in which a robot comes to rest on its feet before it walks, and those of them that are recorded."""
 STANDS: Final = 0.3
 
-GANTRY: Final = (1.0, 0.1)
-"""How stiffly a gantry holds a trunk upright: m g h to a rad, and to a rad/s."""
+GANTRY: Final = 0.1
+"""Of the springs of a gantry, in s: their damping over their stiffness."""
 
 FALLEN: Final = 0.5
 """Cosine of the tilt from which a robot has fallen."""
@@ -34,6 +34,9 @@ LASTS: Final = 0.02
 
 ENDS: Final = 0.01
 """Seconds without a force that end a contact."""
+
+HOPS: Final = 0.005
+"""The part of a robot's height by which a foot rises at most that hops."""
 
 MARKS: Final = (0.001, 0.002, 0.005)
 """Seconds after a landing at which the truth tells the state, besides the first peak of the force."""
@@ -94,12 +97,13 @@ def walk(
     ground: SimulatedGround,
     gait: PlannedGait,
     duration: float,
-    gantry: bool = False,
+    gantry: float = 0.0,
     tell: Callable[[int], None] | None = None,
 ) -> Walk:
     """Let a machine stand for STANDS and walk until `duration` s are recorded, or it falls.
 
-    Its drives follow the gait, whatever happens. On a `gantry` the trunk is held upright by springs, and free to move.
+    Its drives follow the gait, whatever happens. A `gantry` holds the trunk upright by springs of so many m g h to a
+    rad, and leaves it free to move.
     `tell` takes now and then how many seconds are done.
     """
     told = references(machine, gait, ground.slope, ground.obstacle)
@@ -113,7 +117,7 @@ def walk(
     count = skipped + round(duration / STEP) + 1
     positions, velocities = np.zeros((count, model.nq)), np.zeros((count, model.nv))
     efforts, forces = np.zeros((count, len(machine.joints))), np.zeros((count, len(machine.feet), 3))
-    hold = machine.mass * 9.81 * machine.height * np.array(GANTRY)
+    hold = gantry * machine.mass * 9.81 * machine.height * np.array([1.0, GANTRY])
     wrench, fallen, k = np.zeros(6), False, 0
     for k in range(count):
         time = k * STEP - SETTLE
@@ -213,26 +217,35 @@ def landings_of(walk: Walk) -> list[TrueLanding]:
     """The landings of all feet in the order of their stamps: contacts that last, after swings.
 
     A contact lasts that has a force in half of its first LASTS seconds. It is a landing where the last one of the foot
-    has ended SWING seconds before or earlier, and 5 ms of the walk, the last of the MARKS, follow it.
+    has ended SWING seconds before or earlier, the foot has risen since, and 5 ms of the walk, the last of the MARKS,
+    follow it.
     """
     found = []
     for foot in range(len(walk.machine.feet)):
-        found += [_landing(walk, foot, step) for step in _touched(walk.forces[:, foot])]
+        touched = [(end, step) for end, step in _touched(walk.forces[:, foot]) if _swings(walk, foot, end, step)]
+        found += [_landing(walk, foot, step) for _, step in touched]
     return sorted(found, key=lambda landing: landing.stamp)
 
 
-def _touched(forces: Values) -> list[int]:
-    """The steps at which a foot that has swung comes to stand, by the forces (n, 3) on it."""
+def _swings(walk: Walk, foot: int, end: int, step: int) -> bool:
+    """Whether a foot rises between two steps by more than a hop."""
+    points = states(walk, np.linspace(end, step, 1 + (step - end) // round(0.005 / STEP))).points[:, foot]
+    gaps = points[..., 2] - walk.ground.heights(points[..., 0], points[..., 1])
+    return bool(gaps.min(axis=1).max() > HOPS * walk.machine.height)
+
+
+def _touched(forces: Values) -> list[tuple[int, int]]:
+    """The steps between which a foot has no lasting contact, by the forces (n, 3) on it."""
     has_force = np.any(forces != 0.0, axis=1)
     counted = np.concatenate([[0], np.cumsum(has_force)])
     lasts, ends, swing, last = (round(time / STEP) for time in (LASTS, ENDS, SWING, MARKS[-1]))
-    steps: list[int] = []
+    steps: list[tuple[int, int]] = []
     k = stood = 0
     end = len(has_force) - max(lasts, last)
     while k < end:
         if has_force[k] and 2 * (counted[k + lasts] - counted[k]) >= lasts:
             if k - stood >= swing:
-                steps.append(k)
+                steps.append((stood, k))
             while k < end and counted[min(k + ends, len(has_force))] > counted[k]:
                 k += 1
             stood = k
