@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from impact_predictor import Flag, Mode, plate, solve_impact
+from impact_predictor import Contact, Flag, Mode, Twist, TwoPointBody, plate, solve_impact, solve_impacts
 
 GOOD = plate(1.0, 0.4, 10.0, 0.3)
 BAD_CONTACTS = [
@@ -58,3 +58,23 @@ def test_a_twist_that_cannot_be_is_answered_with_a_flag_and_rest(name, value):
 def test_an_unknown_law_is_refused_with_one_sentence():
     with pytest.raises(ValueError, match=r"^law is 'newton'; use 'path' or 'total'$"):
         solve_impact(GOOD, GOOD.turning(-1.0), "newton")
+
+
+@pytest.mark.parametrize("law", ["path", "total"])
+@pytest.mark.parametrize("far", [1e101, 1e155, -1e300])
+def test_a_contact_further_away_than_products_are_numbers_is_refused(law, far):
+    body = TwoPointBody(mass=1.0, inertia=1.0, old=Contact(-1.0, -1.0, 0.3), new=Contact(far, -1.0, 0.3))
+    twist = Twist(0.0, -1.0, -1.0)
+    assert solve_impact(body, twist, law=law).flags == Flag.INVALID_INPUT
+    assert solve_impacts(body, twist, law=law).flags == Flag.INVALID_INPUT
+    near = body._replace(new=Contact(math.copysign(1e99, far), -1.0, 0.3))
+    assert not solve_impact(near, twist, law=law).flags & Flag.INVALID_INPUT
+
+
+@pytest.mark.parametrize(("wrong", "error"), [(None, TypeError), ("1", TypeError), (10**400, OverflowError)])
+def test_what_is_no_number_raises_alike_for_one_impact_and_for_many(wrong, error):
+    body = TwoPointBody(mass=1.0, inertia=1.0, old=Contact(-1.0, -1.0, 0.3), new=Contact(1.0, -1.0, 0.3))
+    for changed, twist in ((body._replace(mass=wrong), (0.0, 0.0, -1.0)), (body, (0.0, 0.0, wrong))):
+        for solve in (solve_impact, solve_impacts):
+            with pytest.raises(error):
+                solve(changed, Twist(*twist))

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
+from numbers import Real
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -62,8 +63,8 @@ def solve_impacts(
 
     Any field of `bodies`, of its contacts (each part of a normal or a velocity on its own) and of `twist` may be an
     array; `twist` may also be one array (..., 3). `old` is None for all or for none; `validity` and `restitution` are
-    one for all. Bad numbers give Flag.INVALID_INPUT in their own element; an unknown law or rule and shapes that do not
-    broadcast raise ValueError.
+    one for all. Bad numbers give Flag.INVALID_INPUT in their own element; what is no number raises TypeError, an
+    integer beyond all doubles OverflowError, an unknown law or rule and shapes that do not broadcast ValueError.
     """
     number = number_of(law, restitution)
     limits = Validity(*map(float, validity))
@@ -75,7 +76,7 @@ def solve_impacts(
     vx, vy, omega = twist
     given = mass, inertia, *numbers_of(old or NOWHERE), *numbers_of(new), vx, vy, omega
     # Converted here, because nditer of numpy 1.26 leaves its buffers unset where a single number is of another type.
-    fields: Any = [np.asarray(field, np.float64) for field in given]
+    fields: Any = [doubles_of(field) for field in given]
     each: Any = ["readonly", "contig"]
     chunks = np.nditer(
         fields,
@@ -100,6 +101,14 @@ def solve_impacts(
             fill(columns, old is not None, number, limits, start, outcomes)
             start += len(columns[0])
     return Outcomes._make(field.reshape(shape + field.shape[1:]) for field in outcomes)
+
+
+def doubles_of(field: Any) -> NDArray[np.float64]:
+    """A field as an array; what is no number raises TypeError, as in `solve_impact`, though numpy makes NaN of None."""
+    array = np.asarray(field)
+    if array.dtype.kind not in "biuf" and (odd := [one for one in array.flat if not isinstance(one, Real)]):
+        raise TypeError(f"{odd[0]!r} is no number")
+    return array.astype(np.float64)
 
 
 def numbers_of(contact: Contact) -> tuple[Any, ...]:

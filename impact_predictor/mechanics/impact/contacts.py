@@ -208,12 +208,17 @@ def problem_of(
         return False, NO_PROBLEM, (0.0, 1.0, 1.0)
     rho = sqrt(square)
     unit = 1.0 / rho
+    if not unit * (abs(na) + abs(ta) + abs(nb) + abs(tb)) < FARTHEST:
+        return False, NO_PROBLEM, (0.0, 1.0, 1.0)
     contacts = planar_contacts(ax * bx + ay * by, ax * by - ay * bx, na * unit, ta * unit, nb * unit, tb * unit, fa, fb)
     if together:  # neither has a lever about the other, not even one of rounding
         rows_old, rows_new, plane, _, rounding = contacts
         contacts = rows_old, rows_new, plane, (0.0, 0.0, 0.0, 0.0), rounding
     return True, (contacts, (ea, eb), (cna, cta, cnb, ctb), (zero_a, zero_a, zero_b, zero_b)), (ax, ay, rho)
 
+
+FARTHEST = 1e100
+"""Radii of gyration beyond which no body has contacts: products of such levers overflow."""
 
 NO_PROBLEM: Problem = (
     planar_contacts(1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
