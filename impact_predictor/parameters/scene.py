@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from math import copysign, cos, hypot, sin
+from math import copysign, cos, hypot, inf, sin
 from typing import Any
 
 from ..errors import InputError
@@ -92,11 +92,8 @@ def _check_source(one: _Given) -> None:
         )
     if not (values["body.contact_points"] or values["body.radius"]):
         raise InputError(f"{source}, so the contact points{one.of} must be parameters: give body.contact_points")
-    if values["support.extent"]:
-        least_x, greatest_x, least_y, greatest_y = values["support.extent"]
-        x, y, _ = values["place.position"]
-        if not (least_x <= x <= greatest_x and least_y <= y <= greatest_y):
-            raise InputError(f"{one.named('place.position')}{one.of} is outside support.extent: put the body on it")
+    if not _is_on(values["support.extent"], *values["place.position"][:2]):
+        raise InputError(f"{one.named('place.position')}{one.of} is outside support.extent: put the body on it")
 
 
 def _check_cylinder(one: _Given) -> None:
@@ -139,13 +136,12 @@ def _check_securing(one: _Given) -> None:
         raise InputError(f"{one.named('chocks.normals')}{one.of} has a direction of length zero: tell where it pushes")
     if values["wind.pressure"] and not values["wind.area"]:
         raise InputError(f"{one.named('wind.pressure')} is given{one.of}, but no wind.area that it acts on: give both")
-    if band := values["contact.friction_band"]:
-        lowest, highest = band
-        if not lowest <= values["contact.friction"] <= highest:
-            raise InputError(
-                f"{one.named('contact.friction_band')}{one.of} is {lowest:g} to {highest:g}, and contact.friction is "
-                f"{values['contact.friction']:g}: it must lie between them"
-            )
+    lowest, highest = values["contact.friction_band"] or (0.0, inf)
+    if not lowest <= values["contact.friction"] <= highest:
+        raise InputError(
+            f"{one.named('contact.friction_band')}{one.of} is {lowest:g} to {highest:g}, and contact.friction is "
+            f"{values['contact.friction']:g}: it must lie between them"
+        )
 
 
 def _check_lashings(one: _Given) -> None:
@@ -164,10 +160,12 @@ def _check_lashings(one: _Given) -> None:
         (px, py, pz), (ax, ay, az) = points[3 * k : 3 * k + 3], anchors[3 * k : 3 * k + 3]
         if hypot(x + turn * px - back * py - ax, y + back * px + turn * py - ay, z + pz - az) < NO_LENGTH:
             raise InputError(f"lashing {k}{one.of} has no length: its point and its anchor are at one place")
-        if values["support.extent"]:
-            least_x, greatest_x, least_y, greatest_y = values["support.extent"]
-            if not (least_x <= ax <= greatest_x and least_y <= ay <= greatest_y):
-                raise InputError(f"lashing {k}{one.of} goes nowhere: its anchor is outside support.extent")
+        if not _is_on(values["support.extent"], ax, ay):
+            raise InputError(f"lashing {k}{one.of} goes nowhere: its anchor is outside support.extent")
+
+
+def _is_on(extent: tuple[float, ...], x: float, y: float) -> bool:
+    return not extent or (extent[0] <= x <= extent[1] and extent[2] <= y <= extent[3])
 
 
 def _check_feet(one: _Given) -> None:

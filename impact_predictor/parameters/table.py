@@ -25,12 +25,12 @@ from .types import (
     names_flaw,
     newtons,
     normal_flaw,
+    places,
     points_flaw,
     ratio,
     seconds,
     text,
     texts,
-    threes_flaw,
 )
 
 _TABLE: Final = (
@@ -58,8 +58,7 @@ _TABLE: Final = (
     doubles(
         "contact.friction_band",
         (),
-        "Lowest and highest friction that the deck may have, for both of which the watch tells what the margin against "
-        "sliding is; contact.friction lies between them.",
+        "Lowest and highest friction that the deck may have, for which the watch tells the margin against sliding too.",
         unit="1",
         low=0.0,
         high=100.0,
@@ -334,59 +333,19 @@ _TABLE: Final = (
         "the level is WARN when an onset within the horizon is likelier than one minus this.",
         high=0.95,
     ),
-    metres(
-        "lashings.points",
-        (),
-        "Where lashings take hold of the body, in the body frame: x y z of each, one after the other.",
-        flaw=threes_flaw,
-        fixed=COMPUTED,
-    ),
-    metres(
-        "lashings.anchors",
-        (),
-        "Where each lashing is made fast, in the support's frame: x y z of each, in the same order.",
-        flaw=threes_flaw,
-        fixed=COMPUTED,
-    ),
+    places("lashings.points", "Where each lashing takes hold of the body, in the body frame: x y z of each."),
+    places("lashings.anchors", "Where each is made fast, in the support's frame: x y z of each, in the same order."),
     newtons("lashings.msl", "Maximum securing load of each lashing, or one number for all of them."),
     newtons("lashings.preload", "Tension of each lashing at rest, or one number for all of them. Left out, none."),
     newtons(
-        "lashings.stiffness",
-        "Stiffness of each lashing, or one number for all of them. Left out, each stretches by 1 % under its MSL.",
-        unit="N/m",
+        "lashings.stiffness", "Stiffness of each, or of all. Left out, each stretches by 1 % under its MSL.", "N/m"
     ),
-    metres(
-        "chocks.points",
-        (),
-        "Where chocks and stoppers touch the body, in the support's frame: x y z of each, one after the other.",
-        flaw=threes_flaw,
-        fixed=COMPUTED,
-    ),
-    doubles(
-        "chocks.normals",
-        (),
-        "Direction in which each chock can push the body, in the support's frame: x y z of each, of any length.",
-        unit="1",
-        flaw=threes_flaw,
-        fixed=COMPUTED,
-    ),
+    places("chocks.points", "Where each chock or stopper touches the body, in the support's frame: x y z of each."),
+    places("chocks.normals", "Where each can push the body to, in the support's frame: x y z, of any length.", "1"),
     newtons("chocks.strength", "What each chock bears, or one number for all of them. Left out, any force."),
-    double(
-        "wind.pressure",
-        0.0,
-        "Pressure of the wind on the body, from whichever side is worst.",
-        unit="N/m^2",
-        low=0.0,
-        high=1e6,
-    ),
+    double("wind.pressure", 0.0, "Pressure of the wind, from the worst side.", unit="N/m^2", low=0.0, high=1e6),
     doubles(
-        "wind.area",
-        (),
-        "Area of the body that the wind meets along x and along y of the body frame.",
-        unit="m^2",
-        low=0.0,
-        high=1e6,
-        lengths=(2,),
+        "wind.area", (), "What it meets along x and y of the body frame.", unit="m^2", low=0.0, high=1e6, lengths=(2,)
     ),
     metres("wind.center", (0.0, 0.0, 0.0), "Where the wind's force acts, in the body frame.", lengths=(3,)),
     texts(

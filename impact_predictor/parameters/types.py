@@ -41,11 +41,6 @@ class Parameter(NamedTuple):
     of_model: bool = False
 
 
-def _several(name: str, description: str, unit: str) -> Parameter:
-    """A load for each of several things, or one for all."""
-    return Parameter("double_array", name, (), description, unit, 0.0, 1e12, fixed=COMPUTED)
-
-
 boolean = partial(Parameter, "bool")
 integer = partial(Parameter, "integer")
 double = partial(Parameter, "double")
@@ -56,13 +51,22 @@ seconds = partial(Parameter, "double", unit="s", low=0.0)
 text = partial(Parameter, "string")
 texts = partial(Parameter, "string_array")
 
-newtons = partial(_several, unit="N")
-
 TOPICS: Final = "the topics follow from it"
 SUPPORT: Final = "all that is known of the support rests on it"
 BEGINNING: Final = "it tells where the body began"
 COMPUTED: Final = "what is computed and loaded follows from it"
 EXECUTOR: Final = "messages are waited for by it"
+
+
+def newtons(name: str, description: str, unit: str = "N") -> Parameter:
+    """A load for each of several things, or one for all."""
+    return Parameter("double_array", name, (), description, unit, 0.0, 1e12, fixed=COMPUTED)
+
+
+def places(name: str, description: str, unit: str = "m") -> Parameter:
+    """Points or directions, x y z of each."""
+    bounds = -FURTHEST, FURTHEST
+    return Parameter("double_array", name, (), description, unit, *bounds, flaw=threes_flaw, fixed=COMPUTED)
 
 
 def values_of(values: Mapping[str, Any], body: str) -> dict[str, Any]:

@@ -7,7 +7,7 @@ from math import hypot
 
 from .monitor import Monitor
 from .scene import Scene
-from .types import Imu, Sample, Status, Vector3
+from .types import Status, Vector3
 from .vectors import add, cross
 from .watch.stance import placed
 
@@ -20,15 +20,7 @@ class FeltMonitor(Monitor):
         self._centers = {name: placed(scene).place(scene.center_of_mass) for name, scene in scenes.items()}
         self.largest: dict[str, Vector3] = {}
 
-    def update_support(self, sample: Sample) -> Status:
-        """As of every monitor."""
-        return self._keep(super().update_support(sample))
-
-    def update_support_imu(self, imu: Imu) -> Status:
-        """As of every monitor."""
-        return self._keep(super().update_support_imu(imu))
-
-    def _keep(self, status: Status) -> Status:
+    def _moved(self, status: Status, stamp: int) -> Status:
         moment = None if self.deck is None else self.deck.last
         if status is Status.ACCEPTED and moment is not None:
             (gravity, angular, turning), rest = moment.felt, hypot(*moment.gravity)
@@ -36,4 +28,4 @@ class FeltMonitor(Monitor):
                 x, y, z = add(add(gravity, cross(turning, r), -1.0), cross(angular, cross(angular, r)), -1.0)
                 a, b, c = self.largest.get(name, (0.0, 0.0, 0.0))
                 self.largest[name] = max(a, abs(x)), max(b, abs(y)), max(c, abs(z + rest))
-        return status
+        return super()._moved(status, stamp)

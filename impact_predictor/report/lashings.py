@@ -52,18 +52,11 @@ def fields(
     unit: LashedUnit, accelerations: Vector3, measured: Vector3 | None, forces: Vector3, balances: Sequence[Balance]
 ) -> dict[str, Any]:
     """The same for a program; None stands for a stopper without limit."""
+    named = {"accelerations": accelerations, "measured": measured, "forces": forces}
     return {
-        "accelerations": dict(zip(AXES, accelerations, strict=True)),
-        "measured": None if measured is None else dict(zip(AXES, measured, strict=True)),
-        "forces": dict(zip(AXES, forces, strict=True)),
+        **{name: dict(zip(AXES, one, strict=True)) for name, one in named.items() if one is not None},
         "balances": [
-            {
-                "name": one.name,
-                "acts": one.acts,
-                "holds": _finite(one.holds),
-                "used": used(one),
-                "shares": [_finite(share) for share in one.shares],
-            }
+            one._asdict() | {"holds": _finite(one.holds), "used": used(one), "shares": [*map(_finite, one.shares)]}
             for one in balances
         ],
         "devices": [

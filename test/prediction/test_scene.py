@@ -33,6 +33,7 @@ FIELDS: list[tuple[str, Any, str, Any]] = [
     ("contact.tolerance", 0.001, "tolerance", 0.001),
     ("contact.time", 0.002, "contact_time", 0.002),
     ("contact.stiffness", 1e5, "stiffness", 1e5),
+    ("contact.most_points", 50, "most_points", 50),
     ("contact.merge", 0.003, "merge", 0.003),
     ("odom.twist", "poses", "poses", True),
     ("uncertainty.gap", 0.001, "gap_deviation", 0.001),

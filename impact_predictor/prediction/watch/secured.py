@@ -47,7 +47,10 @@ class Secured:
         count = max(map(len, ways))
         # A way that is there twice changes nothing.
         ways = [(one * count)[:count] for one in ways]
-        slides = [[_slide(stance, way) for way in one] for stance, one in zip(stances, ways, strict=True)]
+        slides = [
+            [(_along(stance, way, stance.friction), _wind(stance, way)) for way in one]
+            for stance, one in zip(stances, ways, strict=True)
+        ]
         absent = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         tips = [([_tip(one, edge) for edge in one.edges] + [absent] * width)[:width] for one in stances]
         outward = [([edge.outward for edge in one.edges] + [(0.0, 0.0, 0.0)] * width)[:width] for one in stances]
@@ -117,11 +120,6 @@ def _ways(stance: StandingBody) -> list[Vector3]:
     return found
 
 
-def _slide(stance: StandingBody, way: Vector3) -> tuple[float, float]:
-    """What holds a body (N) besides the friction of its weight where it slides a way, and the wind along it."""
-    return _along(stance, way, stance.friction), 0.0 if stance.wind is None else stance.wind.along(way)
-
-
 def _along(stance: StandingBody, way: Vector3, friction: float) -> float:
     """What holds a body (N) that shifts a way, with the friction that it is pressed down for."""
     pulls = [-dot(holder.direction, stance.normal) * friction for holder in stance.holders]
@@ -143,9 +141,13 @@ def _tip(stance: StandingBody, edge: Edge) -> tuple[float, ...]:
     stretched, preload, clamped = _held([one for one in stance.holders if one not in pushing], motion, reach)
     chocked = _held(pushing, motion, reach)[2]
     heights = [dot(one.direction, motion(one.point)) / dot(one.direction, edge.outward) for one in pushing]
-    blown = 0.0 if stance.wind is None else stance.wind.along(edge.outward)
+    blown = _wind(stance, edge.outward)
     above = 0.0 if stance.wind is None else dot(stance.normal, add(stance.wind.center, edge.point, -1.0))
     return stretched, preload + clamped, chocked, blown * above, blown, max([0.0, *heights])
+
+
+def _wind(stance: StandingBody, way: Vector3) -> float:
+    return 0.0 if stance.wind is None else stance.wind.along(way)
 
 
 def _held(
