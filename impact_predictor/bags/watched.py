@@ -132,8 +132,11 @@ class WatchRecorder:
         """Keep what the deck will feel, where its sea is learnt."""
         ahead = self._deck.outlook(LEADS[-1] + 1.0)
         if ahead.is_learnt:
-            places = np.abs(ahead.times[:, None] - LEADS).argmin(axis=0)
-            found = np.quantile(ahead.gravity[:, places, :2], QUANTILES, axis=0)
+            times = ahead.times
+            after = np.searchsorted(times, LEADS).clip(1, len(times) - 1)
+            part = ((LEADS - times[after - 1]) / (times[after] - times[after - 1]))[:, None]
+            felt = (1.0 - part) * ahead.gravity[:, after - 1, :2] + part * ahead.gravity[:, after, :2]
+            found = np.quantile(felt, QUANTILES, axis=0)
             self._forecasts.append((len(self._rows), np.moveaxis(found, 0, -1)))
 
     def _end(self, name: str, stamp: int) -> None:

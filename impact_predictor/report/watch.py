@@ -12,7 +12,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from ..bags.watched import DECK, FELT, QUANTILES, STEP, UNIT, LevelSpell, WatchLog
+from ..bags.watched import DECK, FELT, QUANTILES, UNIT, LevelSpell, WatchLog
 from ..prediction.deck.forecast import LEADS
 from ..prediction.watch.levels import Level
 from ..stamps import NANOSECONDS
@@ -127,16 +127,15 @@ def forecast_skill(log: WatchLog) -> list[dict[str, Any]]:
     """
     found = []
     for (lead, seconds), (part, name) in product(enumerate(LEADS), enumerate(FELT)):
-        felt = log.deck[:, DECK.index(name)]
-        due = log.stamps[log.made] + round(seconds * NANOSECONDS)
-        there = np.minimum(np.searchsorted(log.stamps, due), len(felt) - 1) if len(felt) else log.made
-        known = (np.abs(log.stamps[there] - due) < STEP) & np.isfinite(felt[there]) & np.isfinite(felt[log.made])
-        came, (low, middle, high) = felt[there][known], log.forecasts[known, lead, part].T
-        answers = {"forecast": middle, "now": felt[log.made][known], "mean": np.nanmean(felt) if known.any() else 0.0}
+        felt, due = log.deck[:, DECK.index(name)], log.stamps[log.made] + round(seconds * NANOSECONDS)
+        came = np.interp(due, log.stamps, felt, right=np.nan) if len(felt) else np.zeros(0)
+        known = np.isfinite(came) & np.isfinite(felt[log.made])
         if known.any():
+            came, (low, middle, high) = came[known], log.forecasts[known, lead, part].T
+            answers = {"forecast": middle, "now": felt[log.made][known], "mean": np.nanmean(felt)}
             errors = {key: float(np.sqrt(np.mean((answer - came) ** 2))) for key, answer in answers.items()}
             within = float(np.mean((low <= came) & (came <= high)))
-            found.append({"of": name, "lead": seconds, "count": int(known.sum()), **errors, "within": within})
+            found.append({"of": name, "lead": seconds, "count": len(came), **errors, "within": within})
     return found
 
 

@@ -68,7 +68,7 @@ def unit_row(name: str, unit: Mapping[str, Any]) -> list[Cell | str]:
     events, warnings = unit["events"], unit["warnings"]
     leads = [[one[key] for one in events if one[key] is not None] for key in ("warned_ahead", "error_ahead")]
     stood = [Cell(fixed(median(of), 1), f"at least {min(of):.1f}") if of else NONE for of in leads]
-    used = [fixed(unit["most"][key], 2) for key in ("slide", "tip")]
+    used = [f"{most:.2f}" if most < 10.0 else "above 10" for most in unit["most"].values()]
     numbers = [f"{number:,}" for number in (len(warnings), sum(one["vain"] for one in warnings))]
     return [name, *used, f"{len(events):,}", f"{len(leads[0]):,}", *stood, *numbers]
 
