@@ -15,6 +15,7 @@ from ...stamps import NANOSECONDS
 from ..checks import REMEDIES
 from ..scene import Scene, Watching
 from ..types import Status, Touchdown, Vector3
+from .peaks import MarginOdds
 from .slips import FrictionSeen
 from .standing import BodyMotion, Standing
 
@@ -262,8 +263,10 @@ class WatchedBody:
             past = f" ({held:.1f} s ago: {'; '.join(rose)})"
         return "; ".join(words) + past
 
-    def values(self, outlook: BodyOutlook, per_hour: Sequence[float]) -> dict[str, str]:
-        """The values of a report, always the same in the same order; `per_hour` are tips, slides and impacts."""
+    def values(self, outlook: BodyOutlook, per_hour: Sequence[float], odds: Sequence[MarginOdds]) -> dict[str, str]:
+        """The values of a report, always the same in the same order; `per_hour` are tips, slides and impacts, and
+        `odds` those of tipping and sliding.
+        """
         used, tilt, (tips, slides, impacts) = outlook.used or NOTHING, self.standing.tilt, per_hour
         margins = {
             "slide_ratio": f"{used.slide:.3f}",
@@ -273,6 +276,8 @@ class WatchedBody:
             "time_to_tip": f"{outlook.time_to_tip:.2f}",
             "time_to_slide": f"{outlook.time_to_slide:.2f}",
             "onset_probability": f"{outlook.chance:.2f}",
+            **odds[0].values("tip"),
+            **odds[1].values("slide"),
             "energy_to_topple": f"{max(0.0, outlook.barrier - self.standing.kinetic):.3f}",
         }
         return {

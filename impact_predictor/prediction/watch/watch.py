@@ -16,8 +16,22 @@ from numpy.typing import NDArray
 from ...stamps import NANOSECONDS
 from ..scene import MovingDeck, Scene
 from ..types import Moment, Quaternion, Sample, Status, Touchdown, Vector3
-from .levels import ERROR, GRAVITY, NOTHING, OK, WARN, BodyOutlook, Level, Levels, MarginsUsed, WatchedBody, rank_of
+from .levels import (
+    ERROR,
+    GRAVITY,
+    NOTHING,
+    OFF_ITS_FEET,
+    OK,
+    WARN,
+    BodyOutlook,
+    Level,
+    Levels,
+    MarginsUsed,
+    WatchedBody,
+    rank_of,
+)
 from .onset import FULL, Onset, OnsetCounts, first_times, motion_of, motions
+from .peaks import HOUR, SOON, MarginOdds, MarginPeaks
 from .slips import FrictionSeen, Slips
 from .standing import BodyMotion
 
@@ -75,6 +89,7 @@ class Watch:
         self._friction = np.array([scene.friction for scene in scenes.values()])
         self._banded = [number for number, body in enumerate(bodies) if body.scene.friction_band]
         self._band: tuple[list[StandingBody], Onset] | None = None
+        self._peaks = MarginPeaks(2 * len(bodies))
         self._timeout = int((bodies[0].scene.deck or MovingDeck()).timeout * NANOSECONDS)
         self._horizons = np.array([one.horizon for one in watchings])
         self._horizon = float(self._horizons.max())
@@ -109,6 +124,8 @@ class Watch:
         self._used = np.maximum(margins.slide, margins.tip)
         seconds = since / NANOSECONDS if since and since <= self._timeout else 0.0
         self._counts.update(margins.tip, margins.slide, seconds)
+        on_feet = np.array([body.standing.motion not in OFF_ITS_FEET for body in self._bodies])
+        self._peaks.update(np.concatenate((margins.tip * on_feet, margins.slide * on_feet)), seconds)
         if self._told.any():
             stands = [
                 one.status is Status.ACCEPTED and one.standing.motion is BodyMotion.STANDS for one in self._bodies
@@ -211,7 +228,7 @@ class Watch:
         self._support = status
         count = len(self._bodies)
         self._used, self._time_to_tip, self._time_to_slide = np.zeros(count), np.full(count, inf), np.full(count, inf)
-        self._chance = np.zeros(count)
+        self._chance, self._chances = np.zeros(count), np.zeros((2, count))
         self._due = np.full(count, rank_of(status))
         self._judged = self._looked = None
 
@@ -228,7 +245,7 @@ class Watch:
             times = first_times(ratios.reshape(-1, count), ahead.times).reshape(bodies, courses)
             found.append(np.where(times > self._horizons[:, None], inf, times))
         either = np.minimum(*found)
-        self._chance = np.isfinite(either).mean(axis=1)
+        self._chance, self._chances = np.isfinite(either).mean(axis=1), np.isfinite(found).mean(axis=2)
         # The course of so many from which on the onset is as likely as one that is warned of.
         due = np.maximum(np.ceil(self._likely * courses).astype(int) - 1, 0)
         self._time_to_tip, self._time_to_slide = [np.sort(times)[np.arange(bodies), due] for times in found]
@@ -313,5 +330,19 @@ class Watch:
             stamp=now,
             level=GRAVITY[self._levels.ranks[number]],
             message=body.message(outlook, held),
-            values=body.values(outlook, self._counts.per_hour(number)),
+            values=body.values(outlook, self._counts.per_hour(number), self._odds(number, outlook)),
         )
+
+    def _odds(self, number: int, outlook: BodyOutlook) -> list[MarginOdds]:
+        """What is to be expected of the margins of a body: that against tipping, and that against sliding."""
+        found = []
+        for row, used in enumerate((0.0, 0.0) if outlook.used is None else (outlook.used.tip, outlook.used.slide)):
+            law = self._peaks.law(row * len(self._bodies) + number)
+            # The forecast tells of its horizon, and the peaks of the rest.
+            horizon = float(self._horizons[number]) if self._is_learnt else 0.0
+            ahead = float(self._chances[row, number]) if self._is_learnt else 0.0
+            soon = 1.0 - (1.0 - ahead) * (1.0 - law.probability(max(0.0, SOON - horizon)))
+            hour = 1.0 - (1.0 - ahead) * (1.0 - law.probability(HOUR - horizon))
+            over = used >= 1.0
+            found.append(MarginOdds(1.0 if over else soon, 1.0 if over else hour, law))
+        return found

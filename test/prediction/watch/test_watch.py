@@ -37,8 +37,10 @@ TALL = Scene(
 )
 """It tips about its port edge at a list of atan(0.3 / 0.5), and slides at one of atan(0.9)."""
 DRUM = TALL._replace(points=(), radius=0.3, edges=((0.0, -0.1, 0.0), (0.0, 0.1, 0.0)), place=(0.0, 0.0, 0.28))
+ODDS = "probability_30_s", "probability_hour", "maximum_hour", "peaks"
 KEYS = [
     *("slide_ratio", "tip_ratio", "edge", "time_to_tip", "time_to_slide", "onset_probability"),
+    *(f"{name}_{what}" for name in ("tip", "slide") for what in ODDS),
     *("energy_to_topple", "friction_seen", "tilt"),
     *("slides_per_hour", "tips_per_hour", "impacts_per_hour", "status"),
 ]

@@ -1,0 +1,66 @@
+"""Peaks of margins: in Gaussian seas they tell the rate and the maximum of the closed forms, else by another law."""
+
+from __future__ import annotations
+
+from math import exp, log, pi, sqrt
+
+import numpy as np
+import pytest
+
+from impact_predictor.prediction.watch.peaks import ENOUGH, HOUR, KEPT, MarginPeaks, PeakLaw, law_of
+
+STEP = 0.25
+
+
+def sea(seconds: float, width: float, seed: int) -> tuple[np.ndarray, float]:
+    """A Gaussian process of deviation 1 with frequencies about 0.9 rad/s, and its rate of up-crossings in Hz."""
+    rng, times = np.random.default_rng(seed), np.arange(0.0, seconds, STEP)
+    omega = 0.9 * (1.0 + width * rng.normal(size=300))
+    waves = np.cos(np.outer(times, omega) + rng.uniform(0.0, 2.0 * pi, 300))
+    motion = sqrt(2.0 / 300) * waves.sum(axis=1)
+    return motion, float(np.sqrt(np.mean(omega * omega))) / (2.0 * pi)
+
+
+@pytest.mark.parametrize("width", [0.1, 0.25])
+def test_the_peaks_of_a_gaussian_sea_tell_rices_rate_and_the_likeliest_maximum(width: float) -> None:
+    ratios, maxima = [], []
+    for seed in range(6):
+        motion, frequency = sea(2400.0, width, seed)
+        peaks = MarginPeaks(1)
+        for one in np.abs(motion / 3.5).tolist():
+            peaks.update(np.array([one]), STEP)
+        law = peaks.law(0)
+        # Rice: up-crossings of 3.5 deviations, on both sides.
+        ratios.append(law.passing(1.0) / (2.0 * frequency * exp(-0.5 * 3.5**2)))
+        maxima.append(law.maximum * 3.5 / sqrt(2.0 * log(2.0 * frequency * HOUR)))
+        assert law.name == "rayleigh"
+    assert 0.6 < np.exp(np.mean(np.log(ratios))) < 2.5
+    assert np.mean(maxima) == pytest.approx(1.0, abs=0.05)
+
+
+def test_peaks_that_are_not_rayleighs_are_told_by_pareto() -> None:
+    rng = np.random.default_rng(0)
+    peaks = 0.2 + 0.05 * rng.pareto(3.0, 400)
+    law = law_of(peaks, HOUR)
+    assert law.name == "pareto"
+    # Beyond 1 there are 400 (0.05 / 0.85)^3 an hour.
+    assert law.passing(1.0) * HOUR == pytest.approx(400 * (0.05 / 0.85) ** 3, rel=2.0)
+    assert 0.5 < law.maximum < 1.5
+    assert 0.0 < law.probability(30.0) < law.probability(HOUR) < 0.5
+
+
+def test_too_few_peaks_tell_nothing_and_no_more_are_kept_than_a_bounded_number() -> None:
+    peaks = MarginPeaks(2)
+    for k in range(ENOUGH - 2):
+        for used in (0.1, 0.1 + 0.001 * k):
+            peaks.update(np.array([used, 0.0]), 2.0)
+    assert peaks.law(0) == PeakLaw()
+    assert PeakLaw().probability(HOUR) == 0.0
+    rng = np.random.default_rng(1)
+    for _ in range(3 * KEPT):
+        for used in (0.0, float(rng.rayleigh(0.2))):
+            peaks.update(np.array([used, 0.0]), 2.0)
+    law = peaks.law(0)
+    assert law.rate == pytest.approx(0.25 / 2.0, rel=0.4)
+    assert law.passing(0.6) == pytest.approx(0.25 * exp(-0.5 * 3.0**2), rel=0.9)
+    assert peaks.law(1) == PeakLaw()
