@@ -83,7 +83,6 @@ def test_the_head_says_how_many_how_right_how_early_and_at_what_cost(page: PageR
         "velocity error": "2.0 %: median against the true ones; 90 % below 2.0 %. The mode is right in 1 of 2.",
         "time error": "2 ms: median 20 to 30 ms ahead; 90 % below 2.8 ms",
         "first ahead": "50 ms: median; 90 % at least 50 ms, the latest 50 ms",
-        "events warned of": "–: ",
         "cost of a sample": "20 us: median; 99 % below 289 us",
     }
     tosses = facts(TOSSES)

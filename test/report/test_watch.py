@@ -160,3 +160,11 @@ def test_the_table_has_a_row_for_each_unit_at_each_stamp_as_parquet_and_as_csv(t
     name = f"{FELT[1]}_in_{LEADS[2]:g}s_{QUANTILES[1]:g}"
     assert rows[2][name] == pytest.approx(one.forecasts[2, 2, 1, 1])
     assert list(texts[0]) == list(SERIES)
+
+
+def test_a_row_of_several_bags_tells_how_many_events_were_warned_of_where_there_was_a_watch() -> None:
+    page = PageReader(page_of_replay([answer("a.mcap"), answer("b.mcap", watch=watch_as_json(log()))]))
+    (head, *rows), *_ = page.tables["bags"]
+    place = head.index("events warned of")
+    assert {row[0]: row[place].split(" a ")[0] for row in rows} == {"a.mcap": "–", "b.mcap": "1 of 2"}
+    assert "bags" in PageReader(page_of_replay([answer("a.mcap"), answer("b.mcap")])).tables

@@ -122,13 +122,13 @@ class ReplayFacts:
         ]
         first, early, latest = (time_words(quantile(times, part) if times else None) for part in (0.5, 0.1, 0.0))
         half, most = (time_words(one and 1e-6 * one) for one in (cost.p50, cost.p99))
-        warned, leads = warned_of(self.units) if self.units else ("–", "")
+        warned = [Headline("events warned of", *warned_of(self.units))] if self.units else []
         return [
             Headline("touchdowns", f"{len(self.rows):,}" if self.rows or not self.units else "–", compared),
             Headline("found", found, missed),
             Headline("velocity error", part_words(errors.p50), right),
             Headline("time error", time_words(late.p50), f"median {span}; 90 % below {time_words(late.p90)}"),
             Headline("first ahead", first, f"median; 90 % at least {early}, the latest {latest}"),
-            Headline("events warned of", warned, leads),
+            *warned,
             Headline("cost of a sample", half, f"median; 99 % below {most}"),
         ]

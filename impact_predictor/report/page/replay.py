@@ -17,10 +17,27 @@ from ...wording import counted, words
 from ..modes import MODES, PALETTE
 from ..skill import pair_of, skill_tables
 from ..summary import PER_DECADE, WHY, without_bag
-from . import GREY, Cell, Chart, PageTable, Section, marks, page, part_words, script_inside, time_words, write_html
+from . import (
+    GREY,
+    Cell,
+    Chart,
+    Headline,
+    PageTable,
+    Section,
+    marks,
+    page,
+    part_words,
+    script_inside,
+    time_words,
+    write_html,
+)
 from .facts import NOTHING, BagAnswer, ReplayFacts
 from .timeline import FALSE, MANY, MISSED, ORDER, look_of, timeline
 from .watch import watched
+
+EXPLAINED: Final = ("found", "events warned of")
+"""Of what a bag's row tells, that of which it tells more."""
+NOT_ASKED: Final = Headline("", "–", "")
 
 DRAWN: Final = 8
 """Bags of which a timeline is drawn; of more the worst."""
@@ -128,8 +145,10 @@ def bags(facts: ReplayFacts, each: Sequence[ReplayFacts], order: Sequence[int], 
     for place in order:
         answer = facts.answers[place]
         remark = next((kind for key, kind in REMARKS.items() if key != "notes" and answer.get(key)), "")
-        more = ("found", "events warned of")
-        cells = [Cell(one.answer, one.more if one.question in more else "") for one in each[place].headlines()]
+        told = {one.question: one for one in each[place].headlines()}
+        # A bag without a watch beside others with one tells nothing of events.
+        asked = [(question, told.get(question, NOT_ASKED)) for question in head[1:]]
+        cells = [Cell(one.answer, one.more if question in EXPLAINED else "") for question, one in asked]
         name = Cell(facts.names[place], remark, to=links.get(place, ""))
         rows.append([name, *(cells if "error" not in answer else [])])
     said = (
