@@ -11,9 +11,9 @@ scene has it. Below stands what stops the mass that the foot has with free joint
 Of each the impulse along the normal, told over measured, until 1, 2, 5 ms after the landing and until the greatest
 force; the change of the trunk's twist until 5 ms (less what its acceleration of the 5 ms before gives), told over
 measured and the part of it that is wrong, angular velocities counted with 0.2 m; the same of the joints. All medians.
-Then the modes: a foot slips that moves with more than 0.05 m/s along the ground 5 ms after it landed, and a standing
-foot has lifted that gets no impulse between 2 and 5 ms; it is told to where it is faster than what gravity gives in
-contact.time. One that rises with 0.01 m/s before the landing stands no more, and one that
+Then the modes: a foot slips that moves with more than 0.05 m/s along the ground 5 ms after it landed, told and true
+alike, and a standing foot has lifted that gets no impulse between 2 and 5 ms; it is told to lift where it rises faster
+than gravity takes back in contact.time. One that rises with 0.01 m/s before the landing stands no more, and one that
 has landed in the 10 ms before it, or lands in the 5 ms after it, takes part as it moves then. Beside them stands the
 more frequent answer, always given, and how far the told slip is off: median and 90 %, in m/s.
 """
@@ -34,7 +34,6 @@ from rich.console import Console
 
 from impact_predictor.bags.read import Bag
 from impact_predictor.errors import InputError
-from impact_predictor.mechanics.types import ContactState
 from impact_predictor.parameters.file import read_values
 from impact_predictor.prediction.planar import hardly
 from impact_predictor.prediction.scene import Robot, Scene, scenes_of, triple
@@ -169,7 +168,7 @@ def judge(scene: Scene, machine: ArticulatedMachine, case: Case, alone: bool = F
         impulses=impulses,
         trunk=compared(WEIGHTS * change, WEIGHTS * true_change),
         joints=compared(np.array(told.jumps), true_jumps),
-        slip=(own[0].state is ContactState.SLIPS) is slips,
+        slip=bool(np.linalg.norm(told_slip) > SLIPS) is slips,
         lifts=[(i not in holds) is is_lifted for i, is_lifted in zip(standing, lifted, strict=True)],
         slips=slips,
         lifted=lifted,
