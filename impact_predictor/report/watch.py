@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ..bags.watched import DECK, FELT, QUANTILES, UNIT, LevelSpell, WatchLog
 from ..prediction.deck.forecast import LEADS
-from ..prediction.watch.levels import Level
+from ..prediction.watch.levels import UNKNOWN, Level
 from ..stamps import NANOSECONDS
 from ..wording import counted
 
@@ -45,7 +45,7 @@ def watch_as_json(log: WatchLog) -> dict[str, Any]:
             },
         },
         "skill": forecast_skill(log),
-        "tracked": {"forecast": log.tracked.get("forecast"), **_known(log.tracked)},
+        "tracked": _known(log.tracked),
         "knows_events": log.knows_events,
         "units": {
             name: {
@@ -84,13 +84,15 @@ def unit_as_json(log: WatchLog, place: int) -> dict[str, Any]:
     }
 
 
-def _known(values: Mapping[str, str]) -> dict[str, float]:
-    """The numbers among the values of a report."""
-    found: dict[str, float] = {}
-    for key, text in values.items():
-        with suppress(ValueError):
-            found |= {key: float(text)} if isfinite(float(text)) else {}
-    return found
+def _known(values: Mapping[str, str]) -> dict[str, float | str]:
+    """The values of a report that are known, as numbers where they are some."""
+    return {key: value for key, text in values.items() if (value := _value(text)) is not None}
+
+
+def _value(text: str) -> float | str | None:
+    with suppress(ValueError):
+        return float(text) if isfinite(float(text)) else None
+    return None if text == UNKNOWN else text
 
 
 def warnings_of(spells: Sequence[LevelSpell]) -> list[LevelSpell]:

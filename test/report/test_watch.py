@@ -45,7 +45,7 @@ def log(rows: int = 200, **given: Any) -> WatchLog:
         made=np.arange(rows),
         forecasts=np.stack([0.0 * told, told], axis=2),
         spells=SPELLS,
-        last={"crate": {"tips_per_hour": "3.5", "time_to_tip": "inf", "edge": "port"}},
+        last={"crate": {"tips_per_hour": "3.5", "time_to_tip": "inf", "edge": "port", "tip_peaks": "rayleigh"}},
         tracked={"forecast": "NO_SKILL", "window.linear": "0.300", "window.angular": "0.400"},
         events={"crate": {10 * S: "slides", 50 * S: "lifts"}},
         knows_events=True,
@@ -64,7 +64,7 @@ def test_events_have_how_long_a_warning_stood_and_warnings_whether_they_were_vai
         {"begin": 20 * S, "end": 25 * S, "vain": True},
     ]
     assert unit["most"] == {"slide": pytest.approx(1.0, abs=0.02), "tip": pytest.approx(0.5, abs=0.01)}
-    assert unit["reported"] == {"tips_per_hour": 3.5}
+    assert unit["reported"] == {"tips_per_hour": 3.5, "edge": "port", "tip_peaks": "rayleigh"}
     said = "a warning had stood 6.0 s in the median, 6.0 s at least; 1 of 2 warnings vain"
     assert warned_of([unit]) == ("1 of 2", said)
 
@@ -118,7 +118,7 @@ def test_the_page_has_deck_forecast_levels_margins_events_and_statistics() -> No
     assert near[1][3:5] == ["2", "1"]
     assert "The forecast at the end: no better than" in page.text
     assert "found over 0.3 s and 0.4 s." in page.text
-    assert statistics == [["unit", "tips per hour"], ["crate", "3.5"]]
+    assert statistics == [["unit", "tips per hour", "tip peaks"], ["crate", "3.5", "rayleigh"]]
     assert skill[3][:2] == ["across, 5 s ahead", "0.100"]
 
 

@@ -37,8 +37,22 @@ ERRS: Final = (
     "Root mean squares of the errors of what is felt on the deck, beside those of what was felt when it was forecast "
     "and of the mean of the record."
 )
+LAST: Final = (
+    "Statistics, as the watch reported them last: tips, slides and impacts of an hour; how likely each margin passes 1 "
+    "within 30 s and within an hour like the last one, its most probable maximum in an hour, and the law of its peaks."
+)
 OF_NOW: Final = frozenset(
-    ("slide_ratio", "tip_ratio", "time_to_tip", "time_to_slide", "onset_probability", "energy_to_topple", "tilt")
+    (
+        "slide_ratio",
+        "tip_ratio",
+        "time_to_tip",
+        "time_to_slide",
+        "onset_probability",
+        "energy_to_topple",
+        "tilt",
+        "edge",
+        "status",
+    )
 )
 """What a report says of its moment alone."""
 RIBBON: Final = {"showticklabels": False, "showgrid": False, "fixedrange": True, "range": [-0.5, 0.5]}
@@ -79,12 +93,14 @@ def statistics(known: Sequence[tuple[str, BagAnswer]]) -> list[PageTable]:
     keys = [key for key in dict.fromkeys(key for *_, unit in units for key in unit["reported"]) if key not in OF_NOW]
     rows = [
         [f"{bag}, {name}" if len(known) > 1 else name or "the unit"]
-        + [f"{unit['reported'][key]:.4g}" if key in unit["reported"] else NONE for key in keys]
+        + [_told(unit["reported"].get(key)) for key in keys]
         for bag, name, unit in units
     ]
-    return (
-        [PageTable(["unit", *map(words, keys)], rows, "Statistics, as the watch reported them last.")] if keys else []
-    )
+    return [PageTable(["unit", *map(words, keys)], rows, LAST)] if keys else []
+
+
+def _told(value: float | str | None) -> str:
+    return NONE if value is None else value if isinstance(value, str) else f"{value:.3g}"
 
 
 def skill_table(skill: Iterable[Mapping[str, Any]], name: str) -> PageTable:
@@ -144,7 +160,7 @@ def chart_of(title: str, answer: BagAnswer) -> Chart:
         top -= high * unit + gap
     left, tracked = len(units) - len(shown), watch["tracked"]
     caption = f"Of {counted(left, 'more unit')}, which came less near to an onset, the table tells. " if left else ""
-    if tracked["forecast"]:
+    if "forecast" in tracked:
         caption += f"The forecast at the end: {ForecastStatus[tracked['forecast']].value}. "
     if "window.linear" in tracked:
         spans = f"{tracked['window.linear']:g} s and {tracked['window.angular']:g} s"
