@@ -37,10 +37,7 @@ ERRS: Final = (
     "Root mean squares of the errors of what is felt on the deck, beside those of what was felt when it was forecast "
     "and of the mean of the record."
 )
-LAST: Final = (
-    "Statistics, as the watch reported them last: tips, slides and impacts of an hour; how likely each margin passes 1 "
-    "within 30 s and within an hour like the last one, its most probable maximum in an hour, and the law of its peaks."
-)
+LAST: Final = "Statistics, as the watch reported them last; an hour is one in which the sea stays as it is."
 OF_NOW: Final = frozenset(
     (
         "slide_ratio",
