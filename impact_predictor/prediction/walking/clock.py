@@ -52,6 +52,8 @@ class FeetClock:
         """
         self.taken = delay
         """The delay in s that is taken out of the stamps."""
+        self.left = 0.0
+        """How much in s the stamps of the feet are surely off all the same."""
         self._normal, self._dead_time = normal, dead_time
         self._frames: list[list[tuple[int, float, float]]] = [[] for _ in range(points)]
         self._seen = self._stances = 0
@@ -89,7 +91,7 @@ class FeetClock:
         delay = self.delay
         if delay is None or not self.is_wrong:
             return False
-        self.taken = delay.time
+        self.taken, self.left = delay.time, 0.0
         return True
 
     def see(self, base: Sample, arms: Sequence[Vector3], points: Sequence[FootPoint]) -> None:
@@ -133,3 +135,5 @@ class FeetClock:
         share = 1.0 - 1.0 / MEMORY
         new = n12, m12, n12 * n12, n12 * m12, m12 * m12, n1, m1
         self._sums = [share * old + one for old, one in zip(self._sums, new, strict=True)]
+        delay = self.delay
+        self.left = abs(delay.time - self.taken) if delay is not None and self.is_wrong else 0.0

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from math import inf, isnan, sqrt
+from math import hypot, inf, isnan, sqrt
 from operator import attrgetter
 
 from ...stamps import NANOSECONDS
@@ -285,7 +285,7 @@ class FeetContacts(Contacts):
             due = min(dues, key=attrgetter("stamp"))
             lead_time, speed = (due.stamp - stamp) / NANOSECONDS, -dot(self.scene.normal, due.velocity)
             late, place = self._schedule.late(name, due.stamp), due.position
-            deviation, lands, strikes = due.deviation, due.lands, due.strikes
+            deviation, lands, strikes = hypot(due.deviation, self._clock.left), due.lands, due.strikes
         impulse = bound = None
         if isinstance(self._ahead, Touchdown):
             impulse = impulse_at(self._ahead, range(own.start, own.stop))
