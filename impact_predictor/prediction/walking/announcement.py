@@ -16,7 +16,7 @@ from .ground import Ground
 from .rest import falls
 from .trajectory import FootTrajectory
 
-AHEAD = 1.5  # a landing is announced when it is no further ahead than so many times as long as the point has come down,
+AHEAD = 2.0  # a landing is announced when it is no further ahead than so many times as long as the point has come down,
 LEAST_DESCENT = 0.02  # ... and that for so many s,
 SURE = 0.01  # ... once its time has a standard deviation below so many s ...
 UNSURE = 2.0  # ... and kept until it has one that is so many times larger

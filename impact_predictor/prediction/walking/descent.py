@@ -52,7 +52,7 @@ KNOWN = 2.0  # landings that the deviation as it is computed counts for
 CHANCE = 4.0  # variances of a mean error that are taken off it
 HUBER = 1.5  # standard deviations beyond which an error counts no more
 WORST = 25.0  # an error counts no more than so many variances
-BROAD = 0.02  # a told deviation in s from which an error says nothing
+BROAD = 0.05  # a told deviation in s from which an error says nothing
 
 
 class LandingMoments:

@@ -25,6 +25,7 @@ MEMORY = 100  # frames of standing feet over which noise is averaged ...
 FEWEST = 10  # ... and from how many on that is believed
 SINKS = 0.5  # contact tolerances that a foot may sink in
 STEADY = 15  # frames over which the level of a foothold is averaged ...
+SETTLES = 100_000_000  # ... while feet and ground may still yield, in ns
 FOLLOWS = 15  # ... and over which the drift is
 
 FOOTHOLDS = 24  # that are remembered: a hind foot steps where a front foot stood some steps before
@@ -67,13 +68,13 @@ class Foothold:
     """A place where a point stands, or stood.
 
     `u` and `v` (m) say where on the scene's plane; `level` (m) is the height of the ground there, less the drift of the
-    heights, as the mean of `count` frames.
+    heights, as the mean of `count` frames, and `stamp` when it was stepped on (ns).
     """
 
-    __slots__ = ("count", "level", "u", "v")
+    __slots__ = ("count", "level", "stamp", "u", "v")
 
-    def __init__(self, u: float, v: float, level: float, count: int) -> None:
-        self.u, self.v, self.level, self.count = u, v, level, count
+    def __init__(self, u: float, v: float, level: float, count: int, stamp: int) -> None:
+        self.u, self.v, self.level, self.count, self.stamp = u, v, level, count, stamp
 
 
 class Relief:
@@ -88,6 +89,7 @@ class Relief:
         self.known = False
         """Whether there has been a foothold."""
         self._footholds: deque[tuple[Foothold, float]] = deque(maxlen=FOOTHOLDS)
+        self._settling = deque[tuple[Foothold, float, float]]()
         self._square, self._weight = (ROUGH * tolerance) ** 2, GUESSED
         self._error = (UNSURE * tolerance) ** 2
         self._u = self._v = self._mean = 0.0
@@ -97,13 +99,16 @@ class Relief:
         # Of the slopes xx, xy and yy of the covariance matrix, in parts of the scatter's square.
         self._unsure = 0.0, 0.0, 0.0
 
-    def add(self, foothold: Foothold, datum: float) -> None:
-        """Take a foothold whose level counts from a datum (m)."""
+    def add(self, foothold: Foothold, datum: float, first: bool) -> None:
+        """Take a foothold whose level counts from a datum (m); the `first` ones have been stood on for long."""
         if self._footholds:
             trend, unsure = self._trend(foothold.u, foothold.v)
+            self._settling.append((foothold, datum + trend, unsure))
+        # How far they lie off what was expected is seen once they have settled.
+        while self._settling and (first or foothold.stamp - self._settling[0][0].stamp > SETTLES):
+            one, expected, unsure = self._settling.popleft()
             self._weight = FORGETS * self._weight + 1.0
-            square = (foothold.level - datum - trend) ** 2 / (1.0 + unsure)
-            self._square += (square - self._square) / self._weight
+            self._square += ((one.level - expected) ** 2 / (1.0 + unsure) - self._square) / self._weight
         self.known = True
         self._footholds.append((foothold, datum))
         self._fit(list(self._footholds)[-PLANE:])
@@ -208,16 +213,16 @@ class Ground:
         level, unsure = self.level_at(place), UNSURE * self._tolerance
         off, square = gap - level.height, level.deviation**2 + unsure**2
         self.drift += max(-unsure, min(off * unsure * unsure / (square + unsure * unsure), unsure))
-        found = Foothold(dot(self._u, place), dot(self._v, place), gap - self.drift, len(frames))
+        found = Foothold(dot(self._u, place), dot(self._v, place), gap - self.drift, len(frames), frames[-1].stamp)
         if first or not self._seen:
             self._first.append(found)
         else:
             self._first.clear()
         told = self._told(place)
         self.footholds += 1
-        self._relief.add(found, 0.0)
+        self._relief.add(found, 0.0, first)
         if told is not None:
-            self._residual.add(found, told[0])
+            self._residual.add(found, told[0], first)
         elif self._terrain is not None:
             self.unmapped += 1
         return found
@@ -227,13 +232,15 @@ class Ground:
         self._seen = min(self._seen + 1, MEMORY)
         share = 1.0 / self._seen
         off = frame.gap - self.drift - foothold.level
-        limit = DRIFT * self._tolerance * abs(frame.stamp - before.stamp) / NANOSECONDS
-        self.drift += max(-limit, min(off / FOLLOWS, limit))
         if abs(off) > self._tolerance:
-            foothold.count = 1  # The foot has slipped off an edge, or the ground has given way.
-        if foothold.count < STEADY:
-            foothold.count += 1
+            # The foot has slipped off an edge, or the ground has given way.
+            foothold.count, foothold.stamp = 1, frame.stamp
+        if frame.stamp - foothold.stamp < SETTLES:
+            foothold.count = min(foothold.count + 1, STEADY)
             foothold.level += off / foothold.count
+        else:
+            limit = DRIFT * self._tolerance * abs(frame.stamp - before.stamp) / NANOSECONDS
+            self.drift += max(-limit, min(off / FOLLOWS, limit))
         if self._first:
             # The scene has the height at which feet touch, as nothing else can: if it is about right.
             sunk = -self.drift - total([one.level for one in self._first]) / len(self._first)

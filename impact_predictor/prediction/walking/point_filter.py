@@ -14,7 +14,7 @@ from .cubic import Cubic, GapNoise, PointFrame, Triangle
 
 FIRST = (1.0, 1e4, 1e8)  # variances of speed, acceleration and jerk (SI) of a point of which one frame is known
 SNAP = 1e5  # power density in (m/s^3)^2/s of how the jerk of a foot changes, until its motion shows it ...
-LEAST_SNAP, MOST_SNAP = 1e3, 1e10
+LEAST_SNAP, MOST_SNAP = 1e3, 3e8
 TURN = 2.5e5  # variance of how the jerk changes at the highest place
 ADAPTS = 0.08  # ... by this part with each measurement
 OUTLIER = 3.0  # a point moves otherwise than before when a measurement is off by so many standard deviations

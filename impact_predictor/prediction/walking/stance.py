@@ -139,7 +139,7 @@ class FootPoint:
             # Where the ground was not expected it is known only now that the point rests since then.
             air = [one for one in frames if one.stamp <= max(rests, frames[0].stamp)]
             unsure = max(self._scene.tolerance, 2.0 * level.deviation)
-            self._arriving = ArrivalFit(air, begin, level.height, unsure, ground.noise)
+            self._arriving = ArrivalFit(air, begin, level, unsure, ground.noise)
             for one in frames[len(air) :]:
                 self._arriving.add(one)
 

@@ -6,13 +6,16 @@ from collections import deque
 from collections.abc import Sequence
 from itertools import islice
 from math import inf
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from ...stamps import NANOSECONDS
 from ..types import Vector3
 from .cubic import SCALE, CubicSums, GapNoise, PointFrame, factored, square_of, value_of
 from .point_filter import SNAP, PointFilter
 from .rest import rate_of
+
+if TYPE_CHECKING:
+    from .ground import GroundLevel
 
 FEWEST = 5  # frames that a cubic is fitted to at least: four would leave nothing to tell how well it fits
 MOST = 200  # frames that are kept: half a second at 400 Hz
@@ -22,6 +25,8 @@ LEAST = 6  # frames in the air in which an arrival is looked for; they may be fr
 NEAREST = 42  # the most of them that are looked at, besides those that may have been on the ground already
 FULL = 150  # frames after which a point that hovers near the ground is looked at anew
 SHARE = 4  # frames that are caught up with while the next one comes in
+YIELDS = 1.2  # contact tolerances that soft contacts may yield further than they stay
+KNOWN = 0.2  # contact tolerances of standard deviation below which a level is known
 CLEAR = 3.0  # standard deviations of the noise of a gap from which on a frame shows that it has sunk in
 BENDS = 100.0  # m/s^2 by which a foot may be accelerated as it arrives
 SINKS_FOR = 0.005  # s for which a foot sinks in at most, ...
@@ -108,19 +113,21 @@ class ArrivalCandidate(NamedTuple):
 class ArrivalFit:
     """A point that is near the ground and does not stand yet, from its first frame there on.
 
-    `frames` are the last ones up to that; the point came down since `begin` (ns) to about a `level` (m). The work is
+    `frames` are the last ones up to that; the point came down since `begin` (ns) to about a `level`. The work is
     shared between the frames that come in: the first of them finds many that are new.
     """
 
     def __init__(
-        self, frames: Sequence[PointFrame], begin: int, level: float, tolerance: float, noise: GapNoise
+        self, frames: Sequence[PointFrame], begin: int, level: GroundLevel, tolerance: float, noise: GapNoise
     ) -> None:
         first = max(0, len(frames) - 2)
         start = next((k for k, frame in enumerate(frames) if frame.stamp >= begin), 0)
         start = max(0, min(start, first - LEAST))
         self._frames = list(frames[start:])
         self._first = first - start
-        self._level, self._tolerance, self._noise = level, tolerance, noise
+        self._level, self._tolerance, self._noise = level.height, tolerance, noise
+        self._least = KNOWN * tolerance
+        self._is_known = level.deviation < self._least
         self._sums = CubicSums(self._frames[:1], places=False)
         self._near = 0.0, 0.0
         self._tried: list[ArrivalCandidate] = []
@@ -188,8 +195,11 @@ class ArrivalFit:
                 best, air, last, level = left, one.last + 1, one.last if part > 0.0 else one.last - 1, rest
                 before = frames[one.last].stamp
                 stamp = before + round(part * (frames[one.last + 1].stamp - before))
-        if sinks > 0.0:
-            stamp = self._touched(last, stamp, self._level + level + sinks, sinks)
+        # Soft contacts yield further than they stay: where the level is known the surface is, too.
+        is_soft = self._is_known and max(self._least, CLEAR * noise.gap) < -level < YIELDS * self._tolerance
+        depth = sinks - level if is_soft else sinks
+        if depth > 0.0:
+            stamp = self._touched(last, stamp, self._level + level + depth, depth)
         while last > 1 and frames[last].stamp > stamp:
             last -= 1
         velocity = frames[last].velocity
@@ -200,13 +210,13 @@ class ArrivalFit:
             _, velocity = sums.motion(factor, 0.0, s)
         return Arrival(stamp, len(frames) - last, velocity)
 
-    def _touched(self, last: int, stamp: int, surface: float, sinks: float) -> int:
-        """The stamp in ns at which a point has touched a surface (m) into which it has sunk until another stamp."""
+    def _touched(self, last: int, stamp: int, surface: float, depth: float) -> int:
+        """The stamp in ns at which a point has touched a surface (m), which it has sunk into by a depth at a stamp."""
         frames, k = self._frames, last + 1
-        if sinks < CLEAR * self._noise.gap:
+        if depth < CLEAR * self._noise.gap:
             course = [one for one in frames[:k] if one.stamp > frames[last].stamp - COURSE]
             speed = -rate_of(course, self._noise)[0] if len(course) > 1 else 0.0
-            return stamp - round(min(sinks / max(speed, LEAST_SPEED), SINKS_FOR) * NANOSECONDS)
+            return stamp - round(min(depth / max(speed, LEAST_SPEED), SINKS_FOR) * NANOSECONDS)
         while k > 1 and frames[k - 1].gap < surface:
             k -= 1
         before, after = frames[k - 1], frames[k]
