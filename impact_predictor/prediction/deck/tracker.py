@@ -159,6 +159,12 @@ class Deck:
         return self._before
 
     @property
+    def error(self) -> float:
+        """What the felt gravity errs by, in m/s^2, as root mean square of an axis; 0 while its noise is not known."""
+        balance = self._linear.balance
+        return balance.error(self._linear.span) if balance.is_known else 0.0
+
+    @property
     def window(self) -> float:
         """The window in s over which linear accelerations are found now."""
         return self._linear.span

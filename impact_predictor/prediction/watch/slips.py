@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 BIN: Final = 250_000_000  # ns over which what is needed is averaged: noise counts less, and waves are longer
 STANDARD_GRAVITY: Final = 9.80665
 NOISE: Final = 0.02
-"""How well is known what friction a body needs: decks are felt to some hundredths of gravity."""
+"""What a body needs is never known better: the tilt and the mass centre of units are not."""
+
+DEVIATIONS: Final = 3.0  # of what is felt, that noise adds now and then to the highest of many
 
 BINS: Final = 8
 """A slide is seen once a body has moved, and so may have begun in any of the last bins."""
@@ -51,17 +53,20 @@ class Slips:
         self._held, self._slid = np.zeros(len(told)), np.full(len(told), inf)
         self._sum, self._count = np.zeros((2, len(told), BINS))
         self._slid_in = np.full(len(told), -RESTS)
-        self._bin = 0
+        self._bin, self._doubt = 0, NOISE
 
-    def update(self, stamp: int, needed: NDArray[np.float64], stands: NDArray[np.bool_]) -> None:
-        """Take the friction (n,) that bodies need at a stamp in ns, and which of them stand."""
+    def update(self, stamp: int, needed: NDArray[np.float64], stands: NDArray[np.bool_], error: float = 0.0) -> None:
+        """Take the friction (n,) that bodies need at a stamp in ns, which of them stand, and the error in m/s^2 of what
+        is felt.
+        """
+        self._doubt = NOISE + DEVIATIONS * error / STANDARD_GRAVITY
         now, at = stamp // BIN, stamp // BIN % BINS
         if now == self._bin + 1:
             # Nothing is seen to have moved since the bin that is the oldest now. In two bins of it a body that slid
             # would have gone farther than unseen with so much more than its friction.
             means = self._means()
             bound = np.minimum(means[:, at], means[:, (at + 1) % BINS])
-            excess = 2.0 * self.unseen / (STANDARD_GRAVITY * (2e-9 * BIN) ** 2) + NOISE
+            excess = 2.0 * self.unseen / (STANDARD_GRAVITY * (2e-9 * BIN) ** 2) + self._doubt
             np.maximum(self._held, bound - excess, out=self._held)
             self._sum[:, at] = self._count[:, at] = 0.0
         elif now != self._bin:
@@ -75,7 +80,7 @@ class Slips:
         """Know that a body is seen to have slid."""
         most = float(self._means()[number].max())
         if most > 0.0:
-            self._slid[number] = min(self._slid[number], most + NOISE)
+            self._slid[number] = min(self._slid[number], most + self._doubt)
         self._sum[number] = self._count[number] = 0.0
         self._slid_in[number] = self._bin
 

@@ -106,8 +106,8 @@ class Watch:
         self._begun = False
         self._lose(Status.NO_SUPPORT)
 
-    def update_support(self, moment: Moment) -> None:
-        """Take the support's motion now."""
+    def update_support(self, moment: Moment, error: float = 0.0) -> None:
+        """Take the support's motion now, and what its felt gravity errs by in m/s^2."""
         self._go_on(moment.stamp)
         judged = self._judged
         known, self._support = self._support is Status.ACCEPTED, Status.ACCEPTED
@@ -130,7 +130,8 @@ class Watch:
             stands = [
                 one.status is Status.ACCEPTED and one.standing.motion is BodyMotion.STANDS for one in self._bodies
             ]
-            self._slips.update(moment.stamp, margins.slide * self._friction, np.array(stands) & (margins.slide < FULL))
+            needed, counts = margins.slide * self._friction, np.array(stands) & (margins.slide < FULL)
+            self._slips.update(moment.stamp, needed, counts, error)
         if self._looked is None or not 0 <= moment.stamp - self._looked < FORECAST_EVERY:
             self._look_ahead(moment.stamp)
         for watched in self._bodies:
