@@ -17,7 +17,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import make_interp_spline
 
 from ...bags.read import read_messages, topics
 from ...errors import InputError
@@ -189,6 +188,8 @@ def read_deck(path: str | os.PathLike[str], topic: str = "", gravity: float = 9.
     Raises:
         InputError: the bag cannot be read, or has no such samples.
     """
+    from scipy.interpolate import make_interp_spline
+
     if not topic:
         found = [name for name, kind in topics(path).items() if kind == ODOMETRY]
         if not found:
