@@ -261,6 +261,8 @@ class FeetContacts(Contacts):
                 x, y, z = add((x, y, z), scene.normal, -self._radii[i])
             gap = nx * x + ny * y + nz * z - scene.height
             if gap < lowest - DEEP_TOLERANCES * scene.tolerance - deep * sqrt(dot(arm, arm)):
+                gaps = [dot(scene.normal, add(position, to_world(axes, one))) for one in geometry.points]
+                self.depth = scene.height - min(gaps)
                 return Status.BELOW_GROUND
             velocity = rate = None
             if geometry.velocities:
