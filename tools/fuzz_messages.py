@@ -63,7 +63,6 @@ def courses() -> tuple[Course, ...]:
     kinds: dict[str, Mapping[str, Any]] = {
         **shipped,
         "imu": crate | {"support.motion": "imu"},
-        "harmonic": crate | {"support.extrapolation": "harmonic", "support.harmonic_window": 2.0},
         "watched floor": cube | {"onset.watch": True, "body.contact_points": points},
         "unsure": cube | sure,
         "total law": cube | {"law": "total", "margins": True, "odom.twist_window": 0.02, "support.frame": ""},
@@ -93,9 +92,10 @@ def made_course(name: str, values: Mapping[str, Any]) -> Course:
     found: list[tuple[int, Input, Any]] = []
     kinds = {Geometry: "contact_geometry", Joints: "joint_states", Wrench: "contact_wrench", Schedule: "schedule"}
     for body, scene in scenes.items():
-        if scene.source == "none":
-            continue
         for message in made(scene):
+            # Of what is not measured only the support tells.
+            if scene.source == "none" and not isinstance(message, OfSupport):
+                continue
             value: Any = message
             key: tuple[str, str | None] = (kinds.get(type(message), "odom"), body)
             if isinstance(message, OfSupport):

@@ -126,7 +126,8 @@ class NoiseBalance:
 
     def _by_noise(self, span: float) -> float:
         """The mean square of what noise makes of what is found."""
-        return self.law.noise * self._noise.square * self._step / span**self.law.power
+        noise = self.law.noise * self._noise.square * self._step
+        return noise / span**self.law.power if noise else 0.0
 
 
 class MotionWindow:

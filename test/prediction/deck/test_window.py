@@ -62,6 +62,16 @@ def test_the_window_that_follows_the_noise_errs_hardly_more_than_the_best_given_
     assert error(0.0, omega, noise) < 1.3 * best
 
 
+@pytest.mark.parametrize("window", [0.0, 0.2])
+def test_a_deck_that_does_not_move_at_all_has_no_noise_and_hardly_an_error(window: float) -> None:
+    deck, still = Deck(MovingDeck(window=window), GRAVITY, UP), (0.0, 0.0, 0.0)
+    for sample, _ in samples(1.0, 0.0, 20.0):
+        at_rest = sample._replace(position=still, orientation=(0.0, 0.0, 0.0, 1.0), linear=still, angular=still)
+        deck.update(at_rest)
+    assert deck.error < 0.01
+    assert not deck.doubts()
+
+
 def test_without_noise_the_window_is_as_short_as_it_can_be() -> None:
     deck = Deck(MovingDeck(window=0.0), GRAVITY, UP)
     for sample, _ in samples(1.5, 0.0, 60.0):
