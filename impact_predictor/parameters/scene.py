@@ -184,7 +184,7 @@ def _check_feet(one: _Given) -> None:
                 f"and {why}: give {wanted}"
             )
     if not values["contact.tolerance"]:
-        raise InputError(f"{one.named('contact.tolerance')} is 0, which feet do not learn: give that of the ground in m")
+        raise InputError(f"{one.named('contact.tolerance')} is 0, which feet do not learn: give it in m")
     # Points that are common to the other bodies may stand beside the feet of one.
     points = "body.contact_points"
     if values[points] and one.is_own(points) >= one.is_own(feet):

@@ -160,7 +160,7 @@ REFUSED: list[tuple[dict[str, Any], str]] = [
         "body.contact_points and feet.names are both given: feet move, so their points come with messages",
     ),
     ({"feet.names": ["a", "b", "a"]}, "but 'a' is there twice"),
-    ({**FEET, "contact.tolerance": 0.0}, "contact.tolerance is 0, which feet do not learn: give that of the ground"),
+    ({**FEET, "contact.tolerance": 0.0}, "contact.tolerance is 0, which feet do not learn: give it in m"),
     ({"feet.names": ["a", ""]}, "but a name is empty"),
     ({"feet.points": 2}, "feet.points is for a machine that walks: give the names of its feet as feet.names"),
     ({"feet.force": 30.0}, "feet.force is for a machine that walks: give the names of its feet as feet.names"),
