@@ -68,7 +68,7 @@ class LandingAnnouncement:
     def learn(self, stamp: int, last: PointFrame, ground: Ground) -> None:
         """Take that the point has landed at a stamp in ns, after its `last` frame in the air."""
         self._count(ground, came=1.0)
-        self._estimator.learn(stamp, last.stamp, ground.level_at(last.position).raised(ground.sinks), ground.prior)
+        self._estimator.learn(stamp, last.stamp, ground.level_at(last.position), ground.prior)
 
     def revise(self, trajectory: FootTrajectory, stamp: int, ground: Ground, near: bool) -> ExpectedLanding | None:
         """The landing of a point in the air that is ahead of a stamp in ns.
@@ -95,9 +95,9 @@ class LandingAnnouncement:
             return
         level = ground.level_at(trajectory.frames[-1].position if due is None else due.position)
         gap = filtered.rows[0][0]
-        if gap < level.height:  # It has met no ground there.
+        if gap < level.height - ground.yields:  # It has met no ground there.
             level = level.below(gap, sqrt(filtered.covariance[0]))
-        found = self._estimator.estimate(filtered, level.raised(ground.sinks), ground.prior)
+        found = self._estimator.estimate(filtered, level, ground.prior)
         most = SURE * (1.0 if due is None else UNSURE)
         # Where nobody knows the ground, a landing is told all the same, with the deviation that it then has.
         unsure = BEYOND * level.deviation / max(LEAST_RATE, -filtered.rows[0][1])
@@ -126,7 +126,8 @@ class LandingAnnouncement:
     def _falls_on(self, trajectory: FootTrajectory, due: ExpectedLanding, ground: Ground) -> bool:
         """Whether the point surely comes down still, through the ground where that was expected."""
         frames = trajectory.last(2)
-        if len(frames) < 2 or frames[-1].gap > ground.level_at(due.position).height - THROUGH * self._scene.tolerance:
+        stops = ground.level_at(due.position).height - ground.yields - THROUGH * self._scene.tolerance
+        if len(frames) < 2 or frames[-1].gap > stops:
             return False
         return falls(frames, 2.0 * hardly(self._scene), ground.noise)
 

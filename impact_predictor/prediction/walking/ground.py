@@ -45,9 +45,6 @@ class GroundLevel(NamedTuple):
     height: float
     deviation: float
 
-    def raised(self, height: float) -> GroundLevel:
-        return GroundLevel(self.height + height, self.deviation)
-
     def below(self, gap: float, deviation: float) -> GroundLevel:
         """The level under a point that has come down to a gap with a standard deviation (m), and has met no ground.
 
@@ -67,14 +64,17 @@ class GroundLevel(NamedTuple):
 class Foothold:
     """A place where a point stands, or stood.
 
-    `u` and `v` (m) say where on the scene's plane; `level` (m) is the height of the ground there, less the drift of the
-    heights, as the mean of `count` frames, and `stamp` when it was stepped on (ns).
+    `u` and `v` (m) say where on the scene's plane. Heights (m) are less the drift of all: the point is at `rest`, the
+    mean of `count` frames, below the `level` of the ground as far as it has sunk in. Whether it was seen to have
+    `touched` that, and the `stamp` when it was stepped on (ns); `moves` are the last differences of its gap and rate.
     """
 
-    __slots__ = ("count", "level", "stamp", "u", "v")
+    __slots__ = ("count", "level", "moves", "rest", "stamp", "touched", "u", "v")
 
-    def __init__(self, u: float, v: float, level: float, count: int, stamp: int) -> None:
-        self.u, self.v, self.level, self.count, self.stamp = u, v, level, count, stamp
+    def __init__(self, u: float, v: float, rest: float, count: int, stamp: int) -> None:
+        self.u, self.v, self.rest, self.count, self.stamp = u, v, rest, count, stamp
+        self.level, self.touched = rest, False
+        self.moves: tuple[float, float] | None = None
 
 
 class Relief:
@@ -172,6 +172,8 @@ class Ground:
         """By how much in m the ground that feet show has moved along the normal, since the scene was written."""
         self.sinks = 0.0
         """By how much in m what stands has sunk in: feet touch the ground that much higher."""
+        self.yields = 0.0
+        """How far in m soft ground has let points come down lately before it stopped them."""
         self._first = list[Foothold]()  # those on which the machine stood before it walked
         self._tolerance = scene.tolerance
         self._u = direction_of(scene.normal, [])
@@ -202,18 +204,24 @@ class Ground:
 
     def level_of(self, foothold: Foothold) -> GroundLevel:
         """The level of a foothold now."""
-        return GroundLevel(self.drift + foothold.level, 0.0)
+        return GroundLevel(self.drift + (foothold.level if foothold.touched else foothold.rest), 0.0)
 
-    def begin(self, frames: Sequence[PointFrame], first: bool = False) -> Foothold:
-        """The foothold of a point that stands, and has rested there for some frames, or since the `first` one."""
-        place, gap = frames[-1].position, total([frame.gap for frame in frames]) / len(frames)
+    def begin(self, frames: Sequence[PointFrame], first: bool = False, touched: float | None = None) -> Foothold:
+        """The foothold of a point that stands, and has rested there for some frames, or since the `first` one.
+
+        The ground is at the height (m) where the point has touched it, if that was seen.
+        """
+        place, rest = frames[-1].position, total([frame.gap for frame in frames]) / len(frames)
+        gap = rest + self.sinks if touched is None else touched
+        self.yields = max(FORGETS * self.yields, 0.0 if touched is None else touched - rest)
         if not self._relief.known:
             self.drift = gap
         # What is off is ground, but for the little drift that nobody has seen yet.
         level, unsure = self.level_at(place), UNSURE * self._tolerance
         off, square = gap - level.height, level.deviation**2 + unsure**2
         self.drift += max(-unsure, min(off * unsure * unsure / (square + unsure * unsure), unsure))
-        found = Foothold(dot(self._u, place), dot(self._v, place), gap - self.drift, len(frames), frames[-1].stamp)
+        found = Foothold(dot(self._u, place), dot(self._v, place), rest - self.drift, len(frames), frames[-1].stamp)
+        found.level, found.touched = gap - self.drift, touched is not None
         if first or not self._seen:
             self._first.append(found)
         else:
@@ -229,27 +237,33 @@ class Ground:
 
     def add(self, frame: PointFrame, before: PointFrame, foothold: Foothold) -> None:
         """Take two frames of a point that stands on a foothold; they follow each other."""
-        self._seen = min(self._seen + 1, MEMORY)
-        share = 1.0 / self._seen
-        off = frame.gap - self.drift - foothold.level
+        off = frame.gap - self.drift - foothold.rest
         if abs(off) > self._tolerance:
             # The foot has slipped off an edge, or the ground has given way.
-            foothold.count, foothold.stamp = 1, frame.stamp
-        if frame.stamp - foothold.stamp < SETTLES:
-            foothold.count = min(foothold.count + 1, STEADY)
-            foothold.level += off / foothold.count
-        else:
+            foothold.count, foothold.stamp, foothold.touched = 1, frame.stamp, False
+        settled = frame.stamp - foothold.stamp >= SETTLES
+        if settled and not foothold.touched:
             limit = DRIFT * self._tolerance * abs(frame.stamp - before.stamp) / NANOSECONDS
             self.drift += max(-limit, min(off / FOLLOWS, limit))
+        else:
+            foothold.count = min(foothold.count + 1, STEADY)
+            foothold.rest += off / foothold.count
+        if not foothold.touched:
+            foothold.level = foothold.rest + self.sinks
         if self._first:
             # The scene has the height at which feet touch, as nothing else can: if it is about right.
-            sunk = -self.drift - total([one.level for one in self._first]) / len(self._first)
+            sunk = -self.drift - total([one.rest for one in self._first]) / len(self._first)
             self.sinks = sunk if 0.0 < sunk < SINKS * self._tolerance else 0.0
-        # Differences of two frames leave the motion of the base's drift out, and have twice the square of the noise.
-        self._square += share * (0.5 * (frame.gap - before.gap) ** 2 - self._square)
+        moved, foothold.moves = foothold.moves, (frame.gap - before.gap, (frame.rate or 0.0) - (before.rate or 0.0))
+        if moved is None:
+            return
+        self._seen = min(self._seen + 1, MEMORY)
+        share = 1.0 / self._seen
+        # How these differ leaves slow motion out, and has six times the square of the noise.
+        self._square += share * ((foothold.moves[0] - moved[0]) ** 2 / 6.0 - self._square)
         rate = self.noise.rate
         if frame.rate is not None and before.rate is not None:
-            self._square_rate += share * (0.5 * (frame.rate - before.rate) ** 2 - self._square_rate)
+            self._square_rate += share * ((foothold.moves[1] - moved[1]) ** 2 / 6.0 - self._square_rate)
             rate = max(LEAST.rate, sqrt(self._square_rate))
         if self._seen >= FEWEST:
             self.noise = GapNoise(max(LEAST.gap, sqrt(self._square)), rate)

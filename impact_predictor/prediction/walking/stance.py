@@ -116,7 +116,8 @@ class FootPoint:
         if self._foothold is None:
             # It has sunk in and come back while it was not believed yet.
             lasted = since(trajectory.frames, frame.stamp - self._contact_time) if self.since else [frame]
-            self._foothold = ground.begin(lasted, first=not self.since)
+            touched = self.arrival.height if landed and self.arrival is not None else None
+            self._foothold = ground.begin(lasted, first=not self.since, touched=touched)
         if near or changed:
             self._standing.append(frame)
             if frame.stamp - self._standing[0].stamp > SETTLED * self._dead_time:

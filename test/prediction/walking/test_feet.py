@@ -288,6 +288,20 @@ def test_a_foot_that_sinks_in_as_the_standing_ones_have_lands_when_it_touches() 
     assert score.landing.stamp == pytest.approx(START + 598.6 * MS, abs=0.4 * MS)
 
 
+@pytest.mark.parametrize("time_constant", [0.01, 0.02, 0.03])
+@pytest.mark.parametrize("rate", [400.0, 1000.0])
+def test_a_foot_on_soft_ground_lands_when_that_begins_to_brake_it(rate: float, time_constant: float) -> None:
+    def course(time: float) -> tuple[float, float]:
+        if time < 0.6:
+            return swing(0.3, 0.6, speed=0.6)(time)
+        # A contact with critical damping that is stepped on with 0.6 m/s: it sinks in, and comes back slowly.
+        t = (time - 0.6) / time_constant
+        return -0.6 * (time - 0.6) * math.exp(-t), -0.6 * (1.0 - t) * math.exp(-t)
+
+    (score,) = walk(machine(), record([course, stands, stands, stands], 0.9, rate=rate)).scores
+    assert score.stamp == pytest.approx(START + 600 * MS, abs=0.8 * MS)
+
+
 def test_a_landing_that_was_not_announced_is_told_without_a_history() -> None:
     def drops(time: float) -> tuple[float, float]:
         if not 0.3 < time < 0.5:
