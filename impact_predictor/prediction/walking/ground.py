@@ -250,9 +250,9 @@ class Ground:
             foothold.rest += off / foothold.count
         if not foothold.touched:
             foothold.level = foothold.rest + self.sinks
-        if self._first:
-            # The scene has the height at which feet touch, as nothing else can: if it is about right.
-            sunk = -self.drift - total([one.rest for one in self._first]) / len(self._first)
+        if self._first and not settled:
+            # The scene has the height at which feet touch, as nothing else can: if it is about right. One may hover.
+            sunk = -self.drift - sorted([one.rest for one in self._first])[(len(self._first) - 1) // 2]
             self.sinks = sunk if 0.0 < sunk < SINKS * self._tolerance else 0.0
         moved, foothold.moves = foothold.moves, (frame.gap - before.gap, (frame.rate or 0.0) - (before.rate or 0.0))
         if moved is None:
