@@ -23,6 +23,7 @@ DRIFT = 1.0  # contact tolerances in a second by which standing feet may shift t
 UNSURE = 0.02  # contact tolerances by which that is not known
 MEMORY = 100  # frames of standing feet over which noise is averaged ...
 FEWEST = 10  # ... and from how many on that is believed
+HOVERS = 0.5  # contact tolerances above the lowest foot within which feet stand at first
 SINKS = 0.5  # contact tolerances that a foot may sink in
 STEADY = 15  # frames over which the level of a foothold is averaged ...
 SETTLES = 100_000_000  # ... while feet and ground may still yield, in ns
@@ -238,10 +239,10 @@ class Ground:
     def add(self, frame: PointFrame, before: PointFrame, foothold: Foothold) -> None:
         """Take two frames of a point that stands on a foothold; they follow each other."""
         off = frame.gap - self.drift - foothold.rest
-        if abs(off) > self._tolerance:
-            # The foot has slipped off an edge, or the ground has given way.
-            foothold.count, foothold.stamp, foothold.touched = 1, frame.stamp, False
         settled = frame.stamp - foothold.stamp >= SETTLES
+        if abs(off) > (max(HOVERS * self._tolerance, FAR * self.noise.gap) if settled else self._tolerance):
+            # The foot has slipped off an edge, or the ground has given way.
+            foothold.count, foothold.stamp, foothold.touched, settled = 1, frame.stamp, False, False
         if settled and not foothold.touched:
             limit = DRIFT * self._tolerance * abs(frame.stamp - before.stamp) / NANOSECONDS
             self.drift += max(-limit, min(off / FOLLOWS, limit))
@@ -250,9 +251,11 @@ class Ground:
             foothold.rest += off / foothold.count
         if not foothold.touched:
             foothold.level = foothold.rest + self.sinks
-        if self._first and not settled:
+        if self._first:
             # The scene has the height at which feet touch, as nothing else can: if it is about right. One may hover.
-            sunk = -self.drift - sorted([one.rest for one in self._first])[(len(self._first) - 1) // 2]
+            rests = [one.rest for one in self._first]
+            rests = [one for one in rests if one < min(rests) + HOVERS * self._tolerance]
+            sunk = -self.drift - total(rests) / len(rests)
             self.sinks = sunk if 0.0 < sunk < SINKS * self._tolerance else 0.0
         moved, foothold.moves = foothold.moves, (frame.gap - before.gap, (frame.rate or 0.0) - (before.rate or 0.0))
         if moved is None:
