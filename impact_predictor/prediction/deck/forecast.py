@@ -2,7 +2,7 @@
 
 What is measured of the deck, in means over quarters of a second, goes on as a linear function of its last eight seconds
 (vector autoregression; Luetkepohl, "New Introduction to Multiple Time Series Analysis", 2005, chapter 3). Its
-coefficients are the least-squares ones over the last ten minutes, in which the past fades, so that they follow a sea
+coefficients are the least-squares ones over the last twenty minutes, in which the past fades, so that they follow a sea
 that changes. Channels that lead others, like heave before roll, tell of them: a recursion that all share (Prony) errs
 twice as much. How unsure a forecast is its own past errors show, whole courses of them, which need no model.
 """
@@ -25,9 +25,9 @@ STEP = 250_000_000  # ns between two rows
 SECONDS = STEP / NANOSECONDS
 ORDER = 32  # rows that tell the next one: 8 s
 REACH = 60  # rows ahead: 15 s
-MEMORY = 2400  # rows after which the past counts 1/e: ten minutes
+MEMORY = 4800  # rows after which the past counts 1/e: twenty minutes
 REFIT = 40  # rows between two fits
-RIDGE = 1e-3
+RIDGE = 2e-5
 """Of each channel's variance, added to it: what is fitted below that is noise."""
 
 LEAST = 1e-4
@@ -44,7 +44,7 @@ ENOUGH = 12  # courses from which a forecast is trusted
 LEADS: Final = (1.0, 2.0, 5.0, 10.0)
 """s ahead at which forecasts are compared with what came."""
 
-_ROWS: Final = [round(lead / SECONDS) - 1 for lead in LEADS]
+_ROWS: Final = [round(lead / SECONDS) for lead in LEADS]
 _DECIDES: Final = 1  # the lead at which a forecast must be better than the simple answers
 
 
@@ -126,7 +126,7 @@ class WaveForecast:
         """Begin a new record of the same sea: what was learnt of it stays."""
         self._last: tuple[int, NDArray[np.float64]] | None = None
         self._part = np.zeros(self._width)
-        self._rows = np.zeros((0, self._width))
+        self._rows = self._near = np.zeros((0, self._width))
         self._made: deque[tuple[int, NDArray[np.float64]]] = deque()
         self._tick = self._new = 0
 
@@ -162,14 +162,14 @@ class WaveForecast:
     def outlook(self, stamp: int, horizon: float) -> DeckOutlook:
         """The courses from a stamp in ns, not before that of the last state, over a horizon in s."""
         errors = np.array(self._courses)
-        rows = np.concatenate([self._rows[-1:], self._forecast()]) + self._origin
+        rows = np.concatenate([self._rows[-2:], self._forecast()]) + self._origin
         # An error may as well have been the other way: so a few courses go further.
-        errors = np.concatenate([np.zeros((len(errors), 1, self._width)), errors], axis=1)
+        errors = np.concatenate([np.zeros((len(errors), 2, self._width)), errors], axis=1)
         felt = self._felt(np.concatenate([rows + errors, rows - errors]))
-        # A row is the mean over the step that ends with it.
         begin = (self._tick * STEP - stamp) / NANOSECONDS
-        times = np.array([begin + SECONDS * (k - 0.5) for k in range(REACH + 1)])
-        first = int(np.searchsorted(times, 0.0))
+        times = np.array([begin + SECONDS * k for k in range(REACH - 1)])
+        # The slope at the end of the last row has the noise of its measurement.
+        first = int(np.searchsorted(times, 0.0, side="right"))
         last = max(first + 1, int(np.searchsorted(times, horizon, side="right")))
         gravity, angular, turning = [each[:, first:last] for each in felt]
         return DeckOutlook(times=times[first:last], gravity=gravity, angular=angular, turning=turning, is_learnt=True)
@@ -181,51 +181,67 @@ class WaveForecast:
         return np.array((*to_body(axes, self._gravity)[:2], *state.angular, *to_body(axes, state.velocity)))
 
     def _felt(self, rows: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-        """Gravity felt, angular velocity and its derivative, each (n, t, 3), in courses of rows (n, t, width)."""
+        """Gravity felt, angular velocity and its derivative, each (n, t - 3, 3), in courses of rows (n, t, width): at
+        the ends of all rows but the first and the last two.
+
+        A mean over a step hides what waves do within it: cubics with the means of four are the motion and its slope.
+        """
+        before, left, right, after = [rows[:, k : rows.shape[1] - 3 + k] for k in range(4)]
+        there = (7.0 * (left + right) - (before + after)) / 12.0
+        slopes = (15.0 * (right - left) - (after - before)) / (12.0 * SECONDS)
         start = 3 if self._is_felt else 2
-        angular = rows[:, :, start : start + 3]
-        turning = np.gradient(angular, SECONDS, axis=1)
+        angular, turning = (part[:, :, start : start + 3] for part in (there, slopes))
         if self._is_felt:
-            return rows[:, :, :3], angular, turning
-        linear, gravity = rows[:, :, 5:], self._gravity
-        down = np.maximum(dot(gravity, gravity) - np.square(rows[:, :, :2]).sum(2, keepdims=True), 0.0)
-        felt = np.concatenate([rows[:, :, :2], -np.sqrt(down)], axis=2)
-        return felt - np.gradient(linear, SECONDS, axis=1) - np.cross(angular, linear), angular, turning
+            return there[:, :, :3], angular, turning
+        linear, gravity = there[:, :, 5:], self._gravity
+        down = np.maximum(dot(gravity, gravity) - np.square(there[:, :, :2]).sum(2, keepdims=True), 0.0)
+        felt = np.concatenate([there[:, :, :2], -np.sqrt(down)], axis=2)
+        return felt - slopes[:, :, 5:] - np.cross(angular, linear), angular, turning
 
     def _forecast(self) -> NDArray[np.float64]:
         """The rows (REACH, width) after the last one."""
-        assert self._factors is not None
-        width, factors, constant = self._width, self._factors[:-1], self._factors[-1]
-        rows = np.empty((REACH + ORDER, width))
+        rows = np.empty((REACH + ORDER, self._width))
         # The last row first, as the factors have it: each new one goes before the others.
         rows[REACH:] = self._rows[: -ORDER - 1 : -1]
         for i in range(REACH - 1, -1, -1):
-            row = rows[i + 1 : i + 1 + ORDER].ravel() @ factors + constant
-            rows[i] = np.minimum(np.maximum(row, self._bounds[0]), self._bounds[1])
+            rows[i] = self._next(rows[i + 1 : i + 1 + ORDER])
         return rows[:REACH][::-1]
+
+    def _next(self, before: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The row after others (ORDER, width), of which the last one comes first."""
+        assert self._factors is not None
+        row: NDArray[np.float64] = before.ravel() @ self._factors[:-1] + self._factors[-1]
+        return np.minimum(np.maximum(row, self._bounds[0]), self._bounds[1])
 
     def _take(self, row: NDArray[np.float64]) -> None:
         """Take the mean of a step."""
         if self._origin is None:
             self._origin = row
-        self._rows = np.concatenate([self._rows[-(ORDER + REACH) :], (row - self._origin)[None]])
+        row = row - self._origin
+        # What is told right before it came has the noise of its measurement no more, and belongs to no course.
+        near = row if self._factors is None or len(self._rows) < ORDER else self._next(self._rows[: -ORDER - 1 : -1])
+        self._near = np.concatenate([self._near[1 - REACH :], near[None]])
+        self._rows = np.concatenate([self._rows[-(ORDER + REACH) :], row[None]])
         self._new += 1
         if self._made and self._made[0][0] + REACH == self._tick:
             _, told = self._made.popleft()
-            self._courses.append(self._rows[-REACH:] - told)
+            self._courses.append(self._near - told)
             self._compare(told)
         if len(self._rows) <= ORDER:
             self._new = 0
         elif self._new == REFIT:
             self._fit()
-        if self._factors is not None and self._tick % SPACED == 0 and len(self._rows) >= ORDER:
+        # Forecasts of fewer rows than there are unknowns tell nothing of later ones.
+        enough = self._square[-1, -1] >= len(self._square)
+        if enough and self._factors is not None and self._tick % SPACED == 0 and len(self._rows) >= ORDER:
             self._made.append((self._tick, self._forecast()))
 
     def _compare(self, told: NDArray[np.float64]) -> None:
         """Learn what a forecast was worth, now that what it told has come."""
         assert self._origin is not None
-        came, told = [self._felt(rows[None] + self._origin)[0][0] for rows in (self._rows[-REACH - 1 :], told)]
-        there = came[1:][_ROWS]
+        begin, came = np.split(self._rows[-REACH - 2 :], [2])
+        came, told = [self._felt(np.concatenate([begin, rows])[None] + self._origin)[0][0] for rows in (came, told)]
+        there = came[_ROWS]
         errors = np.stack([told[_ROWS] - there, came[0] - there, came.mean(axis=0) - there])
         self._squares.append(np.square(errors).sum(axis=2))
         if len(self._squares) >= ENOUGH:

@@ -52,7 +52,10 @@ FORECAST_EVERY: Final = 500_000_000  # ns from one look ahead to the next
 IMMINENT: Final = 1.0
 """s: the level is ERROR when the onset is likelier than not within so long."""
 
-STANDS: Final = 0.5
+SURE: Final = 3.0
+"""Standard deviations by which a margin is used up beyond doubt: noise alone passes thresholds that the deck nears."""
+
+STANDS: Final = 0.25
 """A warning stands while the onset is so many times as likely as one must be that raises it."""
 
 
@@ -134,6 +137,7 @@ class Watch:
             self._slips.update(moment.stamp, needed, counts, error)
         if self._looked is None or not 0 <= moment.stamp - self._looked < FORECAST_EVERY:
             self._look_ahead(moment.stamp)
+            self._scatter = self._shaken(error)
         for watched in self._bodies:
             watched.check_silence(moment.stamp, self._timeout)
         self._judge()
@@ -229,7 +233,7 @@ class Watch:
         self._support = status
         count = len(self._bodies)
         self._used, self._time_to_tip, self._time_to_slide = np.zeros(count), np.full(count, inf), np.full(count, inf)
-        self._chance, self._chances = np.zeros(count), np.zeros((2, count))
+        self._chance, self._chances, self._scatter = np.zeros(count), np.zeros((2, count)), np.zeros(count)
         self._due = np.full(count, rank_of(status))
         self._judged = self._looked = None
 
@@ -255,6 +259,14 @@ class Watch:
         if ahead.is_learnt:
             self._due[(either <= IMMINENT).mean(axis=1) > 0.5] = ERROR
 
+    def _shaken(self, error: float) -> NDArray[np.float64]:
+        """What the parts (n,) of the margins err by where the felt gravity errs by so many m/s^2."""
+        motions = np.repeat(self._motion[:, None], 3, axis=1)
+        motions[:3] += error * np.eye(3)
+        margins = self._onset.margins(motions)
+        errors: NDArray[np.float64] = np.abs(np.maximum(margins.slide, margins.tip) - self._used[:, None]).max(axis=1)
+        return np.minimum(errors, 1.0 / SURE)  # what is used up twice is so in any noise
+
     def _hear(self, number: int, stamp: int) -> None:
         """A body's source is heard, at the time that the support's stamps tell."""
         if self._bodies[number].hear(stamp if self._now is None else self._now):
@@ -278,7 +290,9 @@ class Watch:
         others = np.array([body.rank() for body in self._bodies])
         before = self._levels.ranks
         # Once the sea is learnt, how likely an onset is warns of it, and not how near the deck has come to one.
-        parts = np.where(self._used < self._levels.error, 0.0, self._used) if self._is_learnt else self._used
+        parts = self._used
+        if self._is_learnt:
+            parts = np.where(parts < self._levels.error + SURE * self._scatter, 0.0, parts)
         self._levels.update(self._now, parts, np.maximum(others, self._due))
         ranks = self._levels.ranks
         for number in np.flatnonzero((ranks > before) | ((ranks == OK) & (ranks != before))).tolist():

@@ -81,8 +81,8 @@ PART: Final = 0.02
 """A velocity above this part of the approach is one: out of the deck the contact opens, along it it slips."""
 
 
-SETTLES: Final = 0.05
-"""Seconds in which the springs take the load of a unit that is followed from rest."""
+SETTLES: Final = 6
+"""Looks before a unit comes near, in which the springs take its load: a unit that is high and narrow sways on them."""
 
 
 def make_advance(law_code: str) -> Any:
@@ -176,11 +176,11 @@ class _Compliant:
             times = np.append(np.arange(time, until, LOOKS), until)
             over = np.flatnonzero((self._used(times) > NEAR) | self.leans)
             self.leans = False
-            rested = float(times[max(0, over[0] - 1)]) if len(over) else until
+            rested = float(times[max(0, over[0] - SETTLES)]) if len(over) else until
             if rested > time:
                 self.y[7:] = 0.0
                 yield self._span(time, np.array([time, rested]), np.stack([self.y, self.y]))
-                time, self.settled = rested, rested + SETTLES
+                time, self.settled = rested, rested + SETTLES * LOOKS
             while len(over) and time < duration and end is End.TIME_UP:
                 before, stretch = self.y.copy(), self._steps(time, duration)
                 if len(toppled := np.flatnonzero(rotations(stretch.rows[:, 3:7])[:, 2, 2] < 0.0)):

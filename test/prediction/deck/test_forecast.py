@@ -84,7 +84,7 @@ def test_nothing_is_forecast_before_the_sea_is_learnt_nor_right_after_a_jump(
 ) -> None:
     samples, _ = record
     first = next(number for number, _ in outlooks(samples, 1))
-    assert 30.0 < (samples[first].stamp - samples[0].stamp) / 1e9 < 90.0
+    assert 60.0 < (samples[first].stamp - samples[0].stamp) / 1e9 < 120.0
     deck = Deck(MovingDeck(), GRAVITY, UP)
     deck.learn()
     moved = [one._replace(position=tuple(np.add(one.position, (50.0, 0.0, 0.0)))) for one in samples[first + 100 :]]
@@ -159,7 +159,7 @@ def test_a_forecast_stays_finite_where_nothing_repeats() -> None:
         forecast.add(state(float(time), tuple(level[:3]), tuple(level[3:])))
     outlook = forecast.outlook(200 * 10**9, 15.0)
     assert all(np.isfinite(part).all() for part in outlook)
-    assert len(outlook.times) == pytest.approx(REACH, abs=1)
+    assert len(outlook.times) == pytest.approx(REACH, abs=3)
     assert np.diff(outlook.times) == pytest.approx(STEP / 1e9)
 
 

@@ -276,9 +276,9 @@ def test_an_onset_that_is_near_and_likelier_than_not_is_an_error() -> None:
     assert run.report().level == Level.WARN
 
 
-def test_a_warning_stands_until_an_onset_is_half_as_likely_as_one_that_raises_it() -> None:
+def test_a_warning_stands_until_an_onset_is_a_quarter_as_likely_as_one_that_raises_it() -> None:
     run = Run(TALL._replace(watching=Watching(vain=0.6, hold=1.0)))
-    for tipping, level in ((4, Level.WARN), (2, Level.WARN), (1, Level.OK), (3, Level.OK)):
+    for tipping, level in ((4, Level.WARN), (1, Level.WARN), (0, Level.OK), (3, Level.OK)):
         run.courses = [lambda t, k=k, n=tipping: leaning(0.5 + (0.1 * t if k < n else 0.0)) for k in range(10)]
         run.deck(leaning(0.5), 2.0)
         assert run.report().level == level
