@@ -109,14 +109,14 @@ def test_feet_may_be_told_by_joints_or_names_and_the_ground_by_a_map(options: tu
 
 
 @pytest.mark.extras
-def test_flat_feet_told_by_joints_land_with_heel_or_toe() -> None:
+def test_flat_feet_told_by_joints_land_with_heel_or_toe_or_both_at_once() -> None:
     pytest.importorskip("mujoco", reason="needs the extra robot")
     pytest.importorskip("pinocchio", reason="needs the extra articulated")
     result = run("talos", "--swing", "0.4", "--strike", "0.3", "--by-joints", "--duration", "4", "-o", "steps.mcap")
     assert result.exit_code == 0, result.stderr
     replayed = answered(CliRunner().invoke(main, ("replay", "steps.mcap", "--params", "steps.yaml", "--json")))
     points = [one["point"] for one in replayed["touchdowns"] if one["landing_speed"] > 0.4]
-    assert set(points) == {"heel", "toe"}
+    assert {"heel", "toe"} <= set(points) <= {"heel", "toe", None}
 
 
 @pytest.mark.extras
