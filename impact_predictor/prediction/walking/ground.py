@@ -24,6 +24,7 @@ UNSURE = 0.02  # contact tolerances by which that is not known
 MEMORY = 100  # frames of standing feet over which noise is averaged ...
 FEWEST = 10  # ... and from how many on that is believed
 HOVERS = 0.5  # contact tolerances above the lowest foot within which feet stand at first
+QUIET = 0.1  # contact tolerances of noise up to which it shows where a foot begins to be braked
 SINKS = 0.5  # contact tolerances that a foot may sink in
 STEADY = 15  # frames over which the level of a foothold is averaged ...
 SETTLES = 100_000_000  # ... while feet and ground may still yield, in ns
@@ -213,6 +214,8 @@ class Ground:
         The ground is at the height (m) where the point has touched it, if that was seen.
         """
         place, rest = frames[-1].position, total([frame.gap for frame in frames]) / len(frames)
+        if self.noise.gap > QUIET * self._tolerance:
+            touched = None
         gap = rest + self.sinks if touched is None else touched
         self.yields = max(FORGETS * self.yields, 0.0 if touched is None else touched - rest)
         if not self._relief.known:
