@@ -106,6 +106,33 @@ def _uninterrupted() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
+@contextmanager
+def _interrupts() -> Iterator[Callable[[], None]]:
+    """Gives a function that raises the KeyboardInterrupt of a Ctrl-C that came since; a second Ctrl-C raises at once.
+
+    Python drops an interrupt that it would raise in a finalizer, and each future of Dask has one.
+    """
+    came = False
+
+    def note(*_: object) -> None:
+        nonlocal came
+        came = True
+        signal.signal(signal.SIGINT, before)
+
+    def check() -> None:
+        if came:
+            raise KeyboardInterrupt
+
+    before = signal.getsignal(signal.SIGINT)
+    # What a shell started in the background goes on.
+    if before is not signal.SIG_IGN:
+        signal.signal(signal.SIGINT, note)
+    try:
+        yield check
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
 class Fleet:
     """The bags of a job on the workers of a client.
 
@@ -127,17 +154,21 @@ class Fleet:
 
         Raises:
             InputError: the scheduler is lost.
+            KeyboardInterrupt: Ctrl-C, between two outcomes.
         """
-        for index in range(len(self._bags)):
-            while (outcome := self._outcome(index)) is None:
-                running = self._send()
-                tell(self._told + sum(future.done() for future in self._futures.values()))
-                self._wait(running)
-            del self._futures[index]
-            self._told += 1
-            # While the outcome is told the workers go on.
-            self._send()
-            yield outcome
+        with _interrupts() as check:
+            for index in range(len(self._bags)):
+                while (outcome := self._outcome(index)) is None:
+                    running = self._send()
+                    tell(self._told + sum(future.done() for future in self._futures.values()))
+                    self._wait(running)
+                    check()
+                del self._futures[index]
+                self._told += 1
+                # While the outcome is told the workers go on.
+                self._send()
+                yield outcome
+                check()
 
     def _send(self) -> list[Future]:
         """Send bags to the workers, and give those that they have."""
