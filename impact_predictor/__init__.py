@@ -1,4 +1,4 @@
-"""Predict the next touchdown of a body that turns about one contact, and what the impact does to it."""
+"""Predict the next touchdown of a body, and what the impact does to it."""
 
 from typing import TYPE_CHECKING
 

@@ -90,7 +90,7 @@ def _sentence(error: click.ClickException) -> str:
 )
 @click.version_option(__version__, prog_name="impact-predictor", message="%(prog)s %(version)s")
 def main() -> None:
-    """Predict the next touchdown of a body that turns about one contact, and what the impact does to it."""
+    """Predict the next touchdown of a body, and what the impact does to it."""
 
 
 for _command in (demo, solve, map_, simulate, replay, identify, calibrate, lashings, explain, bench):
