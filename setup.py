@@ -24,6 +24,8 @@ EXTRAS = {
     "plot": ["contourpy>=1.0", "matplotlib>=3.6", "pillow>=9.2"],
     "page": ["jinja2>=3.0", "plotly>=6.0"],
     "calibrate": ["scipy>=1.11"],
+    # `impact-predictor report`.
+    "report": ["jinja2>=3.0", "plotly>=6.0", "scipy>=1.11"],
     "fast": ["numba"],
     # Many bags at a time, and their touchdowns as Parquet.
     "fleet": ["dask>=2024.1", "distributed>=2024.1", "pyarrow>=16"],

@@ -1,9 +1,9 @@
 """Impacts by compliant contacts and by MuJoCo, beside the laws of this program: python benchmarks/bench_peers.py
 
-The problems and what is held to be right are those of `bench_accuracy.py`. MuJoCo is compared where it is installed
-(the extra `robot`), on bodies that move in the plane alone and have a size at which a time step means something. It has
-no restitution, and the contacts that serve an impact best: elliptic cones, and dampers as hard as the step allows.
-Compliant contacts are Kelvin-Voigt springs with regularised friction, integrated by scipy.
+The problems and what is held to be right are those of `impact-predictor report`. MuJoCo is compared where it is
+installed (the extra `robot`), on bodies that move in the plane alone and have a size at which a time step means
+something. It has no restitution, and the contacts that serve an impact best: elliptic cones, and dampers as hard as the
+step allows. Compliant contacts are Kelvin-Voigt springs with regularised friction, integrated by scipy.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ from random import Random
 from types import SimpleNamespace
 from typing import Any
 
-from accuracy import IMPACT, AccuracyScene, error_of, impacts, rows_of
-from accuracy.impacts import Aftermath, Struck
 from compliant_impact import compliant_impact
 
 from impact_predictor.mechanics import bodies, closed_forms
 from impact_predictor.mechanics.types import Contact, Mode, Twist
+from impact_predictor.report.accuracy import IMPACT, AccuracyScene, error_of, impacts, rows_of
+from impact_predictor.report.accuracy.impacts import Aftermath, Struck
 
 STEPS = 5
 """Steps of MuJoCo through an impact."""

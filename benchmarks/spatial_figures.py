@@ -11,7 +11,6 @@ from typing import Any
 from unittest.mock import patch
 
 import numpy as np
-from accuracy import problems, spatial
 from numpy.typing import NDArray
 
 from impact_predictor.mechanics.compiled import on_lists
@@ -19,6 +18,7 @@ from impact_predictor.mechanics.impact import spatial as law
 from impact_predictor.mechanics.impact import spatial_path
 from impact_predictor.mechanics.impact.spatial import Body, ContactPoints, SpatialOutcome, solve_spatial_impact
 from impact_predictor.mechanics.types import ContactState
+from impact_predictor.report.accuracy import problems, spatial
 from impact_predictor.report.modes import PALETTE
 from impact_predictor.report.plot import headline, picture
 

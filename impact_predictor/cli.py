@@ -20,6 +20,7 @@ from .commands.lashings import lashings
 from .commands.map import map_
 from .commands.options import examples
 from .commands.replay import replay
+from .commands.report import report
 from .commands.simulate import simulate
 from .commands.solve import solve
 from .errors import InputError, missing
@@ -93,5 +94,5 @@ def main() -> None:
     """Predict the next touchdown of a body, and what the impact does to it."""
 
 
-for _command in (demo, solve, map_, simulate, replay, identify, calibrate, lashings, explain, bench):
+for _command in (demo, solve, map_, simulate, replay, identify, calibrate, lashings, explain, report, bench):
     main.add_command(_command)

@@ -179,6 +179,7 @@ def check_extras(environment: Environment) -> None:
         ("page", *replay, "--report", "page.html"),
         ("fleet", *replay, "--table", "table.parquet"),
         ("calibrate", "calibrate", *replay[1:]),
+        ("page", "report", "-o", "accuracy"),
     ):
         said = environment.run(f"{environment.prefix}/bin/impact-predictor", *command, status=None).stderr
         if said.count("\n") != 1 or f"impact_predictor[{extra}]" not in said:

@@ -7,12 +7,12 @@ from math import inf
 from pathlib import Path
 
 import pytest
-from accuracy import AccuracyScene, problems, touchdowns
-from accuracy.touchdowns import PredictedTouchdown, falling
 from touchdown_digits import errors_of, reference_of
 
 from impact_predictor.mechanics.motion import next_touchdown
 from impact_predictor.mechanics.types import Twist
+from impact_predictor.report.accuracy import AccuracyScene, problems, touchdowns
+from impact_predictor.report.accuracy.touchdowns import PredictedTouchdown, falling
 
 GOLDEN = Path(__file__).parent / "golden" / "motion.json"
 

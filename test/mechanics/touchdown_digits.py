@@ -10,8 +10,9 @@ from collections.abc import Callable
 from itertools import pairwise
 from typing import Any, NamedTuple
 
-from accuracy.touchdowns import FallingBody, PredictedTouchdown
 from mpmath import mp
+
+from impact_predictor.report.accuracy.touchdowns import FallingBody, PredictedTouchdown
 
 Real = Any
 """A number of mpmath."""

@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from accuracy.page import accuracy_page
 from replay_answers import TOSSES, TRUE, UNREADABLE, WALK, answer, touchdown
 
 from impact_predictor.parameters.file import read_values
+from impact_predictor.report.accuracy.page import accuracy_page
 from impact_predictor.report.page import script_inside, write_html
 from impact_predictor.report.page.replay import write_replay_page
 
@@ -67,7 +67,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     answers, values = [TRUE, WALK, TOSSES, UNREADABLE], read_values("config/cube_tosses.yaml")
     write_replay_page(folder / "replay.html", answers, values)
     write_replay_page(folder / "week", answers, values)
-    report = json.loads((Path(__file__).parents[1] / "benchmarks/page_report.json").read_text())
+    report = json.loads((Path(__file__).parent / "page_report.json").read_text())
     write_html(folder / "report.html", accuracy_page(report, script_inside()))
     return folder
 

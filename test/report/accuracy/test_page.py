@@ -7,11 +7,16 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from accuracy import ERRORS, error_of, name_of
-from accuracy.page import accuracy_page
 from read_page import PageReader, traces
 
-REPORT: dict[str, Any] = json.loads((Path(__file__).with_name("page_report.json")).read_text())
+from impact_predictor.report.accuracy import ERRORS, error_of
+from impact_predictor.report.accuracy.page import accuracy_page
+
+REPORT: dict[str, Any] = json.loads((Path(__file__).parents[1] / "page_report.json").read_text())
+
+
+def name_of(row: dict[str, Any]) -> str:
+    return ", ".join(filter(None, (row["method"], row["setting"])))
 
 
 def read(report: dict[str, Any]) -> PageReader:

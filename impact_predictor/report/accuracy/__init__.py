@@ -22,15 +22,15 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from impact_predictor import __version__
-from impact_predictor.bags.replay import replay
-from impact_predictor.mechanics.impact import LAWS
-from impact_predictor.mechanics.impact.batch import solve_impacts
-from impact_predictor.mechanics.invariants import UNANSWERED, violations
-from impact_predictor.mechanics.random_problems import problems_of
-from impact_predictor.parameters.file import read_values
-from impact_predictor.prediction.scene import scenes_of
-from impact_predictor.resources import find
+from ... import __version__
+from ...bags.replay import replay
+from ...mechanics.impact import LAWS
+from ...mechanics.impact.batch import solve_impacts
+from ...mechanics.invariants import UNANSWERED, violations
+from ...mechanics.random_problems import problems_of
+from ...parameters.file import read_values
+from ...prediction.scene import scenes_of
+from ...resources import find
 
 AccuracyRow = dict[str, Any]
 Methods = Mapping[tuple[str, str], Callable[[Any], Any]]
@@ -109,18 +109,25 @@ QUICK: Final = 0.15
 """Part of the problems that a quick report has."""
 
 
-def report(part: float = 1.0) -> dict[str, Any]:
-    """Measure everything, on a part of the problems; the report as its JSON has it."""
+def report(part: float, command: str, tell: Callable[[int], None] = lambda done: None) -> dict[str, Any]:
+    """Measure everything, on a part of the problems, for a command; the report as its JSON has it.
+
+    `tell` is told how many rows are done.
+    """
     from . import impacts, spatial, touchdowns
 
-    rows = [
-        *rows_of(touchdowns, round(32 * part)),
-        *rows_of(impacts, round(200 * part)),
-        *rows_of(spatial, round(60 * part)),
-        *rows_of(spatial.UNCERTAIN, max(1, round(20 * part))),
-        *stability_rows(round(20_000 * part)),
-        *toss_rows(),
-    ]
+    rows: list[AccuracyRow] = []
+    for work in (
+        rows_of(touchdowns, round(32 * part)),
+        rows_of(impacts, round(200 * part)),
+        rows_of(spatial, round(60 * part)),
+        rows_of(spatial.UNCERTAIN, max(1, round(20 * part))),
+        stability_rows(round(20_000 * part)),
+        toss_rows(),
+    ):
+        for row in work:
+            rows.append(row)
+            tell(len(rows))
     made = {"version": __version__, "python": platform.python_version()}
     made |= {name: version(name) if find_spec(name) else "not installed" for name in ("numpy", "scipy", "numba")}
     made["machine"] = f"{platform.processor() or platform.machine()}, {os.cpu_count()} cores"
@@ -129,7 +136,7 @@ def report(part: float = 1.0) -> dict[str, Any]:
     found = {name: conclusions(rows, name, question.USED) for name, question in asked.items()}
     drawn = [scene for question in (*asked.values(), spatial.UNCERTAIN) for scene in question.SCENES]
     return {
-        "made": made | {"timing": TIMING},
+        "made": made | {"command": command, "timing": TIMING},
         "node": {question: used for question, (used, _) in found.items()},
         "scenes": [scene._asdict() for scene in (*drawn, *RANDOM, CUBE)],
         "rows": rows,
@@ -215,11 +222,6 @@ def row_of(
     wrong = [one["wrong_modes"] for one in errors if "wrong_modes" in one]
     failed = sum(not one or inf in one.values() for one in errors)
     return row | {"wrong_modes": mean(wrong) if wrong else None, "count": len(errors), "failed": failed}
-
-
-def name_of(row: Mapping[str, Any]) -> str:
-    """A method with its setting; "" where there is none."""
-    return ", ".join(filter(None, (row["method"], row["setting"])))
 
 
 def error_of(row: Mapping[str, Any]) -> float:

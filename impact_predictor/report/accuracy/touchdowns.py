@@ -14,10 +14,9 @@ from typing import Any, Final, NamedTuple
 
 from scipy.integrate import solve_ivp
 
-from impact_predictor.mechanics.motion import PlanarState, next_touchdown
-from impact_predictor.mechanics.types import Twist, Vector
-from impact_predictor.prediction.points import ACCURACY
-
+from ...mechanics.motion import PlanarState, next_touchdown
+from ...mechanics.types import Twist, Vector
+from ...prediction.points import ACCURACY
 from . import TOUCHDOWN, AccuracyScene, Methods
 
 GRAVITY: Final = (0.0, -9.81)

@@ -13,12 +13,11 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from impact_predictor.mechanics import bodies, closed_forms
-from impact_predictor.mechanics.impact import LAWS, solve_impact
-from impact_predictor.mechanics.invariants import problem_at
-from impact_predictor.mechanics.random_problems import problems_of
-from impact_predictor.mechanics.types import Mode, Twist, TwoPointBody
-
+from ...mechanics import bodies, closed_forms
+from ...mechanics.impact import LAWS, solve_impact
+from ...mechanics.invariants import problem_at
+from ...mechanics.random_problems import problems_of
+from ...mechanics.types import Mode, Twist, TwoPointBody
 from . import IMPACT, AccuracyScene, Methods
 
 

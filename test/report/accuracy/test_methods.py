@@ -10,13 +10,13 @@ from statistics import median
 
 import bench_peers
 import pytest
-from accuracy import impacts, problems, spatial, touchdowns
-from accuracy.impacts import Aftermath, Struck
-from accuracy.spatial import SpatialAftermath, StruckBox
-from accuracy.touchdowns import CRATE, FallingBody, PredictedTouchdown, falling
 
 from impact_predictor.mechanics.impact import solve_impact
 from impact_predictor.mechanics.types import Mode, Twist
+from impact_predictor.report.accuracy import impacts, problems, spatial, touchdowns
+from impact_predictor.report.accuracy.impacts import Aftermath, Struck
+from impact_predictor.report.accuracy.spatial import SpatialAftermath, StruckBox
+from impact_predictor.report.accuracy.touchdowns import CRATE, FallingBody, PredictedTouchdown, falling
 
 COUNT = 36
 FALLS = {scene.name: draw for scene, draw in touchdowns.SCENES.items()}

@@ -20,16 +20,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from impact_predictor.mechanics.impact.spatial import (
-    STEPS,
-    Body,
-    ContactPoints,
-    solve_spatial_impact,
-    solve_spatial_impacts,
-)
-from impact_predictor.mechanics.types import ContactState
-from impact_predictor.prediction.uncertainty import normal_points
-
+from ...mechanics.impact.spatial import STEPS, Body, ContactPoints, solve_spatial_impact, solve_spatial_impacts
+from ...mechanics.types import ContactState
+from ...prediction.uncertainty import normal_points
 from . import GAPS, SPATIAL, AccuracyScene, Methods
 
 MOST, FINEST = 64, 2048

@@ -9,9 +9,12 @@ from random import Random
 from types import SimpleNamespace
 from typing import Any
 
-import accuracy
 import pytest
-from accuracy import (
+from read_page import PageReader
+from recordings import first_messages, write_bag
+
+from impact_predictor.report import accuracy
+from impact_predictor.report.accuracy import (
     CUBE,
     GAPS,
     IMPACT,
@@ -30,10 +33,7 @@ from accuracy import (
     stability_rows,
     touchdowns,
 )
-from accuracy.page import accuracy_page
-from read_page import PageReader
-from recordings import first_messages, write_bag
-
+from impact_predictor.report.accuracy.page import accuracy_page
 from impact_predictor.resources import find
 
 SCENES = [AccuracyScene("one", TOUCHDOWN, "", "", ""), AccuracyScene("two", TOUCHDOWN, "", "", "")]
@@ -96,7 +96,9 @@ def test_a_small_report_has_a_row_for_each_method_on_each_scene_and_makes_a_page
 ) -> None:
     some = write_bag(tmp_path / "some.mcap", first_messages(4000))
     monkeypatch.setattr(accuracy, "find", lambda name: some if name == "examples/cube_tosses" else find(name))
-    report = json.loads(json.dumps(accuracy.report(0.02), allow_nan=False))
+    done = list[int]()
+    report = json.loads(json.dumps(accuracy.report(0.02, "a command", done.append), allow_nan=False))
+    assert done == list(range(1, len(report["rows"]) + 1))
     rows = {(row["question"], row["scene"], row["method"], row["setting"]) for row in report["rows"]}
     assert len(rows) == len(report["rows"])
     questions: Any = (touchdowns, TOUCHDOWN), (impacts, IMPACT), (spatial, SPATIAL), (spatial.UNCERTAIN, GAPS)

@@ -1,0 +1,102 @@
+"""`impact-predictor report`: error against run time of every method, as a page and as data."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+from typing import Any, Final
+
+import click
+
+from ..errors import need
+from ..files import make_folder, whole
+from .options import examples
+
+PAGE: Final = "report.html"
+DATA: Final = "report.json"
+CELLS: Final = "report.csv"
+
+
+@click.command(
+    short_help="Compare error and run time of many methods, as a page.",
+    epilog=examples(
+        "impact-predictor report -o report",
+        "impact-predictor report --quick -o report",
+        "impact-predictor report --quick --json",
+    ),
+)
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    metavar="FOLDER",
+    help=f"Folder for {PAGE}, {DATA} and {CELLS}; made if there is none. [default: report, with --json none]",
+)
+@click.option("--quick", is_flag=True, help="A seventh of the problems.")
+@click.option("--json", "as_json", is_flag=True, help="Print the report as JSON.")
+def report(output: Path | None, quick: bool, as_json: bool) -> None:
+    """Compare error and run time of many methods for touchdowns and impacts.
+
+    Every method meets the same problems: extrapolation, integration by scipy, the laws of this program in the plane and
+    in three dimensions, one at a time and over arrays, and MuJoCo where it is installed. The recorded tosses of a cube
+    are scored by what was measured. One page shows error over run time, and which method to choose for a wanted
+    accuracy; the same stands in a JSON and a CSV file.
+    """
+    folder = output or (None if as_json else Path("report"))
+    if folder is not None:
+        # Before the long work, so that a wrong name is told at once.
+        make_folder(folder)
+    need(*(["plotly", "jinja2"] if folder else []), "scipy")
+    from ..report import accuracy
+    from .progress import compiling_is_said, progress
+
+    command = "impact-predictor report" + (" --quick" if quick else "") + (f" -o {folder}" if folder else " --json")
+    with compiling_is_said(), progress("report", "methods") as tell:
+        fields = accuracy.report(accuracy.QUICK if quick else 1.0, command, tell)
+    if folder is not None:
+        write(folder, fields)
+    if as_json:
+        click.echo(json.dumps(fields, allow_nan=False))
+        return
+
+    from rich.console import Console
+
+    from ..report.table import Column, show, table_of
+
+    columns = [
+        Column("question", lambda one: one["question"], left=True),
+        Column("error below", lambda one: f"{one['accuracy']:.0e}"),
+        Column(
+            "cheapest method that is so good on every scene",
+            lambda one: ", ".join(filter(None, (one["method"], one["setting"]))) or "-",
+            left=True,
+        ),
+        Column("us", lambda one: "-" if one["us"] is None else f"{one['us']:.3g}"),
+    ]
+    show(Console(), table_of(columns, fields["choices"]))
+    for question, used in fields["node"].items():
+        click.echo(f"The node answers the {question} by {', '.join(filter(None, (used['method'], used['setting'])))}:")
+        click.echo(used["why"])
+    powers = ", ".join(f"{scene} {power:.1f}" for scene, power in fields["orders"].items())
+    click.echo(f"In three dimensions the error of the path law falls with this power of its steps: {powers}.")
+    assert folder is not None
+    click.echo(f"Page: {folder / PAGE}")
+
+
+def write(folder: Path, fields: dict[str, Any]) -> None:
+    """Write JSON, CSV and page: each under another name first, so that none is ever there by half.
+
+    Raises:
+        InputError: a file cannot be written.
+    """
+    from ..report.accuracy.page import accuracy_page
+    from ..report.page import script_inside, write_html
+
+    with whole(folder / DATA) as partial:
+        partial.write_text(json.dumps(fields, indent=1, allow_nan=False), encoding="utf-8")
+    with whole(folder / CELLS) as partial, partial.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, list(fields["rows"][0]), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(fields["rows"])
+    write_html(folder / PAGE, accuracy_page(fields, script_inside()))
