@@ -22,9 +22,9 @@ from typing import Final, NamedTuple
 from rich.console import Console
 from rich.table import Table
 
+from impact_predictor import read_scenes
 from impact_predictor.bags.read import read_messages
 from impact_predictor.bags.write import BagWriter
-from impact_predictor.commands.replay import read_scenes
 from impact_predictor.fleet.cluster import Fleet, connected
 from impact_predictor.fleet.job import Job
 from impact_predictor.report.tables import TOUCHDOWNS, table_file, touchdown_rows

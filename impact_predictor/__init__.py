@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 from .errors import InputError
 
 if TYPE_CHECKING:
+    from .bags.replay import replay
     from .mechanics.bodies import cylinder, plate, rod
     from .mechanics.impact import solve_impact
     from .mechanics.impact.batch import Outcomes, solve_impacts
@@ -17,8 +18,12 @@ if TYPE_CHECKING:
         solve_spatial_impacts,
     )
     from .mechanics.margins import Margin, Margins
+    from .mechanics.motion import PlanarState, next_touchdown, rock, standing
     from .mechanics.sensitivity import Sensitivity, sensitivity
     from .mechanics.types import Alternative, Contact, ContactState, Flag, Mode, Outcome, Twist, TwoPointBody, Validity
+    from .prediction.predictor import Predictor
+    from .prediction.scene import read_scenes
+    from .prediction.types import Prediction, Sample, Status
 
 __all__ = [
     "Alternative",
@@ -33,20 +38,30 @@ __all__ = [
     "Mode",
     "Outcome",
     "Outcomes",
+    "PlanarState",
+    "Prediction",
+    "Predictor",
+    "Sample",
     "Sensitivity",
     "SpatialOutcome",
     "SpatialOutcomes",
+    "Status",
     "Twist",
     "TwoPointBody",
     "Validity",
     "cylinder",
+    "next_touchdown",
     "plate",
+    "read_scenes",
+    "replay",
+    "rock",
     "rod",
     "sensitivity",
     "solve_impact",
     "solve_impacts",
     "solve_spatial_impact",
     "solve_spatial_impacts",
+    "standing",
 ]
 __version__ = "0.1.0"
 
@@ -54,21 +69,22 @@ __version__ = "0.1.0"
 LATER = {
     **dict.fromkeys(
         ("Alternative", "Contact", "ContactState", "Flag", "Mode", "Outcome", "Twist", "TwoPointBody", "Validity"),
-        "types",
+        "mechanics.types",
     ),
-    **dict.fromkeys(("Body", "ContactPoints", "SpatialOutcome", "SpatialOutcomes"), "impact.spatial"),
-    "Margin": "margins",
-    "Margins": "margins",
-    "Outcomes": "impact.batch",
-    "Sensitivity": "sensitivity",
-    "cylinder": "bodies",
-    "plate": "bodies",
-    "rod": "bodies",
-    "sensitivity": "sensitivity",
-    "solve_impact": "impact",
-    "solve_impacts": "impact.batch",
-    "solve_spatial_impact": "impact.spatial",
-    "solve_spatial_impacts": "impact.spatial",
+    **dict.fromkeys(
+        ("Body", "ContactPoints", "SpatialOutcome", "SpatialOutcomes", "solve_spatial_impact", "solve_spatial_impacts"),
+        "mechanics.impact.spatial",
+    ),
+    **dict.fromkeys(("Margin", "Margins"), "mechanics.margins"),
+    **dict.fromkeys(("Outcomes", "solve_impacts"), "mechanics.impact.batch"),
+    **dict.fromkeys(("PlanarState", "next_touchdown", "rock", "standing"), "mechanics.motion"),
+    **dict.fromkeys(("Prediction", "Sample", "Status"), "prediction.types"),
+    **dict.fromkeys(("Sensitivity", "sensitivity"), "mechanics.sensitivity"),
+    **dict.fromkeys(("cylinder", "plate", "rod"), "mechanics.bodies"),
+    "Predictor": "prediction.predictor",
+    "read_scenes": "prediction.scene",
+    "replay": "bags.replay",
+    "solve_impact": "mechanics.impact",
 }
 """Names that are loaded when they are asked for, and their modules: every start of pytest loads this package for its
 plugin, the node needs none of them, and some need numpy."""
@@ -81,7 +97,7 @@ def __getattr__(name: str) -> object:
     if name in LATER:
         from importlib import import_module
 
-        globals()[name] = found = getattr(import_module(f".mechanics.{LATER[name]}", __name__), name)
+        globals()[name] = found = getattr(import_module(f".{LATER[name]}", __name__), name)
         return found
     if name in RETIRED:
         # Of an AttributeError `from impact_predictor import` would not say the reason.

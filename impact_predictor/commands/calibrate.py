@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, TypeVar
 import click
 
 from ..errors import InputError
+from ..prediction.scene import read_scenes
 from .options import BAGS, PARAMS, examples, json_flag, remap_option, seed_option, text
 from .outcomes import DAMAGED, FAILED
-from .replay import read_scenes
 
 if TYPE_CHECKING:
     from rich.table import Table

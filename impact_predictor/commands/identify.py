@@ -7,9 +7,9 @@ from typing import Final
 
 import click
 
+from ..prediction.scene import read_scenes
 from .calibrate import read_all, say_fit, status_of, write_scene
 from .options import BAGS, PARAMS, choice, examples, json_flag, remap_option, seed_option, text
-from .replay import read_scenes
 
 MOMENTS: Final = {"isotropic": 1, "principal": 3, "full": 6}
 

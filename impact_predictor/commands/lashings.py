@@ -9,8 +9,8 @@ import click
 
 from ..errors import InputError
 from ..mechanics.annex13 import LONGITUDINAL, METHODS
+from ..prediction.scene import read_scenes
 from .options import choice, examples, json_flag, number, remap_option, text
-from .replay import read_scenes
 
 if TYPE_CHECKING:
     from ..mechanics.annex13 import LashedUnit

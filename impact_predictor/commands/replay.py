@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..errors import InputError
+from ..prediction.scene import read_scenes
 from .options import BAGS, PARAMS, examples, json_flag, number, remap_option, text
 from .progress import compiling_is_said, progress, say_unfinished
 
 if TYPE_CHECKING:
     from ..fleet.job import BagOutcome, Job
-    from ..prediction.scene import Scene
 
 
 @click.command(
@@ -142,18 +142,6 @@ def replay(
     if stopped is not None:
         raise stopped
     return report.status
-
-
-def read_scenes(params: str) -> dict[str, Scene]:
-    """The scenes of the bodies of a parameter file, by their names.
-
-    Raises:
-        InputError: the file cannot be read, or a parameter is wrong.
-    """
-    from ..parameters.file import read_values
-    from ..prediction.scene import scenes_of
-
-    return scenes_of(read_values(params))
 
 
 def outputs_of(bags: Sequence[str], output: str | None) -> list[Path | None]:

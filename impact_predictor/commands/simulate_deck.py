@@ -99,15 +99,14 @@ def simulate_deck(
     Each unit sticks, slides, rocks or topples, which ends its record unless it stands again. Units do not touch each
     other. The same options and seed make the same bytes.
     """
-    from ..parameters.file import read_values
-    from ..prediction.scene import MovingDeck, scenes_of, shared_by
+    from ..prediction.scene import MovingDeck, read_scenes, shared_by
     from ..resources import find
     from ..scenarios.deck.voyage import gravity_of, sail
     from ..scenarios.record import Sensors
     from ..scenarios.sensors import SensorNoise
 
     check_options(recorded=record is not None)
-    scenes = scenes_of(read_values(find(SCENE) if params is None else params))
+    scenes = read_scenes(find(SCENE) if params is None else params)
     if held := [name for name, scene in scenes.items() if scene.lashings or scene.chocks or scene.wind]:
         click.echo(f"note: without lashings, chocks and wind move here: {', '.join(held)}", err=True)
     noise = SensorNoise(*[options.pop(parameter_of(name)) for name, _ in _NOISE])

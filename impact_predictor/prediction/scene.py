@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from math import hypot, inf
 from typing import Any, Final, NamedTuple
@@ -310,6 +311,17 @@ class Scene(NamedTuple):
 def scenes_of(values: Mapping[str, Any]) -> dict[str, Scene]:
     """The scene of each body of validated parameters, by its name; of the only one without a name by ""."""
     return {body: Scene.from_parameters(values_of(values, body)) for body in values["bodies"] or ("",)}
+
+
+def read_scenes(path: str | os.PathLike[str]) -> dict[str, Scene]:
+    """The scene of each body of a ROS 2 parameter file, by its name; of the only one without a name by "".
+
+    Raises:
+        InputError: the file cannot be read, or a parameter is wrong.
+    """
+    from ..parameters.file import read_values  # the node has its parameters from elsewhere
+
+    return scenes_of(read_values(path))
 
 
 def shared_by(scenes: Mapping[str, Scene]) -> Scene:

@@ -14,7 +14,7 @@ from ..bags.find import names_of
 from ..bags.replay import Result, remapping, replay
 from ..errors import InputError
 from ..parameters.file import read_values
-from ..prediction.scene import scenes_of
+from ..prediction.scene import read_scenes
 from .checks import Check, baseline_check, checks_of, read_tolerances
 from .plugin import TOLERANCES, folder_of, path_of, setting
 
@@ -34,7 +34,7 @@ def replayed(config: pytest.Config, bag: Path, params: Path, remap: Mapping[str,
     done = config.stash.setdefault(_REPLAYS, {})
     key = bag.resolve(), params.resolve(), tuple(sorted(remap.items()))
     if key not in done:
-        done[key] = replay(bag, scenes_of(read_values(params)), remap)
+        done[key] = replay(bag, read_scenes(params), remap)
     return done[key]
 
 

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from tossed_bodies import CENTER, CORNERS, GIVEN, MASS, RADIUS, SCENE, TRUE, tosses
 
+from impact_predictor import read_scenes
 from impact_predictor.bags.replay import replay
 from impact_predictor.calibration.identify import Identification, identify
 from impact_predictor.calibration.motions import RecordedMotion, RecordingMonitor, distinct
 from impact_predictor.calibration.search import Estimate
-from impact_predictor.commands.replay import read_scenes
 from impact_predictor.errors import InputError
 from impact_predictor.prediction.scene import inertia_matrix
 from impact_predictor.resources import find

@@ -9,10 +9,10 @@ import pytest
 from scipy.spatial.transform import Rotation
 from tossed_bodies import CENTER, CORNERS, HALF, SCENE, tosses
 
+from impact_predictor import read_scenes
 from impact_predictor.bags.replay import replay
 from impact_predictor.calibration.impacts import MotionRecord
 from impact_predictor.calibration.motions import Reals, RecordedMotion, RecordingMonitor, distinct
-from impact_predictor.commands.replay import read_scenes
 from impact_predictor.errors import InputError
 from impact_predictor.prediction.scene import MovingDeck, Scene
 from impact_predictor.prediction.types import KINDS, Geometry, Sample

@@ -10,11 +10,11 @@ import pytest
 from boxes import touchdowns as boxes
 from touchdowns import SCORE, TOUCHDOWN
 
+from impact_predictor import read_scenes
 from impact_predictor.bags.body import Settled
 from impact_predictor.bags.replay import replay
 from impact_predictor.calibration.solver import Coefficients, Solver, lengths
 from impact_predictor.calibration.touchdowns import touchdowns_of
-from impact_predictor.commands.replay import read_scenes
 from impact_predictor.mechanics.bodies import cylinder
 from impact_predictor.mechanics.impact import solve_impact
 from impact_predictor.mechanics.impact.spatial import Body, ContactPoints, solve_spatial_impact

@@ -12,10 +12,10 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
+from impact_predictor import read_scenes
 from impact_predictor.cli import main
 from impact_predictor.commands import outcomes
 from impact_predictor.commands import replay as command
-from impact_predictor.commands.replay import read_scenes
 from impact_predictor.fleet import cluster
 from impact_predictor.fleet.job import BagOutcome, Job, failed, replay_bag
 

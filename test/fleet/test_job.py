@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from impact_predictor.commands.replay import read_scenes
+from impact_predictor import read_scenes
 from impact_predictor.fleet import job
 from impact_predictor.fleet.job import Job, failed, renamed, replay_bag
 

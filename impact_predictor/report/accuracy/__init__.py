@@ -28,8 +28,7 @@ from ...mechanics.impact import LAWS
 from ...mechanics.impact.batch import solve_impacts
 from ...mechanics.invariants import UNANSWERED, violations
 from ...mechanics.random_problems import problems_of
-from ...parameters.file import read_values
-from ...prediction.scene import scenes_of
+from ...prediction.scene import read_scenes
 from ...resources import find
 
 AccuracyRow = dict[str, Any]
@@ -188,7 +187,7 @@ def stability_rows(count: int) -> Iterator[AccuracyRow]:
 
 def toss_rows() -> Iterator[AccuracyRow]:
     """The recorded tosses through variants of the predictor, against what was measured after each landing."""
-    (scene,) = scenes_of(read_values(find("config/cube_tosses.yaml"))).values()
+    (scene,) = read_scenes(find("config/cube_tosses.yaml")).values()
     for name, changes in VARIANTS.items():
         found = replay(find("examples/cube_tosses"), scene._replace(samples=0, margins=False, **changes))
         scored = [one.score.spatial for one in found.settled if not one.score.leftover_6d]
