@@ -15,6 +15,7 @@ from PIL import Image
 
 from impact_predictor.bags.read import read_messages, topics
 from impact_predictor.cli import main
+from impact_predictor.commands import simulate_deck
 from impact_predictor.commands.simulate import EXAMPLES
 from impact_predictor.parameters.file import read_parameters
 from impact_predictor.parameters.validation import validate
@@ -158,8 +159,14 @@ def test_the_animation_moves_and_ends_where_the_body_stays(folder: Path, argumen
     assert all(np.abs(one - other).max() > 100.0 for one, other in pairwise(frames))
 
 
+@pytest.fixture
+def short_voyages(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A twentieth of the time that a deck sails, where only that a line works counts."""
+    monkeypatch.setattr(simulate_deck, "DURATION", 0.05 * simulate_deck.DURATION)
+
+
 @pytest.mark.slow
-@pytest.mark.usefixtures("few_frames")
+@pytest.mark.usefixtures("few_frames", "short_voyages")
 def test_the_documentation_is_what_its_lines_make(folder: Path) -> None:
     page = (ROOT / "docs/simulation.md").read_text(encoding="utf-8")
     # Robots need MuJoCo: test_cli_simulate_robot.py.
