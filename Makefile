@@ -38,7 +38,7 @@ endif
 # One stamp for each Python and each source of ROS, so that another choice makes the environment anew.
 READY := .venv/.ready-$(ROS)-$(subst /,_,$(PYTHON))
 
-.PHONY: all test demo lint types check test-extras test-install clean help
+.PHONY: all test demo lint types check test-extras test-install docs clean help
 
 all: $(READY) ## the environment in .venv (the default)
 
@@ -68,6 +68,11 @@ test-extras: $(READY) ## what make test skips: the pages in a browser (Debian: c
 
 demo: $(READY) ## plays recorded tosses of a cube through ROS topics, and shows what was predicted
 	@$(BIN)/impact-predictor demo $(ARGS)
+
+docs: $(READY) ## the documentation as a site, out/docs/index.html
+	@$(BIN)/python -m pip install --quiet --quiet --disable-pip-version-check --requirement docs/requirements.txt
+	@$(BIN)/python -m sphinx -q -W --keep-going -b html docs out/docs
+	@echo "The site is out/docs/index.html."
 
 lint: $(READY) ## ruff: rules and format
 	@$(BIN)/ruff check .

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+import impact_predictor
+
 ROOT = Path(__file__).parents[1]
 PAGES = [*ROOT.glob("*.md"), *ROOT.glob("docs/*.md"), *ROOT.glob("examples/*/README.md")]
 CODE = re.compile(r"^```python\n(.*?)^```", re.MULTILINE | re.DOTALL)
@@ -60,3 +62,8 @@ def test_every_page_can_be_reached_from_the_readme() -> None:
         }
         ahead.extend(linked - known - {*ahead})
     assert {*ROOT.glob("docs/*.md"), *ROOT.glob("*.md")} <= known
+
+
+def test_the_reference_has_every_public_name() -> None:
+    named = re.findall(r"^\.\. auto\w+:: impact_predictor\.(\w+)$", (ROOT / "docs/api.md").read_text(), re.MULTILINE)
+    assert sorted(named) == sorted(impact_predictor.__all__)

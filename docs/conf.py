@@ -1,0 +1,51 @@
+"""How Sphinx builds the site: `make docs`."""
+
+from __future__ import annotations
+
+import json
+import re
+from typing import Any
+
+from impact_predictor import __version__
+from impact_predictor.parameters.table import PARAMETERS
+from impact_predictor.parameters.types import Parameter, allowed
+
+project = "impact_predictor"
+author = "impact_predictor maintainers"
+project_copyright = "the impact_predictor maintainers, Apache-2.0"
+release = __version__
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.viewcode"]
+html_theme = "furo"
+html_title = f"impact_predictor {release}"
+myst_heading_anchors = 4
+default_role = "code"
+autodoc_member_order = "bysource"
+autodoc_typehints = "signature"
+python_use_unqualified_type_names = True
+
+
+def row(parameter: Parameter) -> str:
+    default = "" if parameter.default in (None, ()) else f"`{yaml(parameter.default)}`"
+    said = parameter.description.replace("|", "\\|")
+    return f"| `{parameter.name}` | {default} | {said} | {allowed(parameter)} |"
+
+
+def yaml(value: Any) -> str:
+    return json.dumps(list(value) if isinstance(value, tuple) else value)
+
+
+def fill(app: Any, page: str, source: list[str]) -> None:
+    """Put the table of all parameters where a page wants it, and name what is not a page of the site by its path."""
+    table = ["| parameter | default | | may be |", "| --- | --- | --- | --- |", *map(row, PARAMETERS.values())]
+    named = re.sub(r"\[([^\]]+)\]\(\.\./([\w/]+(?:\.md)?)\)", r"\1 (`\2`)", source[0])
+    source[0] = named.replace("<!-- parameters -->", "\n".join(table))
+
+
+def is_field(app: Any, what: str, name: str, member: Any, skip: bool, options: Any) -> bool | None:
+    """Leave out the fields of records: the text of the record tells of them, and they have none of their own."""
+    return True if type(member).__name__ == "_tuplegetter" else None
+
+
+def setup(app: Any) -> None:
+    app.connect("autodoc-skip-member", is_field)
+    app.connect("source-read", fill)
