@@ -24,8 +24,8 @@ UNSURE = 0.02  # contact tolerances by which that is not known
 MEMORY = 100  # frames of standing feet over which noise is averaged ...
 FEWEST = 10  # ... and from how many on that is believed
 HOVERS = 0.5  # contact tolerances above the lowest foot within which feet stand at first
-QUIET = 0.1  # contact tolerances of noise up to which it shows where a foot begins to be braked
 SINKS = 0.5  # contact tolerances that a foot may sink in
+SOFT = 1.5  # points that soft ground was seen to brake lately, from which on others sink in as they have
 STEADY = 15  # frames over which the level of a foothold is averaged ...
 SETTLES = 100_000_000  # ... while feet and ground may still yield, in ns
 FOLLOWS = 15  # ... and over which the drift is
@@ -176,6 +176,7 @@ class Ground:
         """By how much in m what stands has sunk in: feet touch the ground that much higher."""
         self.yields = 0.0
         """How far in m soft ground has let points come down lately before it stopped them."""
+        self._braked = self._deep = 0.0
         self._first = list[Foothold]()  # those on which the machine stood before it walked
         self._tolerance = scene.tolerance
         self._u = direction_of(scene.normal, [])
@@ -192,6 +193,11 @@ class Ground:
         """The level (m) of the lowest foothold that is remembered; None before there is one."""
         level = self._relief.lowest
         return None if level is None else self.drift + level
+
+    @property
+    def depth(self) -> float:
+        """By how much in m points sink in as they land: on soft ground as deep as they were seen to, on the mean."""
+        return self._deep if self._braked > SOFT else self.sinks
 
     def level_at(self, place: Vector3) -> GroundLevel:
         """The level of the ground under a place (m, in the frame of odom)."""
@@ -214,10 +220,14 @@ class Ground:
         The ground is at the height (m) where the point has touched it, if that was seen.
         """
         place, rest = frames[-1].position, total([frame.gap for frame in frames]) / len(frames)
-        if self.noise.gap > QUIET * self._tolerance:
-            touched = None
+        self._braked *= FORGETS
+        if touched is not None:
+            self._braked += 1.0
+            self._deep += (touched - rest - self._deep) / self._braked
+        elif self._braked > SOFT:
+            touched = rest + self._deep
         gap = rest + self.sinks if touched is None else touched
-        self.yields = max(FORGETS * self.yields, 0.0 if touched is None else touched - rest)
+        self.yields = max(FORGETS * self.yields, gap - rest)
         if not self._relief.known:
             self.drift = gap
         # What is off is ground, but for the little drift that nobody has seen yet.

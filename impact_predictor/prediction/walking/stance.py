@@ -106,7 +106,7 @@ class FootPoint:
             return False
         landed = changed and self._has_moved
         if landed and self._arriving is not None:
-            self.arrival = self._arriving.arrival(ground.sinks)
+            self.arrival = self._arriving.arrival(ground.depth)
             self.since = self.arrival.stamp
             announcement.learn(self.since, trajectory.frames[-self.arrival.age], ground)
         if changed:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Sequence
-from itertools import islice, pairwise
-from math import inf, sqrt
+from itertools import islice
+from math import inf
 from typing import TYPE_CHECKING, NamedTuple
 
 from ...stamps import NANOSECONDS
 from ..types import Vector3
+from .braking import BrakedCourse, braked_course
 from .cubic import SCALE, CubicSums, GapNoise, PointFrame, factored, square_of, value_of
 from .point_filter import SNAP, PointFilter
 from .rest import rate_of
@@ -32,12 +33,6 @@ BENDS = 100.0  # m/s^2 by which a foot may be accelerated as it arrives
 SINKS_FOR = 0.005  # s for which a foot sinks in at most, ...
 LEAST_SPEED = 0.1  # ... and m/s with which at least
 COURSE = 10_000_000  # ns before an arrival over which the speed is taken
-APART = 2_000_000  # ns between frames that tell how soft ground brakes a point
-MEETS = 3  # frames of the course before the one in which the ground brakes a point most
-STOPS = 3.0  # frames in which soft ground stops a point at least, and times as long at most as if it braked on as first
-SUDDEN = 0.4  # part of how the ground brakes a point by which drives may have braked it just before
-SHARP = 0.1  # part of its speed by which that may be unsure
-YIELDING = 0.3  # part of it that is left after a frame of soft ground
 MET = 0.2  # part of the way between two frames by which the height is unsure at which a point has met the ground
 SAME = 0.01  # a later arrival is believed where it leaves less by this part of the noise's square
 
@@ -208,10 +203,10 @@ class ArrivalFit:
         depth = -level if is_soft else sinks
         if depth > 0.0:
             stamp = self._touched(last, stamp, self._level + level + depth, depth)
-        braked = self._braked()
+        braked = braked_course(frames, self._first, noise, 2.0 * self._least)
         height = None
         if braked is not None:
-            stamp, height = self._met(*braked, self._level)
+            stamp, height = self._met(braked, self._level)
         while last > 1 and frames[last].stamp > stamp:
             last -= 1
         velocity = frames[last].velocity
@@ -222,51 +217,16 @@ class ArrivalFit:
             _, velocity = sums.motion(factor, 0.0, s)
         return Arrival(stamp, len(frames) - last, velocity, height)
 
-    def _braked(self) -> tuple[float, float] | None:
-        """When, in ns, soft ground began to brake the point that came down, and how fast it was then (m/s).
-
-        There the rate of its course meets that of where it brakes most: a contact is stiffest as it begins.
-        """
-        apart = (self._frames[-1].stamp - self._frames[0].stamp) // max(1, len(self._frames) - 1)
-        step = max(1, round(APART / max(1, apart)))
-        frames, noise = self._frames[max(0, self._first - MEETS * step) :: step], self._noise
-        if len(frames) < 2:
-            return None
-        if self._sums.measured:
-            rates, unsure = [(float(one.stamp), one.rate or 0.0) for one in frames], noise.rate
-        else:
-            pairs = list(pairwise(frames))
-            rates = [(0.5 * (a.stamp + b.stamp), (b.gap - a.gap) / (b.stamp - a.stamp) * NANOSECONDS) for a, b in pairs]
-            unsure = sqrt(2.0) * noise.gap / (step * apart) * NANOSECONDS
-        end = next((k for k in range(MEETS, len(rates)) if rates[k][1] >= 0.0), len(rates) - 1)
-        brakes = [(rates[k + 1][1] - rates[k][1]) / (rates[k + 1][0] - rates[k][0]) for k in range(end)]
-        first = MEETS
-        while first < len(brakes):
-            k = max(range(first, len(brakes)), key=brakes.__getitem__)
-            first = k + MEETS  # A drive may brake a point before.
-            most, i = brakes[k], max(0, k - max(MEETS, (end - k) // 4))
-            (before, speed), (stamp, rate), bends = rates[i + 1], rates[k], max(-0.25 * most, brakes[i])
-            # Drives brake ever more; and one that is stopped between two frames or so shows its level better than when
-            # it met that.
-            vague = unsure > SHARP * -speed or sqrt(2.0) * CLEAR * unsure > most * step * apart
-            if vague or bends > SUDDEN * most or rates[k + 1][1] > YIELDING * speed:
-                continue
-            met = before + (rate - speed - most * (stamp - before)) / (bends - most)
-            speed = -speed - bends * (met - before)
-            lasts, last = rates[end][0] - met, rates[end - (end - k) // 4][1]
-            if STOPS * step * apart <= lasts <= STOPS * speed / most and last > -YIELDING * speed:
-                return met, speed
-        return None
-
-    def _met(self, met: float, speed: float, surface: float) -> tuple[int, float]:
-        """When (ns) and at which height (m) a point met about a surface (m) that braked it from a time and speed on."""
+    def _met(self, braked: BrakedCourse, surface: float) -> tuple[int, float]:
+        """When (ns) and at which height (m) a point met about a surface (m) that braked it."""
         frames = self._frames
-        k = next(k for k in range(1, len(frames)) if frames[k].stamp >= met or k == len(frames) - 1)
+        k = next(k for k in range(1, len(frames)) if frames[k].stamp >= braked.stamp or k == len(frames) - 1)
         a, b = frames[k - 1], frames[k]
-        height = a.gap + (b.gap - a.gap) * (met - a.stamp) / (b.stamp - a.stamp)
-        square = (MET * speed * (b.stamp - a.stamp) / NANOSECONDS) ** 2 + self._noise.gap**2
+        height = a.gap + (b.gap - a.gap) * (braked.stamp - a.stamp) / (b.stamp - a.stamp)
+        late = braked.deviation + MET * (b.stamp - a.stamp) / NANOSECONDS
+        square = (braked.speed * late) ** 2 + self._noise.gap**2
         off = (surface - height) * square / (square + self._unsure**2)
-        return round(met - off / max(speed, LEAST_SPEED) * NANOSECONDS), height
+        return braked.stamp - round(off / max(braked.speed, LEAST_SPEED) * NANOSECONDS), height
 
     def _touched(self, last: int, stamp: int, surface: float, depth: float) -> int:
         """The stamp in ns at which a point has touched a surface (m), which it has sunk into by a depth at a stamp."""

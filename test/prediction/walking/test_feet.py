@@ -288,18 +288,36 @@ def test_a_foot_that_sinks_in_as_the_standing_ones_have_lands_when_it_touches() 
     assert score.landing.stamp == pytest.approx(START + 598.6 * MS, abs=0.4 * MS)
 
 
-@pytest.mark.parametrize("time_constant", [0.01, 0.02, 0.03])
-@pytest.mark.parametrize("rate", [400.0, 1000.0])
-def test_a_foot_on_soft_ground_lands_when_that_begins_to_brake_it(rate: float, time_constant: float) -> None:
+def yielding(time_constant: float) -> Height:
+    """A contact with critical damping that is stepped on with 0.6 m/s at 0.6 s: it sinks in, and comes back slowly."""
+
     def course(time: float) -> tuple[float, float]:
         if time < 0.6:
             return swing(0.3, 0.6, speed=0.6)(time)
-        # A contact with critical damping that is stepped on with 0.6 m/s: it sinks in, and comes back slowly.
         t = (time - 0.6) / time_constant
         return -0.6 * (time - 0.6) * math.exp(-t), -0.6 * (1.0 - t) * math.exp(-t)
 
-    (score,) = walk(machine(), record([course, stands, stands, stands], 0.9, rate=rate)).scores
+    return course
+
+
+@pytest.mark.parametrize("time_constant", [0.01, 0.02, 0.03])
+@pytest.mark.parametrize("rate", [400.0, 1000.0])
+def test_a_foot_on_soft_ground_lands_when_that_begins_to_brake_it(rate: float, time_constant: float) -> None:
+    (score,) = walk(machine(), record([yielding(time_constant), stands, stands, stands], 0.9, rate=rate)).scores
     assert score.stamp == pytest.approx(START + 600 * MS, abs=0.8 * MS)
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2])
+@pytest.mark.parametrize("time_constant", [0.02, 0.025])
+def test_in_noise_feet_land_on_soft_ground_once_each_and_when_they_touch_it(time_constant: float, seed: int) -> None:
+    step = yielding(time_constant)
+    courses = [lambda time, late=late: step(0.3 + (time - late) % 0.6) for late in (0.2, 0.5, 0.5, 0.2)]
+    scores = walk(machine(), rough(record(courses, 2.9), 1e-3, seed, measured=True)).scores
+    assert len(scores) == 18
+    # They land at 0.5 s, 0.8 s and so on, and have stopped one time constant later.
+    late = np.array([((score.stamp - START) / MS - 350.0) % 300.0 - 150.0 for score in scores])
+    assert np.median(np.abs(late)) < 2.5
+    assert np.max(np.abs(late)) < 15.0
 
 
 def test_a_landing_that_was_not_announced_is_told_without_a_history() -> None:
