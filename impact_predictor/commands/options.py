@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from math import radians
+from collections.abc import Callable, Iterable
+from math import inf, isfinite, radians
 from typing import Any, Final, TypeVar
 
 import click
+from click.core import ParameterSource
 
 from ..errors import InputError
+from ..mechanics.bodies import refuse
 from ..mechanics.impact import LAWS
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -19,6 +21,22 @@ ACUTE: Final[dict[str, Any]] = {
     "metavar": "DEGREES",
 }
 """An angle of less than a right one."""
+
+
+def within(allowed: Callable[[Any], bool], wanted: str) -> dict[str, Any]:
+    """A range of the numbers that an option takes, as an argument of `number`; one that is not given passes."""
+
+    def check(context: click.Context, option: click.Parameter, value: Any) -> Any:
+        if value is not None:
+            refuse({option.opts[0].removeprefix("--"): value}, allowed, wanted)
+        return value
+
+    return {"callback": check}
+
+
+POSITIVE: Final = within(lambda value: 0.0 < value < inf, "a finite number above 0")
+FROM_0: Final = within(lambda value: value >= 0.0, "a number from 0")
+FINITE: Final = within(isfinite, "a finite number")
 
 
 def number(name: str, help_text: str, default: float | None = None, **more: Any) -> Callable[[F], F]:
@@ -58,6 +76,18 @@ def together(*options: Callable[[Any], Any]) -> Callable[[F], F]:
         return command
 
     return decorate
+
+
+def refuse_given(names: Iterable[str], why: str) -> None:
+    """Refuse options, by the names of their values, that would change nothing, with a reason.
+
+    Raises:
+        UsageError: one was given.
+    """
+    context = click.get_current_context()
+    for name in names:
+        if context.get_parameter_source(name) is ParameterSource.COMMANDLINE:
+            raise click.UsageError(f"--{name.replace('_', '-')} {why}")
 
 
 BAGS: Final = click.argument("bags", nargs=-1, required=True, metavar="BAG...")

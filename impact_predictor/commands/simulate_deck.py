@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Final
 
 import click
-from click.core import ParameterSource
 
-from .options import choice, examples, number, seed_option, text, together
+from .options import choice, examples, number, refuse_given, seed_option, text, together
 from .progress import progress, writing
 from .simulated import Products, as_json_option, bag_option, picture_options
 
@@ -52,6 +51,14 @@ _NOISE: Final = (
     ("--noise-accelerometer", "accelerometers, m/s^2"),
     ("--noise-gyro", "gyroscopes, rad/s"),
 )
+
+
+def parameter_of(option: str) -> str:
+    """The name that click gives to the value of an option."""
+    return option.removeprefix("--").replace("-", "_")
+
+
+_OF_SEA: Final = ("spectrum", "rao", *[parameter_of(name) for name, *_ in _SEA])
 
 
 @click.command("deck", short_help="Cargo on the deck of a vessel in a sea.", epilog=examples(*EXAMPLES))
@@ -105,7 +112,10 @@ def simulate_deck(
     from ..scenarios.record import Sensors
     from ..scenarios.sensors import SensorNoise
 
-    check_options(recorded=record is not None)
+    if record is None:
+        refuse_given(["record_topic"], "is of a recorded deck: give --record")
+    else:
+        refuse_given(_OF_SEA, "is of a sea, but --record takes a recorded deck")
     scenes = read_scenes(find(SCENE) if params is None else params)
     if held := [name for name, scene in scenes.items() if scene.lashings or scene.chocks or scene.wind]:
         click.echo(f"note: without lashings, chocks and wind move here: {', '.join(held)}", err=True)
@@ -140,26 +150,6 @@ def simulate_deck(
 
     products.say(lambda: voyage_as_json(voyage), lambda console: print_voyage(console, voyage))
     return 1 if voyage.broke_off else 0
-
-
-def parameter_of(option: str) -> str:
-    """The name that click gives to the value of an option."""
-    return option.removeprefix("--").replace("-", "_")
-
-
-def check_options(*, recorded: bool) -> None:
-    """Refuse options that would not change anything: those of a sea beside a recorded deck, or the reverse.
-
-    Raises:
-        UsageError: such an option was given.
-    """
-    context = click.get_current_context()
-    sea = ("spectrum", "rao", *[parameter_of(name) for name, _, _ in _SEA])
-    for name in sea if recorded else ("record_topic",):
-        if context.get_parameter_source(name) is ParameterSource.COMMANDLINE:
-            option = "--" + name.replace("_", "-")
-            why = "of a sea, but --record takes a recorded deck" if recorded else "of a recorded deck: give --record"
-            raise click.UsageError(f"{option} is {why}")
 
 
 def deck_of(record: str | None, contacts: str, seed: int, gravity: float, **sea: Any) -> tuple[DeckMotion, float]:

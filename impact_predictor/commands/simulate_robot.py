@@ -3,15 +3,25 @@
 from __future__ import annotations
 
 import json
-from math import inf, isfinite, radians
+from math import inf, radians
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import click
-from click.core import ParameterSource
 
-from ..mechanics.bodies import positive, refuse
-from .options import ACUTE, examples, json_flag, number, seed_option, text, together
+from .options import (
+    ACUTE,
+    FINITE,
+    FROM_0,
+    POSITIVE,
+    examples,
+    json_flag,
+    number,
+    refuse_given,
+    seed_option,
+    text,
+    within,
+)
 from .progress import progress
 from .simulated import bag_option
 
@@ -23,11 +33,10 @@ NAMES: Final = ("a1", "anymal", "bolt", "go1", "hyq", "solo12", "talos")
 GAITS: Final = ("trot", "amble", "step")
 DURATION: Final = 12.0
 BIPED: Final = 2
-OF_BAG: Final = (
-    *("rate", "noise_position", "noise_velocity", "delay", "drift"),
-    *("params_out", "by_joints", "by_names", "terrain"),
-)
-MOST: Final = 4000.0
+SENSED: Final = ("rate", "noise_position", "noise_velocity", "delay", "drift", "seed", "by_names")
+"""What `WalkSensors` take."""
+OF_BAG: Final = (*SENSED[:5], "params_out", "by_joints", "by_names", "terrain")
+RATE: Final = within(lambda value: 0.0 < value <= 4000.0, "a number above 0, up to 4000")
 """Hz: the physics makes no more steps."""
 
 EXAMPLES: Final = (
@@ -44,28 +53,39 @@ EXAMPLES: Final = (
 @text("--urdf", "FILE", "URDF of another robot.")
 @text("--feet", "LINKS", "Links of its feet, left and right ones in turn, front ones first: LF,RF,LH,RH.")
 @text("--srdf", "FILE", "Its postures; its legs are bent as their limits allow unless given.")
-@number("--radius", "Radius of its feet, m: balls about the links' origins (those of the URDF unless given).")
+@number(
+    "--radius",
+    "Radius of its feet, m: balls about the links' origins (those of the URDF unless given).",
+    **FROM_0,
+)
 @text("--sole", "X,X,Y", "Flat soles in its place, m: where heel and toe are along their links' x axes, and the width.")
 @click.option("--gait", type=click.Choice(GAITS), help="[default: trot on four feet, step on two]")
-@number("--swing", "Duration of a swing, s.", 0.2)
-@number("--strike", "Speed with which a swing is planned to end on the ground, m/s; 0 brakes to rest.", 0.6)
-@number("--speed", "Planned speed ahead, m/s (that of a robot of its size unless given).")
-@number("--clearance", "How high feet swing, m (that of a robot of its size unless given).")
+@number("--swing", "Duration of a swing, s.", 0.2, **POSITIVE)
+@number("--strike", "Speed with which a swing is planned to end on the ground, m/s; 0 brakes to rest.", 0.6, **FROM_0)
+@number("--speed", "Planned speed ahead, m/s (that of a robot of its size unless given).", **FROM_0)
+@number("--clearance", "How high feet swing, m (that of a robot of its size unless given).", **FROM_0)
 @number("--slope", "Slope of the ground, degrees; positive is uphill.", 0.0, **ACUTE)
-@number("--blocks", "Height of blocks on half of the ground, m.", 0.0)
-@number("--stairs", "Rise of stairs ahead, m; negative go down.", 0.0)
-@number("--gantry", "Springs that hold the trunk of a robot on two feet upright, weight times height to a rad.", 1.0)
-@number("--armature", "Inertia of each drive at its joint, kg m^2 (that of a robot of its size unless given).")
-@number("--friction", "Coulomb friction coefficient of the feet.", 0.8)
-@number("--contact-time", "Time constant with which a contact stops a foot, s: less is stiffer.", 0.002)
-@number("--duration", "Seconds to simulate.", DURATION)
-@together(
-    number("--rate", "Samples of the bag for each second.", 400.0),
-    number("--noise-position", "Standard deviation of positions, m.", 0.0),
-    number("--noise-velocity", "Standard deviation of velocities, m/s.", 0.0),
-    number("--delay", "By how much feet, joints and forces are told late, s.", 0.0),
-    number("--drift", "Drift of the told height, m/s.", 0.0),
+@number("--blocks", "Height of blocks on half of the ground, m.", 0.0, **FROM_0)
+@number("--stairs", "Rise of stairs ahead, m; negative go down.", 0.0, **FINITE)
+@number(
+    "--gantry",
+    "Springs that hold the trunk of a robot on two feet upright, weight times height to a rad.",
+    1.0,
+    **FROM_0,
 )
+@number(
+    "--armature",
+    "Inertia of each drive at its joint, kg m^2 (that of a robot of its size unless given).",
+    **FROM_0,
+)
+@number("--friction", "Coulomb friction coefficient of the feet.", 0.8, **FROM_0)
+@number("--contact-time", "Time constant with which a contact stops a foot, s: less is stiffer.", 0.002, **POSITIVE)
+@number("--duration", "Seconds to simulate.", DURATION, **POSITIVE)
+@number("--rate", "Samples of the bag for each second.", 400.0, **RATE)
+@number("--noise-position", "Standard deviation of positions, m.", 0.0, **FROM_0)
+@number("--noise-velocity", "Standard deviation of velocities, m/s.", 0.0, **FROM_0)
+@number("--delay", "By how much feet, joints and forces are told late, s.", 0.0, **FINITE)
+@number("--drift", "Drift of the told height, m/s.", 0.0, **FINITE)
 @seed_option("Makes blocks and noise.")
 @json_flag()
 @bag_option("the true landings")
@@ -74,28 +94,13 @@ EXAMPLES: Final = (
 @click.option("--by-names", is_flag=True, help="Tell feet by their names, with velocities and forces.")
 @click.option("--terrain", is_flag=True, help="The scene takes the heights of blocks or stairs from a map.")
 def simulate_robot(
-    name: str | None,
     gait: str | None,
-    swing: float,
-    strike: float,
-    speed: float | None,
-    clearance: float | None,
-    gantry: float,
-    armature: float | None,
-    friction: float,
-    contact_time: float,
     duration: float,
-    rate: float,
-    noise_position: float,
-    noise_velocity: float,
-    delay: float,
-    drift: float,
-    seed: int,
+    gantry: float,
     as_json: bool,
     output: str | None,
     params_out: str | None,
     by_joints: bool,
-    by_names: bool,
     terrain: bool,
     **options: Any,
 ) -> int:
@@ -106,22 +111,14 @@ def simulate_robot(
     The same options and seed make the same bytes.
     """
     scene = None if output is None else Path(params_out or Path(output).with_suffix(".yaml"))
-    check_bag(scene)
+    if scene is None:
+        refuse_given(OF_BAG, "is that of a bag: give -o BAG too")
+    else:
+        from ..scenarios.robot.scene import check_replaceable
+
+        check_replaceable(scene)
     if terrain and not (options["blocks"] or options["stairs"]):
         raise click.UsageError("--terrain is that of --blocks or --stairs: give one of them too")
-    positive(swing=swing, contact_time=contact_time, duration=duration)
-    refuse({"rate": rate}, lambda value: 0.0 < value <= MOST, f"a number above 0, up to {MOST:g}")
-    chosen = {"speed": speed, "clearance": clearance, "armature": armature, "radius": options["radius"]}
-    given = {
-        "strike": strike,
-        "gantry": gantry,
-        "friction": friction,
-        "blocks": options["blocks"],
-        "noise-position": noise_position,
-    }
-    given |= {name: value for name, value in chosen.items() if value is not None}
-    refuse({**given, "noise-velocity": noise_velocity}, lambda value: value >= 0.0, "a number from 0")
-    refuse({"delay": delay, "drift": drift, "stairs": options["stairs"]}, isfinite, "a finite number")
     from ..scenarios.as_json import walk_as_json
     from ..scenarios.record import write_messages
     from ..scenarios.robot.gait import PlannedGait
@@ -130,12 +127,12 @@ def simulate_robot(
     from ..scenarios.robot.sensors import WalkSensors, walk_messages
     from ..scenarios.robot.walk import landings_of, walk
 
-    files = [options.pop(one) for one in ("urdf", "feet", "srdf", "radius", "sole")]
-    ground = ground_of(seed, **options)
-    machine = Machine(robot_of(name, *files), ground, Physics(armature, friction, contact_time))
+    ground = ground_of(*[options[one] for one in ("seed", "slope", "blocks", "stairs")])
+    robot = robot_of(*[options[one] for one in ("name", "urdf", "feet", "srdf", "radius", "sole")])
+    machine = Machine(robot, ground, Physics(*[options[one] for one in Physics._fields]))
     is_biped = len(machine.feet) == BIPED
-    told = PlannedGait(gait or ("step" if is_biped else "trot"), swing, strike, speed, clearance)
-    sensors = WalkSensors(rate, noise_position, noise_velocity, delay, drift, seed, by_names)
+    told = PlannedGait(gait or ("step" if is_biped else "trot"), *[options[one] for one in PlannedGait._fields[1:]])
+    sensors = WalkSensors(*[options[one] for one in SENSED])
     with progress("simulated robot", "s", round(duration)) as tell:
         walked = walk(machine, ground, told, duration, gantry if is_biped else 0.0, tell)
     landings = landings_of(walked)
@@ -153,24 +150,6 @@ def simulate_robot(
         if output is not None:
             click.echo(f"Bag: {output}\nScene: {scene}")
     return 1 if walked.fallen else 0
-
-
-def check_bag(scene: Path | None) -> None:
-    """Refuse, before any work is done, options of a bag without one (and without a `scene`), and another file there.
-
-    Raises:
-        UsageError: such an option was given.
-        InputError: the scene would take the place of another file.
-    """
-    if scene is not None:
-        from ..scenarios.robot.scene import check_replaceable
-
-        check_replaceable(scene)
-        return
-    context = click.get_current_context()
-    for name in OF_BAG:
-        if context.get_parameter_source(name) is ParameterSource.COMMANDLINE:
-            raise click.UsageError(f"--{name.replace('_', '-')} is that of a bag: give -o BAG too")
 
 
 def robot_of(
