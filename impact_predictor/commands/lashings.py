@@ -111,8 +111,8 @@ def largest_felt(bag: str, scenes: dict[str, Scene], remap: tuple[str, ...]) -> 
     from ..prediction.felt import FeltMonitor
     from .calibrate import read_all
 
-    # Of the bag the deck alone counts: the units stand where they are placed.
-    alone = {name: scene._replace(source="none") for name, scene in scenes.items()}
+    # Of the bag the deck alone counts: the units stand where they are placed, and nobody watches them.
+    alone = {name: scene._replace(source="none", watching=None) for name, scene in scenes.items()}
     (monitor,), _ = read_all((bag,), alone, remapping(remap), FeltMonitor)
     if not monitor.largest:
         raise InputError(f"{bag} tells no motion of a deck: the scene needs support.motion, the bag its messages")
