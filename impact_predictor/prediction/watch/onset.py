@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 FULL: Final = 99.0
 """The ratio of a body that nothing holds: it weighs nothing on the support, or its mass centre is beyond an edge."""
 
+BLOCK: Final = 152  # times at once: more do not stay in the cache of a processor
+
 _ROUNDING: Final = 1e-12
 """Part of the acceleration felt below which its tangential part is none: without friction any other slides."""
 
@@ -82,6 +84,13 @@ class Onset:
 
     def margins(self, motion: NDArray[np.float64]) -> OnsetMargins:
         """The margins at a support's `motions` (12, times), or (12,) at one time."""
+        if motion.ndim == 1:
+            return OnsetMargins(*[part[:, 0] for part in self._margins(motion[:, None])])
+        blocks = [self._margins(motion[:, k : k + BLOCK]) for k in range(0, motion.shape[1], BLOCK)]
+        return OnsetMargins(*[np.concatenate(parts, axis=1) for parts in zip(*blocks, strict=True)])
+
+    def _margins(self, motion: NDArray[np.float64]) -> OnsetMargins:
+        """The margins at `motions` of not too many times."""
         numbers = self._numbers(motion)
         rolling = self._drum_slide(numbers) if self._drums else None
         weight = numbers[:, :1]
@@ -103,10 +112,7 @@ class Onset:
         np.clip(ratios, 0.0, FULL, out=ratios)
         np.copyto(ratios, FULL, where=lifted[:, None])
         tips = ratios[:, 1:]
-        edge = tips.argmax(axis=1)
-        if motion.ndim == 2:
-            return OnsetMargins(ratios[:, 0], tips.max(axis=1), edge, lifted)
-        return OnsetMargins(ratios[:, 0, 0], tips.max(axis=1)[:, 0], edge[:, 0], lifted[:, 0])
+        return OnsetMargins(ratios[:, 0], tips.max(axis=1), tips.argmax(axis=1), lifted)
 
     def barriers(self, motion: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
         """The work (n,) in J until bodies topple over the easiest edge, and its number, at `motions` (12,) of a time.
@@ -114,7 +120,7 @@ class Onset:
         The mass centre must get to where it is highest against the acceleration felt, on its way about the edge: the
         rest of that way it falls. It is nothing beyond there.
         """
-        numbers = self._numbers(motion)[:, :, 0]
+        numbers = self._numbers(motion[:, None])[:, :, 0]
         weight = numbers[:, :1]
         a = np.einsum("nkc,nk->nc", self._axes, numbers[:, :3])
         outwards = (self._outward * a[:, None]).sum(axis=2)
@@ -132,7 +138,7 @@ class Onset:
         """
         if self._changed:
             self._collect()
-        return (self._rows @ motion).reshape(len(self._stances), -1, *motion.shape[1:] or (1,))
+        return (self._rows @ motion).reshape(len(self._stances), -1, motion.shape[1])
 
     def _drum_slide(self, numbers: NDArray[np.float64]) -> NDArray[np.float64]:
         """The part of the friction on their edges that cylinders use against spinning, and against slip along the axis.

@@ -29,8 +29,6 @@ SHIFT: Final = 0.1
 WAYS: Final = 24
 """Ways along the support in which it may slide: of any other 0.9 % of what acts is left out at most."""
 
-BLOCK: Final = 128  # times at once: more do not stay in the cache of a processor
-
 _LEAST: Final = 1e-9  # m/s^2, and m^2/s^2, of what is divided by
 
 _BLOCKS: Final = 0.02
@@ -75,29 +73,14 @@ class Secured:
         lifts, at a support's `motions`: of bodies of `weight` (n, 1, times) that are tipped by `tips` (n, edges, times)
         with `levers` (n, edges, 1), all for 1 kg.
         """
-        count, rows = motion.reshape(len(motion), -1).shape[1], self._rows.reshape(-1, len(motion))
-        slide, tip = np.empty((len(weight), count)), np.empty((*tips.shape[:2], count))
-        for k in range(0, count, BLOCK):
-            at = slice(k, k + BLOCK)
-            now = motion.reshape(len(motion), -1)[:, at]
-            numbers = (rows @ now).reshape(*self._rows.shape[:2], -1)
-            slide[:, at], tip[:, :, at] = self._block(numbers, weight[:, :, at], tips[:, :, at], levers)
-        return slide, tip, weight[:, 0] + self._lift <= 0.0
-
-    def _block(
-        self,
-        numbers: NDArray[np.float64],
-        weight: NDArray[np.float64],
-        tips: NDArray[np.float64],
-        levers: NDArray[np.float64],
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        numbers = (self._rows.reshape(-1, len(motion)) @ motion).reshape(*self._rows.shape[:2], -1)
         acts, outwards = numbers[:, : self._count], numbers[:, self._count :]
         acts += self._wind
         slide = _parts(acts, self._friction * weight + self._held).max(axis=1)
         tips, bears = tips + self._tipping, levers * weight
         eased = tips - self._height * np.maximum(outwards + self._blown, 0.0)
         tip = np.maximum(_parts(tips, bears + (self._preload + self._chocked)), _parts(eased, bears + self._preload))
-        return slide, np.minimum(tip, _parts(tips, bears + self._stretched))
+        return slide, np.minimum(tip, _parts(tips, bears + self._stretched)), weight[:, 0] + self._lift <= 0.0
 
 
 def _parts(acts: NDArray[np.float64], holds: NDArray[np.float64]) -> NDArray[np.float64]:
