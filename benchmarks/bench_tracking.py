@@ -144,7 +144,7 @@ def by_ahead(deck: Deck, times: Array) -> Array:
 
 
 def by_outlook(deck: Deck, times: Array) -> Array:
-    there, gravity, angular, _, _ = deck.outlook(LEADS[-1] + 1.0)
+    there, gravity, angular, *_ = deck.outlook(LEADS[-1] + 1.0)
     middle = np.concatenate([gravity.mean(0), angular.mean(0)], axis=1)
     return np.stack([np.interp(times, there, column) for column in middle.T], 1)
 

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from math import asin, atan2
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..prediction.deck.forecast import LEADS
+from ..prediction.deck.forecast import ANGLES, LEADS, angles_of
 from ..prediction.types import Moment
-from ..prediction.vectors import axes_of, dot, times, to_body
+from ..prediction.vectors import axes_of, to_body
 
 if TYPE_CHECKING:
     from ..prediction.deck.tracker import Deck
@@ -24,11 +23,11 @@ FORECAST_EVERY: Final = 2
 """Rows from one forecast that is kept to the next; it is kept `LEADS` ahead."""
 QUANTILES: Final = (0.05, 0.5, 0.95)
 """What is kept of the courses of a forecast: nine tenths of them are between the ends."""
-DECK: Final = ("roll", "pitch", "along", "across", "down")
+DECK: Final = (*ANGLES, "along", "across", "down")
 """Columns of the deck: its angles in rad, above 0 with port up and with the bow down, and what is felt at its origin
 along its axes (forward, to port, and down) in m/s^2.
 """
-FELT: Final = ("along", "across")
+FORECAST: Final = (*ANGLES, "along", "across")
 """Of those, the ones that are forecast."""
 UNIT: Final = ("level", "slide", "tip", "probability")
 """Columns of a unit: its level (0 OK, 1 WARN, 2 ERROR, 3 STALE), the most that was used of its margins since the last
@@ -49,7 +48,7 @@ class WatchLog(NamedTuple):
     """What became of a watch: `stamps` (n,) of the rows in ns; `deck` (n, 5) and `units` (n, units, 4), the columns of
     `DECK` and of `UNIT`, NaN where nothing is known; `spells` of the levels; the `last` values reported of each unit.
 
-    `forecasts` (m, leads, felt, quantiles) in m/s^2 were made at the rows `made` (m,). `events` tells when (ns)
+    `forecasts` (m, leads, 4, quantiles) of `FORECAST` were made at the rows `made` (m,). `events` tells when (ns)
     something began to happen to each unit, and what, as the bag tells it where it `knows_events`, else as the watch saw
     it.
     """
@@ -121,7 +120,9 @@ class WatchRecorder:
             deck=np.array([row for _, row, _ in self._rows]).reshape(-1, len(DECK)),
             units=np.array([now for _, _, now in self._rows]).reshape(-1, *self._now.shape),
             made=np.array([row for row, _ in self._forecasts], dtype=np.int64),
-            forecasts=np.array([one for _, one in self._forecasts]).reshape(-1, len(LEADS), len(FELT), len(QUANTILES)),
+            forecasts=np.array([one for _, one in self._forecasts]).reshape(
+                -1, len(LEADS), len(FORECAST), len(QUANTILES)
+            ),
             spells=tuple(sorted(self._spells, key=lambda spell: spell.begin)),
             last=self._last,
             tracked=self._deck.values(),
@@ -129,14 +130,12 @@ class WatchRecorder:
         return log._replace(events=seen_events(log) if events is None else events, knows_events=events is not None)
 
     def _forecast(self) -> None:
-        """Keep what the deck will feel, where its sea is learnt."""
-        ahead = self._deck.outlook(LEADS[-1] + 1.0)
-        if ahead.is_learnt:
-            times = ahead.times
-            after = np.searchsorted(times, LEADS).clip(1, len(times) - 1)
-            part = ((LEADS - times[after - 1]) / (times[after] - times[after - 1]))[:, None]
-            felt = (1.0 - part) * ahead.gravity[:, after - 1, :2] + part * ahead.gravity[:, after, :2]
-            found = np.quantile(felt, QUANTILES, axis=0)
+        """Keep how the deck will lie and what it will feel, where its sea is learnt."""
+        then = self._deck.outlook(LEADS[-1]).at(LEADS)
+        if then.angles is not None:
+            found: NDArray[np.float64] = np.quantile(
+                np.concatenate((then.angles, then.gravity[:, :, :2]), axis=2), QUANTILES, axis=0
+            )
             self._forecasts.append((len(self._rows), np.moveaxis(found, 0, -1)))
 
     def _end(self, name: str, stamp: int) -> None:
@@ -147,9 +146,9 @@ class WatchRecorder:
 
 def deck_row(moment: Moment) -> tuple[float, ...]:
     """The numbers of `DECK` at a moment."""
-    up = to_body(axes_of(moment.orientation), times(moment.gravity, -(dot(moment.gravity, moment.gravity) ** -0.5)))
+    roll, pitch = angles_of(to_body(axes_of(moment.orientation), moment.gravity))
     along, across, down = moment.felt.gravity
-    return atan2(up[1], up[2]), -asin(min(1.0, max(-1.0, up[0]))), along, across, -down
+    return float(roll), float(pitch), along, across, -down
 
 
 def seen_events(log: WatchLog) -> dict[str, dict[int, str]]:

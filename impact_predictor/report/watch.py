@@ -12,8 +12,8 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from ..bags.watched import DECK, FELT, QUANTILES, UNIT, LevelSpell, WatchLog
-from ..prediction.deck.forecast import LEADS
+from ..bags.watched import DECK, FORECAST, QUANTILES, UNIT, LevelSpell, WatchLog
+from ..prediction.deck.forecast import ANGLES, LEADS
 from ..prediction.watch.levels import UNKNOWN, Level
 from ..stamps import NANOSECONDS
 from ..wording import counted
@@ -41,7 +41,7 @@ def watch_as_json(log: WatchLog) -> dict[str, Any]:
             "quantiles": QUANTILES,
             **{
                 name: [[_numbers(part) for part in of.T] for of in np.swapaxes(told[:, :, k], 0, 1)]
-                for k, name in enumerate(FELT)
+                for k, name in enumerate(FORECAST)
             },
         },
         "skill": forecast_skill(log),
@@ -124,11 +124,11 @@ def _stood(spells: Sequence[LevelSpell], stamp: int) -> float | None:
 
 
 def forecast_skill(log: WatchLog) -> list[dict[str, Any]]:
-    """Root mean squares of the errors of the forecasts in m/s^2, beside those of what is felt now and of the mean, and
-    the part of what came that was between the outer quantiles.
+    """Root mean squares of the errors of the forecasts in rad or m/s^2, beside those of what is so now and of the mean,
+    and the part of what came that was between the outer quantiles.
     """
     found = []
-    for (lead, seconds), (part, name) in product(enumerate(LEADS), enumerate(FELT)):
+    for (lead, seconds), (part, name) in product(enumerate(LEADS), enumerate(FORECAST)):
         felt, due = log.deck[:, DECK.index(name)], log.stamps[log.made] + round(seconds * NANOSECONDS)
         came = np.interp(due, log.stamps, felt, right=np.nan) if len(felt) else np.zeros(0)
         known = np.isfinite(came) & np.isfinite(felt[log.made])
@@ -166,8 +166,8 @@ SERIES: Final = {
     **dict.fromkeys(DECK[:2], ("float64", "rad")),
     **dict.fromkeys(DECK[2:], ("float64", "m/s^2")),
     **{
-        f"{name}_in_{lead:g}s_{quantile:g}": ("float64", "m/s^2")
-        for lead, name, quantile in product(LEADS, FELT, QUANTILES)
+        f"{name}_in_{lead:g}s_{quantile:g}": ("float64", "rad" if name in ANGLES else "m/s^2")
+        for lead, name, quantile in product(LEADS, FORECAST, QUANTILES)
     },
     "unit": ("string", ""),
     "level": ("string", ""),

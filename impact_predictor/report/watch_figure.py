@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
+from math import degrees
 from typing import Any, Final
 
 import numpy as np
 
-from ..bags.watched import DECK, FELT, WatchLog
-from ..prediction.deck.forecast import LEADS
+from ..bags.watched import DECK, FORECAST, WatchLog
+from ..prediction.deck.forecast import ANGLES, LEADS
 from ..prediction.watch.levels import Level
 from ..stamps import NANOSECONDS
 from ..wording import counted
@@ -37,10 +39,8 @@ def write_watch(path: str | os.PathLike[str], log: WatchLog, title: str) -> None
         angles, felt, *panels = figure.subplots(2 + len(shown), 1, sharex=True)
         warned, said = warned_of(units)
         headline(figure, f"{title}: events warned of: {warned}; {said}")
-        for name, colour in zip(DECK[:2], PALETTE, strict=False):
-            angles.plot(times, np.degrees(log.deck[:, DECK.index(name)]), color=colour, linewidth=1.0, label=name)
-        angles.set_ylabel("angle (°)")
-        _draw_felt(felt, log, times)
+        _draw_deck(angles, log, times, ANGLES, "{} (°)")
+        _draw_deck(felt, log, times, FORECAST[2:], "felt {}\n(m/s²)")
         for place, axes in zip(shown, panels, strict=True):
             _draw_unit(axes, log, place, times)
         figure.axes[-1].set(xlabel="time (s)", xlim=(0.0, times.max(initial=1.0)))
@@ -48,15 +48,16 @@ def write_watch(path: str | os.PathLike[str], log: WatchLog, title: str) -> None
         common_legend(figure)
 
 
-def _draw_felt(axes: Axes, log: WatchLog, times: Any) -> None:
-    """What is felt along the deck's axis along which it changes most, and the forecast of it."""
-    part = int(np.argmax([np.ptp(log.deck[:, DECK.index(name)]) if len(times) else 0.0 for name in FELT]))
-    low, middle, high = log.forecasts[:, LEAD, part].T
+def _draw_deck(axes: Axes, log: WatchLog, times: Any, names: Sequence[str], label: str) -> None:
+    """Of some numbers of the deck the one that changes most, and the forecast of it; `label` takes its name."""
+    swings = [np.ptp(log.deck[:, DECK.index(name)]) if len(times) else 0.0 for name in names]
+    name, scale = names[int(np.argmax(swings))], degrees(1.0) if names is ANGLES else 1.0
+    low, middle, high = scale * log.forecasts[:, LEAD, FORECAST.index(name)].T
     due, said = times[log.made] + LEADS[LEAD], f"forecast {LEADS[LEAD]:g} s before"
     axes.fill_between(due, low, high, color=PALETTE[4], alpha=0.35, linewidth=0.0, label=f"{said}: 90 % band")
     axes.plot(due, middle, "--", color=PALETTE[0], linewidth=1.0, label=said)
-    axes.plot(times, log.deck[:, DECK.index(FELT[part])], color=EDGE, linewidth=1.0, label="felt")
-    axes.set_ylabel(f"felt {FELT[part]}\n(m/s²)")
+    axes.plot(times, scale * log.deck[:, DECK.index(name)], color=EDGE, linewidth=1.0, label="measured")
+    axes.set_ylabel(label.format(name))
 
 
 def _draw_unit(axes: Axes, log: WatchLog, place: int, times: Any) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from impact_predictor.bags.watched import DECK, STEP, WatchRecorder, deck_row
+from impact_predictor.bags.watched import DECK, FORECAST, STEP, WatchRecorder, deck_row
 from impact_predictor.prediction.deck.forecast import LEADS, DeckOutlook
 from impact_predictor.prediction.types import Felt, Moment
 from impact_predictor.prediction.watch.watch import Level, Report
@@ -29,10 +29,11 @@ def moment(stamp: int, roll: float = 0.0, pitch: float = 0.0) -> Moment:
 
 def outlook(_: float) -> DeckOutlook:
     """Three courses that differ by 0.1 m/s^2."""
-    times = np.arange(0.0, 11.1, 0.25)
+    times = np.arange(0.0, 16.1, 0.25)
     gravity = np.zeros((3, len(times), 3))
     gravity[:, :, 1] = times + np.array([[-0.1], [0.0], [0.1]])
-    return DeckOutlook(times=times, gravity=gravity, angular=gravity, turning=gravity, is_learnt=True)
+    angles = 0.01 * gravity[:, :, :2]
+    return DeckOutlook(times, gravity, angular=gravity, turning=gravity, is_learnt=True, angles=angles)
 
 
 def report(stamp: int, level: Level, chance: str = "0.25") -> Report:
@@ -68,8 +69,11 @@ def test_a_forecast_has_its_middle_and_the_ends_of_its_band_at_each_lead() -> No
     recorder.look()
     log = recorder.log()
     assert log.made.tolist() == [0]
-    assert log.forecasts[0, :, 1, 1].tolist() == list(LEADS)
-    assert (log.forecasts[0, :, 1, 2] - log.forecasts[0, :, 1, 0]).tolist() == pytest.approx([0.18] * len(LEADS))
+    across = FORECAST.index("across")
+    assert log.forecasts[0, :, across, 1].tolist() == list(LEADS)
+    assert log.forecasts[0, :, FORECAST.index("pitch"), 1].tolist() == pytest.approx([0.01 * lead for lead in LEADS])
+    band = log.forecasts[0, :, across, 2] - log.forecasts[0, :, across, 0]
+    assert band.tolist() == pytest.approx([0.18] * len(LEADS))
 
 
 def test_a_pause_of_the_deck_is_a_row_without_numbers() -> None:

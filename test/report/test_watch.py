@@ -12,7 +12,7 @@ import pytest
 from read_page import PageReader, traces
 from replay_answers import answer
 
-from impact_predictor.bags.watched import FELT, QUANTILES, STEP, LevelSpell, WatchLog
+from impact_predictor.bags.watched import FORECAST, QUANTILES, STEP, LevelSpell, WatchLog
 from impact_predictor.prediction.deck.forecast import LEADS
 from impact_predictor.prediction.watch.levels import Level
 from impact_predictor.report.page.replay import page_of_replay
@@ -43,7 +43,7 @@ def log(rows: int = 200, **given: Any) -> WatchLog:
         deck=np.stack([0.1 * swing, 0.0 * swing, 0.0 * swing, swing, 9.81 + 0.0 * swing], axis=1),
         units=np.stack([0.0 * swing, np.abs(swing), 0.5 * np.abs(swing), 0.0 * swing], axis=1)[:, None],
         made=np.arange(rows),
-        forecasts=np.stack([0.0 * told, told], axis=2),
+        forecasts=np.stack([0.1 * told, 0.0 * told, 0.0 * told, told], axis=2),
         spells=SPELLS,
         last={"crate": {"tips_per_hour": "3.5", "time_to_tip": "inf", "edge": "port", "tip_peaks": "rayleigh"}},
         tracked={"forecast": "NO_SKILL", "window.linear": "0.300", "window.angular": "0.400"},
@@ -82,6 +82,7 @@ def test_the_skill_of_a_forecast_stands_beside_that_of_simple_answers() -> None:
     assert far["now"] == pytest.approx(2.0**0.5, rel=0.01)  # half a swing later it is the other way
     assert far["mean"] == pytest.approx(0.5**0.5, rel=0.05)
     assert far["within"] == 1.0
+    assert found["roll", 5.0]["forecast"] == pytest.approx(0.01)
     assert found["across", 10.0]["now"] == pytest.approx(0.0, abs=1e-6)
 
 
@@ -119,7 +120,7 @@ def test_the_page_has_deck_forecast_levels_margins_events_and_statistics() -> No
     assert "The forecast at the end: no better than" in page.text
     assert "found over 0.3 s and 0.4 s." in page.text
     assert statistics == [["unit", "tips per hour", "tip peaks"], ["crate", "3.5", "rayleigh"]]
-    assert skill[3][:2] == ["across, 5 s ahead", "0.100"]
+    assert [skill[row][:2] for row in (5, 6)] == [["roll, 5 s ahead", "0.573"], ["across, 5 s ahead", "0.100"]]
 
 
 def test_a_name_cannot_break_the_page() -> None:
@@ -157,8 +158,8 @@ def test_the_table_has_a_row_for_each_unit_at_each_stamp_as_parquet_and_as_csv(t
     assert rows[3]["roll"] is None
     assert texts[3]["roll"] == ""
     assert float(texts[5]["across"]) == rows[5]["across"] == pytest.approx(one.deck[5, 3])
-    name = f"{FELT[1]}_in_{LEADS[2]:g}s_{QUANTILES[1]:g}"
-    assert rows[2][name] == pytest.approx(one.forecasts[2, 2, 1, 1])
+    name = f"{FORECAST[3]}_in_{LEADS[2]:g}s_{QUANTILES[1]:g}"
+    assert rows[2][name] == pytest.approx(one.forecasts[2, 2, 3, 1])
     assert list(texts[0]) == list(SERIES)
 
 

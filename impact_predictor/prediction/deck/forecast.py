@@ -10,8 +10,9 @@ twice as much. How unsure a forecast is its own past errors show, whole courses 
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Sequence
 from enum import Enum
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +25,7 @@ from .motion import NOWHERE, MeanMotion, SupportState
 STEP = 250_000_000  # ns between two rows
 SECONDS = STEP / NANOSECONDS
 ORDER = 32  # rows that tell the next one: 8 s
-REACH = 60  # rows ahead: 15 s
+REACH = 63  # rows ahead, with those that cubics need beside them: 15 s
 MEMORY = 4800  # rows after which the past counts 1/e: twenty minutes
 REFIT = 40  # rows between two fits
 RIDGE = 2e-5
@@ -41,8 +42,10 @@ SINGLE = 51  # times at which a motion that is not learnt is looked at
 ENOUGH = 12  # courses from which a forecast is trusted
 
 
-LEADS: Final = (1.0, 2.0, 5.0, 10.0)
-"""s ahead at which forecasts are compared with what came."""
+LEADS: Final = (1.0, 2.0, 5.0, 10.0, 15.0)
+"""s ahead at which forecasts are told, and compared with what came."""
+
+ANGLES: Final = ("roll", "pitch")
 
 _ROWS: Final = [round(lead / SECONDS) for lead in LEADS]
 _DECIDES: Final = 1  # the lead at which a forecast must be better than the simple answers
@@ -58,8 +61,8 @@ class ForecastStatus(Enum):
 
 
 class ForecastSkill(NamedTuple):
-    """How wrong forecasts of late were `LEADS` ahead, as root mean squares of the felt gravity in m/s^2, beside those
-    who expect that it stays (`persistence`), and its `mean`.
+    """How wrong forecasts of late were `LEADS` ahead, as root mean squares of the felt gravity in m/s^2 or of an angle
+    in rad, beside those who expect that it stays (`persistence`), and its `mean`.
     """
 
     forecast: tuple[float, ...]
@@ -77,7 +80,8 @@ class DeckOutlook(NamedTuple):
     """Equally likely courses of what is felt on a support at `times` (t,) in s from now.
 
     `gravity` felt at its origin (m/s^2), `angular` velocity (rad/s) and `turning`, its derivative, along the axes of
-    then, each (courses, t, 3); `is_learnt` where the courses show how unsure they are.
+    then, each (courses, t, 3); `angles`, its roll with port up and its pitch with the bow down in rad (courses, t, 2),
+    and `is_learnt`, where the courses show how unsure they are.
     """
 
     times: NDArray[np.float64]
@@ -85,6 +89,32 @@ class DeckOutlook(NamedTuple):
     angular: NDArray[np.float64]
     turning: NDArray[np.float64]
     is_learnt: bool
+    angles: NDArray[np.float64] | None = None
+
+    def until(self, horizon: float) -> DeckOutlook:
+        """What is told up to a horizon in s, and the first moment in any case."""
+        count = max(1, int(np.searchsorted(self.times, horizon, side="right")))
+        gravity, angular, turning = (each[:, :count] for each in (self.gravity, self.angular, self.turning))
+        return self._replace(times=self.times[:count], gravity=gravity, angular=angular, turning=turning, angles=None)
+
+    def at(self, leads: Sequence[float]) -> DeckOutlook:
+        """What is told so many s ahead."""
+        after = np.searchsorted(self.times, leads).clip(1, len(self.times) - 1)
+        before, whole = self.times[after - 1], self.times[after] - self.times[after - 1]
+        part = ((np.asarray(leads) - before) / whole)[:, None]
+
+        def there(of: NDArray[np.float64]) -> NDArray[np.float64]:
+            found: NDArray[np.float64] = (1.0 - part) * of[:, after - 1] + part * of[:, after]
+            return found
+
+        return DeckOutlook(
+            times=np.asarray(leads),
+            gravity=there(self.gravity),
+            angular=there(self.angular),
+            turning=there(self.turning),
+            is_learnt=self.is_learnt,
+            angles=None if self.angles is None else there(self.angles),
+        )
 
 
 def single(moment: Moment, mean: MeanMotion | None, horizon: float) -> DeckOutlook:
@@ -98,6 +128,12 @@ def single(moment: Moment, mean: MeanMotion | None, horizon: float) -> DeckOutlo
         felt = rest + np.exp(-np.square(times / mean.quarter))[:, None, None] * (felt - rest)
     gravity, angular, turning = felt.swapaxes(0, 1)[:, None]
     return DeckOutlook(times=times, gravity=gravity, angular=angular, turning=turning, is_learnt=False)
+
+
+def angles_of(gravity: Sequence[Any] | NDArray[np.float64]) -> tuple[Any, Any]:
+    """Roll, with port up, and pitch, with the bow down, in rad, from the parts of gravity along a deck's axes."""
+    x, y, z = gravity
+    return np.arctan2(-y, -z), np.arctan2(x, np.hypot(y, z))
 
 
 class WaveForecast:
@@ -118,8 +154,10 @@ class WaveForecast:
         self._bounds = np.zeros(width), np.zeros(width)
         self._courses: deque[NDArray[np.float64]] = deque(maxlen=COURSES)
         self._squares: deque[NDArray[np.float64]] = deque(maxlen=COURSES)
-        self.skill: ForecastSkill | None = None
-        """What became of the forecasts of the last minutes; None until there are enough."""
+        self.skills: dict[str, ForecastSkill] = {}
+        """What became of the forecasts of the last minutes, of what is `felt`, `roll` and `pitch`; none until there are
+        enough.
+        """
         self.clear()
 
     def clear(self) -> None:
@@ -133,15 +171,17 @@ class WaveForecast:
     @property
     def status(self) -> ForecastStatus:
         """Whether it has seen enough to forecast, and its forecasts were better than simple answers."""
-        if self._factors is None or self.skill is None:
+        if self._factors is None or not self.skills:
             return ForecastStatus.LEARNING
         if len(self._rows) < ORDER:
             return ForecastStatus.INTERRUPTED
-        is_worse = self.skill.skill[_DECIDES] <= 0.0 and self.skill.forecast[_DECIDES] > LEAST
+        felt = self.skills["felt"]
+        is_worse = felt.skill[_DECIDES] <= 0.0 and felt.forecast[_DECIDES] > LEAST
         return ForecastStatus.NO_SKILL if is_worse else ForecastStatus.TRUSTED
 
     def add(self, state: SupportState) -> None:
         """Take the next state."""
+        self._axes = state.axes
         last, now = self._last, self._channels(state)
         self._last = state.stamp, now
         if last is None:
@@ -159,8 +199,8 @@ class WaveForecast:
             self._part = np.zeros(self._width)
         self._part += (0.5 * (state.stamp - begin) / STEP) * (value + now)
 
-    def outlook(self, stamp: int, horizon: float) -> DeckOutlook:
-        """The courses from a stamp in ns, not before that of the last state, over a horizon in s."""
+    def outlook(self, stamp: int) -> DeckOutlook:
+        """The courses from a stamp in ns, not before that of the last state."""
         errors = np.array(self._courses)
         rows = np.concatenate([self._rows[-2:], self._forecast()]) + self._origin
         # An error may as well have been the other way: so a few courses go further.
@@ -170,9 +210,14 @@ class WaveForecast:
         times = np.array([begin + SECONDS * k for k in range(REACH - 1)])
         # The slope at the end of the last row has the noise of its measurement.
         first = int(np.searchsorted(times, 0.0, side="right"))
-        last = max(first + 1, int(np.searchsorted(times, horizon, side="right")))
-        gravity, angular, turning = [each[:, first:last] for each in felt]
-        return DeckOutlook(times=times[first:last], gravity=gravity, angular=angular, turning=turning, is_learnt=True)
+        gravity, angular, turning, angles = felt
+        if self._is_felt:
+            # Of what is felt the angles are not told: they go on from those of now.
+            part = 1.0 - times[first] / SECONDS
+            angles = angles - ((1.0 - part) * angles[:, first - 1 : first] + part * angles[:, first : first + 1])
+            angles += angles_of(to_body(self._axes, self._gravity))
+        gravity, angular, turning, angles = (each[:, first:] for each in (gravity, angular, turning, angles))
+        return DeckOutlook(times[first:], gravity, angular, turning, is_learnt=True, angles=angles)
 
     def _channels(self, state: SupportState) -> NDArray[np.float64]:
         axes = state.axes
@@ -180,9 +225,10 @@ class WaveForecast:
             return np.array((*to_body(axes, state.felt), *state.angular))
         return np.array((*to_body(axes, self._gravity)[:2], *state.angular, *to_body(axes, state.velocity)))
 
-    def _felt(self, rows: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-        """Gravity felt, angular velocity and its derivative, each (n, t - 3, 3), in courses of rows (n, t, width): at
-        the ends of all rows but the first and the last two.
+    def _felt(self, rows: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
+        """Gravity felt, angular velocity and its derivative, each (n, t - 3, 3), and roll and pitch (n, t - 3, 2), in
+        courses of rows (n, t, width): at the ends of all rows but the first and the last two. Where gravity itself is
+        no channel the angles begin with those at which it turns.
 
         A mean over a step hides what waves do within it: cubics with the means of four are the motion and its slope.
         """
@@ -192,11 +238,12 @@ class WaveForecast:
         start = 3 if self._is_felt else 2
         angular, turning = (part[:, :, start : start + 3] for part in (there, slopes))
         if self._is_felt:
-            return there[:, :, :3], angular, turning
+            return there[:, :, :3], angular, turning, SECONDS * np.cumsum(angular[:, :, :2], axis=1)
         linear, gravity = there[:, :, 5:], self._gravity
         down = np.maximum(dot(gravity, gravity) - np.square(there[:, :, :2]).sum(2, keepdims=True), 0.0)
         felt = np.concatenate([there[:, :, :2], -np.sqrt(down)], axis=2)
-        return felt - slopes[:, :, 5:] - np.cross(angular, linear), angular, turning
+        angles = np.stack(angles_of(np.moveaxis(felt, 2, 0)), axis=2)
+        return felt - slopes[:, :, 5:] - np.cross(angular, linear), angular, turning, angles
 
     def _forecast(self) -> NDArray[np.float64]:
         """The rows (REACH, width) after the last one."""
@@ -240,12 +287,14 @@ class WaveForecast:
         """Learn what a forecast was worth, now that what it told has come."""
         assert self._origin is not None
         begin, came = np.split(self._rows[-REACH - 2 :], [2])
-        came, told = [self._felt(np.concatenate([begin, rows])[None] + self._origin)[0][0] for rows in (came, told)]
+        found = [self._felt(np.concatenate([begin, rows])[None] + self._origin) for rows in (came, told)]
+        came, told = (np.concatenate([gravity[0], angles[0]], axis=1) for gravity, _, _, angles in found)
         there = came[_ROWS]
-        errors = np.stack([told[_ROWS] - there, came[0] - there, came.mean(axis=0) - there])
-        self._squares.append(np.square(errors).sum(axis=2))
+        squares = np.square([told[_ROWS] - there, came[0] - there, came.mean(axis=0) - there])
+        self._squares.append(np.stack([squares[:, :, :3].sum(axis=2), squares[:, :, 3], squares[:, :, 4]]))
         if len(self._squares) >= ENOUGH:
-            self.skill = ForecastSkill(*np.sqrt(np.mean(self._squares, axis=0)).tolist())
+            errors = np.sqrt(np.mean(self._squares, axis=0)).tolist()
+            self.skills = {name: ForecastSkill(*of) for name, of in zip(("felt", *ANGLES), errors, strict=True)}
 
     def _fit(self) -> None:
         """Learn the rows since the last fit."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Sequence
 from functools import partial
 from math import sqrt
 from typing import TYPE_CHECKING
@@ -59,6 +60,7 @@ class Deck:
 
             self._imu = DeckImu(deck.imu_position, gravity, normal)
         self._waves: WaveForecast | None = None
+        self._ahead: DeckOutlook | None = None
         self.frames = ("", "")
         """The frame in which the support's motion is told, and that of the support itself."""
         self._seen: SupportState | None = None
@@ -183,18 +185,20 @@ class Deck:
             self._waves = WaveForecast(self._gravity, is_felt=self._imu is not None)
 
     def outlook(self, horizon: float) -> DeckOutlook:
-        """Courses of what will be felt after the last message, over a horizon in s.
+        """Courses of what will be felt after the last message: of a sea that is learnt as far as they go.
 
-        Until the sea is learnt there is one: constant accelerations fade to the mean of the last minute within a
-        quarter of a wave, because nothing is known from them later. While nothing is known of the support (`last` is
-        None) it counts as level and at rest.
+        Until the sea is learnt there is one over a horizon in s: constant accelerations fade to the mean of the last
+        minute within a quarter of a wave, because nothing is known from them later. While nothing is known of the
+        support (`last` is None) it counts as level and at rest.
         """
         from .forecast import ForecastStatus, single
 
         last = self.last
         if last is not None and self.forecast is ForecastStatus.TRUSTED and self._waves is not None:
-            return self._waves.outlook(last.stamp, horizon)
-        return single(last or resting(self._still), self._mean, horizon)
+            self._ahead = self._waves.outlook(last.stamp)
+        else:
+            self._ahead = single(last or resting(self._still), self._mean, horizon)
+        return self._ahead
 
     @property
     def forecast(self) -> ForecastStatus | None:
@@ -202,18 +206,26 @@ class Deck:
         return None if self._waves is None else self._waves.status
 
     def values(self) -> dict[str, str]:
-        """What a report tells of the support: windows in s, and the skill and errors (m/s^2) of the forecast."""
+        """What a report tells of the support: windows in s, the skill and errors (m/s^2, rad) of the forecast, and roll
+        and pitch (rad) as they were forecast last, the mean and the deviation of its courses.
+        """
         found = {"window.linear": f"{self._linear.span:.3f}", "window.angular": f"{self._angular.span:.3f}"}
         if self._waves is None:
             return found
         found["forecast"] = self._waves.status.name
-        skill = self._waves.skill
-        if skill is not None:
-            from .forecast import LEADS
+        from .forecast import ANGLES, LEADS
 
-            told = {"skill": skill.skill, **{f"error.{name}": errors for name, errors in skill._asdict().items()}}
-            for name, numbers in told.items():
-                found |= {f"{name}.{lead:g}_s": f"{one:.3f}" for lead, one in zip(LEADS, numbers, strict=True)}
+        told: dict[str, Sequence[float]] = {}
+        for name, skill in self._waves.skills.items():
+            of = "" if name == "felt" else f".{name}"
+            told |= {f"skill{of}": skill.skill}
+            told |= {f"error{of}.{answer}": errors for answer, errors in skill._asdict().items()}
+        ahead = self._ahead
+        if ahead is not None and (angles := ahead.at(LEADS).angles) is not None:
+            for name, means, deviations in zip(ANGLES, angles.mean(axis=0).T, angles.std(axis=0).T, strict=True):
+                told |= {name: means, f"{name}.deviation": deviations}
+        for name, numbers in told.items():
+            found |= {f"{name}.{lead:g}_s": f"{one:.4f}" for lead, one in zip(LEADS, numbers, strict=True)}
         return found
 
     def _in_order(self, stamp: int, frames: tuple[str, str]) -> Status:
@@ -235,7 +247,7 @@ class Deck:
     def _forget(self, state: Status) -> None:
         """Begin anew; until accelerations are known again `state` says why they are not."""
         self._state = state
-        self._seen = self._latest = None
+        self._seen = self._latest = self._ahead = None
         self._linear.clear()
         self._angular.clear()
         self._history.clear()

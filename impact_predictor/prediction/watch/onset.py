@@ -85,9 +85,15 @@ class Onset:
     def margins(self, motion: NDArray[np.float64]) -> OnsetMargins:
         """The margins at a support's `motions` (12, times), or (12,) at one time."""
         if motion.ndim == 1:
-            return OnsetMargins(*[part[:, 0] for part in self._margins(motion[:, None])])
+            one = self._margins(motion[:, None])
+            return OnsetMargins(one.slide[:, 0], one.tip[:, 0], one.edge[:, 0], one.lifted[:, 0])
         blocks = [self._margins(motion[:, k : k + BLOCK]) for k in range(0, motion.shape[1], BLOCK)]
-        return OnsetMargins(*[np.concatenate(parts, axis=1) for parts in zip(*blocks, strict=True)])
+        return OnsetMargins(
+            slide=np.concatenate([one.slide for one in blocks], axis=1),
+            tip=np.concatenate([one.tip for one in blocks], axis=1),
+            edge=np.concatenate([one.edge for one in blocks], axis=1),
+            lifted=np.concatenate([one.lifted for one in blocks], axis=1),
+        )
 
     def _margins(self, motion: NDArray[np.float64]) -> OnsetMargins:
         """The margins at `motions` of not too many times."""
@@ -113,6 +119,12 @@ class Onset:
         np.copyto(ratios, FULL, where=lifted[:, None])
         tips = ratios[:, 1:]
         return OnsetMargins(ratios[:, 0], tips.max(axis=1), tips.argmax(axis=1), lifted)
+
+    def felt(self, motion: NDArray[np.float64]) -> NDArray[np.float64]:
+        """What bodies feel at their mass centres (n, 3, times) in m/s^2 along the support's axes, at `motions`."""
+        if self._changed:
+            self._collect()
+        return self._felt @ motion
 
     def barriers(self, motion: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
         """The work (n,) in J until bodies topple over the easiest edge, and its number, at `motions` (12,) of a time.
@@ -179,7 +191,7 @@ class Onset:
         # Any two directions along the support; of a cylinder's across its axis and along it.
         ahead = np.array([s.edges[0].outward if s.edges else unit_across(s.normal) for s in stances])
         axes = np.stack((-normal, ahead, np.cross(normal, ahead)), axis=1)
-        felt = _felt_rows(center)
+        self._felt = felt = _felt_rows(center)
         spin = _spin_rows(np.cross(normal[:, None], outward), inertia / mass[:, None, None])
         rows = np.concatenate((axes @ felt, height[:, :, None] * (outward @ felt) - spin), axis=1)
         self._rows = rows.reshape(-1, _MOTIONS)

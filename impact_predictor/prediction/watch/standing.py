@@ -257,8 +257,4 @@ class Standing:
 
 
 def _within(points: list[Vector3], others: list[Vector3], distance: float) -> bool:
-    # Twice for every sample of a body that stands: a generator costs as much again.
-    for point, other in zip(points, others, strict=True):
-        if not dist(point, other) <= distance:
-            return False
-    return True
+    return all(dist(point, other) <= distance for point, other in zip(points, others, strict=True))

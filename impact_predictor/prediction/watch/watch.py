@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...stamps import NANOSECONDS
+from ..deck.forecast import LEADS
 from ..scene import MovingDeck, Scene
 from ..types import Moment, Quaternion, Sample, Status, Touchdown, Vector3
 from .levels import (
@@ -22,6 +23,7 @@ from .levels import (
     NOTHING,
     OFF_ITS_FEET,
     OK,
+    UNKNOWN,
     WARN,
     BodyOutlook,
     Level,
@@ -48,6 +50,8 @@ JUDGED_EVERY: Final = 15_000_000
 """ns: a message that comes sooner after the last judgement waits for the next: margins hardly move."""
 
 FORECAST_EVERY: Final = 500_000_000  # ns from one look ahead to the next
+
+_NO_FORECAST: Final = {f"felt{kind}.{lead:g}_s": UNKNOWN for lead in LEADS for kind in ("", ".deviation")}
 
 IMMINENT: Final = 1.0
 """s: the level is ERROR when the onset is likelier than not within so long."""
@@ -235,13 +239,16 @@ class Watch:
         self._used, self._time_to_tip, self._time_to_slide = np.zeros(count), np.full(count, inf), np.full(count, inf)
         self._chance, self._chances, self._scatter = np.zeros(count), np.zeros((2, count)), np.zeros(count)
         self._due = np.full(count, rank_of(status))
+        self._felt = [_NO_FORECAST] * count
         self._judged = self._looked = None
 
     def _look_ahead(self, stamp: int) -> None:
         """Find how likely an onset is within the horizon, and when it has become so likely that a warning is due."""
         self._looked = stamp
-        ahead = self._outlook_of(self._horizon)
-        self._is_learnt = ahead.is_learnt
+        whole = self._outlook_of(self._horizon)
+        self._is_learnt = whole.is_learnt
+        self._felt = self._felt_ahead(whole) if whole.is_learnt else [_NO_FORECAST] * len(self._bodies)
+        ahead = whole.until(self._horizon)
         courses, count = ahead.gravity.shape[:2]
         flat = [each.reshape(-1, 3) for each in (ahead.gravity, ahead.angular, ahead.turning)]
         margins = self._onset.margins(motions(*flat))
@@ -258,6 +265,16 @@ class Watch:
         self._due = np.where((self._chance >= self._likely) | stands, WARN, OK)
         if ahead.is_learnt:
             self._due[(either <= IMMINENT).mean(axis=1) > 0.5] = ERROR
+
+    def _felt_ahead(self, ahead: DeckOutlook) -> list[dict[str, str]]:
+        """What each body is likely to feel: of the courses `LEADS` ahead the mean, and the deviation."""
+        then = ahead.at(LEADS)
+        flat = [each.reshape(-1, 3) for each in (then.gravity, then.angular, then.turning)]
+        felt = self._onset.felt(motions(*flat)).reshape(len(self._bodies), 3, -1, len(LEADS))
+        parts = np.stack((felt.mean(axis=2), felt.std(axis=2)), axis=1).transpose(0, 3, 1, 2)
+        told = parts.reshape(len(felt), -1, 3).tolist()
+        said = [["{:.3f} {:.3f} {:.3f}".format(*one) for one in each] for each in told]
+        return [dict(zip(_NO_FORECAST, each, strict=True)) for each in said]
 
     def _shaken(self, error: float) -> NDArray[np.float64]:
         """What the parts (n,) of the margins err by where the felt gravity errs by so many m/s^2."""
@@ -345,7 +362,8 @@ class Watch:
             stamp=now,
             level=GRAVITY[self._levels.ranks[number]],
             message=body.message(outlook, held),
-            values=body.values(outlook, self._counts.per_hour(number), self._odds(number, outlook)),
+            values=body.values(outlook, self._counts.per_hour(number), self._odds(number, outlook))
+            | self._felt[number],
         )
 
     def _odds(self, number: int, outlook: BodyOutlook) -> list[MarginOdds]:

@@ -7,8 +7,8 @@ from math import degrees
 from statistics import median
 from typing import Any, Final
 
-from ...bags.watched import FELT
-from ...prediction.deck.forecast import ForecastStatus
+from ...bags.watched import FORECAST
+from ...prediction.deck.forecast import ANGLES, ForecastStatus
 from ...stamps import NANOSECONDS
 from ...wording import NONE, counted, fixed, words
 from ..modes import EDGE, LEVELS, PALETTE
@@ -23,8 +23,9 @@ HIGH: Final = 1.5
 """Parts of the margin up to which it is drawn."""
 
 READING: Final = (
-    "Above stand the angles of the deck and what is felt on it; the band is where nine tenths of what came should lie, "
-    "as forecast so long before. Below, for each unit, a ribbon of its levels, and the part that is used of its "
+    "Above stand the angles of the deck and what is felt on it; the band, of the angle that changes more, is where "
+    "nine tenths of what came should lie, as forecast so long before. Below, for each unit, a ribbon of its levels, "
+    "and the part that is used of its "
     "margins: at 1 it slides or tips. A triangle is an event, with how long a warning had stood, a stroke below "
     "it a predicted touchdown. Click the name of a forecast to see it, drag over a part of the time to magnify it, "
     "double-click to see all of it."
@@ -34,8 +35,8 @@ SEEN: Final = "The bag tells of no events: one is taken where a margin is used u
 NEAR: Final = "How near each unit came to an onset, and how long in s a warning, and ERROR, had stood at its events."
 VAIN: Final = "A warning, WARN or ERROR, is vain if no event begins in it."
 ERRS: Final = (
-    "Root mean squares of the errors of what is felt on the deck, beside those of what was felt when it was forecast "
-    "and of the mean of the record."
+    "Root mean squares of the errors of the forecasts of the deck, angles in degrees and what is felt in m/s², beside "
+    "those of what was so when it was forecast and of the mean of the record."
 )
 LAST: Final = "Statistics, as the watch reported them last; an hour is one in which the sea stays as it is."
 OF_NOW: Final = frozenset(
@@ -53,7 +54,8 @@ OF_NOW: Final = frozenset(
 )
 """What a report says of its moment alone."""
 RIBBON: Final = {"showticklabels": False, "showgrid": False, "fixedrange": True, "range": [-0.5, 0.5]}
-ANGLES: Final = {"roll": "roll, port up", "pitch": "pitch, bow down"}
+SAID: Final = {"roll": "roll, port up", "pitch": "pitch, bow down"}
+FELT: Final = FORECAST[len(ANGLES) :]
 
 
 def watched(names: Sequence[str], answers: Sequence[BagAnswer], most: int) -> Section:
@@ -87,7 +89,8 @@ def unit_row(name: str, unit: Mapping[str, Any]) -> list[Cell | str]:
 def statistics(known: Sequence[tuple[str, BagAnswer]]) -> list[PageTable]:
     """What the watch reported last of each unit, as numbers."""
     units = [(bag, *one) for bag, answer in known for one in answer["watch"]["units"].items()]
-    keys = [key for key in dict.fromkeys(key for *_, unit in units for key in unit["reported"]) if key not in OF_NOW]
+    told = dict.fromkeys(key for *_, unit in units for key in unit["reported"])
+    keys = [key for key in told if key not in OF_NOW and not key.startswith("felt")]
     rows = [
         [f"{bag}, {name}" if len(known) > 1 else name or "the unit"]
         + [_told(unit["reported"].get(key)) for key in keys]
@@ -105,15 +108,19 @@ def skill_table(skill: Iterable[Mapping[str, Any]], name: str) -> PageTable:
     rows = [
         [
             f"{one['of']}, {one['lead']:g} s ahead",
-            *(f"{one[key]:.3f}" for key in ("forecast", "now", "mean")),
+            *(f"{_scale(one['of']) * one[key]:.3f}" for key in ("forecast", "now", "mean")),
             part_words(one["within"]),
             f"{one['count']:,}",
         ]
         for one in skill
-        if one["mean"] > 1e-3
+        if _scale(one["of"]) * one["mean"] > 1e-3
     ]
-    head = ["felt", "forecast, m/s²", "as when forecast", "the mean", "within the band of 90 %", "forecasts"]
+    head = ["of", "forecast", "as when forecast", "the mean", "within the band of 90 %", "forecasts"]
     return PageTable(head, rows, f"{name}: {ERRS}" if name else ERRS)
+
+
+def _scale(name: str) -> float:
+    return degrees(1.0) if name in ANGLES else 1.0
 
 
 def chart_of(title: str, answer: BagAnswer) -> Chart:
@@ -126,7 +133,8 @@ def chart_of(title: str, answer: BagAnswer) -> Chart:
     felt = [name for name in FELT if _swing(deck[name]) > 0.1 * max(_swing(deck[of]) for of in FELT)]
     # Panels from above: the title of each, its height, and what else its axis has.
     panels: list[tuple[str, float, dict[str, Any]]] = [("angle, °", 1.2, {})]
-    for (name, said), colour in zip(ANGLES.items(), PALETTE, strict=False):
+    traces += _forecasts(watch["forecasts"], max(ANGLES, key=lambda name: _swing(deck[name])), start, 1)
+    for (name, said), colour in zip(SAID.items(), PALETTE[1:], strict=False):
         turned = [None if one is None else degrees(one) for one in deck[name]]
         traces.append(_line(said, times, turned, 1, colour))
     for name in felt:
@@ -196,9 +204,10 @@ def _unit_traces(unit: Mapping[str, Any], times: Sequence[float], start: int, pl
 
 
 def _forecasts(told: Mapping[str, Any], name: str, start: int, place: int) -> list[dict[str, Any]]:
-    """The bands of the forecasts of what is felt, drawn at the times for which they were made."""
+    """The bands of the forecasts of a number of the deck, drawn at the times for which they were made."""
     traces = []
-    for lead, (low, middle, high) in zip(told["leads"], told[name], strict=True):
+    for lead, courses in zip(told["leads"], told[name], strict=True):
+        low, middle, high = ([_scale(name) * one for one in each] for each in courses)
         at = [(made - start) / NANOSECONDS + lead for made in told["made"]]
         said = f"forecast {lead:g} s before"
         group = {"legendgroup": said, "visible": True if lead == LEAD else "legendonly"}

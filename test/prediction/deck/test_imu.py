@@ -245,4 +245,4 @@ def test_whatever_a_sensor_tells_there_is_a_status_or_numbers(
             assert all(map(isfinite, numbers))
         else:
             assert answer is not Status.ACCEPTED
-        assert all(np.isfinite(part).all() for part in deck.outlook(5.0))
+        assert all(np.isfinite(part).all() for part in deck.outlook(5.0)[:4])
