@@ -14,7 +14,7 @@ from touchdowns import SAMPLE, TOUCHDOWN
 
 from impact_predictor.mechanics.types import Mode
 from impact_predictor.prediction.checks import REMEDIES
-from impact_predictor.prediction.deck.forecast import DeckOutlook
+from impact_predictor.prediction.deck.forecast import LEADS, DeckOutlook
 from impact_predictor.prediction.deck.motion import resting
 from impact_predictor.prediction.scene import Chock, MovingDeck, Scene, Watching
 from impact_predictor.prediction.types import Quaternion, Status, Touchdown, Vector3
@@ -43,6 +43,7 @@ KEYS = [
     *(f"{name}_{what}" for name in ("tip", "slide") for what in ODDS),
     *("energy_to_topple", "friction_seen", "tilt"),
     *("slides_per_hour", "tips_per_hour", "impacts_per_hour", "status"),
+    *(f"felt{what}.{lead:g}_s" for lead in LEADS for what in ("", ".deviation")),
 ]
 LEVEL: Quaternion = (0.0, 0.0, 0.0, 1.0)
 ORIGIN: Vector3 = (0.0, 0.0, 0.0)
@@ -262,6 +263,21 @@ def test_once_the_sea_is_learnt_the_part_of_the_courses_that_tip_warns(tipping: 
     report = run.report()
     assert (report.level, report.values["onset_probability"]) == (level, f"{tipping / 10:.2f}")
     assert report.values["time_to_tip"] == ("2.00" if level else "inf")
+
+
+def test_a_unit_tells_what_it_will_feel_where_it_stands_and_how_unsure_that_is() -> None:
+    times = np.linspace(0.0, 15.0, 61)
+    gravity, still = np.tile(STILL, (2, len(times), 1)), np.zeros((2, len(times), 3))
+    gravity[:, :, 1] += times / 10.0 * np.array([[0.9], [1.1]])
+    turning = still + np.array([0.2, 0.0, 0.0])
+    ahead = DeckOutlook(times=times, gravity=gravity, angular=still, turning=turning, is_learnt=True)
+    watch = Watch({"u": TALL._replace(place=(5.0, 3.0, 0.5))}, lambda _: ahead)
+    watch.update_support(resting(STILL)._replace(stamp=10**9))
+    (report,) = watch.reports()
+    told = {name: [float(one) for one in report.values[name].split()] for name in ("felt.5_s", "felt.deviation.5_s")}
+    # Above the axis it turns about it is pushed to port, and the deck to port of that falls away under it.
+    assert told["felt.5_s"] == pytest.approx([0.0, 0.5 + 0.2 * 0.5, -G - 0.2 * 3.0], abs=1e-3)
+    assert told["felt.deviation.5_s"] == pytest.approx([0.0, 0.05, 0.0], abs=1e-3)
 
 
 def test_an_onset_that_is_near_and_likelier_than_not_is_an_error() -> None:
