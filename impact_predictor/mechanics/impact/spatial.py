@@ -124,7 +124,7 @@ def solve_spatial_impact(
     if positions.ndim != 2:
         raise ValueError(f"the positions have the shape {positions.shape}; give (n, 3)")
     how, n = _settings(law, merge, threshold, steps), len(positions)
-    problem, answer, notes = np.empty(BODY + n * CONTACT), np.empty(ANSWER + n * RESULT), np.zeros(1, np.int64)
+    problem = np.empty(BODY + n * CONTACT)
     # The same as `_together` for one problem, which takes a fifth of the time.
     of_each = problem[BODY:].reshape(n, CONTACT)
     try:
@@ -134,7 +134,20 @@ def solve_spatial_impact(
     except ValueError:
         solve_spatial_impacts(body, contacts, twist)  # says which array has another shape
         raise
-    solvers().bodies(n, problem[None], *how, answer[None], notes, *workspace(n))
+    return solve_body(problem, law, *how[1:])
+
+
+def solve_body(
+    problem: NDArray[np.float64],
+    law: str = "path",
+    merge: float = MERGE,
+    threshold: float = 0.0,
+    steps: int = STEPS,
+) -> SpatialOutcome:
+    """`solve_spatial_impact` of a body, told by the numbers of a problem (see `spatial_body`)."""
+    n, total = (len(problem) - BODY) // CONTACT, bool(number_of(law))
+    answer, notes = np.empty(ANSWER + n * RESULT), np.empty(1, np.int64)
+    solvers().bodies(n, problem[None], total, merge, threshold, steps, answer[None], notes, *workspace(n))
     of_each = answer[ANSWER:].reshape(n, RESULT)
     return SpatialOutcome(
         twist=answer[:6],

@@ -1,8 +1,7 @@
-"""The cubic nearest to some frames of a point, from sums over them, and symmetric 4 x 4 matrices."""
+"""The cubic nearest to values and their rates, from sums over them, and symmetric 4 x 4 matrices."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from math import sqrt
 from typing import NamedTuple
 
@@ -48,94 +47,59 @@ class PointFrame(NamedTuple):
 
 
 class CubicSums:
-    """Sums over frames that follow each other, from which the cubic nearest to their gaps is found.
+    """Sums over values at stamps that follow each other, from which the cubic nearest to them is found.
 
-    Times are counted from the first frame in units of `SCALE`, gaps and positions from the first frame's; positions
-    only where cubics of the `places` are wanted too.
+    Times are counted from the first stamp in units of `SCALE`, values from the first one; of a `PointFrame` the first
+    three fields are what is taken: stamp in ns, gap and rate.
     """
 
-    def __init__(self, frames: Sequence[PointFrame], places: bool = True) -> None:
-        self.first = frames[0]
+    def __init__(self, stamp: int, value: float, rate: float | None) -> None:
+        self._stamp, self._value = stamp, value
         self.count = 0
         self.measured = True
-        """Whether every frame has a velocity."""
-        self._powers = [0.0] * 7
-        # Of the gap, and of the three coordinates: its values and its rates times powers of the time.
-        self._values = [[0.0] * 4 for _ in range(4 if places else 1)]
-        self._rates = [[0.0] * 3 for _ in self._values]
+        """Whether every value has a rate."""
+        self._powers = (0.0,) * 6
+        # The values, and their rates, times powers of the time.
+        self._values, self._rates = (0.0,) * 4, (0.0,) * 3
         self._square = self._square_rate = 0.0
-        for frame in frames:
-            self.add(frame)
+        self.add(stamp, value, rate)
 
-    def add(self, frame: PointFrame) -> None:
-        first = self.first
-        s = (frame.stamp - first.stamp) / (SCALE * NANOSECONDS)
+    def add(self, stamp: int, value: float, rate: float | None) -> None:
+        s = (stamp - self._stamp) / (SCALE * NANOSECONDS)
         s2 = s * s
         s3 = s * s2
         self.count += 1
-        powers = self._powers
-        powers[0] += 1.0
-        powers[1] += s
-        powers[2] += s2
-        powers[3] += s3
-        powers[4] += s2 * s2
-        powers[5] += s2 * s3
-        powers[6] += s3 * s3
-        gap = frame.gap - first.gap
-        self._square += gap * gap
-        (x, y, z), (x0, y0, z0) = frame.position, first.position
-        for sums, value in zip(self._values, (gap, x - x0, y - y0, z - z0)):  # noqa: B905 (places may be left out)
-            sums[0] += value
-            sums[1] += s * value
-            sums[2] += s2 * value
-            sums[3] += s3 * value
-        if frame.rate is None or frame.velocity is None:
+        p1, p2, p3, p4, p5, p6 = self._powers
+        self._powers = p1 + s, p2 + s2, p3 + s3, p4 + s2 * s2, p5 + s2 * s3, p6 + s3 * s3
+        value -= self._value
+        a, b, c, d = self._values
+        self._values = a + value, b + s * value, c + s2 * value, d + s3 * value
+        self._square += value * value
+        if rate is None:
             self.measured = False
             return
-        self._square_rate += (SCALE * frame.rate) ** 2
-        for sums, speed in zip(self._rates, (frame.rate, *frame.velocity)):  # noqa: B905
-            rate = SCALE * speed
-            sums[0] += rate
-            sums[1] += 2.0 * s * rate
-            sums[2] += 3.0 * s2 * rate
-
-    def normal(self, ratio: float, weight: float = 0.0) -> Triangle:
-        """The lower triangle of the matrix of the least squares by rows, with `ratio` the weight of the rates.
-
-        `weight` is that of what is expected of the third power's coefficient.
-        """
-        p0, p1, p2, p3, p4, p5, p6 = self._powers
-        n11, n12, n13 = p2 + ratio * p0, p3 + 2.0 * ratio * p1, p4 + 3.0 * ratio * p2
-        n22, n23, n33 = p4 + 4.0 * ratio * p2, p5 + 6.0 * ratio * p3, p6 + 9.0 * ratio * p4
-        return p0, p1, n11, p2, n12, n22, p3, n13, n23, n33 + weight
+        rate *= SCALE
+        p, q, r = self._rates
+        self._rates = p + rate, q + 2.0 * s * rate, r + 3.0 * s2 * rate
+        self._square_rate += rate**2
 
     def fit(self, ratio: float, weight: float = 0.0, expected: float = 0.0) -> tuple[Cubic, Triangle, float] | None:
-        """The cubic nearest to the gaps (weighted least squares), the factor of its matrix, and what it leaves of the
-        squares; None where the frames are too few instants. The third power's coefficient is `expected` with a weight.
+        """The cubic nearest to the values (weighted least squares), the factor of its matrix, and what it leaves of the
+        squares; None where these are too few instants.
+
+        `ratio` is the weight of the rates; the third power's coefficient is `expected` with another weight.
         """
-        factor = factored(self.normal(ratio, weight))
+        p0, (p1, p2, p3, p4, p5, p6) = float(self.count), self._powers
+        n11, n12, n13 = p2 + ratio * p0, p3 + 2.0 * ratio * p1, p4 + 3.0 * ratio * p2
+        n22, n23, n33 = p4 + 4.0 * ratio * p2, p5 + 6.0 * ratio * p3, p6 + 9.0 * ratio * p4
+        factor = factored((p0, p1, n11, p2, n12, n22, p3, n13, n23, n33 + weight))
         if factor is None:
             return None
-        b0, b1, b2, b3 = self._right(0, ratio)
-        b3 += weight * expected
+        (b0, b1, b2, b3), (r1, r2, r3) = self._values, self._rates
+        b1, b2, b3 = b1 + ratio * r1, b2 + ratio * r2, b3 + ratio * r3 + weight * expected
         c0, c1, c2, c3 = cubic = solved(factor, (b0, b1, b2, b3))
         square = self._square + ratio * self._square_rate + weight * expected * expected
         return cubic, factor, max(0.0, square - c0 * b0 - c1 * b1 - c2 * b2 - c3 * b3)
-
-    def motion(self, factor: Triangle, ratio: float, s: float) -> tuple[Vector3, Vector3]:
-        """Position and velocity at a time, in units of `SCALE`, by the cubics nearest to the positions."""
-        places, speeds = [], []
-        for axis in range(3):
-            cubic = solved(factor, self._right(1 + axis, ratio))
-            places.append(self.first.position[axis] + value_of(cubic, s))
-            speeds.append(slope_of(cubic, s) / SCALE)
-        return (places[0], places[1], places[2]), (speeds[0], speeds[1], speeds[2])
-
-    def _right(self, axis: int, ratio: float) -> Cubic:
-        """The right side of the least squares of the gap (axis 0) or of a coordinate."""
-        a, b, c, d = self._values[axis]
-        p, q, r = self._rates[axis]
-        return a, b + ratio * p, c + ratio * q, d + ratio * r
 
 
 def value_of(cubic: Cubic, x: float) -> float:
@@ -184,8 +148,13 @@ def square_of(factor: Triangle, b: Cubic) -> float:
 
 def solved(factor: Triangle, b: Cubic) -> Cubic:
     """The solution x of N x = b."""
+    return back(factor, halfway(factor, b))
+
+
+def back(factor: Triangle, y: Cubic) -> Cubic:
+    """The solution of N x = b, from halfway to it."""
     i0, l10, i1, l20, l21, i2, l30, l31, l32, i3 = factor
-    y0, y1, y2, y3 = halfway(factor, b)
+    y0, y1, y2, y3 = y
     x3 = y3 * i3
     x2 = (y2 - l32 * x3) * i2
     x1 = (y1 - l21 * x2 - l31 * x3) * i1

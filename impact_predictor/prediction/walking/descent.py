@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from ...stamps import NANOSECONDS
 from ..vectors import total
-from .cubic import Cubic, Triangle, factored, halfway, solved, square_of
+from .cubic import Cubic, Triangle, back, factored, halfway, square_of
 from .point_filter import PointFilter, carried, carried_covariance
 
 if TYPE_CHECKING:
@@ -106,7 +106,7 @@ class LandingPrior:
     @property
     def shares(self) -> tuple[float, float]:
         """How often landings are of either kind."""
-        strike, rest = (one.count + NEVER for one in self.kinds)
+        strike, rest = self.kinds[STRIKE].count + NEVER, self.kinds[REST].count + NEVER
         return strike / (strike + rest), rest / (strike + rest)
 
     @property
@@ -148,7 +148,7 @@ def tried_at(
     there, mean = carried(gap, time), kind.mean
     off = there[0] - mean[0], there[1] - mean[1], there[2] - mean[2], there[3] - mean[3]
     y0, y1, y2, y3 = halfway(factor, off)
-    k0, k1, k2, k3 = solved(factor, off)
+    k0, k1, k2, k3 = back(factor, (y0, y1, y2, y3))
     # The state then, with what is known of such landings, and how it changes with the time.
     state = mean[0] + h * k0, mean[1] + v * k1, mean[2] + a * k2, mean[3] + j * k3
     u0, u1, u2, u3 = halfway(factor, (state[1], state[2], state[3], 0.0))
@@ -182,8 +182,8 @@ def solution_of(
     if tried is None or time >= FURTHEST:
         return None
     # What fits badly, or has not been found yet, is less sure than it seems.
-    found = tried[0]
-    return found._replace(time=time, variance=found.variance * max(1.0, 0.25 * found.left) + moved * moved)
+    _, variance, evidence, left, state, factor = tried[0]
+    return LandingFit(time, variance * max(1.0, 0.25 * left) + moved * moved, evidence, left, state, factor)
 
 
 class LeadTimeErrors:

@@ -22,6 +22,7 @@ from ..types import (
     Status,
     Terrain,
     Touchdown,
+    Vector3,
     Wrench,
     impulse_at,
 )
@@ -211,7 +212,8 @@ class FeetContacts(Contacts):
             if is_free and self._clock.correct():
                 self._waiting.clear()
                 self.forget()
-            self._waiting.append(geometry._replace(stamp=geometry.stamp - round(self._clock.taken * NANOSECONDS)))
+            late = round(self._clock.taken * NANOSECONDS)
+            self._waiting.append(geometry._replace(stamp=geometry.stamp - late) if late else geometry)
             return self._see()
         if last is not None and last - geometry.stamp > PAUSE:
             self.geometry = None
@@ -248,9 +250,6 @@ class FeetContacts(Contacts):
         nx, ny, nz = scene.normal
         linear = to_world(axes, base.linear)
         frames = []
-        # The ground goes down where nobody has stood yet; what nobody has stood on is where the scene has it.
-        lowest = self._ground.lowest
-        lowest, deep = (0.0, DEEP) if lowest is None else (min(0.0, lowest), STEP)
         (ax, ay, az), (bx, by, bz), (cx, cy, cz) = axes
         px, py, pz = position
         for i, arm in enumerate(geometry.points):
@@ -260,7 +259,7 @@ class FeetContacts(Contacts):
             if self._radii and self._articulated is None:  # that tells the lowest points itself
                 x, y, z = add((x, y, z), scene.normal, -self._radii[i])
             gap = nx * x + ny * y + nz * z - scene.height
-            if gap < lowest - DEEP_TOLERANCES * scene.tolerance - deep * sqrt(dot(arm, arm)):
+            if gap < -DEEP_TOLERANCES * scene.tolerance and self._is_deep(gap, arm):
                 gaps = [dot(scene.normal, add(position, to_world(axes, one))) for one in geometry.points]
                 self.depth = scene.height - min(gaps)
                 return Status.BELOW_GROUND
@@ -270,6 +269,13 @@ class FeetContacts(Contacts):
                 rate = nx * velocity[0] + ny * velocity[1] + nz * velocity[2]
             frames.append(PointFrame(geometry.stamp, gap, rate, (x, y, z), velocity))
         return frames
+
+    def _is_deep(self, gap: float, arm: Vector3) -> bool:
+        """Whether a point at an `arm` from the base's origin is deeper in the ground than noise puts it."""
+        # The ground goes down where nobody has stood yet; what nobody has stood on is where the scene has it.
+        lowest = self._ground.lowest
+        lowest, deep = (0.0, DEEP) if lowest is None else (min(0.0, lowest), STEP)
+        return gap < lowest - DEEP_TOLERANCES * self.scene.tolerance - deep * sqrt(dot(arm, arm))
 
     def _foot(self, number: int, stamp: int) -> Foot:
         name, each = self._walking.feet[number], self._walking.points

@@ -8,13 +8,13 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Sequence
 from math import hypot, isfinite, isnan, nan
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import InputError
-from ...mechanics.impact.spatial import Body, ContactPoints, solve_delassus, solve_spatial_impact
+from ...mechanics.impact.spatial import ContactPoints, solve_body, solve_delassus, solve_spatial_impact
 from ...mechanics.types import ContactState, Flag
 from ...stamps import NANOSECONDS
 from ..planar import GRAZES, ORIGIN, direction_of, hardly
@@ -187,7 +187,7 @@ class RigidMachine:
         self._scene = scene
         # What can be compiled is compiled before the first landing.
         axes = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
-        self.struck([0], ContactPoints([ORIGIN], 0.0), axes, scene)
+        self.struck([0], ContactPoints([ORIGIN], [0.0], [0.0], velocities=[ORIGIN], gaps=[0.0]), axes, scene)
 
     def struck(
         self,
@@ -199,15 +199,19 @@ class RigidMachine:
     ) -> MachineOutcome | Status:
         """What an impact at some points of the feet does to the machine; a status where it has no response.
 
-        The `contacts` are told from the base's origin, as if the machine were at rest and the support came with the
-        velocities of the feet; they and the outcome are along the axes of the world, those of the base are `axes`.
+        The `contacts`, with one normal and each with its own numbers else, are told from the base's origin, as if the
+        machine were at rest and the support came with the velocities of the feet; they and the outcome are along the
+        axes of the world, those of the base are `axes`.
         The twist of the outcome is the change of that of the base, at its origin. The `scene` has normal and law. Each
         contact gains as many m/s in a second as `pulls` have: what lasts for some time is not over before they show.
         """
         center = to_world(axes, self._scene.center_of_mass)
-        body = Body(self._scene.mass, six_numbers(tensor_to_world(axes, self._scene.inertia)))
-        contacts = contacts._replace(positions=np.subtract(contacts.positions, center))
-        found = solve_spatial_impact(body, contacts, NOTHING, scene.law, scene.merge, GRAZES)
+        problem = [self._scene.mass, *six_numbers(tensor_to_world(axes, self._scene.inertia)), *NOTHING]
+        told: Any = contacts
+        each = zip(told.positions, told.friction, told.restitution, told.velocities, told.gaps, strict=True)
+        for place, friction, restitution, velocity, gap in each:
+            problem += (*add(place, center, -1.0), *told.normals, friction, restitution, *velocity, gap)
+        found = solve_body(np.array(problem), scene.law, scene.merge, GRAZES)
         assert found.twist is not None
         x, y, z, p, q, r = found.twist.tolist()
         found.twist[:3] = add((x, y, z), cross((p, q, r), center), -1.0)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Sequence
-from math import sqrt
+from math import inf, sqrt
 
 from ...stamps import NANOSECONDS
 from ..types import Sample
@@ -28,9 +28,10 @@ def rate_of(frames: Sequence[PointFrame], noise: GapNoise) -> tuple[float, float
     """The mean rate (m/s) of the gap over two frames or more, with its standard deviation."""
     span = (frames[-1].stamp - frames[0].stamp) / NANOSECONDS
     rate, deviation = (frames[-1].gap - frames[0].gap) / span, sqrt(2.0) * noise.gap / span
-    rates = [frame.rate for frame in frames if frame.rate is not None]
-    if len(rates) == len(frames) and noise.rate < deviation * sqrt(len(rates)):
-        return total(rates) / len(rates), noise.rate / sqrt(len(rates))
+    if noise.rate < deviation * sqrt(len(frames)):
+        rates = [frame.rate for frame in frames if frame.rate is not None]
+        if len(rates) == len(frames):
+            return total(rates) / len(rates), noise.rate / sqrt(len(rates))
     return rate, deviation
 
 
@@ -46,14 +47,16 @@ def is_slow(frames: Sequence[PointFrame], slow: float, noise: GapNoise) -> bool:
     return abs(rate) <= slow + SURE * unsure + YIELDS
 
 
-def since(frames: deque[PointFrame], stamp: int) -> list[PointFrame]:
-    """The frames from a stamp in ns on, and at least the last two."""
+def since(frames: deque[PointFrame], stamp: int, end: float = inf, fewest: int = 2) -> list[PointFrame]:
+    """The frames from a stamp in ns on until an `end`, and at least the last `fewest` until that."""
     found = list[PointFrame]()
     for frame in reversed(frames):
-        if frame.stamp < stamp and len(found) > 1:
-            break
-        found.append(frame)
-    return found[::-1]
+        if frame.stamp <= end:
+            if frame.stamp < stamp and len(found) >= fewest:
+                break
+            found.append(frame)
+    found.reverse()
+    return found
 
 
 def stop_of(frames: deque[PointFrame], contact_time: int, slow: float, noise: GapNoise) -> int | None:
@@ -67,12 +70,12 @@ def stop_of(frames: deque[PointFrame], contact_time: int, slow: float, noise: Ga
         if abs(rate) > slow + SURE * unsure + YIELDS:
             continue
         end = rested[0].stamp - contact_time
-        course = [frame for frame in since(frames, end - COURSE * contact_time) if frame.stamp <= end]
-        if len(course) < FEWEST:
-            course = [frame for frame in frames if frame.stamp <= end][-FEWEST:]
+        course = since(frames, end - COURSE * contact_time, end, FEWEST)
         if len(course) < FEWEST or rate_of(course, noise)[0] > -BRAKES * slow:
             continue
-        sums = CubicSums(course, places=False)
+        sums = CubicSums(*course[0][:3])
+        for frame in course[1:]:
+            sums.add(*frame[:3])
         found = sums.fit(noise.ratio if sums.measured else 0.0, (noise.gap / (JERK * SCALE**3 / 6.0)) ** 2)
         if found is None:
             continue

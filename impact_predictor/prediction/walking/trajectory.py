@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from ...stamps import NANOSECONDS
 from ..types import Vector3
 from .braking import BrakedCourse, braked_course
-from .cubic import SCALE, CubicSums, GapNoise, PointFrame, factored, square_of, value_of
+from .cubic import SCALE, CubicSums, GapNoise, PointFrame, slope_of, square_of, value_of
 from .point_filter import SNAP, PointFilter
 from .rest import rate_of
 
@@ -131,7 +131,7 @@ class ArrivalFit:
         self._level, self._tolerance, self._noise, self._unsure = level.height, tolerance, noise, level.deviation
         self._least = KNOWN * tolerance
         self._is_known = level.deviation < self._least
-        self._sums = CubicSums(self._frames[:1], places=False)
+        self._sums = CubicSums(*self._frames[0][:3])
         self._near = 0.0, 0.0
         self._tried: list[ArrivalCandidate] = []
 
@@ -153,7 +153,7 @@ class ArrivalFit:
                     self._try(k, ratio)
                 off, (near, square) = frame.gap - self._level, self._near
                 self._near = near + off, square + off * off + ratio * (SCALE * (frame.rate or 0.0)) ** 2
-            self._sums.add(frame)
+            self._sums.add(*frame[:3])
 
     def _try(self, k: int, ratio: float) -> None:
         """The arrival between frame `k`, which is the next one, and the one before."""
@@ -210,11 +210,8 @@ class ArrivalFit:
         while last > 1 and frames[last].stamp > stamp:
             last -= 1
         velocity = frames[last].velocity
-        sums = None if air == 0 or self._sums.measured else CubicSums(frames[:air])
-        factor = None if sums is None else factored(sums.normal(0.0))
-        if velocity is None and sums is not None and factor is not None:
-            s = (frames[last].stamp - frames[0].stamp) / (SCALE * NANOSECONDS)
-            _, velocity = sums.motion(factor, 0.0, s)
+        if velocity is None and air > 0:
+            velocity = _velocity_of(frames[:air], frames[last].stamp)
         return Arrival(stamp, len(frames) - last, velocity, height)
 
     def _met(self, braked: BrakedCourse, surface: float) -> tuple[int, float]:
@@ -242,3 +239,17 @@ class ArrivalFit:
             return stamp
         part = (before.gap - surface) / (before.gap - after.gap)
         return before.stamp + round(part * (after.stamp - before.stamp))
+
+
+def _velocity_of(frames: Sequence[PointFrame], stamp: int) -> Vector3 | None:
+    """The velocity (m/s) at a stamp in ns by the cubics nearest to the places; None where these are too few."""
+    s, speeds = (stamp - frames[0].stamp) / (SCALE * NANOSECONDS), list[float]()
+    for axis in range(3):
+        sums = CubicSums(frames[0].stamp, frames[0].position[axis], None)
+        for frame in frames[1:]:
+            sums.add(frame.stamp, frame.position[axis], None)
+        found = sums.fit(0.0)
+        if found is None:
+            return None
+        speeds.append(slope_of(found[0], s) / SCALE)
+    return speeds[0], speeds[1], speeds[2]

@@ -67,10 +67,11 @@ def test_a_machine_without_joints_is_a_trunk(tmp_path):
             strikes = np.array(normal) - 0.3 * np.array(ahead)
             contacts = ContactPoints(
                 positions=[points[i] for i in (*old, 1)],
-                friction=0.6,
-                restitution=0.2,
+                friction=[0.6] * (len(old) + 1),
+                restitution=[0.2] * (len(old) + 1),
                 normals=normal,
                 velocities=[*[(0.0, 0.0, 0.0)] * len(old), strikes],
+                gaps=[0.0] * (len(old) + 1),
             )
             axes = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
             told = [*old, 1], contacts, axes, scene._replace(normal=normal)
