@@ -10,7 +10,6 @@ from ..stamps import NANOSECONDS
 from .checks import PAUSE
 from .planar import Posture, hardly
 from .scene import Scene
-from .vectors import total
 
 SLACK = 3.0
 """What is less than so many standard deviations is not told from none."""
@@ -127,6 +126,9 @@ class DifferenceNoise:
         of_b, of_c = (1.0 - v) * v, -u * (1.0 - u)
         of_a, of_d = -(v - u) * (1.0 - u) * (1.0 - v), u * v * (v - u)
         scale = len(values) * (of_a * of_a + of_b * of_b + of_c * of_c + of_d * of_d)
-        found = [of_a * p + of_b * q + of_c * r + of_d * s for p, q, r, s in zip(a, b, c, d, strict=True)]
+        whole = 0.0
+        for p, q, r, s in zip(a, b, c, d, strict=True):
+            found = of_a * p + of_b * q + of_c * r + of_d * s
+            whole += found * found
         self.seen = min(self.seen + 1, AVERAGED)
-        self.square += (total([one * one for one in found]) / scale - self.square) / self.seen
+        self.square += (whole / scale - self.square) / self.seen

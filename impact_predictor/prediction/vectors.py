@@ -103,12 +103,16 @@ def axes_of(orientation: Quaternion) -> Axes:
 
 def to_world(axes: Axes, vector: Vector3) -> Vector3:
     """A vector of the body frame in the world frame."""
-    return combine(vector[0], axes[0], vector[1], axes[1], vector[2], axes[2])
+    (ax, ay, az), (bx, by, bz), (cx, cy, cz) = axes
+    u, v, w = vector
+    return u * ax + v * bx + w * cx, u * ay + v * by + w * cy, u * az + v * bz + w * cz
 
 
 def applied(rows: Axes, vector: Vector3) -> Vector3:
     """A matrix, row by row, times a vector."""
-    return dot(rows[0], vector), dot(rows[1], vector), dot(rows[2], vector)
+    (a, b, c), (d, e, f), (g, h, i) = rows
+    x, y, z = vector
+    return a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z
 
 
 to_body = applied

@@ -289,14 +289,15 @@ class DescentEstimator:
             self._left_out = [0, 0]
             return None
         most, likelier, best = max(found)
-        weights = [exp(evidence - most) for evidence, _, _ in found]
-        whole = total(weights)
-        for weight, (_, k, _) in zip(weights, found, strict=True):
+        whole = strikes = variance = 0.0
+        for evidence, k, one in found:
+            weight = exp(evidence - most)
             if weight < UNLIKELY:
                 self._left_out[k] = SAMPLES_LEFT_OUT
-        strikes = total([weight for weight, (_, k, _) in zip(weights, found, strict=True) if k == STRIKE]) / whole
-        spread = [one.variance + (one.time - best.time) ** 2 for _, _, one in found]
-        variance = total([weight * each for weight, each in zip(weights, spread, strict=True)]) / whole
+            whole += weight
+            strikes += weight if k == STRIKE else 0.0
+            variance += weight * (one.variance + (one.time - best.time) ** 2)
+        strikes, variance = strikes / whole, variance / whole
         time = max(0.0, best.time - self._errors.offset(best.time))
         self._told.append((filtered.stamp, gap, filtered.covariance, filtered.snap, best.time, time, variance))
         deviation = sqrt(variance * self._errors.scale(best.time) + UNSEEN * UNSEEN)

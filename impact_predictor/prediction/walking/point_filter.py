@@ -104,8 +104,12 @@ class PointFilter:
             p32 - k3 * c2,
             p33 - k3 * c3,
         )
-        e0, e1, e2, e3 = [value - row[order] for row, value in zip(rows, measured, strict=True)]
         (x0, v0, a0, j0), (x1, v1, a1, j1), (x2, v2, a2, j2), (x3, v3, a3, j3) = rows
+        e0, e1, e2, e3 = measured
+        if order:
+            e0, e1, e2, e3 = e0 - v0, e1 - v1, e2 - v2, e3 - v3
+        else:
+            e0, e1, e2, e3 = e0 - x0, e1 - x1, e2 - x2, e3 - x3
         self.rows = [
             (x0 + k0 * e0, v0 + k1 * e0, a0 + k2 * e0, j0 + k3 * e0),
             (x1 + k0 * e1, v1 + k1 * e1, a1 + k2 * e1, j1 + k3 * e1),
