@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+from math import isfinite
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, Final
 
 import click
 
 from ..mechanics.impact import LAWS
+from ..wording import NONE
 from .options import choice, examples, json_flag, seed_option
 
 if TYPE_CHECKING:
@@ -91,9 +93,9 @@ def fields_of(soak: Soak, seconds: float, interrupted: bool) -> dict[str, Any]:
             {
                 "invariant": worst.invariant,
                 "law": worst.law,
-                "worst": worst.violation if worst.violation < float("inf") else None,
+                "worst": worst.violation if isfinite(worst.violation) else None,
                 "stiff": worst.stiff,
-                "limit": worst.limit if worst.limit < float("inf") else None,
+                "limit": worst.limit if isfinite(worst.limit) else None,
                 "kind": worst.kind or None,
                 "broken_by": worst.broken_by,
                 "replay": worst.replay if worst.body else None,
@@ -107,31 +109,26 @@ def say(soak: Soak, seconds: float, interrupted: bool) -> None:
     """Print what a soak found."""
     from rich.console import Console
 
-    from ..report.table import Column, show, table_of
+    from ..report.table import Column, say, show, table_of
 
     columns = [
         Column("law", lambda worst: worst.law, left=True),
         Column("problems", lambda worst: "stiff" if worst.stiff else "ordinary", left=True),
         Column("invariant", lambda worst: worst.invariant, left=True),
         Column("worst violation", lambda worst: f"{worst.violation:.2g}"),
-        Column("limit", lambda worst: f"{worst.limit:.2g}" if worst.limit < float("inf") else "-"),
+        Column("limit", lambda worst: f"{worst.limit:.2g}" if isfinite(worst.limit) else NONE),
         Column("by a problem of kind", lambda worst: worst.kind, left=True),
     ]
-    show(
-        Console(),
-        table_of(columns, list(soak.worst.values()), style=lambda worst: "bold red" if worst.broken_by else ""),
-    )
-    if any(worst.stiff and worst.violation > 0.0 for worst in soak.worst.values()):
-        click.echo("\nA stiff problem multiplies rounding by its condition number, without limit: - is no failure.")
-    made = [worst for worst in soak.worst.values() if worst.body is not None]
-    if made:
-        click.echo("\nfrom impact_predictor import Contact, Twist, TwoPointBody")
-        click.echo("from impact_predictor.mechanics.invariants import violations")
-    for worst in made:
-        click.echo(f"{worst.replay}  # {worst.violation:.3g}")
+    console, found = Console(), list(soak.worst.values())
+    show(console, table_of(columns, found, lambda worst: "bold red" if worst.broken_by else ""))
+    if any(worst.stiff and worst.violation > 0.0 for worst in found):
+        say(console, "", "A stiff problem multiplies rounding by its condition number, without limit: - is no failure.")
+    if made := [worst for worst in found if worst.body is not None]:
+        say(console, "", "from impact_predictor import Contact, Twist, TwoPointBody")
+        say(console, "from impact_predictor.mechanics.invariants import violations")
+        say(console, *(f"{worst.replay}  # {worst.violation:.3g}" for worst in made))
     speed = f"{soak.done:,} problems in {seconds:.0f} s, {soak.done / seconds:,.0f} a second"
-    click.echo(f"\n{'Interrupted: ' if interrupted else ''}{speed}.")
+    say(console, "", f"{'Interrupted: ' if interrupted else ''}{speed}.")
     if soak.broken:
-        click.echo("Violated by more than rounding explains, with the kinds of problems:")
-    for worst in soak.broken:
-        click.echo(f"  {worst.invariant}, {worst.law} law: {', '.join(worst.broken_by)}")
+        say(console, "Violated by more than rounding explains, with the kinds of problems:")
+        say(console, *(f"  {one.invariant}, {one.law} law: {', '.join(one.broken_by)}" for one in soak.broken))

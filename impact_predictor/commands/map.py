@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -73,24 +74,9 @@ def map_() -> None:
 
 def command_of(name: str) -> click.Command:
     """The command that draws maps of one body: its parameters are options."""
-    from ..report.map import SUBJECTS, fixed_values, option_of
+    from ..report.map import SUBJECTS, option_of
 
     subject = SUBJECTS[name]
-
-    def draw(
-        x: tuple[str, float, float] | None,
-        y: tuple[str, float, float] | None,
-        law: str,
-        resolution: int,
-        output: tuple[Path, ...],
-        as_json: bool,
-        **parameters: float | None,
-    ) -> None:
-        asked = ((x, subject.x), (y, subject.y))
-        axes = [type(most)(one[0].replace("-", "_"), *one[1:]) if one else most for one, most in asked]
-        given = {name: value for name, value in parameters.items() if value is not None}
-        fixed = fixed_values(subject, (axes[0], axes[1]), given)
-        answer(name, (axes[0], axes[1]), fixed, law, resolution, output, as_json)
 
     def axis(option: str, default: Axis, where: str) -> Callable[[Any], Any]:
         shown = f"{option_of(default.name)} {default.low:g} {default.high:g}"
@@ -120,7 +106,7 @@ def command_of(name: str) -> click.Command:
         short_help=f"{body}.",
         help=f"{body}: {shown}, or what else you ask for.",
         epilog=examples(*EXAMPLES[name]),
-    )(options(draw))
+    )(options(partial(draw, name)))
 
 
 def help_of(parameter: MapParameter) -> str:
@@ -131,45 +117,45 @@ def help_of(parameter: MapParameter) -> str:
     return f"{meaning}{unit}." + (f" [default: {default}]" if default else "")
 
 
-def answer(
+def draw(
     name: str,
-    axes: tuple[Axis, Axis],
-    fixed: dict[str, float],
+    x: tuple[str, float, float] | None,
+    y: tuple[str, float, float] | None,
     law: str,
     resolution: int,
     output: tuple[Path, ...],
     as_json: bool,
+    **parameters: float | None,
 ) -> None:
     """Compute a map, write its files and say what it shows."""
+    from ..report.map import SUBJECTS, Axis, fixed_values, map_modes, shares_table, summary_of, write_csv
+    from .progress import compiling_is_said, progress
+
+    across, upwards = (
+        Axis(asked[0].replace("-", "_"), *asked[1:]) if asked else most
+        for asked, most in ((x, SUBJECTS[name].x), (y, SUBJECTS[name].y))
+    )
+    given = {name: value for name, value in parameters.items() if value is not None}
+    fixed = fixed_values(SUBJECTS[name], (across, upwards), given)
     files = output or (() if as_json else (Path(f"map_{name}.png"),))
     for file in files:
         named(file, "picture or data", SUFFIXES)
         if file.suffix.lower() in PICTURES:
             need("contourpy", "matplotlib")
-
-    from ..report.map import map_modes
-    from .progress import compiling_is_said, progress
-
     with compiling_is_said(), progress(name, "cells", resolution * resolution) as tell:
-        modes = map_modes(name, *axes, fixed, law, resolution, tell)
+        modes = map_modes(name, across, upwards, fixed, law, resolution, tell)
     for file in files:
         if file.suffix.lower() == ".csv":
-            from ..report.map import write_csv
-
             write_csv(file, modes)
         else:
             from ..report.map_figure import write_map
 
             write_map(file, modes)
     if as_json:
-        from ..report.map import summary_of
-
         click.echo(json.dumps(summary_of(modes), indent=2, allow_nan=False))
         return
-
     from rich.console import Console
 
-    from ..report.map import shares_table
     from ..report.table import show
 
     show(Console(), shares_table(modes))

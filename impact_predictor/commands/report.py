@@ -5,17 +5,14 @@ from __future__ import annotations
 import csv
 import json
 from pathlib import Path
-from typing import Any, Final
+from typing import Any
 
 import click
 
 from ..errors import need
 from ..files import make_folder, whole
+from ..wording import NONE
 from .options import examples
-
-PAGE: Final = "report.html"
-DATA: Final = "report.json"
-CELLS: Final = "report.csv"
 
 
 @click.command(
@@ -31,7 +28,7 @@ CELLS: Final = "report.csv"
     "--output",
     type=click.Path(path_type=Path),
     metavar="FOLDER",
-    help=f"Folder for {PAGE}, {DATA} and {CELLS}; made if there is none. [default: report, with --json none]",
+    help="Folder for report.html, .json and .csv; made if there is none. [default: report, with --json none]",
 )
 @click.option("--quick", is_flag=True, help="A seventh of the problems.")
 @click.option("--json", "as_json", is_flag=True, help="Print the report as JSON.")
@@ -62,30 +59,25 @@ def report(output: Path | None, quick: bool, as_json: bool) -> None:
 
     from rich.console import Console
 
-    from ..report.table import Column, show, table_of
+    from ..report.table import Column, say, show, table_of
 
     columns = [
         Column("question", lambda one: one["question"], left=True),
         Column("error below", lambda one: f"{one['accuracy']:.0e}"),
-        Column(
-            "cheapest method that is so good on every scene",
-            lambda one: ", ".join(filter(None, (one["method"], one["setting"]))) or "-",
-            left=True,
-        ),
-        Column("us", lambda one: "-" if one["us"] is None else f"{one['us']:.3g}"),
+        Column("cheapest method that is so good on every scene", lambda one: accuracy.name_of(one) or NONE, left=True),
+        Column("us", lambda one: NONE if one["us"] is None else f"{one['us']:.3g}"),
     ]
-    show(Console(), table_of(columns, fields["choices"]))
+    console = Console()
+    show(console, table_of(columns, fields["choices"]))
     for question, used in fields["node"].items():
-        click.echo(f"The node answers the {question} by {', '.join(filter(None, (used['method'], used['setting'])))}:")
-        click.echo(used["why"])
+        say(console, f"The node answers the {question} by {accuracy.name_of(used)}:", used["why"])
     powers = ", ".join(f"{scene} {power:.1f}" for scene, power in fields["orders"].items())
-    click.echo(f"In three dimensions the error of the path law falls with this power of its steps: {powers}.")
-    assert folder is not None
-    click.echo(f"Page: {folder / PAGE}")
+    say(console, f"In three dimensions the error of the path law falls with this power of its steps: {powers}.")
+    say(console, f"Page: {folder}/report.html")
 
 
 def write(folder: Path, fields: dict[str, Any]) -> None:
-    """Write JSON, CSV and page: each under another name first, so that none is ever there by half.
+    """Write JSON, CSV and page.
 
     Raises:
         InputError: a file cannot be written.
@@ -93,10 +85,10 @@ def write(folder: Path, fields: dict[str, Any]) -> None:
     from ..report.accuracy.page import accuracy_page
     from ..report.page import script_inside, write_html
 
-    with whole(folder / DATA) as partial:
+    with whole(folder / "report.json") as partial:
         partial.write_text(json.dumps(fields, indent=1, allow_nan=False), encoding="utf-8")
-    with whole(folder / CELLS) as partial, partial.open("w", newline="", encoding="utf-8") as file:
+    with whole(folder / "report.csv") as partial, partial.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, list(fields["rows"][0]), lineterminator="\n")
         writer.writeheader()
         writer.writerows(fields["rows"])
-    write_html(folder / PAGE, accuracy_page(fields, script_inside()))
+    write_html(folder / "report.html", accuracy_page(fields, script_inside()))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from math import hypot, isfinite
-from typing import Any
+from typing import Any, Final
 
 import click
 
@@ -14,6 +14,26 @@ from ..mechanics.bodies import cylinder, fraction, not_negative, plate, positive
 from ..mechanics.impact import LAWS, approach, solve_impact
 from ..mechanics.types import Contact, Flag, Mode, Outcome, Twist, TwoPointBody
 from .options import F, choice, edge_options, edges_of, examples, json_flag, number, together
+
+EXAMPLES: Final = {
+    "plate": (
+        "impact-predictor solve plate --length 1 --height 0.4 --mass 10 --friction 0.2 --omega -1",
+        "impact-predictor solve plate --length 1 --height 1.6 --mass 10 --friction 0.2 --restitution 0.3 --omega -1",
+        "impact-predictor solve plate --length 1 --height 0.4 --mass 10 --friction 0.2 --twist 0.3 -0.5 -1 --law both",
+    ),
+    "rod": (
+        "impact-predictor solve rod --length 0.4 --a 0.1 --b 0.1 --mass 0.3 --friction 0.4 --omega -2 --json",
+        "impact-predictor solve rod --length 0.4 --thickness 0.01 --a 0.13 --b 0.1 --mass 1 --friction 0.4 --omega -2",
+    ),
+    "cylinder": (
+        "impact-predictor solve cylinder --radius 0.3 --gamma 50 --mass 2 --friction 0.5 --omega -1 --law both",
+        "impact-predictor solve cylinder --radius 0.3 --gamma 70 --mass 2 --friction 0.9 --omega -1",
+    ),
+    "body": (
+        "impact-predictor solve body --mass 10 --inertia 1 --old -0.5 -0.2 0.3 --new 0.5 -0.2 0.3 --omega -1",
+        "impact-predictor solve body --mass 1 --inertia 0.1 --no-old --new 0.2 -0.5 0.3 --twist 1 -2 0 --json",
+    ),
+}
 
 impact_options = together(
     number("--restitution", "Restitution at the new contact, 0 (plastic) to 1.", 0.0),
@@ -34,11 +54,7 @@ impact_options = together(
 @click.group(
     short_help="Solve a single impact of one body.",
     no_args_is_help=False,
-    epilog=examples(
-        "impact-predictor solve plate --length 1 --height 0.4 --mass 10 --friction 0.2 --omega -1",
-        "impact-predictor solve rod --length 0.4 --a 0.1 --b 0.1 --mass 0.3 --friction 0.4 --omega -2 --json",
-        "impact-predictor solve cylinder --radius 0.3 --gamma 50 --mass 2 --friction 0.5 --omega -1 --law both",
-    ),
+    epilog=examples(*(lines[0] for lines in EXAMPLES.values())),
 )
 def solve() -> None:
     """What an impact at the new contact does to a body that turns about the old one.
@@ -55,14 +71,7 @@ matter_options = together(
 )
 
 
-@solve.command(
-    "plate",
-    epilog=examples(
-        "impact-predictor solve plate --length 1 --height 0.4 --mass 10 --friction 0.2 --omega -1",
-        "impact-predictor solve plate --length 1 --height 1.6 --mass 10 --friction 0.2 --restitution 0.3 --omega -1",
-        "impact-predictor solve plate --length 1 --height 0.4 --mass 10 --friction 0.2 --twist 0.3 -0.5 -1 --law both",
-    ),
-)
+@solve.command("plate", epilog=examples(*EXAMPLES["plate"]))
 @number("--length", "Length, m.", required=True)
 @number("--height", "Height, m.", required=True)
 @matter_options
@@ -74,13 +83,7 @@ def solve_plate(omega: float | None, twist: Twist | None, law: str, as_json: boo
     return answer(plate(**shape), omega, twist, law, as_json)
 
 
-@solve.command(
-    "rod",
-    epilog=examples(
-        "impact-predictor solve rod --length 0.4 --a 0.1 --b 0.1 --mass 0.3 --friction 0.4 --omega -2",
-        "impact-predictor solve rod --length 0.4 --thickness 0.01 --a 0.13 --b 0.1 --mass 1 --friction 0.4 --omega -2",
-    ),
-)
+@solve.command("rod", epilog=examples(*EXAMPLES["rod"]))
 @number("--length", "Length, m.", required=True)
 @number("--thickness", "Thickness, m.", 0.0)
 @number("--a", "Distance of the old support behind the middle, m.", required=True)
@@ -92,13 +95,7 @@ def solve_rod(omega: float | None, twist: Twist | None, law: str, as_json: bool,
     return answer(rod(**shape), omega, twist, law, as_json)
 
 
-@solve.command(
-    "cylinder",
-    epilog=examples(
-        "impact-predictor solve cylinder --radius 0.3 --gamma 50 --mass 2 --friction 0.5 --omega -1",
-        "impact-predictor solve cylinder --radius 0.3 --gamma 70 --mass 2 --friction 0.9 --omega -1 --law both",
-    ),
-)
+@solve.command("cylinder", epilog=examples(*EXAMPLES["cylinder"]))
 @number("--radius", "Radius, m.", required=True)
 @edge_options(default=None)
 @matter_options
@@ -121,10 +118,7 @@ def side(name: str, help_text: str, x: float, y: float) -> Callable[[F], F]:
 @solve.command(
     "body",
     short_help="Any body with two contacts, or with one that strikes.",
-    epilog=examples(
-        "impact-predictor solve body --mass 10 --inertia 1 --old -0.5 -0.2 0.3 --new 0.5 -0.2 0.3 --omega -1",
-        "impact-predictor solve body --mass 1 --inertia 0.1 --no-old --new 0.2 -0.5 0.3 --twist 1 -2 0 --json",
-    ),
+    epilog=examples(*EXAMPLES["body"]),
 )
 @number("--mass", "Mass, kg.", required=True)
 @number("--inertia", "Inertia about the mass centre, kg m^2.", required=True)

@@ -13,6 +13,7 @@ from datetime import datetime, timezone
 from functools import partial
 from importlib.metadata import version
 from importlib.util import find_spec
+from itertools import chain
 from math import inf
 from random import Random
 from statistics import mean, median
@@ -115,18 +116,18 @@ def report(part: float, command: str, tell: Callable[[int], None] = lambda done:
     """
     from . import impacts, spatial, touchdowns
 
-    rows: list[AccuracyRow] = []
-    for work in (
+    work = chain(
         rows_of(touchdowns, round(32 * part)),
         rows_of(impacts, round(200 * part)),
         rows_of(spatial, round(60 * part)),
         rows_of(spatial.UNCERTAIN, max(1, round(20 * part))),
         stability_rows(round(20_000 * part)),
         toss_rows(),
-    ):
-        for row in work:
-            rows.append(row)
-            tell(len(rows))
+    )
+    rows: list[AccuracyRow] = []
+    for row in work:
+        rows.append(row)
+        tell(len(rows))
     made = {"version": __version__, "python": platform.python_version()}
     made |= {name: version(name) if find_spec(name) else "not installed" for name in ("numpy", "scipy", "numba")}
     made["machine"] = f"{platform.processor() or platform.machine()}, {os.cpu_count()} cores"
@@ -221,6 +222,11 @@ def row_of(
     wrong = [one["wrong_modes"] for one in errors if "wrong_modes" in one]
     failed = sum(not one or inf in one.values() for one in errors)
     return row | {"wrong_modes": mean(wrong) if wrong else None, "count": len(errors), "failed": failed}
+
+
+def name_of(row: Mapping[str, Any]) -> str:
+    """A method with its setting; "" where there is none."""
+    return ", ".join(filter(None, (row["method"], row["setting"])))
 
 
 def error_of(row: Mapping[str, Any]) -> float:

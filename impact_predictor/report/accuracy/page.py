@@ -9,7 +9,7 @@ from typing import Any, Final
 from ...wording import duration
 from ..modes import PALETTE
 from ..page import Chart, Headline, PageTable, Section, marks, page
-from . import ERRORS, GAPS, IMPACT, SPATIAL, STABILITY, TOSSES, TOUCHDOWN, error_of
+from . import ERRORS, GAPS, IMPACT, SPATIAL, STABILITY, TOSSES, TOUCHDOWN, error_of, name_of
 
 CLOSES: Final = (
     "When, and with which twist, does the next contact strike? Gap and twist go on at constant twist or constant "
@@ -86,7 +86,7 @@ def accuracy_page(report: Mapping[str, Any], script: str) -> str:
     ]
     sections.append(Section("made", "How it was measured", [HOW], made))
     headlines = [
-        Headline(f"the node's method for the {question}", _name(used), used["why"])
+        Headline(f"the node's method for the {question}", name_of(used), used["why"])
         for question, used in report["node"].items()
     ]
     return page("How right, how fast", LEAD, headlines, sections, script)
@@ -94,7 +94,7 @@ def accuracy_page(report: Mapping[str, Any], script: str) -> str:
 
 def _choices(choices: Sequence[Mapping[str, Any]]) -> PageTable:
     cells = [
-        [f"{one['accuracy']:g}", _name(one) or "none", duration(one["us"] and 1e-6 * one["us"])] for one in choices
+        [f"{one['accuracy']:g}", name_of(one) or "none", duration(one["us"] and 1e-6 * one["us"])] for one in choices
     ]
     return PageTable(["error of 90 % below", "cheapest method on all scenes", "run time"], cells, words=2)
 
@@ -108,7 +108,7 @@ def _errors(rows: Sequence[Mapping[str, Any]], titles: Mapping[str, str]) -> Pag
         numbers = ["no number" if one is None else f"{one:.2g}" for one in numbers]
         failed = f"{row['failed']:,} of {row['count']:,}"
         wrong = [f"{row['wrong_modes']:.2g}"] if all(tells) else []
-        cells.append([titles[row["scene"]], _name(row), *numbers, *wrong, failed, duration(1e-6 * row["us"])])
+        cells.append([titles[row["scene"]], name_of(row), *numbers, *wrong, failed, duration(1e-6 * row["us"])])
     wrong = ["contacts that leave"] if all(tells) else []
     names = ["scene", "method", "median", "90 % below", "worst", *wrong, "not answered", "run time"]
     return PageTable(names, cells, words=2)
@@ -121,7 +121,7 @@ def _picture(title: str, rows: Sequence[Mapping[str, Any]], titles: Mapping[str,
         points = []
         for row in rows:
             if row["method"] == name and (error := error_of(row)) < inf:
-                said = f"{_name(row)}\n{titles[row['scene']]}\n{duration(1e-6 * row['us'])}, error {error:.2g}"
+                said = f"{name_of(row)}\n{titles[row['scene']]}\n{duration(1e-6 * row['us'])}, error {error:.2g}"
                 points.append((row["us"], max(error, LEAST), said))
         look = {"size": 10, "color": PALETTE[number % len(PALETTE)], "symbol": SYMBOLS[number]}
         traces += [marks(name, points, marker=look)] if points else []
@@ -131,7 +131,3 @@ def _picture(title: str, rows: Sequence[Mapping[str, Any]], titles: Mapping[str,
     layout["yaxis"] = {"title": axis, **log}
     caption = f"Errors below {LEAST:g} stand there. Click a name to hide its method, point at a mark for more."
     return Chart(f"Error against run time: {title.lower()}", traces, layout, caption)
-
-
-def _name(row: Mapping[str, Any]) -> str:
-    return ", ".join(filter(None, (row["method"], row["setting"])))

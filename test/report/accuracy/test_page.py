@@ -9,14 +9,10 @@ from typing import Any
 import pytest
 from read_page import PageReader, traces
 
-from impact_predictor.report.accuracy import ERRORS, error_of
+from impact_predictor.report.accuracy import ERRORS, error_of, name_of
 from impact_predictor.report.accuracy.page import accuracy_page
 
 REPORT: dict[str, Any] = json.loads((Path(__file__).parents[1] / "page_report.json").read_text())
-
-
-def name_of(row: dict[str, Any]) -> str:
-    return ", ".join(filter(None, (row["method"], row["setting"])))
 
 
 def read(report: dict[str, Any]) -> PageReader:
