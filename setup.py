@@ -34,7 +34,7 @@ EXTRAS = {
     # Spectra of waves to compare with.
     "spectra": ["wavespectra>=4.4"],
     "browser": ["playwright>=1.45"],
-    # Robots that walk in MuJoCo: `impact-predictor simulate robot`; the laws are compared with it, too.
+    # Robots that walk in MuJoCo: `impact-predictor simulate robot`.
     "robot": ["example-robot-data>=4.0", "mujoco>=3.3"],
     "test": ["hypothesis", "mpmath>=1.3", "pytest", "pytest-xdist"],
 }

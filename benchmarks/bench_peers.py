@@ -1,9 +1,10 @@
 """Impacts by compliant contacts and by MuJoCo, beside the laws of this program: python benchmarks/bench_peers.py
 
 The problems and what is held to be right are those of `impact-predictor report`. MuJoCo is compared where it is
-installed (the extra `robot`), on bodies that move in the plane alone and have a size at which a time step means
-something. It has no restitution, and the contacts that serve an impact best: elliptic cones, and dampers as hard as the
-step allows. Compliant contacts are Kelvin-Voigt springs with regularised friction, integrated by scipy.
+installed (the extra `robot`): in three dimensions, and on bodies that move in the plane alone and have a size at which
+a time step means something. It has no restitution, and the contacts that serve an impact best: elliptic cones, and
+dampers as hard as the step allows. Compliant contacts are Kelvin-Voigt springs with regularised friction, integrated by
+scipy.
 """
 
 from __future__ import annotations
@@ -12,17 +13,20 @@ import argparse
 from collections.abc import Callable
 from functools import lru_cache, partial
 from importlib.util import find_spec
+from itertools import chain
 from math import hypot
 from random import Random
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 from compliant_impact import compliant_impact
 
 from impact_predictor.mechanics import bodies, closed_forms
 from impact_predictor.mechanics.types import Contact, Mode, Twist
-from impact_predictor.report.accuracy import IMPACT, AccuracyScene, error_of, impacts, rows_of
+from impact_predictor.report.accuracy import IMPACT, AccuracyScene, error_of, impacts, rows_of, spatial
 from impact_predictor.report.accuracy.impacts import Aftermath, Struck
+from impact_predictor.report.accuracy.spatial import SpatialAftermath, StruckBox
 
 STEPS = 5
 """Steps of MuJoCo through an impact."""
@@ -35,6 +39,13 @@ MODEL = """<mujoco>
 <inertial pos="0 0 0" mass="{mass:.17g}" diaginertia="{inertia:.17g} {inertia:.17g} {inertia:.17g}"/>{spheres}
 </body></worldbody></mujoco>"""
 """A body with planar joints over one plane per contact."""
+
+BOX_MODEL = """<mujoco>
+<option timestep="{step}" gravity="0 0 0" cone="elliptic" solver="Newton" tolerance="1e-12" iterations="200"/>
+<default><geom friction="{friction:.17g} 0 0" solref="-1e-9 {damping}" solimp="0.9999 0.9999 0.001" margin="{margin}"/>
+</default><worldbody><geom type="plane" size="0 0 1"/><body pos="0 0 {height:.17g}"><freejoint/>
+<inertial pos="0 0 0" mass="{mass:.17g}" fullinertia="{inertia}"/>{spheres}</body></worldbody></mujoco>"""
+"""A body on small spheres; without stiffness its contacts push nothing before they are struck."""
 
 
 def ordinary(source: Random, shape: str) -> Struck:
@@ -95,23 +106,46 @@ def geoms(contact: Contact, pad: float, bit: int) -> tuple[str, str]:
     return plane, f'<geom type="sphere" size="{pad:.17g}" pos="{centre}" {shared}/>'
 
 
-def peers(step: float = 1e-4) -> dict[tuple[str, str], Callable[[Any], Any]]:
-    """The methods that this machine has, after the path law."""
-    found: dict[tuple[str, str], Callable[[Any], Any]] = {("path law", ""): partial(impacts.law, name="path")}
-    found["compliant contacts", "k = 1e+08 N/m"] = partial(compliant, stiffness=1e8)
-    if find_spec("mujoco"):
-        found["MuJoCo", f"dt = {step:g} s"] = partial(mujoco, step=step)
-    return found
+def mujoco_of_box(strike: StruckBox, step: float) -> SpatialAftermath:
+    """Some steps of MuJoCo, which has no restitution; its model of a body is built once, which is not timed."""
+    engine, model, data = model_of_box(strike, step)
+    engine.mj_resetData(model, data)
+    data.qvel[:] = strike.twist
+    engine.mj_step(model, data, STEPS)
+    turned = data.xmat[1].reshape(3, 3) @ data.qvel[3:]  # it tells the spin along the axes of the body
+    return SpatialAftermath(np.concatenate((data.qvel[:3], turned)))
 
 
-def question() -> SimpleNamespace:
-    """The question of the impact with ordinary bodies of the paper and any on a floor."""
+@lru_cache(maxsize=1)
+def model_of_box(strike: StruckBox, step: float) -> tuple[Any, Any, Any]:
+    """MuJoCo, the model of a box, and its data."""
+    import mujoco as engine
+
+    arms, inertia = np.asarray(strike.contacts.positions), np.asarray(strike.body.inertia)
+    pad = 1e-3 * float(np.abs(arms).max())
+    spheres = [f'<geom type="sphere" size="{pad}" pos="{x} {y} {z + pad}"/>' for x, y, z in arms]
+    sizes = {"step": step, "damping": -1.0 / step, "margin": 50.0 * step, "height": -arms[0, 2]}
+    sizes |= {"mass": strike.body.mass, "friction": strike.contacts.friction, "spheres": "".join(spheres)}
+    text = " ".join(str(inertia[i, j]) for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)))
+    model = engine.MjModel.from_xml_string(BOX_MODEL.format(**sizes, inertia=text))
+    return engine, model, engine.MjData(model)
+
+
+def questions(step: float = 1e-4) -> list[SimpleNamespace]:
+    """Ordinary bodies of the paper and any on a floor, and boxes in three dimensions, with what this machine has."""
     draws: dict[str, Callable[[Random], Struck]] = {"floor": partial(impacts.drawn, kind="floor")}
     draws |= {shape: partial(ordinary, shape=shape) for shape in ("rod", "plate", "cylinder")}
     scenes = {AccuracyScene(name, IMPACT, name, "", ""): draw for name, draw in draws.items()}
-    return SimpleNamespace(
-        SCENES=scenes, METHODS=peers(), reference_of=impacts.reference_of, errors_of=impacts.errors_of
-    )
+    planar: dict[tuple[str, str], Callable[[Any], Any]] = {("path law", ""): partial(impacts.law, name="path")}
+    planar["compliant contacts", "k = 1e+08 N/m"] = partial(compliant, stiffness=1e8)
+    boxes: dict[tuple[str, str], Callable[[Any], Any]] = {("path law in three dimensions", ""): spatial.solved}
+    if find_spec("mujoco"):
+        planar["MuJoCo", f"dt = {step:g} s"] = partial(mujoco, step=step)
+        boxes["MuJoCo", f"dt = {step:g} s"] = partial(mujoco_of_box, step=step)
+    return [
+        SimpleNamespace(SCENES=drawn, METHODS=methods, reference_of=of.reference_of, errors_of=of.errors_of)
+        for drawn, methods, of in ((scenes, planar, impacts), (spatial.SCENES, boxes, spatial))
+    ]
 
 
 def main() -> None:
@@ -120,7 +154,7 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=30, help="problems of each scene")
     arguments = parser.parse_args()
     print(f"{'scene':12}{'method':36}{'median error':>14}{'90 % below':>12}{'us':>11}{'problems':>10}")
-    for row in rows_of(question(), arguments.count):
+    for row in chain.from_iterable(rows_of(question, arguments.count) for question in questions()):
         median = float("inf") if row["twist_error"] is None else row["twist_error"]
         method = f"{row['method']} {row['setting']}"
         print(f"{row['scene']:12}{method:36}{median:14.2g}{error_of(row):12.2g}{row['us']:11.1f}{row['count']:10,}")

@@ -36,9 +36,9 @@ def report(output: Path | None, quick: bool, as_json: bool) -> None:
     """Compare error and run time of many methods for touchdowns and impacts.
 
     Every method meets the same problems: extrapolation, integration by scipy, the laws of this program in the plane and
-    in three dimensions, one at a time and over arrays, and MuJoCo where it is installed. The recorded tosses of a cube
-    are scored by what was measured. One page shows error over run time, and which method to choose for a wanted
-    accuracy; the same stands in a JSON and a CSV file.
+    in three dimensions, one at a time and over arrays. The recorded tosses of a cube are scored by what was measured.
+    One page shows error over run time, and which method to choose for a wanted accuracy; the same stands in a JSON and
+    a CSV file.
     """
     folder = output or (None if as_json else Path("report"))
     if folder is not None:

@@ -24,8 +24,7 @@ GOES_ON: Final = (
 IN_SPACE: Final = (
     "With which twist does a box go on that strikes with a corner, an edge or a face, beside corners that stand? The "
     "path law in three dimensions is the node's, and its error falls with its steps; the total law is complementarity "
-    "of the impulses of the whole impact, with Newton's restitution; MuJoCo, shown where it is installed, has no "
-    "restitution, and its friction lifts a foot that slides."
+    "of the impulses of the whole impact, with Newton's restitution."
 )
 UNSURE: Final = (
     "And where gaps are known to 0.45 mm only? One solution takes them for exact. Draws over the gaps tell the mean "

@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from functools import lru_cache, partial
-from importlib.util import find_spec
+from functools import partial
 from itertools import product
 from math import log
 from random import Random
@@ -36,16 +35,6 @@ DEVIATION: Final = 4.5e-4
 
 SLOWEST: Final = 0.1
 """m/s; every contact that strikes is faster."""
-
-STEP, PASSED = 1e-4, 5
-"""MuJoCo's step in s, and how many of them an impact takes."""
-
-MODEL: Final = """<mujoco>
-<option timestep="{step}" gravity="0 0 0" cone="elliptic" solver="Newton" tolerance="1e-12" iterations="200"/>
-<default><geom friction="{friction:.17g} 0 0" solref="-1e-9 {damping}" solimp="0.9999 0.9999 0.001" margin="{margin}"/>
-</default><worldbody><geom type="plane" size="0 0 1"/><body pos="0 0 {height:.17g}"><freejoint/>
-<inertial pos="0 0 0" mass="{mass:.17g}" fullinertia="{inertia}"/>{spheres}</body></worldbody></mujoco>"""
-"""A body on small spheres; without stiffness its contacts push nothing before they are struck."""
 
 
 class SpatialAftermath(NamedTuple):
@@ -108,31 +97,6 @@ def drawn(strike: StruckBox, draws: int) -> SpatialAftermath:
     return SpatialAftermath(found.twist.mean(axis=0), leaves.mean(axis=0))
 
 
-def mujoco(strike: StruckBox) -> SpatialAftermath:
-    """Some steps of MuJoCo, which has no restitution; its model of a body is built once, which is not timed."""
-    engine, model, data = model_of(strike)
-    engine.mj_resetData(model, data)
-    data.qvel[:] = strike.twist
-    engine.mj_step(model, data, PASSED)
-    turned = data.xmat[1].reshape(3, 3) @ data.qvel[3:]  # it tells the spin along the axes of the body
-    return SpatialAftermath(np.concatenate((data.qvel[:3], turned)))
-
-
-@lru_cache(maxsize=1)
-def model_of(strike: StruckBox) -> tuple[Any, Any, Any]:
-    """MuJoCo, the model of a body, and its data."""
-    import mujoco as engine
-
-    arms, inertia = np.asarray(strike.contacts.positions), np.asarray(strike.body.inertia)
-    pad = 1e-3 * float(np.abs(arms).max())
-    spheres = [f'<geom type="sphere" size="{pad}" pos="{x} {y} {z + pad}"/>' for x, y, z in arms]
-    sizes = {"step": STEP, "damping": -1.0 / STEP, "margin": 50.0 * STEP, "height": -arms[0, 2]}
-    sizes |= {"mass": strike.body.mass, "friction": strike.contacts.friction, "spheres": "".join(spheres)}
-    text = " ".join(str(inertia[i, j]) for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)))
-    model = engine.MjModel.from_xml_string(MODEL.format(**sizes, inertia=text))
-    return engine, model, engine.MjData(model)
-
-
 def errors_of(strike: StruckBox, after: SpatialAftermath, right: SpatialAftermath) -> dict[str, float]:
     """Error of the twist, relative to the size of the one before, and of what is told of the contacts that leave."""
     error = strike.size(after.twist - right.twist) / strike.size(strike.twist)
@@ -168,7 +132,6 @@ USED: Final = ("path law", f"{STEPS} steps")
 METHODS: Final[Methods] = {
     **{("path law", f"{2**k} steps"): partial(solved, steps=2**k) for k in range(1, 7)},
     ("total law", ""): partial(solved, law="total"),
-    **({("MuJoCo", f"dt = {STEP:g} s"): mujoco} if find_spec("mujoco") else {}),
 }
 
 UNCERTAIN: Final = SimpleNamespace(
