@@ -24,6 +24,7 @@ UNSURE = 0.02  # contact tolerances by which that is not known
 MEMORY = 100  # frames of standing feet over which noise is averaged ...
 FEWEST = 10  # ... and from how many on that is believed
 HOVERS = 0.5  # contact tolerances above the lowest foot within which feet stand at first
+LEAVES = 0.1  # contact tolerances by which a foot that has come to rest leaves its foothold
 SINKS = 0.5  # contact tolerances that a foot may sink in
 SOFT = 1.5  # points that soft ground was seen to brake lately, from which on others sink in as they have
 STEADY = 15  # frames over which the level of a foothold is averaged ...
@@ -253,8 +254,9 @@ class Ground:
         """Take two frames of a point that stands on a foothold; they follow each other."""
         off = frame.gap - self.drift - foothold.rest
         settled = frame.stamp - foothold.stamp >= SETTLES
-        if abs(off) > (max(HOVERS * self._tolerance, FAR * self.noise.gap) if settled else self._tolerance):
-            # The foot has slipped off an edge, or the ground has given way.
+        near = (HOVERS if foothold.touched else LEAVES) * self._tolerance
+        if abs(off) > (max(near, FAR * self.noise.gap) if settled else self._tolerance):
+            # The foot has slipped off an edge, the ground has given way, or it has not come down yet.
             foothold.count, foothold.stamp, foothold.touched, settled = 1, frame.stamp, False, False
         if settled and not foothold.touched:
             limit = DRIFT * self._tolerance * abs(frame.stamp - before.stamp) / NANOSECONDS

@@ -232,10 +232,12 @@ class ArrivalFit:
             course = [one for one in frames[:k] if one.stamp > frames[last].stamp - COURSE]
             speed = -rate_of(course, self._noise)[0] if len(course) > 1 else 0.0
             return stamp - round(min(depth / max(speed, LEAST_SPEED), SINKS_FOR) * NANOSECONDS)
+        while k + 1 < len(frames) and frames[k].gap >= surface:
+            k += 1
         while k > 1 and frames[k - 1].gap < surface:
             k -= 1
         before, after = frames[k - 1], frames[k]
-        if after.gap >= surface:
+        if after.gap >= surface or before.gap < surface:
             return stamp
         part = (before.gap - surface) / (before.gap - after.gap)
         return before.stamp + round(part * (after.stamp - before.stamp))
