@@ -113,12 +113,13 @@ class LandingAnnouncement:
         self._doubted = None
         position, velocity = filtered.motion(found.time)
         velocity = add(velocity, scene.normal, found.rate - dot(velocity, scene.normal))
-        within = 0.5 * (1.0 + erf((scene.horizon - found.time) / (found.deviation * sqrt(2.0))))
+        deviation = ground.prior.deviations.told(found.time, found.deviation)
+        within = 0.5 * (1.0 + erf((scene.horizon - found.time) / (deviation * sqrt(2.0))))
         self.due = ExpectedLanding(
             stamp=filtered.stamp + round(found.time * NANOSECONDS),
             position=position,
             velocity=velocity,
-            deviation=found.deviation,
+            deviation=deviation,
             lands=ground.prior.came_true * within,
             strikes=found.strikes,
         )

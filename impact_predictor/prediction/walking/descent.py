@@ -16,6 +16,7 @@ from ...stamps import NANOSECONDS
 from ..vectors import total
 from .cubic import Cubic, Triangle, back, factored, halfway, square_of
 from .point_filter import PointFilter, carried, carried_covariance
+from .rhythm import DeviationScale, StrideRhythm
 
 if TYPE_CHECKING:
     from .ground import GroundLevel
@@ -45,7 +46,6 @@ SAMPLES_LEFT_OUT = 3  # ... is not looked at for so many samples
 MEMORY_OF_SWING = 200  # samples of a descent that are remembered
 SHORT = 0.015  # s from the last frame in the air to its landing from which that can be told
 
-UNSEEN = 1e-3  # s by which a landing comes before a sample shows it: a contact sinks in, and samples are rare
 BIN = 0.01  # s of lead time that are learnt of together ...
 BINS = 12  # ... and how many there are
 KNOWN = 2.0  # landings that the deviation as it is computed counts for
@@ -100,6 +100,7 @@ class LandingPrior:
 
     def __init__(self) -> None:
         self.kinds = LandingMoments(STRIKE), LandingMoments(REST)
+        self.deviations = DeviationScale()
         self.announced = self.came = 0.0
         """How many landings were announced, and how many of them came."""
 
@@ -256,13 +257,16 @@ class DescentEstimator:
     def __init__(self) -> None:
         self._errors = LeadTimeErrors()
         self._times: list[float | None] = [None, None]
+        self._rhythm = StrideRhythm()
         self._told: deque[tuple[int, Cubic, Triangle, float, float, float, float]] = deque(maxlen=MEMORY_OF_SWING)
+        self._expected: deque[tuple[int, float, float]] = deque(maxlen=MEMORY_OF_SWING)
         self._left_out = [0, 0]
         self._stamp = 0
 
     def rest(self) -> None:
         """Forget the descent: the point stands."""
         self._told.clear()
+        self._expected.clear()
         self._times, self._left_out = [None, None], [0, 0]
 
     def estimate(self, filtered: PointFilter, level: GroundLevel, prior: LandingPrior) -> Descent | None:
@@ -300,12 +304,19 @@ class DescentEstimator:
         strikes, variance = strikes / whole, variance / whole
         time = max(0.0, best.time - self._errors.offset(best.time))
         self._told.append((filtered.stamp, gap, filtered.covariance, filtered.snap, best.time, time, variance))
-        deviation = sqrt(variance * self._errors.scale(best.time) + UNSEEN * UNSEEN)
+        time, variance = self._rhythm.weighed(filtered.stamp, time, variance * self._errors.scale(best.time))
+        time = max(0.0, time)
+        deviation = sqrt(variance)
+        self._expected.append((filtered.stamp, time, deviation))
         return Descent(time, deviation, strikes, 0.0 if likelier == REST else min(0.0, best.state[1]))
 
     def learn(self, stamp: int, last: int, level: GroundLevel, prior: LandingPrior) -> None:
         """Take that the point has landed on a level at a stamp in ns, after its `last` frame in the air."""
-        told = [one for one in self._told if one[0] <= min(last, stamp)]
+        self._rhythm.learn(stamp)
+        last = min(last, stamp)
+        expected = [(time, s, (stamp - seen) / NANOSECONDS) for seen, time, s in self._expected if seen <= last]
+        prior.deviations.learn(expected)
+        told = [one for one in self._told if one[0] <= last]
         if told:
             self._errors.learn([(found, said, s, (stamp - seen) / NANOSECONDS) for seen, *_, found, said, s in told])
             seen, gap, covariance, snap, *_ = told[-1]

@@ -11,7 +11,7 @@ from impact_predictor.prediction.walking.ground import GroundLevel
 from impact_predictor.prediction.walking.point_filter import PointFilter
 
 MS = 1_000_000
-EXACT = GapNoise(1e-5, 2e-4)
+EXACT, NOISE = GapNoise(1e-5, 2e-4), GapNoise(2e-4, 5e-3)
 LEVEL = GroundLevel(0.0, 1e-5)
 
 
@@ -36,21 +36,24 @@ def test_the_filter_follows_a_cubic_exactly() -> None:
     assert velocity[2] == pytest.approx(-0.5, abs=0.01)
 
 
-def walked(speeds: np.ndarray, braking: float = 5.0) -> list[list[tuple[float, Descent]]]:
-    """What is told of landings with speeds, one after the other: (s until the landing, the descent)."""
+def walked(
+    speeds: np.ndarray, braking: float = 5.0, uneven: float = 0.1, noise: GapNoise = NOISE
+) -> list[list[tuple[float, Descent]]]:
+    """What is told of landings with speeds, after strides that are `uneven` (s): (s until the landing, the descent)."""
     prior, estimator, rng, told = LandingPrior(), DescentEstimator(), np.random.default_rng(0), []
-    noise = GapNoise(2e-4, 5e-3)
-    for speed in speeds.tolist():
+    lands = np.cumsum(0.5 + np.random.default_rng(2).uniform(-uneven, uneven, len(speeds)))
+    for speed, land in zip(speeds.tolist(), (1e9 * lands).astype(int).tolist(), strict=True):
         course = (0.0, -speed, braking, 0.0 if speed else -60.0)
-        own, filtered = [], PointFilter(frame(-0.1, course), noise)
+        own, filtered = [], PointFilter(frame(-0.1, course)._replace(stamp=land - 100 * MS), noise)
         for k in range(1, 40):
             time = -0.1 + 2.5e-3 * k
-            one = frame(time, course, rng.normal(0.0, noise.gap))
+            one = frame(time, course, rng.normal(0.0, noise.gap))._replace(stamp=land + round(time * 1e9))
             filtered.add(one._replace(rate=(one.rate or 0.0) + rng.normal(0.0, noise.rate)), noise)
             found = estimator.estimate(filtered, LEVEL, prior)
             if found is not None:
-                own.append((-time, found))
-        estimator.learn(10**9, round((1.0 - 2.5e-3) * 1e9), LEVEL, prior)
+                deviation = prior.deviations.told(found.time, found.deviation)
+                own.append((-time, found._replace(deviation=deviation)))
+        estimator.learn(land, round(land - 2.5 * MS), LEVEL, prior)
         estimator.rest()
         told.append(own)
     return told
@@ -73,3 +76,14 @@ def test_the_deviation_is_true() -> None:
     off = [(one.time - left) / one.deviation for own in told[3:] for left, one in own if left < 0.03]
     assert np.mean(np.abs(off) < 1.0) > 0.68
     assert np.mean(np.abs(off) < 2.0) > 0.95
+
+
+def test_a_rhythm_makes_landings_surer_where_there_is_one() -> None:
+    speeds, noise = np.random.default_rng(1).normal(0.6, 0.05, 40), GapNoise(4e-3, 0.1)
+    off, deviations = [], []
+    for uneven in (0.1, 1e-3):
+        told = [one for own in walked(speeds, uneven=uneven, noise=noise)[8:] for one in own if 0.03 < one[0] < 0.06]
+        off.append(float(np.median([abs(one.time - left) for left, one in told])))
+        deviations.append(float(np.median([one.deviation for _, one in told])))
+    assert off[1] < 0.5 * off[0]
+    assert deviations[1] < 0.5 * deviations[0]
