@@ -1,4 +1,4 @@
-"""What ends a phase of motion, and where within a step, a sweep or a phase known in closed form a condition falls to 0.
+"""What ends a phase of motion, and where within a step or a phase known in closed form a condition falls to 0.
 
 A condition is positive until its event.
 """
@@ -134,12 +134,6 @@ def safe_step(value: float, rate: float, fall: float) -> float:
     return 2.0 * value / (root - rate) if root > rate else math.inf
 
 
-def cubic(value: float, slope: float, end_value: float, end_slope: float) -> tuple[float, float]:
-    """Square and cube of the cubic on 0..1 with these values and slopes at its ends."""
-    rise = end_value - value
-    return 3.0 * rise - 2.0 * slope - end_slope, slope + end_slope - 2.0 * rise
-
-
 def dip(value: float, slope: float, end_value: float, end_slope: float) -> float:
     """Where on 0..1 a condition that is positive at both ends may fall to zero between them; beyond 1 if it does not.
 
@@ -151,17 +145,16 @@ def dip(value: float, slope: float, end_value: float, end_slope: float) -> float
     return at if value + slope * at <= 0.0 else _BEYOND
 
 
-def fall(value: float, slope: float, end_value: float, end_slope: float, noise: float = 0.0) -> float:
-    """Where on 0..1 a condition with these values and slopes falls to zero or might; beyond 1 where it does not."""
-    square, cube = cubic(value, slope, end_value, end_slope)
-    if value <= noise:
+def fall(value: float, slope: float, end_value: float, end_slope: float) -> float:
+    """Where on 0..1 a condition with these values and slopes, which is below zero at the end, falls to zero."""
+    rise = end_value - value
+    square, cube = 3.0 * rise - 2.0 * slope - end_slope, slope + end_slope - 2.0 * rise
+    if value <= 0.0:
         # It begins at zero; the root that is not there.
         root = math.sqrt(max(0.0, square * square - 4.0 * slope * cube))
         numerator, denominator = (-square - root, 2.0 * cube) if square > 0.0 else (2.0 * slope, root - square)
         at = numerator / denominator if denominator else 0.0
-        return (at if 0.0 < at <= 1.0 else 0.0) if end_value < -noise else _BEYOND
-    if end_value > 0.0:
-        return dip(value, slope, end_value, end_slope)
+        return at if 0.0 < at <= 1.0 else 0.0
     low, high, at = 0.0, 1.0, value / (value - end_value)
     for _ in range(_NEWTON_STEPS):
         here, change = value + at * (slope + at * (square + at * cube)), slope + at * (2.0 * square + 3.0 * at * cube)

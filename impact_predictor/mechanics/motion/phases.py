@@ -86,6 +86,8 @@ class MotionPhase:
         self.state = states[i]
         self.side = 1.0 if i == 0 else -1.0
         self.slip = 1.0 if self.state == PLUS else -1.0
+        self.home = 0.0
+        """How far from home u is counted: there another contact touches."""
         self.moves = not (self.both and self.state == STICK)
         """Whether it moves at all."""
         self.pivots = self.fixed and not self.both and self.state == STICK
@@ -195,7 +197,7 @@ class MotionPhase:
         if self.both:
             _, normal, normal_b = self.body.forces_of_both(self.state, felt, z, s)
             return [stops, (normal, math.nan), (normal_b, math.nan)]
-        gap, speed = self.side * u, self.side * w
+        gap, speed = self.side * u + self.home, self.side * w
         touches, overturns = (gap, speed), (self.limit - gap, -speed)
         forces = self.body.forces(self.contact, self.state, felt, u, w, z, s)
         if self.state != STICK:
@@ -227,7 +229,7 @@ class MotionPhase:
         stops = -now.s / now.beta if now.s * now.beta < 0.0 else math.inf
         if self.both:
             return _BEYOND * stops
-        gap, speed, pull = max(0.0, self.side * now.u), self.side * now.w, -self.side * now.alpha
+        gap, speed, pull = max(0.0, self.side * now.u + self.home), self.side * now.w, -self.side * now.alpha
         return _BEYOND * min(stops, safe_step(gap, speed, pull))
 
     def _pass(self, then: Instant) -> None:

@@ -1,7 +1,7 @@
 """The next touchdown of a rigid planar body over a fixed straight support.
 
 The support is the line y = 0, x along it and y out of it; gravity is uniform and may have a part along the support (a
-slope). A body moves in phasees, and each ends with an event:
+slope). A body moves in phases, and each ends with an event:
 
 - flight: the mass centre is thrown, the angular velocity stays; the first point to reach the support strikes;
 - turning about a stance contact that sticks (`pivot`);
