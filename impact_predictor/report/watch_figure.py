@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
 from math import degrees
 from typing import Any, Final
 
@@ -35,29 +34,29 @@ def write_watch(path: str | os.PathLike[str], log: WatchLog, title: str) -> None
     shown = sorted([-place for *_, place in sorted(near, reverse=True)[:MOST]])
     start = log.stamps[0] if len(log.stamps) else 0
     times = (log.stamps - start) / NANOSECONDS
-    with picture(path, 11.0, 3.6 + 1.35 * len(shown)) as figure:
-        angles, felt, *panels = figure.subplots(2 + len(shown), 1, sharex=True)
+    felt = max(FORECAST[2:], key=lambda name: np.nanmax(log.deck[:, DECK.index(name)], initial=0.0))
+    with picture(path, 11.0, 4.6 + 1.35 * len(shown)) as figure:
+        panels = figure.subplots(3 + len(shown), 1, sharex=True)
         warned, said = warned_of(units)
         headline(figure, f"{title}: events warned of: {warned}; {said}")
-        _draw_deck(angles, log, times, ANGLES, "{} (°)")
-        _draw_deck(felt, log, times, FORECAST[2:], "felt {}\n(m/s²)")
-        for place, axes in zip(shown, panels, strict=True):
+        for name, axes in zip((*ANGLES, felt), panels, strict=False):
+            _draw_deck(axes, log, times, name)
+        for place, axes in zip(shown, panels[3:], strict=True):
             _draw_unit(axes, log, place, times)
         figure.axes[-1].set(xlabel="time (s)", xlim=(0.0, times.max(initial=1.0)))
         figure.align_ylabels(figure.axes)
         common_legend(figure)
 
 
-def _draw_deck(axes: Axes, log: WatchLog, times: Any, names: Sequence[str], label: str) -> None:
-    """Of some numbers of the deck the one that changes most, and the forecast of it; `label` takes its name."""
-    swings = [np.ptp(log.deck[:, DECK.index(name)]) if len(times) else 0.0 for name in names]
-    name, scale = names[int(np.argmax(swings))], degrees(1.0) if names is ANGLES else 1.0
+def _draw_deck(axes: Axes, log: WatchLog, times: Any, name: str) -> None:
+    """A number of the deck, and the forecast of it."""
+    scale = degrees(1.0) if name in ANGLES else 1.0
     low, middle, high = scale * log.forecasts[:, LEAD, FORECAST.index(name)].T
     due, said = times[log.made] + LEADS[LEAD], f"forecast {LEADS[LEAD]:g} s before"
     axes.fill_between(due, low, high, color=PALETTE[4], alpha=0.35, linewidth=0.0, label=f"{said}: 90 % band")
     axes.plot(due, middle, "--", color=PALETTE[0], linewidth=1.0, label=said)
     axes.plot(times, scale * log.deck[:, DECK.index(name)], color=EDGE, linewidth=1.0, label="measured")
-    axes.set_ylabel(label.format(name))
+    axes.set_ylabel(f"{name} (°)" if name in ANGLES else f"felt {name}\n(m/s²)")
 
 
 def _draw_unit(axes: Axes, log: WatchLog, place: int, times: Any) -> None:
