@@ -117,8 +117,11 @@ def simulate_deck(
     else:
         refuse_given(_OF_SEA, "is of a sea, but --record takes a recorded deck")
     scenes = read_scenes(find(SCENE) if params is None else params)
-    if held := [name for name, scene in scenes.items() if scene.lashings or scene.chocks or scene.wind]:
-        click.echo(f"note: without lashings, chocks and wind move here: {', '.join(held)}", err=True)
+    loose = [name for name, one in scenes.items() if one.radius or contacts == "rigid" if one.lashings or one.chocks]
+    if loose:
+        click.echo(f"note: without lashings and chocks move here: {', '.join(loose)}", err=True)
+    if blown := [name for name, scene in scenes.items() if scene.wind]:
+        click.echo(f"note: without wind move here: {', '.join(blown)}", err=True)
     noise = SensorNoise(*[options.pop(parameter_of(name)) for name, _ in _NOISE])
     deck, longest = deck_of(record, contacts, seed, gravity_of(scenes), **options)
     if contacts == "rigid" and deck.plane is None:

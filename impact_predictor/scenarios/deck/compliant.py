@@ -1,10 +1,10 @@
 """Cargo on compliant contacts, in three dimensions: a truth that shares no impact law, no modes and no events with a
 prediction.
 
-Stiff springs with dampers and friction move the unit (`stepping`). Its impacts are read from the gaps and velocities of
-its points alone: one begins where points close that were open, and is over when the normal forces have fallen to those
-of rest. A unit on its feet is left at rest until the part of its margins that is used up, by a rough rule, is near one;
-from there on the steps tell what it does.
+Stiff springs with dampers and friction move the unit, and lashings that bear no more than their MSL (`stepping`). Its
+impacts are read from the gaps and velocities of its points alone: one begins where points close that were open, and is
+over when the normal forces have fallen to those of rest. A unit on its feet is left at rest until the part of its
+margins that is used up, by a rough rule, is near one; from there on the steps tell what it does.
 """
 
 from __future__ import annotations
@@ -80,6 +80,17 @@ PRESSED: Final = 2.0
 PART: Final = 0.02
 """A velocity above this part of the approach is one: out of the deck the contact opens, along it it slips."""
 
+STRETCH: Final = 0.01
+"""Of its length, by a lashing of unknown stiffness under its MSL."""
+
+HELD_DAMPING: Final = 0.1
+"""Of a lashing, as part of the critical one."""
+
+FAR: Final = 1e4
+"""m to the anchor of a lashing that stands for a chock: so far away it always pulls the same way."""
+
+SHIFTED: Final = 0.1
+"""m from where it stood: a unit that is held has moved, whatever still holds it."""
 
 SETTLES: Final = 6
 """Looks before a unit comes near, in which the springs take its load: a unit that is high and narrow sways on them."""
@@ -89,10 +100,10 @@ def make_advance(law_code: str) -> Any:
     """The function that makes steps; numba keeps what it compiled under the value of `law_code`."""
 
     def advance(
-        steps: int, n: int, given: Any, felt: Any, y: Any, points: Any, work: Any, rows: Any, marks: Any
+        steps: int, n: int, given: Any, felt: Any, y: Any, points: Any, held: Any, work: Any, rows: Any, marks: Any
     ) -> int:
         law_code  # noqa: B018
-        return stepping.advance(steps, n, given, felt, y, points, work, rows, marks)
+        return stepping.advance(steps, n, given, felt, y, points, held, work, rows, marks)
 
     return advance
 
@@ -163,11 +174,34 @@ class _Compliant:
         c, s = cos(0.5 * unit.start.angle), sin(0.5 * unit.start.angle)
         turn = s * cos(half), -s * sin(half), c * sin(half), c * cos(half)
         self.y = np.array([*place, *turn, *[0.0] * 6])
+        self.start, self.held = self.y[:3].copy(), self._holders(stiffness)
         self.work = np.zeros(11 * len(self.points) + 1)
         self.closed = self._gaps(self.y[None])[0] <= FEET
         self.opened = np.full(len(self.points), -inf)  # s, when
         self.moved, self.settled = -inf, -inf  # s, when it last did, and from when on that counts
         self.leans = unit.start.angle != 0.0
+
+    def _holders(self, stiff: float) -> NDArray[np.float64]:
+        """The lashings, and chocks as very long ones that pull a body away from them, as `stepping` has them."""
+        found, matrix, center = [], rotations(self.y[None, 3:7])[0], self.y[:3]
+        for lashing in self.scene.lashings:
+            point = np.subtract(lashing.point, self.scene.center_of_mass)
+            length = float(np.linalg.norm(center + matrix @ point - lashing.anchor))
+            stiffness = lashing.stiffness or lashing.msl / (STRETCH * length)
+            found.append((*point, *lashing.anchor, length - lashing.preload / stiffness, stiffness, lashing.msl))
+        for chock in self.scene.chocks:
+            anchor = np.add(chock.point, np.multiply(FAR, chock.normal))
+            found.append((*matrix.T @ np.subtract(chock.point, center), *anchor, FAR, stiff, chock.strength))
+        rows = np.array(found).reshape(-1, stepping.HOLDER - 1)
+        return np.insert(rows, 8, HELD_DAMPING * 2.0 * np.sqrt(rows[:, 7] * self.scene.mass), axis=1)
+
+    def _gives_way(self, rows: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Whether a lashing bears all it can at some states (k, 13), or the unit is far from where it stood."""
+        points, anchors = self.held[:, :3], self.held[:, 3:6]
+        ends = rows[:, None, :3] + np.einsum("tij,pj->tpi", rotations(rows[:, 3:7]), points)
+        pulls = self.held[:, 7] * (np.linalg.norm(anchors - ends, axis=2) - self.held[:, 6])
+        far = np.linalg.norm(rows[:, :3] - self.start, axis=1) > SHIFTED
+        return far | (pulls >= self.held[:, 9]).any(axis=1)
 
     def follow(self, duration: float, begin: float) -> Iterator[Span]:
         time, end = begin, End.TIME_UP
@@ -241,7 +275,8 @@ class _Compliant:
             told = felt(time + self.numbers[0] * (np.arange(steps) + 0.5)).ravel()
             most = steps * stepping.FINE
             rows, marks = np.empty(15 * most), np.empty(2 * n * most, np.int64)
-            count = self.advance(steps, n, self.numbers, told, self.y, self.points.ravel(), self.work, rows, marks)
+            given = self.numbers, told, self.y, self.points.ravel(), self.held.ravel(), self.work
+            count = self.advance(steps, n, *given, rows, marks)
             states, told = rows.reshape(-1, 15)[:count], marks.reshape(-1, 2, n)[:count]
             parts.append(_Stretch(np.append(time + states[:-1, 14], end), states, told))
             time = end
@@ -258,9 +293,15 @@ class _Compliant:
         return bool((closed[1:] & ~closed[:-1]).any())
 
     def _onsets(self, stretch: _Stretch) -> Iterator[TrueOnset]:
-        """When a unit that stood begins to slide on all of its feet, or to stand on fewer than three."""
+        """When a unit that stood begins to slide on all of its feet, or to stand on fewer than three.
+
+        One that is held does so when what holds it gives way: until then it is only pulled tight.
+        """
         presses, slips = stretch.marks.sum(axis=2).T
         slides, lifts = (slips == presses) & (presses > 0), presses < 3
+        if len(self.held):
+            gives_way = self._gives_way(stretch.rows[:, :13])
+            slides, lifts = slides & gives_way, lifts & gives_way
         for k in np.flatnonzero((slides | lifts) & (stretch.times > self.settled)).tolist():
             time = float(stretch.times[k])
             if time - self.moved > RESTED:

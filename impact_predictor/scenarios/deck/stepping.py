@@ -29,16 +29,23 @@ HEAVY = 1.5
 """Weights with which the points press no more when nothing strikes."""
 
 
-def advance(steps: int, n: int, given: Any, felt: Any, y: Any, points: Any, work: Any, rows: Any, marks: Any) -> int:
+HOLDER = 10
+"""Numbers of a lashing: its point from the mass centre in the body (3), its anchor in the deck's frame (3), the length
+(m) at which it begins to pull, its stiffness (N/m) and damping (N s/m), and the most that it bears (N)."""
+
+
+def advance(
+    steps: int, n: int, given: Any, felt: Any, y: Any, points: Any, lashings: Any, work: Any, rows: Any, marks: Any
+) -> int:
     """Some steps from the state y: place of the mass centre, quaternion, velocity and angular velocity in the deck's
     frame (13), which is kept up to date; returns how many rows they fill.
 
     `given` are the step (s), the deck's height (m), mass, friction, restitution, stiffness (N/m) and damping (N s/m) of
     a contact, the inertia about the body's axes (9 numbers) and its inverse (9); `felt` (steps, 9) the gravity at the
     frame's origin, the deck's angular velocity and its derivative; `points` (n, 3) from the mass centre in the body;
-    `work` 11 n + 1, to begin with zeros. Fills `rows` (steps * FINE, 15) with the states, the sum of the normal forces
-    over the weight and the time from the beginning, and `marks` (steps * FINE, 2 n) with which points press, and which
-    of them slip.
+    `lashings` (k, HOLDER); `work` 11 n + 1, to begin with zeros. Fills `rows` (steps * FINE, 15) with the states, the
+    sum of the normal forces over the weight and the time from the beginning, and `marks` (steps * FINE, 2 n) with which
+    points press, and which of them slip.
     """
     whole, height, mass, friction = given[0], given[1], given[2], given[3]
     restitution, stiffness, damping = given[4], given[5], given[6]
@@ -97,6 +104,25 @@ def advance(steps: int, n: int, given: Any, felt: Any, y: Any, points: Any, work
         dy = spin[3] * kx + spin[4] * ky + spin[5] * kz + oz * wx - ox * wz - ty
         dz = spin[6] * kx + spin[7] * ky + spin[8] * kz + ox * wy - oy * wx - tz
         vz0, ox0, oy0 = y[9], y[10], y[11]
+        for k in range(0, len(lashings), HOLDER):
+            ux, uy, uz = lashings[k], lashings[k + 1], lashings[k + 2]
+            ex, ey, ez = (
+                r[0] * ux + r[1] * uy + r[2] * uz,
+                r[3] * ux + r[4] * uy + r[5] * uz,
+                r[6] * ux + r[7] * uy + r[8] * uz,
+            )
+            tx, ty, tz = lashings[k + 3] - px - ex, lashings[k + 4] - py - ey, lashings[k + 5] - pz - ez
+            length = sqrt(tx * tx + ty * ty + tz * tz)
+            rate = -(tx * (y[7] + oy * ez - oz * ey) + ty * (y[8] + oz * ex - ox * ez) + tz * (vz0 + ox * ey - oy * ex))
+            pull = lashings[k + 7] * (length - lashings[k + 6]) + lashings[k + 8] * rate / length
+            # A rope does not push.
+            pull = h * min(max(pull, 0.0), lashings[k + 9]) / length
+            tx, ty, tz = pull * tx, pull * ty, pull * tz
+            vx, vy, vz = vx + tx / mass, vy + ty / mass, vz + tz / mass
+            nx, ny, nz = ey * tz - ez * ty, ez * tx - ex * tz, ex * ty - ey * tx
+            dx += (spin[0] * nx + spin[1] * ny + spin[2] * nz) / h
+            dy += (spin[3] * nx + spin[4] * ny + spin[5] * nz) / h
+            dz += (spin[6] * nx + spin[7] * ny + spin[8] * nz) / h
         ox, oy, oz = ox + h * dx, oy + h * dy, oz + h * dz
         for i in range(n):
             p, a, m = 3 * i, arm + 3 * i, mobility + 4 * i

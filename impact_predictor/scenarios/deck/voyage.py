@@ -122,9 +122,9 @@ def sail(
     """Follow all units of the scenes for `duration` s, and write a `bag` with what their sensors told.
 
     `contacts` are rigid, by the impact law of each scene and in the transverse plane, or compliant (see `compliant`);
-    auto: they are rigid on a deck that moves in that plane alone. Drums lie in their chocks and have rigid ones
-    in any case. A unit that toppled stands again after `restand` s where it stood at first. `tell` takes now and then
-    how many seconds are done. The states of the units at `times` in s are kept.
+    auto: they are rigid on a deck that moves in that plane alone, but for units with lashings or chocks. Drums lie in
+    their chocks and have rigid ones in any case. A unit that toppled stands again after `restand` s where it stood at
+    first. `tell` takes now and then how many seconds are done. The states of the units at `times` in s are kept.
 
     Raises:
         InputError: a unit cannot be simulated, a number is out of its range, or the bag cannot be written.
@@ -140,14 +140,14 @@ def sail(
         if not 0.0 <= deviation < 1e3:
             raise InputError(f"the noise of the {name} is {deviation}; give a standard deviation of 0 or more")
     deck = planar_deck(deck) if isinstance(deck, MovingSupport) else deck
-    if contacts == "auto":
-        contacts = "compliant" if deck.plane is None else "rigid"
     rolled, pitched, lateral = _extremes(deck, duration)
     supports: dict[tuple[float, Vector], MovingSupport] = {}
     followed = []
     for unit in units_of(scenes):
         motion: Callable[[float], Iterator[Span]]
-        if contacts == "rigid" or unit.scene.radius > 0.0:
+        is_held = bool(unit.scene.lashings or unit.scene.chocks)
+        is_rigid = deck.plane is not None and not is_held if contacts == "auto" else contacts == "rigid"
+        if is_rigid or unit.scene.radius > 0.0:
             where = 0.0 if deck.plane is not None else unit.mount.beside, unit.foot
             support = supports.setdefault(where, deck.across(*where))
             motion = partial(follow, unit, support, duration)
