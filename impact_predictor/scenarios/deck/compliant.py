@@ -201,7 +201,8 @@ class _Compliant:
         ends = rows[:, None, :3] + np.einsum("tij,pj->tpi", rotations(rows[:, 3:7]), points)
         pulls = self.held[:, 7] * (np.linalg.norm(anchors - ends, axis=2) - self.held[:, 6])
         far = np.linalg.norm(rows[:, :3] - self.start, axis=1) > SHIFTED
-        return far | (pulls >= self.held[:, 9]).any(axis=1)
+        found: NDArray[np.bool_] = far | (pulls >= self.held[:, 9]).any(axis=1)
+        return found
 
     def follow(self, duration: float, begin: float) -> Iterator[Span]:
         time, end = begin, End.TIME_UP
