@@ -74,23 +74,23 @@ def touchdown_of(
     walking, normal, those = scene.walking, scene.normal, sorted({*stood, *landing})
     assert walking is not None
     axes = axes_of(base.orientation)
-    moves, gaps, fastest, strikes = [], [], 0.0, False
+    moves, arms, gaps, fastest, strikes = {}, [], [], 0.0, False
     for i in those:
         velocity, delay = landing.get(i, AT_REST)
         rate = dot(normal, velocity)
         # What only grazes the support, or leaves it, rests.
         approach = rate if rate < -GRAZES else 0.0
         velocity = add(velocity, normal, approach - rate)
-        moves.append(velocity)
+        moves[i] = velocity
+        arms.append(add(places[i], base.position, -1.0))
         gaps.append(-approach * delay)
         fastest, strikes = max(fastest, dot(velocity, velocity)), strikes or approach < 0.0
-    arms = [add(places[i], base.position, -1.0) for i in those]
     met = ContactPoints(
         positions=arms,
         friction=walking.at_points(walking.friction or (scene.friction,), those),
         restitution=walking.at_points(walking.restitution or (scene.restitution,), those),
         normals=normal,
-        velocities=[times(velocity, -1.0) for velocity in moves],
+        velocities=[times(velocity, -1.0) for velocity in moves.values()],
         gaps=gaps,
     )
     (a, b, c, u, v, w), lasts = rates, strikes and not machine.is_rigid and any(rates)
@@ -105,7 +105,7 @@ def touchdown_of(
     same_foot = [i for i in stood if i // walking.points == new[0] // walking.points]
     old = tuple([i for i in landing if i not in new] or same_foot or stood)
     others, struck = ([contact for contact in contacts if contact.point in group] for group in (old, new))
-    striking, middle = mean([moves[those.index(i)] for i in new]), mean([places[i] for i in new])
+    striking, middle = mean([moves[i] for i in new]), mean([places[i] for i in new])
     feet, delays, masses = [places[i] for i in old], [landing[i].delay for i in new], add(base.position, center)
     ahead = ahead_of(scene, feet, middle, striking, masses)
     axis = cross(normal, ahead)

@@ -81,6 +81,7 @@ class LandingTracker:
         self._points, self._base, self._schedule, self._forces = points, base, schedule, forces
         self._ground, self._slow = ground, LEAVING * hardly(scene)
         self._each = scene.walking.points
+        self._feet = [range(first, first + self._each) for first in range(0, len(points), self._each)]
         self._contact_time = round(scene.contact_time * NANOSECONDS)
         self._announced: dict[int, PendingLanding] = {}
         self._landed: deque[PendingLanding] = deque()
@@ -91,10 +92,10 @@ class LandingTracker:
         Feet that land within the contact time of each other make one impact.
         """
         points, now = self._points, sample.stamp
-        feet = [range(first, first + self._each) for first in range(0, len(points), self._each)]
-        landings = [(min([due.stamp for due in own.values()]), own) for foot in feet if (own := self._own(foot, dues))]
         for i in [i for i in self._announced if points[i].due is None]:
             del self._announced[i]
+        owns = [self._own(foot, dues) for foot in self._feet]
+        landings = [(min([due.stamp for due in own.values()]), own) for own in owns if own]
         if not landings:
             return None
         landings.sort(key=itemgetter(0))
