@@ -150,7 +150,7 @@ def mode_of_contacts(old: Sequence[PointOutcome], new: Sequence[PointOutcome], n
     speeds = []
     for group in (old, new):
         rate = total([dot(normal, contact.velocity) for contact in group]) / len(group) if group else inf
-        speeds += [rate, inf if any([contact.state is ContactState.SLIPS for contact in group]) else 0.0]
+        speeds += [rate, inf if any(contact.state is ContactState.SLIPS for contact in group) else 0.0]
     return Mode(mode_of(least, *speeds))
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import pairwise
 from math import sqrt
+from operator import mul
 from typing import NamedTuple
 
 from ...stamps import NANOSECONDS
@@ -37,11 +38,12 @@ class RateLine:
 
     def __init__(self, rates: Sequence[tuple[float, float]]) -> None:
         self.count = n = len(rates)
-        self._time, self._rate = total([t for t, _ in rates]) / n, total([v for _, v in rates]) / n
-        apart = [(t - self._time, v - self._rate) for t, v in rates]
-        self.spread, both = total([t * t for t, _ in apart]), total([t * v for t, v in apart])
+        times, values = zip(*rates, strict=True)
+        self._time, self._rate = total(times) / n, total(values) / n
+        arms, offs = [t - self._time for t in times], [v - self._rate for v in values]
+        self.spread, both = total(map(mul, arms, arms)), total(map(mul, arms, offs))
         self.slope = both / self.spread
-        self.left = max(0.0, total([v * v for _, v in apart]) - self.slope * both)
+        self.left = max(0.0, total(map(mul, offs, offs)) - self.slope * both)
 
     def rate(self, time: float) -> float:
         return self._rate + self.slope * (time - self._time)

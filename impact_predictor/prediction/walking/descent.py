@@ -258,7 +258,8 @@ class DescentEstimator:
         self._errors = LeadTimeErrors()
         self._times: list[float | None] = [None, None]
         self._rhythm = StrideRhythm()
-        self._told: deque[tuple[int, Cubic, Triangle, float, float, float, float]] = deque(maxlen=MEMORY_OF_SWING)
+        # Of each sample its stamp, the time that was found, the one told, its variance, and what they are from.
+        self._told = deque[tuple[int, float, float, float, tuple[Cubic, Triangle, float]]](maxlen=MEMORY_OF_SWING)
         self._expected: deque[tuple[int, float, float]] = deque(maxlen=MEMORY_OF_SWING)
         self._left_out = [0, 0]
         self._stamp = 0
@@ -303,7 +304,7 @@ class DescentEstimator:
             variance += weight * (one.variance + (one.time - best.time) ** 2)
         strikes, variance = strikes / whole, variance / whole
         time = max(0.0, best.time - self._errors.offset(best.time))
-        self._told.append((filtered.stamp, gap, filtered.covariance, filtered.snap, best.time, time, variance))
+        self._told.append((filtered.stamp, best.time, time, variance, (gap, filtered.covariance, filtered.snap)))
         time, variance = self._rhythm.weighed(filtered.stamp, time, variance * self._errors.scale(best.time))
         time = max(0.0, time)
         deviation = sqrt(variance)
@@ -318,8 +319,8 @@ class DescentEstimator:
         prior.deviations.learn(expected)
         told = [one for one in self._told if one[0] <= last]
         if told:
-            self._errors.learn([(found, said, s, (stamp - seen) / NANOSECONDS) for seen, *_, found, said, s in told])
-            seen, gap, covariance, snap, *_ = told[-1]
+            self._errors.learn([(found, said, s, (stamp - seen) / NANOSECONDS) for seen, found, said, s, _ in told])
+            seen, _, _, _, (gap, covariance, snap) = told[-1]
             time = (stamp - seen) / NANOSECONDS
             if time < SHORT:
                 prior.learn(gap, covariance, snap, time, level.deviation**2)

@@ -232,7 +232,7 @@ class FeetContacts(Contacts):
                 status = self._found = found
                 continue
             status = self._found = Status.ACCEPTED
-            supported = any([point.stands or point.closed for point in self._points])
+            supported = any(point.stands or point.closed for point in self._points)
             lowest = -inf if supported else min([frame.gap for frame in found]) + self.scene.tolerance
             landed = [
                 point.add(frame, self._ground, base, alone=frame.gap <= lowest)
@@ -240,7 +240,7 @@ class FeetContacts(Contacts):
             ]
             for i in [i for i, has_landed in enumerate(landed) if has_landed]:
                 self._landings.land(i)
-            self._doubts.see(found, any([point.stands for point in self._points]), self._ground)
+            self._doubts.see(found, any(point.stands for point in self._points), self._ground)
             self._clock.see(base, geometry.points, self._points)
         return status
 
