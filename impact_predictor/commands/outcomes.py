@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 import click
 
 from ..errors import InputError, need
-from ..report.summary import without_bag
+from ..files import named
+from ..report.summary import Tally, without_bag
 from ..wording import counted
 
 if TYPE_CHECKING:
@@ -72,34 +73,28 @@ class ReplayReport:
         self._statuses: set[int] = set()
         # What is said of many bags is said once.
         self._notes: Counter[str] = Counter()
+        self._together = Tally()
         self._picture: ReplayPicture | None = None
-        self._answers: list[dict[str, Any]] | None = None
-        self._table: RowTable | None = None
-        self._series: RowTable | None = None
+        self._answers: list[dict[str, Any]] = []
+        self._tables: list[tuple[RowTable, Callable[[BagOutcome], Iterable[dict[str, Any]]]]] = []
         self._earlier = {} if wanted.baseline is None else earlier_runs(wanted.baseline, bags)
         if wanted.figure is not None:
             from ..report.figures import ReplayPicture
 
             self._picture = ReplayPicture(wanted.figure)
         if wanted.report is not None:
-            from ..files import named
-
             need("plotly", "jinja2")
             named(wanted.report, "page", (".html",) if Path(wanted.report).suffix else ("",))
-            self._answers = []
         if wanted.table is not None:
-            from ..report.tables import TOUCHDOWNS, table_file
+            from ..report.tables import TOUCHDOWNS, table_file, touchdown_rows
 
-            self._table = stack.enter_context(table_file(wanted.table, TOUCHDOWNS))
+            table = stack.enter_context(table_file(wanted.table, TOUCHDOWNS))
+            self._tables.append((table, lambda outcome: touchdown_rows(outcome.answer)))
         if wanted.series is not None:
             from ..report.tables import table_file
             from ..report.watch import SERIES
 
-            self._series = stack.enter_context(table_file(wanted.series, SERIES))
-        if not wanted.as_json:
-            from ..report.summary import Tally
-
-            self._together = Tally()
+            self._tables.append((stack.enter_context(table_file(wanted.series, SERIES)), watched_rows))
 
     def take(self, outcome: BagOutcome, output: Path | None) -> None:
         """Say what became of a bag; InputError where what is made of the bags cannot be written."""
@@ -118,15 +113,9 @@ class ReplayReport:
             # A list is printed as it grows, so that thousands of bags need no memory.
             before = ("[" if not self.number else ", ") if self._bags > 1 else ""
             click.echo(f"{before}{json.dumps(answer, allow_nan=False)}", nl=False)
-        if self._table is not None:
-            from ..report.tables import touchdown_rows
-
-            self._table.add(touchdown_rows(answer))
-        if self._series is not None and result is not None and result.watch is not None:
-            from ..report.watch import series_of
-
-            self._series.add(series_of(result.bag, result.watch))
-        if self._answers is not None:
+        for table, rows_of_bag in self._tables:
+            table.add(rows_of_bag(outcome))
+        if self._wanted.report is not None:
             self._answers.append(answer)
         self.number += 1
 
@@ -143,8 +132,7 @@ class ReplayReport:
         if self._picture is not None and self.replayed:
             self._picture.write()
             self._say_file("Picture", self._picture.path)
-        page = self._wanted.report
-        if page is not None and self._answers is not None:
+        if (page := self._wanted.report) is not None:
             from ..parameters.file import read_values
             from ..report.page.replay import write_replay_page
 
@@ -185,7 +173,6 @@ class ReplayReport:
         if self._wanted.as_json:
             return
         from ..report.replay import print_replay
-        from ..report.summary import Tally
         from ..report.touchdowns import rows_of
 
         rows = rows_of(result.settled)
@@ -220,6 +207,14 @@ class ReplayReport:
 
         print_changes(Console(), compared, wanted.baseline, wanted.every)
         return {}
+
+
+def watched_rows(outcome: BagOutcome) -> Iterator[dict[str, Any]]:
+    """The rows of `--series`: what the watch over a deck saw in a bag, if there was one."""
+    from ..report.watch import series_of
+
+    result = outcome.result
+    return iter(()) if result is None or result.watch is None else series_of(result.bag, result.watch)
 
 
 def earlier_runs(path: str, bags: Sequence[str]) -> dict[str, Sequence[TouchdownRow] | InputError]:
