@@ -27,7 +27,8 @@ from impact_predictor.bags.read import Bag
 from impact_predictor.cli import main as command
 from impact_predictor.report.table import plain_table, show
 from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY
-from impact_predictor.scenarios.landing import LANDING_TOPIC, TrueLanding, decode_true_landings
+from impact_predictor.scenarios.landing import LANDING_TOPIC, TrueLanding
+from impact_predictor.scenarios.truth import decode_truths
 
 NOISE: Final = "--noise-position 0.001 --noise-velocity 0.02"
 RUNS: Final = (
@@ -78,7 +79,7 @@ def made(name: str, folder: Path) -> list[TrueLanding]:
         raise SystemExit(f"{name}: {answer.output}")
     with Bag(bag) as opened:
         told = [one.data for one in opened.messages({LANDING_TOPIC: DIAGNOSTIC_ARRAY})]
-    return [landing for data in told for landing in decode_true_landings(data)]
+    return [landing for data in told for landing in decode_truths(TrueLanding, data)]
 
 
 def main(arguments: list[str]) -> int:

@@ -44,7 +44,8 @@ from impact_predictor.prediction.walking.mechanism import ArticulatedMachine, tw
 from impact_predictor.report.table import Column, say, show, table_of
 from impact_predictor.ros.messages import JOINT_STATE, ODOMETRY
 from impact_predictor.ros.messages.inputs import decode_joints, decode_odometry
-from impact_predictor.scenarios.landing import LANDING_TOPIC, TrueLanding, decode_true_landings
+from impact_predictor.scenarios.landing import LANDING_TOPIC, TrueLanding
+from impact_predictor.scenarios.truth import decode_truths
 
 SLIPS: Final = 0.05
 RISES: Final = 0.01
@@ -102,7 +103,7 @@ def cases(bag_path: str) -> list[Case]:
             elif message.topic == "/joint_states":
                 joints.append(decode_joints(message.data))
             else:
-                landings += decode_true_landings(message.data)
+                landings += decode_truths(TrueLanding, message.data)
     found = []
     for landing in landings:
         k = bisect_right(bases, landing.stamp, key=lambda sample: sample.stamp) - 1

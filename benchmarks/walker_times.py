@@ -52,7 +52,8 @@ from impact_predictor.prediction.types import FeetStates, Geometry, Sample, Sche
 from impact_predictor.prediction.vectors import axes_of, to_world
 from impact_predictor.report.table import plain_table, show
 from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY, INPUT_TYPES
-from impact_predictor.scenarios.landing import LANDING_TOPIC, decode_true_landings
+from impact_predictor.scenarios.landing import LANDING_TOPIC, TrueLanding
+from impact_predictor.scenarios.truth import decode_truths
 
 ROOT: Final = Path(__file__).resolve().parents[1]
 PLAN: Final = ROOT / "examples/hyq/hyq.bag", "/xpp/state_des", "xpp_msgs/msg/RobotStateCartesian"
@@ -408,7 +409,7 @@ def recorded(bag_path: str, scene_path: str) -> Walk:
         wanted = {topic: kind for topic, (kind, _) in decoders.items()} | {LANDING_TOPIC: DIAGNOSTIC_ARRAY}
         for message in bag.messages({topic: kind for topic, kind in wanted.items() if topic in bag.topics()}):
             if message.topic == LANDING_TOPIC:
-                for landing in decode_true_landings(message.data):
+                for landing in decode_truths(TrueLanding, message.data):
                     landings[landing.foot].append(landing.stamp)
             else:
                 messages.append(decoders[message.topic][1](message.data))

@@ -91,14 +91,14 @@ class Run:
 
             self.comparison = Comparison(scenes, knows_impacts=knows_truth, knows_landings=knows_landings)
         if knows_landings and self.comparison is not None:
-            from ..scenarios.landing import LANDING_TOPIC, decode_true_landings
+            from ..scenarios.landing import LANDING_TOPIC, TrueLanding
 
-            self._takers[LANDING_TOPIC] = partial(_take_truth, self.comparison.landings, decode_true_landings)
+            self._takers[LANDING_TOPIC] = partial(_take_truth, self.comparison.landings, TrueLanding)
         if knows_truth and self.comparison is not None:
-            from ..scenarios.truth import ONSET_TOPIC, TRUTH_TOPIC, decode_true_impacts, decode_true_onsets
+            from ..scenarios.truth import ONSET_TOPIC, TRUTH_TOPIC, TrueImpact, TrueOnset
 
-            self._takers[TRUTH_TOPIC] = partial(_take_truth, self.comparison.impacts, decode_true_impacts)
-            self._takers[ONSET_TOPIC] = partial(_take_truth, self.comparison.onsets, decode_true_onsets)
+            self._takers[TRUTH_TOPIC] = partial(_take_truth, self.comparison.impacts, TrueImpact)
+            self._takers[ONSET_TOPIC] = partial(_take_truth, self.comparison.onsets, TrueOnset)
         if markers:
             from ..ros.markers.scene import MarkerScene
 
@@ -275,7 +275,9 @@ class Run:
                 self._write(f"{NODE}/markers", MARKER_ARRAY, log_time, data)
 
 
-def _take_truth(known: list[Any], decode: Callable[[bytes], Iterable[Any]], _: int, data: bytes) -> None:
+def _take_truth(known: list[Any], kind: type, _: int, data: bytes) -> None:
+    from ..scenarios.truth import decode_truths
+
     # What tells no truth there is another program's.
     with suppress(MalformedMessage):
-        known.extend(decode(data))
+        known.extend(decode_truths(kind, data))

@@ -27,7 +27,7 @@ from .landing import TrueLanding
 from .matching import LEAD_TIMES as LEAD_TIMES
 from .matching import NEAREST, Announcement, Match, Rows, match, truth_of
 from .matching import Truth as Truth
-from .truth import TrueImpact, TrueOnset, said_of
+from .truth import TrueImpact, TrueOnset
 
 if TYPE_CHECKING:
     from ..prediction.watch.watch import Report
@@ -195,7 +195,7 @@ class Comparison:
         found = {}
         for name in self._scenes:
             what = {impact.stamp: f"impact, {impact.mode.name}" for impact in impacts[name or alone]}
-            what |= {onset.stamp: said_of(onset) for onset in onsets[name or alone]}
+            what |= {onset.stamp: onset.said for onset in onsets[name or alone]}
             found[name] = {stamp: what[stamp] for stamp in events_of(what)}
         return found
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import heapq
 import os
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Final, NamedTuple
 
@@ -19,6 +19,7 @@ from ..prediction.types import Geometry
 from ..ros.cdr import diagnostic_array
 from ..ros.messages import DIAGNOSTIC_ARRAY, IMU, ODOMETRY, POLYGON, encode_imu, encode_odometry, encode_polygon
 from ..stamps import NANOSECONDS
+from .landing import LANDING_TOPIC, TrueLanding
 from .sensors import (
     AT_ONCE,
     FORWARD,
@@ -39,8 +40,7 @@ from .truth import (
     TRUTH_TOPIC,
     TrueImpact,
     TrueOnset,
-    encode_true_impact,
-    encode_true_onset,
+    encode_truth,
     true_impact,
 )
 from .wheel import RollEnd, Rolling
@@ -57,6 +57,8 @@ DECK: Final = "deck"
 
 WHEEL: Final = "wheel"
 """Frame of a wheel."""
+
+_TOPICS: Final[Mapping[type, str]] = {TrueImpact: TRUTH_TOPIC, TrueOnset: ONSET_TOPIC, TrueLanding: LANDING_TOPIC}
 
 REST: Final = 0.25
 """Seconds that are recorded of a body that has come to rest."""
@@ -172,13 +174,11 @@ def deck_messages(
     """The streams of messages of a deck and its units, each ordered by its log times.
 
     The deck's are on `/support/odom` or `/support/imu`, a unit's on `/<name>/odom` or `/<name>/imu` as its scene tells;
-    the unit of a scene file without bodies, `alone`, is on `/odom` or `/imu`. The topics of the truth begin with an
-    empty message: where nothing happened, that is the truth.
+    the unit of a scene file without bodies, `alone`, is on `/odom` or `/imu`.
     """
     watched = followed[0].unit.scene.deck or MovingDeck()
-    nothing = diagnostic_array(0, DECK, ())
     return [
-        iter([RecordedMessage(0, topic, DIAGNOSTIC_ARRAY, nothing) for topic in (TRUTH_TOPIC, ONSET_TOPIC)]),
+        nothing_happened((TRUTH_TOPIC, ONSET_TOPIC), DECK),
         _deck(deck, watched, duration, sensors),
         *(
             _unit(one, deck, "" if alone else f"/{one.unit.name}", duration, sensors, number)
@@ -198,7 +198,7 @@ def _messages_of(actor: Actor, namespace: str, rate: float) -> Iterator[Recorded
     stamps = [round(k * NANOSECONDS / rate) for k in range(actor.samples(rate))]
     odometer = Odometer(FRAME, actor.name)
     seen = _odometry(odometer, stamps, lambda times: poses(actor.world(times), FORWARD, Mount()), f"{namespace}/odom")
-    yield from _by_time(seen, _truth(actor.impacts, (), FRAME))
+    yield from _by_time(seen, truth_messages(actor.impacts, FRAME))
 
 
 def _odometry(
@@ -210,15 +210,17 @@ def _odometry(
             yield RecordedMessage(sample.stamp, topic, ODOMETRY, encode_odometry(sample))
 
 
-def _truth(impacts: Iterable[TrueImpact], onsets: Iterable[TrueOnset], frame: str) -> list[RecordedMessage]:
+def truth_messages(events: Iterable[TrueImpact | TrueOnset | TrueLanding], frame: str) -> list[RecordedMessage]:
     """The messages of what truly happened, in the order of their stamps."""
     messages = [
-        RecordedMessage(one.stamp, TRUTH_TOPIC, DIAGNOSTIC_ARRAY, encode_true_impact(one, frame)) for one in impacts
-    ]
-    messages += [
-        RecordedMessage(one.stamp, ONSET_TOPIC, DIAGNOSTIC_ARRAY, encode_true_onset(one, frame)) for one in onsets
+        RecordedMessage(one.stamp, _TOPICS[type(one)], DIAGNOSTIC_ARRAY, encode_truth(one, frame)) for one in events
     ]
     return sorted(messages, key=lambda message: message.log_time)
+
+
+def nothing_happened(topics: Iterable[str], frame: str) -> Iterator[RecordedMessage]:
+    """Empty messages with which topics of the truth begin: where no other follows, that is the truth."""
+    return iter([RecordedMessage(0, topic, DIAGNOSTIC_ARRAY, diagnostic_array(0, frame, ())) for topic in topics])
 
 
 def _deck(deck: DeckMotion, watched: MovingDeck, duration: float, sensors: Sensors) -> Iterator[RecordedMessage]:
@@ -254,7 +256,7 @@ def _unit(
             sensed = _odometry(odometer, stamps, seen, f"{namespace}/odom")
         elif source == "imu":
             sensed = _inertial(deck, span, stamps, inertial, f"{namespace}/imu", 0.5 / sensors.rate)
-        yield from _by_time(sensed, _truth(span.impacts, span.onsets, DECK))
+        yield from _by_time(sensed, truth_messages([*span.impacts, *span.onsets], DECK))
 
 
 def _in_world(deck: DeckMotion, span: Span, times: NDArray[np.float64]) -> Poses:

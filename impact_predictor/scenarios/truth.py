@@ -1,13 +1,15 @@
-"""Impacts as a scenario knows them, and the messages in which a bag carries them.
+"""Impacts and onsets as a scenario knows them, and the messages in which a bag carries such events.
 
 They travel on topics of their own, as diagnostic_msgs/DiagnosticArray, and are never an input of a prediction.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import cache
+from itertools import chain
 from math import cos, hypot, inf, sin
-from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeVar, get_args, get_type_hints
 
 from ..mechanics.impact import approach
 from ..mechanics.types import Mode, Outcome, TwoPointBody
@@ -17,15 +19,13 @@ from ..stamps import NANOSECONDS
 
 if TYPE_CHECKING:
     from ..mechanics.motion import RockingImpact
+    from .landing import TrueLanding
     from .sensors import MotionPlane
 
 TRUTH_TOPIC: Final = "/truth/impacts"
 ONSET_TOPIC: Final = "/truth/onsets"
 
 Happened = TypeVar("Happened")
-
-_VECTORS: Final = ("linear_before", "angular_before", "linear_after", "angular_after")
-_NUMBERS: Final = ("approach", "half_distance", "energy_lost", "border")
 
 
 class TrueImpact(NamedTuple):
@@ -52,6 +52,11 @@ class TrueImpact(NamedTuple):
     angular_after: Vector3
     border: float = inf
 
+    @property
+    def said(self) -> str:
+        """Its mode, in words."""
+        return self.mode.name
+
 
 class TrueOnset(NamedTuple):
     """The moment at which a body that stood still on its support begins to slide on it, to lift a contact, or both.
@@ -63,6 +68,11 @@ class TrueOnset(NamedTuple):
     body: str
     slides: bool
     lifts: bool
+
+    @property
+    def said(self) -> str:
+        """What the body begins to do, in words."""
+        return " and ".join(word for word, holds in (("slides", self.slides), ("lifts", self.lifts)) if holds)
 
 
 def true_impact(
@@ -122,72 +132,80 @@ def border_of(outcome: Outcome) -> float:
     return min(least, *[abs(one.change) / size for one in (found.center, found.height, found.reach)])
 
 
-def encode_true_impact(impact: TrueImpact, frame_id: str) -> bytes:
-    """A diagnostic_msgs/DiagnosticArray stamped with the impact; every number reads back as the same double."""
-    named = {"stamp": str(impact.stamp), "body": impact.body, "mode": impact.mode.name}
-    named |= {name: " ".join(map(str, getattr(impact, name))) for name in ("old", "new")}
-    named |= {name: repr(float(getattr(impact, name))) for name in _NUMBERS}
-    for name in _VECTORS:
-        named |= {f"{name}.{axis}": repr(float(part)) for axis, part in zip("xyz", getattr(impact, name), strict=True)}
-    status = diagnostic_status(OK, "truth/impact", impact.mode.name, impact.body, pairs_of(named))
-    return diagnostic_array(impact.stamp, frame_id, [status])
+def encode_truth(event: TrueImpact | TrueOnset | TrueLanding, frame_id: str) -> bytes:
+    """A diagnostic_msgs/DiagnosticArray stamped with the event; every number reads back as the same double."""
+    name = type(event).__name__.removeprefix("True").lower()
+    status = diagnostic_status(OK, f"truth/{name}", event.said, event.body, pairs_of(dict(_texts(event))))
+    return diagnostic_array(event.stamp, frame_id, [status])
 
 
-def decode_true_impacts(data: bytes) -> list[TrueImpact]:
-    """The impacts in the bytes of a diagnostic_msgs/DiagnosticArray.
+def decode_truths(kind: type[Happened], data: bytes) -> list[Happened]:
+    """The events of a kind in the bytes of a diagnostic_msgs/DiagnosticArray.
 
     Raises:
-        MalformedMessage: the bytes are no such message, or tell no impacts.
-    """
-    return truths_of(data, "impact", _impact)
-
-
-def truths_of(data: bytes, what: str, read: Callable[[dict[str, str]], Happened]) -> list[Happened]:
-    """What is read of the values of each status in the bytes of a diagnostic_msgs/DiagnosticArray.
-
-    Raises:
-        MalformedMessage: the bytes are no such message, or do not tell `what` they should.
+        MalformedMessage: the bytes are no such message, or do not tell what they should.
     """
     try:
-        return [read(status.values) for status in decode_diagnostic_array(data)]
+        return [_event(kind, status.values) for status in decode_diagnostic_array(data)]
     except (KeyError, ValueError) as error:
-        raise MalformedMessage(f"not a true {what}: {error}") from None
+        raise MalformedMessage(f"not a {kind.__name__}: {error}") from None
 
 
-def _impact(values: dict[str, str]) -> TrueImpact:
-    contacts = {name: tuple(map(int, values[name].split())) for name in ("old", "new")}
-    # Bags of older versions have no border.
-    numbers = {name: float({"border": "inf", **values}[name]) for name in _NUMBERS}
-    vectors = {name: tuple(float(values[f"{name}.{axis}"]) for axis in "xyz") for name in _VECTORS}
-    told: Any = {**contacts, **numbers, **vectors}
-    return TrueImpact(stamp=int(values["stamp"]), body=values["body"], mode=Mode[values["mode"]], **told)
+def _row(values: Iterable[float]) -> str:
+    return " ".join(repr(float(value)) for value in values)
 
 
-def said_of(onset: TrueOnset) -> str:
-    """What a body begins to do, in words."""
-    return " and ".join(word for word, holds in (("slides", onset.slides), ("lifts", onset.lifts)) if holds)
+def _numbers(text: str) -> tuple[float, ...]:
+    return tuple(map(float, text.split()))
 
 
-def encode_true_onset(onset: TrueOnset, frame_id: str) -> bytes:
-    """A diagnostic_msgs/DiagnosticArray stamped with the onset."""
-    values = {
-        "stamp": str(onset.stamp),
-        "body": onset.body,
-        "slides": "true" if onset.slides else "false",
-        "lifts": "true" if onset.lifts else "false",
-    }
-    status = diagnostic_status(OK, "truth/onset", said_of(onset), onset.body, pairs_of(values))
-    return diagnostic_array(onset.stamp, frame_id, [status])
+def _vectors(text: str) -> tuple[Vector3, ...]:
+    numbers = iter(_numbers(text))
+    return tuple(zip(numbers, numbers, numbers, strict=True))
 
 
-def decode_true_onsets(data: bytes) -> list[TrueOnset]:
-    """The onsets in the bytes of a diagnostic_msgs/DiagnosticArray.
+_TEXTS: Final[dict[Any, tuple[Callable[[Any], str], Callable[[str], Any]]]] = {
+    int: (str, int),
+    str: (str, str),
+    float: (lambda value: repr(float(value)), float),
+    bool: (lambda value: "true" if value else "false", "true".__eq__),
+    Mode: (lambda mode: str(mode.name), Mode.__getitem__),
+    tuple[int, ...]: (lambda row: " ".join(map(str, row)), lambda text: tuple(map(int, text.split()))),
+    tuple[str, ...]: (" ".join, lambda text: tuple(text.split())),
+    tuple[float, ...]: (_row, _numbers),
+    tuple[Vector3, ...]: (lambda rows: _row(chain.from_iterable(rows)), _vectors),
+}
+"""How the fields of an event are written and read, by their types. A vector has a key for each axis, and the records in
+a tuple have keys that begin with their places.
+"""
 
-    Raises:
-        MalformedMessage: the bytes are no such message, or tell no onsets.
-    """
-    return truths_of(data, "onset", _onset)
+_hints: Final[Callable[[Any], dict[str, Any]]] = cache(get_type_hints)
 
 
-def _onset(values: dict[str, str]) -> TrueOnset:
-    return TrueOnset(int(values["stamp"]), values["body"], values["slides"] == "true", values["lifts"] == "true")
+def _texts(told: Any, prefix: str = "") -> Iterator[tuple[str, str]]:
+    for name, hint in _hints(type(told)).items():
+        key, value = prefix + name, getattr(told, name)
+        if hint == Vector3:
+            yield from ((f"{key}.{axis}", repr(float(part))) for axis, part in zip("xyz", value, strict=True))
+        elif hint in _TEXTS:
+            yield key, _TEXTS[hint][0](value)
+        else:
+            for k, part in enumerate(value):
+                yield from _texts(part, f"{k}.")
+
+
+def _event(kind: Any, values: Mapping[str, str], prefix: str = "") -> Any:
+    found: dict[str, Any] = {}
+    for name, hint in _hints(kind).items():
+        key = prefix + name
+        if key in values:
+            found[name] = _vectors(values[key])[0] if hint == Vector3 else _TEXTS[hint][1](values[key])
+        elif hint == Vector3:
+            found[name] = tuple(float(values[f"{key}.{axis}"]) for axis in "xyz")
+        elif hint not in _TEXTS:
+            part, known = get_args(hint)[0], {other.partition(".")[0] for other in values}
+            count = next(k for k in range(len(known) + 1) if str(k) not in known)
+            found[name] = tuple(_event(part, values, f"{k}.") for k in range(max(1, count)))
+        elif name not in kind._field_defaults:  # bags of older versions have no border
+            raise KeyError(key)
+    return kind(**found)

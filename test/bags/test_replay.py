@@ -25,7 +25,7 @@ from impact_predictor.ros.messages import (
     decode_odometry,
     decode_polygon,
 )
-from impact_predictor.scenarios.truth import TRUTH_TOPIC, TrueImpact, encode_true_impact
+from impact_predictor.scenarios.truth import TRUTH_TOPIC, TrueImpact, encode_truth
 
 ROOT = Path(__file__).parents[2]
 END = 75_000_000_000
@@ -185,7 +185,7 @@ def test_true_impacts_in_a_bag_are_compared_and_change_no_prediction(
         TrueImpact(stamp, "cube", Mode.PIVOT, (0, 1), (2, 3), 1.0, 0.05, 0.1, (1.0, 0.0, 0.0), zero, zero, zero)
         for stamp in stamps
     ]
-    told = [BagMessage(TRUTH_TOPIC, one.stamp, encode_true_impact(one, "world")) for one in impacts]
+    told = [BagMessage(TRUTH_TOPIC, one.stamp, encode_truth(one, "world")) for one in impacts]
     other = BagMessage(TRUTH_TOPIC, told[0].log_time, b"of another program")
     both = sorted([*messages, *told, other], key=lambda message: message.log_time)
     known = write_bag(tmp_path / "known.mcap", both, {**WANTED, TRUTH_TOPIC: DIAGNOSTIC_ARRAY})

@@ -35,8 +35,7 @@ from impact_predictor.scenarios.truth import (
     TRUTH_TOPIC,
     TrueImpact,
     TrueOnset,
-    encode_true_impact,
-    encode_true_onset,
+    encode_truth,
 )
 
 NODE = "/impact_predictor"
@@ -194,7 +193,7 @@ def test_the_truth_is_compared_for_each_body_and_says_who_was_warned(
 
     def impact(stamp: int, body: str) -> BagMessage:
         true = TrueImpact(stamp, body, Mode.PIVOT, (0, 2), (1, 3), 0.5, 0.5, 0.1, (1.0, 0.0, 0.0), zero, zero, zero)
-        return BagMessage(TRUTH_TOPIC, stamp, encode_true_impact(true, "deck"))
+        return BagMessage(TRUTH_TOPIC, stamp, encode_truth(true, "deck"))
 
     onset = TrueOnset(stamp_of(560), "blind", slides=True, lifts=False)
     told = [
@@ -202,7 +201,7 @@ def test_the_truth_is_compared_for_each_body_and_says_who_was_warned(
         impact(second, "falling"),  # by its name
         impact(stamp_of(250), "crate_link"),
         impact(stamp_of(590), "blind"),
-        BagMessage(ONSET_TOPIC, onset.stamp, encode_true_onset(onset, "deck")),
+        BagMessage(ONSET_TOPIC, onset.stamp, encode_truth(onset, "deck")),
     ]
     messages = sorted([*recorded(), *told], key=lambda message: message.log_time)
     known = replay(write_bag(tmp_path / "known.mcap", messages, TYPES), scenes)

@@ -272,7 +272,7 @@ def landed(made: Comparison) -> list[tuple[str, int | None]]:
 
 def true_landing(foot: str, stamp: int) -> TrueLanding:
     state = LandingState(0.0, (0.0,) * 6, (), ((0.0, 0.0, -1.0),), ((0.0, 0.0, 0.0),))
-    return TrueLanding(stamp, "base", foot, (foot,), (), (0.0, 0.0, 1.0), before=state, after=(state,))
+    return TrueLanding(stamp, "base", foot, (foot,), (), (0.0, 0.0, 1.0), states=(state, state))
 
 
 def test_a_foot_lands_when_its_flag_rises_but_not_with_the_first_one() -> None:

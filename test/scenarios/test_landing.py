@@ -8,8 +8,8 @@ import pytest
 
 from impact_predictor.prediction.types import Vector3
 from impact_predictor.ros.messages import MalformedMessage
-from impact_predictor.scenarios.landing import LandingState, TrueLanding, decode_true_landings, encode_true_landing
-from impact_predictor.scenarios.truth import TrueOnset, encode_true_onset
+from impact_predictor.scenarios.landing import LandingState, TrueLanding
+from impact_predictor.scenarios.truth import TrueOnset, decode_truths, encode_truth
 
 FEET = ("LF", "RF", "LH", "RH")
 
@@ -32,26 +32,25 @@ def a_landing(seed: int) -> TrueLanding:
         feet=FEET,
         standing=rng.choice([(), ("RF",), ("LF", "RH")]),
         normal=vector(),
-        before=state(),
-        after=tuple([state() for _ in range(rng.randrange(1, 13))]),
+        states=tuple([state() for _ in range(rng.randrange(2, 14))]),
     )
 
 
 def test_a_landing_reads_back_as_it_was() -> None:
     for seed in range(100):
         landing = a_landing(seed)
-        assert decode_true_landings(encode_true_landing(landing, "world")) == [landing]
+        assert decode_truths(TrueLanding, encode_truth(landing, "world")) == [landing]
 
 
 def test_the_speed_of_a_landing_is_that_along_the_normal() -> None:
     landing = a_landing(1)._replace(foot="RF", normal=(0.6, 0.0, 0.8))
     velocities = ((9.0, 9.0, 9.0), (1.0, 5.0, -2.0), (9.0, 9.0, 9.0), (9.0, 9.0, 9.0))
-    assert landing._replace(before=landing.before._replace(velocities=velocities)).speed == pytest.approx(1.0)
+    assert landing._replace(states=(landing.before._replace(velocities=velocities),)).speed == pytest.approx(1.0)
 
 
 def test_what_tells_no_landing_is_malformed() -> None:
-    good = encode_true_landing(a_landing(1), "world")
-    onset = encode_true_onset(TrueOnset(1, "crate", slides=True, lifts=False), "deck")
+    good = encode_truth(a_landing(1), "world")
+    onset = encode_truth(TrueOnset(1, "crate", slides=True, lifts=False), "deck")
     for data in (b"", good[:-4], good.replace(b"stamp", b"stomp"), onset):
         with pytest.raises(MalformedMessage):
-            decode_true_landings(data)
+            decode_truths(TrueLanding, data)

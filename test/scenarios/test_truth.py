@@ -19,10 +19,8 @@ from impact_predictor.scenarios.truth import (
     TrueImpact,
     TrueOnset,
     border_of,
-    decode_true_impacts,
-    decode_true_onsets,
-    encode_true_impact,
-    encode_true_onset,
+    decode_truths,
+    encode_truth,
 )
 
 
@@ -52,33 +50,33 @@ def an_impact(seed: int) -> TrueImpact:
 def test_an_impact_reads_back_as_it_was() -> None:
     for seed in range(100):
         impact = an_impact(seed)
-        assert decode_true_impacts(encode_true_impact(impact, "world")) == [impact]
+        assert decode_truths(TrueImpact, encode_truth(impact, "world")) == [impact]
 
 
 def test_what_tells_no_impact_is_malformed() -> None:
-    good = encode_true_impact(an_impact(1), "world")
+    good = encode_truth(an_impact(1), "world")
     for data in (b"", good[:-4], encode_mode(Prediction(Status.ACCEPTED, SAMPLE)), good.replace(b"stamp", b"stomp")):
         with pytest.raises(MalformedMessage):
-            decode_true_impacts(data)
+            decode_truths(TrueImpact, data)
 
 
 def test_a_bag_without_borders_says_that_none_was_looked_for() -> None:
     impact = an_impact(2)
     # The key of another length would be another message.
-    data = encode_true_impact(impact, "world").replace(b"border", b"nobody")
-    assert decode_true_impacts(data) == [impact._replace(border=inf)]
+    data = encode_truth(impact, "world").replace(b"border", b"nobody")
+    assert decode_truths(TrueImpact, data) == [impact._replace(border=inf)]
 
 
 @pytest.mark.parametrize(("slides", "lifts"), [(True, False), (False, True), (True, True)])
 def test_an_onset_reads_back_as_it_was(slides: bool, lifts: bool) -> None:
     onset = TrueOnset(12_345_678_901, "crate", slides, lifts)
-    data = encode_true_onset(onset, "deck")
-    assert decode_true_onsets(data) == [onset]
+    data = encode_truth(onset, "deck")
+    assert decode_truths(TrueOnset, data) == [onset]
     (status,) = get_typestore(Stores.ROS2_JAZZY).deserialize_cdr(data, DIAGNOSTIC_ARRAY).status
     assert status.message == " and ".join(["slides"] * slides + ["lifts"] * lifts)
-    for broken in (b"", data[:-4], encode_true_impact(an_impact(1), "world")):
+    for broken in (b"", data[:-4], encode_truth(an_impact(1), "world")):
         with pytest.raises(MalformedMessage):
-            decode_true_onsets(broken)
+            decode_truths(TrueOnset, broken)
 
 
 def test_a_border_is_the_nearest_of_friction_and_geometry() -> None:

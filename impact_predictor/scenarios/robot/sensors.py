@@ -8,9 +8,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from ...prediction.types import FeetStates, Geometry, Joints, Sample, Schedule, Terrain, Vector3, Wrench
-from ...ros.cdr import diagnostic_array
 from ...ros.messages import (
-    DIAGNOSTIC_ARRAY,
     JOINT_STATE,
     JOINT_TRAJECTORY,
     MULTI_DOF_JOINT_STATE,
@@ -23,8 +21,9 @@ from ...ros.messages import (
 )
 from ...ros.messages.walker_inputs import encode_feet, encode_joints, encode_schedule, encode_terrain, encode_wrench
 from ...stamps import NANOSECONDS
-from ..landing import LANDING_TOPIC, TrueLanding, encode_true_landing
-from ..record import FRAME, RecordedMessage
+from ..landing import LANDING_TOPIC, TrueLanding
+from ..record import FRAME, RecordedMessage, nothing_happened, truth_messages
+from ..sensors import rotations, stamps_of
 from .description import Values
 from .walk import STANDS, RobotStates, Walk
 
@@ -61,18 +60,13 @@ def walk_messages(walk: Walk, landings: list[TrueLanding], sensors: WalkSensors)
     Feet and joints come before the base of the same stamp.
     """
     known = [_plan(walk), _terrain(walk)] if walk.ground.boxes else [_plan(walk)]
-    return [iter(_truth(landings)), iter(known), _sensed(walk, sensors)]
-
-
-def _truth(landings: list[TrueLanding]) -> list[RecordedMessage]:
-    nothing = diagnostic_array(0, FRAME, ())
-    told = [(landing.stamp, encode_true_landing(landing, FRAME)) for landing in landings]
-    return [RecordedMessage(stamp, LANDING_TOPIC, DIAGNOSTIC_ARRAY, data) for stamp, data in [(0, nothing), *told]]
+    truth = nothing_happened((LANDING_TOPIC,), FRAME), iter(truth_messages(landings, FRAME))
+    return [*truth, iter(known), _sensed(walk, sensors)]
 
 
 def _sensed(walk: Walk, sensors: WalkSensors) -> Iterator[RecordedMessage]:
     machine, rng = walk.machine, np.random.default_rng((sensors.seed, 1))
-    stamps = [round(k * NANOSECONDS / sensors.rate) for k in range(1 + int(walk.duration * sensors.rate + 1e-9))]
+    stamps = stamps_of(0.0, walk.duration, sensors.rate, last=True)
     times = np.array(stamps) / NANOSECONDS
     now, then = walk.states(times), walk.states(times - sensors.delay)
     points, velocities, forces = (part.reshape(len(times), -1, 3) for part in _relative(then))
@@ -119,18 +113,11 @@ def _sensed(walk: Walk, sensors: WalkSensors) -> Iterator[RecordedMessage]:
 
 def _relative(seen: RobotStates) -> tuple[Values, Values, Values]:
     """Positions and velocities of the points relative to the base, and their parts of the forces, along its axes."""
-    x, y, z, w = seen.orientation.T
-    axes = np.array(
-        [
-            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - z * w), 2.0 * (x * z + y * w)],
-            [2.0 * (x * y + z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - x * w)],
-            [2.0 * (x * z - y * w), 2.0 * (y * z + x * w), 1.0 - 2.0 * (x * x + y * y)],
-        ]
-    )
-    points = np.einsum("ijn,nfpi->nfpj", axes, seen.points - seen.position[:, None, None])
-    moved = np.einsum("ijn,nfpi->nfpj", axes, seen.point_velocities)
+    axes = rotations(seen.orientation)
+    points = np.einsum("nij,nfpi->nfpj", axes, seen.points - seen.position[:, None, None])
+    moved = np.einsum("nij,nfpi->nfpj", axes, seen.point_velocities)
     carried = seen.twist[:, None, None, :3] + np.cross(seen.twist[:, None, None, 3:], points)
-    pressed = np.einsum("ijn,nfi->nfj", axes, seen.forces)[:, :, None] / points.shape[2]
+    pressed = np.einsum("nij,nfi->nfj", axes, seen.forces)[:, :, None] / points.shape[2]
     return points, moved - carried, np.broadcast_to(pressed, points.shape)
 
 

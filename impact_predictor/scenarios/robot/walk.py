@@ -279,8 +279,7 @@ def _landing(walk: Walk, foot: int, step: int) -> TrueLanding:
         feet=feet,
         standing=tuple([name for k, name in enumerate(feet) if k != foot and loaded[:, k].mean() > 0.5]),
         normal=walk.ground.normal,
-        before=state(0, step)._replace(time=0.0),
-        after=tuple([state(k, mark) for k, mark in enumerate(marks, 1)]),
+        states=(state(0, step), *[state(k, mark) for k, mark in enumerate(marks, 1)]),
     )
 
 

@@ -27,7 +27,8 @@ from impact_predictor.scenarios.truth import (
     ONSET_TOPIC,
     TRUTH_TOPIC,
     TrueImpact,
-    decode_true_onsets,
+    TrueOnset,
+    decode_truths,
 )
 
 H = 1.0
@@ -159,7 +160,7 @@ def test_messages_are_ordered_and_the_truth_is_what_happened(tmp_path: Path) -> 
     onsets = [
         onset
         for message in read_messages(path, {ONSET_TOPIC: DIAGNOSTIC_ARRAY})
-        for onset in decode_true_onsets(message.data)
+        for onset in decode_truths(TrueOnset, message.data)
     ]
     assert onsets == sorted(onset for one in voyage.units for onset in one.onsets)
     assert len(onsets) > 0

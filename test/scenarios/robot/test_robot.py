@@ -14,7 +14,7 @@ from impact_predictor.parameters.file import read_values
 from impact_predictor.prediction.scene import scenes_of
 from impact_predictor.prediction.vectors import add, axes_of, to_world
 from impact_predictor.ros.messages import INPUT_TYPES
-from impact_predictor.scenarios.landing import LANDING_TOPIC, decode_true_landings
+from impact_predictor.scenarios.landing import LANDING_TOPIC, TrueLanding
 from impact_predictor.scenarios.record import write_messages
 from impact_predictor.scenarios.robot.description import RobotFiles, Sole
 from impact_predictor.scenarios.robot.gait import PlannedGait
@@ -23,6 +23,7 @@ from impact_predictor.scenarios.robot.machine import STEP, Machine, Physics
 from impact_predictor.scenarios.robot.scene import write_scene
 from impact_predictor.scenarios.robot.sensors import WalkSensors, walk_messages
 from impact_predictor.scenarios.robot.walk import STANDS, Walk, landings_of, walk
+from impact_predictor.scenarios.truth import decode_truths
 
 pytest.importorskip("mujoco", reason="needs the extra robot (make test-extras)")
 
@@ -157,7 +158,7 @@ def messages(run: Walk, **sensors: Any) -> dict[str, list[Any]]:
             if one.topic.strip("/") in INPUT_TYPES:
                 read.setdefault(one.topic[1:], []).append(INPUT_TYPES[one.topic[1:]].decode(one.data))
             elif one.topic == LANDING_TOPIC:
-                read.setdefault(one.topic, []).extend(decode_true_landings(one.data))
+                read.setdefault(one.topic, []).extend(decode_truths(TrueLanding, one.data))
     return read
 
 
