@@ -73,8 +73,10 @@ class DeviationScale:
     def learn(self, found: Iterable[tuple[float, float, float]]) -> None:
         """Take a landing: of some samples the time in s until then, its deviation as computed, and the true time."""
         bins: list[list[bool]] = [[] for _ in range(BINS)]
+        scales = [exp(one) for one in self._logarithm]
         for time, deviation, true in found:
-            bins[min(int(time / BIN), BINS - 1)].append(abs(time - true) > BEYOND * self.told(time, deviation))
+            k = min(int(time / BIN), BINS - 1)
+            bins[k].append(abs(time - true) > BEYOND * hypot(deviation * scales[k], UNSEEN))
         for k, ones in enumerate(bins):
             if ones:
                 count = self._count[k] = min(self._count[k] + 1.0, MEMORY)
