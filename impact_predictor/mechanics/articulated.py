@@ -71,8 +71,7 @@ class WholeBody:
         self._endless = [(i, joint.idx_q) for i, joint in enumerate(moving) if joint.nq == 2]
         # The base is at the origin and not turned, so that the model's world is its frame.
         self._q: NDArray[np.float64] = self._pinocchio.neutral(self._model)
-        self.armature: NDArray[np.float64] = np.zeros(len(self.joints))
-        self._inertia: NDArray[np.float64] | None = None
+        self.inertia: NDArray[np.float64] = np.zeros((self._model.nv, self._model.nv))
         self._joint = np.arange(6, self._model.nv)
         self._twists: NDArray[np.float64] = np.zeros((len(frames), 6, self._model.nv))
         self._arms: NDArray[np.float64] = np.zeros((len(frames), 3))
@@ -89,7 +88,6 @@ class WholeBody:
         for i, place in self._endless:
             self._q[place : place + 2] = np.cos(positions[i]), np.sin(positions[i])
         pinocchio, model, data = self._pinocchio, self._model, self._data
-        self._inertia = None
         pinocchio.computeJointJacobians(model, data, self._q)
         pinocchio.updateFramePlacements(model, data)
         aligned = pinocchio.ReferenceFrame.LOCAL_WORLD_ALIGNED
@@ -102,8 +100,10 @@ class WholeBody:
         self.jacobians = self._twists[:, :3].copy()
         if any(self.radii) or any(self._are_off):
             self._roll(self._arms + self._balls * np.array(down))
+        self.inertia = pinocchio.crba(model, data, self._q).copy()
         # A leg whose mass is at its end moves without mass where it is stretched, and only there.
-        return self._has_inverse()
+        pinocchio.cholesky.decompose(model, data)
+        return bool((SINGULAR * self.inertia.diagonal() < data.D).all())
 
     def _roll(self, arms: NDArray[np.float64]) -> None:
         """Put the contacts to the ends of some arms (k, 3): the lowest points of balls."""
@@ -111,19 +111,14 @@ class WholeBody:
         self.jacobians += (arms @ CROSSED).reshape(-1, 3, 3) @ self._twists[:, 3:]
 
     @property
-    def inertia(self) -> NDArray[np.float64]:
-        """M(q) with the armature, which only impacts want."""
-        if self._inertia is None:
-            self._inertia = self._pinocchio.crba(self._model, self._data, self._q).copy()
-            self._inertia[self._joint, self._joint] += self.armature
-        return self._inertia
+    def armature(self) -> NDArray[np.float64]:
+        """That of each joint, which the inertia has in it from the next place on."""
+        found: NDArray[np.float64] = self._model.armature[6:]
+        return found
 
-    def _has_inverse(self) -> bool:
-        try:
-            roots = np.linalg.cholesky(self.inertia).diagonal()
-        except np.linalg.LinAlgError:
-            return False
-        return bool((roots * roots > SINGULAR * self.inertia.diagonal()).all())
+    @armature.setter
+    def armature(self, values: NDArray[np.float64]) -> None:
+        self._model.armature = np.concatenate([np.zeros(6), values])
 
     def velocities(self, rates: NDArray[np.float64]) -> NDArray[np.float64]:
         """Velocities (k, 3) of the points relative to the base, by the `rates` of `joints` (rad/s or m/s)."""
