@@ -22,12 +22,12 @@ import click
 import numpy as np
 from compliant_cases import BODIES, FIRM, FIRMER, cases, difference, disputed, moving, place, velocities
 from compliant_impact import METHODS, STAYS, compliant_impact
+from compliant_motion import compliant_motion, damping_ratio
 from harmonic_deck import Wave, harmonic_support
 from rich.console import Console
 from rich.table import Table
 
 from impact_predictor.mechanics.bodies import cylinder, plate, rod
-from impact_predictor.mechanics.compliant import compliant_motion, damping_ratio
 from impact_predictor.mechanics.impact import see, solve_impact
 from impact_predictor.mechanics.impact.answer import mode_of
 from impact_predictor.mechanics.motion import rock, standing

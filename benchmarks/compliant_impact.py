@@ -21,10 +21,10 @@ from math import cos, hypot, inf, sin, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
+from compliant_motion import Compliance, damping_ratio, force
 from numpy.typing import NDArray
 from scipy import integrate
 
-from impact_predictor.mechanics.compliant import Compliance, damping_ratio, force
 from impact_predictor.mechanics.impact import see
 from impact_predictor.mechanics.impact.answer import mode_of
 from impact_predictor.mechanics.types import Contact, Mode, Twist, TwoPointBody, Vector

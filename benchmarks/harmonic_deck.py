@@ -8,6 +8,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from impact_predictor.mechanics.bodies import sine_and_cosine
+from impact_predictor.mechanics.motion import PlanarState
 from impact_predictor.mechanics.motion.support import MovingSupport, SupportMotion
 
 
@@ -36,3 +38,19 @@ def harmonic_support(
         return SupportMotion(angle=a, rate=da, acceleration=dda, x=px, y=py, vx=vx, vy=vy, ax=ax, ay=ay)
 
     return MovingSupport(motion, 2.0 * math.pi / fastest, gravity)
+
+
+def from_world(motion: SupportMotion, state: PlanarState) -> PlanarState:
+    """A state in the world's axes as one in a support's frame."""
+    x, y, angle, vx, vy, omega = state
+    sine, cosine = sine_and_cosine(motion.angle)
+    px, py = x - motion.x, y - motion.y
+    ux, uy = vx - motion.vx + motion.rate * py, vy - motion.vy - motion.rate * px
+    return PlanarState(
+        cosine * px + sine * py,
+        cosine * py - sine * px,
+        angle - motion.angle,
+        cosine * ux + sine * uy,
+        cosine * uy - sine * ux,
+        omega - motion.rate,
+    )

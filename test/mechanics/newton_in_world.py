@@ -10,12 +10,12 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from harmonic_deck import Wave, harmonic_support
+from harmonic_deck import Wave, from_world, harmonic_support
 from scipy.integrate import solve_ivp
 
 from impact_predictor import Contact, TwoPointBody
 from impact_predictor.mechanics.motion import PlanarState
-from impact_predictor.mechanics.motion.support import MovingSupport, Support, SupportMotion, from_world, in_world
+from impact_predictor.mechanics.motion.support import MovingSupport, Support, SupportMotion, in_world
 
 
 class Polygon(NamedTuple):

@@ -7,10 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from compliant_impact import compliant_impact
-from harmonic_deck import Wave, harmonic_support
-
-from impact_predictor import Contact, Mode, Twist, TwoPointBody, plate, solve_impact
-from impact_predictor.mechanics.compliant import (
+from compliant_motion import (
     PLASTIC,
     Compliance,
     compliant_motion,
@@ -18,6 +15,9 @@ from impact_predictor.mechanics.compliant import (
     force,
     restitution_of,
 )
+from harmonic_deck import Wave, harmonic_support
+
+from impact_predictor import Contact, Mode, Twist, TwoPointBody, plate, solve_impact
 from impact_predictor.mechanics.motion import rock, standing
 from impact_predictor.mechanics.motion.support import FixedSupport
 

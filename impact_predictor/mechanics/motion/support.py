@@ -247,22 +247,6 @@ def in_world(motion: SupportMotion, state: PlanarState) -> PlanarState:
     )
 
 
-def from_world(motion: SupportMotion, state: PlanarState) -> PlanarState:
-    """A state in the world's axes as one in a support's frame."""
-    x, y, angle, vx, vy, omega = state
-    sine, cosine = sine_and_cosine(motion.angle)
-    px, py = x - motion.x, y - motion.y
-    ux, uy = vx - motion.vx + motion.rate * py, vy - motion.vy - motion.rate * px
-    return PlanarState(
-        cosine * px + sine * py,
-        cosine * py - sine * px,
-        angle - motion.angle,
-        cosine * ux + sine * uy,
-        cosine * uy - sine * ux,
-        omega - motion.rate,
-    )
-
-
 def sampled_support(times: Any, angle: Any, x: Any, y: Any, gravity: float = 9.81) -> MovingSupport:
     """A support measured at `times` (n,) in s: angle (n,) in rad, CCW, and origin x, y (n,) in m.
 

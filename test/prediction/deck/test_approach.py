@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
-from harmonic_deck import Wave, harmonic_support
+from harmonic_deck import Wave, from_world, harmonic_support
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from newton_in_world import newton
@@ -23,7 +23,7 @@ from scipy.spatial.transform import Rotation
 
 from impact_predictor import Contact, InputError, TwoPointBody, cylinder, plate, solve_impact
 from impact_predictor.mechanics.motion import PlanarState, rock, standing
-from impact_predictor.mechanics.motion.support import MovingSupport, SupportMotion, from_world, in_world
+from impact_predictor.mechanics.motion.support import MovingSupport, SupportMotion, in_world
 from impact_predictor.mechanics.types import Outcome, Twist
 from impact_predictor.prediction.deck.frame import post_impact
 from impact_predictor.prediction.deck.motion import ahead as constant

@@ -20,13 +20,14 @@ from math import acos, acosh, cos, exp, hypot, sin, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
+from harmonic_deck import from_world
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from .motion import PlanarState
-from .motion.support import FixedSupport, Support, from_world, in_world
-from .types import Contact, TwoPointBody, Vector
+from impact_predictor.mechanics.motion import PlanarState
+from impact_predictor.mechanics.motion.support import FixedSupport, Support, in_world
+from impact_predictor.mechanics.types import Contact, TwoPointBody, Vector
 
 PLASTIC = 1e-3
 """The restitution that a contact without any gets: its damping is 15.7 times the critical one."""
