@@ -75,10 +75,10 @@ def braked_course(frames: Sequence[PointFrame], first: int, noise: GapNoise, uns
         after = RateLine(rates[k + 1 : max(k + 3, min(last, k + 1 + count))])
         turns = after.slope - before.slope
         drop = turns * turns / (1.0 / before.spread + 1.0 / after.spread)
-        if drop <= most or turns <= 0.0:
-            continue
         freedom = max(1, before.count + after.count - 4)
         square = max(deviation * deviation, (before.left + after.left) / freedom)
+        if drop <= most * square or turns <= 0.0:
+            continue
         met = (before.rate(0.0) - after.rate(0.0) + BOW * speed) / turns
         late = sqrt(square * (before.doubt(met) + after.doubt(met))) / turns
         # Drives brake ever more.
@@ -91,7 +91,7 @@ def braked_course(frames: Sequence[PointFrame], first: int, noise: GapNoise, uns
         lasts, slow = rates[end][0] - met, YIELDING * speed + deviation
         stops = rates[last][1] < after.rate(rates[last][0]) + slow and rates[end - (end - k) // 4][1] > -slow
         if stops and STOPS * apart <= lasts <= STOPS * speed / after.slope:
-            most, best = drop, BrakedCourse(frames[0].stamp + round(met * NANOSECONDS), speed, late)
+            most, best = drop / square, BrakedCourse(frames[0].stamp + round(met * NANOSECONDS), speed, late)
     return best
 
 

@@ -48,6 +48,7 @@ class FootPoint:
         self._stopped: int | None = None  # stamp in ns at which it broke off its descent, and has rested since
         self._has_moved = self._near = False
         self._arriving: ArrivalFit | None = None
+        self._edge: tuple[Arrival, PointFrame] | None = None  # it was stopped there, and has slipped off since
         self._foothold: Foothold | None = None
         self._standing: deque[PointFrame] = deque()
 
@@ -95,7 +96,12 @@ class FootPoint:
         near = self._near = off <= tolerance
         if self.stands and off < -tolerance and falls(trajectory.last(2), self._slow, ground.noise):
             near = False  # It has slipped off an edge.
+        stopped, arriving = self._stopped, self._arriving
         rests = None if self.stands else self._rests(near, ground, base, alone)
+        if stopped is not None and self._stopped is None and arriving is not None and self._edge is None:
+            self._edge = arriving.arrival(ground.depth), trajectory.frames[-2]
+        elif self._edge is not None and frame.gap > self._edge[1].gap + tolerance:
+            self._edge = None
         changed = self._changes(near, rests, level, ground)
         self._arrive(level, ground, rests, changed)
         if not self.stands:
@@ -107,10 +113,14 @@ class FootPoint:
         landed = changed and self._has_moved
         if landed and self._arriving is not None:
             self.arrival = self._arriving.arrival(ground.depth)
+            if self._edge is None:
+                announcement.learn(self.arrival.stamp, trajectory.frames[-self.arrival.age], ground)
+            else:
+                # It has landed on an edge then, and come further down without having left the ground.
+                self.arrival = self._slipped(*self._edge)
             self.since = self.arrival.stamp
-            announcement.learn(self.since, trajectory.frames[-self.arrival.age], ground)
         if changed:
-            self._arriving = self._stopped = None
+            self._arriving = self._stopped = self._edge = None
             announcement.end()
             trajectory.rest()
         if self._foothold is None:
@@ -201,6 +211,11 @@ class FootPoint:
             return False
         self.stands, self._other = not self.stands, None
         return True
+
+    def _slipped(self, arrival: Arrival, last: PointFrame) -> Arrival:
+        """An arrival at an edge, which was told when a `last` frame came in; its height is not that of the foothold."""
+        later = sum(1 for frame in self.trajectory.frames if frame.stamp > last.stamp)
+        return arrival._replace(age=min(arrival.age + later, len(self.trajectory.frames)), height=None)
 
     def _left(self, level: GroundLevel, noise: GapNoise) -> int:
         """The stamp in ns of the last frame in which the point was on the ground: the tolerance is left later."""

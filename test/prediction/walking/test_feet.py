@@ -320,6 +320,25 @@ def test_in_noise_feet_land_on_soft_ground_once_each_and_when_they_touch_it(time
     assert np.max(np.abs(late)) < 15.0
 
 
+@pytest.mark.parametrize("rises", [0.0, 0.02])
+def test_a_foot_that_slips_off_an_edge_has_landed_there_unless_it_rises_in_between(rises: float) -> None:
+    def course(time: float) -> tuple[float, float]:
+        if time < 0.6:
+            gap, rate = swing(0.3, 0.6, speed=0.6)(time)
+            return gap + 0.03 * min(1.0, max(0.0, (time - 0.3) / 0.05)), rate
+        if time < 0.615:
+            return 0.03, 0.0
+        # It comes further down in 0.06 s, evenly or over a hop.
+        part = (time - 0.615) / 0.06
+        hop = 4.0 * rises * part * (1.0 - part)
+        return (
+            (0.03 * (1.0 - part) + hop, (4.0 * rises * (1.0 - 2.0 * part) - 0.03) / 0.06) if part < 1.0 else (0.0, 0.0)
+        )
+
+    (score,) = walk(machine(), record([course, stands, stands, stands], 0.9)).scores
+    assert score.stamp == pytest.approx(START + (675 if rises else 600) * MS, abs=2.0 * MS)
+
+
 def test_a_landing_that_was_not_announced_is_told_without_a_history() -> None:
     def drops(time: float) -> tuple[float, float]:
         if not 0.3 < time < 0.5:
