@@ -37,8 +37,11 @@ def lines(times: Sequence[float], columns: Iterable[Sequence[float]]) -> list[tu
     middle = total(times) / count
     arms = [time - middle for time in times]
     spread = total(map(operator.mul, arms, arms))
-    slopes = [(column, total(map(operator.mul, arms, column)) / spread) for column in columns]
-    return [(total(column) / count - middle * slope, slope) for column, slope in slopes]
+    found = []
+    for column in columns:
+        slope = total(map(operator.mul, arms, column)) / spread
+        found.append((total(column) / count - middle * slope, slope))
+    return found
 
 
 def dot(u: Vector3, v: Vector3) -> float:

@@ -204,7 +204,8 @@ class LeadTimeErrors:
         """What is to be taken off a time in s until a landing."""
         x = max(0.0, time / BIN - 0.5)
         k = min(int(x), BINS - 1)
-        return self._shrunk(k) + min(x - k, 1.0) * (self._shrunk(min(k + 1, BINS - 1)) - self._shrunk(k))
+        here = self._shrunk(k)
+        return here + min(x - k, 1.0) * (self._shrunk(min(k + 1, BINS - 1)) - here)
 
     def scale(self, time: float) -> float:
         """What the variance of a time in s until a landing is to be multiplied by."""

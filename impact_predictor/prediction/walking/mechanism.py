@@ -102,8 +102,8 @@ def _line(twists: Sequence[tuple[int, tuple[float, ...]]]) -> TwistLine | None:
     if len(twists) < FEWEST or twists[-1][0] - twists[0][0] < LEAST_SPAN:
         return None
     ages = [(stamp - twists[-1][0]) / NANOSECONDS for stamp, _ in twists]
-    found = lines(ages, zip(*[twist for _, twist in twists], strict=True))
-    return tuple([now for now, _ in found]), tuple([rate for _, rate in found])
+    now, rates = zip(*lines(ages, zip(*[twist for _, twist in twists], strict=True)), strict=True)
+    return now, rates
 
 
 def twist_of(sample: Sample) -> tuple[float, ...]:
