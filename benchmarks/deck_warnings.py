@@ -1,11 +1,12 @@
 """How early and how often the watch over a deck warns, in eight seas, beside what simple rules would do.
 
-    python benchmarks/deck_warnings.py [--hours 0.35] [--jobs 2]
+    python benchmarks/deck_warnings.py [--hours 0.4] [--seed 3000] [--jobs 2]
 
 A ship of 60 m meets seas of 6 to 14 s from the side, the quarter and ahead. Six units stand on its deck, as rough or as
 broad below as their events are to come about so often; two of them never use more than 0.7 of their margins. They move
 in three dimensions on springs and friction, which share no rule with the watch. Deck and units are measured 20 times a
-second, with and without noise, recorded and replayed. The simple rules have the margins that the watch measures.
+second, with and without noise, recorded and replayed. The simple rules have the margins that the watch measures. The
+watch's thresholds were chosen on the seeds 100 to 107.
 """
 
 from __future__ import annotations
@@ -133,16 +134,17 @@ class Course(NamedTuple):
     errors: list[float]
 
 
-def courses(task: tuple[int, float, bool]) -> list[Course]:
+def courses(task: tuple[int, float, bool, int]) -> list[Course]:
     """All units in a sea, by the watch and by each rule."""
-    number, seconds, noisy = task
+    number, seconds, noisy, seed = task
     sea = SEAS[number]
-    waves = waves_of(SeaState(sea.height, sea.period), number)
+    seed += number
+    waves = waves_of(SeaState(sea.height, sea.period), seed)
     vessel = Vessel(60.0, 12.0, 3.5, sea.roll, 0.1, 4.0)
-    deck = deck_in(waves, vessel, directions(waves, sea.heading, sea.spread, number))
+    deck = deck_in(waves, vessel, directions(waves, sea.heading, sea.spread, seed))
     times = np.arange(0.0, seconds, 0.1)
     scenes = {unit.name: scene_of(unit, deck, times, noisy) for unit in UNITS}
-    sensors = Sensors(RATE, RATE, NOISE if noisy else NO_NOISE, number)
+    sensors = Sensors(RATE, RATE, NOISE if noisy else NO_NOISE, seed)
     with TemporaryDirectory() as folder:
         bag = Path(folder) / "sea.mcap"
         sail(scenes, deck, seconds, "compliant", bag, sensors, restand=30.0)
@@ -218,13 +220,14 @@ def score(rule: str, found: list[Course]) -> Score:
 
 
 @click.command()
-@click.option("--hours", default=0.35, show_default=True, help="Of each sea.")
+@click.option("--hours", default=0.4, show_default=True, help="Of each sea.")
+@click.option("--seed", default=3000, show_default=True, help="Of the first sea; each has the next one.")
 @click.option("--jobs", default=2, show_default=True, help="Seas at once.")
-def main(hours: float, jobs: int) -> None:
+def main(hours: float, seed: int, jobs: int) -> None:
     """Print the table."""
     # The pool is as many threads as there are to be: more would wait for each other.
     os.environ["OMP_NUM_THREADS"] = "1"
-    tasks = list(product(range(len(SEAS)), [3600.0 * hours], (False, True)))
+    tasks = list(product(range(len(SEAS)), [3600.0 * hours], (False, True), [seed]))
     with ProcessPoolExecutor(jobs, get_context("spawn")) as pool:
         found = [course for part in pool.map(courses, tasks) for course in part]
     columns = [

@@ -200,7 +200,7 @@ class Monitor:
             return status
         self._doubted = False
         if status is Status.ACCEPTED and last is not None:
-            watch.update_support(last, 0.0 if self.deck is None else self.deck.error)
+            watch.update_support(last, (0.0, 0.0) if self.deck is None else self.deck.errors)
         elif status is Status.ACCEPTED:
             self._unknown = Status.NO_SUPPORT
             watch.support_lost(Status.NO_SUPPORT, stamp)

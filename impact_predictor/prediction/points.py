@@ -163,7 +163,7 @@ class PointContacts(Contacts):
 
     @property
     def slack(self) -> float:
-        is_guessed = self._moment is not None and self.scene.tolerance == 0.0 and not self.scatter.is_known
+        is_guessed = self._moment is not None and not self.scatter.is_known
         return GUESS * self.size if is_guessed else self.scatter.gap
 
     def doubts(self) -> tuple[str, ...]:
@@ -207,7 +207,7 @@ class PointContacts(Contacts):
     def _place_of(self, sample: Sample, posture: Posture) -> Status:
         """Whether a body can be where it is seen on a moving support."""
         scene, lowest = self.scene, min(posture.gaps)
-        if lowest < -(DEEP * self.size + DEEP_TOLERANCES * scene.tolerance):
+        if lowest < -(DEEP * self.size + DEEP_TOLERANCES * max(scene.tolerance, self.slack)):
             return Status.BELOW_SUPPORT
         if lowest > HIGH * self.size:
             return Status.OFF_SUPPORT

@@ -97,7 +97,7 @@ class Watching(NamedTuple):
     hysteresis: float = 0.1
     hold: float = 5.0
     horizon: float = 10.0
-    vain: float = 0.6
+    vain: float = 0.4
 
 
 class Lashing(NamedTuple):

@@ -342,11 +342,11 @@ def test_a_moving_support_and_a_watch_reach_the_scene() -> None:
         "onset.hysteresis": 0.2,
         "onset.hold": 3.0,
         "onset.horizon": 12.0,
-        "onset.vain": 0.4,
+        "onset.vain": 0.3,
     }
     (scene,) = scenes_of(validate({**BODY, **given})).values()
     assert scene.deck == MovingDeck("imu", (1.0, 2.0, 3.0), 0.1, 0.4, (-1.0, 1.0, -2.0, 2.0))
-    assert scene.watching == Watching(0.5, 0.9, 0.2, 3.0, 12.0, 0.4)
+    assert scene.watching == Watching(0.5, 0.9, 0.2, 3.0, 12.0, 0.3)
 
 
 def test_the_defaults_of_a_moving_support_and_of_a_watch_are_those_of_their_types() -> None:

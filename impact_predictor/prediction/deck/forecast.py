@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Sequence
 from enum import Enum
+from functools import cache
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -25,11 +26,15 @@ from .motion import NOWHERE, MeanMotion, SupportState
 STEP = 250_000_000  # ns between two rows
 SECONDS = STEP / NANOSECONDS
 ORDER = 32  # rows that tell the next one: 8 s
-REACH = 63  # rows ahead, with those that cubics need beside them: 15 s
+HALVES: Final = 2, 8  # rows on each side of a cubic, at least and at most
+REACH = 61 + HALVES[1]  # rows ahead, with those that cubics need beside them: 15 s
 MEMORY = 4800  # rows after which the past counts 1/e: twenty minutes
 REFIT = 40  # rows between two fits
-RIDGE = 2e-5
-"""Of each channel's variance, added to it: what is fitted below that is noise."""
+RIDGE = 5.0
+"""Rows of each channel's variance, added where the row ahead is not told at all, and as much less as less of it is not:
+few noisy rows would be fitted by their noise."""
+
+ROUNDING = 1e-6  # of each channel's variance, added to it in any case
 
 LEAST = 1e-4
 """Standard deviation (SI units) below which a channel is at rest."""
@@ -154,6 +159,7 @@ class WaveForecast:
         self._bounds = np.zeros(width), np.zeros(width)
         self._courses: deque[NDArray[np.float64]] = deque(maxlen=COURSES)
         self._squares: deque[NDArray[np.float64]] = deque(maxlen=COURSES)
+        self._half = HALVES[0]
         self.skills: dict[str, ForecastSkill] = {}
         """What became of the forecasts of the last minutes, of what is `felt`, `roll` and `pitch`; none until there are
         enough.
@@ -179,8 +185,9 @@ class WaveForecast:
         is_worse = felt.skill[_DECIDES] <= 0.0 and felt.forecast[_DECIDES] > LEAST
         return ForecastStatus.NO_SKILL if is_worse else ForecastStatus.TRUSTED
 
-    def add(self, state: SupportState) -> None:
-        """Take the next state."""
+    def add(self, state: SupportState, window: float = 0.0) -> None:
+        """Take the next state, and the window in s in which its acceleration is found with the least error."""
+        self._half = min(max(HALVES[0], round(window / SECONDS)), HALVES[1])
         self._axes = state.axes
         last, now = self._last, self._channels(state)
         self._last = state.stamp, now
@@ -202,12 +209,12 @@ class WaveForecast:
     def outlook(self, stamp: int) -> DeckOutlook:
         """The courses from a stamp in ns, not before that of the last state."""
         errors = np.array(self._courses)
-        rows = np.concatenate([self._rows[-2:], self._forecast()]) + self._origin
+        rows = np.concatenate([self._rows[-self._half :], self._forecast()]) + self._origin
         # An error may as well have been the other way: so a few courses go further.
-        errors = np.concatenate([np.zeros((len(errors), 2, self._width)), errors], axis=1)
+        errors = np.concatenate([np.zeros((len(errors), self._half, self._width)), errors], axis=1)
         felt = self._felt(np.concatenate([rows + errors, rows - errors]))
         begin = (self._tick * STEP - stamp) / NANOSECONDS
-        times = np.array([begin + SECONDS * k for k in range(REACH - 1)])
+        times = np.array([begin + SECONDS * k for k in range(REACH + 1 - self._half)])
         # The slope at the end of the last row has the noise of its measurement.
         first = int(np.searchsorted(times, 0.0, side="right"))
         gravity, angular, turning, angles = felt
@@ -226,15 +233,20 @@ class WaveForecast:
         return np.array((*to_body(axes, self._gravity)[:2], *state.angular, *to_body(axes, state.velocity)))
 
     def _felt(self, rows: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
-        """Gravity felt, angular velocity and its derivative, each (n, t - 3, 3), and roll and pitch (n, t - 3, 2), in
-        courses of rows (n, t, width): at the ends of all rows but the first and the last two. Where gravity itself is
-        no channel the angles begin with those at which it turns.
+        """Gravity felt, angular velocity and its derivative, each (n, t + 1 - 2 half, 3), and roll and pitch
+        (n, .., 2), in courses of rows (n, t, width): at the ends of the rows that have `half` of them on each side.
+        Where gravity itself is no channel the angles begin with those at which it turns.
 
-        A mean over a step hides what waves do within it: cubics with the means of four are the motion and its slope.
+        A mean over a step hides what waves do within it: cubics with the means of the rows are the motion and its
+        slope. Where rows are noisy they are longer ones of least squares, as what a slope makes of noise would use up
+        margins.
         """
-        before, left, right, after = [rows[:, k : rows.shape[1] - 3 + k] for k in range(4)]
-        there = (7.0 * (left + right) - (before + after)) / 12.0
-        slopes = (15.0 * (right - left) - (after - before)) / (12.0 * SECONDS)
+        half = self._half
+        count = rows.shape[1] + 1 - 2 * half
+        there = slopes = np.zeros(1)
+        for k, (value, slope) in enumerate(_cubic(half)):
+            left, right = (rows[:, at : at + count] for at in (half - 1 - k, half + k))
+            there, slopes = there + value * (right + left), slopes + slope * (right - left)
         start = 3 if self._is_felt else 2
         angular, turning = (part[:, :, start : start + 3] for part in (there, slopes))
         if self._is_felt:
@@ -286,7 +298,7 @@ class WaveForecast:
     def _compare(self, told: NDArray[np.float64]) -> None:
         """Learn what a forecast was worth, now that what it told has come."""
         assert self._origin is not None
-        begin, came = np.split(self._rows[-REACH - 2 :], [2])
+        begin, came = np.split(self._rows[-REACH - self._half :], [self._half])
         found = [self._felt(np.concatenate([begin, rows])[None] + self._origin) for rows in (came, told)]
         came, told = (np.concatenate([gravity[0], angles[0]], axis=1) for gravity, _, _, angles in found)
         there = came[_ROWS]
@@ -304,12 +316,14 @@ class WaveForecast:
         lags = np.lib.stride_tricks.sliding_window_view(new[:-1], ORDER, axis=0)
         told[:, :-1] = lags[:, :, ::-1].swapaxes(1, 2).reshape(count, -1)
         fades = np.exp(-count / MEMORY)
+        missed = new[ORDER:] - (0.0 if self._factors is None else told @ self._factors)
         self._square = fades * self._square + told.T @ told
         self._right = fades * self._right + told.T @ new[ORDER:]
         weight = self._square[-1, -1]
         means = self._square[-1, :-1] / weight
         variances = np.maximum(np.diagonal(self._square)[:-1] / weight - np.square(means), LEAST * LEAST)
-        ridge = RIDGE * weight * variances
+        untold = min(1.0, float((np.square(missed).mean(axis=0) / variances[:width]).mean()))
+        ridge = (RIDGE * untold + ROUNDING * weight) * variances
         reach = FURTHEST * np.sqrt(variances[:width])
         self._bounds = means[:width] - reach, means[:width] + reach
         try:
@@ -317,3 +331,13 @@ class WaveForecast:
         except np.linalg.LinAlgError:  # numbers so large that rounding is more than the ridge
             factors = np.full(self._right.shape, np.nan)
         self._factors = np.asarray(factors) if np.isfinite(factors).all() else None
+
+
+@cache
+def _cubic(half: int) -> list[tuple[float, float]]:
+    """What rows count in the value and the slope of their cubic between the middle ones: those on the right, from there
+    on; those on the left count as much, in the slope against it.
+    """
+    ends = np.arange(-half, half + 1.0)[:, None] ** np.arange(1, 5)
+    fit = np.linalg.pinv(np.diff(ends, axis=0) / np.arange(1, 5))[:2, half:]
+    return [(value, slope / SECONDS) for value, slope in fit.T.tolist()]

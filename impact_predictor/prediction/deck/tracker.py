@@ -161,10 +161,13 @@ class Deck:
         return self._before
 
     @property
-    def error(self) -> float:
-        """What the felt gravity errs by, in m/s^2, as root mean square of an axis; 0 while its noise is not known."""
-        balance = self._linear.balance
-        return balance.error(self._linear.span) if balance.is_known else 0.0
+    def errors(self) -> tuple[float, float]:
+        """What the felt gravity (m/s^2) and the angular acceleration (rad/s^2) err by, as root mean squares of an axis;
+        0 while their noise is not known.
+        """
+        linear, angular = self._linear, self._angular
+        first, second = (each.balance.error(each.span) if each.balance.is_known else 0.0 for each in (linear, angular))
+        return first, second
 
     @property
     def window(self) -> float:
@@ -279,7 +282,7 @@ class Deck:
         while history[0].stamp < oldest:
             history.popleft()
         if self._waves is not None:
-            self._waves.add(known)
+            self._waves.add(known, self.window)
         return Status.ACCEPTED if state is Status.NO_SUPPORT else state
 
     def _keeps_coming(self, stamp: int, last: int) -> bool:
@@ -310,11 +313,12 @@ class JumpDetector:
 
     Pose after pose is led on by the mean of both twists; a twist is expected to stay. What noise and the support's
     motion make of that is learnt from every step, so that a rough source is trusted too, up to the `most` of each
-    quantity.
+    quantity, which the first step may have.
     """
 
     def __init__(self) -> None:
-        self._squares = [(least / FACTOR) ** 2 for least, _, _, _ in BOUNDS]
+        self._squares = [(most / FACTOR) ** 2 for _, most, _, _ in BOUNDS]
+        self._steps = 0
 
     def follows(self, before: SupportState, now: SupportState) -> bool:
         """Whether a message follows from the one before; it is learnt from in any case."""
@@ -325,11 +329,13 @@ class JumpDetector:
         turned = add(rotated, add(now.angular, before.angular), -half)
         accelerated, spun = add(now.velocity, before.velocity, -1.0), add(now.angular, before.angular, -1.0)
         squares, follows = self._squares, True
+        self._steps += 1
+        part = max(MEMORY, 1.0 / self._steps)
         errors = moved, turned, accelerated, spun
         for i, ((least, most, slam, power), error) in enumerate(zip(BOUNDS, errors, strict=True)):
             square = dot(error, error)
             noise = min(max(FACTOR * squares[i] ** 0.5, least), most)
             if square > (noise + slam * time**power) ** 2:
                 follows = False
-            squares[i] += MEMORY * (min(square, most * most) - squares[i])
+            squares[i] += part * (min(square, most * most) - squares[i])
         return follows

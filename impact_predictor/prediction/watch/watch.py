@@ -53,14 +53,19 @@ FORECAST_EVERY: Final = 500_000_000  # ns from one look ahead to the next
 
 _NO_FORECAST: Final = {f"felt{kind}.{lead:g}_s": UNKNOWN for lead in LEADS for kind in ("", ".deviation")}
 
-IMMINENT: Final = 1.0
+IMMINENT: Final = 1.5
 """s: the level is ERROR when the onset is likelier than not within so long."""
+
+CLOSE: Final = 3.0
+CLOSELY: Final = 1.0 / 6.0
+"""An onset within so many s is warned of where it is so many times as likely as one within the horizon must be: there
+is no time to wait until it is surer."""
 
 SURE: Final = 3.0
 """Standard deviations by which a margin is used up beyond doubt: noise alone passes thresholds that the deck nears."""
 
-STANDS: Final = 0.25
-"""A warning stands while the onset is so many times as likely as one must be that raises it."""
+STANDS: Final = 0.1
+"""A warning stands while the onset is so many times as likely as one that raises it: a group of waves is one."""
 
 
 class Report(NamedTuple):
@@ -113,8 +118,8 @@ class Watch:
         self._begun = False
         self._lose(Status.NO_SUPPORT)
 
-    def update_support(self, moment: Moment, error: float = 0.0) -> None:
-        """Take the support's motion now, and what its felt gravity errs by in m/s^2."""
+    def update_support(self, moment: Moment, errors: tuple[float, float] = (0.0, 0.0)) -> None:
+        """Take the support's motion now; its felt gravity (m/s^2) and angular acceleration (rad/s^2) have `errors`."""
         self._go_on(moment.stamp)
         judged = self._judged
         known, self._support = self._support is Status.ACCEPTED, Status.ACCEPTED
@@ -138,10 +143,10 @@ class Watch:
                 one.status is Status.ACCEPTED and one.standing.motion is BodyMotion.STANDS for one in self._bodies
             ]
             needed, counts = margins.slide * self._friction, np.array(stands) & (margins.slide < FULL)
-            self._slips.update(moment.stamp, needed, counts, error)
+            self._slips.update(moment.stamp, needed, counts, errors[0])
         if self._looked is None or not 0 <= moment.stamp - self._looked < FORECAST_EVERY:
             self._look_ahead(moment.stamp)
-            self._scatter = self._shaken(error)
+            self._scatter = self._shaken(errors)
         for watched in self._bodies:
             watched.check_silence(moment.stamp, self._timeout)
         self._judge()
@@ -261,8 +266,9 @@ class Watch:
         # The course of so many from which on the onset is as likely as one that is warned of.
         due = np.maximum(np.ceil(self._likely * courses).astype(int) - 1, 0)
         self._time_to_tip, self._time_to_slide = [np.sort(times)[np.arange(bodies), due] for times in found]
+        close = (either <= CLOSE).mean(axis=1) >= CLOSELY * self._likely
         stands = (self._levels.ranks >= WARN) & (self._chance >= STANDS * self._likely)
-        self._due = np.where((self._chance >= self._likely) | stands, WARN, OK)
+        self._due = np.where((self._chance >= self._likely) | close | stands, WARN, OK)
         if ahead.is_learnt:
             self._due[(either <= IMMINENT).mean(axis=1) > 0.5] = ERROR
 
@@ -276,13 +282,14 @@ class Watch:
         said = [["{:.3f} {:.3f} {:.3f}".format(*one) for one in each] for each in told]
         return [dict(zip(_NO_FORECAST, each, strict=True)) for each in said]
 
-    def _shaken(self, error: float) -> NDArray[np.float64]:
-        """What the parts (n,) of the margins err by where the felt gravity errs by so many m/s^2."""
-        motions = np.repeat(self._motion[:, None], 3, axis=1)
-        motions[:3] += error * np.eye(3)
+    def _shaken(self, errors: tuple[float, float]) -> NDArray[np.float64]:
+        """What the parts (n,) of the margins err by where felt gravity and angular acceleration err by so much."""
+        motions = np.repeat(self._motion[:, None], 6, axis=1)
+        motions[:6] += np.diag(np.repeat(errors, 3))
         margins = self._onset.margins(motions)
-        errors: NDArray[np.float64] = np.abs(np.maximum(margins.slide, margins.tip) - self._used[:, None]).max(axis=1)
-        return np.minimum(errors, 1.0 / SURE)  # what is used up twice is so in any noise
+        changes = np.maximum(margins.slide, margins.tip) - self._used[:, None]
+        scatter: NDArray[np.float64] = np.sqrt(np.square(changes).sum(axis=1))
+        return np.minimum(scatter, 1.0 / SURE)  # what is used up twice is so in any noise
 
     def _hear(self, number: int, stamp: int) -> None:
         """A body's source is heard, at the time that the support's stamps tell."""
@@ -306,10 +313,10 @@ class Watch:
         self._judged_at = self._now
         others = np.array([body.rank() for body in self._bodies])
         before = self._levels.ranks
+        parts = self._used - SURE * self._scatter
         # Once the sea is learnt, how likely an onset is warns of it, and not how near the deck has come to one.
-        parts = self._used
         if self._is_learnt:
-            parts = np.where(parts < self._levels.error + SURE * self._scatter, 0.0, parts)
+            parts = np.where(parts < self._levels.error, 0.0, parts)
         self._levels.update(self._now, parts, np.maximum(others, self._due))
         ranks = self._levels.ranks
         for number in np.flatnonzero((ranks > before) | ((ranks == OK) & (ranks != before))).tolist():

@@ -79,13 +79,19 @@ class Run:
     def stamp(self) -> int:
         return round(self.time * 1e9)
 
-    def deck(self, gravity: Vector3 = STILL, seconds: float = 0.1, each: Callable[[], None] | None = None) -> None:
+    def deck(
+        self,
+        gravity: Vector3 = STILL,
+        seconds: float = 0.1,
+        each: Callable[[], None] | None = None,
+        errors: tuple[float, float] = (0.0, 0.0),
+    ) -> None:
         """Let the deck tell that this is felt, until so many seconds later."""
         self.felt = gravity
         support = resting(gravity)
         for _ in range(round(seconds * 10)):
             self.time = round(self.time + 0.1, 1)
-            self.watch.update_support(support._replace(stamp=self.stamp))
+            self.watch.update_support(support._replace(stamp=self.stamp), errors)
             if each is not None:
                 each()
 
@@ -258,11 +264,19 @@ def test_an_onset_ahead_within_the_horizon_warns_and_says_when() -> None:
 )
 def test_once_the_sea_is_learnt_the_part_of_the_courses_that_tip_warns(tipping: int, level: Level) -> None:
     run = Run(TALL._replace(watching=Watching(vain=0.6)))
-    run.courses = [lambda t, k=k: leaning(0.8 + (0.1 * t if k < tipping else 0.0)) for k in range(10)]
+    run.courses = [lambda t, k=k: leaning(0.8 + (0.05 * t if k < tipping else 0.0)) for k in range(10)]
     run.deck(leaning(0.8))  # above onset.warn, which says nothing any more
     report = run.report()
     assert (report.level, report.values["onset_probability"]) == (level, f"{tipping / 10:.2f}")
-    assert report.values["time_to_tip"] == ("2.00" if level else "inf")
+    assert report.values["time_to_tip"] == ("4.00" if level else "inf")
+
+
+@pytest.mark.parametrize(("seconds", "level"), [(2.5, Level.WARN), (3.5, Level.OK)])
+def test_an_onset_that_is_close_is_warned_of_where_it_is_a_sixth_as_likely(seconds: float, level: Level) -> None:
+    run = Run(TALL._replace(watching=Watching(vain=0.4)))
+    run.courses = [lambda t, k=k: leaning(0.5 + (0.5 * t / seconds if k < 1 else 0.0)) for k in range(10)]
+    run.deck(leaning(0.5))
+    assert run.report().level == level
 
 
 def test_a_unit_tells_what_it_will_feel_where_it_stands_and_how_unsure_that_is() -> None:
@@ -292,10 +306,17 @@ def test_an_onset_that_is_near_and_likelier_than_not_is_an_error() -> None:
     assert run.report().level == Level.WARN
 
 
-def test_a_warning_stands_until_an_onset_is_a_quarter_as_likely_as_one_that_raises_it() -> None:
-    run = Run(TALL._replace(watching=Watching(vain=0.6, hold=1.0)))
-    for tipping, level in ((4, Level.WARN), (1, Level.WARN), (0, Level.OK), (3, Level.OK)):
-        run.courses = [lambda t, k=k, n=tipping: leaning(0.5 + (0.1 * t if k < n else 0.0)) for k in range(10)]
+def test_noise_of_an_angular_acceleration_counts_by_how_far_away_a_unit_stands() -> None:
+    run = Run(TALL, TALL._replace(place=(16.0, 0.0, 0.5)))
+    run.courses = [lambda t: leaning(0.5)]
+    run.deck(leaning(1.1), errors=(0.0, 0.03))
+    assert [report.level for report in run.reports()] == [Level.ERROR, Level.OK]
+
+
+def test_a_warning_stands_until_an_onset_is_a_tenth_as_likely_as_one_that_raises_it() -> None:
+    run = Run(TALL._replace(watching=Watching(vain=0.4, hold=1.0)))
+    for tipping, level in ((12, Level.WARN), (2, Level.WARN), (1, Level.OK), (11, Level.OK)):
+        run.courses = [lambda t, k=k, n=tipping: leaning(0.5 + (0.1 * t if k < n else 0.0)) for k in range(20)]
         run.deck(leaning(0.5), 2.0)
         assert run.report().level == level
 

@@ -242,10 +242,10 @@ def test_a_box_that_rocks_in_noise_beyond_its_tolerance_stands_on_an_edge_still(
     path = recorded(tmp_path / "deck.mcap", {"": scene}, a_deck(0.15), noise=noise)
     truth = replay(path, scene).truth
     assert truth is not None
-    assert truth.clear >= 8
+    assert truth.clear >= 9
     assert truth.clear_mode_accuracy is not None
     assert truth.clear_mode_accuracy > 0.9
     assert truth.median_velocity_error is not None
     # Where nothing stood it would be 1.3: the noise is 0.023 m/s, of approaches of 0.1 to 0.3 m/s.
     assert truth.median_velocity_error < 0.15
-    assert truth.false < 30
+    assert truth.false < 25
