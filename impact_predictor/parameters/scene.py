@@ -30,6 +30,7 @@ SECURING = ("lashings.points", "chocks.points", "wind.pressure", "contact.fricti
 """What the margins under watch know of besides friction."""
 
 NO_LENGTH = 1e-3  # m: a lashing that is shorter has no direction
+LONGEST_LASHING = 100.0  # m
 
 OFF = 0.01
 """A body may be placed this part of its size above or below its support: its place was measured with a tape."""
@@ -158,10 +159,13 @@ def _check_lashings(one: _Given) -> None:
         if its > most:
             raise InputError(f"lashing {k}{one.of} has an MSL of {most:g} N, below its preload of {its:g} N")
         (px, py, pz), (ax, ay, az) = points[3 * k : 3 * k + 3], anchors[3 * k : 3 * k + 3]
-        if hypot(x + turn * px - back * py - ax, y + back * px + turn * py - ay, z + pz - az) < NO_LENGTH:
+        length = hypot(x + turn * px - back * py - ax, y + back * px + turn * py - ay, z + pz - az)
+        if length < NO_LENGTH:
             raise InputError(f"lashing {k}{one.of} has no length: its point and its anchor are at one place")
         if not _is_on(values["support.extent"], ax, ay):
             raise InputError(f"lashing {k}{one.of} goes nowhere: its anchor is outside support.extent")
+        if length > LONGEST_LASHING:
+            raise InputError(f"lashing {k}{one.of} goes nowhere: its anchor is {length:g} m away")
 
 
 def _is_on(extent: tuple[float, ...], x: float, y: float) -> bool:
