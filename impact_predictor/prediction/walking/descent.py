@@ -252,6 +252,11 @@ class Descent(NamedTuple):
     rate: float
 
 
+DescentRecord = tuple[int, tuple[float, float, float], tuple[float, float], tuple[Cubic, Triangle, float]]
+"""The stamp of a sample (ns); the time until the landing that it showed, that less its usual error, and the variance of
+it; the time and the deviation that were told; and the gap, its covariance and its snap, which they are from."""
+
+
 class DescentEstimator:
     """Tells when a point lands, from its filter and from what landings are like."""
 
@@ -259,16 +264,13 @@ class DescentEstimator:
         self._errors = LeadTimeErrors()
         self._times: list[float | None] = [None, None]
         self._rhythm = StrideRhythm()
-        # Of each sample its stamp, the time that was found, the one told, its variance, and what they are from.
-        self._told = deque[tuple[int, float, float, float, tuple[Cubic, Triangle, float]]](maxlen=MEMORY_OF_SWING)
-        self._expected: deque[tuple[int, float, float]] = deque(maxlen=MEMORY_OF_SWING)
+        self._told: deque[DescentRecord] = deque(maxlen=MEMORY_OF_SWING)
         self._left_out = [0, 0]
         self._stamp = 0
 
     def rest(self) -> None:
         """Forget the descent: the point stands."""
         self._told.clear()
-        self._expected.clear()
         self._times, self._left_out = [None, None], [0, 0]
 
     def estimate(self, filtered: PointFilter, level: GroundLevel, prior: LandingPrior) -> Descent | None:
@@ -304,24 +306,21 @@ class DescentEstimator:
             strikes += weight if k == STRIKE else 0.0
             variance += weight * (one.variance + (one.time - best.time) ** 2)
         strikes, variance = strikes / whole, variance / whole
-        time = max(0.0, best.time - self._errors.offset(best.time))
-        self._told.append((filtered.stamp, best.time, time, variance, (gap, filtered.covariance, filtered.snap)))
-        time, variance = self._rhythm.weighed(filtered.stamp, time, variance * self._errors.scale(best.time))
-        time = max(0.0, time)
-        deviation = sqrt(variance)
-        self._expected.append((filtered.stamp, time, deviation))
+        less = max(0.0, best.time - self._errors.offset(best.time))
+        time, square = self._rhythm.weighed(filtered.stamp, less, variance * self._errors.scale(best.time))
+        time, deviation = max(0.0, time), sqrt(square)
+        state = gap, filtered.covariance, filtered.snap
+        self._told.append((filtered.stamp, (best.time, less, variance), (time, deviation), state))
         return Descent(time, deviation, strikes, 0.0 if likelier == REST else min(0.0, best.state[1]))
 
     def learn(self, stamp: int, last: int, level: GroundLevel, prior: LandingPrior) -> None:
         """Take that the point has landed on a level at a stamp in ns, after its `last` frame in the air."""
         self._rhythm.learn(stamp)
         last = min(last, stamp)
-        expected = [(time, s, (stamp - seen) / NANOSECONDS) for seen, time, s in self._expected if seen <= last]
-        prior.deviations.learn(expected)
-        told = [one for one in self._told if one[0] <= last]
+        told = [((stamp - one[0]) / NANOSECONDS, one) for one in self._told if one[0] <= last]
         if told:
-            self._errors.learn([(found, said, s, (stamp - seen) / NANOSECONDS) for seen, found, said, s, _ in told])
-            seen, _, _, _, (gap, covariance, snap) = told[-1]
-            time = (stamp - seen) / NANOSECONDS
+            prior.deviations.learn([(*one[2], true) for true, one in told])
+            self._errors.learn([(*one[1], true) for true, one in told])
+            time, (_, _, _, (gap, covariance, snap)) = told[-1]
             if time < SHORT:
                 prior.learn(gap, covariance, snap, time, level.deviation**2)
