@@ -10,11 +10,10 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from ..errors import InputError
-from ..prediction.checks import check_points
 from ..prediction.monitor import Monitor
-from ..prediction.predictor import Contacts
+from ..prediction.points import PointContacts
 from ..prediction.scene import Scene
-from ..prediction.types import ContactInput, Geometry, Moment, Sample, Status, Vector3
+from ..prediction.types import Moment, Sample, Status, Vector3
 from ..stamps import NANOSECONDS
 
 Reals = NDArray[np.float64]
@@ -52,23 +51,14 @@ class RecordedMotion(NamedTuple):
         return RecordedMotion(stamps[::stride], positions[::stride], rotations[::stride], points)
 
 
-class Recorder(Contacts):
+class Recorder(PointContacts):
     """Contact points of a body that only keep its motions, in the order of time."""
+
+    is_spatial = False
 
     def __init__(self, scene: Scene) -> None:
         super().__init__(scene)
-        self.points = scene.points
         self._motions: list[tuple[tuple[Vector3, ...], list[Sample]]] = []
-
-    def tell(self, message: ContactInput) -> Status:
-        assert isinstance(message, Geometry)
-        status = check_points(message.points, self.scene.most_points)
-        if status is Status.ACCEPTED:
-            self.points, self.geometry, self.frame_id = message.points, message, message.frame_id
-        return status
-
-    def check(self, stamp: int) -> Status:
-        return Status.ACCEPTED if self.points else Status.NO_GEOMETRY
 
     def take(self, sample: Sample, moment: Moment | None) -> Status:
         if self.stamp is None or self._motions[-1][0] != self.points:
@@ -79,13 +69,6 @@ class Recorder(Contacts):
 
     def touchdown(self) -> None:
         return None
-
-    def forget(self) -> None:
-        self.stamp = None
-
-    def follow(self, other: Contacts) -> None:
-        if other.geometry is not None:
-            self.tell(other.geometry)
 
     @property
     def motions(self) -> list[RecordedMotion]:
