@@ -31,6 +31,8 @@ def pytest_configure() -> None:
     domains = [1 + (os.getppid() + worker + k) % 101 for k in range(0, 96, 8)]
     os.environ["ROS_DOMAIN_ID"] = str(next(filter(is_free, domains), domains[0]))
     os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
+    # Threads that wait for each other while other workers compute take twice the time; numpy is not loaded yet.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     if "PYTEST_XDIST_WORKER" in os.environ:
         compile_once()
 
