@@ -38,7 +38,7 @@ endif
 # One stamp for each Python and each source of ROS, so that another choice makes the environment anew.
 READY := .venv/.ready-$(ROS)-$(subst /,_,$(PYTHON))
 
-.PHONY: all test demo lint types check test-extras test-install docs clean help
+.PHONY: all compiled test test-compiled demo lint types check test-extras test-install docs clean help
 
 all: $(READY) ## the environment in .venv (the default)
 
@@ -57,9 +57,16 @@ $(READY): setup.py constraints/jazzy.txt tools/requirements.txt
 	  --constraint $(CONSTRAINTS) --requirement tools/requirements.txt
 	@touch '$@'
 
+compiled: $(READY) ## the impact laws as machine code, made anew where their sources have changed; needs a compiler
+	@$(BIN)/python setup.py --quiet build_ext --inplace
+	@$(BIN)/python -c 'from impact_predictor.native import form; print("the impact laws run", form())'
+
 # Those that start processes mostly wait: three at a time keep two cores busy.
 test: $(READY) ## all tests, the quick ones first; ARGS="-k rod" runs some
 	@$(BIN)/python -m pytest --numprocesses 3 --dist worksteal $(ARGS)
+
+test-compiled: compiled ## the quick tests of mechanics and prediction, compiled
+	@$(BIN)/python -m pytest --numprocesses 3 -m "not slow" test/test_native.py test/mechanics test/prediction $(ARGS)
 
 test-extras: $(READY) ## what make test skips: the pages in a browser (Debian: chromium), MuJoCo, wavespectra, Pinocchio, Dask
 	@$(BIN)/python -m pip install --quiet --quiet --disable-pip-version-check --editable '.[$(EXTRAS),articulated,browser,fleet,robot,spectra]' \
@@ -87,7 +94,7 @@ test-install: ## installs with pip and with colcon into empty environments, and 
 	@$(PYTHON) tools/test_install.py $(ARGS)
 
 clean: ## removes what make, pip and colcon made
-	rm -rf .venv build install log dist out ./*.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf impact_predictor/native_*.so .venv build install log dist out ./*.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "make %-13s %s\n", $$1, $$2}' Makefile

@@ -1,11 +1,62 @@
 """Build and install of impact_predictor, for pip and for colcon."""
 
+import runpy
+from importlib.machinery import EXTENSION_SUFFIXES
 from pathlib import Path
 
-from setuptools import find_packages, setup
+from setuptools import Extension, find_packages, setup
+from setuptools.command.build_ext import build_ext
 
 NAME = "impact_predictor"
 SHARE = f"share/{NAME}"
+
+native = runpy.run_path(f"{NAME}/native.py")
+LIBRARY = native["library_name"]()
+
+
+class BuildNative(build_ext):
+    """Builds the library of machine code; where that cannot be, the files run as Python."""
+
+    def run(self) -> None:
+        if not self.extensions:  # without mypyc, or where IMPACT_PREDICTOR_PLAIN says so
+            return
+        file = Path(self.get_ext_filename(LIBRARY)).name
+        there = [path for path in map(Path, native["libraries"]()) if path.name.endswith(EXTENSION_SUFFIXES[0])]
+        if self.inplace and file in [path.name for path in there]:
+            return
+        for path in there:
+            path.unlink()
+        try:
+            self.make(self.extensions[0])
+            super().run()
+        except (Exception, SystemExit) as error:  # of mypyc, the compiler, the disk: none ends an install
+            self.warn(f"nothing is compiled, the files run as Python: {error}")
+            self.extensions = []
+
+    def make(self, library: Extension) -> None:
+        """Make the C of the library, of the sources as they are now."""
+        from mypyc.build import mypycify
+
+        # The others load a module of the library each, which impact_predictor/native.py does.
+        made, *_ = mypycify(
+            ["--config-file=tools/mypyc.ini", *map(native["file_of"], native["MODULES"])],
+            opt_level="1",
+            debug_level="0",
+            group_name=LIBRARY.removesuffix("__mypyc"),
+            target_dir=self.build_temp,
+        )
+        library.sources, library.depends, library.include_dirs = made.sources, made.depends, made.include_dirs
+        # A product and a sum rounded as one are other numbers than Python's.
+        library.extra_compile_args = [*made.extra_compile_args, "-ffp-contract=off"]
+
+
+def has_mypyc() -> bool:
+    """Whether the modules can be compiled, and are to be."""
+    try:
+        import mypyc  # noqa: F401
+    except ImportError:
+        return False
+    return not native["is_refused"]()
 
 
 def files_of(folder: str) -> list[tuple[str, list[str]]]:
@@ -84,5 +135,8 @@ setup(
         ],
         "pytest11": ["impact_predictor = impact_predictor.testing.plugin"],
     },
+    cmdclass={"build_ext": BuildNative},
+    # Its C is made when it is built: an install asks several times what there is to build.
+    ext_modules=[Extension(f"{NAME}.{LIBRARY}", [])] if has_mypyc() else [],
     zip_safe=False,
 )

@@ -3,7 +3,8 @@
     python benchmarks/bench_impact.py
 
 The bodies take turns, so that a slow moment of the machine meets all of them. Prints medians in microseconds, and
-in units of `[i * i for i in range(100)]`, which says how slow the machine was.
+in units of `[i * i for i in range(100)]`, which says how slow the machine was; where the laws were compiled
+(`make compiled`) beside the same files as Python.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from time import perf_counter_ns
 from rich.console import Console
 from rich.table import Table
 
-from impact_predictor import Twist, TwoPointBody, cylinder, plate, rod, solve_impact
+from impact_predictor import Twist, TwoPointBody, cylinder, native, plate, rod, solve_impact
 
 TURNS = 300
 CALLS = 20
@@ -47,17 +48,25 @@ def calibrate() -> object:
     return [i * i for i in range(100)]
 
 
-def call(case: tuple[TwoPointBody, Twist], law: str) -> Callable[[], object]:
+def call(solve: Callable[..., object], case: tuple[TwoPointBody, Twist], law: str) -> Callable[[], object]:
     """The impact as a function without arguments."""
     body, twist = case
-    return lambda: solve_impact(body, twist, law)
+    return lambda: solve(body, twist, law)
 
 
 def main() -> None:
     """Time every body under both laws and print the table."""
-    functions = {(name, law): call(case, law) for name, case in CASES.items() for law in ("path", "total")}
-    functions["calibration", ""] = calibrate
-    times: dict[tuple[str, str], list[float]] = {key: [] for key in functions}
+    forms: dict[str, Callable[..., object]] = {native.form(): solve_impact}
+    if "compiled" in forms:
+        forms["as Python"] = native.as_python("mechanics.impact.solve").solve_impact
+    functions = {
+        (name, law, form): call(solve, case, law)
+        for name, case in CASES.items()
+        for law in ("path", "total")
+        for form, solve in forms.items()
+    }
+    functions["calibration", "", ""] = calibrate
+    times: dict[tuple[str, str, str], list[float]] = {key: [] for key in functions}
     for _ in range(TURNS):
         for key, function in functions.items():
             start = perf_counter_ns()
@@ -65,13 +74,14 @@ def main() -> None:
                 function()
             times[key].append((perf_counter_ns() - start) / CALLS / 1e3)
     medians = {key: statistics.median(values) for key, values in times.items()}
-    unit = medians["calibration", ""]
-    table = Table("body", "mode", "path: us", "units", "total: us", "units", title="One impact, median")
-    for name, (body, twist) in CASES.items():
-        mode = solve_impact(body, twist).mode.name
-        path, total = medians[name, "path"], medians[name, "total"]
-        table.add_row(name, mode, *(f"{number:.1f}" for number in (path, path / unit, total, total / unit)))
-    Console().print(table)
+    unit = medians["calibration", "", ""]
+    for form in forms:
+        table = Table("body", "mode", "path: us", "units", "total: us", "units", title=f"One impact, median, {form}")
+        for name, (body, twist) in CASES.items():
+            mode = solve_impact(body, twist).mode.name
+            path, total = medians[name, "path", form], medians[name, "total", form]
+            table.add_row(name, mode, *(f"{number:.1f}" for number in (path, path / unit, total, total / unit)))
+        Console().print(table)
     print(f"unit: {unit:.2f} us")
 
 

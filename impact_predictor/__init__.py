@@ -2,6 +2,7 @@
 
 from typing import TYPE_CHECKING
 
+from . import native as native
 from .errors import InputError
 
 if TYPE_CHECKING:

@@ -8,6 +8,7 @@ from pathlib import Path
 from click.testing import CliRunner, Result
 
 from impact_predictor.cli import main
+from impact_predictor.native import form
 
 CONFIG = Path(__file__).parents[1] / "config"
 
@@ -25,6 +26,7 @@ def test_a_program_gets_every_feature_with_its_reason_and_the_topics() -> None:
     assert not parts["feet"]["on"]
     assert "feet.names" in parts["feet"]["why"]
     assert answer["topics"][0] == "support/odom"
+    assert answer["runs"] == form()
 
 
 def test_a_person_gets_a_table_of_what_is_on_before_what_is_off() -> None:
@@ -33,7 +35,9 @@ def test_a_person_gets_a_table_of_what_is_on_before_what_is_off() -> None:
     words = result.stdout.split()
     assert "cube_tosses:" in words
     assert words.index("on") < words.index("off")
-    assert result.stdout.endswith("The node subscribes to contact_geometry and odom.\n")
+    *_, topics, runs = result.stdout.splitlines()
+    assert topics == "The node subscribes to contact_geometry and odom."
+    assert runs.startswith("The predictor runs ")
 
 
 def test_a_file_that_is_no_scene_is_refused_in_one_sentence(tmp_path: Path) -> None:

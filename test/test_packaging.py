@@ -20,8 +20,14 @@ ROOT = Path(__file__).parents[1]
 def setup_arguments(monkeypatch):
     """What setup.py hands to setuptools, which need not be installed for that."""
     arguments = {}
-    fake = SimpleNamespace(find_packages=lambda **_: [], setup=lambda **given: arguments.update(given))
+    fake = SimpleNamespace(
+        Extension=SimpleNamespace,
+        find_packages=lambda **_: [],
+        setup=lambda **given: arguments.update(given),
+    )
     monkeypatch.setitem(sys.modules, "setuptools", fake)
+    monkeypatch.setitem(sys.modules, "setuptools.command.build_ext", SimpleNamespace(build_ext=object))
+    monkeypatch.setenv("IMPACT_PREDICTOR_PLAIN", "1")
     monkeypatch.chdir(ROOT)
     runpy.run_path(str(ROOT / "setup.py"))
     return arguments

@@ -112,7 +112,7 @@ def copy_source(target: Path) -> Path:
     """What a clone has, so that no build leaves a trace in the checkout or in the next install."""
 
     def ignore(folder: str, names: list[str]) -> set[str]:
-        made = {name for name in names if name == "__pycache__" or name.endswith((".egg-info", "_cache"))}
+        made = {name for name in names if name == "__pycache__" or name.endswith((".egg-info", "_cache", ".so"))}
         return made | NOT_SOURCE if Path(folder) == ROOT else made
 
     return Path(shutil.copytree(ROOT, target, ignore=ignore))

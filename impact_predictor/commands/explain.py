@@ -23,8 +23,9 @@ def explain(params: str, as_json: bool) -> None:
     """Tell which features of the predictor and of its node a scene has, which it leaves out and why.
 
     PARAMS.yaml is the ROS 2 parameter file of the scene. What is left out is neither imported nor subscribed to. The
-    parameter that is named switches a feature on or off.
+    parameter that is named switches a feature on or off. The last line says whether the predictor runs compiled.
     """
+    from ..native import form
     from ..parameters.file import read_values
     from ..prediction.scene import features_of, inputs_of, scenes_of
 
@@ -32,7 +33,8 @@ def explain(params: str, as_json: bool) -> None:
     scene, features = Path(params).stem, features_of(values)
     topics = [one.name for one in inputs_of(scenes_of(values))]
     if as_json:
-        click.echo(json.dumps({"scene": scene, "parts": [one._asdict() for one in features], "topics": topics}))
+        parts = [one._asdict() for one in features]
+        click.echo(json.dumps({"scene": scene, "parts": parts, "topics": topics, "runs": form()}))
         return
     from rich.console import Console
     from rich.markup import escape
@@ -50,3 +52,4 @@ def explain(params: str, as_json: bool) -> None:
     console.print(f"[bold]{escape(scene)}[/]: what this scene has, and what it leaves out\n", highlight=False)
     show(console, table)
     console.print(f"\nThe node subscribes to {' and '.join(topics)}.", highlight=False, markup=False)
+    console.print(f"The predictor runs {form()}.", highlight=False, markup=False)

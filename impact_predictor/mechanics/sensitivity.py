@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import cache
-from importlib.util import find_spec, module_from_spec
-from types import ModuleType
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..native import as_python
 from .impact import NOWHERE, approach, number_of, see
 from .impact.answer import answer
 from .types import Contact, Flag, Twist, TwoPointBody
@@ -233,19 +232,5 @@ def sqrt(number: Dual | float) -> Dual | float:
 @cache
 def dual_answer() -> Callable[..., Any]:
     """`answer.answer` for Duals: the law code loaded a second time, with a square root that knows them."""
-    restitution, path_law, answer = load("restitution"), load("path_law"), load("answer")
-    restitution.sqrt = sqrt  # type: ignore[attr-defined]
-    for name in ("span_of_work", "span_to_give"):
-        setattr(path_law, name, getattr(restitution, name))
-    answer.path_law = path_law  # type: ignore[attr-defined]
-    return answer.answer  # type: ignore[no-any-return]
-
-
-def load(name: str) -> ModuleType:
-    """Another instance of a module of the impact engine."""
-    spec = find_spec(f"{__package__}.impact.{name}")
-    assert spec is not None
-    assert spec.loader is not None
-    module = module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    as_python("mechanics.impact.restitution", "of_duals").sqrt = sqrt  # type: ignore[attr-defined]
+    return as_python("mechanics.impact.answer", "of_duals").answer  # type: ignore[no-any-return]

@@ -7,6 +7,7 @@ from collections import Counter, deque
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Final, NamedTuple
 
+from ..native import form
 from ..prediction.checks import REMEDIES
 from ..prediction.score import median
 from ..prediction.types import Foot, Prediction, Score, Status
@@ -188,6 +189,7 @@ class Diagnostics:
         since = now - max(last.values()) if (last := self._heard_last()) else None
         update, longest, total = [1e6 * cost for cost in self._costs] if self._costs else (None, None, None)
         figures: list[tuple[str, str, object]] = [
+            ("runs", "", form()),
             ("samples.accepted", "d", self._accepted),
             ("samples.rate", ".1f", rate),
             ("samples.largest_gap", ".4f", largest_gap),

@@ -1,6 +1,7 @@
 import pytest
 
 from impact_predictor.mechanics.types import Flag, Mode, Twist
+from impact_predictor.native import form
 from impact_predictor.prediction.checks import REMEDIES
 from impact_predictor.prediction.types import Leftover, Score, SpatialTwist, Status, Touchdown
 from impact_predictor.ros.cdr import ERROR, OK, WARN, decode_diagnostic_array, diagnostic_array
@@ -141,6 +142,7 @@ def test_rate_gap_and_cost_are_those_of_the_second_that_is_over(diagnostics):
         accept(diagnostics, now, update=update, total=2.0 * update)
     diagnostics.second_over(2.0)
     values = report(diagnostics, 2.0).values
+    assert values["runs"] == form()
     assert values["samples.accepted"] == "4"
     assert values["samples.rate"] == "2.0"
     assert values["samples.largest_gap"] == "0.3000"

@@ -14,16 +14,30 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import types
+from ...native import as_python
 from ..compiled import compiled
 from ..types import Contact, Twist, TwoPointBody, Validity
-from . import answer, contacts, path_law, rates, restitution, total_law
+from .answer import VALIDITY
 from .solve import NOWHERE, number_of
 
 CHUNK = 2048
 """Impacts that are handed over at a time, so that the copies of broadcast fields stay small."""
 
-LAW_CODE = (contacts, rates, restitution, path_law, total_law, answer)
+LAW_CODE = tuple(
+    as_python(f"mechanics.{name}")
+    for name in (
+        "types",
+        "impact.contacts",
+        "impact.rates",
+        "impact.restitution",
+        "impact.path_law",
+        "impact.total_law",
+        "impact.answer",
+    )
+)
+"""As Python, which numba reads."""
+
+_, _, _, _, path_law, total_law, answer = LAW_CODE
 
 CALLED = (path_law.solve, total_law.solve, total_law.any_that_holds, total_law.all_that_hold)
 """Law functions that are compiled on their own. All others become a part of those that call them, which halves the
@@ -56,7 +70,7 @@ def solve_impacts(
     bodies: TwoPointBody,
     twist: Twist | NDArray[np.float64],
     law: str = "path",
-    validity: Validity = answer.VALIDITY,
+    validity: Validity = VALIDITY,
     restitution: str = "poisson",
 ) -> Outcomes:
     """What many impacts do: `solve_impact` for each element of arrays that broadcast together.
@@ -120,7 +134,7 @@ def numbers_of(contact: Contact) -> tuple[Any, ...]:
 @cache
 def filler() -> Fill:
     """The function that solves a chunk, compiled if that can be."""
-    fill = compiled(make_fill, (types, *LAW_CODE), lambda function: function not in CALLED)
+    fill = compiled(make_fill, LAW_CODE, lambda function: function not in CALLED)
     if fill is None:
         plain = make_fill("")
         return lambda columns, *rest: plain(tuple(column.tolist() for column in columns), *rest)
@@ -150,6 +164,6 @@ def make_fill(law_code: str) -> Fill:
                 energy_lost[k],
                 unique[k],
                 _,
-            ) = answer.answer(m[i], j[i], stands, old, new, (vx[i], vy[i], omega[i]), law, validity)  # type: ignore[arg-type]
+            ) = answer.answer(m[i], j[i], stands, old, new, (vx[i], vy[i], omega[i]), law, validity)
 
     return fill

@@ -1,0 +1,106 @@
+"""The library of machine code: when it runs, that it answers as the files do, and what may not be compiled."""
+
+from __future__ import annotations
+
+import ast
+import os
+import shutil
+import subprocess
+import sys
+from importlib.machinery import EXTENSION_SUFFIXES
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from impact_predictor import native, solve_impact
+from impact_predictor.mechanics.random_problems import random_problems
+
+ROOT = Path(__file__).parents[1]
+
+
+def run(code: str, folder: Path = ROOT, **variables: str) -> list[str]:
+    """The lines that a program prints where a copy of the package is in a folder."""
+    environment = {**os.environ, "PYTHONPATH": str(folder), **variables}
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=folder, env=environment, capture_output=True, text=True, check=False
+    )
+    assert not done.returncode, done.stderr
+    return done.stdout.splitlines()
+
+
+def test_the_files_run_as_python_where_the_variable_says_so() -> None:
+    assert run("from impact_predictor.native import form; print(form())", IMPACT_PREDICTOR_PLAIN="1") == [
+        "as Python: IMPACT_PREDICTOR_PLAIN is set"
+    ]
+
+
+def test_what_was_compiled_of_other_sources_never_runs(tmp_path: Path) -> None:
+    package = tmp_path / "impact_predictor"
+    shutil.copytree(ROOT / package.name, package, ignore=shutil.ignore_patterns("__pycache__", "*.so"))
+    ask = "from impact_predictor import solve_impact; from impact_predictor.native import form; print(form())"
+    assert run(ask, tmp_path, IMPACT_PREDICTOR_PLAIN="0") == ["as Python: nothing was compiled for this Python"]
+    (package / f"{native.library_name()}{EXTENSION_SUFFIXES[0]}").write_bytes(b"")
+    [said] = run(ask, tmp_path, IMPACT_PREDICTOR_PLAIN="0")
+    assert said.startswith("as Python: what was compiled cannot be loaded: ")
+    changed = package / "mechanics/types.py"
+    changed.write_text(changed.read_text() + "# changed\n")
+    [said] = run(ask, tmp_path, IMPACT_PREDICTOR_PLAIN="0")
+    assert said == "as Python: what was compiled is of other sources: `make compiled` compiles these"
+
+
+def one_of(part: Any, i: int) -> Any:
+    """One of many problems, whose fields are arrays."""
+    if isinstance(part, tuple):
+        fields = [one_of(field, i) for field in part]
+        return part._make(fields) if hasattr(part, "_make") else tuple(fields)
+    return part if part is None else float(part[i] if np.ndim(part) else part)
+
+
+@pytest.mark.skipif(isinstance(native.library(), str), reason="needs the library: `make compiled`")
+def test_compiled_and_as_python_the_laws_answer_the_same_to_the_last_bit() -> None:
+    plain = native.as_python("mechanics.impact.solve", "of_tests").solve_impact
+    assert type(plain) is not type(solve_impact)
+    for problems in random_problems(7, 2000, 100):
+        for i in range(100):
+            body, twist = one_of(problems.body, i), one_of(problems.twist, i)
+            for law in ("path", "total"):
+                assert repr(solve_impact(body, twist, law)) == repr(plain(body, twist, law))
+
+
+def odd_in(node: ast.AST) -> str | None:
+    """Why mypyc makes something else of a piece of code than Python does, or cannot take it; None where it can."""
+    match node:
+        case ast.Compare(ops=ops, comparators=others):
+            for op, other in zip(ops, others, strict=True):
+                known = isinstance(other, ast.Constant) or (isinstance(other, ast.Attribute) and other.attr.isupper())
+                if isinstance(op, ast.Is | ast.IsNot) and not known:
+                    return "`is` is false for tuples that are one"
+        case ast.Call(func=ast.Name(id="sum"), args=[ast.GeneratorExp(), *_]):
+            return "`sum` over a generator rounds floats otherwise than that of a list, from Python 3.12 on"
+        case ast.Call(func=ast.Name(id="vars" | "setattr" | "globals")) | ast.Attribute(attr="__dict__"):
+            return "a compiled object has no __dict__"
+        case ast.Name(id="cached_property"):
+            return "a compiled object has no __dict__ to keep it in"
+    return None
+
+
+@pytest.mark.parametrize("name", native.MODULES)
+def test_nothing_is_compiled_that_would_mean_something_else(name: str) -> None:
+    path = Path(native.file_of(name))
+    found = [(f"line {node.lineno}", odd) for node in ast.walk(ast.parse(path.read_text())) if (odd := odd_in(node))]
+    assert not found
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "one is other",
+        "sum(one.x for one in values)",
+        "vars(it).update(more)",
+        "class A:\n    @cached_property\n    def b(self): ...",
+    ],
+)
+def test_the_check_finds_what_would_mean_something_else(code: str) -> None:
+    assert any(map(odd_in, ast.walk(ast.parse(code))))
