@@ -82,7 +82,10 @@ REFUSED: list[tuple[dict[str, Any], str]] = [
         {**LASHED, "support.motion": "odom", "support.extent": EXTENT},
         "lashing 0 goes nowhere: its anchor is outside support.extent",
     ),
-    ({**LASHED, "lashings.anchors": [0.0, 3e4, 0.0, 0.0, -3.0, 0.0]}, "lashing 0 goes nowhere: its anchor is 29999.5 m"),
+    (
+        {**LASHED, "lashings.anchors": [0.0, 3e4, 0.0, 0.0, -3.0, 0.0]},
+        "lashing 0 goes nowhere: its anchor is 29999.5 m",
+    ),
     ({**BLIND, **STOOD, "chocks.points": [0.0, 0.5, 0.1]}, "chocks.points has 1 points, but chocks.normals has 0"),
     (
         {**BLIND, **STOOD, "chocks.points": [0.0, 0.5, 0.1], "chocks.normals": [0.0, 0.0, 0.0]},
