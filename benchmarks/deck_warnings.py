@@ -114,8 +114,9 @@ def scene_of(unit: Unit, deck: DeckMotion, times: NDArray[np.float64], noisy: bo
         friction=friction,
         points=tuple((x, y, -HEIGHT) for x in (-half, half) for y in (-half, half)),
         place=(unit.ahead, unit.port, HEIGHT),
-        # With noise the window is the one that errs least, as support.window auto has it.
+        # With noise window and tolerance follow it, as the shipped scenes have them.
         deck=MovingDeck(window=0.0) if noisy else MovingDeck(),
+        tolerance=0.0 if noisy else 0.005,
         source=unit.source,
         watching=Watching(),
     )

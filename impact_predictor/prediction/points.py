@@ -163,7 +163,7 @@ class PointContacts(Contacts):
 
     @property
     def slack(self) -> float:
-        is_guessed = self._moment is not None and not self.scatter.is_known
+        is_guessed = self._moment is not None and self.scene.tolerance == 0.0 and not self.scatter.is_known
         return GUESS * self.size if is_guessed else self.scatter.gap
 
     def doubts(self) -> tuple[str, ...]:

@@ -144,7 +144,7 @@ def test_noise_of_a_deck_raises_no_level_of_a_unit_that_stands_and_announces_not
 
 def test_a_narrow_unit_whose_pose_is_noisy_stands_on_the_deck_and_not_below_it() -> None:
     narrow = tuple((x, y, -2.1) for x in (-0.3, 0.3) for y in (-0.3, 0.3))
-    assert watched(UNIT._replace(points=narrow, tolerance=0.005), 0.02)[0] == 0
+    assert watched(UNIT._replace(points=narrow), 0.02)[0] == 0
 
 
 def test_a_tolerance_below_the_scatter_of_points_that_stand_is_named() -> None:
