@@ -70,7 +70,7 @@ def test_without_a_bag_nothing_is_collected_and_nothing_that_reads_bags_is_loade
     )
     result = pytester.runpytest_subprocess(*PLUGIN)
     result.assert_outcomes(passed=1)
-    names = (f"impact_predictor.{name}" for name in ("errors", "testing", "testing.plugin"))
+    names = (f"impact_predictor.{name}" for name in ("errors", "native", "testing", "testing.plugin"))
     assert " ".join(["loaded:", *names]) in result.outlines
 
 
