@@ -1,6 +1,6 @@
 """How early and how often the watch over a deck warns, in eight seas, beside what simple rules would do.
 
-    python benchmarks/deck_warnings.py [--hours 0.4] [--seed 3000] [--jobs 2]
+    python benchmarks/deck_warnings.py [--hours 0.45] [--seed 3000] [--jobs 2]
 
 A ship of 60 m meets seas of 6 to 14 s from the side, the quarter and ahead. Six units stand on its deck, as rough or as
 broad below as their events are to come about so often; two of them never use more than 0.7 of their margins. They move
@@ -221,7 +221,7 @@ def score(rule: str, found: list[Course]) -> Score:
 
 
 @click.command()
-@click.option("--hours", default=0.4, show_default=True, help="Of each sea.")
+@click.option("--hours", default=0.45, show_default=True, help="Of each sea.")
 @click.option("--seed", default=3000, show_default=True, help="Of the first sea; each has the next one.")
 @click.option("--jobs", default=2, show_default=True, help="Seas at once.")
 def main(hours: float, seed: int, jobs: int) -> None:

@@ -226,4 +226,5 @@ def test_supports_refuse_what_they_cannot_use() -> None:
     with pytest.raises(InputError):
         MovingSupport(lambda t: SupportMotion(*[0.0 * t] * 9), period=0.0)
     with pytest.raises(InputError):
-        sampled_support([0.0, 1.0], [0.0, 0.0], [0.0, 0.0], [0.0, 0.0])
+        sampled_support(range(5), [0.0] * 5, [0.0] * 5, [0.0] * 5)
+    assert sampled_support(range(6), [0.0] * 6, [0.0] * 6, [0.0] * 6).gravity == 9.81

@@ -157,6 +157,19 @@ def test_a_body_goes_on_by_gravity_and_comes_to_rest_on_its_face() -> None:
     assert between(late, later, 0.05).linear == pytest.approx((0.0, 0.0, 0.0), abs=CONVERGED)
 
 
+@pytest.mark.parametrize("resting", [(), tuple(range(0, 8, 2))])
+def test_a_body_over_a_higher_support_goes_on_as_much_higher(resting: tuple[int, ...]) -> None:
+    twist = SpatialTwist((0.1, 0.0, 0.0 if resting else -0.5), (0.0, 0.0, 0.0))
+    ends = []
+    for up in (0.0, 0.25):
+        start = Pose((0.0, 0.0, HALF + 0.01 + up), (0.0, 0.0, 0.0, 1.0))
+        ends.append(Course(TOSS._replace(height=up), CUBE, TOSS.gravity, start, resting).poses(twist, (0.01, 0.1)))
+    for low, high in zip(*ends, strict=True):
+        assert np.subtract(high.center, low.center) == pytest.approx((0.0, 0.0, 0.25), abs=1e-9)
+    # What rests stays as high as it seems to be.
+    assert (ends[0][1].center[2] == pytest.approx(HALF + 0.01, abs=1e-4)) == bool(resting)
+
+
 def test_a_body_that_slides_is_slowed_by_friction() -> None:
     start = Pose((0.0, 0.0, HALF), (0.0, 0.0, 0.0, 1.0))
     flat = TOSS._replace(friction=0.1)

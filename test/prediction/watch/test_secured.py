@@ -146,6 +146,12 @@ def test_wind_pushes_from_the_worst_side() -> None:
         assert tipped == pytest.approx((HEIGHT * MASS * 2.0 + 1.5 * 800.0) / (HALF * MASS * G))
 
 
+def test_a_chock_takes_what_wind_and_deck_push_at_its_height() -> None:
+    wind = WindLoad((0.0, 800.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0)), (0.0, 0.0, 1.5))
+    moment = HEIGHT * MASS * 2.0 + 1.5 * 800.0 - 0.3 * (MASS * 2.0 + 800.0)
+    assert tip([chock(1.0, 0.3)], 0.0, 2.0, -G, wind=wind) == pytest.approx(moment / (HALF * MASS * G))
+
+
 def test_bodies_beside_a_lashed_one_keep_their_margins_and_many_times_are_as_one() -> None:
     free = CRATE._replace(friction=0.4)
     lashed = CRATE._replace(holders=(lashing(1.0, 0.6, 5e3, 1e3), chock(-1.0, 0.3, 4e3)))
