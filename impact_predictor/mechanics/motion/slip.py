@@ -20,27 +20,11 @@ _FAR, _LONGEST = 1e6, 1e300
 
 
 class SlipPhase(MotionPhase):
-    """A contact slips until the body has turned to one of the ends of its `travel` (see `slide`)."""
+    """A contact slips, with friction `drag` of its sign, until the body has turned by `back` rad or as far forth."""
 
-    def __init__(
-        self,
-        arm: Vector,
-        omega: float,
-        slip: float,
-        drag: float,
-        travel: Vector,
-        rho_squared: float,
-        gravity: Vector,
-        tolerance: float,
-    ) -> None:
-        contact = Contact(-arm[0], -arm[1], abs(drag))
-        body = RockingBody(TwoPointBody(1.0, rho_squared, contact, contact), (arm, arm), ((0.0, 0.0), (0.0, 0.0)))
-        support = FixedSupport(math.atan2(-gravity[0], -gravity[1]), math.hypot(*gravity))
-        back, forth = (min(part, _FAR) for part in travel)
-        problem = RockingProblem(body, support, back + forth, _STEP * tolerance)
-        super().__init__(
-            problem, (PLUS if math.copysign(1.0, drag) > 0.0 else MINUS, OPEN), 0.0, (0.0, omega, 0.0, slip)
-        )
+    def __init__(self, problem: RockingProblem, drag: float, omega: float, slip: float, back: float) -> None:
+        states = PLUS if math.copysign(1.0, drag) > 0.0 else MINUS, OPEN
+        super().__init__(problem, states, 0.0, (0.0, omega, 0.0, slip))
         self.home = back
         # Near a balance small accelerations count: no part of them is taken for rounding.
         self.scale = self.scale[0], 0.0
@@ -72,7 +56,11 @@ def slide(
     if omega * omega * arm[1] + gravity[1] >= 0.0:
         return still
     try:
-        phase = SlipPhase(arm, omega, slip, drag, travel, rho_squared, gravity, tolerance)
+        contact = Contact(-arm[0], -arm[1], abs(drag))
+        body = RockingBody(TwoPointBody(1.0, rho_squared, contact, contact), (arm, arm), ((0.0, 0.0), (0.0, 0.0)))
+        support = FixedSupport(math.atan2(-gravity[0], -gravity[1]), math.hypot(*gravity))
+        back, forth = (min(part, _FAR) for part in travel)
+        phase = SlipPhase(RockingProblem(body, support, back + forth, _STEP * tolerance), drag, omega, slip, back)
         heading = omega or phase.instants[0].alpha
         if travel[heading > 0.0] <= 0.0 and not math.isnan(phase.instants[0].alpha) and heading:
             return still._replace(event=Event.TOUCHES if omega else Event.NEVER)
