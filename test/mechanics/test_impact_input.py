@@ -5,6 +5,7 @@ import math
 import pytest
 
 from impact_predictor import Contact, Flag, Mode, Twist, TwoPointBody, plate, solve_impact, solve_impacts
+from impact_predictor.native import form
 
 GOOD = plate(1.0, 0.4, 10.0, 0.3)
 BAD_CONTACTS = [
@@ -76,6 +77,7 @@ def test_what_is_no_number_raises_alike_for_one_impact_and_for_many(wrong, error
     body = TwoPointBody(mass=1.0, inertia=1.0, old=Contact(-1.0, -1.0, 0.3), new=Contact(1.0, -1.0, 0.3))
     for changed, twist in ((body._replace(mass=wrong), (0.0, 0.0, -1.0)), (body, (0.0, 0.0, wrong))):
         # Compiled, the law of one impact calls an integer beyond all doubles no float.
-        for solve, errors in ((solve_impact, (error, TypeError)), (solve_impacts, error)):
-            with pytest.raises(errors):
+        of_one = TypeError if form() == "compiled" else error
+        for solve, raised in ((solve_impact, of_one), (solve_impacts, error)):
+            with pytest.raises(raised):
                 solve(changed, Twist(*twist))
