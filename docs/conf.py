@@ -9,6 +9,8 @@ from typing import Any
 from impact_predictor import __version__
 from impact_predictor.parameters.table import PARAMETERS
 from impact_predictor.parameters.types import Parameter, allowed
+from impact_predictor.ros.messages.fields import TABLES
+from impact_predictor.ros.messages.kinds import Field
 
 project = "impact_predictor"
 author = "impact_predictor maintainers"
@@ -34,11 +36,28 @@ def yaml(value: Any) -> str:
     return json.dumps(list(value) if isinstance(value, tuple) else value)
 
 
+def keys(field: Field) -> str:
+    first, *others = field.kind.ends
+    named = ", ".join([field.key + first, *others])
+    return f"| `{named}` | {field.unit} | {field.meaning} |"
+
+
+def keys_of(topic: str) -> str:
+    """The tables of the keys on a topic."""
+    found = ["| key | unit | meaning |", "| --- | --- | --- |"]
+    for table in TABLES[topic]:
+        found += [f"| **{table.title}** | | |", *map(keys, table.fields.values())]
+    return "\n".join(found)
+
+
 def fill(app: Any, page: str, source: list[str]) -> None:
-    """Put the table of all parameters where a page wants it, and name what is not a page of the site by its path."""
+    """Put tables of parameters and messages where a page wants them; name by its path what is no page of the site."""
     table = ["| parameter | default | | may be |", "| --- | --- | --- | --- |", *map(row, PARAMETERS.values())]
     named = re.sub(r"\[([^\]]+)\]\(\.\./([\w/]+(?:\.md)?)\)", r"\1 (`\2`)", source[0])
-    source[0] = named.replace("<!-- parameters -->", "\n".join(table))
+    named = named.replace("<!-- parameters -->", "\n".join(table))
+    for topic in TABLES:
+        named = named.replace(f"<!-- keys of {topic} -->", keys_of(topic))
+    source[0] = named
 
 
 def is_field(app: Any, what: str, name: str, member: Any, skip: bool, options: Any) -> bool | None:

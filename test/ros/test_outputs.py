@@ -4,8 +4,6 @@ Samples are random with a fixed seed; numbers must come through exactly, since n
 """
 
 import random
-import re
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -41,7 +39,6 @@ from impact_predictor.ros.messages import (
     encode_reports,
     encode_score,
 )
-from impact_predictor.ros.messages.fields import FOOT, LANDING, MARGINS, PREDICTION, SCORE, TOUCHDOWN, UNCERTAINTY
 
 ENDIAN = pytest.mark.parametrize("little_endian", [True, False], ids=["little", "big"])
 
@@ -187,14 +184,6 @@ def test_a_prediction_tells_of_each_contact_what_it_does() -> None:
     likely = tuple(one._replace(lift_probability=0.75) for one in contacts)
     values = read(encode_prediction(prediction._replace(touchdown=touchdown._replace(contacts=likely)))).values
     assert values["lifts"] == "0.75 0.75"
-
-
-def test_the_documentation_has_every_field_of_the_messages_with_its_unit_and_meaning() -> None:
-    page = (Path(__file__).parents[2] / "docs/prediction.md").read_text()
-    documented = re.findall(r"^\| ([\w.]+) \| (.*?) \| (.*?) \|$", page.partition("### Keys of")[2], re.MULTILINE)
-    tables = (PREDICTION, TOUCHDOWN, UNCERTAINTY, MARGINS, FOOT, SCORE, LANDING)
-    declared = [(one.key, one.unit, one.meaning) for table in tables for one in table.fields]
-    assert [one for one in documented if one[0] != "key"] == declared
 
 
 def test_a_prediction_tells_its_uncertainty_and_its_margins_where_they_are_asked_for() -> None:

@@ -9,8 +9,9 @@ from ...mechanics.types import Flag, Mode
 from ...prediction.types import Foot, Landing, Prediction, Score, Status
 from ...stamps import NANOSECONDS
 from ..cdr import LITTLE_ENDIAN_HEADER, OK, WARN, StatusBytes, diagnostic_array, diagnostic_status, pairs_of
-from .fields import FOOT, LANDING, MARGINS, PREDICTION, SCORE, TOUCHDOWN, UNCERTAINTY, text
+from .fields import FOOT, LANDING, MARGINS, PREDICTION, SCORE, TOUCHDOWN, UNCERTAINTY
 from .inputs import ODOMETRY, encode_odometry
+from .kinds import text
 
 if TYPE_CHECKING:
     from ...prediction.watch.watch import Report
