@@ -84,6 +84,57 @@ def test_a_published_sheet_of_lashcon_has_the_same_forces_and_capacities() -> No
     assert found["tipping to port"].acts == pytest.approx(58.8e3, rel=0.01)
 
 
+@pytest.mark.parametrize(
+    ("vessel", "factor"), [((134.0, 22.0, 0.7, 14.5), 0.81), ((101.0, 17.5, 0.5, 13.0), 0.93)], ids=["B.5.2", "B.5.3"]
+)
+def test_the_calculated_examples_for_timber_deck_cargo_have_their_factors_of_tables_2_to_4(
+    vessel: tuple[float, float, float, float], factor: float
+) -> None:
+    """Annex B of the 2011 TDC Code, resolution A.1048(27): 6.5 m/s^2 on deck low at its end, length and speed as given,
+    and 1.00 for B/GM of 31 and 35, which give 5.3 and, before a reduction for the Baltic, 6.0 m/s^2.
+    """
+    assert design_accelerations(VesselData(*vessel), 0.8, "low")[1] == pytest.approx(6.5 * factor, rel=6e-3)
+
+
+@pytest.mark.parametrize(
+    ("deck", "across", "along"),
+    [
+        ("high", (7.1, 6.9, 6.8, 6.7, 6.7, 6.8, 6.9, 7.1, 7.4), 3.8),
+        ("low", (6.5, 6.3, 6.1, 6.1, 6.1, 6.1, 6.3, 6.5, 6.7), 2.9),
+        ("tween", (5.9, 5.6, 5.5, 5.4, 5.4, 5.5, 5.6, 5.9, 6.2), 2.0),
+        ("hold", (5.5, 5.3, 5.1, 5.0, 5.0, 5.1, 5.3, 5.5, 5.9), 1.5),
+    ],
+)
+def test_a_vessel_of_100_m_and_15_knots_has_the_basic_accelerations_of_table_2(
+    deck: str, across: tuple[float, ...], along: float
+) -> None:
+    """Table 2 as the Netherlands' shipping inspectorate published the Code of 1996 (PUC_2092_14, puc.overheid.nl), and
+    as another public program has it from MSC.1/Circ.1623 (github.com/nao701073-rgb/SK-Dangerous-Goods-Guide). The
+    former drops one of the four 6.1 of deck low and prints 4.5 along the lower hold, where the latter has 1.5.
+    """
+    upwards = (7.6, 6.2, 5.0, 4.3, 4.3, 5.0, 6.2, 7.6, 9.2)
+    # Both editions call the factor of such a vessel 1.00; the formula of the later one makes it 1.0003.
+    for k, (y, z) in enumerate(zip(across, upwards, strict=True), 1):
+        found = design_accelerations(VesselData(100.0, 18.2, 1.4, 15.0), 0.1 * k, deck)
+        assert found == pytest.approx((along, y, z), rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("deck", "factors"),
+    [
+        ("high", (2.64, 2.28, 1.98, 1.74, 1.56, 1.40, 1.27, 1.19, 1.11, 1.05, 1.0)),
+        ("low", (2.18, 1.93, 1.72, 1.55, 1.42, 1.30, 1.21, 1.14, 1.09, 1.04, 1.0)),
+        ("tween", (1.62, 1.51, 1.41, 1.33, 1.26, 1.19, 1.14, 1.09, 1.06, 1.03, 1.0)),
+        ("hold", (1.24, 1.23, 1.20, 1.18, 1.15, 1.12, 1.09, 1.06, 1.04, 1.02, 1.0)),
+    ],
+)
+def test_stiff_vessels_have_the_factors_of_table_4(deck: str, factors: tuple[float, ...]) -> None:
+    """B/GM from 3 to 13 as the same public program has them from MSC.1/Circ.1623."""
+    soft = design_accelerations(VesselData(100.0, 13.0, 1.0, 15.0), 0.5, deck)[1]
+    for ratio, factor in zip(range(3, 14), factors, strict=True):
+        assert design_accelerations(VesselData(100.0, ratio, 1.0, 15.0), 0.5, deck)[1] == pytest.approx(factor * soft)
+
+
 def test_a_high_lashing_holds_against_tipping_by_its_lever_arm() -> None:
     """By hand: 60 kN pulled flat to starboard from 3 m above the deck hold 180 kN m, half as steep the sum of both."""
     unit = LashedUnit(1e3, 0.3, (0.0, 0.0, 0.0), (-1.0, 1.0, -1.0, 1.0), DECK, ())
