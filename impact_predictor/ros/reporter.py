@@ -144,7 +144,8 @@ class Reporter:
 
     def _publish(self, changed: bool) -> None:
         """Publish the reports on the units that are due, after that of the node if it has changed."""
-        if not changed and self._monitor.watch is None:
+        watch = self._monitor.watch
+        if not (changed or (watch is not None and watch.is_due)):
             return
         reports = self._due()
         if changed and self._outlet.listeners():

@@ -76,11 +76,13 @@ class Onset:
 
     def __init__(self, stances: Sequence[StandingBody]) -> None:
         self._stances = list(stances)
+        self._changed = set(range(len(self._stances)))
+        self._height: NDArray[np.float64] = np.zeros((0, 0))
         self._collect()
 
     def replace(self, number: int, stance: StandingBody) -> None:
         self._stances[number] = stance
-        self._changed = True
+        self._changed.add(number)
 
     def margins(self, motion: NDArray[np.float64]) -> OnsetMargins:
         """The margins at a support's `motions` (12, times), or (12,) at one time."""
@@ -150,7 +152,7 @@ class Onset:
         """
         if self._changed:
             self._collect()
-        return (self._rows @ motion).reshape(len(self._stances), -1, motion.shape[1])
+        return (self._rows.reshape(-1, _MOTIONS) @ motion).reshape(*self._rows.shape[:2], -1)
 
     def _drum_slide(self, numbers: NDArray[np.float64]) -> NDArray[np.float64]:
         """The part of the friction on their edges that cylinders use against spinning, and against slip along the axis.
@@ -175,46 +177,62 @@ class Onset:
         return ratios
 
     def _collect(self) -> None:
-        self._changed = False
-        stances = self._stances
+        """Bring the arrays up to date with the stances that were replaced."""
+        at = sorted(self._changed)
+        self._changed.clear()
+        count, stances = len(self._stances), [self._stances[number] for number in at]
         width = max(2, *(len(stance.edges) for stance in stances))
+        if width > self._height.shape[1]:
+            at, stances = list(range(count)), self._stances
+            self._felt, self._rows = np.zeros((count, 3, _MOTIONS)), np.zeros((count, 3 + width, _MOTIONS))
+            self._limits, self._height = np.zeros((count, 1 + width, 1)), np.zeros((count, width))
+            self._axes, self._outward = np.zeros((count, 3, 3)), np.zeros((count, width, 3))
+            self._mass, self._absent = np.zeros(count), np.zeros((count, width), dtype=bool)
+        width = self._height.shape[1]
         spare = [((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))] * width
         edges = np.array([([edge[:2] for edge in stance.edges] + spare)[:width] for stance in stances])
         point, outward = edges[:, :, 0], edges[:, :, 1]
         absent = np.array([[k >= len(stance.edges) for k in range(width)] for stance in stances])
         center, normal = np.array([s.center for s in stances]), np.array([s.normal for s in stances])
         mass, inertia = np.array([s.mass for s in stances]), np.array([s.inertia for s in stances])
-        friction = np.array([[s.friction] for s in stances])
         arm = center[:, None] - point
         height = np.where(absent, 0.0, (normal[:, None] * arm).sum(axis=2))
-        lever = np.where(absent, 1.0, -(outward * arm).sum(axis=2))
         # Any two directions along the support; of a cylinder's across its axis and along it.
         ahead = np.array([s.edges[0].outward if s.edges else unit_across(s.normal) for s in stances])
         axes = np.stack((-normal, ahead, np.cross(normal, ahead)), axis=1)
-        self._felt = felt = _felt_rows(center)
+        felt = _felt_rows(center)
         spin = _spin_rows(np.cross(normal[:, None], outward), inertia / mass[:, None, None])
-        rows = np.concatenate((axes @ felt, height[:, :, None] * (outward @ felt) - spin), axis=1)
-        self._rows = rows.reshape(-1, _MOTIONS)
-        self._limits = np.concatenate((friction, lever), axis=1)[:, :, None]
-        self._axes, self._outward, self._height, self._mass, self._absent = axes, outward, height, mass, absent
-        self._smooth = np.flatnonzero(friction == 0.0)
-        self._drums = [number for number, stance in enumerate(stances) if stance.radius > 0.0 and stance.edges]
+        self._felt[at] = felt
+        self._rows[at] = np.concatenate((axes @ felt, height[:, :, None] * (outward @ felt) - spin), axis=1)
+        self._limits[at, 0, 0] = [stance.friction for stance in stances]
+        self._limits[at, 1:, 0] = np.where(absent, 1.0, -(outward * arm).sum(axis=2))
+        self._axes[at], self._outward[at], self._height[at], self._mass[at] = axes, outward, height, mass
+        self._absent[at] = absent
+        self._smooth = np.flatnonzero(self._limits[:, 0, 0] == 0.0)
+        if count == len(at) or any(one.radius or one.holders or one.wind for one in stances):
+            self._collect_others()
+
+    def _collect_others(self) -> None:
+        """What more there is to know of cylinders, and of bodies that more than friction holds."""
+        stances = self._stances
         at = [number for number, stance in enumerate(stances) if stance.holders or stance.wind]
         self._secured: tuple[list[int], Secured] | None = None
         if at:
             from .secured import Secured
 
-            self._secured = at, Secured([stances[k] for k in at], felt[at], width)
+            self._secured = at, Secured([stances[k] for k in at], self._felt[at], self._height.shape[1])
+        self._drums = [number for number, stance in enumerate(stances) if stance.radius > 0.0 and stance.edges]
         if self._drums:
             # The directions from the edges of cylinders to their axes along (ahead, normal), whether they lie on both.
             drums = [stances[number] for number in self._drums]
             radius = np.array([[stance.radius] for stance in drums])
+            ways = self._axes[self._drums, 1], -self._axes[self._drums, 0]
             arms = []
             for k in (0, -1):
                 arm = np.array([add(stance.center, stance.edges[k].point, -1.0) for stance in drums]) / radius
-                arms.append([(way[self._drums] * arm).sum(axis=1)[:, None] for way in (ahead, normal)])
+                arms.append([(way * arm).sum(axis=1)[:, None] for way in ways])
             both = np.array([[len(stance.edges) == 2] for stance in drums])
-            self._rolling = arms, both, radius, friction[self._drums], height[self._drums, :1]
+            self._rolling = arms, both, radius, self._limits[self._drums, 0], self._height[self._drums, :1]
 
 
 class OnsetCounts:

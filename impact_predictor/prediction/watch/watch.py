@@ -199,10 +199,16 @@ class Watch:
         """What is seen of the friction of each body."""
         return {name: self._slips.seen(number) for name, number in self._numbers.items()}
 
-    def reports(self) -> tuple[Report, ...]:
-        """A report of each body where a second of stamps is over or a level has changed since this was last asked."""
+    @property
+    def is_due(self) -> bool:
+        """Whether a second of stamps is over, or a level has changed, since reports were last asked for."""
         now, last = self._now, self._reported
-        if now is None or not (self._levels.changed or last is None or now // SECOND != last // SECOND):
+        return now is not None and (self._levels.changed or last is None or now // SECOND != last // SECOND)
+
+    def reports(self) -> tuple[Report, ...]:
+        """A report of each body where they are due."""
+        now = self._now
+        if now is None or not self.is_due:
             return ()
         self._levels.changed = False
         self._reported = now

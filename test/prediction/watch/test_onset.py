@@ -243,6 +243,15 @@ def test_many_bodies_at_many_times_are_as_each_alone() -> None:
     stances.append(on_edges(DRUM)._replace(edges=on_edges(DRUM).edges[:1]))
     felt = np.array([0.0, 0.0, -9.81]) + rng.uniform(-3.0, 3.0, (20, 3)), *rng.uniform(-0.5, 0.5, (2, 20, 3))
     together = Onset(stances).margins(motions(*felt))
+    # Two rest first on three points, the drum on one edge, and all are replaced: some at once, one by one the others.
+    begun = [planar(CRATE, 3.0)] * 2 + [stances[0], stances[5], stances[0], on_edges(DRUM)]
+    onset = Onset(begun)
+    for numbers in ((0, 1), (2,), (3, 4, 5)):
+        for number in numbers:
+            onset.replace(number, stances[number])
+        changed = onset.margins(motions(*felt))
+    for part, other in zip(together, changed, strict=True):
+        assert part == pytest.approx(other, rel=ROUNDING, abs=ROUNDING)
     for n, stance in enumerate(stances):
         for k in range(20):
             alone = of_one(stance, *(part[k] for part in felt))
