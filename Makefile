@@ -73,7 +73,7 @@ test-extras: $(READY) ## what make test skips: the pages in a browser (Debian: c
 	  --constraint $(CONSTRAINTS)
 	@$(BIN)/python -m pytest -m extras $(ARGS)
 
-demo: $(READY) ## plays recorded tosses of a cube through ROS topics, and shows what was predicted
+demo: $(READY) ## tosses live on ROS topics, a crate on a deck and a robot: out/demo/demo.html
 	@$(BIN)/impact-predictor demo $(ARGS)
 
 docs: $(READY) ## the documentation as a site, out/docs/index.html

@@ -1,4 +1,4 @@
-"""`impact-predictor demo`: recorded tosses of a cube through real ROS topics, and what was predicted of them.
+"""`impact-predictor demo`: tosses of a cube live on ROS topics, a crate on a deck and a robot, on one page.
 
 The node and a player, which also records, run as processes of their own, in a ROS domain of their own.
 """
@@ -15,12 +15,19 @@ import click
 
 from ..errors import InputError
 from .options import examples
+from .simulate_deck import simulate_deck
 
 if TYPE_CHECKING:
     from ..report.touchdowns import TouchdownRow
 
 TOSSES: Final = 18
 REMAPPING: Final = ("-r", "/cube/odom:=/odom", "-r", "/cube/contact_geometry:=/contact_geometry")
+
+LISTED: Final = 8
+"""Touchdowns that are listed."""
+
+VOYAGE: Final = "--seed", "1", "--duration", "150", "--rate", "20", "--deck-rate", "50"
+"""A sea that lifts the crate after two minutes, when the watch knows it."""
 
 START: Final = 30.0
 """Seconds within which the processes must be there, on a machine that is busy."""
@@ -30,10 +37,10 @@ PROCESSING: Final = 0.5
 
 
 @click.command(
-    short_help="Play recorded tosses through ROS topics and show the predictions.",
+    short_help="Tosses live on ROS topics, a crate on a deck, a robot: what is predicted.",
     epilog=examples(
         "impact-predictor demo",
-        "impact-predictor demo --tosses 5 -o /tmp/tosses",
+        "impact-predictor demo --tosses 5 -o /tmp/demo",
     ),
 )
 @click.option(
@@ -42,7 +49,7 @@ PROCESSING: Final = 0.5
     type=click.Path(path_type=Path),
     default="out/demo",
     show_default=True,
-    help="Folder in which predictions and a picture are written.",
+    help="Folder in which the page and the recorded predictions are written.",
 )
 @click.option(
     "--tosses",
@@ -50,43 +57,56 @@ PROCESSING: Final = 0.5
     help="Tosses to play of the 285 recorded, as many as take about half a minute unless given.",
 )
 def demo(output: Path, tosses: int | None) -> None:
-    """Play recorded tosses of a cube through ROS topics, and show what was predicted and what happened.
+    """Show in about a minute what is predicted, and what happened, on one page.
 
-    The node and a player, which also records, run as processes of their own; ROS 2 must be installed.
+    Recorded tosses of a cube are played to a node on ROS topics, both processes of their own; ROS 2 must be installed.
+    A crate on a deck in a simulated sea and the plan of a robot that walks are replayed.
     """
     from rich.console import Console
 
+    from ..bags.replay import replay
     from ..files import make_folder
-    from ..parameters.file import read_parameters
-    from ..parameters.validation import validate
     from ..prediction.monitor import Monitor
-    from ..prediction.scene import scenes_of
-    from ..report.figures import write_touchdowns
-    from ..report.replay import TWO_LINES, of_each_kind, touchdown_table
+    from ..prediction.scene import read_scenes
+    from ..report.answers import as_json
+    from ..report.page.demo import Shown, live_answer, write_demo_page
+    from ..report.replay import TWO_LINES, of_each_kind, sentences_of, touchdown_table
     from ..report.skill import skill_tables
-    from ..report.summary import Tally, errors_ahead
+    from ..report.summary import Tally
     from ..report.table import say, show, table_of
     from ..resources import find
     from .progress import compiling_is_said
 
     make_folder(output)
-    tosses, predictions, picture = tosses or TOSSES, output / "predictions.mcap", output / "touchdowns.png"
-    scene = find("config/cube_tosses.yaml")
+    tosses = tosses or TOSSES
+    predictions, cargo, page = [output / name for name in ("predictions.mcap", "cargo.mcap", "demo.html")]
+    scene, console = find("config/cube_tosses.yaml"), Console()
     with compiling_is_said():
         # What the node would compile while the player waits for it.
-        Monitor(scenes_of(validate(read_parameters(scene))))
+        Monitor(read_scenes(scene))
     play(find("examples/cube_tosses"), scene, tosses, predictions)
     rows = read_recording(predictions)
-    console = Console()
     console.print(f"{tosses} recorded tosses of a cube, played through ROS topics", style="bold")
     say(console, TWO_LINES)
-    show(console, touchdown_table(of_each_kind(rows)))
+    show(console, touchdown_table(of_each_kind(rows)[:LISTED]))
     for _, columns, scores in skill_tables(rows, {}):
         console.print()
         show(console, table_of(columns, scores))
-    say(console, "", *Tally(rows).sentences())
-    write_touchdowns(picture, rows, errors_ahead(()), f"{tosses} tosses of a cube, live on ROS topics")
-    console.print(f"Predictions: {predictions}\nPicture: {picture}", soft_wrap=True)
+    said = Tally(rows).sentences()
+    say(console, "", *said, "")
+    shown = [Shown(f"{tosses} tosses of a real cube, live on ROS topics", said, live_answer(rows))]
+    console.print("A crate on a deck in a simulated sea, under watch", style="bold")
+    simulate_deck.main([*VOYAGE, "-o", str(cargo)], standalone_mode=False)
+    for title, bag, its_scene in (
+        ("The watch over the crate, which learns the sea", cargo, "config/deck_crate.yaml"),
+        ("A robot that walks: the recorded plan of HyQ", find("examples/hyq/hyq.bag"), "config/walker_hyq.yaml"),
+    ):
+        result = replay(bag, read_scenes(find(its_scene)))
+        console.print(f"\n{title}", style="bold")
+        say(console, *sentences_of(result))
+        shown.append(Shown(title, sentences_of(result), as_json(result)))
+    write_demo_page(page, *shown)
+    console.print(f"\nPredictions: {predictions}\nPage: {page}", soft_wrap=True)
 
 
 def play(bag: Path, scene: Path, tosses: int, output: Path) -> None:

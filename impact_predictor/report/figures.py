@@ -148,7 +148,8 @@ def _draw_kinds(axes: Axes, kinds: Sequence[KindScore]) -> None:
     axes.plot(middles, places, "o", color=_VERMILION, label="prediction: median")
     axes.set_yticks(places, [f"{one.kind}\n({one.errors.number:,})" for one in shown])
     axes.set_title("Error of the whole twist, by kind")
-    axes.set(xlabel="relative error (%); of simple answers the median", xlim=(0.0, None))
+    beside = "; of simple answers the median" if any(of.number for one in shown for of in one.simple) else ""
+    axes.set(xlabel=f"relative error (%){beside}", xlim=(0.0, None))
     # Room for the legend below the last kind.
     axes.set_ylim(len(shown) + 1.3, -0.5)
     axes.legend(loc="lower center", ncols=2, fontsize=8)

@@ -55,17 +55,23 @@ def print_replay(console: Console, result: Result, every: bool = False) -> None:
         _show(console, table_of(columns, scores))
     if any(one.errors.number for one in errors):
         _show(console, lead_time_table(errors))
-    say(console, *Tally(rows).sentences())
+    say(console, *sentences_of(result))
+    say(console, *_costs(result))
+
+
+def sentences_of(result: Result) -> list[str]:
+    """What a replay found, all together: touchdowns and landings, the truth, and events that were warned of."""
+    said = Tally(rows_of(result.settled)).sentences()
     if result.truth is not None:
-        say(console, *truth_sentences(result.truth))
+        said += truth_sentences(result.truth)
     warned = [one.warned for one in result.truths.values() if one.warned is not None]
     if (log := result.watch) is not None:
-        found, said = warned_of(unit_as_json(log, place) for place in range(len(log.names)))
-        say(console, f"Events warned of: {found}; {said}.")
+        found, more_said = warned_of(unit_as_json(log, place) for place in range(len(log.names)))
+        said.append(f"Events warned of: {found}; {more_said}.")
     elif events := sum(one.events for one in warned):
         stood = sum(one.events_warned for one in warned)
-        say(console, f"A warning stood before {stood:,} of {counted(events, 'event')}.")
-    say(console, *_costs(result))
+        said.append(f"A warning stood before {stood:,} of {counted(events, 'event')}.")
+    return said
 
 
 def _show(console: Console, table: Table, *remarks: str) -> None:

@@ -33,8 +33,7 @@ class Column(NamedTuple):
 def table_of(columns: Sequence[Column], rows: Iterable[Any], style: Callable[[Any], str] | None = None) -> Table:
     """A table of rows, each perhaps in a style of rich."""
     table, rows = plain_table(), list(rows)
-    texts = {column: [column.cell(row) for row in rows] for column in columns}
-    texts = {column: cells for column, cells in texts.items() if not column.optional or {*cells} - {"", NONE}}
+    texts = texts_of(columns, rows)
     # Headers end on one line.
     lines = max(column.header.count("\n") for column in texts)
     for column, cells in texts.items():
@@ -49,6 +48,12 @@ def table_of(columns: Sequence[Column], rows: Iterable[Any], style: Callable[[An
     for row, *cells in zip(rows, *texts.values(), strict=True):
         table.add_row(*cells, style="" if style is None else style(row))
     return table
+
+
+def texts_of(columns: Sequence[Column], rows: Sequence[Any]) -> dict[Column, list[str]]:
+    """The cells of each column that is not left out."""
+    texts = {column: [column.cell(row) for row in rows] for column in columns}
+    return {column: cells for column, cells in texts.items() if not column.optional or {*cells} - {"", NONE}}
 
 
 def plain_table() -> Table:

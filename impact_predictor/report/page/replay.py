@@ -17,6 +17,7 @@ from ...wording import counted, words
 from ..modes import MODES, PALETTE
 from ..skill import pair_of, skill_tables
 from ..summary import PER_DECADE, WHY, without_bag
+from ..table import texts_of
 from . import (
     GREY,
     Cell,
@@ -187,14 +188,11 @@ def velocities(facts: ReplayFacts, each: Sequence[ReplayFacts]) -> Section:
 
 def skill(facts: ReplayFacts) -> Section:
     """How right the whole twists are, beside simple answers."""
-    tables = [
-        PageTable(
-            [" ".join(column.header.replace("-\n", "").split()) for column in columns],
-            [[column.cell(row) for column in columns] for row in rows],
-            said,
-        )
-        for said, columns, rows in skill_tables([row for row in facts.rows if not row.foot], facts.recorded)
-    ]
+    tables = []
+    for said, columns, rows in skill_tables([row for row in facts.rows if not row.foot], facts.recorded):
+        texts = texts_of(columns, rows)
+        head = [" ".join(column.header.replace("-\n", "").split()) for column in texts]
+        tables.append(PageTable(head, [*zip(*texts.values(), strict=True)], said))
     return Section("skill", "How right the whole twists are", [], tables)
 
 

@@ -10,6 +10,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 from ...mechanics.types import Mode
+from ...prediction.skill import SIMPLE
 from ...prediction.types import Bound, Landing, Prediction, Score, SpatialTwist, Touchdown, Vector3, impulse_at
 from ...prediction.vectors import add
 from ..cdr import LENGTHS, PADDING, add_pair, string
@@ -27,6 +28,7 @@ from .kinds import (
     PLANAR_TWIST,
     POINT,
     PROBABILITIES,
+    SIMPLE_ERRORS,
     STAMP,
     TEXT,
     TEXTS,
@@ -217,6 +219,14 @@ def _lift(which: int, score: Score) -> Lift | None:
 
 _LIFTS: Final = "whether it was predicted to lift, whether it has lifted, and the probability that was predicted"
 
+
+def _simple(score: Score) -> tuple[float, ...] | None:
+    return score.spatial.simple_errors if score.spatial and not score.leftover_6d else None
+
+
+_ANSWERS: Final = ", ".join(SIMPLE.values())
+
+
 SCORE: Final = Table(
     "of each touchdown that has happened",
     field("stamp", STAMP, "ns", "of the predicted touchdown; of a foot, when it came to stand"),
@@ -242,6 +252,7 @@ SCORE: Final = Table(
         partial(_of_spatial, "measured"),
     ),
     field("relative_error_6d", NUMBER, "1", "of the whole predicted twist", partial(_of_spatial, "error")),
+    field("simple_errors_6d", SIMPLE_ERRORS, "1", f"those of simple answers, where it is scored: {_ANSWERS}", _simple),
     field("lift.old", LIFT, "1", f"of the old contact: {_LIFTS}", partial(_lift, 0)),
     field("lift.new", LIFT, "1", f"of the new contact: {_LIFTS}", partial(_lift, 1)),
 )

@@ -10,6 +10,7 @@ from operator import attrgetter
 from typing import Any, Final, NamedTuple
 
 from ...mechanics.types import Flag, Mode
+from ...prediction.skill import SIMPLE
 from ...prediction.types import Bound, Covariance, Leftover, SpatialTwist, Status
 from ...stamps import NANOSECONDS
 
@@ -140,6 +141,7 @@ IMPULSES: Final = _floats(
     "float64[4]", 4, ".old.normal", ".old.tangent", ".new.normal", ".new.tangent", numbers=_of_pair
 )
 PROBABILITIES: Final = _floats("float64[7]", 7, *[f".{mode.name}" for mode in sorted(Mode)])
+SIMPLE_ERRORS: Final = _floats(f"float64[{len(SIMPLE)}]", len(SIMPLE), *[f".{name}" for name in SIMPLE])
 MARGIN: Final = Kind(f"{PACKAGE}/Margin", "dB", (nan, 0), _of_margin, ("", ".mode"), _beyond)
 LIFT: Final = Kind(f"{PACKAGE}/Lift", "bbd", (-1, -1, nan), _of_lift, (".told", ".measured", ".probability"), tuple)
 # Of no fixed size.
