@@ -17,10 +17,17 @@ from impact_predictor.bags.read import BagMessage
 from impact_predictor.bags.run import Run
 from impact_predictor.parameters.file import read_parameters
 from impact_predictor.parameters.validation import validate
-from impact_predictor.prediction.scene import Input, Scene, inputs_of, scenes_of
-from impact_predictor.prediction.types import FeetStates, Geometry, Imu, Joints, Sample, Schedule, Wrench
+from impact_predictor.prediction.scene import TRANSFORMS, Input, Scene, inputs_of, scenes_of
+from impact_predictor.prediction.types import FeetStates, Geometry, Imu, Joints, Sample, Schedule, Transform, Wrench
 from impact_predictor.ros import messages as coded
-from impact_predictor.ros.cdr import MalformedMessage, decode_diagnostic_array
+from impact_predictor.ros.cdr import (
+    LITTLE_ENDIAN_HEADER,
+    MalformedMessage,
+    align8,
+    decode_diagnostic_array,
+    stamp,
+    string,
+)
 from impact_predictor.ros.messages.walker_inputs import encode_feet, encode_joints, encode_schedule, encode_wrench
 from impact_predictor.stamps import NANOSECONDS
 
@@ -66,6 +73,7 @@ def courses() -> tuple[Course, ...]:
         "watched floor": cube | {"onset.watch": True, "body.contact_points": points},
         "unsure": cube | sure,
         "total law": cube | {"law": "total", "margins": True, "odom.twist_window": 0.02, "support.frame": ""},
+        "frames": cube | {"tf.body_frame": "cube", "body.contact_points": points},
         "soles": walker
         | {"feet.names": ("left", "right"), "feet.points": 2, "feet.force": 30.0, "feet.has_schedule": True},
     }
@@ -108,6 +116,10 @@ def made_course(name: str, values: Mapping[str, Any]) -> Course:
             if isinstance(message, Geometry) and scene.walking is not None and len(found) % 2:
                 names = tuple([name for name in scene.walking.feet for _ in range(scene.walking.points)])
                 value, key = FeetStates(message.stamp, message.frame_id, names, message.points), ("feet_states", body)
+            if scene.body_frame and isinstance(value, Sample):
+                value = value._replace(child_frame_id="sensor")
+                link = Transform(value.stamp, scene.body_frame, "sensor", (0.01, 0.0, 0.0), (0.0, 0.0, 0.6, 0.8))
+                found += [(link.stamp, inputs[kind, None], link) for kind in TRANSFORMS[len(found) % 2 :]]
             if key in inputs:
                 found.append((value.stamp, inputs[key], value))
     if any(one.body is None for one in inputs.values()) and not any(one.body is None for _, one, _ in found):
@@ -126,11 +138,18 @@ def encode(value: Any) -> bytes:
         Joints: encode_joints,
         Wrench: encode_wrench,
         Schedule: encode_schedule,
+        Transform: encode_transform,
     }
     try:
         return bytes(encoders[type(value)](value))
     except (OverflowError, struct.error):  # float32 has no such number
         return b"\0\1\0\0"
+
+
+def encode_transform(one: Transform) -> bytes:
+    """A tf2_msgs/TFMessage of a transform."""
+    head = LITTLE_ENDIAN_HEADER + b"\1\0\0\0" + stamp(one.stamp) + string(one.frame_id) + string(one.child_frame_id)
+    return head.ljust(align8(len(head)), b"\0") + struct.pack("<7d", *one.position, *one.orientation)
 
 
 def sequence(choices: Choices, course: Course, longest: int = 80) -> list[BagMessage]:

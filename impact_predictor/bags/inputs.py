@@ -49,7 +49,7 @@ def find_topics(
     for one in inputs:
         if one not in found and recorded.get(f"/{one.name}") == _type(one):
             found[one] = f"/{one.name}"
-    support = [one for one in inputs if one.body is None]
+    support = [one for one in inputs if one.body is None and one.kind in STATES]
     # No topic is ever guessed to be the support: over a wrong one every answer would be wrong, and look right.
     if any(one not in found for one in support):
         raise _untold(path, recorded, support)

@@ -20,6 +20,7 @@ StatusCounts = Mapping[Status, int]
 MENDABLE: Final = (
     Status.MALFORMED,
     Status.WRONG_FRAME,
+    Status.NO_TRANSFORM,
     Status.FEET_CHANGED,
     Status.WRONG_JOINTS,
     Status.BELOW_GROUND,

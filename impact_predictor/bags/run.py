@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any, Final
 from ..prediction.flaws import flaw_of
 from ..prediction.monitor import Monitor
 from ..prediction.recorded import Announced
-from ..prediction.scene import CONTACT_GEOMETRY, IMU, JOINTS, ODOM, SCHEDULE, WRENCH, Input, Scene
-from ..prediction.types import FeetStates, Geometry, Imu, Joints, Sample, Schedule, Status, Wrench
+from ..prediction.scene import CONTACT_GEOMETRY, IMU, JOINTS, ODOM, SCHEDULE, TRANSFORMS, WRENCH, Input, Scene
+from ..prediction.types import FeetStates, Geometry, Imu, Joints, Sample, Schedule, Status, Transform, Wrench
 from ..ros.messages import DIAGNOSTIC_ARRAY, INPUT_TYPES, MARKER_ARRAY, MalformedMessage, encode_reports
 from .body import NODE as NODE
 from .body import BodyRecord, Write
@@ -149,6 +149,8 @@ class Run:
 
     def _take_of(self, one: Input) -> Take:
         """What takes a message on an input."""
+        if one.kind in TRANSFORMS:
+            return partial(self._set_frames, one.kind == TRANSFORMS[0])
         if one.body is None:
             return self._set_support
         if one.kind == IMU:
@@ -193,8 +195,8 @@ class Run:
     def _count(self, one: Input, status: Status, message: Any) -> None:
         """Note what became of a message, and what is wrong with the first one that is refused so."""
         self.statuses[one][status] += 1
-        if status is not Status.ACCEPTED and one.body in self.bodies and (one, status) not in self.flaws:
-            flaw = flaw_of(self.monitor.predictors[one.body], status, message)
+        if status is not Status.ACCEPTED and (one, status) not in self.flaws:
+            flaw = flaw_of(self.monitor, one.body, status, message)
             if flaw:
                 self.flaws[one, status] = flaw
 
@@ -226,10 +228,13 @@ class Run:
         if status in _FITTING:
             record.take_geometry(geometry)
         if status is Status.ACCEPTED and self._drawing is not None:
-            self._drawing.set_geometry(record.body, geometry)
+            self._drawing.set_geometry(record.body, self.monitor.predictors[record.body].brought(geometry))
             if record.gait is not None:
                 self._draw(geometry.stamp, log_time)
         return status
+
+    def _set_frames(self, is_fixed: bool, transforms: tuple[Transform, ...], _: int) -> Status:
+        return self.monitor.update_frames(transforms, is_fixed)
 
     def _set_support(self, message: Sample | Imu, log_time: int) -> Status:
         monitor = self.monitor

@@ -106,6 +106,13 @@ _TABLE: Final = (
         high=1e12,
     ),
     text("support.frame", "", "frame_id that odom must have; empty accepts any.", shared=True, fixed=SUPPORT),
+    text(
+        "tf.body_frame",
+        "",
+        "Name of the body's frame. Given, messages in other frames are brought to it, and to support.frame, by /tf and "
+        "/tf_static; empty, these are not subscribed to.",
+        fixed=TOPICS,
+    ),
     doubles(
         "support.normal",
         (0.0, 0.0, 1.0),

@@ -85,6 +85,8 @@ REMEDIES: Final[dict[Status, str]] = {
     Status.COINCIDENT_POINTS: "two of its points coincide",
     Status.TOO_MANY_POINTS: "it has more points than contact.most_points; publish those that can touch the ground, or "
     "raise it",
+    Status.NO_TRANSFORM: "no transform leads from its frames to support.frame and tf.body_frame; look at /tf and "
+    "/tf_static, and at their stamps",
     Status.MALFORMED: "its bytes are not a message of the topic's type; look at who else publishes there",
     Status.NO_SUPPORT: "nothing is known of the support's motion yet; look whether its source publishes",
     Status.SUPPORT_STALE: "the support's last message is too old; look whether its source still publishes",

@@ -5,17 +5,23 @@ from __future__ import annotations
 from typing import Any, Final
 
 from ..wording import listed
+from .monitor import Monitor
 from .predictor import Predictor
-from .types import FeetStates, Geometry, Joints, Sample, Schedule, Status, Terrain, Wrench
+from .types import FeetStates, Geometry, Imu, Joints, Sample, Schedule, Status, Terrain, Wrench
 
 _MOST_NAMED: Final = 4
 
 
-def flaw_of(predictor: Predictor, status: Status, message: Any) -> str:
-    """What is wrong with a message about a body that its predictor has just refused, as far as more is known; else "".
+def flaw_of(monitor: Monitor, body: str | None, status: Status, message: Any) -> str:
+    """What is wrong with a message that a monitor has just refused, as far as more is known; else "".
 
-    `message` is None where its bytes are none of its type.
+    `body` is None where it is about the support, and `message` where its bytes are none of its type.
     """
+    if status is Status.NO_TRANSFORM and monitor.tree is not None:
+        return monitor.tree.flaw
+    predictor = None if body is None else monitor.predictors.get(body)
+    if predictor is None:
+        return _other_support(monitor, message) if status is Status.WRONG_FRAME else ""
     contacts, walking = predictor.contacts, predictor.scene.walking
     if status is Status.WRONG_FRAME:
         return _wrong_frame(predictor, message)
@@ -46,6 +52,14 @@ def flaw_of(predictor: Predictor, status: Status, message: Any) -> str:
         lacks = listed(lacking, _MOST_NAMED)
         return f"it lacks {lacks} of robot.urdf{others}: tell every joint of the model by its name there"
     return ""
+
+
+def _other_support(monitor: Monitor, message: Any) -> str:
+    if monitor.deck is None or not isinstance(message, Sample | Imu):
+        return ""
+    frame, child = monitor.deck.frames
+    told = (message.frame_id, message.child_frame_id) if isinstance(message, Sample) else ("", message.frame_id)
+    return f"it tells of {told[1]!r} in {told[0]!r}, but those before of {child!r} in {frame!r}: one source may tell"
 
 
 def _wrong_frame(predictor: Predictor, message: Any) -> str:

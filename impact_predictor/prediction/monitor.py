@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from typing import TYPE_CHECKING
 
 from ..stamps import NANOSECONDS
+from .checks import check_numbers
 from .predictor import Predictor
 from .scene import MovingDeck, Scene, shared_by
-from .types import ContactInput, Geometry, Imu, Moment, Prediction, Quaternion, Sample, Score, Status
+from .types import ContactInput, Geometry, Imu, Moment, Prediction, Quaternion, Sample, Score, Status, Transform
 
 if TYPE_CHECKING:
     from .deck.imu import Tilt
     from .deck.tracker import Deck
+    from .frames import FrameTree
     from .watch.watch import Report, Watch
 
 OF_SUPPORT = frozenset({Status.NO_SUPPORT, Status.SUPPORT_STALE})
@@ -53,8 +55,13 @@ class Monitor:
             from .deck.tracker import Deck
 
             self.deck = Deck(shared.deck, shared.gravity, shared.normal)
+        self.tree: FrameTree | None = None
+        if any(scene.body_frame for scene in scenes.values()):
+            from .frames import FrameTree
+
+            self.tree = FrameTree()
         self.predictors = {
-            body: Predictor(scene, self.deck) for body, scene in scenes.items() if scene.source == "odom"
+            body: Predictor(scene, self.deck, self.tree) for body, scene in scenes.items() if scene.source == "odom"
         }
         # The model of a robot tells its mass.
         self.scenes |= {body: predictor.scene for body, predictor in self.predictors.items()}
@@ -91,7 +98,9 @@ class Monitor:
             InputError: there is no predictor for a scene.
         """
         others = {body: scene for body, scene in scenes.items() if scene != self._told[body]}
-        begun = {body: Predictor(scene, self.deck) for body, scene in others.items() if body in self.predictors}
+        begun = {
+            body: Predictor(scene, self.deck, self.tree) for body, scene in others.items() if body in self.predictors
+        }
 
         def change() -> None:
             self._told |= others
@@ -117,7 +126,7 @@ class Monitor:
                 self._refused(watch, body, prediction.status, sample.stamp)
             elif self._heard(watch, body, sample.stamp):
                 slack = self.predictors[body].contacts.slack
-                watch.update_body(body, prediction.relative or sample, prediction.touchdown, slack)
+                watch.update_body(body, prediction.relative or prediction.sample, prediction.touchdown, slack)
         return prediction
 
     def update_imu(self, body: str, imu: Imu) -> Status:
@@ -140,6 +149,11 @@ class Monitor:
     def update_support(self, sample: Sample) -> Status:
         """Take pose and twist of the support; what became of the message."""
         assert self.deck is not None
+        if self.tree is not None and check_numbers(sample) is Status.ACCEPTED:
+            seen = self.tree.seen(sample, (), shared_by(self.scenes).frame)
+            if seen is None:
+                return self._moved(Status.NO_TRANSFORM, sample.stamp)
+            sample = seen
         return self._moved(self.deck.update(sample), sample.stamp)
 
     def update_support_imu(self, imu: Imu) -> Status:
@@ -147,12 +161,18 @@ class Monitor:
         assert self.deck is not None
         return self._moved(self.deck.update_imu(imu), imu.stamp)
 
+    def update_frames(self, transforms: Iterable[Transform], is_fixed: bool) -> Status:
+        """Take transforms between frames, `is_fixed` those that hold at any time; what became of the message."""
+        assert self.tree is not None
+        return self.tree.take(transforms, is_fixed)
+
     def tell(self, body: str, message: ContactInput) -> Status:
         """Take what is told about the contacts of a body; what became of the message."""
         status = self.predictors[body].tell(message)
-        if status is Status.ACCEPTED and isinstance(message, Geometry) and body in self._watched:
+        geometry = self.predictors[body].contacts.geometry
+        if status is Status.ACCEPTED and isinstance(message, Geometry) and geometry and body in self._watched:
             assert self.watch is not None
-            self.watch.set_points(body, message.points)
+            self.watch.set_points(body, geometry.points)
         return status
 
     def silent(self, stamp: int) -> None:

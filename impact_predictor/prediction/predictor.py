@@ -8,14 +8,28 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from .checks import PAUSE, check_numbers, order_of
 from .scene import Scene
-from .types import ContactInput, Foot, Geometry, Moment, Prediction, Sample, Score, Status, Touchdown, Vector3
+from .types import (
+    ContactInput,
+    FeetStates,
+    Foot,
+    Geometry,
+    Moment,
+    Prediction,
+    Sample,
+    Score,
+    Status,
+    Terrain,
+    Touchdown,
+    Vector3,
+)
 
 if TYPE_CHECKING:
     from .deck.tracker import Deck
+    from .frames import FrameTree
     from .recorded import Announced
     from .walking.clock import Delay
 
@@ -128,16 +142,18 @@ class Predictor:
     """Predicts the touchdowns of one body of a scene.
 
     `update` answers each sample, in the order of their stamps; `tell` takes what is told about its contacts besides
-    the scene; `finish` ends the record. Where the scene's support moves `deck` knows its motion.
+    the scene; `finish` ends the record. Where the scene's support moves `deck` knows its motion; `tree` has the frames
+    that transforms connect, where the scene asks for them.
 
     Raises:
         InputError: there are no contacts for the scene: edges that do not carry a cylinder, a robot without a model.
     """
 
-    def __init__(self, scene: Scene, deck: Deck | None = None) -> None:
+    def __init__(self, scene: Scene, deck: Deck | None = None, tree: FrameTree | None = None) -> None:
         self.contacts = contacts_for(scene)
         self.scene = self.contacts.scene
         self._deck = deck
+        self.tree = tree if scene.body_frame else None
 
     @property
     def frames(self) -> tuple[str, ...]:
@@ -158,11 +174,24 @@ class Predictor:
 
         Contact points are in the body's frame and hold from now on; those of feet have a stamp, and hold then.
         """
-        return self.contacts.tell(message)
+        brought = self.brought(message)
+        return Status.NO_TRANSFORM if brought is None else self.contacts.tell(brought)
+
+    def brought(self, message: ContactInput) -> Any:
+        """What is told about the contacts, in the frames of the scene; None where no transforms lead there."""
+        if self.tree is None or not isinstance(message, Geometry | FeetStates | Terrain):
+            return message
+        return self.tree.brought(message, self.scene.frame if isinstance(message, Terrain) else self.scene.body_frame)
 
     def update(self, sample: Sample) -> Prediction:
         """The prediction from a sample: its status, the touchdown ahead, and a score that is complete."""
-        status = self._check(sample)
+        status = check_numbers(sample)
+        if status is Status.ACCEPTED and self.tree is not None:
+            seen = self.tree.seen(sample, self.frames, self.scene.body_frame)
+            if seen is None:
+                return Prediction(Status.NO_TRANSFORM, sample)
+            sample = seen
+        status = status or self._check(sample)
         if status is not Status.ACCEPTED:
             return Prediction(status, sample)
         contacts = self.contacts
@@ -195,9 +224,6 @@ class Predictor:
 
     def _check(self, sample: Sample) -> Status:
         """Whether a sample can be taken; after a pause, or a clock that has started anew, the record begins anew."""
-        status = check_numbers(sample)
-        if status is not Status.ACCEPTED:
-            return status
         scene, contacts = self.scene, self.contacts
         if scene.deck is None and scene.frame and sample.frame_id != scene.frame:
             return Status.WRONG_FRAME

@@ -25,6 +25,7 @@ JOINTS: Final = "joint_states"
 WRENCH: Final = "contact_wrench"
 SCHEDULE: Final = "schedule"
 TERRAIN: Final = "terrain"
+TRANSFORMS: Final = ("tf_static", "tf")  # for all bodies, and by these names for all nodes
 
 POINTS: Final = (CONTACT_GEOMETRY, FEET_STATES, JOINTS)  # what tells where the contact points of a body are
 STATES: Final = (ODOM, IMU)  # what tells how a body moves; everything else is told about it
@@ -52,6 +53,7 @@ SWITCHES: Final = {
     "friction of feet": "feet.names feet.friction",
     "restitution of feet": "feet.names feet.restitution",
     "ball feet": "feet.names feet.radius",
+    "transforms": "tf.body_frame",
     "margins": "margins",
     "uncertainty": "uncertainty.samples",
     "several bodies": "bodies",
@@ -190,6 +192,7 @@ class Scene(NamedTuple):
     """A body over a plane; SI units, the body's quantities in the body frame.
 
     `inertia` is about the mass centre; `points` are the contact points, empty where they come with the samples;
+    `body_frame` is the name of the body's frame where transforms may tell of it, "" where none are asked for;
     `normal` is the support's unit normal and `height` its distance from the origin along it, in the frame of the
     samples; `tolerance` the gap in m below which a point touches, if gaps scatter less; `contact_time` in s how long a
     contact lasts, and `merge` its compression, unless its `stiffness` in N/m tells that of a foot (0: it is not known);
@@ -216,6 +219,7 @@ class Scene(NamedTuple):
     center_of_mass: Vector3 = (0.0, 0.0, 0.0)
     points: tuple[Vector3, ...] = ()
     frame: str = ""
+    body_frame: str = ""
     normal: Vector3 = (0.0, 0.0, 1.0)
     height: float = 0.0
     gravity: Vector3 = (0.0, 0.0, -9.81)
@@ -264,6 +268,7 @@ class Scene(NamedTuple):
             center_of_mass=triple(values["body.center_of_mass"]),
             points=triples(points),
             frame=values["support.frame"],
+            body_frame=values["tf.body_frame"],
             normal=triple([part / length for part in normal]),
             height=values["support.height"],
             gravity=triple(values["gravity"]),
@@ -330,7 +335,7 @@ def shared_by(scenes: Mapping[str, Scene]) -> Scene:
 
 
 class Input(NamedTuple):
-    """A topic that is read: its relative name, what it carries, and of which body; None for the support."""
+    """A topic that is read: its relative name, what it carries, and of which body; None for the support and frames."""
 
     name: str
     kind: str
@@ -340,10 +345,11 @@ class Input(NamedTuple):
 def inputs_of(scenes: Mapping[str, Scene]) -> tuple[Input, ...]:
     """Every input of the bodies, in the order in which messages that wait at the same time are best served.
 
-    The support comes first and what is told about a body before its states, so that a state finds what it needs.
+    Frames and the support come first and what is told about a body before its states, so that each finds what it needs.
     """
     deck = shared_by(scenes).deck
-    found = [] if deck is None else [Input(f"support/{deck.source}", deck.source, None)]
+    found = [Input(kind, kind, None) for kind in TRANSFORMS if any(scene.body_frame for scene in scenes.values())]
+    found += [] if deck is None else [Input(f"support/{deck.source}", deck.source, None)]
     told = [(body, kind) for body, scene in scenes.items() for kind in _told_about(scene)]
     told += [(body, scene.source) for body, scene in scenes.items() if scene.source in STATES]
     return (*found, *[Input(f"{body}/{kind}" if body else kind, kind, body) for body, kind in told])

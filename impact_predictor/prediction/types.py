@@ -45,6 +45,7 @@ class Status(IntEnum):
     WRONG_JOINTS = 21
     SINGULAR_INERTIA = 22
     TOO_MANY_POINTS = 23
+    NO_TRANSFORM = 24
 
 
 class Bound(Enum):
@@ -110,6 +111,18 @@ class Sample(NamedTuple):
     angular: Vector3
     pose_covariance: tuple[float, ...]
     twist_covariance: tuple[float, ...]
+
+
+class Transform(NamedTuple):
+    """Where the frame `child_frame_id` is in the frame `frame_id`: `stamp` in ns, `position` in m, `orientation` as
+    (x, y, z, w), as in geometry_msgs/TransformStamped.
+    """
+
+    stamp: int
+    frame_id: str
+    child_frame_id: str
+    position: Vector3
+    orientation: Quaternion
 
 
 class Imu(NamedTuple):

@@ -42,11 +42,12 @@ class ByteOrder(NamedTuple):
     odometry_numbers: Struct
     imu_numbers: Struct
     wrench_numbers: Struct
+    transform_numbers: Struct
     point32: Struct
 
 
 def _byte_order(mark: str) -> ByteOrder:
-    return ByteOrder(mark, *[Struct(mark + layout) for layout in ("iI", "I", "85d", "37d", "6d", "3f")])
+    return ByteOrder(mark, *[Struct(mark + layout) for layout in ("iI", "I", "85d", "37d", "6d", "7d", "3f")])
 
 
 LITTLE_ENDIAN: Final = _byte_order("<")

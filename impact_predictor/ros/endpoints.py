@@ -128,6 +128,9 @@ def _waiting_on(subscription: Any, take: Callable[[bytes], None]) -> list[_Messa
     return found
 
 
+KEPT: Final = 100
+"""Messages that are kept on such a topic: each node that knows fixed frames publishes one on /tf_static."""
+
 REMEMBERED: Final = 16
 """Messages that may have come on one subscription to a topic before they come on the other."""
 
@@ -152,7 +155,7 @@ class LatchedTopic:
         self._take_latched = partial(self._pass_on, only_latched, only_live)
         self.live = self._listen(
             partial(self._pass_on, only_live, only_latched),
-            QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT),
+            QoSProfile(depth=KEPT, reliability=ReliabilityPolicy.BEST_EFFORT),
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
         )
 
@@ -165,7 +168,7 @@ class LatchedTopic:
         found = [one.qos_profile for one in self._node.get_publishers_info_by_topic(self.live.topic_name)]
         if latched in [(one.durability, one.reliability) for one in found]:
             self._has_latched = True
-            self._listen(self._take_latched, QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL))
+            self._listen(self._take_latched, QoSProfile(depth=KEPT, durability=DurabilityPolicy.TRANSIENT_LOCAL))
 
     def _pass_on(self, here: deque[bytes], there: deque[bytes], data: bytes) -> None:
         """Take a message that has come on one subscription, unless it was taken from the other."""

@@ -25,7 +25,7 @@ from ..errors import InputError
 from ..mechanics.compiled import told_of_compiling
 from ..parameters.validation import Parameter, Value, check_change, foreign, is_of_every_node, parameter_of, validate
 from ..prediction.monitor import Monitor
-from ..prediction.scene import CONTACT_GEOMETRY, FEET_STATES, ODOM, Scene, inputs_of, scenes_of
+from ..prediction.scene import CONTACT_GEOMETRY, FEET_STATES, ODOM, TRANSFORMS, Scene, inputs_of, scenes_of
 from ..wording import listed
 from .diagnostics import SILENT
 from .endpoints import Misfits
@@ -82,7 +82,8 @@ class PredictorNode(Node):
                 self._inputs[one.name] = self._bodies[one.body].subscription
             else:
                 self._told.append(InputTopic(self, reporter, self._monitor, one))
-                if self._told[-1].subscription is not None:
+                # Nobody need move frames, so silence about them is none.
+                if self._told[-1].subscription is not None and one.kind not in TRANSFORMS:
                     self._inputs[one.name] = self._told[-1].subscription
         reporter.listen([name for name in self._inputs if not name.endswith(FEET_STATES)])
         outputs = chain.from_iterable(body.outputs.values() for body in self._bodies.values())

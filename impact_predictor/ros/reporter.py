@@ -9,7 +9,7 @@ from rclpy.node import Node
 
 from ..prediction.flaws import flaw_of
 from ..prediction.monitor import Monitor
-from ..prediction.scene import CONTACT_GEOMETRY, IMU, Input
+from ..prediction.scene import CONTACT_GEOMETRY, IMU, TRANSFORMS, Input
 from ..prediction.types import Geometry, Prediction, Status
 from ..stamps import NANOSECONDS
 from .cdr import diagnostic_array
@@ -35,10 +35,10 @@ class MarkerTopic:
         """Take an accepted message on an input: contact points also for later."""
         drawing, monitor, body = self.drawing, self._monitor, one.body or ""
         if one.kind == CONTACT_GEOMETRY:
-            self._geometries[body] = message
+            message = self._geometries[body] = monitor.predictors[body].brought(message)
             if drawing is not None:
                 drawing.set_geometry(body, message)
-        elif drawing is None:
+        elif drawing is None or one.kind in TRANSFORMS:
             return
         elif one.body is None:
             if monitor.deck is not None and monitor.deck.last is not None:
@@ -125,8 +125,7 @@ class Reporter:
     def refuse(self, name: str, status: Status, body: str | None = None, message: Any = None) -> None:
         """A message on an input, about a body, was refused."""
         reason = Refusal(name, status)
-        predictor = None if body is None else self._monitor.predictors.get(body)
-        flaw = "" if predictor is None else flaw_of(predictor, status, message)
+        flaw = flaw_of(self._monitor, body, status, message)
         changed = self.diagnostics.refused(perf_counter(), reason, flaw)
         if self.diagnostics.is_news(reason):
             self._node.get_logger().warning(f"refused a message on {reason.said(flaw)}")

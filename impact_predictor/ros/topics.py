@@ -12,7 +12,7 @@ from rclpy.duration import Duration
 from rclpy.node import Node
 
 from ..prediction.monitor import Monitor
-from ..prediction.scene import CONTACT_GEOMETRY, IMU, SCHEDULE, TERRAIN, Input
+from ..prediction.scene import CONTACT_GEOMETRY, IMU, SCHEDULE, TERRAIN, TRANSFORMS, Input
 from ..prediction.types import Prediction, Score, Status
 from .endpoints import LONGEST, Backlog, LatchedTopic, Outlet, publisher, subscription
 from .messages import INPUT_TYPES, OUTPUTS, MalformedMessage, decode_odometry
@@ -37,10 +37,12 @@ class InputTopic:
         # Feet move, and what was published of them before is of no use.
         stays_true = one.kind == CONTACT_GEOMETRY and monitor.scenes[one.body or ""].walking is None
         self._latched: LatchedTopic | None = None
-        if stays_true or one.kind in (SCHEDULE, TERRAIN):
-            self._latched = LatchedTopic(node, self._take, one.name, type_name)
+        # Transforms are told to all nodes on one topic, whatever their namespace.
+        name = f"/{one.name}" if one.kind in TRANSFORMS else one.name
+        if stays_true or one.kind in (SCHEDULE, TERRAIN, TRANSFORMS[0]):
+            self._latched = LatchedTopic(node, self._take, name, type_name)
         else:
-            self.subscription = subscription(node, one.name, type_name, self._take, reporter.on_lost)
+            self.subscription = subscription(node, name, type_name, self._take, reporter.on_lost)
 
     def look_for_history(self) -> None:
         """Ask for what was published before, if it is still true and there may be any."""
@@ -62,6 +64,8 @@ class InputTopic:
 
 def _route(monitor: Monitor, one: Input) -> Callable[[Any], Status]:
     """What of the monitor takes the messages on an input."""
+    if one.kind in TRANSFORMS:
+        return partial(monitor.update_frames, is_fixed=one.kind == TRANSFORMS[0])
     if one.body is None:
         return monitor.update_support_imu if one.kind == IMU else monitor.update_support
     return partial(monitor.update_imu if one.kind == IMU else monitor.tell, one.body)
@@ -106,7 +110,7 @@ class BodyTopics:
         prediction = self._update(sample)
         update = perf_counter() - decoded
         if prediction.status is not Status.ACCEPTED:
-            if prediction.status is Status.NO_GEOMETRY:
+            if prediction.status in (Status.NO_GEOMETRY, Status.NO_TRANSFORM):
                 for one in self._told:
                     one.look_for_history()
             self._reporter.refuse(self._topic, prediction.status, self._body, sample)

@@ -39,6 +39,7 @@ FIELDS: list[tuple[str, Any, str, Any]] = [
     ("uncertainty.gap", 0.001, "gap_deviation", 0.001),
     ("uncertainty.law", 0.1, "law_deviation", 0.1),
     ("support.frame", "map", "frame", "map"),
+    ("tf.body_frame", "base", "body_frame", "base"),
     ("support.normal", [0.0, 3.0, 4.0], "normal", (0.0, 0.6, 0.8)),
     ("support.height", -0.5, "height", -0.5),
     ("odom.twist_window", 0.01, "twist_window", 0.01),

@@ -16,7 +16,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from messages_of_rosbags import FRAMES, TYPES, TYPESTORE, header, numbers, odometry, random_sample, serialize
 
-from impact_predictor.prediction.types import FeetStates, Geometry, Imu, Joints, Schedule, Wrench
+from impact_predictor.prediction.types import FeetStates, Geometry, Imu, Joints, Schedule, Transform, Wrench
 from impact_predictor.ros.messages import (
     IMU,
     JOINT_STATE,
@@ -33,11 +33,13 @@ from impact_predictor.ros.messages import (
     decode_odometry,
     decode_polygon,
     decode_schedule,
+    decode_transforms,
     decode_wrench,
     encode_imu,
     encode_odometry,
     encode_polygon,
 )
+from impact_predictor.ros.messages.inputs import TF_MESSAGE
 from impact_predictor.ros.messages.walker_inputs import encode_feet, encode_joints, encode_schedule, encode_wrench
 
 ENDIAN = pytest.mark.parametrize("little_endian", [True, False], ids=["little", "big"])
@@ -124,6 +126,24 @@ def test_feet_by_their_names_are_what_is_in_a_multi_dof_joint_state_both_ways(li
         message = TYPES[MULTI_DOF_JOINT_STATE](header(feet.stamp, feet.frame_id), names, transforms, twists, wrenches)
         assert decode_feet(serialize(message, MULTI_DOF_JOINT_STATE, little_endian)) == feet
         assert encode_feet(feet) == serialize(message, MULTI_DOF_JOINT_STATE)
+
+
+@ENDIAN
+def test_transforms_are_what_is_in_a_tf_message(little_endian: bool) -> None:
+    rng = random.Random(12)
+    vector, quaternion = TYPES["geometry_msgs/msg/Vector3"], TYPES["geometry_msgs/msg/Quaternion"]
+    for count in (0, 1, 2, 30):
+        told = [random_sample(rng) for _ in range(count)]
+        stamped = [
+            TYPES["geometry_msgs/msg/TransformStamped"](
+                header(one.stamp, one.frame_id),
+                one.child_frame_id,
+                TYPES["geometry_msgs/msg/Transform"](vector(*one.position), quaternion(*one.orientation)),
+            )
+            for one in told
+        ]
+        found = decode_transforms(serialize(TYPES[TF_MESSAGE](stamped), TF_MESSAGE, little_endian))
+        assert found == tuple([Transform(*one[:5]) for one in told])
 
 
 @ENDIAN

@@ -22,6 +22,7 @@ from .inputs import decode_odometry as decode_odometry
 from .inputs import decode_polygon as decode_polygon
 from .inputs import decode_schedule as decode_schedule
 from .inputs import decode_terrain as decode_terrain
+from .inputs import decode_transforms as decode_transforms
 from .inputs import decode_wrench as decode_wrench
 from .inputs import encode_imu as encode_imu
 from .inputs import encode_odometry as encode_odometry

@@ -1,8 +1,8 @@
 """The inputs of the predictor as bytes of ROS 2 Jazzy, both ways.
 
 nav_msgs/Odometry, geometry_msgs/PolygonStamped and WrenchStamped, sensor_msgs/Imu, JointState, MultiDOFJointState and
-PointCloud2, trajectory_msgs/JointTrajectory. Each decoder takes either byte order, takes numbers as they are, and
-raises MalformedMessage where the bytes are no such message.
+PointCloud2, trajectory_msgs/JointTrajectory, and of tf2_msgs/TFMessage what is read. Each decoder takes either byte
+order, takes numbers as they are, and raises MalformedMessage where the bytes are no such message.
 """
 
 from __future__ import annotations
@@ -11,14 +11,16 @@ from collections.abc import Callable
 from functools import lru_cache
 from typing import Any, Final, NamedTuple
 
-from ...prediction.types import FeetStates, Geometry, Imu, Joints, Sample, Schedule, Terrain, Wrench
+from ...prediction.types import FeetStates, Geometry, Imu, Joints, Sample, Schedule, Terrain, Transform, Wrench
 from ...stamps import NANOSECONDS
 from ..cdr import (
+    HEADER_SIZE,
     LITTLE_ENDIAN,
     LITTLE_ENDIAN_HEADER,
     MalformedMessage,
     align4,
     align8,
+    byte_order,
     check_end,
     decoder,
     read_doubles,
@@ -37,6 +39,7 @@ MULTI_DOF_JOINT_STATE: Final = "sensor_msgs/msg/MultiDOFJointState"
 WRENCH: Final = "geometry_msgs/msg/WrenchStamped"
 JOINT_TRAJECTORY: Final = "trajectory_msgs/msg/JointTrajectory"
 POINT_CLOUD: Final = "sensor_msgs/msg/PointCloud2"
+TF_MESSAGE: Final = "tf2_msgs/msg/TFMessage"
 
 _ODOMETRY_NUMBERS_SIZE: Final = LITTLE_ENDIAN.odometry_numbers.size
 _POINT_SIZE: Final = LITTLE_ENDIAN.point32.size
@@ -229,6 +232,25 @@ def decode_terrain(data: bytes) -> Terrain:
     return Terrain(nanoseconds, frame_id, points)
 
 
+@decoder(TF_MESSAGE)
+def decode_transforms(data: bytes) -> tuple[Transform, ...]:
+    """The transforms in the bytes of a tf2_msgs/TFMessage."""
+    order = byte_order(data)
+    (count,) = order.length.unpack_from(data, HEADER_SIZE)
+    end = HEADER_SIZE + 4
+    found = []
+    for _ in range(count):
+        seconds, rest = order.stamp.unpack_from(data, align4(end))
+        frame_id, end = read_string(data, align4(end) + 8, order)
+        child_frame_id, end = read_string(data, align4(end), order)
+        start = align8(end)
+        n = order.transform_numbers.unpack_from(data, start)
+        end = start + order.transform_numbers.size
+        found.append(Transform(seconds * NANOSECONDS + rest, frame_id, child_frame_id, n[0:3], n[3:7]))
+    check_end(data, end)
+    return tuple(found)
+
+
 class InputType(NamedTuple):
     """How the messages on an input travel: the name of their type, and what reads their bytes."""
 
@@ -245,5 +267,7 @@ INPUT_TYPES: Final = {
     "contact_wrench": InputType(WRENCH, decode_wrench),
     "schedule": InputType(JOINT_TRAJECTORY, decode_schedule),
     "terrain": InputType(POINT_CLOUD, decode_terrain),
+    "tf": InputType(TF_MESSAGE, decode_transforms),
+    "tf_static": InputType(TF_MESSAGE, decode_transforms),
 }
 """The types of the messages on each kind of input (see `impact_predictor.prediction.scene`)."""
