@@ -112,6 +112,7 @@ class FrameTree:
     def __init__(self) -> None:
         self.flaw = ""
         self._branches: dict[str, Branch] = {}
+        self._fixed: dict[tuple[str, str], Motion] = {}  # of frames as seen from others that no moving one connects
 
     def take(self, transforms: Iterable[Transform], is_fixed: bool) -> Status:
         """Take transforms, `is_fixed` those that hold at any time; what became of the worst of them."""
@@ -127,6 +128,7 @@ class FrameTree:
             branch = self._branches.get(one.child_frame_id)
             if branch is None or is_fixed or branch.is_fixed or branch.parent != one.frame_id:
                 self._branches[one.child_frame_id] = Branch(one.frame_id, is_fixed, [one])
+                self._fixed.clear()
             else:
                 branch.add(one)
         return worst
@@ -178,6 +180,9 @@ class FrameTree:
 
     def _motion(self, frame: str, other: str, stamp: int) -> Motion | None:
         """A frame as seen from another; None, with the `flaw`, where no transforms tell it."""
+        known = self._fixed.get((frame, other))
+        if known is not None:
+            return known
         up, down = self._ancestry(frame), self._ancestry(other)
         shared = next((one for one in up if one in down), None)
         loops = not self._branches.keys().isdisjoint((up[-1], down[-1]))
@@ -185,8 +190,14 @@ class FrameTree:
             why = ", which lie in a loop" if loops else ""
             self.flaw = f"no transforms on /tf and /tf_static connect {frame!r} and {other!r}{why}"
             return None
-        lower, upper = (self._along(way[: way.index(shared)], stamp) for way in (up, down))
-        return None if lower is None or upper is None else upper.inverse().of(lower)
+        del up[up.index(shared) :], down[down.index(shared) :]
+        lower, upper = self._along(up, stamp), self._along(down, stamp)
+        if lower is None or upper is None:
+            return None
+        seen = upper.inverse().of(lower)
+        if all(self._branches[one].is_fixed for one in up + down):
+            self._fixed[frame, other] = seen
+        return seen
 
     def _along(self, way: list[str], stamp: int) -> Motion | None:
         """The first frame of a way up as seen from the parent of the last."""

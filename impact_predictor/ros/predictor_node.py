@@ -25,7 +25,7 @@ from ..errors import InputError
 from ..mechanics.compiled import told_of_compiling
 from ..parameters.validation import Parameter, Value, check_change, foreign, is_of_every_node, parameter_of, validate
 from ..prediction.monitor import Monitor
-from ..prediction.scene import CONTACT_GEOMETRY, FEET_STATES, ODOM, TRANSFORMS, Scene, inputs_of, scenes_of
+from ..prediction.scene import CONTACT_GEOMETRY, FEET_STATES, ODOM, TRANSFORMS, Scene, features_of, inputs_of, scenes_of
 from ..wording import listed
 from .diagnostics import SILENT
 from .endpoints import Misfits
@@ -95,10 +95,11 @@ class PredictorNode(Node):
         for said in _overrides_of_others(self):
             self.get_logger().warning(said)
         names = ", ".join(scenes)
+        has = listed([one.name for one in features_of(self._settings.values) if one.on], last="and")
         inputs = sorted({one.topic_name for one in self.subscriptions} - set(_OF_ROS))
         self.get_logger().info(
             f"{f'the bodies {names} are' if names else 'one body is'} predicted from {listed(inputs)}; "
-            f"executor {self.executor_kind}"
+            f"executor {self.executor_kind}; the scene has {has}"
         )
 
     def create_service(

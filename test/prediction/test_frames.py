@@ -231,6 +231,14 @@ def test_what_is_remembered_is_bounded_and_a_clock_that_starts_anew_begins_anew(
     assert tree.brought(Geometry(99, "b", ((0.0, 0.0, 0.0),)), "c").points == ((1.0, 0.0, 0.0),)
 
 
+def test_a_fixed_frame_that_is_told_anew_is_where_it_was_told_last() -> None:
+    tree, asked = tree_of(fixed("a", "b", 1), fixed("b", "c", 2)), Geometry(5, "c", ((0.0, 0.0, 0.0),))
+    before = tree.brought(asked, "a").points
+    assert tree.brought(asked, "a").points == before
+    tree.take([Transform(0, "b", "c", (0.0, 0.0, 0.0), LEVEL)], is_fixed=True)
+    np.testing.assert_allclose(tree.brought(asked, "a").points, [fixed("a", "b", 1).position], atol=1e-15)
+
+
 def test_transforms_that_are_none_are_refused_and_change_nothing() -> None:
     tree = tree_of(fixed("a", "b", 1))
     nan, long = float("nan"), (0.0, 0.0, 0.0, 2.0)

@@ -146,7 +146,7 @@ def test_the_node_says_what_it_listens_to_what_is_not_for_it_and_where_nothing_c
             time.sleep(0.1)
         said = node.complained()
         node.end()
-    assert "one body is predicted from /contact_geometry, /cube/odom; executor single" in said
+    assert "one body is predicted from /contact_geometry, /cube/odom; executor single; the scene has friction, " in said
     assert "camera.exposure is no parameter of impact_predictor, and passed over" in said
     assert "qos_overrides./odm.subscription.depth is of no topic of this node; near it there are" in said
     assert said.count("nothing has come on") == 1

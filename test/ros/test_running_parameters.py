@@ -1,6 +1,8 @@
 """Parameters that are set while the node runs, over the parameter services as `ros2 param set` uses them."""
 
 import math
+from array import array
+from functools import reduce
 from pathlib import Path
 
 import pytest
@@ -8,12 +10,13 @@ import pytest
 pytest.importorskip("rclpy", reason="the node needs ROS 2: source it, or install the extra `ros`")
 
 import rclpy
+import yaml
 from graph import peer_of_node, running_node
 from nav_msgs.msg import Odometry
 from rcl_interfaces.msg import Parameter as ParameterMessage
 from rcl_interfaces.msg import ParameterValue
 from rcl_interfaces.srv import SetParameters, SetParametersAtomically
-from rclpy.parameter import Parameter
+from rclpy.parameter import Parameter, parameter_value_to_python
 from rclpy.parameter_client import AsyncParameterClient
 from rclpy.qos import QoSProfile
 
@@ -53,6 +56,34 @@ def scene_with(**changes):
 def answer(scenes, *samples):
     monitor = Monitor(scenes)
     return [monitor.update("", one) for one in samples][-1]
+
+
+@pytest.mark.slow
+def test_what_a_node_dumps_of_its_parameters_starts_it_again_with_the_same(tmp_path):
+    """As `ros2 param dump` does it: the names, all values at once, and what goes between dots as nested keys."""
+    with peer_of_node() as peer:
+
+        def dumped(scene):
+            with running_node(scene):
+                client = AsyncParameterClient(peer.node, "impact_predictor")
+                peer.until(lambda: client.wait_for_services(0.02))
+                listed = client.list_parameters([], 10)
+                peer.until(listed.done)
+                told = client.get_parameters(sorted(listed.result().result.names))
+                peer.until(told.done)
+            values = map(parameter_value_to_python, told.result().values)
+            nested = {}
+            for name, value in zip(sorted(listed.result().result.names), values, strict=True):
+                *groups, key = name.split(".")
+                reduce(lambda inner, group: inner.setdefault(group, {}), groups, nested)[key] = (
+                    list(value) if isinstance(value, array) else value
+                )
+            return {"/impact_predictor": {"ros__parameters": nested}}
+
+        first = dumped(ROOT / "config/deck_many.yaml")
+        assert first["/impact_predictor"]["ros__parameters"]["crate"]["body"]
+        (tmp_path / "dump.yaml").write_text(yaml.dump(first, default_flow_style=False))
+        assert dumped(tmp_path / "dump.yaml") == first
 
 
 def test_every_parameter_that_cannot_change_is_one_and_the_others_can():
