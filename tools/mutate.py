@@ -1,41 +1,54 @@
-"""Change the code at random places, one at a time, and see whether the tests that run the changed line notice.
+r"""Change the code at random places, one at a time, and see whether the tests that run the changed line notice.
 
     python -m pip install coverage pytest-cov
-    python -m pytest -m "not slow and not extras" --cov=impact_predictor --cov-context=test --cov-report=
-    python tools/mutate.py .coverage --count 300 --seed 1
+    python -m pytest -m "not slow and not extras" --junitxml=tests.xml \
+        --cov=impact_predictor --cov-context=test --cov-report=
+    python tools/mutate.py .coverage tests.xml --count 300 --seed 1
 
 A mutant that no test notices is printed as it survives, with its place and what was changed; at the end stand the
-counts of each room. Each mutant is tried in a copy of the tree, so that the clone stays as it is. The exit status is 1
-where fewer than --killed of them are noticed. Read what survives: some change nothing that can be seen.
+counts of each room. The exit status is 1 where fewer than --killed of those that change what can be seen are noticed;
+tools/mutants.md lists the others, with the reason. Each mutant is tried in a copy of the tree, in a process that is
+forked from one with the libraries loaded: first against a few quick tests, then against the others.
 """
 
 from __future__ import annotations
 
 import argparse
 import ast
+import multiprocessing
 import os
 import random
 import re
+import resource
 import shutil
-import subprocess
+import signal
 import sys
 import tempfile
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
+from itertools import accumulate, takewhile
 from pathlib import Path
 from typing import Any, Final, NamedTuple
+from xml.etree import ElementTree
 
 ROOT: Final = Path(__file__).parents[1]
+PACKAGE: Final = ROOT / "impact_predictor"
+ACCEPTED: Final = ROOT / "tools" / "mutants.md"
 SWAPS: Final = {
     "<": "<=", "<=": "<", ">": ">=", ">=": ">", "==": "!=", "!=": "==", "is": "is not", "is not": "is",
     "in": "not in", "not in": "in", "+": "-", "-": "+", "*": "/", "/": "*", "//": "*", "%": "*", "**": "*",
     "and": "or", "or": "and",
 }  # fmt: skip
 NAMES: Final = {"min": "max", "max": "min", "any": "all", "all": "any", "True": "False", "False": "True"}
-MOST_TESTS: Final = 300
-"""Tests of one mutant, those of the mirrored file first."""
-PATIENCE: Final = 240.0
-"""Seconds for the tests of one mutant; one that takes longer hangs, which is noticed too."""
+UNSEEN: Final = {"frozen", "slots", "strict", "maxsize", "stacklevel"}
+"""Arguments that only a fault in the code itself, or a watch on its speed, would notice."""
+FIRST: Final = 8
+"""Tests that a mutant is tried against before the others are loaded, too."""
+LONGEST: Final = 60.0
+"""Seconds that the tests of one mutant took together without it: more of them are not tried."""
+PATIENCE: Final = 900
+"""Seconds on the clock for the tests of one mutant; one that takes longer hangs, which is noticed too."""
 
 
 class Mutant(NamedTuple):
@@ -47,9 +60,19 @@ class Mutant(NamedTuple):
     end: int
     old: str
     new: str
+    text: str
+
+    @property
+    def change(self) -> str:
+        """What is changed, wherever it stands."""
+        return f"{self.old} -> {self.new} in: {self.text}"
 
     def __str__(self) -> str:
-        return f"{self.file.relative_to(ROOT)}:{self.line}: {self.old!r} -> {self.new!r}"
+        return f"{self.file.relative_to(PACKAGE)}:{self.line}: {self.change}"
+
+    def is_accepted(self, accepted: str) -> bool:
+        """Whether it is listed, wherever its line stands now."""
+        return f"| {self.file.relative_to(PACKAGE)} | `{self.change}` |" in accepted
 
 
 def mutants_of(file: Path) -> Iterator[Mutant]:
@@ -64,6 +87,9 @@ def mutants_of(file: Path) -> Iterator[Mutant]:
         begin = begins[line - 1]
         return begin + len(source[begin : begin + column].encode()[:column].decode(errors="ignore"))
 
+    def text_of(node: ast.expr) -> str:
+        return source[begins[node.lineno - 1] :].partition("\n")[0].strip()
+
     def end_of(node: ast.expr) -> int:
         return place(node.end_lineno or 0, node.end_col_offset or 0)
 
@@ -75,12 +101,12 @@ def mutants_of(file: Path) -> Iterator[Mutant]:
         ):
             if found[0] in SWAPS:
                 at = start + found.start()
-                yield Mutant(file, before.lineno, at, at + len(found[0]), found[0], SWAPS[found[0]])
+                yield Mutant(file, before.lineno, at, at + len(found[0]), found[0], SWAPS[found[0]], text_of(before))
                 return
 
     def instead(node: ast.expr, new: str) -> Mutant:
         start, end = place(node.lineno, node.col_offset), end_of(node)
-        return Mutant(file, node.lineno, start, end, source[start:end], new)
+        return Mutant(file, node.lineno, start, end, source[start:end], new, text_of(node))
 
     for node in ast.walk(tree):
         if id(node) in unseen:
@@ -102,86 +128,143 @@ def mutants_of(file: Path) -> Iterator[Mutant]:
 
 
 def parts_unseen(node: ast.AST) -> Iterator[ast.AST]:
-    """What of a node is annotation or text for people."""
+    """What of a node is annotation, text for people, or a check of the code itself."""
     whole: ast.AST | None = None
     if isinstance(node, ast.AnnAssign | ast.arg):
         whole = node.annotation
     elif isinstance(node, ast.FunctionDef):
-        whole = node.returns
-    elif isinstance(node, ast.JoinedStr | ast.Raise | ast.Assert) or (
-        isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"
+        whole = node if node.name == "__repr__" else node.returns
+    elif (
+        isinstance(node, ast.JoinedStr | ast.Raise | ast.Assert)
+        or (isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING")
+        or (isinstance(node, ast.keyword) and node.arg in UNSEEN)
     ):
         whole = node
     return iter(()) if whole is None else ast.walk(whole)
 
 
-def tests_of(data: Any, mutant: Mutant) -> list[str]:
-    """The tests that run the line of a mutant, or its file if loading that runs the line; the mirrored ones first."""
+def some_of(mutants: Sequence[Mutant], count: int, seed: int) -> list[Mutant]:
+    """Those that a seed chooses by their text: a change elsewhere in the code leaves them as they are."""
+    places: dict[float, Mutant] = {}
+    before = Counter[str]()
+    for mutant in mutants:
+        text = f"{mutant.file.relative_to(PACKAGE)} {mutant.change}"
+        before[text] += 1
+        places[random.Random(f"{seed} {text} {before[text]}").random()] = mutant
+    return [places[place] for place in sorted(places)[:count]]
+
+
+def seconds_of(report: Path) -> dict[str, float]:
+    """How long each test took that passed, by its name."""
+    return {
+        f"{case.get('classname', '').replace('.', '/')}.py::{case.get('name')}": float(case.get("time", 0.0))
+        for case in ElementTree.parse(report).iter("testcase")
+        if not len(case)
+    }
+
+
+def tests_of(data: Any, seconds: Mapping[str, float], mutant: Mutant) -> dict[str, float]:
+    """The tests that run the line of a mutant, or its file if loading that runs the line, with their seconds.
+
+    The quick ones come first, and those of the mirrored file before others.
+    """
     contexts = data.contexts_by_lineno(str(mutant.file))
     of_line = {context.partition("|")[0] for context in contexts.get(mutant.line, [])}
     if "" in of_line:
         of_line = {context.partition("|")[0] for several in contexts.values() for context in several}
-    tests = sorted(of_line - {""})
-    random.Random(str(mutant)).shuffle(tests)
-    return sorted(tests, key=lambda test: f"test_{mutant.file.stem}.py" not in test)[:MOST_TESTS]
+    mirrored = f"test_{mutant.file.stem}.py"
+    tests = sorted(of_line & {*seconds}, key=lambda test: seconds[test] * (0.1 if mirrored in test else 1.0))
+    within = takewhile(lambda total: total < LONGEST, accumulate((seconds[test] for test in tests), initial=0.0))
+    return {test: seconds[test] for test, _ in zip(tests, within)}  # noqa: B905  as many as are within
 
 
-def is_noticed(mutant: Mutant, tests: Sequence[str], tree: Path) -> bool:
-    """Whether a test fails in a copy of the tree with the change."""
-    file = tree / mutant.file.relative_to(ROOT)
-    source = file.read_text()
+def copy_tree(folder: str) -> None:
+    """Give this process a copy of the tree as its working folder."""
+    tree = Path(folder, str(os.getpid()))
+    shutil.copytree(ROOT, tree, ignore=shutil.ignore_patterns(".git", ".venv", "out", "log"))
+    os.chdir(tree)
+
+
+def try_out(task: tuple[Mutant, dict[str, float]]) -> tuple[Mutant, str]:
+    """What its tests find of a mutant in this copy of the tree."""
+    mutant, tests = task
+    file = Path(mutant.file.relative_to(ROOT))
+    source, times = file.read_text(), file.stat()
     file.write_text(source[: mutant.start] + mutant.new + source[mutant.end :])
-    command = [sys.executable, "-m", "pytest", "-x", "-q", "-n", "0", "-p", "no:cacheprovider", *tests]
-    try:
-        done = subprocess.run(
-            command,
-            cwd=tree,
-            env={**os.environ, "PYTHONPATH": str(tree), "PYTHONDONTWRITEBYTECODE": "1"},
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-            timeout=PATIENCE,
-        )
-    except subprocess.TimeoutExpired:
-        return True
-    finally:
-        file.write_text(source)
-    return done.returncode != 0
+    names, outcome = list(tests), "survived" if tests else "not run"
+    for part in (names[:FIRST], names[FIRST:]):
+        if outcome == "survived" and part and fails(part, 60 + int(sum(map(tests.__getitem__, part)))):
+            outcome = "noticed"
+    file.write_text(source)
+    # What is compiled stays valid.
+    os.utime(file, ns=(times.st_atime_ns, times.st_mtime_ns))
+    return mutant, outcome
+
+
+def fails(tests: Sequence[str], limit: int) -> bool:
+    """Whether one of the tests fails, or takes more than some seconds of computing, in a process of its own."""
+    child = os.fork()
+    if not child:
+        try:
+            os.setsid()
+            resource.setrlimit(resource.RLIMIT_CPU, (limit, limit))
+            signal.alarm(PATIENCE)
+            for stream in (1, 2):
+                os.dup2(os.open(os.devnull, os.O_WRONLY), stream)
+            sys.path.insert(0, str(Path.cwd()))
+            os.environ |= {"PYTHONPATH": str(Path.cwd()), "PYTHONDONTWRITEBYTECODE": "1"}
+            sys.dont_write_bytecode = True
+            import pytest
+
+            os._exit(int(pytest.main(["-x", "-q", "-p", "no:cacheprovider", *tests])))
+        finally:
+            os._exit(1)
+    _, status = os.waitpid(child, 0)
+    with suppress(ProcessLookupError):
+        os.killpg(child, signal.SIGKILL)
+    return status != 0
 
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("coverage", type=Path, help="what coverage has recorded of the tests")
+    parser.add_argument("report", type=Path, help="how long each of them took, from --junitxml")
     parser.add_argument("--count", type=int, default=300)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--only", default="", help="a part of the names of files, such as mechanics/")
+    parser.add_argument("--only", default="", help="those that have this in their line of output")
     parser.add_argument("--killed", type=float, default=0.92, help="the part that the tests shall notice")
+    parser.add_argument("--jobs", type=int, default=2)
     arguments = parser.parse_args()
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    import hypothesis
+    import numba  # type: ignore[import-untyped]
+    import numpy as np
+    import pytest
     from coverage import CoverageData  # type: ignore[import-not-found]
 
-    data = CoverageData(str(arguments.coverage))
+    del hypothesis, numba, np, pytest  # loaded once, for all that is forked
+    data, seconds = CoverageData(str(arguments.coverage)), seconds_of(arguments.report)
     data.read()
-    files = [file for file in sorted((ROOT / "impact_predictor").rglob("*.py")) if arguments.only in str(file)]
-    every = [mutant for file in files for mutant in mutants_of(file)]
-    chosen = random.Random(arguments.seed).sample(every, min(arguments.count, len(every)))
-    killed, left, unrun = Counter[str](), Counter[str](), Counter[str]()
-    with tempfile.TemporaryDirectory() as folder:
-        tree = Path(folder, "tree")
-        shutil.copytree(ROOT, tree, ignore=shutil.ignore_patterns(".git", ".venv", "out", "log"))
-        for mutant in chosen:
-            room = mutant.file.relative_to(ROOT / "impact_predictor").parts[0]
-            tests = tests_of(data, mutant)
-            if not tests:
-                unrun[room] += 1
-                print(f"not run   {mutant}", flush=True)
-            elif is_noticed(mutant, tests, tree):
-                killed[room] += 1
-            else:
-                left[room] += 1
-                print(f"survived  {mutant}  ({len(tests)} tests)", flush=True)
-    for room in sorted({*killed, *left, *unrun}):
-        print(f"{room:14} {killed[room]:4} noticed {left[room]:4} survived {unrun[room]:4} not run by these tests")
-    part = killed.total() / max(1, killed.total() + left.total())
-    print(f"{killed.total()} of {killed.total() + left.total()} noticed: {100.0 * part:.1f} %")
+    accepted = ACCEPTED.read_text() if ACCEPTED.exists() else ""
+    every = [mutant for file in sorted(PACKAGE.rglob("*.py")) for mutant in mutants_of(file)]
+    chosen = some_of([one for one in every if arguments.only in str(one)], arguments.count, arguments.seed)
+    counts: dict[str, Counter[str]] = {}
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        multiprocessing.get_context("fork").Pool(arguments.jobs, copy_tree, (folder,)) as pool,
+    ):
+        for mutant, found in pool.imap_unordered(try_out, [(one, tests_of(data, seconds, one)) for one in chosen]):
+            outcome = "accepted" if found != "noticed" and mutant.is_accepted(accepted) else found
+            room = mutant.file.relative_to(PACKAGE).parts[0]
+            counts.setdefault(room, Counter())[outcome] += 1
+            print(f"{outcome:9} {mutant}", flush=True)
+    outcomes = ("noticed", "survived", "not run", "accepted")
+    for room in sorted(counts):
+        print(f"{room:14}", *(f"{counts[room][outcome]:4} {outcome}" for outcome in outcomes))
+    total = sum(counts.values(), Counter[str]())
+    seen = total["noticed"] + total["survived"] + total["not run"]
+    part = total["noticed"] / max(1, seen)
+    print(f"{total['noticed']} noticed of {seen} that change what can be seen: {100.0 * part:.1f} %")
     return int(part < arguments.killed)
 
 

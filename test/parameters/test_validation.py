@@ -11,6 +11,7 @@ import pytest
 
 from impact_predictor.errors import InputError
 from impact_predictor.parameters.file import read_values
+from impact_predictor.parameters.types import Parameter, allowed
 from impact_predictor.parameters.validation import PARAMETERS, foreign, is_of_every_node, validate
 
 NO_BODY = "no body has it: about each axis, inertia is at most the sum of that about the two axes across it"
@@ -39,6 +40,18 @@ def test_every_parameter_is_declared_so_that_a_node_can_declare_it() -> None:
         assert parameter.description.endswith(".")
         assert parameter.low < parameter.high
         assert bool(parameter.unit) == (parameter.kind not in ("bool", "string", "string_array"))
+
+
+def test_types_defaults_and_ranges_are_those_that_users_rely_on() -> None:
+    kept = (Path(__file__).parent / "contract.txt").read_text().splitlines()
+    assert [contract(parameter) for parameter in PARAMETERS.values()] == kept
+
+
+def contract(parameter: Parameter) -> str:
+    """What a scene that is written today relies on."""
+    words = [f"{parameter.name} = {parameter.default!r}:", allowed(parameter)]
+    words += ["shared"] * parameter.shared + ["fixed"] * bool(parameter.fixed) + ["of model"] * parameter.of_model
+    return " ".join(words)
 
 
 def test_every_default_is_allowed() -> None:
