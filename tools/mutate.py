@@ -25,7 +25,7 @@ import signal
 import sys
 import tempfile
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from itertools import accumulate, takewhile
 from pathlib import Path
@@ -164,16 +164,26 @@ def seconds_of(report: Path) -> dict[str, float]:
 
 
 def tests_of(data: Any, seconds: Mapping[str, float], mutant: Mutant) -> dict[str, float]:
-    """The tests that run the line of a mutant, or its file if loading that runs the line, with their seconds.
+    """The tests that run the line of a mutant and their seconds: quick ones first, of the mirrored file before others.
 
-    The quick ones come first, and those of the mirrored file before others.
+    Where loading runs the line, they are those that run another line of its file, or else one of its folder.
     """
-    contexts = data.contexts_by_lineno(str(mutant.file))
-    of_line = {context.partition("|")[0] for context in contexts.get(mutant.line, [])}
-    if "" in of_line:
-        of_line = {context.partition("|")[0] for several in contexts.values() for context in several}
+
+    def contexts_of(file: Path) -> dict[int, list[str]]:
+        found: dict[int, list[str]] = data.contexts_by_lineno(str(file))
+        return found
+
+    def run_by(contexts: Iterable[list[str]]) -> set[str]:
+        return {re.split(r"[|]| \(", context)[0] for several in contexts for context in several} & {*seconds}
+
+    contexts = contexts_of(mutant.file)
+    of_line = run_by([contexts.get(mutant.line, [])])
+    if "" in contexts.get(mutant.line, []):
+        of_line = run_by(contexts.values())
+        for file in mutant.file.parent.glob("*.py") if not of_line else ():
+            of_line |= run_by(contexts_of(file).values())
     mirrored = f"test_{mutant.file.stem}.py"
-    tests = sorted(of_line & {*seconds}, key=lambda test: seconds[test] * (0.1 if mirrored in test else 1.0))
+    tests = sorted(of_line, key=lambda test: seconds[test] * (0.1 if mirrored in test else 1.0))
     within = takewhile(lambda total: total < LONGEST, accumulate((seconds[test] for test in tests), initial=0.0))
     return {test: seconds[test] for test, _ in zip(tests, within)}  # noqa: B905  as many as are within
 
@@ -222,7 +232,8 @@ def fails(tests: Sequence[str], limit: int) -> bool:
     _, status = os.waitpid(child, 0)
     with suppress(ProcessLookupError):
         os.killpg(child, signal.SIGKILL)
-    return status != 0
+    # 5: none of them is there.
+    return os.waitstatus_to_exitcode(status) not in (0, 5)
 
 
 def main() -> int:
@@ -237,7 +248,7 @@ def main() -> int:
     arguments = parser.parse_args()
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     import hypothesis
-    import numba  # type: ignore[import-untyped]
+    import numba
     import numpy as np
     import pytest
     from coverage import CoverageData  # type: ignore[import-not-found]

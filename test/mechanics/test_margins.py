@@ -12,7 +12,7 @@ from alone import random_impacts
 from impact_predictor import Contact, Mode, Twist, TwoPointBody, cylinder, plate, rod, solve_impact
 from impact_predictor.mechanics import margins as module
 from impact_predictor.mechanics.closed_forms import cylindrical, flat
-from impact_predictor.mechanics.margins import BEYOND, NO_MARGINS, Margin, margins
+from impact_predictor.mechanics.margins import BEYOND, NO_MARGIN, NO_MARGINS, Margin, margins
 from impact_predictor.mechanics.random_problems import KINDS
 
 EXACT = 1e-9
@@ -181,6 +181,16 @@ def test_without_an_impact_there_are_no_margins():
     assert margins(body._replace(mass=-1.0), body.turning(-1.0)) == NO_MARGINS
     with pytest.raises(ValueError, match="law is"):
         margins(body, body.turning(-1.0), "laws")
+
+
+def test_a_point_mass_grips_with_more_friction_or_less_slip_and_has_no_other_margins():
+    # It slips by 1 m/s and arrives with 1 m/s: friction 0.5 stops half of the slip.
+    body = TwoPointBody(2.0, 3.0, None, Contact(0.0, 0.0, friction=0.5))
+    found = margins(body, Twist(1.0, -1.0, 0.0))
+    assert found.friction.change == pytest.approx(0.5, abs=EXACT)
+    assert found.slip.change == pytest.approx(-0.5, abs=EXACT)
+    assert found.friction.mode is found.slip.mode is Mode.PIVOT
+    assert (found.center, found.height, found.reach) == (NO_MARGIN, NO_MARGIN, NO_MARGIN)
 
 
 @pytest.mark.parametrize("law", LAWS)
