@@ -216,7 +216,7 @@ def fails(tests: Sequence[str], limit: int) -> bool:
     child = os.fork()
     if not child:
         try:
-            os.setsid()
+            os.setpgid(0, 0)
             resource.setrlimit(resource.RLIMIT_CPU, (limit, limit))
             signal.alarm(PATIENCE)
             for stream in (1, 2):
