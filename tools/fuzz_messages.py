@@ -189,7 +189,7 @@ def _changed(choices: Choices, value: Any) -> Any:
     elif isinstance(was, str):
         now = choices.of(("", "world", "cube", "elsewhere", "left", "a" * 300, "\u00e4\u6f22\t\n\x00"))
     elif was is None or not was:
-        now = choices.of((was, (0.0, 0.0, 0.0, 1.0)))
+        now = choices.of((was, ((0.0, 0.0, 1.0),) if isinstance(value, FeetStates) else (0.0, 0.0, 0.0, 1.0)))
     elif isinstance(was[0], float):
         now = _numbers(choices, was)
     elif isinstance(was[0], tuple) and isinstance(was[0][0], float):

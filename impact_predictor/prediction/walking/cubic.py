@@ -115,6 +115,8 @@ def slope_of(cubic: Cubic, x: float) -> float:
 def factored(n: Triangle) -> Triangle | None:
     """The Cholesky factor of the symmetric matrix whose lower triangle is `n`, by rows; None where it is singular."""
     n00, n10, n11, n20, n21, n22, n30, n31, n32, n33 = n
+    if not n00 > 0.0:
+        return None
     i0 = 1.0 / sqrt(n00)
     l10, l20, l30 = n10 * i0, n20 * i0, n30 * i0
     pivot = n11 - l10 * l10

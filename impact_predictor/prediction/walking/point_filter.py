@@ -93,16 +93,17 @@ class PointFilter:
         scale = 1.0 / ((c1 if order else c0) + noise)
         k0, k1, k2, k3 = c0 * scale, c1 * scale, c2 * scale, c3 * scale
         self.covariance = (
-            p00 - k0 * c0 if order else k0 * noise,
+            # A rounding must not make a variance negative.
+            max(p00 - k0 * c0, 0.0) if order else k0 * noise,
             p10 - k1 * c0,
-            k1 * noise if order else p11 - k1 * c1,
+            k1 * noise if order else max(p11 - k1 * c1, 0.0),
             p20 - k2 * c0,
             p21 - k2 * c1,
-            p22 - k2 * c2,
+            max(p22 - k2 * c2, 0.0),
             p30 - k3 * c0,
             p31 - k3 * c1,
             p32 - k3 * c2,
-            p33 - k3 * c3,
+            max(p33 - k3 * c3, 0.0),
         )
         (x0, v0, a0, j0), (x1, v1, a1, j1), (x2, v2, a2, j2), (x3, v3, a3, j3) = rows
         e0, e1, e2, e3 = measured

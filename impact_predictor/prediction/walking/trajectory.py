@@ -34,6 +34,7 @@ SINKS_FOR = 0.005  # s for which a foot sinks in at most, ...
 LEAST_SPEED = 0.1  # ... and m/s with which at least
 COURSE = 10_000_000  # ns before an arrival over which the speed is taken
 MET = 0.2  # part of the way between two frames by which the height is unsure at which a point has met the ground
+UNSEEN = 250_000_000  # ns without a frame after which a point follows another motion than before
 SAME = 0.01  # a later arrival is believed where it leaves less by this part of the noise's square
 
 
@@ -62,7 +63,7 @@ class FootTrajectory:
     def follow(self, noise: GapNoise, near: bool) -> None:
         """Filter the last frame with those before it; one that is `near` the ground may be in the air no more."""
         frame, filtered = self.frames[-1], self.filter
-        if filtered is None:
+        if filtered is None or frame.stamp - filtered.stamp > UNSEEN:
             filtered = self.filter = PointFilter(frame, noise, self._snap)
         else:
             filtered.add(frame, noise, learns=not near)

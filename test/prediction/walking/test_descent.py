@@ -9,6 +9,7 @@ from impact_predictor.prediction.walking.cubic import GapNoise, PointFrame
 from impact_predictor.prediction.walking.descent import Descent, DescentEstimator, LandingPrior
 from impact_predictor.prediction.walking.ground import GroundLevel
 from impact_predictor.prediction.walking.point_filter import PointFilter
+from impact_predictor.prediction.walking.trajectory import FootTrajectory
 
 MS = 1_000_000
 EXACT, NOISE = GapNoise(1e-5, 2e-4), GapNoise(2e-4, 5e-3)
@@ -87,3 +88,16 @@ def test_a_rhythm_makes_landings_surer_where_there_is_one() -> None:
         deviations.append(float(np.median([one.deviation for _, one in told])))
     assert off[1] < 0.5 * off[0]
     assert deviations[1] < 0.5 * deviations[0]
+
+
+@pytest.mark.parametrize("jump", [10, 200, 10**3, 10**6, 10**12])
+def test_after_a_clock_that_jumps_no_variance_is_negative(jump: int) -> None:
+    trajectory, estimator, noise = FootTrajectory(), DescentEstimator(), GapNoise(1.2e-3, 0.02)
+    for k, stamp in enumerate((510, *range(515 + jump, 640 + jump, 10))):
+        gap = 0.042 - 0.0031 * k
+        trajectory.frames.append(PointFrame(stamp * MS, gap, None, (-0.35, 0.35, gap), None))
+        trajectory.follow(noise, near=False)
+        assert trajectory.filter is not None
+        assert all(trajectory.filter.covariance[i] >= 0.0 for i in (0, 2, 5, 9))
+        found = estimator.estimate(trajectory.filter, LEVEL, LandingPrior())
+        assert found is None or found.deviation >= 0.0
