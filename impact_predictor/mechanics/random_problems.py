@@ -123,14 +123,13 @@ KINDS: dict[str, tuple[Callable[[Draw], ContactPair], str]] = {
 """Kinds of problems: a geometry, and how the body moves. It turns about A; or it may slip on A or leave it, on supports
 at rest, on a deck, whose points move as one body, or on supports that move apart; it falls on A; or there is no A."""
 
-STIFF = ("slender", "extreme", "extreme-apart")
-"""The kinds in which one rounding of the input can be much in the outcome."""
 
-
-def random_problems(seed: int, count: int, chunk: int = CHUNK) -> Iterator[Problems]:
-    """`count` problems in all, in chunks of which each is of one kind; the `KINDS` take turns."""
-    source, kinds = np.random.default_rng(seed), list(KINDS)
-    for number, start in enumerate(range(0, count, chunk)):
+def random_problems(seed: int, count: int, chunk: int = CHUNK, done: int = 0) -> Iterator[Problems]:
+    """`count` problems in all, without the chunks that are `done`; each is of one kind, and the `KINDS` take turns."""
+    kinds = list(KINDS)
+    for start in range(done, count, chunk):
+        number = start // chunk
+        source = np.random.default_rng((seed, number))
         yield problems_of(kinds[number % len(kinds)], source, min(chunk, count - start))
 
 
