@@ -8,7 +8,7 @@ import click
 
 from .options import choice, examples, number, refuse_given, seed_option, text, together
 from .progress import progress, writing
-from .simulated import Products, as_json_option, bag_option, picture_options
+from .simulated import Products, as_json_option, bag_option
 
 if TYPE_CHECKING:
     from ..scenarios.deck.motion import DeckMotion
@@ -83,7 +83,6 @@ _OF_SEA: Final = ("spectrum", "rao", *[parameter_of(name) for name, *_ in _SEA])
     default="auto",
 )
 @number("--restand", "Seconds after which a unit that toppled stands again where it stood. [default: never]")
-@picture_options("the deck, and the units that moved most,", "a moving picture of the liveliest seconds")
 @as_json_option
 @bag_option("the truth")
 def simulate_deck(
@@ -95,8 +94,6 @@ def simulate_deck(
     record: str | None,
     contacts: str,
     restand: float | None,
-    plot: str | None,
-    animate: str | None,
     as_json: bool,
     output: str | None,
     **options: Any,
@@ -135,19 +132,10 @@ def simulate_deck(
             f"--deck-rate {deck_rate:g} is too slow: after support.timeout, {timeout:g} s, a message tells nothing more"
         )
     sensors = Sensors(rate, deck_rate, noise, seed)
-    products = Products(plot=plot, animate=animate, as_json=as_json, output=output)
-    products.check()
-    seen = {}
-    if products.draws:
-        from ..report.deck_pictures import UnitMotion, deck_film, picture_times, write_deck_figure
-
-        seen["times"] = picture_times(duration)
+    products = Products(as_json=as_json, output=output)
     seconds = round(duration) if duration < float("inf") else None
     with progress("simulated deck", "s", seconds) if output is None else writing(output, seconds) as tell:
-        voyage = sail(scenes, deck, duration, contacts, output, sensors, tell, restand=restand, **seen)
-    if products.draws:
-        units = [UnitMotion(one) for one in voyage.units]
-        products.draw(lambda path: write_deck_figure(path, deck, units), lambda: deck_film(deck, units))
+        voyage = sail(scenes, deck, duration, contacts, output, sensors, tell, restand)
     from ..report.simulation import print_voyage
     from ..scenarios.as_json import voyage_as_json
 

@@ -48,11 +48,11 @@ as_json_option = json_flag(f"{RATES_AS_MAGNITUDES}.")
 class Products(NamedTuple):
     """What is asked for of a motion: names of files, or None, and whether what is printed is JSON."""
 
-    plot: str | None
-    animate: str | None
     as_json: bool
     output: str | None = None
     rate: float | None = None
+    plot: str | None = None
+    animate: str | None = None
 
     def check(self) -> None:
         """Refuse what cannot be made, before any work is done.

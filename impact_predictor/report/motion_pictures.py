@@ -3,25 +3,23 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from functools import partial
-from math import copysign, degrees, hypot, pi, tan
+from math import copysign, degrees, pi, tan
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..mechanics.motion import PlanarState, RockingImpact, standing
-from ..mechanics.motion.support import Support
-from ..mechanics.types import TwoPointBody
+from ..mechanics.motion import RockingImpact, standing
 from ..scenarios.as_json import rolling_as_json
 from ..scenarios.rocking import Rocking
 from ..scenarios.wheel import Rolling
 from . import plot
 from .modes import EDGE, MODES, PALETTE
 
-STICKS, SLIPS, OPEN = "#1a1a1a", "#e69f00", "#ffffff"
-CONTACT_COLOURS: Final = {"S": STICKS, "+": SLIPS, "-": SLIPS, "O": OPEN}
+CONTACT_COLOURS: Final = {"S": "#1a1a1a", "+": "#e69f00", "-": "#e69f00", "O": "#ffffff"}
+"""By the state of a contact: it sticks, slips forwards or back, or is open."""
 BODY: Final = "#dbe4ee"
 
 _HUB, _FIRST = PALETTE[0], PALETTE[2]
@@ -105,33 +103,22 @@ def rocking_film(rockings: Sequence[Rocking]) -> plot.Film:
     )
 
 
-class BodyScene:
-    """A body on two contacts and what they stand on, turned with it about the place of the old one.
+class RockingScene:
+    """One of the paper's bodies on its contacts A and B; `size` (width, height) in m is seen."""
 
-    `start` is the state in which it stands on both, `state` that at a time in s; `size` (width, height) in m is seen.
-    """
-
-    def __init__(
-        self,
-        title: str,
-        body: TwoPointBody,
-        outline: NDArray[np.float64],
-        support: Support,
-        start: PlanarState,
-        state: Callable[[float], PlanarState],
-        times: Sequence[float],
-    ) -> None:
-        """Look at the body at some times (s), to know how much room it needs; no `outline` is that of a disc."""
-        assert body.old is not None
-        self.title, self._support, self._state = title, support, state
-        self._contacts = np.array([(body.old.x, body.old.y), (body.new.x, body.new.y)])
-        self._is_disc = not len(outline)
+    def __init__(self, rocking: Rocking) -> None:
+        """Take a motion, and look at all of it to know how much room it needs."""
+        rocker, self._run = rocking
+        assert rocker.body.old is not None
+        self.title, self._is_disc = rocker.label, not rocker.outline
+        self._contacts = np.array([(one.x, one.y) for one in (rocker.body.old, rocker.body.new)])
         turns = np.linspace(0.0, 2.0 * pi, 73)
-        circle = hypot(body.old.x, body.old.y) * np.column_stack((np.cos(turns), np.sin(turns)))
-        self._outline = circle if self._is_disc else outline
-        self._edges = plot.placed(self._contacts, start)
-        bodies = [plot.placed(self._outline, state(time)) for time in times]
-        seen = np.concatenate([self._seen(one, time) for one, time in zip(bodies, times, strict=True)])
+        circle = np.linalg.norm(self._contacts[0]) * np.column_stack((np.cos(turns), np.sin(turns)))
+        self._outline = circle if self._is_disc else np.array(rocker.outline)
+        self._edges = plot.placed(self._contacts, standing(rocker.body, 0.0))
+        states = [self._run.state(time) for time in np.linspace(0.0, self._run.time, 400).tolist()]
+        bodies = [plot.placed(self._outline, state) for state in states]
+        seen = self._seen(np.concatenate(bodies))
         self.size = np.ptp(seen, axis=0) + 0.15 * np.ptp(seen)
         self._middle = 0.5 * (seen.min(axis=0) + seen.max(axis=0))
         (left, floor), (right, top) = self._edges
@@ -143,49 +130,33 @@ class BodyScene:
             ]
             return
         # A body that reaches below its contacts stands on a table no wider than they ever are.
-        places = np.array([plot.placed(self._contacts, state(time)) for time in times])
+        places = np.array([plot.placed(self._contacts, state) for state in states])
         stood = places[..., 0][places[..., 1] < floor + 1e-3 * wide]
         beyond = 0.0 if min(one[:, 1].min() for one in bodies) < floor - 0.05 * wide else float(self.size.sum())
         self._supports = [plot.box(stood.min() - beyond, stood.max() + beyond, floor - depth, floor)]
 
-    def draw_body(self, axes: plot.Axes, time: float, face: str, contacts: Sequence[str]) -> list[NDArray[np.float64]]:
-        """Draw the body at a time in s, with colours of it and of both contacts; the places of those."""
-        state = self._state(time)
+    def draw(self, axes: plot.Axes, time: float) -> str:
+        """Draw the body at a time in s; its last impact, in words."""
+        state = self._run.state(time)
         for support in self._supports:
-            axes.fill(*self._seen(support, time).T, color=plot.SUPPORT)
-        outline = self._seen(plot.placed(self._outline, state), time)
-        axes.fill(*outline.T, facecolor=face, edgecolor=plot.LINE, linewidth=1.3)
-        centre = self._seen(np.array([(state.x, state.y)]), time)[0]
+            axes.fill(*self._seen(support).T, color=plot.SUPPORT)
+        outline = self._seen(plot.placed(self._outline, state))
+        axes.fill(*outline.T, facecolor=BODY, edgecolor=plot.LINE, linewidth=1.3)
+        centre = self._seen(np.array([(state.x, state.y)]))[0]
         axes.plot(*centre, "P", color=plot.LINE, markersize=6, markeredgewidth=0.0)
         if self._is_disc:  # a spoke shows how it turns
             axes.plot(*np.array([centre, outline[0]]).T, color=plot.LINE, linewidth=1.0)
-        places = self._seen(self._edges if self._is_disc else plot.placed(self._contacts, state), time)
-        for place, colour in zip(places, contacts, strict=True):
-            axes.plot(*place, "o", color=colour, markeredgecolor=EDGE, markersize=7)
+        places = self._seen(self._edges if self._is_disc else plot.placed(self._contacts, state))
+        for name, place, how in zip("AB", places, self._run.states(time), strict=True):
+            axes.plot(*place, "o", color=CONTACT_COLOURS[how], markeredgecolor=EDGE, markersize=7)
+            axes.annotate(name, place, (0.0, -15.0), textcoords="offset points", ha="center")
         (left, bottom), (right, top) = self._middle - 0.5 * self.size, self._middle + 0.5 * self.size
         axes.set(xlim=(left, right), ylim=(bottom, top))
-        return list(places)
-
-    def _seen(self, points: NDArray[np.float64], time: float) -> NDArray[np.float64]:
-        return plot.turned(points - self._edges[0], float(self._support.motion(time).angle))
-
-
-class RockingScene(BodyScene):
-    """One of the paper's bodies on its contacts A and B."""
-
-    def __init__(self, rocking: Rocking) -> None:
-        """Take a motion."""
-        rocker, self._run = rocking
-        times, outline = np.linspace(0.0, self._run.time, 400).tolist(), np.array(rocker.outline)
-        start = standing(rocker.body, 0.0)
-        super().__init__(rocker.label, rocker.body, outline, self._run.support, start, self._run.state, times)
-
-    def draw(self, axes: plot.Axes, time: float) -> str:
-        """Draw the body at a time in s; its last impact, in words."""
-        places = self.draw_body(axes, time, BODY, [CONTACT_COLOURS[how] for how in self._run.states(time)])
-        for name, (x, y) in zip("AB", places, strict=True):
-            axes.annotate(name, (x, y), (0.0, -15.0), textcoords="offset points", ha="center")
         return last_impact(self._run.impacts, time)
+
+    def _seen(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Points of the support's frame, about the old contact's place on it, as they lie on the slope."""
+        return plot.turned(points - self._edges[0], float(self._run.support.motion(0.0).angle))
 
 
 def draw_wheel_rate(rolling: Rolling, axes: plot.Axes) -> None:

@@ -10,8 +10,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from impact_predictor.report.motion_pictures import (
-    OPEN,
-    STICKS,
+    CONTACT_COLOURS,
     RockingScene,
     WheelScene,
     draw_rates,
@@ -89,9 +88,10 @@ def test_the_film_shows_how_contacts_stand_and_says_the_last_impact(rod: Rocking
         axes = Figure().add_subplot()
         said = scene.draw(axes, time)
         shown.append((said, *[line.get_markerfacecolor() for line in axes.lines if line.get_marker() == "o"]))
-    assert shown[:2] == [("", STICKS, OPEN), (f"impact 1: {first.outcome.mode.name}", OPEN, STICKS)]
+    sticks, is_open = CONTACT_COLOURS["S"], CONTACT_COLOURS["O"]
+    assert shown[:2] == [("", sticks, is_open), (f"impact 1: {first.outcome.mode.name}", is_open, sticks)]
     assert shown[2][0].startswith(f"impact {len(rod.run.impacts)}: ")
-    assert shown[2][1:] == (STICKS, STICKS)
+    assert shown[2][1:] == (sticks, sticks)
 
 
 def test_the_spokes_that_are_drawn_end_where_the_standing_one_touches_the_slope(slips: Rolling) -> None:

@@ -31,11 +31,10 @@ _CAPSIZED = 0.25 * pi
 
 
 class Followed:
-    """What happened to a unit, as far as it was followed; its `states` (6, n) at `times` (n,) in s, else NaN."""
+    """What happened to a unit, as far as it was followed."""
 
-    def __init__(self, unit: CargoUnit, spans: Iterator[Span], times: NDArray[np.float64]) -> None:
-        self.unit, self.times = unit, times
-        self.states: NDArray[np.float64] = np.full((6, len(times)), np.nan)
+    def __init__(self, unit: CargoUnit, spans: Iterator[Span]) -> None:
+        self.unit = unit
         self.impacts: list[TrueImpact] = []
         self.onsets: list[TrueOnset] = []
         self.sums: list[float] = []
@@ -59,9 +58,6 @@ class Followed:
             self.end, self.time = span.end, span.time
             self.toppled += span.end is End.OVERTURNED
             self.stood += 0.0 if span.lies else span.time - span.start
-            within = (self.times >= span.start) & (self.times <= span.time)
-            if within.any():
-                self.states[:, within] = np.array(span.state(self.times[within]))
             seen = span.poses(np.append(np.arange(span.start, span.time, 1.0 / LOOKS), span.time))
             half = 0.5 * self.unit.mount.yaw
             upright = np.abs(seen.orientation @ (0.0, 0.0, sin(half), cos(half)))
@@ -116,7 +112,6 @@ def sail(
     bag: str | os.PathLike[str] | None = None,
     sensors: Sensors = Sensors(),  # noqa: B008 - it is immutable
     tell: Callable[[int], None] | None = None,
-    times: NDArray[np.float64] = np.zeros(0),  # noqa: B008 - nothing is written into it
     restand: float | None = None,
 ) -> Voyage:
     """Follow all units of the scenes for `duration` s, and write a `bag` with what their sensors told.
@@ -124,7 +119,7 @@ def sail(
     `contacts` are rigid, by the impact law of each scene and in the transverse plane, or compliant (see `compliant`);
     auto: they are rigid on a deck that moves in that plane alone, but for units with lashings or chocks. Drums lie in
     their chocks and have rigid ones in any case. A unit that toppled stands again after `restand` s where it stood at
-    first. `tell` takes now and then how many seconds are done. The states of the units at `times` in s are kept.
+    first. `tell` takes now and then how many seconds are done.
 
     Raises:
         InputError: a unit cannot be simulated, a number is out of its range, or the bag cannot be written.
@@ -155,7 +150,7 @@ def sail(
             from .compliant import follow_compliant
 
             motion = partial(follow_compliant, unit, deck, duration)
-        followed.append(Followed(unit, _put_up(motion, duration, restand), times))
+        followed.append(Followed(unit, _put_up(motion, duration, restand)))
     if bag is None:
         done = 0.0
         for one in followed:

@@ -10,16 +10,26 @@ import pytest
 from cargo_scenes import a_deck as rolling_deck
 from cargo_scenes import box
 from harmonic_deck import Wave, harmonic_support
+from numpy.typing import NDArray
 
 from impact_predictor.errors import InputError
 from impact_predictor.mechanics.motion import End, standing
-from impact_predictor.report.deck_pictures import margin_used
+from impact_predictor.prediction.watch.onset import Onset, motions
+from impact_predictor.prediction.watch.standing import Standing
 from impact_predictor.scenarios.deck.cargo import CargoUnit, follow, unit_of
 from impact_predictor.scenarios.deck.compliant import follow_compliant
 from impact_predictor.scenarios.deck.motion import DeckMotion, planar_deck
 from impact_predictor.scenarios.deck.sea import SeaState, waves_of
 from impact_predictor.scenarios.deck.vessel import Vessel, deck_in
 from impact_predictor.scenarios.truth import TrueImpact
+
+
+def margin_used(deck: DeckMotion, unit: CargoUnit, times: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The larger part that is used of the margins of a unit against sliding and tipping, where it began."""
+    state, stance = deck.at(times), Standing(unit.scene).stance
+    assert stance is not None
+    margins = Onset([stance]).margins(motions(state.gravity, state.poses.angular, state.turning))
+    return np.maximum(margins.slide, margins.tip)[0]
 
 
 def a_deck() -> DeckMotion:
