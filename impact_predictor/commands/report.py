@@ -12,7 +12,7 @@ import click
 from ..errors import need
 from ..files import make_folder, whole
 from ..wording import NONE
-from .options import examples
+from .options import examples, json_flag
 
 
 @click.command(
@@ -31,12 +31,12 @@ from .options import examples
     help="Folder for report.html, .json and .csv; made if there is none. [default: report, with --json none]",
 )
 @click.option("--quick", is_flag=True, help="A seventh of the problems.")
-@click.option("--json", "as_json", is_flag=True, help="Print the report as JSON.")
+@json_flag("Print the report as JSON.")
 def report(output: Path | None, quick: bool, as_json: bool) -> None:
     """Compare error and run time of many methods for touchdowns and impacts.
 
     Every method meets the same problems: extrapolation, integration by scipy, the laws of this program in the plane and
-    in three dimensions, one at a time and over arrays. The recorded tosses of a cube are scored by what was measured.
+    in three dimensions. The recorded tosses of a cube are scored by what was measured.
     One page shows error over run time, and which method to choose for a wanted accuracy; the same stands in a JSON and
     a CSV file.
     """
@@ -71,8 +71,6 @@ def report(output: Path | None, quick: bool, as_json: bool) -> None:
     show(console, table_of(columns, fields["choices"]))
     for question, used in fields["node"].items():
         say(console, f"The node answers the {question} by {accuracy.name_of(used)}:", used["why"])
-    powers = ", ".join(f"{scene} {power:.1f}" for scene, power in fields["orders"].items())
-    say(console, f"In three dimensions the error of the path law falls with this power of its steps: {powers}.")
     say(console, f"Page: {folder}/report.html")
 
 

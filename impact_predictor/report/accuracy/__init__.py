@@ -1,7 +1,8 @@
 """Error against run time: methods on the same problems, recorded tosses of a cube, and which method to choose.
 
 A row is an object of the report's JSON: one method with one setting on one scene. A prediction that a method did not
-give counts as infinitely wrong; what is infinite is null.
+give counts as infinitely wrong; what is infinite is null. `impact-predictor bench invariants` tells how the laws keep
+to mechanics where no solution is known to so many digits.
 """
 
 from __future__ import annotations
@@ -21,14 +22,8 @@ from time import process_time
 from timeit import Timer
 from typing import Any, Final, NamedTuple
 
-import numpy as np
-
 from ... import __version__
 from ...bags.replay import replay
-from ...mechanics.impact import LAWS
-from ...mechanics.impact.batch import solve_impacts
-from ...mechanics.invariants import UNANSWERED, violations
-from ...mechanics.random_problems import problems_of
 from ...prediction.scene import read_scenes
 from ...resources import find
 
@@ -42,15 +37,11 @@ ACCURACIES: Final = (1e-2, 1e-4, 1e-6, 1e-9)
 TOUCHDOWN: Final = "touchdown"
 IMPACT: Final = "impact"
 SPATIAL: Final = "spatial impact"
-GAPS: Final = "uncertain gaps"
-STABILITY: Final = "stability"
 TOSSES: Final = "tosses"
 ERRORS: Final = {
     TOUCHDOWN: ("time_error", "twist_error"),
     IMPACT: ("twist_error",),
     SPATIAL: ("twist_error",),
-    GAPS: ("twist_error",),
-    STABILITY: ("violation",),
     TOSSES: ("twist_error",),
 }
 """The questions, and what of a row is an error."""
@@ -73,20 +64,6 @@ class AccuracyScene(NamedTuple):
     description: str
     reference: str
 
-
-RANDOM: Final = [
-    AccuracyScene(kind, STABILITY, title, description, "mechanics itself: no other solution is needed")
-    for kind, title, description in (
-        ("tilted", "Ordinary bodies", "Two contacts anywhere with any normals, sizes of 0.1 to 2 m, friction to 4."),
-        ("slender", "Slender bodies", "Lengths and frictions over eight decades, on a floor or a slope."),
-        ("extreme", "Extreme bodies", "Every length, mass, friction and speed over eight to twelve decades."),
-        ("extreme-apart", "Extreme supports", "The same on supports that move apart."),
-    )
-]
-"""The scenes of the stability, by the kinds of `random_problems`."""
-
-MECHANICS: Final = ("cone", "momentum", "approach", "work", "energy")
-"""The invariants that one outcome violates or not."""
 
 CUBE: Final = AccuracyScene(
     name="cube tosses",
@@ -120,8 +97,6 @@ def report(part: float, command: str, tell: Callable[[int], None] = lambda done:
         rows_of(touchdowns, round(32 * part)),
         rows_of(impacts, round(200 * part)),
         rows_of(spatial, round(60 * part)),
-        rows_of(spatial.UNCERTAIN, max(1, round(20 * part))),
-        stability_rows(round(20_000 * part)),
         toss_rows(),
     )
     rows: list[AccuracyRow] = []
@@ -134,14 +109,13 @@ def report(part: float, command: str, tell: Callable[[int], None] = lambda done:
     made["date"] = datetime.now(timezone.utc).date().isoformat()
     asked: Any = {TOUCHDOWN: touchdowns, IMPACT: impacts, SPATIAL: spatial}
     found = {name: conclusions(rows, name, question.USED) for name, question in asked.items()}
-    drawn = [scene for question in (*asked.values(), spatial.UNCERTAIN) for scene in question.SCENES]
+    drawn = [scene for question in asked.values() for scene in question.SCENES]
     return {
         "made": made | {"command": command, "timing": TIMING},
         "node": {question: used for question, (used, _) in found.items()},
-        "scenes": [scene._asdict() for scene in (*drawn, *RANDOM, CUBE)],
+        "scenes": [scene._asdict() for scene in (*drawn, CUBE)],
         "rows": rows,
         "choices": [choice for _, choices in found.values() for choice in choices],
-        "orders": spatial.orders(rows),
     }
 
 
@@ -169,21 +143,6 @@ def rows_of(question: Any, count: int) -> Iterator[AccuracyRow]:
                 errors.append(none if answer is None else question.errors_of(problem, answer, right))
             us = [1e6 * seconds_of(partial(solve, problem)) for problem in drawn]
             yield row_of(scene, method, us, errors)
-
-
-def stability_rows(count: int) -> Iterator[AccuracyRow]:
-    """Each law on random impacts of ordinary, stiff and extreme kinds: by how much the outcomes violate mechanics."""
-    for scene in RANDOM:
-        _, body, twist = problems_of(scene.name, np.random.default_rng(4), count)
-        for law in LAWS:
-            # Sizes over many decades overflow in sums of squares; what is not a number counts as endlessly wrong.
-            with np.errstate(all="ignore"):
-                outcomes, found = violations(body, twist, law)
-                us = 1e6 * seconds_of(partial(solve_impacts, body, twist, law)) / count
-            worst = np.nan_to_num(np.maximum.reduce([found[name] for name in MECHANICS]), nan=inf)
-            answered = (outcomes.flags & UNANSWERED) == 0
-            errors = [{"violation": one} if known else {} for one, known in zip(worst.tolist(), answered, strict=True)]
-            yield row_of(scene, (f"{law} law", "over arrays"), [us], errors)
 
 
 def toss_rows() -> Iterator[AccuracyRow]:
@@ -214,7 +173,7 @@ def row_of(
     name, setting = method
     row: AccuracyRow = {"family": "predictor" if scene is CUBE else name, "method": name, "setting": setting}
     row |= {"question": scene.question, "scene": scene.name, "us": median(us), "us_90": sorted(us)[len(us) * 9 // 10]}
-    for key in ("time_error", "twist_error", "violation"):
+    for key in ("time_error", "twist_error"):
         values = sorted(one[key] for one in errors if key in one) or [inf]
         last = len(values) - 1
         for end, value in (("", values[last // 2]), ("_90", values[-(-9 * last // 10)]), ("_worst", values[-1])):
@@ -230,9 +189,8 @@ def name_of(row: Mapping[str, Any]) -> str:
 
 
 def error_of(row: Mapping[str, Any]) -> float:
-    """What 90 % of a row's errors stay below, of the stability the worst violation; inf where there is none."""
-    end = "worst" if row["question"] == STABILITY else "90"
-    errors = [row[f"{name}_{end}"] for name in ERRORS[row["question"]]]
+    """What 90 % of a row's errors stay below; inf where there is no such number."""
+    errors = [row[f"{name}_90"] for name in ERRORS[row["question"]]]
     return max(inf if error is None else error for error in errors)
 
 

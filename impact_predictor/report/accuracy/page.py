@@ -9,7 +9,7 @@ from typing import Any, Final
 from ...wording import duration
 from ..modes import PALETTE
 from ..page import Chart, Headline, PageTable, Section, marks, page
-from . import ERRORS, GAPS, IMPACT, SPATIAL, STABILITY, TOSSES, TOUCHDOWN, error_of, name_of
+from . import ERRORS, IMPACT, SPATIAL, TOSSES, TOUCHDOWN, error_of, name_of
 
 CLOSES: Final = (
     "When, and with which twist, does the next contact strike? Gap and twist go on at constant twist or constant "
@@ -26,15 +26,6 @@ IN_SPACE: Final = (
     "path law in three dimensions is the node's, and its error falls with its steps; the total law is complementarity "
     "of the impulses of the whole impact, with Newton's restitution."
 )
-UNSURE: Final = (
-    "And where gaps are known to 0.45 mm only? One solution takes them for exact. Draws over the gaps tell the mean "
-    "twist, and how likely each contact leaves: the table has the errors of the twist, and the mean error of that."
-)
-VIOLATED: Final = (
-    "Does an answer keep to mechanics where a rounding decides much? A violation is by how much an outcome leaves its "
-    "friction cones, balances momentum and energy, gains work, or still approaches a contact, as a part of the terms "
-    "of that balance. A stiff problem multiplies rounding by its condition number."
-)
 MEASURED: Final = (
     "Which assumptions are right? Here the truth is a measurement, and the friction, restitution and shape of the body "
     "are known only roughly: more digits do not make the error smaller."
@@ -43,8 +34,6 @@ QUESTIONS: Final = {
     TOUCHDOWN: ("The next touchdown", CLOSES),
     IMPACT: ("The impact", GOES_ON),
     SPATIAL: ("The impact in three dimensions", IN_SPACE),
-    GAPS: ("Uncertain gaps", UNSURE),
-    STABILITY: ("Stiff and extreme impacts", VIOLATED),
     TOSSES: ("Recorded tosses", MEASURED),
 }
 """The questions of the report: a title, and what is asked."""
@@ -73,11 +62,8 @@ def accuracy_page(report: Mapping[str, Any], script: str) -> str:
         rows = [row for row in report["rows"] if row["question"] == name]
         choices = [choice for choice in report["choices"] if choice["question"] == name]
         if rows:
-            tables = [_choices(choices) if choices else _errors(rows, titles)]
-            if name == SPATIAL:
-                powers = [[titles[scene], f"{power:.1f}"] for scene, power in report["orders"].items()]
-                tables.append(PageTable(["scene", "the error falls with this power of the steps"], powers, words=1))
-            sections.append(Section(name.replace(" ", "-"), title, [asked], [*tables, _picture(title, rows, titles)]))
+            table = _choices(choices) if choices else _errors(rows, titles)
+            sections.append(Section(name.replace(" ", "-"), title, [asked], [table, _picture(title, rows, titles)]))
     scenes = [[scene["title"], scene["description"], scene["reference"]] for scene in report["scenes"]]
     made = [
         PageTable(["scene", "problems", "held to be right"], scenes, words=3),
@@ -100,17 +86,12 @@ def _choices(choices: Sequence[Mapping[str, Any]]) -> PageTable:
 
 def _errors(rows: Sequence[Mapping[str, Any]], titles: Mapping[str, str]) -> PageTable:
     cells = []
-    tells = [row["wrong_modes"] is not None for row in rows]
     for row in rows:
-        error = ERRORS[row["question"]][-1]
-        numbers = [row[f"{error}{end}"] for end in ("", "_90", "_worst")]
-        numbers = ["no number" if one is None else f"{one:.2g}" for one in numbers]
+        numbers = [row[f"{ERRORS[row['question']][-1]}{end}"] for end in ("", "_90", "_worst")]
+        said = ["no number" if one is None else f"{one:.2g}" for one in numbers]
         failed = f"{row['failed']:,} of {row['count']:,}"
-        wrong = [f"{row['wrong_modes']:.2g}"] if all(tells) else []
-        cells.append([titles[row["scene"]], name_of(row), *numbers, *wrong, failed, duration(1e-6 * row["us"])])
-    wrong = ["contacts that leave"] if all(tells) else []
-    names = ["scene", "method", "median", "90 % below", "worst", *wrong, "not answered", "run time"]
-    return PageTable(names, cells, words=2)
+        cells.append([titles[row["scene"]], name_of(row), *said, failed, duration(1e-6 * row["us"])])
+    return PageTable(["scene", "method", "median", "90 % below", "worst", "not answered", "run time"], cells, words=2)
 
 
 def _picture(title: str, rows: Sequence[Mapping[str, Any]], titles: Mapping[str, str]) -> Chart:
@@ -125,8 +106,7 @@ def _picture(title: str, rows: Sequence[Mapping[str, Any]], titles: Mapping[str,
         look = {"size": 10, "color": PALETTE[number % len(PALETTE)], "symbol": SYMBOLS[number]}
         traces += [marks(name, points, marker=look)] if points else []
     log = {"type": "log", "exponentformat": "power"}
-    axis = "worst violation" if rows[0]["question"] == STABILITY else "relative error, 90 % are below"
     layout = {"height": 480, "showlegend": True, "xaxis": {"title": "time of one prediction, us", **log}}
-    layout["yaxis"] = {"title": axis, **log}
+    layout["yaxis"] = {"title": "relative error, 90 % are below", **log}
     caption = f"Errors below {LEAST:g} stand there. Click a name to hide its method, point at a mark for more."
     return Chart(f"Error against run time: {title.lower()}", traces, layout, caption)

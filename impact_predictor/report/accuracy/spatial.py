@@ -6,32 +6,23 @@ contact, the exact path in the plane, and stiff springs.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from itertools import product
-from math import log
 from random import Random
-from types import SimpleNamespace
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from ...mechanics.impact.spatial import STEPS, Body, ContactPoints, solve_spatial_impact, solve_spatial_impacts
+from ...mechanics.impact.spatial import STEPS, Body, ContactPoints, solve_spatial_impact
 from ...mechanics.types import ContactState
-from ...prediction.uncertainty import normal_points
-from . import GAPS, SPATIAL, AccuracyScene, Methods
+from . import SPATIAL, AccuracyScene, Methods
 
-MOST, FINEST = 64, 2048
-"""Steps for a quarter of an oscillation: the most that are compared, and the reference's."""
-
-DRAWS, ALL = (16, 32, 64), 1024
-"""Draws over uncertain gaps: those that are compared, and the reference's."""
-
-DEVIATION: Final = 4.5e-4
-"""Standard deviation of uncertain gaps in m: as at the corners of a cube that was measured."""
+FINEST: Final = 2048
+"""Steps of the reference for a quarter of an oscillation."""
 
 SLOWEST: Final = 0.1
 """m/s; every contact that strikes is faster."""
@@ -88,28 +79,12 @@ def solved(strike: StruckBox, law: str = "path", steps: int = STEPS) -> SpatialA
     return SpatialAftermath(np.asarray(found.twist), np.array(leaves, float))
 
 
-def drawn(strike: StruckBox, draws: int) -> SpatialAftermath:
-    """The mean over draws of the gaps at the contacts that strike."""
-    points = DEVIATION * normal_points(draws, len(strike.strikes)).T
-    gaps = np.where(strike.strikes, points - points[:, strike.strikes].min(axis=1, keepdims=True), 0.0)
-    found = solve_spatial_impacts(strike.body, strike.contacts._replace(gaps=gaps), strike.twist)
-    leaves = found.states == list(ContactState).index(ContactState.LEAVES)
-    return SpatialAftermath(found.twist.mean(axis=0), leaves.mean(axis=0))
-
-
 def errors_of(strike: StruckBox, after: SpatialAftermath, right: SpatialAftermath) -> dict[str, float]:
     """Error of the twist, relative to the size of the one before, and of what is told of the contacts that leave."""
     error = strike.size(after.twist - right.twist) / strike.size(strike.twist)
     if after.leaves is None or right.leaves is None:
         return {"twist_error": error}
     return {"twist_error": error, "wrong_modes": float(np.abs(after.leaves - right.leaves).mean())}
-
-
-def orders(rows: Iterable[Mapping[str, Any]]) -> dict[str, float]:
-    """The power of the steps with which the median error falls, from the usual ones to the most, on each scene."""
-    errors = {(row["scene"], row["setting"]): row["twist_error"] for row in rows if row["question"] == SPATIAL}
-    few, many = (f"{steps} steps" for steps in (STEPS, MOST))
-    return {scene.name: log(errors[scene.name, few] / errors[scene.name, many]) / log(MOST / STEPS) for scene in SCENES}
 
 
 FINE: Final = f"the path law with {FINEST} steps; the other solutions that it is held against are in the tests"
@@ -133,20 +108,3 @@ METHODS: Final[Methods] = {
     **{("path law", f"{2**k} steps"): partial(solved, steps=2**k) for k in range(1, 7)},
     ("total law", ""): partial(solved, law="total"),
 }
-
-UNCERTAIN: Final = SimpleNamespace(
-    SCENES={
-        AccuracyScene(name, GAPS, title, description, f"{ALL} draws"): partial(
-            box, tilt=0, stand=stand, strike=strike, bounces=True
-        )
-        for name, title, description, stand, strike in (
-            ("gaps of an edge", "Edge beside an edge", "Two corners strike, their gaps known to 0.45 mm.", 2, 2),
-            ("gaps of a face", "Face", "Four corners strike, their gaps known to 0.45 mm.", 0, 4),
-        )
-    },
-    METHODS={("one solution", ""): solved}
-    | {("mean", f"{draws} draws"): partial(drawn, draws=draws) for draws in DRAWS},
-    reference_of=partial(drawn, draws=ALL),
-    errors_of=errors_of,
-)
-"""The question what follows where gaps are known to a part of a millimetre only: means and probabilities."""

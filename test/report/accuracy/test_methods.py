@@ -98,11 +98,11 @@ def test_more_steps_of_the_law_in_three_dimensions_err_less_and_newtons_compleme
 @pytest.mark.parametrize("stand", [0, 2])
 def test_draws_over_gaps_come_to_the_mean_and_one_solution_does_not(stand: int) -> None:
     boxes = problems(partial(spatial.box, tilt=0, stand=stand, strike=4 - stand, bounces=True), "gaps", 8)
-    right = [spatial.drawn(one, spatial.ALL) for one in boxes]
+    right = [bench_peers.over_gaps(one, bench_peers.ALL) for one in boxes]
     for key in ("twist_error", "wrong_modes"):
         found = [
             median(spatial.errors_of(one, solve(one), mean)[key] for one, mean in zip(boxes, right, strict=True))
-            for solve in (spatial.solved, partial(spatial.drawn, draws=16), partial(spatial.drawn, draws=256))
+            for solve in (spatial.solved, *(partial(bench_peers.over_gaps, draws=draws) for draws in (16, 256)))
         ]
         assert found[2] < found[1] < 0.5 * found[0], key
 
