@@ -114,7 +114,7 @@ def calibrate(
 
         write_scene(params, output, changes_of(calibration))
     if figure is not None:
-        from ..report.figures import write_calibration
+        from ..report.calibration_figure import write_calibration
 
         write_calibration(figure, calibration, listed([Path(bag).name for bag in bags], 3))
     if as_json:

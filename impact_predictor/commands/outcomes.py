@@ -19,7 +19,6 @@ from ..wording import counted
 if TYPE_CHECKING:
     from ..bags.replay import Result
     from ..fleet.job import BagOutcome
-    from ..report.figures import ReplayPicture
     from ..report.tables import RowTable
     from ..report.touchdowns import TouchdownRow
 
@@ -50,12 +49,12 @@ class Wanted(NamedTuple):
     @property
     def answers(self) -> bool:
         """Whether the JSON of each bag is needed."""
-        return self.as_json or self.report is not None or self.table is not None
+        return self.as_json or bool(self.figure or self.report or self.table)
 
     @property
     def logs(self) -> bool:
         """Whether the log of each watch is needed."""
-        return not self.as_json or self.series is not None or self.figure is not None
+        return not self.as_json or self.series is not None
 
 
 class ReplayReport:
@@ -74,14 +73,13 @@ class ReplayReport:
         # What is said of many bags is said once.
         self._notes: Counter[str] = Counter()
         self._together = Tally()
-        self._picture: ReplayPicture | None = None
         self._answers: list[dict[str, Any]] = []
         self._tables: list[tuple[RowTable, Callable[[BagOutcome], Iterable[dict[str, Any]]]]] = []
         self._earlier = {} if wanted.baseline is None else earlier_runs(wanted.baseline, bags)
         if wanted.figure is not None:
-            from ..report.figures import ReplayPicture
+            from ..report.plot import PICTURE
 
-            self._picture = ReplayPicture(wanted.figure)
+            named(wanted.figure, *PICTURE)
         if wanted.report is not None:
             need("plotly", "jinja2")
             named(wanted.report, "page", (".html",) if Path(wanted.report).suffix else ("",))
@@ -115,7 +113,7 @@ class ReplayReport:
             click.echo(f"{before}{json.dumps(answer, allow_nan=False)}", nl=False)
         for table, rows_of_bag in self._tables:
             table.add(rows_of_bag(outcome))
-        if self._wanted.report is not None:
+        if self._wanted.report is not None or self._wanted.figure is not None:
             self._answers.append(answer)
         self.number += 1
 
@@ -129,9 +127,11 @@ class ReplayReport:
             click.echo(f"\n{self.replayed:,} bags together")
             for sentence in self._together.sentences():
                 click.echo(sentence)
-        if self._picture is not None and self.replayed:
-            self._picture.write()
-            self._say_file("Picture", self._picture.path)
+        if (figure := self._wanted.figure) is not None and self.replayed:
+            from ..report.page.replay import write_replay_picture
+
+            write_replay_picture(figure, [answer for answer in self._answers if "error" not in answer])
+            self._say_file("Picture", figure)
         if (page := self._wanted.report) is not None:
             from ..parameters.file import read_values
             from ..report.page.replay import write_replay_page
@@ -168,8 +168,6 @@ class ReplayReport:
         if result.damaged:
             click.echo(f"warning: {result.damaged}", err=True)
             self._statuses.add(DAMAGED)
-        if self._picture is not None:
-            self._picture.add(result)
         if self._wanted.as_json:
             return
         from ..report.replay import print_replay

@@ -222,8 +222,9 @@ def rows_of(settled: Iterable[Settled]) -> list[TouchdownRow]:
 
 
 def row_as_json(row: TouchdownRow) -> dict[str, Any]:
-    """A row as the JSON of a replay has it."""
+    """A row as the JSON of a replay has it; that of a landing has its `time_errors`, too, which no message tells."""
     values = {key: getattr(row, key) for key, field in FIELDS.items() if row.foot or not field.of_foot}
+    values |= {"time_errors": row.time_errors} if row.foot else {}
     return {key: value.name if isinstance(value, Mode) else value for key, value in values.items()}
 
 

@@ -102,6 +102,7 @@ def test_the_json_of_a_landing_has_its_foot_its_impact_and_how_late_it_was() -> 
         "others_impulse": [0.0, 0.0],
         "bound": None,
         "velocity_change": [-0.25, 0.75, 1.0],
+        "time_errors": [0.002, 0.002],
     }
     assert entry["time_error"] == -0.001
     unknown = json_of(UNANNOUNCED)

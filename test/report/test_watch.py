@@ -15,7 +15,7 @@ from replay_answers import answer
 from impact_predictor.bags.watched import FORECAST, QUANTILES, STEP, LevelSpell, WatchLog
 from impact_predictor.prediction.deck.forecast import LEADS
 from impact_predictor.prediction.watch.levels import Level
-from impact_predictor.report.page.replay import page_of_replay
+from impact_predictor.report.page.replay import page_of_replay, write_replay_picture
 from impact_predictor.report.watch import MOST, SERIES, forecast_skill, series_of, warned_of, watch_as_json
 from impact_predictor.stamps import NANOSECONDS
 
@@ -131,10 +131,8 @@ def test_a_name_cannot_break_the_page() -> None:
 
 def test_the_picture_shows_the_same(tmp_path: Path, recwarn: pytest.WarningsRecorder) -> None:
     pytest.importorskip("matplotlib")
-    from impact_predictor.report.watch_figure import write_watch
-
     for number, one in enumerate((log(), log(1), log(0, spells=(), events={}))):
-        write_watch(tmp_path / f"watch{number}.svg", one, "voyage.mcap")
+        write_replay_picture(tmp_path / f"watch{number}.svg", [answer("voyage.mcap", watch=watch_as_json(one))])
     drawn = (tmp_path / "watch0.svg").read_text()
     for said in ("forecast 5 s before", "WARN", "margin used against sliding", "event"):
         assert f"<!-- {said} -->" in drawn

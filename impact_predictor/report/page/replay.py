@@ -13,11 +13,10 @@ from ...prediction.checks import REMEDIES
 from ...prediction.scene import features_of
 from ...prediction.types import Status
 from ...stamps import NANOSECONDS
-from ...wording import counted, words
+from ...wording import counted, listed, words
 from ..modes import MODES, PALETTE
-from ..skill import pair_of, skill_tables
+from ..skill import pair_of
 from ..summary import PER_DECADE, WHY, without_bag
-from ..table import texts_of
 from . import (
     GREY,
     Cell,
@@ -33,12 +32,17 @@ from . import (
     write_html,
 )
 from .facts import NOTHING, BagAnswer, ReplayFacts
+from .landings import landings
+from .skill import skill, skill_charts
 from .timeline import FALSE, MANY, MISSED, ORDER, look_of, timeline
 from .watch import watched
 
 EXPLAINED: Final = ("found", "events warned of")
 """Of what a bag's row tells, that of which it tells more."""
 NOT_ASKED: Final = Headline("", "–", "")
+
+PICTURED: Final = 3
+"""Bags whose names stand in the title of a picture, and machines that it shows."""
 
 DRAWN: Final = 8
 """Bags of which a timeline is drawn; of more the worst."""
@@ -116,7 +120,14 @@ def page_of_replay(
     facts, each = ReplayFacts(answers), [ReplayFacts([answer]) for answer in answers]
     order = sorted(range(len(answers)), key=lambda place: each[place].badness(), reverse=True)
     drawn = [place for place in order if each[place].rows or each[place].true][:DRAWN]
-    charts = [timeline(facts.names[place], answers[place], f"bag-{place + 1}") for place in drawn]
+    charts = [
+        chart
+        for place in drawn
+        for chart in (
+            timeline(facts.names[place], answers[place], f"bag-{place + 1}"),
+            *landings(facts.names[place], answers[place]),
+        )
+    ]
     parts = (
         bags(facts, each, order, links or {place: f"#bag-{place + 1}" for place in drawn}),
         watched([facts.names[place] for place in order], [answers[place] for place in order], DRAWN),
@@ -129,15 +140,46 @@ def page_of_replay(
         unused(facts),
         scene(values or {}),
     )
-    known = [one for one in facts.headlines() if one.answer != "–"] if drawn or facts.units else []
-    title = (
-        ", ".join(f"{one.question} {one.answer}" for one in known if "cost" not in one.question)
-        or "No touchdown was predicted"
-    )
+    known = told(facts)
     what = facts.names[0] if len(answers) == 1 else f"{len(answers):,} records"
     samples = counted(sum(answer.get("samples", 0) for answer in answers), "sample")
     lead = f"{what}, {samples}, went through the predictor as if live."
-    return page(title, lead, known, [one for one in parts if one.parts or one.anchor == "unused"], script)
+    return page(title_of(known), lead, known, [one for one in parts if one.parts or one.anchor == "unused"], script)
+
+
+def told(facts: ReplayFacts) -> list[Headline]:
+    """What is known of touchdowns, or of units under watch."""
+    return [one for one in facts.headlines() if one.answer != "–"] if facts.rows or facts.true or facts.units else []
+
+
+def title_of(known: Sequence[Headline]) -> str:
+    """What a page says in one line."""
+    said = ", ".join(f"{one.question} {one.answer}" for one in known if "cost" not in one.question)
+    return said or "No touchdown was predicted"
+
+
+def write_replay_picture(path: str | os.PathLike[str], answers: Sequence[BagAnswer]) -> None:
+    """Write the charts of a page into one PNG or SVG file: of machines that walk the gait, of a watch over a deck its
+    motion and margins, else velocities, errors by kind and lifts.
+
+    Raises:
+        InputError: the file cannot be written, or is of another format.
+    """
+    from .picture import write_charts
+
+    facts, named = ReplayFacts(answers), [*zip((Path(one["bag"]).name for one in answers), answers, strict=True)]
+    walks = [(name, answer) for name, answer in named if answer.get("gaits")][:PICTURED]
+    watches = [answer for answer in answers if answer.get("watch")]
+    parts: Sequence[PageTable | Chart]
+    if walks:
+        parts = [chart for name, one in walks for chart in (timeline(name, one, ""), *landings(name, one))]
+    elif watches:
+        parts = watched([Path(watches[0]["bag"]).name], watches[:1], 1).parts
+    else:
+        parts = [*velocities(facts, [ReplayFacts([answer]) for answer in answers]).parts, *skill_charts(facts)]
+    charts = [part for part in parts if isinstance(part, Chart)]
+    names = listed([name for name, _ in named], PICTURED)
+    write_charts(path, f"{names}: {title_of(told(facts))}", charts)
 
 
 def bags(facts: ReplayFacts, each: Sequence[ReplayFacts], order: Sequence[int], links: Mapping[int, str]) -> Section:
@@ -184,16 +226,6 @@ def velocities(facts: ReplayFacts, each: Sequence[ReplayFacts]) -> Section:
             layout["yaxis"] = {"title": f"predicted, {unit}", "scaleanchor": "x"}
             charts.append(Chart(title, traces, layout, wide=False))
     return Section("velocities", "Predicted against measured velocities", [AGAINST], charts)
-
-
-def skill(facts: ReplayFacts) -> Section:
-    """How right the whole twists are, beside simple answers."""
-    tables = []
-    for said, columns, rows in skill_tables([row for row in facts.rows if not row.foot], facts.recorded):
-        texts = texts_of(columns, rows)
-        head = [" ".join(column.header.replace("-\n", "").split()) for column in texts]
-        tables.append(PageTable(head, [*zip(*texts.values(), strict=True)], said))
-    return Section("skill", "How right the whole twists are", [], tables)
 
 
 def modes(facts: ReplayFacts) -> Section:
