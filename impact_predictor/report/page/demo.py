@@ -11,7 +11,9 @@ from ..skill import kind_scores
 from ..touchdowns import TouchdownRow, row_as_json
 from . import Headline, Section, page, part_words, script_inside, write_html
 from .facts import BagAnswer, ReplayFacts
-from .replay import modes, skill, velocities
+from .landings import landings
+from .replay import modes, velocities
+from .skill import skill
 from .timeline import timeline
 from .watch import chart_of
 
@@ -42,7 +44,9 @@ def write_demo_page(path: Path, tosses: Shown, deck: Shown, robot: Shown) -> Non
     sections = (
         Section("tosses", tosses.title, tosses.sentences, [*skill(live).parts, *velocities(live, [live]).parts]),
         Section("deck", deck.title, deck.sentences, [chart_of("Deck and crate", deck.answer), *modes(watched).parts]),
-        Section("robot", robot.title, robot.sentences, [timeline("Stances and landings", robot.answer, "landings")]),
+        Section(
+            "robot", robot.title, robot.sentences, [timeline("Stances", robot.answer, ""), *landings("", robot.answer)]
+        ),
     )
     headlines = (
         twists(live),
