@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from pathlib import Path
 from typing import Any
 
 from impact_predictor import __version__
@@ -50,6 +51,12 @@ def keys_of(topic: str) -> str:
     return "\n".join(found)
 
 
+def messages() -> str:
+    """The files of impact_predictor_msgs, each under its name."""
+    files = sorted((Path(__file__).parents[1] / "impact_predictor_msgs" / "msg").glob("*.msg"))
+    return "\n\n".join([f"### {file.stem}\n\n```\n{file.read_text(encoding='utf-8')}```" for file in files])
+
+
 def fill(app: Any, page: str, source: list[str]) -> None:
     """Put tables of parameters and messages where a page wants them; name by its path what is no page of the site."""
     table = ["| parameter | default | | may be |", "| --- | --- | --- | --- |", *map(row, PARAMETERS.values())]
@@ -57,7 +64,7 @@ def fill(app: Any, page: str, source: list[str]) -> None:
     named = named.replace("<!-- parameters -->", "\n".join(table))
     for topic in TABLES:
         named = named.replace(f"<!-- keys of {topic} -->", keys_of(topic))
-    source[0] = named
+    source[0] = named.replace("<!-- messages -->", messages())
 
 
 def is_field(app: Any, what: str, name: str, member: Any, skip: bool, options: Any) -> bool | None:

@@ -9,7 +9,7 @@ from typing import Final, NamedTuple
 
 from ..prediction.scene import Scene, Walking
 from ..prediction.types import Geometry, Prediction, Sample, Score
-from ..ros.messages import OUTPUTS
+from ..ros.messages import outputs_of
 from ..stamps import NANOSECONDS
 
 Write = Callable[[str, str, int, bytes], None]
@@ -98,7 +98,7 @@ class BodyRecord:
     whether a force on a foot was told.
     """
 
-    def __init__(self, body: str, scene: Scene, write: Write | None) -> None:
+    def __init__(self, body: str, scene: Scene, write: Write | None, messages: str = "auto") -> None:
         self.body, self.scene = body, scene
         self.gait = None if scene.walking is None else Gait(scene.walking)
         self.first: Sample | None = None
@@ -110,7 +110,7 @@ class BodyRecord:
         self._first_geometry: Geometry | None = None
         self._write = write
         prefix = f"{NODE}/{body}/" if body else f"{NODE}/"
-        self._outputs = [(prefix + name, *output) for name, output in OUTPUTS.items()]
+        self._outputs = [(prefix + name, *output) for name, output in outputs_of(messages).items()]
         self._log_time = 0
         # What the predictions cost whose touchdowns may still be scored.
         self._costs: deque[tuple[int, float]] = deque(maxlen=_REMEMBERED)

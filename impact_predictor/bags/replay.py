@@ -76,6 +76,7 @@ def replay(
     progress: Callable[[int], None] | None = None,
     markers: bool = False,
     monitor: Monitor | None = None,
+    messages: str = "auto",
 ) -> Result:
     """Predict every touchdown of recorded bodies, and score it by what was recorded after it.
 
@@ -83,7 +84,7 @@ def replay(
     inputs, as in {"odom": "/cube/odom"} (see `find_topics`). With an `output` (see `BagWriter`) every message is
     written that the node would publish, `markers` too where they are asked for, with the log time of the input that
     caused it. `progress` is told now and then how many samples are done. `monitor` takes the messages in the place of
-    a new one.
+    a new one. `messages` is the parameter of that name.
 
     Messages are taken in the order of their log times, those of one log time in that of the recording. The node, which
     takes them as they arrive, gives the same answers to messages that arrive in this order.
@@ -108,7 +109,7 @@ def replay(
         if not knows_truth:
             truths = [one for one in truths if one == LANDING_TOPIC]
         wanted |= dict.fromkeys(truths, DIAGNOSTIC_ARRAY)
-        messages, readers = bag.messages(wanted), {}
+        recording, readers = bag.messages(wanted), {}
         if adapted:
             from .adapters import readers as readers_of
 
@@ -123,8 +124,9 @@ def replay(
             knows_landings=knows_landings,
             markers=markers,
             monitor=monitor,
+            messages=messages,
         )
-        run.take(_readable(messages, damage), progress)
+        run.take(_readable(recording, damage), progress)
         inputs = {one: _counts(counts) for one, counts in run.statuses.items()}
         if damage and not any(counts for one, counts in inputs.items() if one.kind in STATES):
             raise InputError(damage[0])

@@ -16,7 +16,7 @@ from ..prediction.monitor import Monitor
 from ..prediction.recorded import Announced
 from ..prediction.scene import CONTACT_GEOMETRY, IMU, JOINTS, ODOM, SCHEDULE, TRANSFORMS, WRENCH, Input, Scene
 from ..prediction.types import FeetStates, Geometry, Imu, Joints, Sample, Schedule, Status, Transform, Wrench
-from ..ros.messages import DIAGNOSTIC_ARRAY, INPUT_TYPES, MARKER_ARRAY, MalformedMessage, encode_reports
+from ..ros.messages import DIAGNOSTIC_ARRAY, INPUT_TYPES, MARKER_ARRAY, MalformedMessage, encode_reports, is_typed
 from .body import NODE as NODE
 from .body import BodyRecord, Write
 from .body import Settled as Settled
@@ -59,6 +59,7 @@ class Run:
         knows_landings: bool = False,
         markers: bool,
         monitor: Monitor | None = None,
+        messages: str = "auto",
     ) -> None:
         self.costs = array("d")
         self.settled: list[Settled] = []
@@ -67,7 +68,7 @@ class Run:
         self.comparison: Comparison | None = None
         self.unnamed_feet: set[str] = set()
         self.monitor = Monitor(scenes) if monitor is None else monitor
-        self._write = write
+        self._write, self._is_typed = write, is_typed(messages)
         self._drawing: MarkerScene | None = None
         self.watched: WatchRecorder | None = None
         if self.monitor.watch is not None and self.monitor.deck is not None:
@@ -75,7 +76,7 @@ class Run:
 
             names = [name for name, scene in scenes.items() if scene.watching is not None]
             self.watched = WatchRecorder(self.monitor.watch, self.monitor.deck, names)
-        self.bodies = {body: BodyRecord(body, scenes[body], write) for body in self.monitor.predictors}
+        self.bodies = {body: BodyRecord(body, scenes[body], write, messages) for body in self.monitor.predictors}
         takes = {one: self._take_of(one) for one in topics}
         self._takers: dict[str, Callable[[int, bytes], None]] = {
             topic: partial(self._take, one, INPUT_TYPES[one.kind].decode, takes[one])
@@ -265,13 +266,12 @@ class Run:
         if self._drawing is not None:
             self._drawing.take_reports(reports)
         if self._write is not None:
-            stamp = max(report.stamp for report in reports)
-            self._write(
-                "/diagnostics",
-                DIAGNOSTIC_ARRAY,
-                log_time,
-                encode_reports(reports, stamp, deck=self.monitor.deck_report(reports)),
-            )
+            stamp, deck = max(report.stamp for report in reports), self.monitor.deck_report(reports)
+            self._write("/diagnostics", DIAGNOSTIC_ARRAY, log_time, encode_reports(reports, stamp, deck=deck))
+            if self._is_typed:
+                from ..ros.messages.deck_state import DECK_STATE, encode_deck_state
+
+                self._write(f"{NODE}/deck", DECK_STATE.type_name, log_time, encode_deck_state(reports, deck))
 
     def _draw(self, stamp: int, log_time: int) -> None:
         if self._drawing is not None and self._write is not None:

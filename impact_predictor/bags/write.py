@@ -14,6 +14,7 @@ from rosbags.rosbag2.enums import CompressionFormat, CompressionMode
 from rosbags.typesys import Stores, get_typestore
 
 from ..errors import InputError
+from ..ros.messages.kinds import PACKAGE
 
 _METADATA_VERSION: Final = 9
 # One name for every output: it stands inside the file, and the same messages shall make the same bytes.
@@ -73,6 +74,10 @@ class BagWriter:
         """
         connection = self._connections.get((topic, type_name))
         if connection is None:
+            if type_name.startswith(PACKAGE) and type_name not in self._typestore.fielddefs:
+                from ..ros.messages.definitions import register
+
+                register(self._typestore)
             connection = self._writer.add_connection(topic, type_name, typestore=self._typestore)
             self._connections[topic, type_name] = connection
         try:

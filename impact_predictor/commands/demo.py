@@ -161,17 +161,20 @@ def read_recording(path: Path) -> list[TouchdownRow]:
     """
     from ..bags.read import read_messages
     from ..report.touchdowns import row_of_message
-    from ..ros.messages import DIAGNOSTIC_ARRAY, decode_diagnostic_array
+    from ..ros.messages import decode_diagnostic_array
+    from ..ros.messages.reading import decode_scores
     from ..ros.player import NODE, RECORDED
 
-    wanted = {topic: kind for topic, kind in RECORDED.items() if kind == DIAGNOSTIC_ARRAY}
+    score = f"{NODE}/score"
+    wanted = {topic: RECORDED[topic] for topic in (score, "/diagnostics")}
     rows: list[TouchdownRow] = []
     without_cost = 0
     for topic, _, data in read_messages(path, wanted):
+        if topic == score:
+            rows += [row_of_message("", values) for _, values in decode_scores(wanted[score], data)]
+            continue
         (message,) = decode_diagnostic_array(data)
-        if topic == f"{NODE}/score":
-            rows.append(row_of_message("", message.values))
-        elif "cost_us.update.median" in message.values:
+        if "cost_us.update.median" in message.values:
             cost = float(message.values["cost_us.update.median"]) * 1e-6
             rows[without_cost:] = [row._replace(cost=cost) for row in rows[without_cost:]]
             without_cost = len(rows)

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..errors import InputError
-from ..prediction.scene import read_scenes
+from ..parameters.file import read_values
+from ..prediction.scene import scenes_of
 from .options import BAGS, PARAMS, examples, json_flag, number, remap_option, text
 from .progress import compiling_is_said, progress, say_unfinished
 
@@ -112,7 +113,9 @@ def replay(
     if not (asked.baseline_time >= 0.0 and asked.baseline_error >= 0.0):
         raise InputError("--baseline-time and --baseline-error are numbers of 0 or more")
     bags = tuple(bags_of(bags))
-    job = Job(read_scenes(params), remapping(remap), markers, asked.answers, asked.logs)
+    values = read_values(params)
+    form = str(values["messages"])
+    job = Job(scenes_of(values), remapping(remap), markers, asked.answers, asked.logs, form)
     stopped: BaseException | None = None
     with ExitStack() as stack:
         report = ReplayReport(bags, asked, stack)

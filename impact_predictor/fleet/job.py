@@ -13,7 +13,7 @@ from ..prediction.scene import Scene
 
 class Job(NamedTuple):
     """What is asked of every bag: arguments of `bags.replay.replay`, and whether the `answers` in JSON are wanted, and
-    logs of watches over a deck.
+    logs of watches over a deck; `messages` as the parameter.
     """
 
     scenes: Mapping[str, Scene]
@@ -21,6 +21,7 @@ class Job(NamedTuple):
     markers: bool = False
     answers: bool = False
     logs: bool = False
+    messages: str = "auto"
 
 
 class BagOutcome(NamedTuple):
@@ -43,7 +44,7 @@ def failed(bag: str, error: str) -> BagOutcome:
 def replay_bag(job: Job, bag: str, output: Path | None, progress: Callable[[int], None] | None = None) -> BagOutcome:
     """Replay a bag into an output, if any; `progress` is told now and then how many samples are done."""
     try:
-        result = replay(bag, job.scenes, job.remap, output, progress, job.markers)
+        result = replay(bag, job.scenes, job.remap, output, progress, job.markers, messages=job.messages)
     except InputError as error:
         return failed(bag, str(error))
     except MemoryError:

@@ -214,6 +214,15 @@ _TABLE: Final = (
         shared=True,
         fixed=EXECUTOR,
     ),
+    text(
+        "messages",
+        "auto",
+        "Form of ~/prediction and ~/score: typed ones of the package impact_predictor_msgs, which tell of units on "
+        "~/deck too, or strings in diagnostic arrays; auto takes typed ones where that package is installed.",
+        choices=("auto", "typed", "strings"),
+        shared=True,
+        fixed=TOPICS,
+    ),
     texts(
         "bodies",
         (),

@@ -180,7 +180,10 @@ class CylinderContacts(PointContacts):
         how = bool(number_of(scene.law)), scene.merge, hardly(scene), STEPS
         PLAIN(n, np.array([problem]), *how, answer[None], notes, *workspace(n))
         numbers = answer.tolist()
-        found = outcomes_of(numbers, told.old, told.new)
+        center = add(told.position, to_world(axes_of(told.orientation), scene.center_of_mass))
+        positions = [add(center, to_world(axes, (one.x, one.y, 0.0))) for one in touching]
+        normals = [to_world(axes, (*one.normal, 0.0)) for one in touching]
+        found = outcomes_of(numbers, collision.contacts, positions, normals)
         speeds, impulses = [] if told.old else [inf, inf], [] if told.old else [(0.0, 0.0)]
         for one, contact in zip(touching, found, strict=True):
             (nx, ny), (a, b, _), (u, v, _) = one.normal, contact.impulse, contact.velocity

@@ -262,6 +262,7 @@ class Pending:
             leftover=leftover | Leftover.TOO_SHORT,
             history=(),
             announced=made.lead_time(made.answers[0][0]),
+            sample=made.answers[-1][0],
         )
         if self._record is not None:
             unscored, spatial = self._spatial(scene, self._record)

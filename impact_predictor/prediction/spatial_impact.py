@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from itertools import repeat
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -85,18 +86,21 @@ class SpatialImpactModel:
         before, speed, normal = collision.before, collision.speed, scene.normal
         plane, now, least = plane_at(scene, collision), axes_of(collision.orientation), RESTS * speed
         problem, drawn = self._problem(collision, now), None
+        positions = [add(collision.position, arm) for arm in collision.arms]
         if self._draws is None:
             answers, flags = np.empty((1, ANSWER + RESULT * len(collision.points))), np.empty(1, np.int64)
             self._solve(problem[None], answers, flags)
             answer, notes = answers[0].tolist(), int(flags[0])
-            contacts = outcomes_of(answer, old, new)
+            contacts = outcomes_of(answer, collision.contacts, positions, repeat(normal))
         else:
             rates = list(collision.rates[count:])
             drawn = self._draws.drawn(sample, axes, problem, count, rates, deviation, now, plane.axis)
             answer, notes = self._stopped(problem, drawn.answer, least), drawn.notes
             contacts = [
                 contact._replace(lift_probability=lifts)
-                for contact, lifts in zip(outcomes_of(answer, old, new), drawn.lifts, strict=True)
+                for contact, lifts in zip(
+                    outcomes_of(answer, collision.contacts, positions, repeat(normal)), drawn.lifts, strict=True
+                )
             ]
         vx, vy, vz, wx, wy, wz, lost = answer[:ANSWER]
         after = SpatialTwist((vx, vy, vz), (wx, wy, wz))
@@ -203,10 +207,22 @@ def plane_at(scene: Scene, collision: SpatialCollision) -> ImpactPlane:
     return plane_through(scene.normal, angular, linear, middle, struck, edge, ORIGIN, hardly(scene))
 
 
-def outcomes_of(answer: list[float], old: tuple[int, ...], new: tuple[int, ...]) -> list[PointOutcome]:
-    """What an answer of the law says of each contact."""
-    found = []
-    for k, point in enumerate(old + new):
+def outcomes_of(
+    answer: list[float], contacts: ActiveContacts, positions: Sequence[Vector3], normals: Iterable[Vector3]
+) -> list[PointOutcome]:
+    """What an answer of the law says of each contact, at its position and with the normal there."""
+    found, count = [], len(contacts.old)
+    for k, (position, normal) in enumerate(zip(positions, normals, strict=False)):
         a, b, c, u, v, w, state, _ = answer[ANSWER + RESULT * k : ANSWER + RESULT * (k + 1)]
-        found.append(PointOutcome(point, k >= len(old), (a, b, c), (u, v, w), STATES[int(state)]))
+        found.append(
+            PointOutcome(
+                point=(contacts.old + contacts.new)[k],
+                is_new=k >= count,
+                position=position,
+                normal=normal,
+                impulse=(a, b, c),
+                velocity=(u, v, w),
+                state=STATES[int(state)],
+            )
+        )
     return found

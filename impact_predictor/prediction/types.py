@@ -302,12 +302,15 @@ class SpatialTwist(NamedTuple):
 class PointOutcome(NamedTuple):
     """What an impact does at a contact point, by its index in the geometry.
 
-    `is_new` tells that it strikes. `impulse` in N s, and `velocity` right after the impact in m/s relative to the
-    support, have the axes of a `SpatialTwist`. `lift_probability` is None where nobody asks for it.
+    `is_new` tells that it strikes. Its `position` in m then, the unit `normal` out of the support, `impulse` in N s,
+    and `velocity` right after the impact in m/s relative to the support, have the axes of a `SpatialTwist`.
+    `lift_probability` is None where nobody asks for it.
     """
 
     point: int
     is_new: bool
+    position: Vector3
+    normal: Vector3
     impulse: Vector3
     velocity: Vector3
     state: ContactState
@@ -407,7 +410,8 @@ def impulse_at(touchdown: Touchdown, points: Sequence[int]) -> Vector3 | None:
 class Score(NamedTuple):
     """A settled touchdown: the last prediction before it against what was measured after it.
 
-    `stamp` in ns, the predicted touchdown, which was `announced` so many s ahead by the first prediction of it;
+    `stamp` in ns, the predicted touchdown, which was `announced` so many s ahead by the first prediction of it; the
+    last one is that of the `sample` with that stamp, 0 without any;
     `measured` None when the record ends too early; `relative_error` None when there is nothing to compare; `history`
     the (lead time in s, relative error) of every prediction of it that had the same contacts. Of a walking machine
     `stamp` is when its foot came to stand, and `landing` tells of that. All this is in the impact plane; `spatial`
@@ -426,6 +430,7 @@ class Score(NamedTuple):
     leftover_6d: Leftover = Leftover.MOVING_CONTACTS
     spatial: SpatialScore | None = None
     announced: float = 0.0
+    sample: int = 0
 
     @property
     def kind(self) -> str:

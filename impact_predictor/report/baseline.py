@@ -24,7 +24,8 @@ from ..bags.body import NODE
 from ..bags.find import METADATA, name_of
 from ..bags.read import read_messages, topics
 from ..errors import InputError
-from ..ros.messages import DIAGNOSTIC_ARRAY, MalformedMessage, decode_diagnostic_array
+from ..ros.messages import MalformedMessage
+from ..ros.messages.reading import SCORES, decode_scores
 from ..scenarios.matching import NEAREST
 from ..stamps import NANOSECONDS
 from ..wording import NONE, counted, percent
@@ -114,13 +115,13 @@ def _read_bag(path: Path) -> list[TouchdownRow]:
     if not predictions:
         raise InputError(f"the baseline {path} has no predictions: no topic {NODE}/prediction; {_HINT}")
     scores = [topic.removesuffix("prediction") + "score" for topic in predictions]
-    wanted = {topic: DIAGNOSTIC_ARRAY for topic in scores if topic in recorded}
+    wanted = {topic: recorded[topic] for topic in scores if recorded.get(topic) in SCORES}
     found: list[TouchdownRow] = []
     # A run without any touchdown has no scores.
     for topic, _, data in read_messages(path, wanted) if wanted else ():
         body = topic.rpartition(f"{NODE}/")[2].removesuffix("score").strip("/")
         try:
-            found += [row_of_message(body or one.hardware_id, one.values) for one in decode_diagnostic_array(data)]
+            found += [row_of_message(body or name, values) for name, values in decode_scores(wanted[topic], data)]
         except (MalformedMessage, KeyError, TypeError, ValueError) as error:
             raise InputError(f"the baseline {path} has a message on {topic} that is no score; {_HINT}") from error
     return found

@@ -29,9 +29,9 @@ from .messages import (
     JOINT_TRAJECTORY,
     MULTI_DOF_JOINT_STATE,
     ODOMETRY,
-    OUTPUTS,
     POLYGON,
     WRENCH,
+    outputs_of,
 )
 from .process import Stop, message_class, run, spin
 
@@ -68,7 +68,7 @@ PLAYING, PLAYED = "playing", "played"
 NODE: Final = "/impact_predictor"
 
 RECORDED: Final[dict[str, str]] = {
-    **{f"{NODE}/{name}": output.type_name for name, output in OUTPUTS.items()},
+    **{f"{NODE}/{name}": output.type_name for name, output in outputs_of("auto").items()},
     "/diagnostics": DIAGNOSTIC_ARRAY,
 }
 """Topics that are recorded, with the types of the messages."""

@@ -29,6 +29,7 @@ from ..prediction.scene import CONTACT_GEOMETRY, FEET_STATES, ODOM, TRANSFORMS, 
 from ..wording import listed
 from .diagnostics import SILENT
 from .endpoints import Misfits
+from .messages import is_typed
 from .process import flaw_of_file, sentence
 from .reporter import Reporter
 from .topics import BodyTopics, InputTopic
@@ -70,7 +71,8 @@ class PredictorNode(Node):
             self._monitor = Monitor(scenes)
         # Each subscription that tells what was lost costs the single-threaded executor as much as another topic.
         counts_losses = self.executor_kind == "events" or len(scenes) == 1
-        self._reporter = reporter = Reporter(self, self._monitor, counts_losses)
+        messages = str(self._settings.values["messages"])
+        self._reporter = reporter = Reporter(self, self._monitor, counts_losses, is_typed(messages))
         self._told: list[InputTopic] = []
         self._bodies: dict[str, BodyTopics] = {}
         self._inputs: dict[str, Any] = {}
@@ -78,7 +80,7 @@ class PredictorNode(Node):
         for one in inputs_of(scenes):
             if one.kind == ODOM and one.body is not None:
                 told = [other for other in self._told if other.body in (None, one.body)]
-                self._bodies[one.body] = BodyTopics(self, reporter, self._monitor, one, told)
+                self._bodies[one.body] = BodyTopics(self, reporter, self._monitor, one, told, messages)
                 self._inputs[one.name] = self._bodies[one.body].subscription
             else:
                 self._told.append(InputTopic(self, reporter, self._monitor, one))

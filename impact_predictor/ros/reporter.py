@@ -74,11 +74,19 @@ class MarkerTopic:
 class Reporter:
     """Counts what happens to the messages, and publishes reports and markers of what came of them."""
 
-    def __init__(self, node: Node, monitor: Monitor, counts_losses: bool) -> None:
-        """Report for a node; `counts_losses` says whether its subscriptions are to tell what the middleware loses."""
+    def __init__(self, node: Node, monitor: Monitor, counts_losses: bool, is_typed: bool = False) -> None:
+        """Report for a node; `counts_losses` says whether its subscriptions are to tell what the middleware loses.
+
+        Where messages are typed, the units under watch are told of on `~/deck` too.
+        """
         self.on_lost = self._on_lost if counts_losses else None
         self.publisher = publisher(node, "/diagnostics", DIAGNOSTIC_ARRAY)
         self._outlet = Outlet(self.publisher)
+        self._deck: Outlet | None = None
+        if is_typed and monitor.watch is not None:
+            from .messages.deck_state import DECK_STATE
+
+            self._deck = Outlet(publisher(node, "~/deck", DECK_STATE.type_name))
         self._node = node
         self._name = node.get_fully_qualified_name().lstrip("/")
         self._monitor = monitor
@@ -147,18 +155,22 @@ class Reporter:
         if not (changed or (watch is not None and watch.is_due)):
             return
         reports = self._due()
+        if reports and self._deck is not None and self._deck.listeners():
+            from .messages.deck_state import encode_deck_state
+
+            self._deck.send(encode_deck_state(reports, self._monitor.deck_report(reports)))
         if changed and self._outlet.listeners():
             statuses = [self.diagnostics.report(perf_counter())]
             statuses += report_statuses(reports, self._monitor.deck_report(reports), self._name)
             self._outlet.send(diagnostic_array(self._node.get_clock().now().nanoseconds, "", statuses))
-        elif reports:
+        elif reports and self._outlet.listeners():
             stamp = max(report.stamp for report in reports)
             self._outlet.send(encode_reports(reports, stamp, self._name, self._monitor.deck_report(reports)))
 
     def _due(self) -> tuple[Report, ...]:
         """The reports on the units that are due, if anybody listens."""
         drawing = self.markers.drawing
-        if drawing is None and not self._outlet.listeners():
+        if drawing is None and not self._outlet.listeners() and not (self._deck and self._deck.listeners()):
             return ()
         reports = self._monitor.reports()
         if reports and drawing is not None:

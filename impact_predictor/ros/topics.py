@@ -15,7 +15,7 @@ from ..prediction.monitor import Monitor
 from ..prediction.scene import CONTACT_GEOMETRY, IMU, SCHEDULE, TERRAIN, TRANSFORMS, Input
 from ..prediction.types import Prediction, Score, Status
 from .endpoints import LONGEST, Backlog, LatchedTopic, Outlet, publisher, subscription
-from .messages import INPUT_TYPES, OUTPUTS, MalformedMessage, decode_odometry
+from .messages import INPUT_TYPES, MalformedMessage, decode_odometry, outputs_of
 from .reporter import Reporter
 
 LAST_WORDS: Final = Duration(seconds=1)
@@ -78,9 +78,15 @@ class BodyTopics:
     """
 
     def __init__(
-        self, node: Node, reporter: Reporter, monitor: Monitor, one: Input, told: Iterable[InputTopic]
+        self,
+        node: Node,
+        reporter: Reporter,
+        monitor: Monitor,
+        one: Input,
+        told: Iterable[InputTopic],
+        messages: str = "auto",
     ) -> None:
-        """Listen to the states on an input; `told` is what else the answers depend on."""
+        """Listen to the states on an input; `told` is what else the answers depend on, `messages` the parameter."""
         self._reporter, self._told = reporter, list(told)
         self._topic, self._body = one.name, one.body or ""
         self._last: Prediction | None = None
@@ -92,8 +98,10 @@ class BodyTopics:
         others = [one.subscription for one in self._told if one.subscription is not None]
         self._backlog = Backlog(self.subscription, others, self._answer, LONGEST / len(monitor.predictors))
         prefix = f"~/{one.body}/" if one.body else "~/"
-        self.outputs = {name: publisher(node, prefix + name, output.type_name) for name, output in OUTPUTS.items()}
-        self._encoders = [(Outlet(self.outputs[name]), output.encode) for name, output in OUTPUTS.items()]
+        outputs = outputs_of(messages)
+        self.outputs = {name: publisher(node, prefix + name, output.type_name) for name, output in outputs.items()}
+        self._encoders = [(Outlet(self.outputs[name]), output.encode) for name, output in outputs.items()]
+        self._score = outputs["score"].encode
 
     def _on_odometry(self, data: bytes) -> None:
         self._reporter.diagnostics.dropped += self._backlog.take(data)
@@ -126,7 +134,7 @@ class BodyTopics:
             return
         outlet = Outlet(self.outputs["score"])
         for score in scores:
-            _publish(outlet, OUTPUTS["score"].encode, self._last._replace(score=score))
+            _publish(outlet, self._score, self._last._replace(score=score))
         self.outputs["score"].wait_for_all_acked(LAST_WORDS)
 
 

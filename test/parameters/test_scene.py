@@ -286,7 +286,7 @@ def test_a_name_hides_no_parameter(name: str) -> None:
 def test_what_concerns_the_support_as_a_whole_is_shared_and_given_once() -> None:
     shared = {name for name, parameter in PARAMETERS.items() if parameter.shared}
     assert shared == {
-        *("bodies", "executor", "gravity", "support.extent", "support.frame", "support.imu_position"),
+        *("bodies", "executor", "gravity", "messages", "support.extent", "support.frame", "support.imu_position"),
         *("support.motion", "support.timeout", "support.window"),
     }
     for name in shared:

@@ -176,7 +176,8 @@ def node_without_peers(monkeypatch):
     def counting(name, output):
         return output._replace(encode=lambda prediction: encoded.append(name) or output.encode(prediction))
 
-    monkeypatch.setattr(topics, "OUTPUTS", {name: counting(name, output) for name, output in OUTPUTS.items()})
+    counted = {name: counting(name, output) for name, output in OUTPUTS.items()}
+    monkeypatch.setattr(topics, "outputs_of", lambda messages: counted)
     rclpy.init(args=["--ros-args", "--params-file", str(SCENE), *FIXED_POINTS])
     node = predictor_node.PredictorNode()
     yield node, encoded

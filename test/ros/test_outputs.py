@@ -170,9 +170,10 @@ def test_a_prediction_holds_every_number_of_its_touchdown_exactly() -> None:
 
 
 def test_a_prediction_tells_of_each_contact_what_it_does() -> None:
+    common: Any = {"position": (0.0,) * 3, "normal": (0.0, 0.0, 1.0), "velocity": (0.0,) * 3}
     contacts = (
-        PointOutcome(4, is_new=False, impulse=(0.0, 0.5, 0.25), velocity=(0.0,) * 3, state=ContactState.LEAVES),
-        PointOutcome(1, is_new=True, impulse=(1.0, -0.5, 2.0), velocity=(0.0,) * 3, state=ContactState.STICKS),
+        PointOutcome(4, is_new=False, **common, impulse=(0.0, 0.5, 0.25), state=ContactState.LEAVES),
+        PointOutcome(1, is_new=True, **common, impulse=(1.0, -0.5, 2.0), state=ContactState.STICKS),
     )
     prediction = a_prediction()
     touchdown = prediction.touchdown

@@ -101,7 +101,12 @@ def touchdown_of(
     x, y, z, p, q, r = found.twist.tolist()
     kick, spin, center = (x, y, z), (p, q, r), to_world(axes, scene.center_of_mass)
     told = zip(those, found.impulses.tolist(), found.velocities.tolist(), found.states, strict=True)
-    contacts = tuple([PointOutcome(i, i in landing, tuple(u), tuple(v), state) for i, u, v, state in told])
+    contacts = tuple(
+        [
+            PointOutcome(i, i in landing, places[i], normal, impulse=tuple(u), velocity=tuple(v), state=state)
+            for i, u, v, state in told
+        ]
+    )
     same_foot = [i for i in stood if i // walking.points == new[0] // walking.points]
     old = tuple([i for i in landing if i not in new] or same_foot or stood)
     others, struck = ([contact for contact in contacts if contact.point in group] for group in (old, new))

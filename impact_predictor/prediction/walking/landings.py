@@ -222,7 +222,8 @@ class LandingTracker:
         if not isinstance(touchdown, Touchdown):
             return None
         after.track.add(landing.stamp, touchdown, 0.0)
-        score = after.score(self._scene)._replace(landing=landing)
+        told = 0 if announced is None else announced.sample.stamp
+        score = after.score(self._scene)._replace(landing=landing, sample=told)
         return score._replace(announced=landing.history[0][0]) if landing.history else score
 
     def _seen(self, i: int, new: tuple[int, ...]) -> FootCollision | None:

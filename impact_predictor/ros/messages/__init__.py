@@ -37,3 +37,5 @@ from .outputs import encode_post_impact as encode_post_impact
 from .outputs import encode_prediction as encode_prediction
 from .outputs import encode_reports as encode_reports
 from .outputs import encode_score as encode_score
+from .outputs import is_typed as is_typed
+from .outputs import outputs_of as outputs_of

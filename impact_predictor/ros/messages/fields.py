@@ -130,7 +130,7 @@ TOUCHDOWN: Final = Table(
     field("before", PLANAR_TWIST, "m/s, rad/s", f"mass centre right before the impact: {_IN_PLANE}"),
     field("after", PLANAR_TWIST, "m/s, rad/s", f"mass centre right after the impact: {_IN_PLANE}"),
     field("energy_lost", NUMBER, "J", "energy lost in the impact"),
-    field("impulse", IMPULSES, "N s", "on the old and on the new contact, along normal and tangent", "impulses"),
+    field("impulse", IMPULSES, "N s", "on the old contact along normal and tangent, then on the new one", "impulses"),
     field("axis", VECTOR, "1", "unit vector about which the body turns, in the world"),
     field("half_distance", NUMBER, "m", "half the distance of the two contacts"),
     field("off_axis", NUMBER, "1", "part of the angular velocity off the axis, 0 to 1"),
@@ -145,7 +145,13 @@ TOUCHDOWN: Final = Table(
     field("before_6d", TWIST, "m/s, rad/s", "twist of the mass centre right before, in the support's frame"),
     field("after_6d", TWIST, "m/s, rad/s", "twist of the mass centre right after, in the support's frame"),
     field("bound", BOUND, "", f"what the impulses of feet are: {_BOUNDS}"),
-    field("impulse.drives", NUMBER, "N s", "part of impulse.new.normal that the drives' gains make", _of_drives),
+    field(
+        "impulse.drives",
+        NUMBER,
+        "N s",
+        "part of the normal impulse on the new contact that the drives' gains make",
+        _of_drives,
+    ),
     field("trunk", TWIST, "m/s, rad/s", "what the impact changes of the twist of a machine with feet", _change),
     field("joints", TEXTS, "", "names of the joints of robot.urdf", _joints),
     field("joint_jumps", NUMBERS, "rad/s", "changes of their velocities in the impact", _jumps),
@@ -155,7 +161,7 @@ TOUCHDOWN: Final = Table(
 UNCERTAINTY: Final = Table(
     "with `uncertainty.samples`",
     field("covariance", CHOICE, "", "that of the sample's twist was USED or REFUSED", "given"),
-    field("probability", PROBABILITIES, "1", "of each mode", "probabilities"),
+    field("probability", PROBABILITIES, "1", "of each mode, by its number", "probabilities"),
     field("mean", PLANAR_TWIST, "m/s, rad/s", "mean of after"),
     field("deviation", PLANAR_TWIST, "m/s, rad/s", "standard deviation of after"),
 )

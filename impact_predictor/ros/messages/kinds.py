@@ -153,10 +153,9 @@ HEADER: Final = Kind("std_msgs/Header")
 
 
 def constants(enumeration: type[Enum]) -> dict[str, int]:
-    """The constants of messages for an enumeration, by their names."""
-    prefix = enumeration.__name__.upper()
-    first = 1 if enumeration is Bound else 0
+    """The numbers of the members of an enumeration in messages, by their names."""
+    # What has no numbers of its own is counted from 1, because 0 stands for none.
     return {
-        f"{prefix}_{member.name}": member.value if isinstance(member.value, int) else place
-        for place, member in enumerate(enumeration, first)
+        name: member.value if isinstance(member.value, int) else place
+        for place, (name, member) in enumerate(enumeration.__members__.items(), 1)
     }

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
+from importlib.util import find_spec
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from ...mechanics.types import Flag, Mode
@@ -11,7 +12,7 @@ from ...stamps import NANOSECONDS
 from ..cdr import LITTLE_ENDIAN_HEADER, OK, WARN, StatusBytes, diagnostic_array, diagnostic_status, pairs_of
 from .fields import FOOT, LANDING, MARGINS, PREDICTION, SCORE, TOUCHDOWN, UNCERTAINTY
 from .inputs import ODOMETRY, encode_odometry
-from .kinds import text
+from .kinds import PACKAGE, text
 
 if TYPE_CHECKING:
     from ...prediction.watch.watch import Report
@@ -184,4 +185,23 @@ OUTPUTS: Final[dict[str, Output]] = {
     "prediction": Output(DIAGNOSTIC_ARRAY, encode_prediction),
     "score": Output(DIAGNOSTIC_ARRAY, encode_score),
 }
-"""Every output of the predictor by the last part of its topic, in the order in which they are published."""
+"""Every output, as strings, by the last part of its topic, in the order in which they are published."""
+
+
+def is_typed(messages: str) -> bool:
+    """Whether the parameter `messages` asks for typed ones: auto does where their package can be imported."""
+    # A folder of that name, as in a clone, is no package and has no origin.
+    found = find_spec(PACKAGE) if messages == "auto" else None
+    return messages == "typed" or (found is not None and found.origin is not None)
+
+
+def outputs_of(messages: str) -> Mapping[str, Output]:
+    """The outputs, as the parameter `messages` asks for them."""
+    if not is_typed(messages):
+        return OUTPUTS
+    from .typed import PREDICTION_MESSAGE, SCORE_MESSAGE, encode_typed_prediction, encode_typed_score
+
+    return OUTPUTS | {
+        "prediction": Output(PREDICTION_MESSAGE.type_name, encode_typed_prediction),
+        "score": Output(SCORE_MESSAGE.type_name, encode_typed_score),
+    }
