@@ -3,6 +3,7 @@
 import sys
 
 import pytest
+from exact_error import error_of
 from golden_impacts import CASES, KINDS, body_of
 from seen_by_contacts import velocities
 
@@ -71,7 +72,7 @@ def test_impulses_and_segments_are_those_of_exact_arithmetic_where_no_segment_le
     assert compared > 500
 
 
-def test_a_path_that_jams_goes_on_without_approach_or_gain_of_energy():
+def test_a_path_that_jams_ends_where_exact_arithmetic_ends_without_approach_or_gain_of_energy():
     jammed = [case for case in CASES if "routh" in case and case["routh"] is None]
     assert jammed
     for case in jammed:
@@ -79,5 +80,6 @@ def test_a_path_that_jams_goes_on_without_approach_or_gain_of_energy():
             outcome = solve_impact(body_of(case, restitution), Twist(*case["twist"]))
             assert outcome.flags & Flag.JAMMED
             assert outcome.energy_lost >= 0.0
+            error_of(outcome.body, outcome.before, "path")
             speeds = velocities(outcome.body, outcome.twist)[0]
             assert min(speeds[0], speeds[2]) >= -1e-12 * max(sizes_of(case, outcome.twist))
