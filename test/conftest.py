@@ -68,9 +68,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 @pytest.fixture(scope="module")
 def few_resamples() -> Iterator[None]:
     """Intervals of identified bodies from a fifth of the usual resamples: as wide as theirs to a tenth."""
-    from impact_predictor.calibration import flight, search
+    from impact_predictor.calibration import search
 
     with pytest.MonkeyPatch.context() as patch:
-        for module in (search, flight):
-            patch.setattr(module, "RESAMPLES", 200)
+        patch.setattr(search, "RESAMPLES", 200)
         yield

@@ -69,7 +69,6 @@ def test_the_json_tells_the_true_body_and_the_scene_file_has_it(folder: Path) ->
     assert list(answer["body"]) == ["ixx", "iyy", "izz", "ixy", "ixz", "iyz", "center_x", "center_y", "center_z"]
     assert all(one["told"] and one["low"] <= one["value"] <= one["high"] for one in answer["body"].values())
     assert answer["inconsistency"]["held_out"]["median"] < 0.01 < answer["inconsistency"]["given"]["median"]
-    assert answer["flight"]["center"][2]["value"] == pytest.approx(CENTER[2], abs=1e-5)
     assert answer["corner_radius"]["high"] < 5e-4
     assert answer["roundings"][0]["radius"] == 0.0
     values = read_values(output)
@@ -87,7 +86,7 @@ def test_the_tables_tell_intervals_what_is_held_out_and_what_cannot_be_told(fold
     result = run(str(folder / "box.mcap"), "--params", str(folder / "scene.yaml"), "--tensor", "isotropic")
     assert result.exit_code == 0, result.output
     said = result.stdout
-    for words in ("95 % interval", "by free flight", "corner radius (mm)", "Held out, its median is", "cannot be told"):
+    for words in ("95 % interval", "corner radius (mm)", "Held out, its median is", "cannot be told"):
         assert words in said
     assert "inertia (kg m^2)" in said
     assert "ixx" not in said

@@ -12,10 +12,9 @@ from numpy.typing import NDArray
 
 from ..errors import InputError
 from .blocks import Blocks, blocks_of
-from .flight import resamples
 from .impulses import AGAIN, Weights, least_lengths
 from .motions import Reals
-from .search import FOLDS, LEVEL, Estimate
+from .search import FOLDS, LEVEL, Estimate, resamples
 from .solver import Coefficients, Solver, lengths
 from .touchdowns import ScoredTouchdown
 

@@ -13,11 +13,17 @@ from ..parameters.types import inertia_flaw
 from ..prediction.scene import Scene
 from ..prediction.types import KINDS
 from ..wording import counted
-from .flight import NEEDED, WIDE, Flight, estimates, flight_of, resamples
 from .impacts import DEVIATIONS, MotionRecord
 from .impulses import AGAIN, Impulses, SinglePoint, SinglePoints, Weights, is_solid, least_lengths, parts_of, rounded
 from .motions import Reals, RecordedMotion, distinct
-from .search import FOLDS, Estimate
+from .search import FOLDS, Estimate, estimates, resamples
+
+NEEDED: Final = 10
+"""Motions below which an interval would say nothing."""
+
+WIDE: Final = 0.2
+"""A moment whose interval is wider than this part of the mean moment is not known, nor is a component of the mass
+centre whose interval is wider than half this part of the lever: a drawing tells them as well."""
 
 RADII: Final = (0.0, 0.02, 0.04, 0.06, 0.08, 0.1)
 """Radii of the corners, of the lever, with which everything is fitted anew."""
@@ -59,7 +65,6 @@ class Identification(NamedTuple):
     choices: dict[int, float]
     radius: Estimate | None
     roundings: tuple[Rounding, ...]
-    flight: Flight | None
 
 
 def identify(
@@ -127,7 +132,6 @@ def identify(
         choices={number: float(np.median(errors)) for number, errors in held_out.items()},
         radius=corners,
         roundings=tuple(roundings),
-        flight=flight_of(scene, records, lever, seed),
     )
 
 

@@ -1,8 +1,7 @@
-"""Impacts and free flights of a recorded body on contact points, found from the heights of its points alone."""
+"""Impacts of a recorded body on contact points, found from the heights of its points alone."""
 
 from __future__ import annotations
 
-from itertools import pairwise
 from math import ceil, inf
 from typing import Final, NamedTuple
 
@@ -32,9 +31,6 @@ of the impact in it ..."""
 
 AFTER: Final = 2
 """... and the motion after it that between the poses k + 2 and k + 3: the contact may last until the pose k + 2."""
-
-FLIGHT: Final = 6
-"""Poses of the shortest flight from which a straight line and gravity leave something to be told."""
 
 
 class FrameMotion(NamedTuple):
@@ -119,7 +115,7 @@ class _Strike(NamedTuple):
 
 
 class MotionRecord:
-    """The impacts and the free flights of one recorded `motion` over the support of a scene.
+    """The impacts of one recorded `motion` over the support of a scene.
 
     Poses closer than the contact time are left out, so that an impact is over two frames later. A point strikes where
     it falls to the support, within a standard deviation of its gap, before the next pose, loses half of its approach
@@ -201,16 +197,6 @@ class MotionRecord:
                 )
             )
         return found
-
-    @property
-    def flights(self) -> list[slice]:
-        """The poses of `motion` in free flight: all points are farther from the support than the tolerance."""
-        free = self._gaps.min(axis=1) > self._scene.tolerance
-        breaks = {strike.k + 1 for event in self._events for strike in event}
-        breaks |= {int(k) + 1 for k in np.flatnonzero(self._steps > 1.5 * self._step)}
-        edges = [k for k in range(len(free) + 1) if k in (0, len(free)) or free[k] != free[k - 1] or k in breaks]
-        runs = [slice(begin, end) for begin, end in pairwise(edges) if free[begin]]
-        return [run for run in runs if run.stop - run.start >= FLIGHT]
 
     def _frame(self, k: int) -> FrameMotion:
         """The motion between the poses k and k + 1."""

@@ -15,8 +15,7 @@ from ..prediction.points import PointContacts
 from ..prediction.scene import Scene
 from ..prediction.types import Moment, Sample, Status, Vector3
 from ..stamps import NANOSECONDS
-
-Reals = NDArray[np.float64]
+from .search import Reals as Reals
 
 SAME: Final = 1e-6
 """m: motions whose heights agree to this are one, turned about the normal of the support."""

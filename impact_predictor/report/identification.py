@@ -11,7 +11,7 @@ from rich.table import Table
 from ..calibration.identify import Identification, six_of
 from ..calibration.scene_file import NewValues, number_text
 from ..calibration.search import FOLDS, Estimate, interval
-from ..wording import NONE, counted, listed, percent
+from ..wording import counted, listed, percent
 from .table import Column, table_of
 
 MOMENTS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
@@ -26,13 +26,11 @@ def named(found: Identification) -> dict[str, Estimate]:
 
 def tables(found: Identification) -> list[Table]:
     """Given and identified numbers with their intervals; and what corners of several radii make of them."""
-    flown = dict(zip(list(named(found))[-3:], found.flight.center if found.flight else (), strict=False))
     body = [
         Column("of the body", lambda row: f"{row[0]} ({'m' if 'center' in row[0] else 'kg m^2'})", left=True),
         Column("given", lambda row: f"{row[1].given:.4g}"),
         Column("identified", lambda row: f"{row[1].value:.4g}" if row[1].known else "not told"),
         Column("95 % interval", lambda row: interval(row[1])),
-        Column("by free flight", lambda row: interval(flown[row[0]]) if row[0] in flown else NONE, optional=True),
     ]
     rounding = [
         Column("corner radius (mm)", lambda row: f"{1e3 * row.radius:.1f}"),
@@ -73,13 +71,6 @@ def sentences(found: Identification) -> list[str]:
             f"By the heights at which corners turn back they are round by {round_by}, or the body is smaller by that; "
             "the identified inertia is the one for sharp corners, as the predictor has them."
         )
-    if found.flight is not None:
-        fall, shape = found.flight.fall, ", ".join(map(interval, found.flight.shape))
-        flights = counted(found.flight.flights, "free flight")
-        said.append(
-            f"In {flights} the mass centre falls with {interval(fall)} m/s^2 (given {fall.given:.4g}), and the moments "
-            f"over their mean are {shape}."
-        )
     return said
 
 
@@ -114,7 +105,6 @@ def as_json(found: Identification, bags: Sequence[str]) -> dict[str, Any]:
         "held_out_by_moments": found.choices,
         "corner_radius": _plain(found.radius),
         "roundings": _plain(found.roundings),
-        "flight": _plain(found.flight),
         "parameters": {name: [float(number_text(one)) for one in to.values] for name, to in changes_of(found).items()},
     }
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from free_flight import flight_of
 from tossed_bodies import CENTER, CORNERS, GIVEN, MASS, RADIUS, SCENE, TRUE, tosses
 
 from impact_predictor import read_scenes
 from impact_predictor.bags.replay import replay
 from impact_predictor.calibration.identify import Identification, identify
+from impact_predictor.calibration.impacts import MotionRecord
 from impact_predictor.calibration.motions import RecordedMotion, RecordingMonitor, distinct
 from impact_predictor.calibration.search import Estimate
 from impact_predictor.errors import InputError
@@ -58,7 +60,8 @@ def test_with_noise_the_truth_lies_within_the_intervals(noisy: Identification) -
 
 
 def test_free_flight_alone_tells_the_mass_centre_the_fall_and_the_shape_of_the_tensor(noisy: Identification) -> None:
-    flight = noisy.flight
+    records = [MotionRecord(SCENE, motion) for motion in motions(noise=1e-4)]
+    flight = flight_of(SCENE, records, noisy.lever, 0)
     assert flight is not None
     truths = [*CENTER, 9.81, *(TRUE[:3] / TRUE[:3].mean())]
     for one, truth in zip((*flight.center, flight.fall, *flight.shape), truths, strict=True):

@@ -6,6 +6,7 @@ from collections import Counter
 
 import numpy as np
 import pytest
+from free_flight import flights_of
 from scipy.spatial.transform import Rotation
 from tossed_bodies import CENTER, CORNERS, HALF, SCENE, tosses
 
@@ -105,14 +106,14 @@ def test_a_body_at_rest_strikes_nothing_however_noisy_it_is() -> None:
         shaken = still.positions + np.random.default_rng(0).normal(0.0, noise, still.positions.shape)
         record = MotionRecord(SCENE, still._replace(positions=shaken))
         assert record.impacts == []
-        assert record.flights == []
+        assert flights_of(record) == []
 
 
 def test_free_flights_hold_no_impact_and_leave_out_what_is_near_the_support() -> None:
     for toss in tosses(NUMBER):
         record = MotionRecord(SCENE, toss.motion)
-        assert record.flights
-        for flight in record.flights:
+        assert flights_of(record)
+        for flight in flights_of(record):
             begin, end = record.motion.times[flight][[0, -1]]
             assert not any(begin < time < end for time, _, _ in toss.strikes)
             assert record.motion.gaps(SCENE)[flight].min() > SCENE.tolerance
@@ -121,12 +122,12 @@ def test_free_flights_hold_no_impact_and_leave_out_what_is_near_the_support() ->
 def test_a_pause_ends_a_flight_and_hides_an_impact() -> None:
     stamps, positions, rotations, points = tosses(NUMBER)[0].motion
     whole = MotionRecord(SCENE, tosses(NUMBER)[0].motion)
-    flight, impact = max(whole.flights, key=lambda run: run.stop - run.start), whole.impacts[0]
+    flight, impact = max(flights_of(whole), key=lambda run: run.stop - run.start), whole.impacts[0]
     for lost in ((flight.start + flight.stop) // 2, impact.frame + 1):
         kept = np.delete(np.arange(len(stamps)), [lost, lost + 1])
         record = MotionRecord(SCENE, RecordedMotion(stamps[kept], positions[kept], rotations[kept], points))
-        assert record.flights
-        assert max(np.diff(record.motion.times[run]).max() for run in record.flights) < 1.5 / 200.0
+        assert flights_of(record)
+        assert max(np.diff(record.motion.times[run]).max() for run in flights_of(record)) < 1.5 / 200.0
     assert impact.time < min(one.time for one in record.impacts) - 0.01
 
 
@@ -144,7 +145,7 @@ def test_a_record_that_is_too_short_holds_nothing(number: int) -> None:
     motion = RecordedMotion(stamps[:number], positions[:number], rotations[:number], points)
     record = MotionRecord(SCENE, motion)
     assert record.impacts == []
-    assert record.flights == []
+    assert flights_of(record) == []
 
 
 def test_motions_end_at_pauses_and_where_the_points_change() -> None:

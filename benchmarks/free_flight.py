@@ -1,28 +1,31 @@
-"""What the free flight of a recorded body tells of its mass centre and its inertia."""
+"""What free flight alone tells of the mass centre and the inertia of the tossed cube: python benchmarks/free_flight.py
+
+Beside what `impact-predictor identify` finds from impacts of single corners, which is sharper.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from typing import Final, NamedTuple
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from ..prediction.scene import Scene
-from .impacts import MotionRecord
-from .impulses import Weights, momenta, parts_of
-from .motions import Reals
-from .search import LEVEL, RESAMPLES, Estimate
+from impact_predictor import read_scenes
+from impact_predictor.bags.replay import replay
+from impact_predictor.calibration.identify import NEEDED, WIDE
+from impact_predictor.calibration.impacts import MotionRecord
+from impact_predictor.calibration.impulses import Weights, momenta, parts_of
+from impact_predictor.calibration.motions import Reals, RecordingMonitor, distinct
+from impact_predictor.calibration.search import Estimate, estimates, interval, resamples
+from impact_predictor.prediction.scene import Scene
+from impact_predictor.resources import find
 
-NEEDED: Final = 10
-"""Motions below which an interval would say nothing."""
+SHORTEST = 6
+"""Poses of the shortest flight from which a straight line and gravity leave something to be told."""
 
-WIDE: Final = 0.2
-"""A moment whose interval is wider than this part of the mean moment is not known, nor is a component of the mass
-centre whose interval is wider than half this part of the lever: a drawing tells them as well."""
-
-SPAN: Final = 2
+SPAN = 2
 """From one pose to the next but one a body in flight turns far enough for its angular velocity."""
 
 
@@ -35,18 +38,14 @@ class Flight(NamedTuple):
     shape: tuple[Estimate, ...]
 
 
-def resamples(owner: NDArray[np.int64], seed: int) -> Iterator[NDArray[np.int64]]:
-    """How often each impact or flight counts when their motions are drawn anew."""
-    owners = int(owner.max()) + 1
-    for drawn in np.random.default_rng(seed).integers(0, owners, (RESAMPLES, owners)):
-        yield np.bincount(drawn, minlength=owners)[owner]
-
-
-def estimates(given: Reals, values: Reals, draws: Reals, widths: Reals) -> list[Estimate]:
-    """Numbers with the intervals of their draws (resamples, n); known are those whose interval is not too wide."""
-    low, high = np.quantile(draws, (0.5 - 0.5 * LEVEL, 0.5 + 0.5 * LEVEL), axis=0)
-    columns = (each.tolist() for each in (given, values, low, high, high - low <= widths))
-    return [Estimate(*one) for one in zip(*columns, strict=True)]
+def flights_of(record: MotionRecord) -> list[slice]:
+    """The poses of its `motion` in free flight: all points are farther from the support than the tolerance."""
+    free = record._gaps.min(axis=1) > record._scene.tolerance
+    breaks = {strike.k + 1 for event in record._events for strike in event}
+    breaks |= {int(k) + 1 for k in np.flatnonzero(record._steps > 1.5 * record._step)}
+    edges = [k for k in range(len(free) + 1) if k in (0, len(free)) or free[k] != free[k - 1] or k in breaks]
+    runs = [slice(begin, end) for begin, end in pairwise(edges) if free[begin]]
+    return [run for run in runs if run.stop - run.start >= SHORTEST]
 
 
 def flight_of(scene: Scene, records: Sequence[MotionRecord], lever: float, seed: int) -> Flight | None:
@@ -58,7 +57,7 @@ def flight_of(scene: Scene, records: Sequence[MotionRecord], lever: float, seed:
     """
     falls, turns, owner = [], [], []
     for number, record in enumerate(records):
-        for flight in record.flights:
+        for flight in flights_of(record):
             times, rotations = record.motion.times[flight], record.motion.rotations[flight]
             times = times - times.mean()
             bend = np.multiply.outer(-0.5 * times**2, np.eye(3))
@@ -90,3 +89,23 @@ def flight_of(scene: Scene, records: Sequence[MotionRecord], lever: float, seed:
     widths = WIDE * np.array([0.5 * lever] * 3 + [0.5 * fall] + [1.0] * 3)
     found = estimates(given, told(np.ones(len(place))), draws, widths)
     return Flight(len(place), tuple(found[:3]), found[3], tuple(found[4:]))
+
+
+def main() -> None:
+    """Print it."""
+    scenes = read_scenes(str(find("config/cube_tosses.yaml")))
+    scene, monitor = scenes[""], RecordingMonitor(scenes)
+    replay(find("examples/cube_tosses"), scenes, monitor=monitor)
+    records = [MotionRecord(scene, motion) for motion in distinct(scene, monitor.motions)]
+    lever = float(np.sqrt(records[0].motion.points.var(axis=0).sum()))
+    found = flight_of(scene, records, lever, 0)
+    assert found is not None
+    print(f"{found.flights} free flights, with 95 %:")
+    for axis, one in zip("xyz", found.center, strict=True):
+        print(f"  mass centre {axis}, m: {interval(one)}")
+    print(f"  fall, m/s^2: {interval(found.fall)} (given {found.fall.given:.4g})")
+    print(f"  moments over their mean: {', '.join(map(interval, found.shape))}")
+
+
+if __name__ == "__main__":
+    main()
