@@ -11,7 +11,6 @@ import click
 
 from ..errors import need
 from ..files import make_folder, whole
-from ..wording import NONE
 from .options import examples, json_flag
 
 
@@ -59,16 +58,11 @@ def report(output: Path | None, quick: bool, as_json: bool) -> None:
 
     from rich.console import Console
 
+    from ..report.accuracy.page import CHOICE_COLUMNS
     from ..report.table import Column, say, show, table_of
 
-    columns = [
-        Column("question", lambda one: one["question"], left=True),
-        Column("error below", lambda one: f"{one['accuracy']:.0e}"),
-        Column("cheapest method that is so good on every scene", lambda one: accuracy.name_of(one) or NONE, left=True),
-        Column("us", lambda one: NONE if one["us"] is None else f"{one['us']:.3g}"),
-    ]
-    console = Console()
-    show(console, table_of(columns, fields["choices"]))
+    console, question = Console(), Column("question", lambda one: one["question"], left=True)
+    show(console, table_of([question, *CHOICE_COLUMNS], fields["choices"]))
     for question, used in fields["node"].items():
         say(console, f"The node answers the {question} by {accuracy.name_of(used)}:", used["why"])
     say(console, f"Page: {folder}/report.html")

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from math import inf
 from typing import Any, Final
 
 from ...wording import duration
 from ..modes import PALETTE
-from ..page import Chart, Headline, PageTable, Section, marks, page
+from ..page import Chart, Headline, PageTable, Section, marks, page, page_table
+from ..table import Column
 from . import ERRORS, IMPACT, SPATIAL, TOSSES, TOUCHDOWN, error_of, name_of
 
 CLOSES: Final = (
@@ -38,6 +40,25 @@ QUESTIONS: Final = {
 }
 """The questions of the report: a title, and what is asked."""
 
+CHOICE_COLUMNS: Final = (
+    Column("error of 90 %\nbelow", lambda one: f"{one['accuracy']:g}", left=True),
+    Column("cheapest method\non all scenes", lambda one: name_of(one) or "none", left=True),
+    Column("run time", lambda one: duration(one["us"] and 1e-6 * one["us"])),
+)
+
+
+def _error(end: str, row: Mapping[str, Any]) -> str:
+    error = row[f"{ERRORS[row['question']][-1]}{end}"]
+    return "no number" if error is None else f"{error:.2g}"
+
+
+ERROR_COLUMNS: Final = (
+    Column("method", name_of, left=True),
+    *[Column(said, partial(_error, end)) for said, end in (("median", ""), ("90 % below", "_90"), ("worst", "_worst"))],
+    Column("not answered", lambda row: f"{row['failed']:,} of {row['count']:,}"),
+    Column("run time", lambda row: duration(1e-6 * row["us"])),
+)
+
 SYMBOLS: Final = ("circle", "square", "diamond", "triangle-up", "cross", "x", "star")
 LEAST: Final = 1e-16
 """Smaller errors are drawn as this one: they are below the rounding of a double."""
@@ -62,7 +83,8 @@ def accuracy_page(report: Mapping[str, Any], script: str) -> str:
         rows = [row for row in report["rows"] if row["question"] == name]
         choices = [choice for choice in report["choices"] if choice["question"] == name]
         if rows:
-            table = _choices(choices) if choices else _errors(rows, titles)
+            columns = [Column("scene", lambda row: titles[row["scene"]], left=True), *ERROR_COLUMNS]
+            table = page_table(CHOICE_COLUMNS, choices) if choices else page_table(columns, rows)
             sections.append(Section(name.replace(" ", "-"), title, [asked], [table, _picture(title, rows, titles)]))
     scenes = [[scene["title"], scene["description"], scene["reference"]] for scene in report["scenes"]]
     made = [
@@ -75,23 +97,6 @@ def accuracy_page(report: Mapping[str, Any], script: str) -> str:
         for question, used in report["node"].items()
     ]
     return page("How right, how fast", LEAD, headlines, sections, script)
-
-
-def _choices(choices: Sequence[Mapping[str, Any]]) -> PageTable:
-    cells = [
-        [f"{one['accuracy']:g}", name_of(one) or "none", duration(one["us"] and 1e-6 * one["us"])] for one in choices
-    ]
-    return PageTable(["error of 90 % below", "cheapest method on all scenes", "run time"], cells, words=2)
-
-
-def _errors(rows: Sequence[Mapping[str, Any]], titles: Mapping[str, str]) -> PageTable:
-    cells = []
-    for row in rows:
-        numbers = [row[f"{ERRORS[row['question']][-1]}{end}"] for end in ("", "_90", "_worst")]
-        said = ["no number" if one is None else f"{one:.2g}" for one in numbers]
-        failed = f"{row['failed']:,} of {row['count']:,}"
-        cells.append([titles[row["scene"]], name_of(row), *said, failed, duration(1e-6 * row["us"])])
-    return PageTable(["scene", "method", "median", "90 % below", "worst", "not answered", "run time"], cells, words=2)
 
 
 def _picture(title: str, rows: Sequence[Mapping[str, Any]], titles: Mapping[str, str]) -> Chart:

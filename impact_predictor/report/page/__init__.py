@@ -14,6 +14,7 @@ from typing import Any, Final, NamedTuple
 from ... import __version__
 from ...files import whole
 from ...wording import duration, percent
+from ..table import Column, texts_of
 
 GREY: Final = "#808a95"
 """What is no data: grids, lines that lead to something. It can be seen on white and on black."""
@@ -68,11 +69,26 @@ class Headline(NamedTuple):
     more: str
 
 
+def page_table(columns: Sequence[Column], rows: Iterable[Any], caption: str = "") -> PageTable:
+    """A table of columns as the terminal has them: those of words come first."""
+    texts = texts_of(columns, list(rows))
+    head = [" ".join(column.header.replace("-\n", "").split()) for column in texts]
+    words = sum(column.left for column in texts)
+    return PageTable(head, [*zip(*texts.values(), strict=True)], caption, words)
+
+
 def marks(name: str, points: Iterable[tuple[float, float, str]], **look: Any) -> dict[str, Any]:
     """A trace of marks at points (x, y), each with the text that a reader sees who points at it; `look` overrides."""
     x, y, texts = zip(*points, strict=True)
     trace = {"type": "scatter", "mode": "markers", "name": safe(name), "x": x, "y": y}
     return {**trace, "hovertext": [safe(text) for text in texts], "hoverinfo": "text", **look}
+
+
+def bars(name: str, spans: Sequence[tuple[float, float]], row: float, colour: str, **look: Any) -> dict[str, Any]:
+    """A trace of level bars from a begin to an end (s) each, in a row."""
+    points = [(end - begin, row, f"{name} from {begin:.3f} s to {end:.3f} s") for begin, end in spans]
+    base = {"type": "bar", "orientation": "h", "base": [begin for begin, _ in spans], "marker": {"color": colour}}
+    return marks(name, points, **base, **look)
 
 
 def safe(text: str) -> str:

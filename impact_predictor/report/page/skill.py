@@ -9,8 +9,7 @@ from ...prediction.skill import SIMPLE
 from ...wording import counted
 from ..modes import PALETTE
 from ..skill import KindScore, LiftScore, kind_scores, lift_scores, skill_tables
-from ..table import texts_of
-from . import GREY, Chart, PageTable, Section, marks, part_words, safe
+from . import GREY, Chart, Section, marks, page_table, part_words, safe
 from .facts import ReplayFacts
 
 SYMBOLS: Final = ("x-thin", "cross-thin", "triangle-up", "square", "diamond")
@@ -19,11 +18,8 @@ SYMBOLS: Final = ("x-thin", "cross-thin", "triangle-up", "square", "diamond")
 
 def skill(facts: ReplayFacts) -> Section:
     """How right the whole twists are, beside simple answers."""
-    tables = []
-    for said, columns, rows in skill_tables([row for row in facts.rows if not row.foot], facts.recorded):
-        texts = texts_of(columns, rows)
-        head = [" ".join(column.header.replace("-\n", "").split()) for column in texts]
-        tables.append(PageTable(head, [*zip(*texts.values(), strict=True)], said))
+    touchdowns = [row for row in facts.rows if not row.foot]
+    tables = [page_table(columns, rows, said) for said, columns, rows in skill_tables(touchdowns, facts.recorded)]
     return Section("skill", "How right the whole twists are", [], [*tables, *skill_charts(facts)])
 
 

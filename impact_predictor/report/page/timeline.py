@@ -11,7 +11,7 @@ from ...stamps import NANOSECONDS
 from ...wording import words
 from ..modes import EDGE, MODES
 from ..touchdowns import TouchdownRow, row_of_json
-from . import GREY, Chart, marks, part_words, safe, time_words
+from . import GREY, Chart, bars, marks, part_words, safe, time_words
 from .facts import BagAnswer
 
 MISSED: Final = "missed"
@@ -66,9 +66,7 @@ def timeline(title: str, answer: BagAnswer, anchor: str) -> Chart:
             drawn.setdefault((not mark.faint, ORDER.index(mark.mark)), []).append((-row, mark))
         if lane.stances:
             spans = [((first - begin) / NANOSECONDS, (last - begin) / NANOSECONDS) for first, last in lane.stances]
-            points = [(last - first, -row, f"stands from {first:.3f} s to {last:.3f} s") for first, last in spans]
-            look = {"base": [first for first, _ in spans], "width": 0.5, "marker": {"color": lane.colour}}
-            traces.append(marks(lane.name, points, type="bar", orientation="h", showlegend=False, **look))
+            traces.append(bars(lane.name, spans, -row, lane.colour, width=0.5, showlegend=False))
     kind = "scattergl" if sum(map(len, drawn.values())) > MANY else "scatter"
     for (counts, place), there in sorted(drawn.items()):
         name, x = ORDER[place], [(mark.stamp - begin) / NANOSECONDS for _, mark in there]

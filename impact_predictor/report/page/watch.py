@@ -12,7 +12,7 @@ from ...prediction.deck.forecast import ANGLES, ForecastStatus
 from ...stamps import NANOSECONDS
 from ...wording import NONE, counted, fixed, words
 from ..modes import EDGE, LEVELS, PALETTE
-from . import Cell, Chart, PageTable, Section, marks, part_words, safe
+from . import Cell, Chart, PageTable, Section, bars, marks, part_words, safe
 from .facts import BagAnswer
 
 SHOWN: Final = 6
@@ -183,9 +183,7 @@ def _unit_traces(unit: Mapping[str, Any], times: Sequence[float], start: int, pl
             if of == level
         ]
         if spans:
-            points = [(end - begin, 0.0, f"{level} from {begin:.1f} s to {end:.1f} s") for begin, end in spans]
-            look = {"base": [begin for begin, _ in spans], "width": 1.0, "marker": {"color": colour}}
-            traces.append(marks(level, points, type="bar", orientation="h", yaxis=f"y{place - 1}", **look))
+            traces.append(bars(level, spans, 0.0, colour, width=1.0, yaxis=f"y{place - 1}"))
     full = _line("", [times[0], times[-1]], [1.0, 1.0], place, LEVELS["ERROR"], hoverinfo="skip", showlegend=False)
     filled = {"fill": "tozeroy", "fillcolor": f"{PALETTE[1]}40"}
     traces += [
