@@ -81,9 +81,10 @@ docs: $(READY) ## the documentation as a site, out/docs/index.html
 	@$(BIN)/python -m sphinx -q -W --keep-going -b html docs out/docs
 	@echo "The site is out/docs/index.html."
 
-lint: $(READY) ## ruff: rules and format
+lint: $(READY) ## ruff: rules and format; the schema of the workflows
 	@$(BIN)/ruff check .
 	@$(BIN)/ruff format --check .
+	@$(BIN)/check-jsonschema --quiet --builtin-schema vendor.github-workflows .github/workflows/*.yaml
 
 types: $(READY) ## mypy, strict
 	@$(BIN)/mypy

@@ -17,7 +17,13 @@ project = "impact_predictor"
 author = "impact_predictor maintainers"
 project_copyright = "the impact_predictor maintainers, Apache-2.0"
 release = __version__
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.viewcode"]
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "sphinx.ext.viewcode",
+    "sphinx_gallery.gen_gallery",
+]
 html_theme = "furo"
 html_title = f"impact_predictor {release}"
 myst_heading_anchors = 4
@@ -25,6 +31,19 @@ default_role = "code"
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
 python_use_unqualified_type_names = True
+
+
+sphinx_gallery_conf = {
+    "examples_dirs": "examples",
+    "gallery_dirs": "gallery",
+    # An example is there to be copied: no notebooks, no archive, no times of this machine.
+    "download_all_examples": False,
+    "min_reported_time": 1e9,
+    "show_memory": False,
+    "write_computation_times": False,
+    "show_signature": False,
+}
+exclude_patterns = ["examples", "sg_execution_times.rst"]
 
 
 def row(parameter: Parameter) -> str:
@@ -60,7 +79,7 @@ def messages() -> str:
 def fill(app: Any, page: str, source: list[str]) -> None:
     """Put tables of parameters and messages where a page wants them; name by its path what is no page of the site."""
     table = ["| parameter | default | | may be |", "| --- | --- | --- | --- |", *map(row, PARAMETERS.values())]
-    named = re.sub(r"\[([^\]]+)\]\(\.\./([\w/]+(?:\.md)?)\)", r"\1 (`\2`)", source[0])
+    named = re.sub(r"\[([^\]]+)\]\(\.\./([\w/]+(?:\.\w+)?)\)", r"\1 (`\2`)", source[0])
     named = named.replace("<!-- parameters -->", "\n".join(table))
     for topic in TABLES:
         named = named.replace(f"<!-- keys of {topic} -->", keys_of(topic))
