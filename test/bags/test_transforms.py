@@ -3,98 +3,24 @@
 from __future__ import annotations
 
 import re
-from math import cos, sin
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
+from elsewhere import bag_of
 from recordings import RECORDED, WANTED, write_bag
-from rosbags.typesys import Stores, get_typestore
 
 from impact_predictor.bags.read import BagMessage, read_messages, topics
 from impact_predictor.bags.replay import replay
 from impact_predictor.parameters.file import read_values
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.prediction.types import Status
-from impact_predictor.prediction.vectors import axes_of, composed
-from impact_predictor.ros.messages import (
-    ODOMETRY,
-    decode_diagnostic_array,
-    decode_odometry,
-    decode_polygon,
-    encode_odometry,
-    encode_polygon,
-)
+from impact_predictor.ros.messages import ODOMETRY, decode_diagnostic_array, decode_odometry
 
 ROOT = Path(__file__).parents[2]
 END = 75_000_000_000
 """Log time in ns that ends the excerpt: four tosses."""
-TYPESTORE = get_typestore(Stores.ROS2_JAZZY)
 NUMBER = re.compile(r"-?(inf|\d[\d.e+-]*)")
-TF = "tf2_msgs/msg/TFMessage"
-MAP, MAP_TURN = np.array((1.0, -2.0, 0.5)), (0.0, 0.0, sin(0.4), cos(0.4))
-"""The world of the scene, as seen from the frame in which the odometry is told."""
-
-
-def arm_at(time: float) -> tuple[Any, Any]:
-    """Place and orientation of the sensor on the cube, and with what velocities it creeps."""
-    return np.array((0.03, -0.01, 0.02)) + np.array((1e-3, 0.0, -2e-3)) * time, (
-        0.0,
-        sin(0.005 * time),
-        0.0,
-        cos(0.005 * time),
-    )
-
-
-def matrix(orientation: Any) -> Any:
-    return np.array(axes_of(orientation)).T
-
-
-def transforms(stamp: int, *links: tuple[str, str, Any, Any]) -> bytes:
-    """A tf2_msgs/TFMessage of links: parent, child, place and orientation of each."""
-    types, (seconds, rest) = TYPESTORE.types, divmod(stamp, 10**9)
-    stamped = [
-        types["geometry_msgs/msg/TransformStamped"](
-            types["std_msgs/msg/Header"](types["builtin_interfaces/msg/Time"](seconds, rest), parent),
-            child,
-            types["geometry_msgs/msg/Transform"](
-                types["geometry_msgs/msg/Vector3"](*map(float, place)), types["geometry_msgs/msg/Quaternion"](*turn)
-            ),
-        )
-        for parent, child, place, turn in links
-    ]
-    return bytes(TYPESTORE.serialize_cdr(types[TF](stamped), TF))
-
-
-def told_elsewhere(message: BagMessage, creeps: bool) -> list[BagMessage]:
-    """A message of the record as another sensor tells it, after the transform of the sensor where that moves."""
-    if message.topic != "/cube/odom":
-        # In axes of a leg that is a quarter turn from the cube's.
-        polygon = decode_polygon(message.data)
-        points = tuple((y, -x, z) for x, y, z in polygon.points)
-        return [message._replace(data=encode_polygon(polygon._replace(frame_id="leg", points=points)))]
-    sample = decode_odometry(message.data)
-    time = (sample.stamp - 10**9) / 1e9 if creeps else 0.0
-    arm, turn = arm_at(time)
-    drift, spin = (np.array((1e-3, 0.0, -2e-3)), np.array((0.0, 0.01, 0.0))) if creeps else (np.zeros(3), np.zeros(3))
-    cube, own = matrix(sample.orientation), matrix(turn)
-    angular = np.array(sample.angular)
-    place = np.array(sample.position) + cube @ arm
-    sensed = sample._replace(
-        frame_id="map",
-        child_frame_id="imu",
-        position=tuple(MAP + matrix(MAP_TURN) @ place),
-        orientation=composed(MAP_TURN, composed(sample.orientation, turn)),
-        linear=tuple(own.T @ (np.array(sample.linear) + np.cross(angular, arm) + drift)),
-        angular=tuple(own.T @ (angular + spin)),
-    )
-    told = [message._replace(data=encode_odometry(sensed))]
-    if creeps:
-        # With one pose alone, as after a pause, nobody knows how the sensor moves.
-        moved = [transforms(sample.stamp - ago, ("cube", "imu", *arm_at(time - 1e-9 * ago))) for ago in (10**6, 0)]
-        told = [*[BagMessage("/tf", message.log_time, data) for data in moved], *told]
-    return told
 
 
 def scene_with(**changes: Any) -> Scene:
@@ -104,16 +30,6 @@ def scene_with(**changes: Any) -> Scene:
 @pytest.fixture(scope="module")
 def messages() -> list[BagMessage]:
     return [one for one in read_messages(RECORDED, WANTED) if one.log_time <= END]
-
-
-def bag_of(path: Path, messages: list[BagMessage], creeps: bool) -> Path:
-    quarter = (0.0, 0.0, 0.5**0.5, 0.5**0.5)
-    links = [("map", "world", MAP, MAP_TURN), ("cube", "leg", (0.0, 0.0, 0.0), quarter)]
-    if not creeps:
-        links.append(("cube", "imu", *arm_at(0.0)))
-    static = BagMessage("/tf_static", messages[0].log_time, transforms(0, *links))
-    told = [static, *[each for one in messages for each in told_elsewhere(one, creeps)]]
-    return write_bag(path, told, {**WANTED, "/tf": TF, "/tf_static": TF})
 
 
 def numbers(path: Path) -> list[Any]:

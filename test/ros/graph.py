@@ -103,7 +103,7 @@ def serve(values, messages, outputs):
         [sys.executable, str(Path(__file__).with_name("serve.py")), *arguments_of(values)],
         input=pickle.dumps((messages, outputs)),
         capture_output=True,
-        env={**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])},
+        env={**os.environ, "PYTHONPATH": os.pathsep.join([str(Path(__file__).parents[2]), *sys.path])},
         timeout=120.0,
     )
     assert done.returncode == 0, done.stderr.decode()

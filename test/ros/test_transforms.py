@@ -7,13 +7,17 @@ import pytest
 pytest.importorskip("rclpy", reason="the node needs ROS 2: source it, or install the extra `ros`")
 pytest.importorskip("tf2_msgs", reason="transforms need the ROS package tf2_msgs, which PyPI does not have")
 
+from elsewhere import bag_of
 from geometry_msgs.msg import TransformStamped
+from graph import served_and_replayed
 from nav_msgs.msg import Odometry
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.serialization import serialize_message
+from recordings import first_messages, write_bag
 from test_node import EVERY_SAMPLE, FIXED_POINTS, POINTS, RELIABLE, SCENE, odometry, running
 from tf2_msgs.msg import TFMessage
 
+from impact_predictor.bags.read import read_messages, topics
 from impact_predictor.parameters.file import read_parameters
 from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction.predictor import Predictor
@@ -85,3 +89,19 @@ def test_samples_of_other_frames_wait_for_transforms_and_are_answered_in_the_fra
         for k in (20_001, 20_002):
             frames.publish(transform("cube", "head", 0.1, k))
         peer.until(lambda: len(peer.heard["prediction"]) > count, lambda: tell(20_002, child="head"))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("creeps", [False, True], ids=["fixed", "creeping"])
+def test_the_node_brings_messages_to_the_frames_of_the_scene_as_the_replay_does_byte_for_byte(tmp_path, creeps):
+    whole = bag_of(tmp_path / "whole.mcap", first_messages(80), creeps)
+    types = topics(whole)
+    named = {topic: "/odom" if topic.endswith("odom") else topic for topic in types}
+    told = [one._replace(topic=named[one.topic]) for one in read_messages(whole, types)]
+    bag = write_bag(tmp_path / "bag.mcap", told, {named[topic]: kind for topic, kind in types.items()})
+    given = {**read_parameters(SCENE), "body.contact_points": [x for point in POINTS for x in point]}
+    values = validate({**given, "tf.body_frame": "cube"})
+    heard, replayed, read = served_and_replayed(values, bag, tmp_path / "out.mcap")
+    assert {"/tf", "/tf_static", "/odom"} <= read
+    assert len(replayed["/impact_predictor/prediction"]) == 79
+    assert heard == replayed
