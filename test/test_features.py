@@ -173,7 +173,7 @@ def loaded(where: str, scenes: list[dict[str, Any]], folder: Path) -> list[Loade
         input=pickle.dumps(cases),
         stdout=subprocess.PIPE,
         check=True,
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        env={**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT), *sys.path])},
     )
     found, answers = [], BytesIO(done.stdout)
     for _ in cases:
