@@ -12,7 +12,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from ..prediction.recorded import Announced
-from ..prediction.skill import SIMPLE
+from ..prediction.skill import SIMPLE, SLOWS
 from ..prediction.types import KINDS
 from ..wording import NONE, fixed, percent
 from .summary import Distribution, spread_of
@@ -33,6 +33,10 @@ the left, and along z.
 """
 
 
+FROM_BEFORE: Final = {"nothing": (1.0,) * 6, "stops": (0.0,) * 6, "slows": (SLOWS, *(0.0,) * 5)}
+"""Of simple answers what is left of each of `COMPONENTS` of the twist before."""
+
+
 class KindScore(NamedTuple):
     """The touchdowns of a kind: how many the record shows, how many of these were announced by the last sample before
     them, and of those that are scored the `errors`, those of `SIMPLE` answers, and of the time in s.
@@ -48,13 +52,15 @@ class KindScore(NamedTuple):
 
 class ComponentScore(NamedTuple):
     """A component of the twists after touchdowns: the mean of predicted less measured ones, the slope of the straight
-    line of measured over predicted ones, and the part of the variance of measured ones that is predicted.
+    line of measured over predicted ones, and the part of the variance of measured ones that is predicted, beside that
+    of the answers of `SIMPLE` in `FROM_BEFORE`.
     """
 
     name: str
     bias: float
     slope: float
     r2: float
+    simple_r2: tuple[float, ...]
 
 
 class LiftScore(NamedTuple):
@@ -83,6 +89,10 @@ def _median(k: int, score: KindScore) -> str:
     return percent(score.simple[k].p50 if score.simple else None)
 
 
+def _simple_r2(k: int, score: ComponentScore) -> str:
+    return fixed(score.simple_r2[k], 2)
+
+
 def _brier(score: float | None, lifted: bool) -> str:
     return fixed(score, 3) if lifted and score is not None else ""
 
@@ -108,7 +118,9 @@ COMPONENT_COLUMNS: Final = (
     Column("bias", lambda one: fixed(one.bias, 3, "+")),
     Column("slope", lambda one: fixed(one.slope, 2)),
     Column("R2", lambda one: fixed(one.r2, 2)),
+    *[Column(SIMPLE[name].replace(" ", "\n"), partial(_simple_r2, k)) for k, name in enumerate(FROM_BEFORE)],
 )
+"""The part of the variance that simple answers predict stands beside that of the predictions."""
 LIFT_COLUMNS: Final = (
     Column("contact", lambda one: f"{one[0].name} {'lifted' if one[1] else 'stayed'}", left=True),
     Column("told\nto lift", lambda one: f"{one[0].counts[one[1], True]:,}"),
@@ -126,7 +138,7 @@ KINDS_SAID: Final = (
 )
 COMPONENTS_SAID: Final = (
     "Its components: the mean of predicted less measured ones, the slope of measured over predicted ones, and the part "
-    "of the variance that is predicted."
+    "of the variance that is predicted (R2), beside that of simple answers; below 0 it is worse than the mean of all."
 )
 LIFTS_SAID: Final = "Do the contacts lift? They have if their mean gap grows by a tenth of the contact tolerance."
 
@@ -167,18 +179,21 @@ def kind_scores(rows: Iterable[TouchdownRow], recorded: Mapping[str, Announced])
 
 def component_scores(rows: Iterable[TouchdownRow]) -> list[ComponentScore]:
     """Of each of `COMPONENTS`, over the scored touchdowns; none of fewer than three."""
-    pairs = [
-        (_turned(row.predicted_twist_6d, row.before_twist_6d), _turned(row.measured_twist_6d, row.before_twist_6d))
+    known = [
+        [_turned(twist, before) for twist in (row.predicted_twist_6d, row.measured_twist_6d, before)]
         for row in rows
-        if row.error_6d is not None and row.predicted_twist_6d and row.measured_twist_6d and row.before_twist_6d
+        if (before := row.before_twist_6d) and row.predicted_twist_6d and row.measured_twist_6d
+        if row.error_6d is not None
     ]
     found = []
-    for name, (told, seen) in zip(COMPONENTS, np.transpose(pairs) if len(pairs) > 2 else (), strict=False):
+    parts = np.transpose(known) if len(known) > 2 else ()
+    for place, (name, (told, seen, before)) in enumerate(zip(COMPONENTS, parts, strict=False)):
         spread, variance = told.var(), seen.var()
         if spread and variance:
             slope = float(np.mean((told - told.mean()) * (seen - seen.mean())) / spread)
-            r2 = float(1.0 - np.mean((told - seen) ** 2) / variance)
-            found.append(ComponentScore(name, float(np.mean(told - seen)), slope, r2))
+            answers = told, *[left[place] * before for left in FROM_BEFORE.values()]
+            r2, *simple = [float(1.0 - np.mean((answer - seen) ** 2) / variance) for answer in answers]
+            found.append(ComponentScore(name, float(np.mean(told - seen)), slope, r2, tuple(simple)))
     return found
 
 
@@ -237,7 +252,7 @@ def skill_as_json(rows: Sequence[TouchdownRow], recorded: Mapping[str, Announced
     kinds = kind_scores(rows, recorded)
     if not kinds:
         return {}
-    names, fields = ("prediction", *SIMPLE), ComponentScore._fields[1:]
+    names, fields = ("prediction", *SIMPLE), ComponentScore._fields[1:-1]
     return {
         "skill": {name: _short(one) for name, one in zip(names, (kinds[-1].errors, *kinds[-1].simple), strict=True)},
         "kinds": {
@@ -246,7 +261,11 @@ def skill_as_json(rows: Sequence[TouchdownRow], recorded: Mapping[str, Announced
             | {"time_error": _short(one.times)}
             for one in kinds
         },
-        "components": {name: dict(zip(fields, one, strict=True)) for name, *one in component_scores(rows)},
+        "components": {
+            one.name: {key: getattr(one, key) for key in fields}
+            | {"simple_r2": dict(zip(FROM_BEFORE, one.simple_r2, strict=True))}
+            for one in component_scores(rows)
+        },
         "lifts": {
             one.name: {
                 "lifted": {"told": one.counts[True, True], "not_told": one.counts[True, False]},

@@ -11,6 +11,7 @@ from math import floor, hypot, log10
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
+from ..prediction.skill import SIMPLE
 from ..wording import counted, percent, words
 
 if TYPE_CHECKING:
@@ -178,6 +179,8 @@ class Tally:
                 self._on_points += row.is_on_points
                 self._reasons.update(row.why_not_scored)
                 numbers = {"planar": row.error, "whole": row.error_6d}
+                if row.error_6d is not None:
+                    numbers |= zip(SIMPLE.values(), row.simple_errors_6d or (), strict=False)
             for name, number in numbers.items():
                 if number is not None:
                     self._known[name].append(number)
@@ -195,6 +198,9 @@ class Tally:
         if self._on_points:
             whole = spread_of(self._known["whole"])
             said = [f"{whole.number:,}{of} scored by the whole twist{_errors(whole)}."]
+            errors = [(name, self._known[name]) for name in SIMPLE.values() if self._known[name]]
+            medians = [f"{name} {percent(quantile(values, 0.5))} %" for name, values in errors]
+            said += [f"Simple answers to these, in the median: {', '.join(medians)}."] if medians else []
             said += [f"{planar.number:,} scored in the impact plane{_errors(planar)}."] if planar.number else []
         why = [f"  {count:,} {words(reason)}: {WHY[reason]}" for reason, count in self._reasons.most_common()]
         heading = "The samples after the others do not show what the impact left, for one or several reasons each:"

@@ -83,6 +83,9 @@ def test_components_are_along_the_velocity_before_across_it_and_up() -> None:
     assert [along.slope, along.bias] == pytest.approx([2.0, -6.0])
     squares, variance = sum((one[1] + 1.0) ** 2 for one in told), 4.0 * 26.0
     assert along.r2 == pytest.approx(1.0 - squares / variance)
+    # Before it was 2 along and nothing across, the same of each: nobody tells how they differ.
+    missed = [sum((2.0 * one[1] + 1.0 - left) ** 2 for one in told) for left in (2.0, 0.0, 1.7)]
+    assert along.simple_r2 == pytest.approx([1.0 - one / variance for one in missed])
     for one in (across, *others):
         assert [one.bias, one.slope, one.r2] == pytest.approx([0.0, 1.0, 1.0])
     assert [one.name for one in (along, across, *others)] == list(COMPONENTS)
