@@ -73,7 +73,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.parametrize("width", [WIDE, NARROW])
-@pytest.mark.parametrize(("name", "count"), [("replay.html", 8), ("week/index.html", 8), ("report.html", 4)])
+@pytest.mark.parametrize(("name", "count"), [("replay.html", 9), ("week/index.html", 9), ("report.html", 4)])
 def test_the_page_draws_every_chart_inside_the_window_and_asks_no_network(
     browser: Any, folder: Path, name: str, count: int, width: int
 ) -> None:
