@@ -82,10 +82,10 @@ def test_touchdowns_together_count_the_scored_and_explain_the_others() -> None:
     whole = SCORED._replace(relative_error_6d=0.125, not_scored_6d=())
     near = UNSCORED._replace(not_scored_6d=("NOT_ISOLATED",))
     whole = whole._replace(simple_errors_6d=(0.7, 0.8, 0.2, 0.5, 0.25))
+    simple = "nothing happens 70.0 %, all stops 80.0 %, 0.85 v 20.0 %, no slip 50.0 %, planar law 25.0 %"
     assert Tally([whole, near]).sentences() == [
         "1 of 2 touchdowns scored by the whole twist: relative error 12.5 % in the median, 90 % below 12.5 %.",
-        "Simple answers to these, in the median: nothing happens 70.0 %, all stops 80.0 %, 0.85 v 20.0 %, no slip 50.0 %, "
-        "planar law 25.0 %.",
+        f"Simple answers to these, in the median: {simple}.",
         "1 scored in the impact plane: relative error 25.0 % in the median, 90 % below 25.0 %.",
         "The samples after the others do not show what the impact left, for one or several reasons each:",
         "  1 not isolated: another touchdown was too near",
