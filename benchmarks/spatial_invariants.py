@@ -1,6 +1,6 @@
 """What holds for every impact in three dimensions, counted over many random problems of up to eight contacts.
 
-    python benchmarks/spatial_invariants.py --problems 10000000
+    python benchmarks/spatial_invariants.py --problems 10000000 --resume spatial.json
 
 For each law and kind of problem it prints how many violate each invariant, and the worst violation: numbers that
 rounding alone keeps from being zero, relative to the terms that they are the sum of. The invariants are computed from
@@ -10,7 +10,9 @@ the statements of mechanics, without the law's code.
 from __future__ import annotations
 
 import argparse
+import json
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,6 +22,7 @@ from rich.progress import track
 from rich.table import Table
 
 from impact_predictor import Body, ContactPoints, solve_spatial_impacts
+from impact_predictor.files import whole
 from impact_predictor.mechanics.impact.spatial import SpatialOutcomes
 from impact_predictor.mechanics.types import ContactState, Flag
 
@@ -208,23 +211,43 @@ def main() -> None:
     parser.add_argument("--chunk", type=int, default=5_000)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--law", action="append", choices=["path", "total"])
+    parser.add_argument("--resume", type=Path, help="where it stands, kept as it goes; it goes on from there")
     given = parser.parse_args()
-    console, source = Console(width=200), np.random.default_rng(given.seed)
+    laws, names = given.law or ["path", "total"], (*LIMITS, "unanswered")
     chunks = [(kind, n) for n in range(1, 9) for kind in KINDS]
-    for law in given.law or ["path", "total"]:
-        tallies = {kind: {name: np.zeros(3) for name in (*LIMITS, "unanswered")} for kind in KINDS}
-        for number in track(range(-(-given.problems // given.chunk)), law, console=Console(stderr=True)):
-            kind, n = chunks[number % len(chunks)]
-            problems = problems_of(kind, n, source, given.chunk)
+    of = [given.seed, given.chunk, *laws]
+    state = {
+        "of": of,
+        "done": 0,
+        "tallies": {f"{law} {kind}": [[0, 0, 0.0]] * len(names) for law in laws for kind in KINDS},
+    }
+    if given.resume is not None and given.resume.exists():
+        state = json.loads(given.resume.read_text())
+        if state["of"] != of:
+            parser.error(f"{given.resume} is of another seed, chunk or law")
+    for number in track(range(state["done"], -(-given.problems // given.chunk)), console=Console(stderr=True)):
+        kind, n = chunks[number % len(chunks)]
+        problems = problems_of(kind, n, np.random.default_rng((given.seed, number)), given.chunk)
+        tallies = dict(state["tallies"])
+        for law in laws:
             found = violations(problems, law, otherwise=number // len(chunks) % OFTEN == 0)
-            for name, values in found.items():
-                tally = tallies[kind][name]
-                tally[:2] += len(values), np.count_nonzero(~(values <= LIMITS.get(name, 0.0)))
-                tally[2] = max(tally[2], np.nan_to_num(values, nan=np.inf).max())
-        table = Table("law " + law, "problems", *LIMITS, "unanswered")
-        for kind, row in tallies.items():
-            shown = [f"{bad:.0f}\n{worst:.0e}" if bad else f"{worst:.0e}" for _, bad, worst in row.values()]
-            table.add_row(kind, f"{row['finite'][0]:.0f}", *shown)
+            row = []
+            for name, (count, bad, worst) in zip(names, tallies[f"{law} {kind}"], strict=True):
+                values = np.nan_to_num(found.get(name, np.empty(0)), nan=np.inf)
+                bad += int(np.count_nonzero(values > LIMITS.get(name, 0.0)))
+                row.append([count + len(values), bad, float(max(worst, values.max(initial=0.0)))])
+            tallies[f"{law} {kind}"] = row
+        state = {"of": of, "done": number + 1, "tallies": tallies}
+        if given.resume is not None:
+            with whole(given.resume) as partial:
+                partial.write_text(json.dumps(state))
+    console = Console(width=200)
+    for law in laws:
+        table = Table("law " + law, "problems", *names)
+        for kind in KINDS:
+            row = state["tallies"][f"{law} {kind}"]
+            shown = [f"{bad}\n{worst:.0e}" if bad else f"{worst:.0e}" for _, bad, worst in row]
+            table.add_row(kind, f"{row[0][0]}", *shown)
         console.print(table)
 
 
