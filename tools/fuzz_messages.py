@@ -38,7 +38,8 @@ LEG: Final = """<link name="{0}"><inertial><origin xyz="0 0 -0.3"/><mass value="
 <inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>
 <joint name="hip_{0}" type="revolute"><origin xyz="{1} 0 0"/><parent link="base"/><child link="{0}"/>
 <axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
-<link name="{0}_foot"/><joint name="ankle_{0}" type="fixed"><origin xyz="0 0 -0.5"/><parent link="{0}"/>
+<link name="{0}_foot"><collision><origin xyz="0 0 0"/><geometry><sphere radius="0.02"/></geometry></collision></link>
+<joint name="ankle_{0}" type="fixed"><origin xyz="0 0 -0.5"/><parent link="{0}"/>
 <child link="{0}_foot"/></joint>"""
 
 ENDLESS: Final = ("time_to_tip", "time_to_slide", "energy_to_topple", "margin.")
@@ -77,12 +78,13 @@ def courses() -> tuple[Course, ...]:
         "soles": walker
         | {"feet.names": ("left", "right"), "feet.points": 2, "feet.force": 30.0, "feet.has_schedule": True},
     }
-    if robot := _robot():
+    if robot := robot_of_stick():
         kinds["joints"] = walker | {"feet.names": ("left", "right"), "feet.points": 1, **robot}
     return tuple(made_course(name, values) for name, values in kinds.items())
 
 
-def _robot() -> dict[str, Any]:
+@cache
+def robot_of_stick() -> dict[str, Any]:
     """The parameters of a robot with legs, where Pinocchio is installed."""
     try:
         import pinocchio  # noqa: F401

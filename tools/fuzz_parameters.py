@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import re
 import tempfile
+from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 from typing import Any, Final
 
 from fuzz_choices import Choices
-from fuzz_messages import ROOT, Course, Flaw, courses, feed, sequence
+from fuzz_messages import ROOT, Course, Flaw, courses, feed, robot_of_stick, sequence
 
 from impact_predictor.errors import InputError
 from impact_predictor.parameters.file import read_parameters, read_values
 from impact_predictor.parameters.table import PARAMETERS
 from impact_predictor.parameters.validation import validate
+from impact_predictor.prediction.monitor import Monitor
 from impact_predictor.prediction.scene import inputs_of, scenes_of
 
 LONGEST_SENTENCE: Final = 4000
@@ -53,7 +55,7 @@ def check_sentence(error: InputError) -> None:
 
 
 def fuzz_parameters(choices: Choices) -> str:
-    """One input: the values of a scene, or the bytes of its file; what it was about.
+    """One input: the values of a scene, the bytes of its file, or those of a robot's; what it was about.
 
     Raises:
         Flaw: the property does not hold.
@@ -62,6 +64,9 @@ def fuzz_parameters(choices: Choices) -> str:
     if choices.once_in(2):
         take_file(choices, data)
         return "a file"
+    if choices.once_in(2) and (robot := robot_of_stick()):
+        take_robot(choices, robot)
+        return "a robot"
     changed = dict(given)
     for _ in range(1 + choices.below(4)):
         _change(choices, changed)
@@ -77,6 +82,47 @@ def fuzz_parameters(choices: Choices) -> str:
         check_sentence(error)
         return "a value, refused"
     return "a value, taken"
+
+
+ATTRIBUTES: Final = (
+    "0",
+    "-1",
+    "nan",
+    "inf",
+    "1e400",
+    "1e-300",
+    "a",
+    "",
+    "0 0",
+    "1 2 3 4",
+    "left",
+    "sphere",
+    "\u00e4",
+    "9" * 400,
+)
+
+
+def take_robot(choices: Choices, values: Mapping[str, Any]) -> None:
+    """Change the bytes of a URDF, or attributes in it, and make the scene of a machine of it.
+
+    Raises:
+        Flaw: it is not refused in one sentence.
+    """
+    data = Path(values["robot.urdf"]).read_bytes()
+    if choices.once_in(2):
+        data = choices.damaged(data)
+    else:
+        places = [match.span(1) for match in re.finditer(rb'"([^"]*)"', data)]
+        start, end = choices.of(places)
+        data = data[:start] + choices.of(ATTRIBUTES).encode() + data[end:]
+    path = _file().with_suffix(".urdf")
+    path.write_bytes(data)
+    walker = next(given for name, _, given in shipped() if name == "walker_hyq")
+    feet = {"feet.names": ("left", "right"), "feet.points": 1}
+    try:
+        Monitor(scenes_of(validate(walker | feet | dict(values) | {"robot.urdf": str(path)})))
+    except InputError as error:
+        check_sentence(error)
 
 
 def _change(choices: Choices, given: dict[str, Any]) -> None:

@@ -9,6 +9,7 @@ of the gear's ratio (Featherstone, "Rigid Body Dynamics Algorithms", 2008, secti
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import inf, isfinite, nan
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -184,9 +185,11 @@ def _model(pinocchio: Any, urdf: str) -> Any:
         return pinocchio.buildModelFromUrdf(urdf, pinocchio.JointModelFreeFlyer())
     except (ValueError, RuntimeError) as error:
         # The parser, which is no Python, prints what is wrong on standard error itself.
-        raise InputError(
-            f"robot.urdf: {urdf} is not a URDF that Pinocchio can read; check it with `check_urdf`"
-        ) from error
+        raise _unreadable(urdf) from error
+
+
+def _unreadable(urdf: str) -> InputError:
+    return InputError(f"robot.urdf: {urdf} is not a URDF that Pinocchio can read; check it with `check_urdf`")
 
 
 def _frame(model: Any, name: str, urdf: str) -> int:
@@ -201,15 +204,28 @@ def _balls(urdf: str, frames: Sequence[str]) -> list[tuple[float, tuple[float, .
 
     Where there is none the radius is zero.
     """
-    root = ElementTree.parse(urdf).getroot()
+    try:
+        root = ElementTree.parse(urdf).getroot()
+    except ElementTree.ParseError as error:  # Pinocchio takes more than XML
+        raise _unreadable(urdf) from error
     children = {joint.get("name"): joint.find("child") for joint in root.iter("joint")}
     of_joints = {name: child.get("link") for name, child in children.items() if child is not None}
     links = {link.get("name"): link.findall("collision") for link in root.findall("link")}
-    found = []
+    found: list[tuple[float, tuple[float, ...]]] = []
+    center: tuple[float, ...] = ()
     for frame in frames:
         shapes = links.get(frame, links.get(of_joints.get(frame), []))
         sphere = shapes[0].find("geometry/sphere") if len(shapes) == 1 else None
         origin = shapes[0].find("origin") if sphere is not None else None
-        center = tuple(map(float, ("" if origin is None else origin.get("xyz", "")).split())) or (0.0, 0.0, 0.0)
-        found.append((0.0 if sphere is None else float(sphere.get("radius", 0.0)), center))
+        try:
+            center = tuple(map(float, ("" if origin is None else origin.get("xyz", "")).split())) or (0.0, 0.0, 0.0)
+            radius = 0.0 if sphere is None else float(sphere.get("radius", 0.0))
+        except ValueError:
+            radius = nan
+        if not (0.0 <= radius < inf and len(center) == 3 and all(map(isfinite, center))):
+            raise InputError(
+                f"robot.urdf: the sphere of {frame!r} in {urdf} has no radius from 0 or no centre of three numbers; "
+                "correct it"
+            )
+        found.append((radius, center))
     return found

@@ -190,6 +190,32 @@ def test_what_is_no_model_of_a_machine_is_said_in_one_sentence(tmp_path, urdf, f
 
 
 @pytest.mark.extras
+@pytest.mark.parametrize(
+    ("old", "new", "sentence"),
+    [
+        ('name="stick"', 'name="a & b"', "is not a URDF that Pinocchio can read"),
+        ('radius="0.02"', 'radius="wide"', "the sphere of 'tip' in .* has no radius"),
+        ('radius="0.02"', 'radius="-1"', "the sphere of 'tip' in .* has no radius"),
+        ('radius="0.02"', 'radius="nan"', "the sphere of 'tip' in .* has no radius"),
+        ('xyz="0 0 0.1"', 'xyz="0 0 0.1 2"', "or no centre of three numbers"),
+        ('xyz="0 0 0.1"', 'xyz="0 0 high"', "or no centre of three numbers"),
+    ],
+)
+def test_a_ball_that_is_none_is_said_in_one_sentence(tmp_path, old, new, sentence):
+    needs_pinocchio()
+    path = tmp_path / "robot.urdf"
+    text = """<robot name="stick"><link name="base"/><joint name="hip" type="fixed"><parent link="base"/>
+        <child link="tip"/></joint><link name="tip"><collision><origin xyz="0 0 0.1"/><geometry>
+        <sphere radius="0.02"/></geometry></collision></link></robot>"""
+    path.write_text(text)
+    assert WholeBody(str(path), ("tip",)).radii == [0.02]
+    path.write_text(text.replace(old, new))
+    with pytest.raises(InputError, match=sentence) as error:
+        WholeBody(str(path), ("tip",))
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.extras
 def test_a_relative_path_begins_where_the_process_runs_and_a_sentence_says_where_that_is(tmp_path, monkeypatch):
     needs_pinocchio()
     one_link(tmp_path, INERTIAL.format(1.0), INERTIAL.format(2.0))
