@@ -94,8 +94,11 @@ check: lint types test ## lint, types and tests
 test-install: ## installs with pip and with colcon into empty environments, and uses what was installed
 	@$(PYTHON) tools/test_install.py $(ARGS)
 
+test-messages: ## builds impact_predictor_msgs from PyPI, and lets readers in C++ and Python listen to a node; needs a C++ compiler
+	@$(PYTHON) tools/test_messages.py $(ARGS)
+
 clean: ## removes what make, pip and colcon made
-	rm -rf impact_predictor/native_*.so .venv build install log dist out ./*.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf impact_predictor/native_*.so .venv .venv-messages build install log dist out ./*.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "make %-13s %s\n", $$1, $$2}' Makefile

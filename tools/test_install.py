@@ -45,7 +45,7 @@ TESTED = "fast,plot,page,calibrate,test"
 COLCON = "setuptools<80", "colcon-common-extensions"
 PATIENCE = 1800.0
 """Seconds for one command: colcon runs thousands of tests beside another install, on a machine that may be busy."""
-NOT_SOURCE = {".git", ".venv", ".hypothesis", "build", "dist", "install", "log", "out"}
+NOT_SOURCE = {".git", ".venv", ".venv-messages", ".hypothesis", "build", "dist", "install", "log", "out"}
 CALLERS = ("AMENT_", "CMAKE_PREFIX_PATH", "COLCON_", "LD_LIBRARY_PATH", "PYTHON", "ROS_", "VIRTUAL_ENV", "_ROS_WHEELS_")
 WAIT_FOR_NODE = f"""
 import sys, time, rclpy
