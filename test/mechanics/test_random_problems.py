@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from impact_predictor.mechanics.random_problems import KINDS, problems_of
+from impact_predictor.mechanics.random_problems import KINDS, Draw, problems_of
 
 COUNT = 2000
 
@@ -50,3 +50,12 @@ def test_kinds_are_what_they_are_called():
         assert np.log10(number.max() / number.min()) > 11.0
     slender = made["slender"].body
     assert slender.new.friction.max() > 5e3
+
+
+def test_wild_numbers_have_both_signs_over_twelve_decades_and_are_zero_in_a_tenth():
+    found = Draw(np.random.default_rng(2), 20_000).wild()
+    size = np.log10(np.abs(found[found != 0.0]))
+    assert -6.0 <= size.min() < -5.99
+    assert 5.99 < size.max() <= 6.0
+    assert np.mean(found == 0.0) == pytest.approx(0.1, abs=0.01)
+    assert np.mean(found > 0.0) == pytest.approx(0.45, abs=0.02)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from impact_predictor.prediction.deck.tracker import Deck
+from impact_predictor.prediction.deck.window import slope_weights
 from impact_predictor.prediction.monitor import Monitor
 from impact_predictor.prediction.scene import MovingDeck, Scene, Watching
 from impact_predictor.prediction.types import Imu, Sample, Vector3
@@ -150,3 +151,13 @@ def test_a_narrow_unit_whose_pose_is_noisy_stands_on_the_deck_and_not_below_it()
 def test_a_tolerance_below_the_scatter_of_points_that_stand_is_named() -> None:
     _, _, (doubt,) = watched(UNIT._replace(tolerance=1e-3))
     assert "contact.tolerance of 0.001: set it to 0.0" in doubt
+
+
+@pytest.mark.parametrize("x", [[-1.0, -0.6, 0.1, 0.3, 1.0], [-1.0, 1.0, 0.9, 0.8], [-1.0, 0.0, 1.0]])
+def test_the_weights_of_a_slope_tell_that_of_every_parabola_at_its_end(x: list[float]) -> None:
+    weights = np.array(slope_weights(x))
+    assert [weights @ np.power(x, k) for k in range(3)] == pytest.approx([0.0, 1.0, 2.0], abs=1e-12)
+
+
+def test_the_weights_of_two_times_tell_the_slope_of_a_line() -> None:
+    assert slope_weights([-1.0, -1.0, 1.0]) == [-0.25, -0.25, 0.5]
