@@ -10,6 +10,7 @@ from .predictor import Predictor
 from .types import FeetStates, Geometry, Imu, Joints, Sample, Schedule, Status, Terrain, Wrench
 
 _MOST_NAMED: Final = 4
+_OR_TF: Final = ", or give tf.body_frame where /tf connects them"
 
 
 def flaw_of(monitor: Monitor, body: str | None, status: Status, message: Any) -> str:
@@ -72,6 +73,6 @@ def _wrong_frame(predictor: Predictor, message: Any) -> str:
     frames = predictor.frames
     if frames and message.frame_id not in frames:
         named = " or ".join(map(repr, frames))
-        return f"frame_id is {message.frame_id!r}, but {named} is wanted: correct it, or support.frame"
-    points = predictor.contacts.frame_id
-    return f"child_frame_id is {message.child_frame_id!r}, but the contact points are in {points!r}: let both be one"
+        return f"frame_id is {message.frame_id!r}, but {named} is wanted: correct it, or support.frame{_OR_TF}"
+    child, points = message.child_frame_id, predictor.contacts.frame_id
+    return f"child_frame_id is {child!r}, but the contact points are in {points!r}: let both be one{_OR_TF}"

@@ -69,6 +69,7 @@ def test_without_the_parameter_transforms_are_not_read_and_other_frames_stay_wro
     assert result.statuses == {Status.WRONG_FRAME: result.samples}
     assert not {"tf", "tf_static"} & result.inputs.keys()
     assert "frame_id is 'map', but 'world' is wanted" in result.unpredictable
+    assert "give tf.body_frame where /tf connects them" in result.unpredictable
 
 
 @pytest.mark.parametrize(
