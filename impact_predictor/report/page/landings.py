@@ -32,7 +32,8 @@ def landings(name: str, answer: BagAnswer) -> list[Chart]:
     for body in answer.get("gaits", {}):
         mine = [row for row in rows if row.body == (body or row.body)]
         if mine:
-            found.append(landings_chart(f"The landings of {f'{name} {body}'.rstrip()}", answer, body, mine))
+            of = f" of {f'{name} {body}'.strip()}" if name or body else ""
+            found.append(landings_chart(f"The landings{of}", answer, body, mine))
     return found
 
 
