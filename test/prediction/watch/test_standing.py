@@ -109,6 +109,29 @@ def test_the_side_on_which_it_is_first_seen_is_its_own() -> None:
     assert standing.motion is BodyMotion.STANDS
 
 
+def test_a_body_that_is_first_seen_upside_down_stands_so() -> None:
+    standing = Standing(CRATE)
+    shown(standing, sample((2.0, 1.0, 0.5), Rotation.from_euler("x", math.pi)))
+    assert standing.motion is BodyMotion.STANDS
+    assert not standing.toppled
+    assert standing.tilt == pytest.approx(0.0, abs=1e-7)  # the cosine rounds
+
+
+def test_a_tilt_within_the_contact_tolerance_is_no_rocking() -> None:
+    # The crate is 0.6 m wide and its far edge rises by 15 mm.
+    standing = Standing(CRATE._replace(tolerance=0.01))
+    standing.lean(sample((0.0, 0.0, 0.0), Rotation.from_euler("x", -0.025)).orientation)
+    assert standing.motion is BodyMotion.STANDS
+    standing.lean(sample((0.0, 0.0, 0.0), Rotation.from_euler("x", -0.04)).orientation)
+    assert standing.motion is BodyMotion.ROCKS
+
+
+def test_a_tilt_tells_rocking_of_a_body_whose_points_nobody_knows() -> None:
+    standing = Standing(CRATE._replace(points=()))
+    standing.lean(sample((0.0, 0.0, 0.0), Rotation.from_euler("x", -0.1)).orientation)
+    assert standing.motion is BodyMotion.ROCKS
+
+
 def test_a_tilt_alone_tells_rocking_but_no_misalignment_of_sensors() -> None:
     standing = Standing(CRATE)
     for angle, motion in ((0.01, BodyMotion.STANDS), (0.1, BodyMotion.ROCKS), (0.0, BodyMotion.STANDS)):
