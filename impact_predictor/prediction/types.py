@@ -273,7 +273,8 @@ class Foot(NamedTuple):
 class Landing(NamedTuple):
     """A foot that has come to stand: `stamp` in ns, inferred from its motion; `late` and `confirmed` as in `Foot`.
 
-    `history` has the (lead time in s, error of the announced time in s) of every prediction of it. `speed` in m/s is
+    `history` has the (lead time in s, error of the announced time in s) of every prediction of it, `gap_over_speed` the
+    same of that simple answer, where the foot came down. `speed` in m/s is
     that of the foot in its last frame in the air, and `impact` the touchdown that it makes with it: a planned foot may
     brake to rest just as it reaches the ground, a real one has that speed when the ground comes one frame earlier.
     `point` names what of a foot with several points has landed, "heel" or "toe" of two; None for all of it. A landing
@@ -288,6 +289,7 @@ class Landing(NamedTuple):
     speed: float | None = None
     impact: Touchdown | None = None
     point: str | None = None
+    gap_over_speed: tuple[tuple[float, float], ...] = ()
 
 
 class SpatialTwist(NamedTuple):

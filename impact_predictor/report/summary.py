@@ -170,6 +170,7 @@ class Tally:
                     # What follows of a foot that stands already comes at once after its first part.
                     "ahead": None if row.is_second else row.ahead,
                     "error": row.time_errors[0] if row.time_errors else None,
+                    "simple": row.simple_time_error,
                     "speed": row.landing_speed,
                     "impulse": row.impulse and hypot(*row.impulse),
                     "change": row.velocity_change and hypot(*row.velocity_change[:2]),
@@ -218,7 +219,9 @@ class Tally:
         told = [said]
         if errors := [abs(error) for error in known["error"]]:
             wrong = f"{1e3 * quantile(errors, 0.5):.1f} ms wrong in the median, by when the foot's motion ends"
-            told.append(f"The time predicted {1e3 * LEAD_TIMES[0]:.0f} ms ahead is {wrong}.")
+            simple = [abs(error) for error in known["simple"]]
+            beside = f", the gap over its speed {1e3 * quantile(simple, 0.5):.1f} ms" if simple else ""
+            told.append(f"The time predicted {1e3 * LEAD_TIMES[0]:.0f} ms ahead is {wrong}{beside}.")
         if known["impulse"]:
             speeds = f"{quantile(known['speed'], 0.5):.3f} m/s in the median, at most {max(known['speed']):.3f} m/s"
             most = f"{max(known['impulse']):.2f} N s to a foot and {max(known['change']):.3f} m/s to the body"

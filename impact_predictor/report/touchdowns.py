@@ -40,8 +40,9 @@ class TouchdownRow(NamedTuple):
     Times in s but `stamp` in ns, lengths in m, twists of the mass centre in the impact plane (m/s, rad/s), impulses
     (normal, tangential) in N s; None is what is not known. `old` and `new` are the points that stood and that struck;
     `flags` say what a reader should know and, where it is not `scored`, why. `time_errors` of a landing are those of
-    the predictions made `LEAD_TIMES` before it, and `cost` is that of the last prediction. Whole twists, in the
-    support's frame, are scored unless `not_scored_6d` says why not.
+    the predictions made `LEAD_TIMES` before it, `simple_time_error` that of the gap over its speed
+    at the first of these, and `cost` is that of the last prediction. Whole twists, in the support's frame, are scored
+    unless `not_scored_6d` says why not.
     """
 
     body: Annotated[str, TouchdownField("string")]
@@ -84,6 +85,7 @@ class TouchdownRow(NamedTuple):
     bound: Annotated[str | None, TouchdownField("string", of_foot=True)] = None
     velocity_change: Annotated[Twist | None, TouchdownField("twist", of_foot=True)] = None
     time_errors: tuple[float | None, ...] = ()
+    simple_time_error: float | None = None
     cost: float | None = None
 
     @property
@@ -191,7 +193,8 @@ def row_of(body: str, score: Score, cost: float | None = None) -> TouchdownRow:
         late=landing.late,
         confirmed=landing.confirmed,
         landing_speed=landing.speed,
-        time_errors=tuple(error_ahead(landing, lead_time) for lead_time in LEAD_TIMES) if score.landing else (),
+        time_errors=tuple(error_ahead(landing.history, lead_time) for lead_time in LEAD_TIMES) if score.landing else (),
+        simple_time_error=error_ahead(landing.gap_over_speed, LEAD_TIMES[0]),
         landing_mode=impact and impact.mode,
         impulse=impact and impact.impulses[1],
         others_impulse=impact.impulses[0] if impact and impact.old else None,
@@ -210,9 +213,9 @@ def _contact(point: PointOutcome) -> dict[str, Any]:
     }
 
 
-def error_ahead(landing: Landing, lead_time: float) -> float | None:
+def error_ahead(history: Iterable[tuple[float, float]], lead_time: float) -> float | None:
     """Error in s of the time predicted a lead time (s) before a landing, or last before that; None if none was."""
-    made = [error for ahead, error in landing.history if ahead >= lead_time]
+    made = [error for ahead, error in history if ahead >= lead_time]
     return made[-1] if made else None
 
 
@@ -222,9 +225,9 @@ def rows_of(settled: Iterable[Settled]) -> list[TouchdownRow]:
 
 
 def row_as_json(row: TouchdownRow) -> dict[str, Any]:
-    """A row as the JSON of a replay has it; that of a landing has its `time_errors`, too, which no message tells."""
+    """A row as the JSON of a replay has it; that of a landing has errors of its times, too, which no message tells."""
     values = {key: getattr(row, key) for key, field in FIELDS.items() if row.foot or not field.of_foot}
-    values |= {"time_errors": row.time_errors} if row.foot else {}
+    values |= {key: getattr(row, key) for key in ("time_errors", "simple_time_error") if row.foot}
     return {key: value.name if isinstance(value, Mode) else value for key, value in values.items()}
 
 

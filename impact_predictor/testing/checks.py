@@ -191,7 +191,7 @@ def _velocities(row: TouchdownRow) -> str:
 
 
 def _landing_check(name: str, settled: Settled, landing: Landing, tolerance: float) -> Check:
-    error, told = error_ahead(landing, AHEAD), f"{AHEAD * 1e3:.0f} ms ahead"
+    error, told = error_ahead(landing.history, AHEAD), f"{AHEAD * 1e3:.0f} ms ahead"
     if error is None:
         history = landing.history
         first = f"the first time was told {history[0][0] * 1e3:.1f} ms ahead" if history else "nor later"

@@ -54,5 +54,6 @@ LANDING = Landing(
     history=((0.2, 0.004), (0.06, 0.002), (0.004, -0.001)),
     speed=0.25,
     impact=TOUCHDOWN,
+    gap_over_speed=((0.2, -0.05), (0.06, -0.012), (0.004, -0.001)),
 )
 LANDED = UNMEASURED._replace(stamp=2_000_000_000, leftover=Leftover.DRIVEN, landing=LANDING, announced=0.2)

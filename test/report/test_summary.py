@@ -95,7 +95,10 @@ def test_touchdowns_together_count_the_scored_and_explain_the_others() -> None:
 def test_landings_together_say_how_early_they_were_predicted_and_what_their_impacts_do() -> None:
     predicted, times, impacts = Tally([LANDED]).sentences()
     assert predicted == "1 landing of 1 foot, 1 predicted, 100 ms ahead or earlier."
-    assert times == "The time predicted 20 ms ahead is 2.0 ms wrong in the median, by when the foot's motion ends."
+    assert times == (
+        "The time predicted 20 ms ahead is 2.0 ms wrong in the median, by when the foot's motion ends, "
+        "the gap over its speed 12.0 ms."
+    )
     assert impacts == (
         "Feet come down with 0.123 m/s in the median, at most 0.123 m/s; "
         "that gives at most 5.00 N s to a foot and 0.050 m/s to the body."

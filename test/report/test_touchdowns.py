@@ -45,13 +45,14 @@ def test_a_row_of_the_message_of_a_landing_has_all_but_its_impact(score: Score) 
         "others_impulse": None,
         "velocity_change": None,
         "time_errors": (),
+        "simple_time_error": None,
     }
     assert row_of_message("robot", diagnostic.values) == row_of("robot", score)._replace(**impact)
 
 
 @pytest.mark.parametrize("score", [SCORE, UNSCORED, UNMEASURED, LANDED, UNANNOUNCED])
 def test_a_row_comes_back_from_its_json(score: Score) -> None:
-    assert row_of_json(json_of(score)) == row_of("cube", score)._replace(time_errors=())
+    assert row_of_json(json_of(score)) == row_of("cube", score)._replace(time_errors=(), simple_time_error=None)
 
 
 def test_the_json_of_a_touchdown_has_the_promised_keys() -> None:
@@ -103,6 +104,7 @@ def test_the_json_of_a_landing_has_its_foot_its_impact_and_how_late_it_was() -> 
         "bound": None,
         "velocity_change": [-0.25, 0.75, 1.0],
         "time_errors": [0.002, 0.002],
+        "simple_time_error": -0.012,
     }
     assert entry["time_error"] == -0.001
     unknown = json_of(UNANNOUNCED)
@@ -117,9 +119,10 @@ def test_the_flags_of_a_row_say_first_why_it_is_not_scored() -> None:
 
 
 def test_the_error_of_time_is_that_of_the_last_prediction_made_so_long_ahead() -> None:
-    errors = [error_ahead(LANDING, ahead) for ahead in (0.3, 0.2, 0.05, 0.02, 0.0)]
+    errors = [error_ahead(LANDING.history, ahead) for ahead in (0.3, 0.2, 0.05, 0.02, 0.0)]
     assert errors == [None, 0.004, 0.002, 0.002, -0.001]
     assert row_of("robot", LANDED).time_errors == (0.002, 0.002)
+    assert row_of("robot", LANDED).simple_time_error == -0.012
     assert (row_of("robot", LANDED).ahead, row_of("robot", UNANNOUNCED).ahead) == (0.2, None)
 
 

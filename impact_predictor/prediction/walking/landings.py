@@ -6,8 +6,8 @@ What a planner and force sensors say decides none: landings are compared with a 
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Sequence
-from math import hypot
+from collections.abc import Iterable, Sequence
+from math import hypot, inf
 from operator import itemgetter
 from typing import NamedTuple
 
@@ -25,6 +25,7 @@ from .impact import LandingPoint, touchdown_of
 from .mechanism import NOTHING, BaseMotion, LeggedMachine, TwistLine, extrapolated
 from .schedule import LandingSchedule
 from .stance import FootPoint
+from .trajectory import FootTrajectory
 
 LEAVING = 0.2  # a point that stands leaves the ground when it rises with this part of a speed that is hardly one ...
 RISES = 3.0  # ... and with so many standard deviations of the noise
@@ -48,15 +49,21 @@ class FootCollision(NamedTuple):
     landing: dict[int, LandingPoint]
 
 
+def _gap_over_speed(trajectories: Iterable[FootTrajectory]) -> float:
+    """When the first of some points would land at the speed of now, in s; inf if none comes down."""
+    return min([one.frames[-1].gap / -one.rate for one in trajectories if one.rate < 0.0], default=inf)
+
+
 class PendingLanding:
     """A landing that was announced or has happened, until it is scored.
 
-    `times` has the stamps in ns at which it was `announced`, and its lead times in s then; `seen` is what was seen of
-    it, until its impact is computed, `landing` set once one of its points stands, and `after` has the samples after it.
+    `times` has the stamps in ns at which it was `announced`, its lead times in s then, and the gap over its speed;
+    `seen` is what was seen of it, until its impact is computed, `landing` set once one of its points stands, and
+    `after` has the samples after it.
     """
 
     def __init__(self) -> None:
-        self.times: deque[tuple[int, float]] = deque(maxlen=LONGEST)
+        self.times: deque[tuple[int, float, float]] = deque(maxlen=LONGEST)
         self.announced: FootCollision | None = None
         self.seen: FootCollision | None = None
         self.landing: Landing | None = None
@@ -127,7 +134,7 @@ class LandingTracker:
                 )
                 known = [one for i in own if (one := self._announced.get(i)) and one.landing is None]
                 pending = known[0] if known else PendingLanding()
-                pending.times.append((now, collision.lead_time))
+                pending.times.append((now, collision.lead_time, _gap_over_speed([points[i].trajectory for i in own])))
                 pending.announced = collision
                 self._announced |= dict.fromkeys(own, pending)
                 following = following or collision
@@ -148,18 +155,15 @@ class LandingTracker:
             pending = PendingLanding()
         stamp, foot, announced = point.since, self._walking.feet[number], pending.announced
         new = announced.new if announced is not None and i in announced.new else (i,)
-        errors = [
-            ((stamp - made) / NANOSECONDS, (made - stamp) / NANOSECONDS + lead_time)
-            for made, lead_time in pending.times
-            if made <= stamp
-        ]
+        made = [((stamp - at) / NANOSECONDS, *answers) for at, *answers in pending.times if at <= stamp]
         part = [("heel", "toe")[j % 2] if each == 2 else str(j % each) for j in new]
         pending.landing = Landing(
             foot=foot,
             stamp=stamp,
             late=self._schedule.landed(foot, stamp),
             confirmed=self._forces.agree(foot, True, self._base.samples[-1].stamp),
-            history=tuple(errors),
+            history=tuple([(ahead, lead_time - ahead) for ahead, lead_time, _ in made]),
+            gap_over_speed=tuple([(ahead, simple - ahead) for ahead, _, simple in made if simple < inf]),
             point=None if len(new) == each else " ".join(part),
         )
         pending.seen = self._seen(i, new)

@@ -150,6 +150,11 @@ def test_a_landing_is_announced_in_time_whether_the_foot_brakes_or_strikes(speed
     assert score.landing.stamp == pytest.approx(START + 600 * MS, abs=0.5 * MS)
     errors = [(0.6 - made, stamp - 0.6) for made, stamp in told]
     assert np.array(score.landing.history) == pytest.approx(np.array(errors), abs=0.5e-3)
+    if speed == 0.0:
+        # At its speed of now a foot that brakes evenly would be there in half the time.
+        simple = [(ahead, error) for ahead, error in score.landing.gap_over_speed if ahead < 0.03]
+        assert len(simple) > 5
+        assert all(abs(error + 0.5 * ahead) < 0.1 * ahead + 2e-3 for ahead, error in simple)
     told_speeds = [one.feet[0].landing_speed for one in seen.predictions if one.feet[0].landing_speed is not None]
     assert told_speeds[-1] == pytest.approx(0.0 if speed == 0.05 else speed, abs=0.02)
     # Up to 2.5 ms before, or in the mean of the 2.5 ms before that, it still brakes at 20 m/s^2.
