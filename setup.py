@@ -87,7 +87,7 @@ EXTRAS = {
     "browser": ["playwright>=1.45"],
     # Robots that walk in MuJoCo: `impact-predictor simulate robot`.
     "robot": ["example-robot-data>=4.0", "mujoco>=3.3"],
-    "test": ["hypothesis", "mpmath>=1.3", "pytest", "pytest-xdist"],
+    "test": ["hypothesis", "mcap-ros2-support>=0.5", "mpmath>=1.3", "pytest", "pytest-xdist"],
 }
 ALL = ("plot", "page", "calibrate", "fast", "fleet", "articulated", "robot")
 """What brings a command or an option; ROS from PyPI is never mixed with a sourced one, so it is asked for by name."""

@@ -63,7 +63,7 @@ def prepare(venv: Path, environment: dict[str, str]) -> None:
     run(environment, sys.executable, "-m", "venv", "--clear", venv)
     python = venv / "bin/python"
     pins = ROOT / "constraints/jazzy.txt"
-    run(environment, python, "-m", "pip", "install", "--quiet", "--constraint", pins, *WHEELS, str(ROOT))
+    run(environment, python, "-m", "pip", "install", "--quiet", "--constraint", pins, *WHEELS, "--editable", ROOT)
     (numpy,) = venv.glob("lib/python*/site-packages/numpy/_core/include")
     for path in (venv / "share").rglob("*.cmake"):
         text = path.read_text(encoding="utf-8")

@@ -140,7 +140,7 @@ def peer_of_node():
 @contextmanager
 def running_node(scene, *arguments):
     """The node as a process, with a parameter file and more arguments; it must end in order when asked to."""
-    ros = ("--ros-args", "--params-file", str(scene), *arguments)
+    ros = ("--ros-args", "--params-file", str(scene), "-p", "messages:=strings", *arguments)
     with Child("node", dict(os.environ), "-m", "impact_predictor.ros.node", *ros) as child:
         yield child
         child.end()

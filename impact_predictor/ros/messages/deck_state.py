@@ -11,7 +11,7 @@ from ...prediction.deck.forecast import LEADS, ForecastStatus
 from ...prediction.types import Status
 from ...prediction.watch.levels import UNKNOWN, Level
 from .kinds import CHOICE, HEADER, TEXT, Field, Kind, field
-from .message import Message, Section
+from .message import Message, MessageSection
 
 if TYPE_CHECKING:
     from ...prediction.watch.watch import Report
@@ -70,7 +70,7 @@ UNIT_STATE: Final = Message(
     "UnitState",
     "A body under watch on a support: how near it is to sliding and tipping.\n\n"
     "A number that nobody knows is NaN. A part of a margin that is used up is 1 at the onset.",
-    Section(
+    MessageSection(
         "",
         0,
         _named(
@@ -103,7 +103,7 @@ UNIT_STATE: Final = Message(
 )
 
 
-class Deck(NamedTuple):
+class DeckReports(NamedTuple):
     """What is said of a support at a stamp in ns: a report on itself, if it moves, and those on its units."""
 
     stamp: int
@@ -111,11 +111,11 @@ class Deck(NamedTuple):
     units: Sequence[Report]
 
 
-def _header(deck: Deck) -> tuple[int, str]:
+def _header(deck: DeckReports) -> tuple[int, str]:
     return deck.stamp, "" if deck.report is None else deck.report.body
 
 
-def _leads(_: Deck) -> tuple[float, ...]:
+def _leads(_: DeckReports) -> tuple[float, ...]:
     return LEADS
 
 
@@ -123,7 +123,7 @@ DECK_STATE: Final = Message(
     "DeckState",
     "A support and the units under watch on it, once a second and when a level changes.\n\n"
     "A number that nobody knows is NaN, so all of a support that does not move.",
-    Section(
+    MessageSection(
         "",
         0,
         {
@@ -133,7 +133,7 @@ DECK_STATE: Final = Message(
             ),
         },
     ),
-    Section(
+    MessageSection(
         "How it moves",
         1,
         _named(
@@ -156,12 +156,12 @@ DECK_STATE: Final = Message(
             _ahead("error.pitch.forecast", "rad", "the same of the pitch"),
         ),
     ),
-    Section("", 0, {"units": field("units", UNIT_STATE.elements, "", "under watch")}),
+    MessageSection("", 0, {"units": field("units", UNIT_STATE.elements, "", "under watch")}),
     constants={"FORECAST": ForecastStatus},
 )
 
 
 def encode_deck_state(reports: Sequence[Report], deck: Report | None) -> bytes:
     """An impact_predictor_msgs/DeckState of reports that are due, one of them on the support if it moves."""
-    state = Deck(max(report.stamp for report in reports), deck, reports)
+    state = DeckReports(max(report.stamp for report in reports), deck, reports)
     return DECK_STATE.encode(state, deck)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 from .deck_state import DECK_STATE, UNIT_STATE
 from .kinds import ANSWER, CHOICE, NUMBER, PACKAGE, STAMP, Kind, constants, field
-from .message import Message, Section
+from .message import Message, MessageSection
 from .typed import CONTACT, FOOT_STATE, PREDICTION_MESSAGE, SCORE_MESSAGE
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ _LARGEST_BYTE: Final = 255
 
 def _part(name: str, meaning: str, parts: dict[str, tuple[Kind, str, str]]) -> Message:
     """A message that is a part of others, by the kind, unit and meaning of its fields."""
-    return Message(name, meaning, Section("", 0, {key: field(key, *part) for key, part in parts.items()}))
+    return Message(name, meaning, MessageSection("", 0, {key: field(key, *part) for key, part in parts.items()}))
 
 
 PARTS: Final = (

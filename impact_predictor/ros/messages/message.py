@@ -17,7 +17,7 @@ _LARGEST: Final = 8
 NOTHING: Final[Mapping[str, type[Enum]]] = MappingProxyType({})
 
 
-class Section(NamedTuple):
+class MessageSection(NamedTuple):
     """Fields of one record, by their names in the message: `record` is its place among those of the message."""
 
     title: str
@@ -34,13 +34,13 @@ class Message:
     """A message made of some records, which may be None: then the values of their fields are not known."""
 
     def __init__(
-        self, name: str, meaning: str, *sections: Section, constants: Mapping[str, type[Enum]] = NOTHING
+        self, name: str, meaning: str, *sections: MessageSection, constants: Mapping[str, type[Enum]] = NOTHING
     ) -> None:
         """`constants` are the enumerations that it declares, by what the names of their constants begin with."""
         self.name, self.meaning, self.sections, self.constants = name, meaning, sections, constants
         self.elements = Kind(f"{self.type_name.replace('/msg', '')}[]")
         """The kind of a sequence of such messages, each of one record."""
-        self._steps: list[Run | Variable] = []
+        self._steps: list[FixedFields | Variable] = []
         for section in sections:
             for one in section.fields.values():
                 if one.kind.layout:
@@ -53,11 +53,11 @@ class Message:
     def type_name(self) -> str:
         return f"{PACKAGE}/msg/{self.name}"
 
-    def _run(self) -> Run:
+    def _run(self) -> FixedFields:
         """The last step, to which fields of fixed sizes can be added."""
         last = self._steps[-1] if self._steps else None
-        if not isinstance(last, Run):
-            last = Run()
+        if not isinstance(last, FixedFields):
+            last = FixedFields()
             self._steps.append(last)
         return last
 
@@ -81,7 +81,7 @@ _MESSAGES: Final[dict[str, Message]] = {}
 _Numbers = tuple[Callable[[Any], Any], Callable[[Any], Iterable[Any]] | None, tuple[Any, ...]]
 
 
-class Run:
+class FixedFields:
     """Fields of fixed sizes that follow each other: one structure for each place at which it may begin."""
 
     def __init__(self) -> None:

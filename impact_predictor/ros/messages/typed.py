@@ -22,7 +22,7 @@ from .kinds import (
     VECTOR,
     field,
 )
-from .message import Message, Section, fields_of
+from .message import Message, MessageSection, fields_of
 
 
 def seen_from(prediction: Prediction) -> Sample:
@@ -72,7 +72,7 @@ def _twist(prediction: Prediction) -> tuple[Any, ...] | None:
 CONTACT: Final = Message(
     "Contact",
     "What an impact does at a contact point. Axes are those of header.frame_id.",
-    Section(
+    MessageSection(
         "",
         0,
         {
@@ -92,14 +92,14 @@ CONTACT: Final = Message(
 FOOT_STATE: Final = Message(
     "FootState",
     "A foot of a walking machine as one sample shows it. Axes are those of header.frame_id of the Prediction.",
-    Section(
+    MessageSection(
         "",
         0,
         fields_of(FOOT, "name", "stands", "confirmed", "bound", "since")
         | {"position": field("position", POINT, "m", "of its lowest point")}
         | fields_of(FOOT, "gap", "approach"),
     ),
-    Section(
+    MessageSection(
         "Its landing",
         0,
         fields_of(
@@ -116,7 +116,7 @@ PREDICTION_MESSAGE: Final = Message(
     "With mode MODE_NO_IMPACT there is none: its numbers are NaN, its stamp and choices 0. Otherwise, too, a number\n"
     "that nobody knows is NaN. Over a moving support header.frame_id is that of the support, in which all is told.\n"
     "A status is one of STATUS_*, and so are mode, covariance and bound; flags and leftover are sums of such numbers.",
-    Section(
+    MessageSection(
         "The sample",
         0,
         {
@@ -125,15 +125,15 @@ PREDICTION_MESSAGE: Final = Message(
         }
         | fields_of(PREDICTION, "status", "mode"),
     ),
-    Section(
+    MessageSection(
         "The touchdown",
         0,
         {
             "touchdown": field("touchdown", STAMP, "", "when; the stamp of ~/post_impact", stamp_of),
         },
     ),
-    Section("", 1, fields_of(TOUCHDOWN, "lead_time")),
-    Section(
+    MessageSection("", 1, fields_of(TOUCHDOWN, "lead_time")),
+    MessageSection(
         "",
         0,
         {
@@ -151,7 +151,7 @@ PREDICTION_MESSAGE: Final = Message(
             ),
         },
     ),
-    Section(
+    MessageSection(
         "",
         1,
         {
@@ -160,7 +160,7 @@ PREDICTION_MESSAGE: Final = Message(
         }
         | fields_of(TOUCHDOWN, "energy_lost", "flags", "leftover", "unique"),
     ),
-    Section(
+    MessageSection(
         "The impact plane",
         1,
         fields_of(
@@ -176,7 +176,7 @@ PREDICTION_MESSAGE: Final = Message(
             offset="offset",
         ),
     ),
-    Section(
+    MessageSection(
         "How sure it is, with uncertainty.samples",
         2,
         fields_of(
@@ -187,24 +187,24 @@ PREDICTION_MESSAGE: Final = Message(
             planar_deviation="deviation",
         ),
     ),
-    Section(
+    MessageSection(
         "How far it is from another mode, with margins: true",
         3,
         {f"margin_{key.removeprefix('margin.')}": one for key, one in MARGINS.fields.items()},
     ),
-    Section(
+    MessageSection(
         "A walking machine",
         1,
         fields_of(TOUCHDOWN, "bound", "trunk", drives_impulse="impulse.drives"),
     ),
-    Section(
+    MessageSection(
         "Contacts; the law in the plane knows but the old and the new one, and leaves contacts empty",
         1,
         fields_of(TOUCHDOWN, "law", "kind", "segments", old_points="old", new_points="new")
         | {"contacts": field("contacts", CONTACT.elements, "", "the points that take part")},
     ),
-    Section("", 0, {"feet": field("feet", FOOT_STATE.elements, "", "of a walking machine")}),
-    Section("", 1, fields_of(TOUCHDOWN, "joints", "joint_jumps")),
+    MessageSection("", 0, {"feet": field("feet", FOOT_STATE.elements, "", "of a walking machine")}),
+    MessageSection("", 1, fields_of(TOUCHDOWN, "joints", "joint_jumps")),
     constants={
         "STATUS": Status,
         "MODE": Mode,
@@ -219,7 +219,7 @@ SCORE_MESSAGE: Final = Message(
     "Score",
     "A touchdown that has happened, predicted against measured. Constants are those of Prediction.\n\n"
     "A number that nobody knows is NaN.",
-    Section(
+    MessageSection(
         "Which touchdown",
         0,
         {
@@ -227,14 +227,14 @@ SCORE_MESSAGE: Final = Message(
             "body": field("body", TEXT, "", "child_frame_id of the sample", "sample.child_frame_id"),
         },
     ),
-    Section(
+    MessageSection(
         "",
         1,
         fields_of(SCORE, touchdown="stamp")
         | {"sample": field("sample", STAMP, "", "header.stamp of the Prediction that is scored, 0 without one")}
         | fields_of(SCORE, "mode", "flags", "scored", "leftover", "leftover_6d", "announced", "lead_time"),
     ),
-    Section(
+    MessageSection(
         "The whole twist",
         1,
         fields_of(
@@ -249,7 +249,7 @@ SCORE_MESSAGE: Final = Message(
             new_lift="lift.new",
         ),
     ),
-    Section(
+    MessageSection(
         "The impact plane",
         1,
         fields_of(
@@ -265,7 +265,7 @@ SCORE_MESSAGE: Final = Message(
             offset="offset",
         ),
     ),
-    Section(
+    MessageSection(
         "Of a foot that has landed",
         2,
         fields_of(
@@ -280,7 +280,7 @@ SCORE_MESSAGE: Final = Message(
             foot_point="point",
         ),
     ),
-    Section("Contacts", 1, fields_of(SCORE, "law", "kind", old_points="old", new_points="new")),
+    MessageSection("Contacts", 1, fields_of(SCORE, "law", "kind", old_points="old", new_points="new")),
 )
 
 
