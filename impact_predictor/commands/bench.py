@@ -70,7 +70,7 @@ def invariants(count: int, seed: int, law: str, resume: str | None, as_json: boo
     not depend on units, a mirror or the last digits. Beside each violation stands the problem that made it, in Python,
     to be solved again. The exit status is 1 if one is more than rounding explains. Units, mirror and continuity are
     looked at in one problem of eight, because they solve it again; of slender bodies no continuity is claimed, and of
-    sizes over twelve decades only cones, units and mirror. Ctrl-C tells what was found so far.
+    sizes over twelve decades only that numbers are finite and units. Ctrl-C tells what was found so far.
     """
     from ..mechanics.invariants import Soak
     from .progress import compiling_is_said, progress

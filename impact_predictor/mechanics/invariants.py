@@ -237,8 +237,8 @@ Most are below 1e-15; of 1e8 random impacts a few have a condition number of 1e5
 
 CLAIMED = {
     "slender": tuple(LIMITS)[:-1],
-    "extreme": ("finite", "cone", "units"),
-    "extreme-apart": ("finite", "cone", "units"),
+    "extreme": ("finite", "units"),
+    "extreme-apart": ("finite", "units"),
 }
 """What is claimed of the kinds that are stiff; of the others everything.
 
