@@ -14,12 +14,14 @@ import sys
 import tempfile
 import time
 from bisect import bisect_right
+from functools import partial
 from pathlib import Path
 from statistics import median
 from typing import Final, NamedTuple
 
 import click
 from deck_load import HALF, READY, name_of, place_of
+from forms import in_both_forms
 from rich.console import Console
 from rich.table import Table
 
@@ -167,4 +169,4 @@ def main(bodies: int, rate: float, deck_rate: float, seconds: float, executor: s
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(in_both_forms(partial(main, standalone_mode=False)))

@@ -22,6 +22,7 @@ from unittest.mock import patch
 
 import numpy as np
 from deck_motions import Motions, motions
+from forms import in_both_forms
 from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
@@ -164,4 +165,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(in_both_forms(main))

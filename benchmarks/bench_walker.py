@@ -18,6 +18,7 @@ from time import thread_time_ns
 from typing import Any
 
 import numpy as np
+from forms import in_both_forms
 from rich.console import Console
 from rich.table import Table
 from walker_times import noisy, plan, scene
@@ -86,4 +87,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(in_both_forms(main))
