@@ -39,6 +39,9 @@ BAGS = (
 QUICK = BAGS[1]
 """The one that takes seconds even without compiled code."""
 
+COMPILED = "3.11", "3.13"
+"""The Pythons on which an install compiles; on the others, and where there is ROS, the files run as Python."""
+
 TESTED = "fast,plot,page,calibrate,test"
 """The extras that the tests use."""
 
@@ -80,6 +83,7 @@ class Environment:
         self.variables = {name: value for name, value in os.environ.items() if not name.startswith(CALLERS)}
         self.variables |= {
             "HOME": str(self.work),
+            "IMPACT_PREDICTOR_PLAIN": "1",
             "PATH": f"{self.prefix}/bin:{os.environ['PATH']}",
             "PIP_CACHE_DIR": cache,
             "PIP_DISABLE_PIP_VERSION_CHECK": "1",
@@ -169,6 +173,16 @@ def check_offline(environment: Environment) -> None:
         raise InstallError(f"replay printed no table:\n{tables}")
 
 
+def check_form(environment: Environment, is_compiled: bool) -> None:
+    """The predictor runs compiled, or as Python, as the install was to make it."""
+    scene = str(environment.prefix / "share" / NAME / QUICK[1])
+    told = environment.run(f"{environment.prefix}/bin/impact-predictor", "explain", scene, "--json").stdout
+    if (json.loads(told)["runs"] == "compiled") != is_compiled:
+        raise InstallError(
+            f"the predictor should {'' if is_compiled else 'not '}run compiled, but runs {json.loads(told)['runs']}"
+        )
+
+
 def check_extras(environment: Environment) -> None:
     """Without the extras each command that needs one says so, in one line."""
     share = environment.prefix / "share" / NAME
@@ -239,12 +253,19 @@ def check_node(environment: Environment, share: Path, *command: str) -> None:
 def install_without_ros(base: Path, python: str) -> str:
     environment = Environment(base, python)
     source = copy_source(base / "source")
+    version = environment.run(
+        f"{environment.prefix}/bin/python", "-c", "import sys; print('%d.%d' % sys.version_info[:2])"
+    )
+    is_compiled = version.stdout.strip() in COMPILED and shutil.which("cc") is not None
+    environment.variables["IMPACT_PREDICTOR_PLAIN"] = str(int(not is_compiled))
     environment.pip("install", str(source), "--constraint", str(source / "constraints/bags.txt"))
     check_offline(environment)
+    check_form(environment, is_compiled)
     check_extras(environment)
     check_node_missing(environment)
     predictions[python] = predictions_of(environment)
-    return "library, solve, replay with its tables; extras and ROS are named where they are missing"
+    form = "compiled" if is_compiled else "as Python"
+    return f"{form}: library, solve, replay with its tables; extras and ROS are named where they are missing"
 
 
 def install_with_ros(base: Path, python: str) -> str:
