@@ -38,7 +38,7 @@ endif
 # One stamp for each Python and each source of ROS, so that another choice makes the environment anew.
 READY := .venv/.ready-$(ROS)-$(subst /,_,$(PYTHON))
 
-.PHONY: all compiled test test-compiled demo lint types check test-extras test-install docs clean help
+.PHONY: all compiled test test-plain demo lint types check test-extras test-install docs clean help
 
 all: $(READY) ## the environment in .venv (the default)
 
@@ -49,7 +49,8 @@ $(READY): setup.py constraints/jazzy.txt tools/requirements.txt
 	  echo "make: $(PYTHON) cannot make virtual environments; install python3-venv (Debian, Ubuntu), or give another Python: make PYTHON=python3.12" >&2; exit 1; }
 	@[ "$(ROS)" != unusable ] || { \
 	  echo "make: ROS $(ROS_DISTRO) is sourced, but $(PYTHON) cannot import its rclpy; give the Python it was built for: make PYTHON=/usr/bin/python3" >&2; exit 1; }
-	@echo "Installing impact_predictor and what it needs into .venv (ROS: $(ROS)): about a minute."
+	@echo "Installing impact_predictor and what it needs into .venv (ROS: $(ROS)), and compiling it where there is a C compiler:"
+	@echo "about three minutes; IMPACT_PREDICTOR_PLAIN=1 leaves the compiling out, which is two of them."
 	@$(PYTHON) -m venv --clear $(SYSTEM_SITE) .venv
 	@# The messages of a sourced ROS are compiled against the numpy of the system.
 	@[ "$(ROS)" = wheels ] || $(BIN)/python -c 'import numpy; print("numpy==" + numpy.__version__)' > $(CONSTRAINTS)
@@ -57,16 +58,16 @@ $(READY): setup.py constraints/jazzy.txt tools/requirements.txt
 	  --constraint $(CONSTRAINTS) --requirement tools/requirements.txt
 	@touch '$@'
 
-compiled: $(READY) ## the impact laws as machine code, made anew where their sources have changed; needs a compiler
+compiled: $(READY) ## the predictor as machine code, made anew where its sources have changed; needs a C compiler
 	@$(BIN)/python setup.py --quiet build_ext --inplace
-	@$(BIN)/python -c 'from impact_predictor.native import form; print("the impact laws run", form())'
+	@$(BIN)/python -c 'from impact_predictor.native import form; print("The predictor runs", form())'
 
 # Those that start processes mostly wait: three at a time keep two cores busy.
 test: $(READY) ## all tests, the quick ones first; ARGS="-k rod" runs some
 	@$(BIN)/python -m pytest --numprocesses 3 --dist worksteal $(ARGS)
 
-test-compiled: compiled ## the quick tests of mechanics and prediction, compiled
-	@$(BIN)/python -m pytest --numprocesses 3 -m "not slow" test/test_native.py test/mechanics test/prediction $(ARGS)
+test-plain: $(READY) ## the quick tests of what is compiled, as Python
+	@IMPACT_PREDICTOR_PLAIN=1 $(BIN)/python -m pytest --numprocesses 3 -m "not slow" test/mechanics test/prediction test/bags test/ros $(ARGS)
 
 test-extras: $(READY) ## what make test skips: the pages in a browser (Debian: chromium), MuJoCo, wavespectra, Pinocchio, Dask
 	@$(BIN)/python -m pip install --quiet --quiet --disable-pip-version-check --editable '.[$(EXTRAS),articulated,browser,fleet,robot,spectra]' \

@@ -1,8 +1,8 @@
 """Machine code in the place of Python: the same modules, made of the same files by mypyc.
 
-`make compiled` builds one library of all MODULES, and so does every install that finds mypyc. Its name has the digest
-of the sources that it was made of, so that it never runs in the place of others: where they differ, and where
-IMPACT_PREDICTOR_PLAIN is set, the files run as Python.
+`make compiled` builds one library of all MODULES, and so does every install where there is a C compiler. Its name has
+the digest of the sources that it was made of, so that it never runs in the place of others: where they differ, and
+where IMPACT_PREDICTOR_PLAIN is set, the files run as Python.
 """
 
 from __future__ import annotations
@@ -19,14 +19,24 @@ PACKAGE = "impact_predictor"
 FOLDER = os.path.dirname(os.path.abspath(__file__))  # noqa: PTH100, PTH120  every start waits for what this imports
 PREFIX = "native_"
 
-MODULES = tuple(
-    f"{PACKAGE}.mechanics.impact.{name}"
-    for name in ("answer", "contacts", "path_law", "rates", "restitution", "solve", "total_law")
-)
-"""What is compiled: the impact laws. What takes arrays, or what numba reads, runs as Python (`as_python`)."""
+_COMPILED = {
+    "mechanics.impact": "answer contacts path_law rates restitution solve total_law",
+    "prediction": "checks cylinder impact motion_recorder planar points predictor recorded scatter spatial vectors",
+    "prediction.deck": "frame motion window",
+    "prediction.walking": (
+        "announcement braking clock cubic descent doubts feet forces ground impact landings point_filter rest rhythm "
+        "schedule stance terrain trajectory"
+    ),
+}
+MODULES = tuple(f"{PACKAGE}.{folder}.{name}" for folder, names in _COMPILED.items() for name in names.split())
+"""What is compiled: the impact laws, and what a sample goes through. What takes arrays, what numba reads and what tests
+stand in for runs as Python (`as_python`)."""
 
-FOLDERS = ("mechanics",)
+FOLDERS = ("mechanics", "prediction")
 """Where the sources of MODULES are, with all that they use: types and constants of others are in the machine code."""
+
+FILES = ("errors", "native", "stamps")
+"""Modules outside of them on which the library depends: the list of MODULES, too."""
 
 
 def is_refused() -> bool:
@@ -40,8 +50,8 @@ def file_of(name: str) -> str:
 
 
 def sources() -> Iterator[str]:
-    """What the library depends on: the list of MODULES, too."""
-    yield file_of(f"{PACKAGE}.native")
+    """What the library depends on."""
+    yield from (file_of(f"{PACKAGE}.{name}") for name in FILES)
     for one in FOLDERS:
         for folder, _, names in os.walk(os.path.join(FOLDER, one)):  # noqa: PTH118
             yield from (os.path.join(folder, name) for name in names if name.endswith(".py"))  # noqa: PTH118

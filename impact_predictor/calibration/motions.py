@@ -11,9 +11,8 @@ from scipy.spatial.transform import Rotation
 
 from ..errors import InputError
 from ..prediction.monitor import Monitor
-from ..prediction.points import PointContacts
+from ..prediction.motion_recorder import MotionRecorder
 from ..prediction.scene import Scene
-from ..prediction.types import Moment, Sample, Status, Vector3
 from ..stamps import NANOSECONDS
 from .search import Reals as Reals
 
@@ -50,38 +49,6 @@ class RecordedMotion(NamedTuple):
         return RecordedMotion(stamps[::stride], positions[::stride], rotations[::stride], points)
 
 
-class Recorder(PointContacts):
-    """Contact points of a body that only keep its motions, in the order of time."""
-
-    is_spatial = False
-
-    def __init__(self, scene: Scene) -> None:
-        super().__init__(scene)
-        self._motions: list[tuple[tuple[Vector3, ...], list[Sample]]] = []
-
-    def take(self, sample: Sample, moment: Moment | None) -> Status:
-        if self.stamp is None or self._motions[-1][0] != self.points:
-            self._motions.append((self.points, []))
-        self._motions[-1][1].append(sample)
-        self.stamp = sample.stamp
-        return Status.ACCEPTED
-
-    def touchdown(self) -> None:
-        return None
-
-    @property
-    def motions(self) -> list[RecordedMotion]:
-        return [
-            RecordedMotion(
-                stamps=np.array([sample.stamp for sample in samples]),
-                positions=np.array([sample.position for sample in samples]),
-                rotations=Rotation.from_quat([sample.orientation for sample in samples]).as_matrix(),
-                points=np.array(points),
-            )
-            for points, samples in self._motions
-        ]
-
-
 class RecordingMonitor(Monitor):
     """A monitor that predicts nothing and keeps the motions of the only body of its scenes; InputError where there are
     several, or it is no body on contact points over a fixed support.
@@ -94,14 +61,22 @@ class RecordingMonitor(Monitor):
                 "the scene must be that of one body on contact points over a fixed support; give such a one"
             )
         super().__init__(scenes)
-        self._recorder = Recorder(scene)
+        self._recorder = MotionRecorder(scene)
         for predictor in self.predictors.values():
             predictor.contacts = self._recorder
 
     @property
     def motions(self) -> list[RecordedMotion]:
         """The motions in the order of time."""
-        return self._recorder.motions
+        return [
+            RecordedMotion(
+                stamps=np.array([sample.stamp for sample in samples]),
+                positions=np.array([sample.position for sample in samples]),
+                rotations=Rotation.from_quat([sample.orientation for sample in samples]).as_matrix(),
+                points=np.array(points),
+            )
+            for points, samples in self._recorder.motions
+        ]
 
 
 def distinct(scene: Scene, motions: Sequence[RecordedMotion]) -> list[RecordedMotion]:

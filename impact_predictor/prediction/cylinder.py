@@ -9,7 +9,7 @@ changes the impact; up to it the cylinder keeps its velocity along the axis.
 from __future__ import annotations
 
 from math import atan2, hypot, inf, sqrt
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -176,7 +176,8 @@ class CylinderContacts(PointContacts):
         problem += [before.vx, before.vy, -across.velocity, across.roll, across.yaw, before.omega]
         for one in touching:
             problem += [one.x, one.y, 0.0, *one.normal, 0.0, scene.friction, scene.restitution, 0.0, 0.0, 0.0, 0.0]
-        answer, notes = np.zeros(ANSWER + RESULT * n), np.zeros(1, np.int64)
+        answer: Any = np.zeros(ANSWER + RESULT * n)
+        notes: Any = np.zeros(1, np.int64)
         how = bool(number_of(scene.law)), scene.merge, hardly(scene), STEPS
         PLAIN(n, np.array([problem]), *how, answer[None], notes, *workspace(n))
         numbers = answer.tolist()

@@ -6,6 +6,7 @@ from bisect import insort
 from collections import deque
 from collections.abc import Mapping
 from math import cos, hypot, sin
+from operator import attrgetter
 
 from ..mechanics.motion import Fall, PlanarState, next_touchdown
 from ..mechanics.types import Contact, TwoPointBody, Vector
@@ -71,7 +72,7 @@ class PointContacts(Contacts):
         self._recorder = TouchdownRecorder(scene, SLOWEST * hardly(scene))
         self._measure_points()
         # What is compiled for the first touchdown is compiled now.
-        if self._spatial is None and self.is_spatial and not self.points:
+        if self.is_spatial and not self.points:
             SpatialModel(scene, ((0.0, 0.0, 0.0),), self.scatter)
 
     def tell(self, message: ContactInput) -> Status:
@@ -249,7 +250,7 @@ class PointContacts(Contacts):
             last.landed.is_over = True
 
     def _wait(self, pending: Pending) -> None:
-        insort(self._pending, pending, key=lambda one: one.stamp)
+        insort(self._pending, pending, key=attrgetter("stamp"))
 
     def _settle(self, pending: Pending) -> None:
         """Hand out the score of a touchdown, unless it has another one."""
@@ -272,10 +273,11 @@ class PointContacts(Contacts):
         recorded.is_announced = last is not None
         near = [one for one in (*self._pending, self._landed) if one is not None and recorded.is_near(one.stamp)]
         if waiting := [one for one in near if one.recorded is None and one in self._pending]:
-            pending = min(waiting, key=lambda one: abs(one.stamp - recorded.stamp))
+            _, nearest = min([(abs(one.stamp - recorded.stamp), number) for number, one in enumerate(waiting)])
+            pending = waiting[nearest]
             pending.told = last or pending.track.until(end)
         else:
-            is_ahead = bool(told) and told[-1] is self._track and not recorded.is_last
+            is_ahead = bool(told) and told[-1] == self._track and not recorded.is_last
             if last is None or told[-1].has_landed or is_ahead or any(one.shares(last) for one in near):
                 return  # what is ahead may still land, and what has landed is scored once
             told[-1].has_landed = True

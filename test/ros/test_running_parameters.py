@@ -145,12 +145,12 @@ def test_only_the_bodies_whose_scene_changes_begin_anew():
     given = {**read_parameters(ROOT / "config/deck_many.yaml")}
     before = scenes_of(validate(given))
     monitor = Monitor(before)
-    deck, watch, predictors = monitor.deck, monitor.watch, {k: vars(v) for k, v in monitor.predictors.items()}
-    was = {body: dict(one) for body, one in predictors.items()}
+    deck, watch = monitor.deck, monitor.watch
+    was = {body: (one.scene, one.contacts) for body, one in monitor.predictors.items()}
     monitor.changed(scenes_of(validate({**given, "crate.contact.friction": 0.77})))()
     assert monitor.deck is deck
     assert monitor.watch is not watch
-    changed = {body for body, one in monitor.predictors.items() if vars(one) != was[body]}
+    changed = {body for body, one in monitor.predictors.items() if (one.scene, one.contacts) != was[body]}
     assert changed == {"crate"}
     assert monitor.scenes["crate"].friction == 0.77
 

@@ -55,4 +55,4 @@ class FootForces:
         pressed = self._pressed.get(foot)
         if pressed is None or abs(stamp - pressed[0]) > self._timeout:
             return None
-        return pressed[1] is stands
+        return pressed[1] == stands

@@ -150,7 +150,7 @@ class LandingTracker:
         point, each, number = self._points[i], self._each, i // self._each
         pending = self._announced.pop(i, None)
         if pending is None or pending.landing is not None:
-            if any(one.stands for one in self._points[number * each : (number + 1) * each] if one is not point):
+            if any(self._points[k].stands for k in range(number * each, (number + 1) * each) if k != i):
                 return
             pending = PendingLanding()
         stamp, foot, announced = point.since, self._walking.feet[number], pending.announced

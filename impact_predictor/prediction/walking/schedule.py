@@ -47,7 +47,7 @@ class LandingSchedule:
             following = [(time, stands[number]) for time, stands in zip(times, schedule.stands, strict=True)]
             # Planners tell the same stance again and again: only its changes are kept.
             told = [*kept, *following]
-            planned = told[:1] + [one for before, one in pairwise(told) if one[1] is not before[1]]
+            planned = told[:1] + [one for before, one in pairwise(told) if one[1] != before[1]]
             self._stances[foot] = planned
             self._landings[foot] = [time for (_, before), (time, now) in pairwise(planned) if now and not before]
         return Status.ACCEPTED

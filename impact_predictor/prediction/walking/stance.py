@@ -214,7 +214,7 @@ class FootPoint:
 
     def _slipped(self, arrival: Arrival, last: PointFrame) -> Arrival:
         """An arrival at an edge, which was told when a `last` frame came in; its height is not that of the foothold."""
-        later = sum(1 for frame in self.trajectory.frames if frame.stamp > last.stamp)
+        later = len([frame for frame in self.trajectory.frames if frame.stamp > last.stamp])
         return arrival._replace(age=min(arrival.age + later, len(self.trajectory.frames)), height=None)
 
     def _left(self, level: GroundLevel, noise: GapNoise) -> int:
