@@ -21,6 +21,7 @@ PREFIX = "native_"
 
 _COMPILED = {
     "mechanics.impact": "answer contacts path_law rates restitution solve total_law",
+    "mechanics.motion": "engine equations events integrate phases pivot slip",
     "prediction": "checks cylinder impact motion_recorder planar points predictor recorded scatter spatial vectors",
     "prediction.deck": "frame motion window",
     "prediction.walking": (

@@ -11,7 +11,6 @@ u = 0: what is left free then is z.
 from __future__ import annotations
 
 import math
-from functools import cached_property
 from itertools import combinations
 from typing import Any, NamedTuple
 
@@ -52,7 +51,8 @@ class RockingBody:
     rolls = False
     along = 1.0
     """How far the mass centre moves along the support where a contact slips by 1 m."""
-    held, free = (1, 2), 0
+    held = 1, 2
+    free = 0
     """Which parts of a wrench both contacts take up while both slip: the body moves along the other one."""
 
     def __init__(
@@ -76,6 +76,7 @@ class RockingBody:
         self.restitution = old.restitution, new.restitution
         self.inertia = tuple(self.rho_squared + x * x + y * y for x, y in arms)
         self.length = math.sqrt(self.rho_squared) + max(math.hypot(x, y) for x, y in arms)
+        self._facets: tuple[PlanarWrench, ...] | None = None
 
     def normal(self, dx: float, dy: float) -> Vector:
         """The normal out of the support of a contact from which the mass centre is at (dx, dy)."""
@@ -189,12 +190,17 @@ class RockingBody:
         x, y = turned(self.arms[i], u)
         return Contact(-x, -y, self.friction[i], self.normal(x, y), self.restitution[i])
 
-    @cached_property
+    @property
     def facets(self) -> tuple[PlanarWrench, ...]:
         """Inward normals of the cone of the wrenches that both contacts can give while neither slips.
 
         Moments are divided by rho.
         """
+        if self._facets is None:
+            self._facets = self._cone()
+        return self._facets
+
+    def _cone(self) -> tuple[PlanarWrench, ...]:
         rho = math.sqrt(self.rho_squared)
         wrenches = [self.wrench(i, side) for i in (0, 1) for side in (self.friction[i], -self.friction[i])]
         rays = [_unit((fx, fy, moment / rho)) for fx, fy, moment in wrenches]
@@ -228,7 +234,8 @@ class Disc(RockingBody):
 
     rolls = True
     along = 0.0
-    held, free = (0, 1), 2
+    held = 0, 1
+    free = 2
 
     def normal(self, dx: float, dy: float) -> Vector:
         return dx / self.radius, dy / self.radius
