@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from .mechanics.types import Alternative, Contact, ContactState, Flag, Mode, Outcome, Twist, TwoPointBody, Validity
     from .prediction.predictor import Predictor
     from .prediction.scene import read_scenes
-    from .prediction.types import Prediction, Sample, Status
+    from .prediction.types import Foot, Geometry, Prediction, Sample, Status
 
 __all__ = [
     "Alternative",
@@ -33,6 +33,8 @@ __all__ = [
     "ContactPoints",
     "ContactState",
     "Flag",
+    "Foot",
+    "Geometry",
     "InputError",
     "Margin",
     "Margins",
@@ -79,7 +81,7 @@ LATER = {
     **dict.fromkeys(("Margin", "Margins"), "mechanics.margins"),
     **dict.fromkeys(("Outcomes", "solve_impacts"), "mechanics.impact.batch"),
     **dict.fromkeys(("PlanarState", "next_touchdown", "rock", "standing"), "mechanics.motion"),
-    **dict.fromkeys(("Prediction", "Sample", "Status"), "prediction.types"),
+    **dict.fromkeys(("Foot", "Geometry", "Prediction", "Sample", "Status"), "prediction.types"),
     **dict.fromkeys(("Sensitivity", "sensitivity"), "mechanics.sensitivity"),
     **dict.fromkeys(("cylinder", "plate", "rod"), "mechanics.bodies"),
     "Predictor": "prediction.predictor",
