@@ -29,7 +29,7 @@ STEP = 2.0**-40
 UNANSWERED = int(Flag.NO_SOLUTION | Flag.INVALID_INPUT)
 
 
-class Struck(NamedTuple):
+class SolvedContact(NamedTuple):
     """A contact in an impact: its impulses (N s) and its velocities (m/s) before and after, normal and tangential."""
 
     contact: Contact
@@ -48,7 +48,7 @@ class SolvedProblems:
     def __init__(self, body: TwoPointBody, twist: Twist, law: str, solve: Solve) -> None:
         self.body, self.twist, self.law, self.solve = body, twist, law, solve
         self.outcomes = solve(body, twist, law)
-        self.contacts: list[Struck] = []
+        self.contacts: list[SolvedContact] = []
         self.push: Any = 0.0
         lever: Any = 0.0
         sizes: Any = 0.0
@@ -56,7 +56,7 @@ class SolvedProblems:
             if contact is not None:
                 n, t = (self.outcomes.impulses[..., i, k] for k in range(2))
                 (before, size), (after, size_after) = (velocity(contact, each) for each in (twist, self.outcomes.twist))
-                self.contacts.append(Struck(contact, (n, t), before, after))
+                self.contacts.append(SolvedContact(contact, (n, t), before, after))
                 self.push = self.push + abs(n) + abs(t)
                 lever = np.maximum(lever, abs(contact.x) + abs(contact.y))
                 sizes = np.maximum(sizes, size + size_after)
