@@ -153,6 +153,6 @@ class BodyRecord:
 
     def _publish(self, prediction: Prediction, only: str = "") -> None:
         if self._write is not None:
-            for topic, type_name, encode in self._outputs:
+            for topic, type_name, encode, _ in self._outputs:
                 if topic.endswith(only) and (data := encode(prediction)) is not None:
                     self._write(topic, type_name, self._log_time, data)

@@ -15,7 +15,7 @@ from ..prediction.monitor import Monitor
 from ..prediction.scene import CONTACT_GEOMETRY, IMU, SCHEDULE, TERRAIN, TRANSFORMS, Input
 from ..prediction.types import Prediction, Score, Status
 from .endpoints import LONGEST, Backlog, LatchedTopic, Outlet, publisher, subscription
-from .messages import INPUT_TYPES, MalformedMessage, decode_odometry, outputs_of
+from .messages import INPUT_TYPES, MalformedMessage, Output, decode_odometry, outputs_of
 from .reporter import Reporter
 
 LAST_WORDS: Final = Duration(seconds=1)
@@ -100,8 +100,8 @@ class BodyTopics:
         prefix = f"~/{one.body}/" if one.body else "~/"
         outputs = outputs_of(messages)
         self.outputs = {name: publisher(node, prefix + name, output.type_name) for name, output in outputs.items()}
-        self._encoders = [(Outlet(self.outputs[name]), output.encode) for name, output in outputs.items()]
-        self._score = outputs["score"].encode
+        self._outlets = [(Outlet(self.outputs[name]), output) for name, output in outputs.items()]
+        self._score = outputs["score"]
 
     def _on_odometry(self, data: bytes) -> None:
         self._reporter.diagnostics.dropped += self._backlog.take(data)
@@ -124,8 +124,8 @@ class BodyTopics:
             self._reporter.refuse(self._topic, prediction.status, self._body, sample)
             return
         self._last = prediction
-        for outlet, encode in self._encoders:
-            _publish(outlet, encode, prediction)
+        for outlet, output in self._outlets:
+            _publish(outlet, output, prediction)
         self._reporter.answered(self._topic, self._body, prediction, latency, update, began)
 
     def publish_scores(self, scores: tuple[Score, ...]) -> None:
@@ -138,9 +138,10 @@ class BodyTopics:
         self.outputs["score"].wait_for_all_acked(LAST_WORDS)
 
 
-def _publish(outlet: Outlet, encode: Callable[[Prediction], bytes | None], prediction: Prediction) -> None:
+def _publish(outlet: Outlet, output: Output, prediction: Prediction) -> None:
     """Publish what there is to say, unless nobody listens: then it is not even encoded."""
-    if outlet.listeners():
-        data = encode(prediction)
+    # To ask for listeners costs as much as to encode a mode.
+    if getattr(prediction, output.needs) is not None and outlet.listeners():
+        data = output.encode(prediction)
         if data is not None:
             outlet.send(data)

@@ -173,17 +173,20 @@ def unit_status(report: Report, node: str = NODE) -> StatusBytes:
 
 
 class Output(NamedTuple):
-    """What is published on one topic: the type of its messages, and their bytes or None for an answer without one."""
+    """What is published on one topic: the type of its messages, their bytes, or None for an answer without one, and the
+    field of a prediction without which there is none.
+    """
 
     type_name: str
     encode: Callable[[Prediction], bytes | None]
+    needs: str
 
 
 OUTPUTS: Final[dict[str, Output]] = {
-    "post_impact": Output(ODOMETRY, encode_post_impact),
-    "mode": Output(UINT8, encode_mode),
-    "prediction": Output(DIAGNOSTIC_ARRAY, encode_prediction),
-    "score": Output(DIAGNOSTIC_ARRAY, encode_score),
+    "post_impact": Output(ODOMETRY, encode_post_impact, "touchdown"),
+    "mode": Output(UINT8, encode_mode, "sample"),
+    "prediction": Output(DIAGNOSTIC_ARRAY, encode_prediction, "sample"),
+    "score": Output(DIAGNOSTIC_ARRAY, encode_score, "score"),
 }
 """Every output, as strings, by the last part of its topic, in the order in which they are published."""
 
@@ -202,6 +205,6 @@ def outputs_of(messages: str) -> Mapping[str, Output]:
     from .typed import PREDICTION_MESSAGE, SCORE_MESSAGE, encode_typed_prediction, encode_typed_score
 
     return OUTPUTS | {
-        "prediction": Output(PREDICTION_MESSAGE.type_name, encode_typed_prediction),
-        "score": Output(SCORE_MESSAGE.type_name, encode_typed_score),
+        "prediction": Output(PREDICTION_MESSAGE.type_name, encode_typed_prediction, "sample"),
+        "score": Output(SCORE_MESSAGE.type_name, encode_typed_score, "score"),
     }
