@@ -344,10 +344,10 @@ _TABLE: Final = (
     seconds("onset.horizon", 10.0, "How far ahead an onset is looked for; waves tell nothing further.", high=15.0),
     ratio(
         "onset.vain",
-        0.4,
+        0.5,
         "Part of the warnings that may be vain: less warns later. Once the sea is learnt, which takes a minute or two, "
         "the level is WARN when an onset within the horizon is likelier than one minus this, or one within three "
-        "seconds a sixth as likely.",
+        "seconds a fifth as likely.",
         high=0.95,
     ),
     places("lashings.points", "Where each lashing takes hold of the body, in the body frame: x y z of each."),

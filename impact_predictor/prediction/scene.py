@@ -99,7 +99,7 @@ class Watching(NamedTuple):
     hysteresis: float = 0.1
     hold: float = 5.0
     horizon: float = 10.0
-    vain: float = 0.4
+    vain: float = 0.5
 
 
 class Lashing(NamedTuple):

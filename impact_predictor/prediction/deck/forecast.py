@@ -41,6 +41,10 @@ LEAST = 1e-4
 
 FURTHEST = 6.0  # standard deviations from a channel's mean beyond which nothing is forecast
 
+WORTH = 0.1  # skill below which a forecast tells no more than its mean, to which it shrinks then
+
+TRUSTED_BEFORE = 4.0  # forecasts as large as the motion that count as right, before any are compared with what came
+
 SPACED = 8  # rows between two courses of errors that are kept: nearer ones are alike
 COURSES = 48
 SINGLE = 51  # times at which a motion that is not learnt is looked at
@@ -53,7 +57,7 @@ LEADS: Final = (1.0, 2.0, 5.0, 10.0, 15.0)
 ANGLES: Final = ("roll", "pitch")
 
 _ROWS: Final = [round(lead / SECONDS) for lead in LEADS]
-_DECIDES: Final = 1  # the lead at which a forecast must be better than the simple answers
+_DECIDES: Final = 1  # the lead at which a forecast must have that skill
 
 
 class ForecastStatus(Enum):
@@ -156,7 +160,9 @@ class WaveForecast:
         # Rows count from the first one: the squares of a large constant would hide those of what changes.
         self._origin: NDArray[np.float64] | None = None
         self._factors: NDArray[np.float64] | None = None
-        self._bounds = np.zeros(width), np.zeros(width)
+        self._mean, self._variance, self._reach = np.zeros((3, width))
+        # Of forecasts and what came, about the mean: their products and the squares of the former, fading.
+        self._products, self._told = np.zeros((2, REACH, width))
         self._courses: deque[NDArray[np.float64]] = deque(maxlen=COURSES)
         self._squares: deque[NDArray[np.float64]] = deque(maxlen=COURSES)
         self._half = HALVES[0]
@@ -182,8 +188,8 @@ class WaveForecast:
         if len(self._rows) < ORDER:
             return ForecastStatus.INTERRUPTED
         felt = self.skills["felt"]
-        is_worse = felt.skill[_DECIDES] <= 0.0 and felt.forecast[_DECIDES] > LEAST
-        return ForecastStatus.NO_SKILL if is_worse else ForecastStatus.TRUSTED
+        is_idle = felt.skill[_DECIDES] < WORTH and felt.forecast[_DECIDES] > LEAST
+        return ForecastStatus.NO_SKILL if is_idle else ForecastStatus.TRUSTED
 
     def add(self, state: SupportState, window: float = 0.0) -> None:
         """Take the next state, and the window in s in which its acceleration is found with the least error."""
@@ -209,7 +215,7 @@ class WaveForecast:
     def outlook(self, stamp: int) -> DeckOutlook:
         """The courses from a stamp in ns, not before that of the last state."""
         errors = np.array(self._courses)
-        rows = np.concatenate([self._rows[-self._half :], self._forecast()]) + self._origin
+        rows = np.concatenate([self._rows[-self._half :], self._likely(self._forecast())]) + self._origin
         # An error may as well have been the other way: so a few courses go further.
         errors = np.concatenate([np.zeros((len(errors), self._half, self._width)), errors], axis=1)
         felt = self._felt(np.concatenate([rows + errors, rows - errors]))
@@ -270,7 +276,17 @@ class WaveForecast:
         """The row after others (ORDER, width), of which the last one comes first."""
         assert self._factors is not None
         row: NDArray[np.float64] = before.ravel() @ self._factors[:-1] + self._factors[-1]
-        return np.minimum(np.maximum(row, self._bounds[0]), self._bounds[1])
+        return np.minimum(np.maximum(row, self._mean - self._reach), self._mean + self._reach)
+
+    def _likely(self, told: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The rows to expect where such are forecast: what came of those before, regressed on them.
+
+        Coefficients that few or noisy rows tell make forecasts larger than what they know of the future. With errors
+        about them, which are larger for it too, courses would swing too far.
+        """
+        trusted = TRUSTED_BEFORE * self._variance + LEAST * LEAST
+        part = np.clip((self._products + trusted) / (self._told + trusted), 0.0, 1.0)
+        return self._mean + part * (told - self._mean)
 
     def _take(self, row: NDArray[np.float64]) -> None:
         """Take the mean of a step."""
@@ -284,8 +300,12 @@ class WaveForecast:
         self._new += 1
         if self._made and self._made[0][0] + REACH == self._tick:
             _, told = self._made.popleft()
-            self._courses.append(self._near - told)
-            self._compare(told)
+            likely = self._likely(told)
+            self._courses.append(self._near - likely)
+            self._compare(likely)
+            fade, told = np.exp(-SPACED / MEMORY), told - self._mean
+            self._products = fade * self._products + told * (self._near - self._mean)
+            self._told = fade * self._told + told * told
         if len(self._rows) <= ORDER:
             self._new = 0
         elif self._new == REFIT:
@@ -324,8 +344,8 @@ class WaveForecast:
         variances = np.maximum(np.diagonal(self._square)[:-1] / weight - np.square(means), LEAST * LEAST)
         untold = min(1.0, float((np.square(missed).mean(axis=0) / variances[:width]).mean()))
         ridge = (RIDGE * untold + ROUNDING * weight) * variances
-        reach = FURTHEST * np.sqrt(variances[:width])
-        self._bounds = means[:width] - reach, means[:width] + reach
+        self._mean, self._variance = means[:width], variances[:width]
+        self._reach = FURTHEST * np.sqrt(variances[:width])
         try:
             factors = np.linalg.solve(self._square + np.diag(np.append(ridge, 0.0)), self._right)
         except np.linalg.LinAlgError:  # numbers so large that rounding is more than the ridge

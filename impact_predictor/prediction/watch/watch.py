@@ -57,15 +57,12 @@ IMMINENT: Final = 1.5
 """s: the level is ERROR when the onset is likelier than not within so long."""
 
 CLOSE: Final = 3.0
-CLOSELY: Final = 1.0 / 6.0
+CLOSELY: Final = 0.2
 """An onset within so many s is warned of where it is so many times as likely as one within the horizon must be: there
 is no time to wait until it is surer."""
 
 SURE: Final = 3.0
 """Standard deviations by which a margin is used up beyond doubt: noise alone passes thresholds that the deck nears."""
-
-STANDS: Final = 0.1
-"""A warning stands while the onset is so many times as likely as one that raises it: a group of waves is one."""
 
 
 class Report(NamedTuple):
@@ -273,7 +270,8 @@ class Watch:
         due = np.maximum(np.ceil(self._likely * courses).astype(int) - 1, 0)
         self._time_to_tip, self._time_to_slide = [np.sort(times)[np.arange(bodies), due] for times in found]
         close = (either <= CLOSE).mean(axis=1) >= CLOSELY * self._likely
-        stands = (self._levels.ranks >= WARN) & (self._chance >= STANDS * self._likely)
+        # A group of waves is one warning: it stands while any course has an onset.
+        stands = (self._levels.ranks >= WARN) & (self._chance > 0.0)
         self._due = np.where((self._chance >= self._likely) | close | stands, WARN, OK)
         if ahead.is_learnt:
             self._due[(either <= IMMINENT).mean(axis=1) > 0.5] = ERROR

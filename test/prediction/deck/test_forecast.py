@@ -230,6 +230,18 @@ def test_the_skill_of_forecasts_is_that_of_errors_against_what_came() -> None:
     assert skill.skill[2] > 0.9
 
 
+def test_what_cannot_be_foreseen_is_expected_to_be_as_on_the_mean() -> None:
+    """Noise alone: the least squares of so few rows forecast 0.41 of its deviation, all of that by chance."""
+    forecast, rng, expected = WaveForecast(GRAVITY, is_felt=True), np.random.default_rng(4), []
+    for k in range(1, 600):
+        felt, angular = rng.normal(size=(2, 3)).tolist()
+        forecast.add(state(0.25 * k, add(GRAVITY, tuple(felt)), tuple(angular)))
+        if k > 400 and k % 20 == 0:
+            ahead = forecast.outlook(k * STEP).gravity[:, 4:]
+            expected.append(ahead.mean(axis=0) - GRAVITY)
+    assert np.std(expected) < 0.3 * np.std(ahead - ahead.mean(axis=0))
+
+
 def test_a_forecast_that_is_no_better_than_simple_answers_is_not_trusted_and_says_so() -> None:
     noise = WaveForecast(GRAVITY, is_felt=True)
     for one in sea(300.0, 0.02, change=100.0):
