@@ -143,13 +143,12 @@ class PointContacts(Contacts):
         return touchdown
 
     def _rests(self) -> bool:
-        """Whether what seems to strike is noise: this sample or the one before shows no point off the support, and none
-        approaches surely in both, or twice as fast in this one.
+        """Whether what seems to strike is noise: of this sample and the one before one shows no point off the support,
+        and one none that surely approaches.
         """
         postures = [posture for _, posture in list(self._recent)[-2:]]
-        approaches = [-min(posture.rates) for posture in postures]
-        surely = SURELY * self.scatter.rate
-        if self.scatter.is_known and (min(approaches) > surely or approaches[-1] > 2.0 * surely):
+        surely = -SURELY * self.scatter.rate
+        if self.scatter.is_known and all(min(posture.rates) < surely for posture in postures):
             return False
         return any(max(posture.gaps) <= self.slack for posture in postures)
 
