@@ -143,14 +143,13 @@ class PointContacts(Contacts):
         return touchdown
 
     def _rests(self) -> bool:
-        """Whether what seems to strike is noise: of this sample and the one before one shows no point off the support,
-        and one none that surely approaches.
+        """Whether what seems to strike is noise: this sample or the one before shows no point off the support, and this
+        one none that surely approaches.
         """
-        postures = [posture for _, posture in list(self._recent)[-2:]]
-        surely = -SURELY * self.scatter.rate
-        if self.scatter.is_known and all(min(posture.rates) < surely for posture in postures):
+        _, posture = self._recent[-1]
+        if self.scatter.is_known and min(posture.rates) < -SURELY * self.scatter.rate:
             return False
-        return any(max(posture.gaps) <= self.slack for posture in postures)
+        return any(max(posture.gaps) <= self.slack for _, posture in list(self._recent)[-2:])
 
     def forget(self) -> None:
         for pending in self._pending:

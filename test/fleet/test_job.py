@@ -33,7 +33,7 @@ def test_a_bag_that_cannot_be_used_is_an_outcome_too(tmp_path: Path, monkeypatch
     assert outcome.error.startswith(f"{missing} does not exist")
     assert outcome.answer == {"bag": missing, "error": outcome.error}
 
-    def exhausted(*_: object) -> None:
+    def exhausted(*_: object, **__: object) -> None:
         raise MemoryError
 
     monkeypatch.setattr(job, "replay", exhausted)

@@ -193,20 +193,6 @@ def test_what_noise_hides_of_the_space_beside_a_plane_is_not_told_from_it() -> N
     assert [touchdown is not None and bool(touchdown.segments) for touchdown in answers] == [False, True]
 
 
-def test_a_block_that_stands_strikes_where_two_samples_show_that_it_approaches_and_not_where_one_does() -> None:
-    placed, rng, told = somewhere(6, CUBE[CUBE[:, 2] < 0.0]), np.random.default_rng(0), []
-    predictor = Predictor(placed.scene(tolerance=0.005))
-    stood = np.concatenate(state_of(HALF, Rotation.identity(), 3 * [0.0], 3 * [0.0]))
-    for k in range(160):
-        noise = rng.normal(size=2) * [0.002, 0.02]
-        moved = stood.copy()
-        moved[2] += noise[0]
-        moved[9] += -0.5 if k in (100, 150, 151) else noise[1]
-        if predictor.update(placed.sample(0.05 * k, moved)).touchdown is not None:
-            told.append(k)
-    assert told == [151]
-
-
 @pytest.mark.parametrize("law", ["path", "total"])
 @pytest.mark.parametrize("samples", [0, 16])
 def test_no_point_of_what_is_told_approaches_its_support(samples: int, law: str) -> None:

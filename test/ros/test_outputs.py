@@ -340,7 +340,7 @@ def test_rclpy_reads_what_is_written_and_writes_what_is_read() -> None:
     classes = {ODOMETRY: Odometry, UINT8: UInt8, DIAGNOSTIC_ARRAY: DiagnosticArray}
     for seed in range(50):
         prediction = with_score(a_prediction(seed))
-        for type_name, encode in OUTPUTS.values():
+        for type_name, encode, _ in OUTPUTS.values():
             data = encode(prediction)
             assert data is not None
             message = serialization.deserialize_message(data, classes[type_name])
