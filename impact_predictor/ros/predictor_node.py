@@ -96,7 +96,7 @@ class PredictorNode(Node):
             self.get_logger().warning(f"{name} is no parameter of impact_predictor, and passed over")
         for said in _overrides_of_others(self):
             self.get_logger().warning(said)
-        names = ", ".join(scenes)
+        names = listed([*scenes])
         has = listed([one.name for one in features_of(self._settings.values) if one.on], last="and")
         inputs = sorted({one.topic_name for one in self.subscriptions} - set(_OF_ROS))
         self.get_logger().info(
