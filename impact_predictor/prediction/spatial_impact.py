@@ -91,16 +91,14 @@ class SpatialImpactModel:
             answers, flags = np.empty((1, ANSWER + RESULT * len(collision.points))), np.empty(1, np.int64)
             self._solve(problem[None], answers, flags)
             answer, notes = answers[0].tolist(), int(flags[0])
-            contacts = outcomes_of(answer, collision.contacts, positions, repeat(normal))
         else:
             rates = list(collision.rates[count:])
             drawn = self._draws.drawn(sample, axes, problem, count, rates, deviation, now, plane.axis)
             answer, notes = self._stopped(problem, drawn.answer, least), drawn.notes
+        contacts = outcomes_of(answer, collision.contacts, positions, repeat(normal))
+        if drawn is not None:
             contacts = [
-                contact._replace(lift_probability=lifts)
-                for contact, lifts in zip(
-                    outcomes_of(answer, collision.contacts, positions, repeat(normal)), drawn.lifts, strict=True
-                )
+                contact._replace(lift_probability=lifts) for contact, lifts in zip(contacts, drawn.lifts, strict=True)
             ]
         vx, vy, vz, wx, wy, wz, lost = answer[:ANSWER]
         after = SpatialTwist((vx, vy, vz), (wx, wy, wz))
@@ -212,11 +210,12 @@ def outcomes_of(
 ) -> list[PointOutcome]:
     """What an answer of the law says of each contact, at its position and with the normal there."""
     found, count = [], len(contacts.old)
-    for k, (position, normal) in enumerate(zip(positions, normals, strict=False)):
+    places = zip(contacts.old + contacts.new, positions, normals, strict=False)
+    for k, (point, position, normal) in enumerate(places):
         a, b, c, u, v, w, state, _ = answer[ANSWER + RESULT * k : ANSWER + RESULT * (k + 1)]
         found.append(
             PointOutcome(
-                point=(contacts.old + contacts.new)[k],
+                point=point,
                 is_new=k >= count,
                 position=position,
                 normal=normal,

@@ -128,9 +128,7 @@ DECK_STATE: Final = Message(
         0,
         {
             "header": field("header", HEADER, "", "newest stamp, and the frame of the support", _header),
-            "leads": field(
-                "leads", _told(f"float64[{len(LEADS)}]", len(LEADS))._replace(numbers=tuple), "s", "ahead", _leads
-            ),
+            "leads": field("leads", _PER_LEAD._replace(numbers=tuple), "s", "ahead", _leads),
         },
     ),
     MessageSection(

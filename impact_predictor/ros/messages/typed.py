@@ -108,6 +108,9 @@ FOOT_STATE: Final = Message(
     ),
 )
 
+_OF_PLANE: Final = "half_distance", "off_axis", "lateral", "closing_spread", "offset"
+"""Of the impact plane, in a prediction as in a score."""
+
 _MOVES: Final = "mass centre, relative to the support, along the axes of header.frame_id"
 
 PREDICTION_MESSAGE: Final = Message(
@@ -169,12 +172,8 @@ PREDICTION_MESSAGE: Final = Message(
             planar_before="before",
             planar_after="after",
             planar_impulse="impulse",
-            half_distance="half_distance",
-            off_axis="off_axis",
-            lateral="lateral",
-            closing_spread="closing_spread",
-            offset="offset",
-        ),
+        )
+        | fields_of(TOUCHDOWN, *_OF_PLANE),
     ),
     MessageSection(
         "How sure it is, with uncertainty.samples",
@@ -258,12 +257,8 @@ SCORE_MESSAGE: Final = Message(
             planar_predicted="predicted",
             planar_measured="measured",
             planar_relative_error="relative_error",
-            half_distance="half_distance",
-            off_axis="off_axis",
-            lateral="lateral",
-            closing_spread="closing_spread",
-            offset="offset",
-        ),
+        )
+        | fields_of(SCORE, *_OF_PLANE),
     ),
     MessageSection(
         "Of a foot that has landed",
