@@ -251,7 +251,7 @@ def main() -> int:
     import numba
     import numpy as np
     import pytest
-    from coverage import CoverageData  # type: ignore[import-not-found]
+    from coverage import CoverageData
 
     del hypothesis, numba, np, pytest  # loaded once, for all that is forked
     data, seconds = CoverageData(str(arguments.coverage)), seconds_of(arguments.report)

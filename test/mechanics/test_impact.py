@@ -84,6 +84,21 @@ def test_two_sticking_contacts_share_friction_with_the_least_push_between_them()
     assert t_old + t_new == pytest.approx(-2.0)
 
 
+def test_contacts_that_lock_a_body_between_parting_supports_push_no_more_than_the_impulse_path_does():
+    # The supports move along the line of the contacts, so that a push along it would do work on the body.
+    friction = 3.5515415522
+    away, along = (-1.0730894431, -0.7665511523), (0.0847138886, -1.7347607377)
+    old = Contact(-0.9700825128, -0.9066655917, friction, (0.8067893330, 0.5908392101), velocity=away)
+    new = Contact(0.8882888901, -1.5238547451, friction, (-0.5657579758, -0.8245713510), 1.0, along)
+    body = TwoPointBody(mass=6.9022259719, inertia=3.7484073131, old=old, new=new)
+    outcome = solve_impact(body, Twist(-0.8756105166, 1.2887165346, 1.1692605588))
+    assert outcome.segments[-1] == "SS"
+    assert Flag.WORK_LIMITED in outcome.flags
+    assert not outcome.flags & (Flag.SHARED_FRICTION | Flag.ENERGY_GAINED)
+    assert outcome.energy_lost > 0.0
+    assert contact_velocity(body.new, outcome.twist)[0] > 0.1
+
+
 def test_a_cylinder_that_could_also_lock_itself_in_the_wedge_pivots_and_says_so():
     # tan gamma < sqrt 3, but friction above tan(gamma / 2) holds a body in the wedge for ever.
     body = cylinder(radius=0.3, gamma=0.9, mass=2.0, friction=1.5)

@@ -140,6 +140,16 @@ def rests(problem: Problem, cnb: float) -> bool:
     return abs(cnb) <= REST * (abs(cta) + abs(before) + abs(ctb))
 
 
+def push_is_free(problem: Problem, cnb: float) -> bool:
+    """Whether a push along the line of two sticking contacts does no work (see `least_push`).
+
+    It does some where B moves along that line, as it can while the supports part.
+    """
+    (_, _, _, (lever, arm, old_lever, old_arm), _), _, _, _ = problem
+    size = abs(lever) + abs(arm) + abs(old_lever) + abs(old_arm)
+    return size == 0.0 or rests(problem, cnb * arm / size)
+
+
 def solve(problem: Problem, choice: int, by_energy: bool) -> Impact:
     """Follow the impulse path from contact velocities with c_nB < 0 and c_nA >= 0.
 
@@ -215,7 +225,7 @@ def solve(problem: Problem, choice: int, by_energy: bool) -> Impact:
                     slip_a = rta
                 elif (slip_a > 0.0) != (a == PLUS):
                     notes |= REVERSED
-            elif a == STICK and b == STICK and extra == 0.0:
+            elif a == STICK and b == STICK and extra == 0.0 and push_is_free(problem, cnb):
                 notes |= SHARED_FRICTION
             if b >= PLUS:
                 if slip_b == 0.0:
