@@ -28,7 +28,7 @@ IMPORTS: Final = {
     "impact-predictor --help": "impact_predictor.cli",
     "impact-predictor solve": "impact_predictor.cli, impact_predictor.report.outcome",
     "impact-predictor replay": "impact_predictor.cli, impact_predictor.bags.replay, impact_predictor.report.replay",
-    "... --figure": "impact_predictor.cli, impact_predictor.report.page.picture",
+    "... --report": "impact_predictor.cli, impact_predictor.report.page.replay",
     "impact-predictor explain": "impact_predictor.cli, impact_predictor.prediction.scene",
 }
 LOADED: Final = {"the plugin, after pytest itself": "pytest"}

@@ -39,12 +39,10 @@ def replay(*arguments: object) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.fixture(scope="module")
-def answer(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
-    picture = tmp_path_factory.mktemp("hyq") / "gait.png"
-    result = replay("examples/hyq/hyq.bag", "--params", SCENE, "--json", "--figure", picture)
+def answer() -> dict[str, Any]:
+    result = replay("examples/hyq/hyq.bag", "--params", SCENE, "--json")
     assert result.returncode == 0, result.stderr
     assert "took /xpp/state_des as odom and contact_geometry: its messages have an adapter" in result.stderr
-    assert picture.read_bytes().startswith(b"\x89PNG")
     told: dict[str, Any] = json.loads(result.stdout)
     return told
 

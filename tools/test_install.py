@@ -189,7 +189,6 @@ def check_extras(environment: Environment) -> None:
     replay = ("replay", str(share / "examples/cube_tosses"), "--params", str(share / "config/cube_tosses.yaml"))
     for extra, *command in (
         ("plot", "simulate", "rod", "--plot", "rod.png"),
-        ("plot", *replay, "--figure", "errors.png"),
         ("page", *replay, "--report", "page.html"),
         ("fleet", *replay, "--table", "table.parquet"),
         ("calibrate", "calibrate", *replay[1:]),

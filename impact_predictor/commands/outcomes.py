@@ -1,4 +1,4 @@
-"""What `impact-predictor replay` makes of bags: words of each and of all, a picture, a page, a table, and changes."""
+"""What `impact-predictor replay` makes of bags: words of each and of all, a page, a table, and changes."""
 
 from __future__ import annotations
 
@@ -36,7 +36,6 @@ MANY: Final = 20
 class Wanted(NamedTuple):
     """What is asked for of the replays: files, or None; every touchdown in words; JSON; and what counts as a change."""
 
-    figure: str | None
     report: str | None
     table: str | None
     series: str | None
@@ -49,7 +48,7 @@ class Wanted(NamedTuple):
     @property
     def answers(self) -> bool:
         """Whether the JSON of each bag is needed."""
-        return self.as_json or bool(self.figure or self.report or self.table)
+        return self.as_json or bool(self.report or self.table)
 
     @property
     def logs(self) -> bool:
@@ -76,10 +75,6 @@ class ReplayReport:
         self._answers: list[dict[str, Any]] = []
         self._tables: list[tuple[RowTable, Callable[[BagOutcome], Iterable[dict[str, Any]]]]] = []
         self._earlier = {} if wanted.baseline is None else earlier_runs(wanted.baseline, bags)
-        if wanted.figure is not None:
-            from ..report.plot import PICTURE
-
-            named(wanted.figure, *PICTURE)
         if wanted.report is not None:
             need("plotly", "jinja2")
             named(wanted.report, "page", (".html",) if Path(wanted.report).suffix else ("",))
@@ -113,12 +108,12 @@ class ReplayReport:
             click.echo(f"{before}{json.dumps(answer, allow_nan=False)}", nl=False)
         for table, rows_of_bag in self._tables:
             table.add(rows_of_bag(outcome))
-        if self._wanted.report is not None or self._wanted.figure is not None:
+        if self._wanted.report is not None:
             self._answers.append(answer)
         self.number += 1
 
     def finish(self, params: str) -> None:
-        """Say what all bags say together, and write the picture and the page, with the values of a parameter file."""
+        """Say what all bags say together, and write the page, with the values of a parameter file."""
         for note, count in self._notes.items():
             click.echo(f"note: of {counted(count, 'bag')}: {note}", err=True)
         if self._wanted.as_json:
@@ -127,11 +122,6 @@ class ReplayReport:
             click.echo(f"\n{self.replayed:,} bags together")
             for sentence in self._together.sentences():
                 click.echo(sentence)
-        if (figure := self._wanted.figure) is not None and self.replayed:
-            from ..report.page.replay import write_replay_picture
-
-            write_replay_picture(figure, [answer for answer in self._answers if "error" not in answer])
-            self._say_file("Picture", figure)
         if (page := self._wanted.report) is not None:
             from ..parameters.file import read_values
             from ..report.page.replay import write_replay_page

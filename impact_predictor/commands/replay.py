@@ -26,8 +26,8 @@ if TYPE_CHECKING:
         "impact-predictor replay examples/cube_tosses --params config/cube_tosses.yaml",
         "impact-predictor replay run.mcap --params scene.yaml --remap odom:=/cube/odom -o predictions.mcap --json",
         "impact-predictor replay voyage.mcap --params config/deck_many.yaml --remap support/odom:=/deck/odom",
-        "impact-predictor replay examples/hyq/hyq.bag --params config/walker_hyq.yaml --figure gait.png",
-        "impact-predictor replay monday.mcap tuesday.mcap --params scene.yaml -o predictions --figure errors.png",
+        "impact-predictor replay examples/hyq/hyq.bag --params config/walker_hyq.yaml --report gait.html",
+        "impact-predictor replay monday.mcap tuesday.mcap --params scene.yaml -o predictions --report errors.html",
         "impact-predictor replay run.mcap --params scene.yaml --baseline predictions.mcap",
         "impact-predictor replay runs --params scene.yaml --workers 2 --table results.parquet",
     ),
@@ -43,11 +43,6 @@ if TYPE_CHECKING:
     "a folder with one file for each. The folder that it is in must be there.",
 )
 @click.option("--markers", is_flag=True, help="Write the markers for RViz and Foxglove too, into the output.")
-@text(
-    "--figure",
-    "FILE",
-    "Draw errors and velocities, of a walking machine its gait, of cargo its margins, into a .png or .svg file.",
-)
 @text(
     "--report",
     "FILE",

@@ -13,7 +13,6 @@ import numpy as np
 from matplotlib.axes import Axes as Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure as Figure
-from matplotlib.figure import SubFigure as SubFigure
 from matplotlib.lines import Line2D as Line2D
 from matplotlib.patches import Patch as Patch
 from numpy.typing import NDArray
@@ -92,11 +91,11 @@ def headline(figure: Figure, text: str) -> Any:
     return figure.suptitle(text, x=0.01, ha="left", fontweight="bold", fontsize=11)
 
 
-def common_legend(figure: Figure | SubFigure, title: str = "", columns: int = 4) -> None:
-    """Write one legend of all axes of a figure, or of a part of one, below them; each label stands in it once."""
+def common_legend(figure: Figure, title: str = "") -> None:
+    """Write one legend of all axes of a figure below them; each label stands in it once."""
     found = [axes.get_legend_handles_labels() for axes in figure.axes]
     entries = {label: handle for handles, labels in found for handle, label in zip(handles, labels, strict=True)}
-    place: Any = {"loc": "outside lower center", "ncols": columns, "title": title, "title_fontsize": 9}
+    place: Any = {"loc": "outside lower center", "ncols": 4, "title": title, "title_fontsize": 9}
     figure.legend(list(entries.values()), list(entries), **place)
 
 

@@ -1,4 +1,4 @@
-"""The watch over a deck as JSON, as a page, as a picture and as a table, from a log by hand."""
+"""The watch over a deck as JSON, as a page and as a table, from a log by hand."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from replay_answers import answer
 from impact_predictor.bags.watched import FORECAST, QUANTILES, STEP, LevelSpell, WatchLog
 from impact_predictor.prediction.deck.forecast import LEADS
 from impact_predictor.prediction.watch.levels import Level
-from impact_predictor.report.page.replay import page_of_replay, write_replay_picture
+from impact_predictor.report.page.replay import page_of_replay
 from impact_predictor.report.watch import MOST, SERIES, forecast_skill, series_of, warned_of, watch_as_json
 from impact_predictor.stamps import NANOSECONDS
 
@@ -127,16 +127,6 @@ def test_a_name_cannot_break_the_page() -> None:
     evil = "<script>x</script>"
     other = log(names=(evil,), spells=tuple(one._replace(unit=evil) for one in SPELLS), events={evil: {10 * S: evil}})
     assert evil not in page_of_replay([answer(watch=watch_as_json(other))])
-
-
-def test_the_picture_shows_the_same(tmp_path: Path, recwarn: pytest.WarningsRecorder) -> None:
-    pytest.importorskip("matplotlib")
-    for number, one in enumerate((log(), log(1), log(0, spells=(), events={}))):
-        write_replay_picture(tmp_path / f"watch{number}.svg", [answer("voyage.mcap", watch=watch_as_json(one))])
-    drawn = (tmp_path / "watch0.svg").read_text()
-    for said in ("forecast 5 s before", "WARN", "margin used against sliding", "event"):
-        assert f"<!-- {said} -->" in drawn
-    assert not recwarn.list
 
 
 def test_the_table_has_a_row_for_each_unit_at_each_stamp_as_parquet_and_as_csv(tmp_path: Path) -> None:

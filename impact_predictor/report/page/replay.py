@@ -13,7 +13,7 @@ from ...prediction.checks import REMEDIES
 from ...prediction.scene import features_of
 from ...prediction.types import Status
 from ...stamps import NANOSECONDS
-from ...wording import counted, listed, words
+from ...wording import counted, words
 from ..modes import MODES, PALETTE
 from ..skill import pair_of
 from ..summary import PER_DECADE, WHY, without_bag
@@ -33,16 +33,13 @@ from . import (
 )
 from .facts import NOTHING, BagAnswer, ReplayFacts
 from .landings import landings
-from .skill import skill, skill_charts
+from .skill import skill
 from .timeline import FALSE, MANY, MISSED, ORDER, look_of, timeline
 from .watch import watched
 
 EXPLAINED: Final = ("found", "events warned of")
 """Of what a bag's row tells, that of which it tells more."""
 NOT_ASKED: Final = Headline("", "–", "")
-
-PICTURED: Final = 3
-"""Bags whose names stand in the title of a picture, and machines that it shows."""
 
 DRAWN: Final = 8
 """Bags of which a timeline is drawn; of more the worst."""
@@ -156,30 +153,6 @@ def title_of(known: Sequence[Headline]) -> str:
     """What a page says in one line."""
     said = ", ".join(f"{one.question} {one.answer}" for one in known if "cost" not in one.question)
     return said or "No touchdown was predicted"
-
-
-def write_replay_picture(path: str | os.PathLike[str], answers: Sequence[BagAnswer]) -> None:
-    """Write the charts of a page into one PNG or SVG file: of machines that walk the gait, of a watch over a deck its
-    motion and margins, else velocities, errors by kind and lifts.
-
-    Raises:
-        InputError: the file cannot be written, or is of another format.
-    """
-    from .picture import write_charts
-
-    facts, named = ReplayFacts(answers), [*zip((Path(one["bag"]).name for one in answers), answers, strict=True)]
-    walks = [(name, answer) for name, answer in named if answer.get("gaits")][:PICTURED]
-    watches = [answer for answer in answers if answer.get("watch")]
-    parts: Sequence[PageTable | Chart]
-    if walks:
-        parts = [chart for name, one in walks for chart in (timeline(name, one, ""), *landings(name, one))]
-    elif watches:
-        parts = watched([Path(watches[0]["bag"]).name], watches[:1], 1).parts
-    else:
-        parts = [*velocities(facts, [ReplayFacts([answer]) for answer in answers]).parts, *skill_charts(facts)]
-    charts = [part for part in parts if isinstance(part, Chart)]
-    names = listed([name for name, _ in named], PICTURED)
-    write_charts(path, f"{names}: {title_of(told(facts))}", charts)
 
 
 def bags(facts: ReplayFacts, each: Sequence[ReplayFacts], order: Sequence[int], links: Mapping[int, str]) -> Section:

@@ -1,24 +1,15 @@
-"""The charts of a page as a picture: what is drawn of landings, kinds, lifts and a watch, in both formats."""
+"""The charts of a page: what is drawn of landings, of the errors by kind, and of lifts."""
 
 from __future__ import annotations
 
-import re
-from collections.abc import Sequence
-from html import unescape
-from pathlib import Path
-from typing import Any
-from xml.etree import ElementTree
-
-import matplotlib
 import pytest
-from replay_answers import TOSSES, TRUE, WALK, answer, landing, touchdown
+from replay_answers import WALK, answer, landing, touchdown
 
 from impact_predictor.mechanics.types import Mode
 from impact_predictor.prediction.skill import SIMPLE
 from impact_predictor.prediction.types import KINDS
-from impact_predictor.report.page.facts import BagAnswer, ReplayFacts
+from impact_predictor.report.page.facts import ReplayFacts
 from impact_predictor.report.page.landings import landings
-from impact_predictor.report.page.replay import write_replay_picture
 from impact_predictor.report.page.skill import kinds_chart, skill_charts
 from impact_predictor.report.skill import kind_scores
 
@@ -51,28 +42,11 @@ LANDED = WALK | {
 }
 
 
-def texts(path: Path, answers: Sequence[BagAnswer]) -> list[str]:
-    with matplotlib.rc_context({"svg.fonttype": "none"}):
-        write_replay_picture(path, answers)
-    return [unescape(text) for text in re.findall(r"<text[^>]*>([^<]*)</text>", path.read_text())]
-
-
-@pytest.mark.parametrize("suffix", [".png", ".svg", ".PNG"])
-def test_it_is_written_in_the_format_of_its_name_the_same_every_time(tmp_path: Path, suffix: str) -> None:
-    paths = [tmp_path / f"{name}{suffix}" for name in ("one", "two")]
-    for path in paths:
-        write_replay_picture(path, [TOSSES, WHOLE])
-    data = paths[0].read_bytes()
-    assert data == paths[1].read_bytes()
-    assert len(data) > 20_000
-    assert ElementTree.fromstring(data).tag.endswith("svg") if suffix == ".svg" else data.startswith(b"\x89PNG")
-
-
-def test_whole_twists_are_shown_by_kind_beside_simple_answers_and_lifts_beside_what_was_told(tmp_path: Path) -> None:
-    told = texts(tmp_path / "whole.svg", [WHOLE])
-    title = "Error of the whole twist, by kind"
-    assert {title, *KINDS, *SIMPLE.values(), "old contact", "new contact", "Upwards"} <= set(told)
-    assert told.count("30") >= 1  # of all kinds, and of contacts of which 60 % were told
+def test_whole_twists_are_shown_by_kind_beside_simple_answers() -> None:
+    by_kind, _ = skill_charts(ReplayFacts([WHOLE]))
+    kinds = [name.partition("<br>")[0].replace("&gt;", ">") for name in by_kind.layout["yaxis"]["ticktext"]]
+    assert kinds == [*KINDS, "all"]
+    assert [trace["name"] for trace in by_kind.traces] == [*SIMPLE.values(), "prediction: median to 90 %"]
 
 
 def test_an_error_reaches_from_the_median_to_what_nine_tenths_are_below() -> None:
@@ -108,21 +82,3 @@ def test_without_a_truth_they_err_against_the_inferred_times() -> None:
     (chart,) = landings("walk.bag", LANDED | {"gaits": {"": gait}})
     assert next(one for one in chart.traces if one["yaxis"] == "y")["y"] == pytest.approx((4.0,))
     assert "the inferred time" in chart.caption
-
-
-def test_a_machine_that_walks_has_its_stances_and_landings_below_what_its_page_says(
-    tmp_path: Path,
-) -> None:
-    told = texts(tmp_path / "gait.svg", [LANDED, TRUE])
-    assert {"walk.bag", "The landings of walk.bag", "left predicted", "stands", "truth", "speed, m/s"} <= set(told)
-    assert any(text.startswith("walk.bag, simulated.mcap: touchdowns 5, found") for text in told)
-
-
-@pytest.mark.parametrize("touchdowns", [[], [touchdown(1, scored=False, flags=["TOO_SLOW"])], [touchdown(1)]])
-def test_few_touchdowns_or_none_make_a_picture_without_a_warning(
-    tmp_path: Path, touchdowns: list[dict[str, Any]], recwarn: pytest.WarningsRecorder
-) -> None:
-    write_replay_picture(tmp_path / "few.png", [answer("few.mcap", touchdowns=touchdowns)])
-    write_replay_picture(tmp_path / "feet.png", [WALK | {"touchdowns": []}])
-    assert (tmp_path / "few.png").stat().st_size > 5_000
-    assert not recwarn.list
