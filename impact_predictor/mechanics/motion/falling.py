@@ -43,6 +43,8 @@ _LIGHT = 1e-6
 """Relative to the scale of speeds: a point that approaches more slowly comes to rest, and does not strike."""
 _WILD = 1e6
 """Error of the smallest step, relative to the tolerance, that tells a jam."""
+_ON, _STAYS, _EARLY = range(3)
+"""How a step goes that is cut at an event."""
 
 
 def step(time: float, h: float, y: Floats, k: Floats, trial: Floats, model: Model, stance: Stance) -> tuple[float, int]:
@@ -155,25 +157,11 @@ def follow(
     y becomes the state there, `scratch[2]` (3 n) the gaps with their derivatives, and the stance what stands then.
     """
     points, scale = model[0], model[4]
-    held, label, toward, forces, _, _, frame, _ = stance
+    held, label, _, _, _, _, frame, _ = stance
     k, trial, now, then, before, after = scratch
     size, speed, weight = scale[0], scale[1], scale[2]
     n, time, still = len(label), 0.0, 0
-    locate(y, model, stance)
-    for slot in range(held[n]):
-        label[held[slot]] = SLIPS
-        if head(y, held[slot], model, stance) <= NONE:
-            label[held[slot]] = STICKS
-    hold(y, stance, ROUNDING * speed)
-    rates(time, y, k, 0, False, model, stance)
-    measure(y, k, 0, points, frame, offsets, now)
-    struck, fastest = -1, -ROUNDING * speed
-    for i in range(n):
-        if label[i] == OPEN and now[3 * i] <= ROUNDING * size:
-            if now[3 * i + 1] < fastest:
-                struck, fastest = i, now[3 * i + 1]
-            elif now[3 * i] >= -ROUNDING * size and abs(now[3 * i + 1]) <= ROUNDING * speed:
-                stand(y, i, model, stance)
+    struck = begin(y, offsets, model, stance, scratch)
     if struck >= 0:
         return 0.0, struck
     again, h = True, (0.3 if held[n] else 1.0) * sqrt(size / weight)
@@ -217,64 +205,12 @@ def follow(
             continue
         root = sqrt(sqrt(sqrt(max(error, 1e-12))))  # error^(1/8)
         longer = h * min(4.0, 0.9 / (root * sqrt(root)))
-        # Cut the step until it ends at the first event in it.
-        event, early = -1, False
-        low, high, low_value, high_value, target = 0.0, h, 0.0, 0.0, -1
-        for _ in range(_MAX_CUTS):
-            measure(trial, k, 78, points, frame, offsets, then)
-            margins(trial, model, stance, after)
-            bent, cut, event, reached = turn * h, 1.0, -1, -1
-            dip = _BEND * size * bent * bent * bent * bent
-            if target >= 0:
-                # The secant between both sides of a change, by the Illinois method.
-                value, close = after[target], near(target, label)
-                if value < -close:
-                    high_value, low_value = value, low_value * (1.0 if high_value == 0.0 else 0.5)
-                    high = h
-                elif value > close:
-                    low, low_value, high_value = h, value, 0.5 * high_value
-                if abs(value) > close:
-                    h = high - high_value * (high - low) / (high_value - low_value)
-                    error, jam = step(time, h, y, k, trial, model, stance)
-                    continue
-                target = -1
-            for i in range(n):
-                if label[i] == OPEN:
-                    rate = then[3 * i + 1]
-                    rests = then[3 * i] < 0.0 and abs(rate) <= _LIGHT * speed and now[3 * i + 1] > rate
-                    if (abs(then[3 * i]) <= _GAP * size and rate < 0.0) or rests:
-                        reached = i
-                        continue
-                    s = crossing(now, then, i, h, dip)
-                    if abs(s) < cut:
-                        event, cut = i, abs(s)
-                elif still < _STUCK:
-                    for m in range(2 * i, 2 * i + 2):
-                        close = near(m, label)
-                        if after[m] >= -close:
-                            if after[m] <= close and after[m] < before[m]:
-                                reached = n + m
-                        elif before[m] > close:
-                            s = before[m] / (before[m] - after[m])
-                            if s < cut:
-                                event, cut = n + m, s
-                        else:
-                            early, reached = True, n + m
-            if early or event < 0:
-                event = reached
-                break
-            if cut == 0.0:
-                break
-            if event >= n:
-                target = event - n
-                low, low_value, high, high_value = 0.0, before[target], h, after[target]
-            h *= cut
-            error, jam = step(time, h, y, k, trial, model, stance)
-        if (early or not error <= _POOR) and not small:
+        h, error, event, goes = cut_at_event(time, h, error, turn, still < _STUCK, y, offsets, model, stance, scratch)
+        if (goes == _EARLY or not error <= _POOR) and not small:
             # What was at its border comes back to it, or leaves it at once.
             h *= 0.25
             continue
-        if cut > 0.0 and not early:
+        if goes == _ON:
             for i in range(13):
                 y[i], k[i] = trial[i], k[78 + i]
             for i in range(3 * n):
@@ -298,24 +234,146 @@ def follow(
             margins(y, model, stance, before)
             continue
         locate(y, model, stance)
-        if event < n:
-            for _ in range(2):
-                shift = 0.0
-                if now[3 * event + 1] < 0.0 and abs(now[3 * event]) <= _GAP * size:
-                    shift = -now[3 * event] / now[3 * event + 1]
-                shift = max(min(max(shift, -1e-3 * h), 1e-3 * h), -time)
-                for i in range(13):
-                    y[i] += shift * k[i]
-                time += shift
-                locate(y, model, stance)
-                measure(y, k, 0, points, frame, offsets, now)
+        if event >= n:
+            change(event - n, y, before, model, stance)
+        else:
+            time = close(time, h, event, y, k, now, offsets, model, stance)
             if now[3 * event + 1] < -_LIGHT * speed:
                 normalise(y)
                 return time, event
             offsets[event] += now[3 * event]
             stand(y, event, model, stance)
-        else:
-            change(event - n, y, before, model, stance)
         hold(y, stance, ROUNDING * speed)
         again, h, still = True, longer, still + 1
     return horizon, -1
+
+
+def begin(y: Floats, offsets: Floats, model: Model, stance: Stance, scratch: tuple[Floats, ...]) -> int:
+    """Label the points that stand, and let stand what touches and does not approach; the point that strikes, or -1."""
+    points, scale = model[0], model[4]
+    held, label, _, _, _, _, frame, _ = stance
+    k, _, now, _, _, _ = scratch
+    size, speed, n = scale[0], scale[1], len(label)
+    locate(y, model, stance)
+    for slot in range(held[n]):
+        label[held[slot]] = SLIPS
+        if head(y, held[slot], model, stance) <= NONE:
+            label[held[slot]] = STICKS
+    hold(y, stance, ROUNDING * speed)
+    rates(0.0, y, k, 0, False, model, stance)
+    measure(y, k, 0, points, frame, offsets, now)
+    struck, fastest = -1, -ROUNDING * speed
+    for i in range(n):
+        if label[i] == OPEN and now[3 * i] <= ROUNDING * size:
+            if now[3 * i + 1] < fastest:
+                struck, fastest = i, now[3 * i + 1]
+            elif now[3 * i] >= -ROUNDING * size and abs(now[3 * i + 1]) <= ROUNDING * speed:
+                stand(y, i, model, stance)
+    return struck
+
+
+def cut_at_event(
+    time: float,
+    h: float,
+    error: float,
+    turn: float,
+    may_change: bool,
+    y: Floats,
+    offsets: Floats,
+    model: Model,
+    stance: Stance,
+    scratch: tuple[Floats, ...],
+) -> tuple[float, float, int, int]:
+    """Cut a step of h s until it ends at the first event in it: its length, its error, the event, and how it goes.
+
+    The step goes `_ON` to its end, `_STAYS` where it is, or is `_EARLY`: a margin was at zero before it.
+    """
+    k, trial, now, then, before, after = scratch
+    label = stance[1]
+    low, high, low_value, high_value, target, event = 0.0, h, 0.0, 0.0, -1, -1
+    for _ in range(_MAX_CUTS):
+        measure(trial, k, 78, model[0], stance[6], offsets, then)
+        margins(trial, model, stance, after)
+        if target >= 0:
+            # The secant between both sides of a change, by the Illinois method.
+            value, border = after[target], near(target, label)
+            if value < -border:
+                high_value, low_value = value, low_value * (1.0 if high_value == 0.0 else 0.5)
+                high = h
+            elif value > border:
+                low, low_value, high_value = h, value, 0.5 * high_value
+            if abs(value) > border:
+                event, h = -1, high - high_value * (high - low) / (high_value - low_value)
+                error, _ = step(time, h, y, k, trial, model, stance)
+                continue
+            target = -1
+        event, cut, is_early = first_event(h, turn, may_change, model, stance, scratch)
+        if is_early or cut == 1.0:
+            return h, error, event, _EARLY if is_early else _ON
+        if cut == 0.0:
+            return h, error, event, _STAYS
+        if event >= len(label):
+            target = event - len(label)
+            low, low_value, high, high_value = 0.0, before[target], h, after[target]
+        h *= cut
+        error, _ = step(time, h, y, k, trial, model, stance)
+    return h, error, event, _ON
+
+
+def first_event(
+    h: float, turn: float, may_change: bool, model: Model, stance: Stance, scratch: tuple[Floats, ...]
+) -> tuple[int, float, bool]:
+    """The first event in a step of h s, the part of the step before it, and whether it was at its border before.
+
+    Event i below n is that gap i closes; n + m that margin m of a point that stands comes to zero, where it
+    `may_change`; -1 is none. An event at the end of the step has the part 1.
+    """
+    size, speed = model[4][0], model[4][1]
+    label = stance[1]
+    _, _, now, then, before, after = scratch
+    n, bent = len(label), turn * h
+    dip = _BEND * size * bent * bent * bent * bent
+    event, cut, reached, is_early = -1, 1.0, -1, False
+    for i in range(n):
+        if label[i] == OPEN:
+            rate = then[3 * i + 1]
+            rests = then[3 * i] < 0.0 and abs(rate) <= _LIGHT * speed and now[3 * i + 1] > rate
+            if (abs(then[3 * i]) <= _GAP * size and rate < 0.0) or rests:
+                reached = i
+                continue
+            s = crossing(now, then, i, h, dip)
+            if abs(s) < cut:
+                event, cut = i, abs(s)
+        elif may_change:
+            for m in range(2 * i, 2 * i + 2):
+                border = near(m, label)
+                if after[m] >= -border:
+                    if after[m] <= border and after[m] < before[m]:
+                        reached = n + m
+                elif before[m] > border:
+                    s = before[m] / (before[m] - after[m])
+                    if s < cut:
+                        event, cut = n + m, s
+                else:
+                    is_early, reached = True, n + m
+    if is_early or event < 0:
+        return reached, 1.0, is_early
+    return event, cut, False
+
+
+def close(
+    time: float, h: float, point: int, y: Floats, k: Floats, now: Floats, offsets: Floats, model: Model, stance: Stance
+) -> float:
+    """Move the state, by the derivative at the end of a step of h s, to where a gap is zero; the time there."""
+    size = model[4][0]
+    for _ in range(2):
+        shift = 0.0
+        if now[3 * point + 1] < 0.0 and abs(now[3 * point]) <= _GAP * size:
+            shift = -now[3 * point] / now[3 * point + 1]
+        shift = max(min(max(shift, -1e-3 * h), 1e-3 * h), -time)
+        for i in range(13):
+            y[i] += shift * k[i]
+        time += shift
+        locate(y, model, stance)
+        measure(y, k, 0, model[0], stance[6], offsets, now)
+    return time
