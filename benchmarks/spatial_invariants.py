@@ -12,6 +12,7 @@ from __future__ import annotations
 import argparse
 import json
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -211,11 +212,13 @@ def main() -> None:
     parser.add_argument("--chunk", type=int, default=5_000)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--law", action="append", choices=["path", "total"])
+    parser.add_argument("--steps", type=int, default=8, help="of the path law, in a quarter of an oscillation")
     parser.add_argument("--resume", type=Path, help="where it stands, kept as it goes; it goes on from there")
     given = parser.parse_args()
     laws, names = given.law or ["path", "total"], (*LIMITS, "unanswered")
     chunks = [(kind, n) for n in range(1, 9) for kind in KINDS]
-    of = [given.seed, given.chunk, *laws]
+    of = [given.seed, given.chunk, given.steps, *laws]
+    solve = partial(solve_spatial_impacts, steps=given.steps)
     state = {
         "of": of,
         "done": 0,
@@ -224,13 +227,13 @@ def main() -> None:
     if given.resume is not None and given.resume.exists():
         state = json.loads(given.resume.read_text())
         if state["of"] != of:
-            parser.error(f"{given.resume} is of another seed, chunk or law")
+            parser.error(f"{given.resume} is of another seed, chunk, number of steps or law")
     for number in track(range(state["done"], -(-given.problems // given.chunk)), console=Console(stderr=True)):
         kind, n = chunks[number % len(chunks)]
         problems = problems_of(kind, n, np.random.default_rng((given.seed, number)), given.chunk)
         tallies = dict(state["tallies"])
         for law in laws:
-            found = violations(problems, law, otherwise=number // len(chunks) % OFTEN == 0)
+            found = violations(problems, law, solve, otherwise=number // len(chunks) % OFTEN == 0)
             row = []
             for name, (count, bad, worst) in zip(names, tallies[f"{law} {kind}"], strict=True):
                 values = np.nan_to_num(found.get(name, np.empty(0)), nan=np.inf)
@@ -239,8 +242,8 @@ def main() -> None:
             tallies[f"{law} {kind}"] = row
         state = {"of": of, "done": number + 1, "tallies": tallies}
         if given.resume is not None:
-            with whole(given.resume) as partial:
-                partial.write_text(json.dumps(state))
+            with whole(given.resume) as unfinished:
+                unfinished.write_text(json.dumps(state))
     console = Console(width=200)
     for law in laws:
         table = Table("law " + law, "problems", *names)
