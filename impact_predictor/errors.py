@@ -6,7 +6,6 @@ from importlib import import_module
 from typing import Final
 
 EXTRAS: Final = {
-    "PIL": ("pillow", "plot"),
     "contourpy": ("contourpy", "plot"),
     "dask": ("dask", "fleet"),
     "distributed": ("distributed", "fleet"),

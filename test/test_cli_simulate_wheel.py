@@ -10,13 +10,11 @@ from typing import Any
 
 import pytest
 from click.testing import CliRunner, Result
-from PIL import Image
 
 from impact_predictor.bags.read import topics
 from impact_predictor.cli import main
 from impact_predictor.commands.simulate import EXAMPLES, STICKS
 from impact_predictor.parameters.file import read_values
-from impact_predictor.report import plot
 from impact_predictor.scenarios.truth import TRUTH_TOPIC
 
 ROOT = Path(__file__).parents[1]
@@ -92,17 +90,6 @@ def test_the_defaults_are_those_of_the_shipped_scene() -> None:
     values = read_values(SCENE)
     assert values["contact.friction"] == STICKS
     assert (values["body.mass"], list(values["body.inertia"])) == (1.0, [0.1])
-
-
-def test_its_pictures_are_written(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(plot, "STEP", 10 * plot.STEP)  # so that the film has a tenth of its frames
-    result = run("--friction", "0.35", "--steps", "2", "--plot", "wheel.svg", "--animate", "wheel.gif")
-    assert result.exit_code == 0, result.stderr
-    assert "rimless wheel" in (folder / "wheel.svg").read_text()
-    with Image.open(folder / "wheel.gif") as moving:
-        assert getattr(moving, "n_frames") > 5  # noqa: B009 - Pillow's own types do not know it
-    assert "Picture: wheel.svg" in result.stdout
-    assert "Animation: wheel.gif" in result.stdout
 
 
 @pytest.mark.parametrize(

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
-from .options import ACUTE, LAW, F, edge_options, edges_of, examples, json_flag, number, together
+from .options import ACUTE, LAW, F, edge_options, edges_of, examples, json_flag, number, text, together
 from .simulate_deck import EXAMPLES as DECK_EXAMPLES
 from .simulate_deck import simulate_deck
 from .simulate_robot import EXAMPLES as ROBOT_EXAMPLES
 from .simulate_robot import simulate_robot
-from .simulated import RATES_AS_MAGNITUDES, Products, as_json_option, picture_options, record_options
+from .simulated import RATES_AS_MAGNITUDES, Products, as_json_option, record_options
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -28,26 +28,26 @@ STICKS: Final = 100.0
 EXAMPLES = {
     "rod": (
         "impact-predictor simulate rod --length 0.4 --a 0.1 --b 0.1 --angle 30 --json",
-        "impact-predictor simulate rod --a 0.1 --a 0.075 --a 0.05 --plot rods.png --animate rods.gif",
+        "impact-predictor simulate rod --a 0.1 --a 0.075 --a 0.05 --plot rods.png",
         "impact-predictor simulate rod --a 0.05 -o rod.mcap",
     ),
     "plate": (
-        "impact-predictor simulate plate --length 1 --height 1.6 --angle 10 --animate plate.gif",
+        "impact-predictor simulate plate --length 1 --height 1.6 --angle 10 -o plate.mcap",
         "impact-predictor simulate plate --friction 0.05 --plot plate.png",
         "impact-predictor simulate plate --height 0.4 --angle 20 --friction 0.3 --slope -15 --duration 3",
     ),
     "cylinder": (
-        "impact-predictor simulate cylinder --radius 0.3 --gamma 40 --angle 15 --animate cylinder.gif",
+        "impact-predictor simulate cylinder --radius 0.3 --gamma 40 --angle 15 --plot cylinder.png",
         "impact-predictor simulate cylinder --gamma 50 --gamma-new 30 --friction 0.5 --plot cylinder.svg",
     ),
     "wheel": (
-        "impact-predictor simulate wheel --plot wheel.png --animate wheel.gif -o wheel.mcap",
+        "impact-predictor simulate wheel -o wheel.mcap",
         "impact-predictor simulate wheel --slope 4.583662361046586 --inertia 1e-12 --gravity 9.8 --steps 40 --json",
-        "impact-predictor simulate wheel --slope 3 --omega 1.5 --animate stop.gif",
-        "impact-predictor simulate wheel --friction 0.35 --plot slips.png",
+        "impact-predictor simulate wheel --slope 3 --omega 1.5",
+        "impact-predictor simulate wheel --friction 0.35",
     ),
 }
-"""Of each body; the second ones of rod and plate make pictures of the documentation.
+"""Of each body; the second one of the rod makes a picture of the documentation.
 
 The second one of the wheel is the point mass on the slope of 0.08 rad; the fourth one has less friction than it needs.
 """
@@ -65,7 +65,7 @@ def motion_options(angle: float) -> Callable[[F], F]:
         number("--slope", "Slope of the support, degrees; positive is uphill from A to B.", 0.0, **ACUTE),
         number("--gravity", "Gravity, m/s^2.", 9.81),
         number("--duration", "Longest time that is simulated, s.", 10.0),
-        picture_options("angular velocity and angle", "a moving picture"),
+        text("--plot", "FILE", "Draw angular velocity, angle and contacts into a .png or .svg file."),
         json_flag(f"{RATES_AS_MAGNITUDES}: an object, or a list for several rods."),
     )
 
@@ -164,10 +164,10 @@ def answer(
         names = [one.rocker.name for one in rockings]
         names = [f"{name}_{k}" for k, name in enumerate(names, 1)] if len(names) > 1 else names
         products.record([rocking_actor(name, one.run) for name, one in zip(names, rockings, strict=True)])
-    if products.draws:
-        from ..report.motion_pictures import rocking_film, write_rocking_figure
+    if products.plot is not None:
+        from ..report.rocking_figure import write_rocking_figure
 
-        products.draw(lambda path: write_rocking_figure(path, rockings), partial(rocking_film, rockings))
+        write_rocking_figure(products.plot, rockings)
     answers = [rocking_as_json(rocking.run) for rocking in rockings]
 
     def show(console: Console) -> None:
@@ -196,7 +196,6 @@ def answer(
     type=click.IntRange(min=1),
 )
 @number("--duration", "Longest time that is simulated, s. [default: 60]")
-@picture_options("the wheel, its rate and its stance", "a moving picture")
 @as_json_option
 @record_options
 def simulate_wheel(
@@ -223,9 +222,5 @@ def simulate_wheel(
         from ..scenarios.record import wheel_actor
 
         products.record([wheel_actor(rolling)])
-    if products.draws:
-        from ..report.motion_pictures import wheel_film, write_wheel_figure
-
-        products.draw(lambda path: write_wheel_figure(path, rolling), partial(wheel_film, rolling))
     products.say(partial(rolling_as_json, rolling), lambda console: print_rolling(console, rolling))
     return 1 if rolling.end is RollEnd.LOST else 0

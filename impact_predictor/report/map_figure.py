@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
-from math import atan2, degrees, pi, radians
+from math import atan2, degrees, pi, radians, tau
 from pathlib import Path
 from textwrap import fill
 from typing import Any, Final
@@ -16,11 +16,11 @@ from matplotlib.colors import ListedColormap
 from numpy.typing import NDArray
 
 from ..mechanics.closed_forms import cylindrical, flat
+from ..mechanics.motion import standing
 from ..mechanics.types import Mode, TwoPointBody
-from ..scenarios.rocking import release, rocking_cylinder, rocking_plate, rocking_rod
+from ..scenarios.rocking import Rocker, rocking_cylinder, rocking_plate, rocking_rod
 from .map import SUBJECTS, ModeMap, ambiguous, axis_label, conditions, given_in, problem_at, shares
-from .modes import MODES
-from .motion_pictures import RockingScene
+from .modes import EDGE, MODES
 from .plot import Axes, Line2D, Patch, headline, picture
 
 HATCHES: Final = ("xx", "||", "///")
@@ -130,11 +130,7 @@ def write_map(path: Path, modes: ModeMap) -> None:
         headline(figure, f"{title}: what follows when it turns about the old contact A and strikes the new one, B")
         grid = figure.add_gridspec(2, 2, width_ratios=(1.0, 0.4), height_ratios=(0.36, 1.0))
         axes, sketch, side = (figure.add_subplot(place) for place in (grid[:, 0], grid[0, 1], grid[1, 1]))
-        # The body right before it strikes, as the film of its motion shows it.
-        sketch.set_axis_off()
-        sketch.set_aspect("equal")
-        falls = release(_SKETCHED[modes.subject](1.0, None, None, 0.0), radians(14.0), duration=1.0)
-        RockingScene(falls).draw(sketch, 0.0)
+        _draw_sketch(sketch, _SKETCHED[modes.subject](1.0, None, None, 0.0))
         _draw_regions(axes, modes)
         borders = borders_of(modes)
         handles = _draw_hatches(axes, modes)
@@ -146,6 +142,36 @@ def write_map(path: Path, modes: ModeMap) -> None:
         side.legend(handles=handles, loc="upper left", borderaxespad=0.0, labelspacing=0.8)
         for formula, curves in borders.items():
             _draw_border(axes, formula, curves)
+
+
+def _draw_sketch(axes: Axes, rocker: Rocker) -> None:
+    """Draw a body that stands on A and is about to strike with B."""
+    body, (x, y, angle, *_) = rocker.body, standing(rocker.body, radians(14.0))
+    assert body.old is not None
+    c, s, flat = np.cos(angle), np.sin(angle), standing(body, 0.0)
+    contacts = np.array([(one.x, one.y) for one in (body.old, body.new)])
+    turns = np.linspace(0.0, tau, 73)
+    circle = np.hypot(*contacts[0]) * np.column_stack((np.cos(turns), np.sin(turns)))
+    outline = np.array(rocker.outline or circle) @ [[c, s], [-s, c]] + (x, y)
+    # Where the contacts are closed: a cylinder rolls over two edges, others stand on a floor, or on a table if they
+    # reach below it.
+    (left, floor), (right, top) = edges = contacts + np.array((flat.x, flat.y))
+    wide = right - left
+    beyond = 0.0 if outline[:, 1].min() < floor - 1e-9 else 0.6 * wide
+    supports = [(left - beyond, right + beyond, floor)]
+    if not rocker.outline:
+        supports = [(left - 0.6 * wide, left, floor), (right, right + 0.6 * wide, top)]
+    for begin, end, height in supports:
+        axes.fill_between([begin, end], height - 0.15 * wide, height, color="#b5ada0", linewidth=0.0)
+    axes.fill(*outline.T, facecolor="#dbe4ee", edgecolor="#33475b", linewidth=1.3)
+    axes.plot(x, y, "P", color="#33475b", markersize=6, markeredgewidth=0.0)
+    places = contacts @ [[c, s], [-s, c]] + (x, y) if rocker.outline else edges
+    for name, place, colour in zip("AB", places, (EDGE, "white"), strict=True):
+        axes.plot(*place, "o", color=colour, markeredgecolor=EDGE, markersize=7)
+        axes.annotate(name, place, (0.0, -15.0), textcoords="offset points", ha="center")
+    axes.set_axis_off()
+    axes.set_aspect("equal")
+    axes.margins(0.1)
 
 
 def _draw_border(axes: Axes, formula: str, curves: list[NDArray[np.float64]]) -> None:

@@ -108,16 +108,6 @@ class WheelStrike(NamedTuple):
     strike: RockingImpact
 
 
-class Stand(NamedTuple):
-    """A stretch between two events (s): the tips on the ground, each with S where it sticks, + or - where it slips down
-    or up the slope.
-    """
-
-    start: float
-    end: float
-    tips: tuple[tuple[int, str], ...]
-
-
 class Rolling:
     """How a wheel rolled, from 0 to `time` (s)."""
 
@@ -168,23 +158,10 @@ class Rolling:
             values[2, chosen] -= 2.0 * self.wheel.alpha * part.first
         return in_world(self.wheel.hub.support.motion(times), PlanarState(*values))
 
-    @property
-    def stands(self) -> tuple[Stand, ...]:
-        """The stretches between its events, one after the other."""
-        found = []
-        for part, until in zip(self.parts, [*self._starts[1:], self.time], strict=True):
-            for start, end, states in part.run.phases:
-                if start < min(end, until):
-                    found.append(Stand(start, min(end, until), self._tips(part, states)))
-        return tuple(found)
-
     def stood(self, time: float) -> tuple[tuple[int, str], ...]:
-        """The tips on the ground at a time in s, as those of `Stand`."""
+        """The tips on the ground at a time in s, each with S where it sticks, + or - where it slips down or up."""
         part = self.parts[int(np.searchsorted(self._starts, time, side="right")) - 1]
-        return self._tips(part, part.run.states(time))
-
-    def _tips(self, part: RollingPart, states: str) -> tuple[tuple[int, str], ...]:
-        count = self.wheel.spokes
+        states, count = part.run.states(time), self.wheel.spokes
         return tuple(((part.first + i) % count, state) for i, state in enumerate(states) if state != "O")
 
 
