@@ -92,7 +92,7 @@ def test_the_friction_of_simulated_plates_comes_back_within_its_interval_though_
 
 
 class Written(NamedTuple):
-    """What a run printed, and the folder with its scene file and its picture."""
+    """What a run printed, and the folder with its scene file."""
 
     lines: list[str]
     folder: Path
@@ -101,16 +101,16 @@ class Written(NamedTuple):
 @pytest.fixture(scope="module")
 def written(plates: list[str], tmp_path_factory: pytest.TempPathFactory) -> Written:
     folder = tmp_path_factory.mktemp("written")
-    scene, output, picture = (str(folder / name) for name in ("scene.yaml", "fitted.yaml", "fit.png"))
+    scene, output = (str(folder / name) for name in ("scene.yaml", "fitted.yaml"))
     Path(scene).write_text(SCENE)
-    result = run(*plates, "--params", scene, "-o", output, "--figure", picture)
+    result = run(*plates, "--params", scene, "-o", output)
     assert result.exit_code == 0, result.output
     return Written(result.stdout.splitlines(), folder)
 
 
 def test_the_scene_file_keeps_its_comments_and_is_read_by_replay(plates: list[str], written: Written) -> None:
     output = written.folder / "fitted.yaml"
-    assert written.lines[-2] == f"Scene: {output}"
+    assert written.lines[-1] == f"Scene: {output}"
     text = output.read_text()
     assert text.startswith("# Plates in the hall.\n")
     assert "; from a book" in text
@@ -132,7 +132,6 @@ def test_the_table_tells_the_intervals_and_what_is_not_told(written: Written) ->
     ("arguments", "sentence"),
     [
         (("-o", "no/such/fitted.yaml"), "the folder of no/such/fitted.yaml does not exist"),
-        (("--figure", "fit.doc"), "fit.doc is no picture"),
         (("-r", "odom=/x"), "is not of the form from:=to"),
         (("-r", "odom:=/x"), "has no topic /x"),
         ((), "can be fitted to, but 10 are needed; give more bags"),

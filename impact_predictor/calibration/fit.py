@@ -21,9 +21,6 @@ from .touchdowns import ScoredTouchdown
 NEEDED: Final = 10
 """Scored touchdowns below which an interval would say nothing."""
 
-FITTED: Final = ("friction", "restitution", "merge")
-"""What is fitted whether it is asked for or not."""
-
 
 class CoefficientRange(NamedTuple):
     """Of a coefficient: its least and greatest value, a step that changes it little, and the width of an interval
@@ -53,8 +50,6 @@ PROFILES: Final = {
 RANGES: Final = {
     "friction": CoefficientRange(0.0, 100.0, 5e-3, 0.2),
     "restitution": CoefficientRange(0.0, 1.0, 5e-3, 0.3),
-    "exponent": CoefficientRange(-1.0, 1.0, 1e-2, 0.4),
-    "radius": CoefficientRange(0.0, 2e-2, 2e-4, 5e-3),
 }
 
 COARSE: Final = (0.0, 0.05, 0.1, 0.16, 0.24, 0.32, 0.44, 0.64, 1.0, 2.0, 100.0), (0.0, 0.1, 0.25, 0.5, 1.0)
@@ -67,8 +62,6 @@ _STEPS: Final = 12
 _FEW: Final = 2
 _SOME: Final = 200
 _HALVINGS: Final = 12
-_MAP: Final = 13
-"""Nodes of the map of errors along each side."""
 
 
 class Calibration(NamedTuple):
@@ -77,7 +70,6 @@ class Calibration(NamedTuple):
     `blocks` is the block of each touchdown, `estimates` what is told of each coefficient by its name, and `fitted` all
     of them together. Errors are relative, |(dv, s dw)| / |(v, s w) before|, (n,) each: with the `given` coefficients;
     `held_out` with those that were fitted to the blocks of the other folds; and of the `simple` answers by their names.
-    `map` has values of friction and of restitution, and the mean errors over both.
     """
 
     touchdowns: tuple[ScoredTouchdown, ...]
@@ -87,19 +79,18 @@ class Calibration(NamedTuple):
     given: Reals
     held_out: Reals
     simple: dict[str, Reals]
-    map: tuple[Reals, Reals, Reals]
 
 
 def calibrate(
     records: Sequence[Sequence[ScoredTouchdown]],
-    asked: Sequence[str] = (),
+    inertia: bool = False,
     seed: int = 0,
     tell: Callable[[int], None] = lambda done: None,
 ) -> Calibration:
     """Fit coefficients to the touchdowns of some records by the least mean of their relative errors.
 
-    Fitted are friction, restitution, merge time and what is `asked` for, fields of `Coefficients`. The mean of lengths
-    is the loss of the spatial median: a touchdown that rigid theory does not explain pulls no more than any other.
+    Fitted are friction, restitution and merge time, and a factor on the `inertia` where that is asked for. The mean of
+    lengths is the loss of the spatial median: a touchdown that rigid theory does not explain pulls no more than others.
     Intervals are those of the bootstrap over blocks (percentiles), the same for the same `seed`; each is wider by what
     changes the mean error by a thousandth of the speed. A coefficient that the touchdowns do not tell stays as it was.
     `tell` takes now and then how many impacts are solved.
@@ -118,13 +109,10 @@ def calibrate(
             f"{bodies} have frictions, restitutions or merge times of their own; calibrate with a scene for each"
         )
     given = Coefficients(*known.pop())
-    wanted = [*FITTED, *asked]
-    fit = CoefficientSearch(
-        touchdowns, blocks_of(records), given, [name for name in wanted if name in RANGES], seed, tell
-    )
+    fit = CoefficientSearch(touchdowns, blocks_of(records), given, seed, tell)
     given_errors = lengths(fit.solver.misses(given))
     fit.search(fit.rough(given))
-    profiles = {name: fit.profile(name) for name in wanted if name in PROFILES}
+    profiles = {name: fit.profile(name) for name in PROFILES if inertia or name != "inertia"}
     estimates = fit.estimates()
     unknown = {name: one.value for name, one in estimates.items() if not one.known}
     if unknown:
@@ -135,29 +123,27 @@ def calibrate(
     return Calibration(
         touchdowns=touchdowns,
         blocks=fit.blocks,
-        estimates={name: (estimates | profiles)[name] for name in wanted},
+        estimates=estimates | profiles,
         fitted=fit.best,
         given=given_errors,
         held_out=fit.held_out(),
         simple=fit.solver.simple_errors(),
-        map=fit.map(given),
     )
 
 
 class CoefficientSearch:
-    """The search for the coefficients `names`; `best` are the best so far, of which those change that are `free`."""
+    """The search for the coefficients of `RANGES`: `best` are the best so far, and those change that are `free`."""
 
     def __init__(
         self,
         touchdowns: Sequence[ScoredTouchdown],
         blocks: Blocks,
         given: Coefficients,
-        names: list[str],
         seed: int,
         tell: Callable[[int], None],
     ) -> None:
-        self.solver, self.blocks, self.names, self.best = Solver(touchdowns), blocks, names, given
-        self.free: NDArray[np.bool_] = np.ones(len(names), bool)
+        self.solver, self.blocks, self.names, self.best = Solver(touchdowns), blocks, list(RANGES), given
+        self.free: NDArray[np.bool_] = np.ones(len(self.names), bool)
         self._given, self._seed, self._tell, self._done = given, seed, tell, 0
         self._missed = self._slopes = np.zeros(0)
 
@@ -258,18 +244,6 @@ class CoefficientSearch:
             some = Solver([one for one, left in zip(self.solver.touchdowns, out, strict=True) if left])
             errors[out] = lengths(some.misses(others))
         return errors
-
-    def map(self, given: Coefficients) -> tuple[Reals, Reals, Reals]:
-        """Values of friction and restitution about the best and the given ones, and the mean errors there."""
-        most = [min(max(2.0 * one, 1.2 * other, 0.1), 1.0) for one, other in zip(self.best[:2], given[:2], strict=True)]
-        sides = [np.linspace(0.0, end, _MAP) for end in most]
-        grid = [self.best._replace(friction=float(one), restitution=float(other)) for one, other in product(*sides)]
-        means = np.array([self._near(one).mean() for one in grid])
-        return sides[0], sides[1], means.reshape(_MAP, _MAP)
-
-    def _near(self, coefficients: Coefficients) -> Reals:
-        self._said()
-        return lengths(self.solver.near(coefficients))
 
     def _refitted(self, weights: Weights, best: Reals) -> Reals:
         """The best coefficients for other weights of the touchdowns, as far as the slopes tell."""

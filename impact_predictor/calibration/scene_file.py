@@ -112,7 +112,7 @@ def changes_of(calibration: Calibration) -> dict[str, NewValues]:
     """What the fit changes in the parameter file of the scene, which has a parameter for each of `PARAMETERS`."""
     changes = {}
     for name, one in calibration.estimates.items():
-        if name not in PARAMETERS or one.value == one.given:
+        if one.value == one.given:
             continue
         values: tuple[float, ...] = (one.value,)
         of = ""

@@ -19,16 +19,13 @@ class Coefficients(NamedTuple):
     """What is fitted.
 
     `friction`, `restitution` and the time `merge` (s) of a compression are those of the scene. `inertia` is a factor on
-    the given one. A contact that approaches with v m/s has the restitution `restitution` v^-`exponent`. Corners of a
-    `radius` in m are spheres that touch the faces there: each strikes with its lowest point.
+    the given one.
     """
 
     friction: float
     restitution: float
     merge: float
     inertia: float = 1.0
-    exponent: float = 0.0
-    radius: float = 0.0
 
 
 _KEPT = 8
@@ -36,9 +33,6 @@ _KEPT = 8
 
 LATEST = 1e9
 """s: when the first contact closes of a body that has none."""
-
-SLOWEST = 1e-3
-"""m/s: contacts that approach more slowly have the restitution at this speed."""
 
 
 class Solver:
@@ -55,7 +49,6 @@ class Solver:
 
         self._arms = padded([one.arms for one in touchdowns])
         self._normals = padded([one.normals for one in touchdowns])
-        self._corners = padded([one.corners for one in touchdowns])
         self._gaps = padded([one.gaps for one in touchdowns], np.inf)
         self._stood = padded([one.stood.astype(float) for one in touchdowns]) > 0.0
         self._masses = np.array([one.scene.mass for one in touchdowns])
@@ -70,9 +63,7 @@ class Solver:
 
     def after(self, coefficients: Coefficients) -> Reals:
         """The twists right after the impacts (n, 6)."""
-        friction, restitution, merge, factor, exponent, radius = coefficients
-        arms = self._arms - radius * (self._corners + self._normals)
-        gaps = self._gaps - radius * (1.0 + np.einsum("nki,nki->nk", self._normals, self._corners))
+        (friction, restitution, merge, factor), arms, gaps = coefficients, self._arms, self._gaps
         moving = self._before[:, None, :3] + np.cross(self._before[:, None, 3:], arms)
         speeds = -np.einsum("nki,nki->nk", self._normals, moving)
         closing = (speeds > 0.0) & ~self._stood & np.isfinite(gaps)
@@ -80,7 +71,6 @@ class Solver:
         first = np.minimum(due.min(axis=1, keepdims=True), LATEST)
         strikes = closing & (due - first <= WINDOW * merge)
         open_gaps = np.where(strikes, np.where(closing, due - first, 0.0) * speeds, 0.0)
-        bounces = np.clip(restitution * np.maximum(speeds, SLOWEST) ** -exponent, 0.0, 1.0)
         # Those that stood come first, and those that take no part last.
         order = np.argsort(np.where(self._stood, 0, np.where(strikes, 1, 2)), axis=1, kind="stable")
         counts = (self._stood | strikes).sum(axis=1)
@@ -92,7 +82,7 @@ class Solver:
                 contacts = ContactPoints(
                     positions=arms[rows, which],
                     friction=friction,
-                    restitution=bounces[rows, which],
+                    restitution=restitution,
                     normals=self._normals[rows, which],
                     gaps=open_gaps[rows, which],
                 )

@@ -13,7 +13,6 @@ from ..prediction.scene import Scene
 from ..prediction.score import SpatialScore
 from ..prediction.types import Score, SpatialTwist
 from ..prediction.vectors import axes_of, cross, times
-from .impulses import is_solid, rounded
 from .motions import SAME, Reals
 
 if TYPE_CHECKING:
@@ -25,10 +24,9 @@ class ScoredTouchdown(NamedTuple):
 
     `body` is its name, `stamp` (ns) when it struck, `kind` what stood and what struck. The axes are those of the
     support: `twist` (6,) of the mass centre right before it; `inertia` (3, 3); of each of the n points the way `arms`
-    (n, 3) from the mass centre, the `normals` (n, 3), the `gaps` (n,) in m then, whether it `stood` (n,), and `corners`
-    (n, 3), the way to it from the centre of a sphere of radius 1 that touches the faces there. `size` (m) makes speeds
-    of angular velocities. `measured` (6,) is the twist that the `score` has, some frames after the impact; without a
-    score it is that right after it.
+    (n, 3) from the mass centre, the `normals` (n, 3), the `gaps` (n,) in m then, and whether it `stood` (n,). `size`
+    (m) makes speeds of angular velocities. `measured` (6,) is the twist that the `score` has, some frames after the
+    impact; without a score it is that right after it.
     """
 
     body: str
@@ -41,7 +39,6 @@ class ScoredTouchdown(NamedTuple):
     normals: Reals
     gaps: Reals
     stood: NDArray[np.bool_]
-    corners: Reals
     size: float
     measured: Reals
     score: SpatialScore | None = None
@@ -89,7 +86,6 @@ def _on_points(body: str, score: SpatialScore) -> ScoredTouchdown:
     points, turn = np.array(course.points), np.array(axes_of(told.orientation)).T
     arms = (points - scene.center_of_mass) @ turn.T
     heights = arms @ normal + np.dot(course.start.center, normal) - scene.height
-    behind = points - rounded(points, 1.0) if is_solid(points) else np.zeros_like(points)
     return ScoredTouchdown(
         body=body,
         stamp=score.stamp,
@@ -101,7 +97,6 @@ def _on_points(body: str, score: SpatialScore) -> ScoredTouchdown:
         normals=np.broadcast_to(normal, arms.shape),
         gaps=np.maximum(heights, 0.0),
         stood=np.isin(np.arange(len(points)), told.old),
-        corners=behind @ turn.T,
         size=score.size,
         measured=np.array([*score.measured.linear, *score.measured.angular]),
         score=score,
@@ -128,7 +123,6 @@ def _on_edges(body: str, scene: Scene, score: Score) -> ScoredTouchdown:
         normals=-arms / np.linalg.norm(arms, axis=1, keepdims=True),
         gaps=np.zeros(len(arms)),
         stood=np.isin(np.arange(len(arms)), told.old),
-        corners=np.zeros_like(arms),
         size=told.half_distance,
         measured=after,
     )

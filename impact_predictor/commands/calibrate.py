@@ -31,7 +31,7 @@ M = TypeVar("M", bound="Monitor")
     short_help="Fit friction, restitution and merge time to recorded touchdowns.",
     epilog=examples(
         "impact-predictor calibrate examples/cube_tosses --params config/cube_tosses.yaml -o fitted.yaml",
-        "impact-predictor calibrate monday.mcap tuesday.mcap --params scene.yaml --inertia --figure fit.png",
+        "impact-predictor calibrate monday.mcap tuesday.mcap --params scene.yaml --inertia",
         "impact-predictor calibrate run.mcap --params scene.yaml --remap odom:=/cube/odom --json",
     ),
 )
@@ -39,14 +39,11 @@ M = TypeVar("M", bound="Monitor")
 @PARAMS
 @remap_option("Topic of an input, as for replay; may be repeated.")
 @text("-o", "--output", "FILE", "Write the parameter file with the fitted values in it.")
-@text("--figure", "FILE", "Draw the fit into a .png or .svg file.")
 @click.option(
     "--inertia",
     is_flag=True,
     help="Fit a factor on the inertia, too; where single corners strike, identify tells it better.",
 )
-@click.option("--speed-dependent", is_flag=True, help="Fit e(v) = e v^-k, too, with v in m/s; k is told, not written.")
-@click.option("--rounding", is_flag=True, help="Fit the radius of the corners, too; it is told, not written.")
 @seed_option("Which resamples and folds.")
 @json_flag()
 def calibrate(
@@ -54,10 +51,7 @@ def calibrate(
     params: str,
     remap: tuple[str, ...],
     output: str | None,
-    figure: str | None,
     inertia: bool,
-    speed_dependent: bool,
-    rounding: bool,
     seed: int,
     as_json: bool,
 ) -> int:
@@ -74,16 +68,12 @@ def calibrate(
     from ..files import named
     from ..prediction.monitor import Monitor
     from ..report import calibration as report
-    from ..wording import listed, words
+    from ..wording import words
     from .progress import compiling_is_said, progress
 
     scenes, topics = read_scenes(params), remapping(remap)
     if output is not None:
         named(output, "parameter file")
-    if figure is not None:
-        from ..report.plot import PICTURE
-
-        named(figure, *PICTURE)
     bags = tuple(bags_of(bags))
     # How sure a prediction is matters to no fit.
     scenes = {body: scene._replace(samples=0, margins=False) for body, scene in scenes.items()}
@@ -92,16 +82,15 @@ def calibrate(
     told = {"friction_seen": {body: [one.held, one.slid if one.slid < inf else None] for body, one in seen.items()}}
     said = [f"Friction of {body or 'the body'}, from when it held and when it slid: {seen[body]}." for body in seen]
     records = [touchdowns_of(result.settled, scenes) for result in results]
-    asked = {"inertia": inertia, "exponent": speed_dependent, "radius": rounding}
     scores = [settled.score for result in results for settled in result.settled]
     try:
         with progress("fit", "impacts") as tell, compiling_is_said():
-            calibration = fit(records, [name for name, wanted in asked.items() if wanted], seed, tell)
+            calibration = fit(records, inertia, seed, tell)
     except InputError as error:
         if reasons := report.unscored(scores):
             counts = ", ".join(f"{count:,} {words(reason)}" for reason, count in reasons.items())
             error = InputError(f"{error}; not scored are {counts}")
-        if not seen or output or figure:
+        if not seen or output:
             raise error from None
         click.echo(f"note: nothing is fitted: {error}", err=True)
         if as_json:
@@ -113,16 +102,12 @@ def calibrate(
         from ..calibration.scene_file import changes_of
 
         write_scene(params, output, changes_of(calibration))
-    if figure is not None:
-        from ..report.calibration_figure import write_calibration
-
-        write_calibration(figure, calibration, listed([Path(bag).name for bag in bags], 3))
     if as_json:
         fields = report.as_json(calibration, bags, scores) | (told if seen else {})
         click.echo(json.dumps(fields, allow_nan=False))
     else:
         sentences = [*report.sentences(calibration, scores), *said]
-        say_fit(report.tables(calibration), sentences, Scene=output, Picture=figure)
+        say_fit(report.tables(calibration), sentences, output)
     return status_of(bags, results)
 
 
@@ -137,8 +122,8 @@ def friction_seen(monitors: Iterable[Monitor]) -> dict[str, FrictionSeen]:
     return {body: seen for body, seen in found.items() if seen != FrictionSeen()}
 
 
-def say_fit(tables: Iterable[Table], sentences: Iterable[str], **files: str | None) -> None:
-    """Print what a fit found, and which files have been written."""
+def say_fit(tables: Iterable[Table], sentences: Iterable[str], scene: str | None = None) -> None:
+    """Print what a fit found, and the name of the scene that was written."""
     from rich.console import Console
 
     from ..report.table import say, show
@@ -148,9 +133,8 @@ def say_fit(tables: Iterable[Table], sentences: Iterable[str], **files: str | No
         show(console, table)
         console.print()
     say(console, *sentences)
-    for what, file in files.items():
-        if file is not None:
-            click.echo(f"{what}: {file}")
+    if scene is not None:
+        click.echo(f"Scene: {scene}")
 
 
 def status_of(bags: Sequence[str], results: Sequence[Result]) -> int:

@@ -73,5 +73,5 @@ def identify(
     if as_json:
         click.echo(json.dumps(report.as_json(found, bags), allow_nan=False))
     else:
-        say_fit(report.tables(found), report.sentences(found), Scene=output)
+        say_fit(report.tables(found), report.sentences(found), output)
     return status_of(bags, results)

@@ -12,19 +12,14 @@ from rich.table import Table
 
 from ..calibration.fit import Calibration
 from ..calibration.motions import Reals
-from ..calibration.scene_file import PARAMETERS, changes_of, number_text
+from ..calibration.scene_file import changes_of, number_text
 from ..calibration.search import FOLDS, interval
 from ..prediction.types import KINDS, Leftover, Score
 from ..wording import counted, percent, words
 from .summary import spread_of
 from .table import Column, table_of
 
-NAMES: Final = {
-    "merge": "merge time (s)",
-    "inertia": "inertia, of the given one",
-    "exponent": "k of e v^-k",
-    "radius": "radius of the corners (m)",
-}
+NAMES: Final = {"merge": "merge time (s)", "inertia": "inertia, of the given one"}
 """What coefficients are called that go by more than their names."""
 
 
@@ -84,8 +79,6 @@ def sentences(calibration: Calibration, scores: Sequence[Score]) -> list[str]:
             times = " times the given one" if name == "inertia" else ""
             but = "the given one predicts worse, but " if worse else ""
             said.append(f"The {called} cannot be told: {interval(one)}{times} predicts as well; {but}{kept}.")
-        elif name not in PARAMETERS:
-            said.append(f"The {called} is told, not written: a scene has no parameter for it.")
     return said
 
 

@@ -51,7 +51,6 @@ def touchdowns(
                 normals=np.tile([0.0, 0.0, 1.0], (8, 1)),
                 gaps=arms[:, 2] - arms[:, 2].min(),
                 stood=np.zeros(8, bool),
-                corners=SIGNS @ matrix.T,
                 size=0.04,
                 measured=np.zeros(6),
             )
