@@ -95,7 +95,7 @@ check: lint types test ## lint, types and tests
 test-install: ## installs with pip and with colcon into empty environments, and uses what was installed
 	@$(PYTHON) tools/test_install.py $(ARGS)
 
-test-messages: ## builds impact_predictor_msgs from PyPI, and lets readers in C++ and Python listen to a node; needs a C++ compiler
+test-messages: ## both packages by colcon, from PyPI; readers in C++ and Python listen to a node; needs a C++ compiler
 	@$(PYTHON) tools/test_messages.py $(ARGS)
 
 clean: ## removes what make, pip and colcon made

@@ -1,9 +1,9 @@
-"""Build impact_predictor_msgs and its readers in examples/ with what PyPI has, and let them listen to a live node.
+"""Build both packages and the readers in examples/ with colcon, from what PyPI has; the readers listen to a live node.
 
     python tools/test_messages.py [FOLDER]
 
 In the folder (.venv-messages) it makes an environment with ROS and the generators, of the Python that runs this, which
-takes minutes once; needs a C++ compiler. A sourced ROS builds the package with colcon (docs/messages.md).
+takes minutes once; needs a C++ compiler. Where ROS is sourced, colcon needs none of this (docs/messages.md).
 """
 
 from __future__ import annotations
@@ -31,6 +31,7 @@ WHEELS = (
     "ros-ament-package==0.16.4",
     "catkin_pkg",
     "cmake",
+    "colcon-common-extensions",
     "empy<4",
     "lark",
     "ninja",
@@ -79,13 +80,11 @@ def prepare(venv: Path, environment: dict[str, str]) -> None:
     done.touch()
 
 
-def build(folder: Path, source: Path, environment: dict[str, str], *targets: str) -> None:
-    """Configure and build a package of CMake below the folder."""
-    venv, place = folder / "venv", folder / source.name
-    prefixes = ";".join(map(str, (folder / "prefix", venv, venv / "empty")))
+def build(folder: Path, environment: dict[str, str]) -> dict[str, str]:
+    """Build both packages and the readers in a workspace below the folder; the environment in which they are found."""
+    venv, workspace = folder / "venv", folder / "workspace"
     settings = {
-        "CMAKE_INSTALL_PREFIX": folder / "prefix",
-        "CMAKE_PREFIX_PATH": prefixes,
+        "CMAKE_PREFIX_PATH": f"{venv};{venv}/empty",
         "CMAKE_POLICY_VERSION_MINIMUM": "3.5",
         "BUILD_TESTING": "OFF",
         "Python3_EXECUTABLE": venv / "bin/python",
@@ -94,23 +93,29 @@ def build(folder: Path, source: Path, environment: dict[str, str], *targets: str
         "CMAKE_EXE_LINKER_FLAGS": "-Wl,--as-needed,--allow-shlib-undefined",
     }
     chosen = [f"-D{name}={value}" for name, value in settings.items()]
-    run(environment, venv / "bin/cmake", "-S", source, "-B", place, "-G", "Ninja", *chosen)
-    run(environment, venv / "bin/cmake", "--build", place, *targets)
+    places = [f"--{kind}-base={workspace / kind}" for kind in ("build", "install")]
+    found = (ROOT, ROOT / "impact_predictor_msgs", ROOT / "examples/readers")
+    command = ("colcon", f"--log-base={workspace}/log", "build", *places)
+    run(environment, *command, "--base-paths", *found, "--cmake-args", "-GNinja", *chosen)
+    source = f'. "{workspace}/install/setup.sh" && env -0'
+    sourced = subprocess.run(["bash", "-c", source], env=environment, capture_output=True, text=True, check=True)
+    return dict(line.split("=", 1) for line in sourced.stdout.split("\0") if line)
 
 
 def listen(folder: Path, environment: dict[str, str]) -> dict[str, list[str]]:
     """What both readers print while a node predicts recorded tosses."""
     python = str(folder / "venv/bin/python")
     names = sysconfig.get_config_vars("LIBDIR", "LDLIBRARY")
+    compiled = str(folder / "workspace/build/impact_predictor_readers/listener")
     readers = {
-        "C++": ([str(folder / "readers/listener")], {"LD_PRELOAD": str(Path(*map(str, names)))}),
+        "C++": ([compiled], {"LD_PRELOAD": str(Path(*map(str, names)))}),
         "Python": ([python, str(ROOT / "examples/readers/listener.py")], {}),
     }
     node = ("--params-file", str(ROOT / "config/cube_tosses.yaml"), "-p", "messages:=typed")
     player = ("-r", "/cube/odom:=/odom", "-r", "/cube/contact_geometry:=/contact_geometry")
     modules = (
         ("impact_predictor.ros.node", "--ros-args", *node),
-        ("impact_predictor.ros.player", str(ROOT / "examples/cube_tosses"), "--runs", "1", "--ros-args", *player),
+        ("impact_predictor.ros.player", str(ROOT / "examples/cube_tosses"), "--runs", "3", "--ros-args", *player),
     )
     said: dict[str, list[str]] = {}
     with ExitStack() as stack:
@@ -137,23 +142,21 @@ def listen(folder: Path, environment: dict[str, str]) -> dict[str, list[str]]:
 def main() -> None:
     """Build, listen, and compare what the readers print."""
     folder = Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / ".venv-messages").absolute()
-    venv, prefix = folder / "venv", folder / "prefix"
+    venv = folder / "venv"
     left = (LEFT_BEHIND, "LD_LIBRARY_PATH", "PYTHONPATH", "VIRTUAL_ENV")
     environment = {name: value for name, value in os.environ.items() if name not in left}
-    environment |= {"PATH": f"{venv}/bin:{os.environ['PATH']}", "AMENT_PREFIX_PATH": str(venv)}
-    prepare(venv, environment)
-    began = time.monotonic()
-    build(folder, ROOT / "impact_predictor_msgs", environment, "--target", "install")
-    print(f"impact_predictor_msgs is built in {time.monotonic() - began:.0f} s", flush=True)
-    (packages,) = prefix.glob("lib/python*/site-packages")
-    bundled = [*map(str, venv.glob("lib/python*/site-packages/*.libs"))]
     environment |= {
-        "AMENT_PREFIX_PATH": f"{prefix}:{venv}",
-        "PYTHONPATH": str(packages),
-        "LD_LIBRARY_PATH": ":".join([f"{prefix}/lib", f"{venv}/lib", *bundled]),
+        "AMENT_PREFIX_PATH": str(venv),
+        "MAKEFLAGS": f"-j{os.cpu_count()}",  # without it colcon waits while the machine does anything else
+        "PATH": f"{venv}/bin:{os.environ['PATH']}",
         "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
     }
-    build(folder, ROOT / "examples/readers", environment)
+    prepare(venv, environment)
+    bundled = [*map(str, venv.glob("lib/python*/site-packages/*.libs"))]
+    environment["LD_LIBRARY_PATH"] = ":".join([f"{venv}/lib", *bundled])
+    began = time.monotonic()
+    environment = build(folder, environment)
+    print(f"impact_predictor, impact_predictor_msgs and the readers are built in {time.monotonic() - began:.0f} s")
     said = listen(folder, environment)
     first, second = said.values()
     if not (first == second and len(first) >= DECODED):
