@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 from typing import Any
 
-from impact_predictor import __version__
+import impact_predictor
 from impact_predictor.parameters.table import PARAMETERS
 from impact_predictor.parameters.types import Parameter, allowed
 from impact_predictor.ros.messages.fields import TABLES
@@ -16,7 +16,7 @@ from impact_predictor.ros.messages.kinds import Field
 project = "impact_predictor"
 author = "impact_predictor maintainers"
 project_copyright = "the impact_predictor maintainers, Apache-2.0"
-release = __version__
+release = impact_predictor.__version__
 extensions = [
     "myst_parser",
     "sphinx.ext.autodoc",
@@ -43,7 +43,8 @@ sphinx_gallery_conf = {
     "write_computation_times": False,
     "show_signature": False,
 }
-exclude_patterns = ["examples", "sg_execution_times.rst"]
+# The last three are what rosdoc2 adds; index.md is its front page, too.
+exclude_patterns = ["examples", "sg_execution_times.rst", "index.rst", "__readme_include.rst", "standard*"]
 
 
 def row(parameter: Parameter) -> str:
@@ -72,14 +73,14 @@ def keys_of(topic: str) -> str:
 
 def messages() -> str:
     """The files of impact_predictor_msgs, each under its name."""
-    files = sorted((Path(__file__).parents[1] / "impact_predictor_msgs" / "msg").glob("*.msg"))
+    files = sorted((Path(impact_predictor.__file__).parents[1] / "impact_predictor_msgs" / "msg").glob("*.msg"))
     return "\n\n".join([f"### {file.stem}\n\n```\n{file.read_text(encoding='utf-8')}```" for file in files])
 
 
 def fill(app: Any, page: str, source: list[str]) -> None:
     """Put tables of parameters and messages where a page wants them; name by its path what is no page of the site."""
     table = ["| parameter | default | | may be |", "| --- | --- | --- | --- |", *map(row, PARAMETERS.values())]
-    named = re.sub(r"\[([^\]]+)\]\(\.\./([\w/]+(?:\.\w+)?)\)", r"\1 (`\2`)", source[0])
+    named = re.sub(r"\[([^\]]+)\]\(\.\./([\w/.]+)\)", r"\1 (`\2`)", source[0])
     named = named.replace("<!-- parameters -->", "\n".join(table))
     for topic in TABLES:
         named = named.replace(f"<!-- keys of {topic} -->", keys_of(topic))

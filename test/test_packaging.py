@@ -9,6 +9,7 @@ from types import SimpleNamespace
 from xml.etree import ElementTree
 
 import pytest
+from ruamel.yaml import YAML
 
 import impact_predictor
 from impact_predictor.errors import EXTRAS, REQUIRED, missing
@@ -47,6 +48,22 @@ def test_package_xml_setup_py_changelog_and_the_library_say_the_same_of_the_pack
     assert setup_arguments["maintainer_email"] == maintainer.get("email")
     assert setup_arguments["license"] == manifest.findtext("license")
     assert (ROOT / manifest.find("license").get("file")).is_file()
+
+
+def test_the_package_of_messages_and_the_citation_name_the_same_version_maintainer_and_licence(manifest):
+    messages = ElementTree.parse(ROOT / "impact_predictor_msgs/package.xml").getroot()
+    for name in ("version", "maintainer", "author", "license"):
+        assert messages.findtext(name) == manifest.findtext(name)
+    assert messages.find("maintainer").get("email") == manifest.find("maintainer").get("email")
+    citation = YAML(typ="safe").load(ROOT / "CITATION.cff")
+    assert (citation["version"], citation["license"]) == (manifest.findtext("version"), manifest.findtext("license"))
+    assert citation["authors"] == [{"name": manifest.findtext("author")}]
+
+
+def test_rosdoc2_takes_its_settings_from_a_file_that_package_xml_names_and_the_pages_from_docs(manifest):
+    file = ROOT / manifest.findtext("export/rosdoc2")
+    _, settings = YAML(typ="safe").load_all(file)
+    assert (ROOT / settings["builders"][0]["sphinx"]["sphinx_sourcedir"] / "conf.py").is_file()
 
 
 def test_colcon_builds_it_as_an_ament_python_package_that_the_ament_index_finds(setup_arguments, manifest):
