@@ -3,6 +3,7 @@
 import fcntl
 import os
 import signal
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -22,10 +23,12 @@ LONGEST = "test_heavy_sea.py"
 
 
 def pytest_configure() -> None:
-    """Give each worker of a parallel run a ROS domain of its own, before anything imports rclpy."""
+    """Before anything imports rclpy: a ROS domain for each worker of a parallel run, and messages as strings."""
     # A shell lets what it starts in the background ignore SIGINT, and so would the processes that tests start and end.
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
+    # Tests read strings, also where the package of typed messages is installed; those of `auto` have one of their own.
+    sys.modules["impact_predictor_msgs"] = None  # type: ignore[assignment]
     worker = int(os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw"))
     # Domains up to 101 keep clear of the ports that Linux hands to ordinary sockets; up to eight workers try others.
     domains = [1 + (os.getppid() + worker + k) % 101 for k in range(0, 96, 8)]

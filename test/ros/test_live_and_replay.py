@@ -80,7 +80,7 @@ def test_live_topics_give_what_the_replay_of_the_bag_gives_byte_for_byte(tmp_pat
     assert Leftover.TOO_SHORT in replayed.settled[-1].score.leftover
     remapping = ("--ros-args", "-r", "/cube/odom:=/odom", "-r", "/cube/contact_geometry:=/contact_geometry")
     asked = [part for name, value in {"executor": executor, **more}.items() for part in ("-p", f"{name}:={value}")]
-    arguments = ("--ros-args", "--params-file", str(SCENE), *asked, *LOSSLESS)
+    arguments = ("--ros-args", "--params-file", str(SCENE), "-p", "messages:=strings", *asked, *LOSSLESS)
     played = (str(tmp_path / "excerpt.mcap"), "--record", str(tmp_path / "live.mcap"), *remapping)
     offline = recorded(tmp_path / "replayed.mcap")
     from graph import peer_of_node
