@@ -84,7 +84,7 @@ def test_the_demonstration_shows_tosses_that_were_played_live_a_deck_and_a_robot
         assert said in printed
         assert said in page or said == "old lifted"
     assert "nothing happens" in page
-    assert topics(tmp_path / "demo/predictions.mcap") == RECORDED
+    assert topics(tmp_path / "demo/predictions.mcap").keys() == {*RECORDED}
 
 
 @needs_ros

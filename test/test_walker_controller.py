@@ -169,7 +169,7 @@ def test_the_node_walks_with_the_real_predictor_over_topics():
 
     environment = {**ros_environment(), "PYTHONPATH": str(ROOT)}
     scene = str(ROOT / "config" / "walker.yaml")
-    predictor = ("-m", "impact_predictor.ros.node", "--ros-args", "--params-file", scene)
+    predictor = ("-m", "impact_predictor.ros.node", "--ros-args", "--params-file", scene, "-p", "messages:=strings")
     with Child("predictor", environment, *predictor) as listens:
         with Child("walker", environment, str(EXAMPLE / "node.py")) as walks:
             end, told = time.monotonic() + PATIENCE, 0

@@ -1,6 +1,6 @@
 """Solo12 and its controller as a ROS 2 node at 500 Hz, which goes by what the predictor tells over topics.
 
-    predictor --ros-args --params-file config/walker.yaml
+    predictor --ros-args --params-file config/walker.yaml -p messages:=strings
     python3 examples/walker_controller/node.py --ros-args -p seed:=1
 
 It publishes `contact_geometry` and `odom`, and listens to `/impact_predictor/prediction` (remap it for a predictor of

@@ -159,14 +159,15 @@ def read_recording(path: Path) -> list[TouchdownRow]:
     Raises:
         InputError: nothing can be read there.
     """
-    from ..bags.read import read_messages
+    from ..bags.read import read_messages, topics
     from ..report.touchdowns import row_of_message
-    from ..ros.messages import decode_diagnostic_array
+    from ..ros.messages import DIAGNOSTIC_ARRAY, decode_diagnostic_array
     from ..ros.messages.reading import decode_scores
-    from ..ros.player import NODE, RECORDED
+    from ..ros.player import NODE
 
     score = f"{NODE}/score"
-    wanted = {topic: RECORDED[topic] for topic in (score, "/diagnostics")}
+    types = topics(path)
+    wanted = {topic: types.get(topic, DIAGNOSTIC_ARRAY) for topic in (score, "/diagnostics")}
     rows: list[TouchdownRow] = []
     without_cost = 0
     for topic, _, data in read_messages(path, wanted):

@@ -23,15 +23,14 @@ from ..bags.write import BagWriter
 from ..errors import InputError
 from ..stamps import NANOSECONDS
 from .messages import (
-    DIAGNOSTIC_ARRAY,
     IMU,
     JOINT_STATE,
     JOINT_TRAJECTORY,
     MULTI_DOF_JOINT_STATE,
     ODOMETRY,
+    OUTPUTS,
     POLYGON,
     WRENCH,
-    outputs_of,
 )
 from .process import Stop, message_class, run, spin
 
@@ -67,11 +66,8 @@ PLAYING, PLAYED = "playing", "played"
 
 NODE: Final = "/impact_predictor"
 
-RECORDED: Final[dict[str, str]] = {
-    **{f"{NODE}/{name}": output.type_name for name, output in outputs_of("auto").items()},
-    "/diagnostics": DIAGNOSTIC_ARRAY,
-}
-"""Topics that are recorded, with the types of the messages."""
+RECORDED: Final = (*(f"{NODE}/{name}" for name in OUTPUTS), "/diagnostics")
+"""Topics that are recorded, with the types that their publishers have."""
 
 
 def main(args: list[str] | None = None) -> int:
@@ -125,8 +121,10 @@ def _play(options: argparse.Namespace, stop: Stop) -> int:
     try:
         publishers = {topic: publisher(node, topic, kind, kept[kind]) for topic, kind in types.items()}
         awaited = [publishers[topic] for topic, kind in types.items() if kind in AWAITED]
+        if not _await_others(node, awaited, RECORDED if options.record else (), stop):
+            return 0
         with _recording(node, options.record, stop) if options.record else nullcontext():
-            if _await_others(node, awaited, RECORDED if options.record else (), stop):
+            if not stop.wait(SETTLING):
                 print(PLAYING, flush=True)
                 _publish_all(messages, types, publishers, options.rate, stop)
                 for one in publishers.values():
@@ -149,7 +147,8 @@ def _recording(node: Any, output: str, stop: Stop) -> Iterator[None]:
         received[0] += 1
 
     with BagWriter(output) as writer:
-        for topic, kind in RECORDED.items():
+        for topic in RECORDED:
+            kind = node.get_publishers_info_by_topic(topic)[0].topic_type
             node.create_subscription(message_class(kind), topic, partial(write, topic, kind), QUEUE, raw=True)
         with ThreadPoolExecutor(max_workers=1) as pool:
             receiving = pool.submit(spin, node, stop, lambda: received[0])
@@ -179,7 +178,7 @@ def _await_others(node: Any, publishers: list[Any], recorded: Iterable[str], sto
             )
         if stop.wait(0.05):
             return False
-    return not stop.wait(SETTLING)
+    return True
 
 
 def _publish_all(
