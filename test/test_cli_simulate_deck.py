@@ -13,11 +13,12 @@ from records import impacts_of, samples_of
 
 from impact_predictor.bags.read import topics
 from impact_predictor.cli import main
-from impact_predictor.commands.simulate_deck import EXAMPLES, SCENE
+from impact_predictor.commands.simulate_deck import EXAMPLES, SCENE, simulate_deck
 from impact_predictor.parameters.file import read_values
 from impact_predictor.prediction.scene import Scene, scenes_of
 from impact_predictor.ros.messages import ODOMETRY
 from impact_predictor.scenarios.deck.cargo import units_of
+from impact_predictor.scenarios.deck.vessel import Vessel
 
 ROOT = Path(__file__).parents[1]
 SCENES = ("deck_crate.yaml", "deck_drum.yaml", "deck_lashed.yaml", "deck_many.yaml")
@@ -167,6 +168,12 @@ def test_the_noise_is_that_of_the_options() -> None:
     places = [[sample.position[0] for sample in samples_of(name)] for name in ("one", "two")]
     apart = [one - two for one, two in zip(*places, strict=True)]
     assert (sum(part * part for part in apart) / len(apart)) ** 0.5 == pytest.approx(0.05, rel=0.15)
+
+
+def test_the_options_of_the_vessel_are_by_default_those_of_its_model() -> None:
+    defaults = {option.name: option.default for option in simulate_deck.params}
+    assert Vessel(**{name: defaults[name] for name in Vessel._fields if name != "height"}) == Vessel()
+    assert defaults["deck_height"] == Vessel().height
 
 
 @pytest.mark.slow

@@ -267,6 +267,20 @@ def test_a_bag_that_its_recorder_did_not_close_is_read(tmp_path: Path) -> None:
     assert "its recorder did not close it" in said
 
 
+def test_a_bag_whose_index_ends_before_its_last_record_is_read(tmp_path: Path) -> None:
+    bag = write_ros1(tmp_path / "a.bag", MESSAGES)
+    data = bag.read_bytes()
+    end = last = int.from_bytes(re.search(rb"index_pos=(.{8})", data, re.DOTALL)[1], "little")  # type: ignore[index]
+    while end < len(data):
+        last = end
+        for _ in ("header", "data"):
+            end += 4 + int.from_bytes(data[end : end + 4], "little")
+    bag.write_bytes(data[:last])
+    messages, said = read_before(bag)
+    assert messages == MESSAGES
+    assert "it is cut off" in said
+
+
 def test_a_replay_uses_what_is_before_the_cut_and_says_what_is_lost(tmp_path: Path) -> None:
     whole = write_mcap(tmp_path / "a.mcap", MESSAGES)
     data = whole.read_bytes()

@@ -113,6 +113,15 @@ def test_a_plate_that_stops_stands_as_far_from_pivoting_as_its_mass_centre_may_s
     assert found.reach == (pytest.approx((rho2 + h * h) / a - b, abs=EXACT), Mode.PIVOT)
 
 
+def test_a_mass_centre_on_the_line_of_the_contacts_does_not_shift_into_the_support():
+    body = TwoPointBody(1.0, 0.24, Contact(-0.5, 0.0, 0.1), Contact(0.5, 0.0, 0.1))
+    found = margins(body, body.turning(-1.0)._replace(vx=-0.3)).height
+    below = body._replace(old=Contact(-0.5, 0.21, 0.1), new=Contact(0.5, 0.21, 0.1))
+    here, there = (solve_impact(one, one.turning(-1.0)._replace(vx=-0.3)).mode for one in (body, below))
+    assert here is not there  # a border that is nearer
+    assert found.change > 0.21
+
+
 def test_a_ball_that_grips_slips_from_the_speed_at_which_friction_cannot_stop_it():
     friction, k = 0.3, 0.4
     body = TwoPointBody(2.0, k * 2.0 * 0.01, None, Contact(0.0, -0.1, friction))

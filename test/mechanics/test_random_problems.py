@@ -52,6 +52,12 @@ def test_kinds_are_what_they_are_called():
     assert slender.new.friction.max() > 5e3
 
 
+def test_what_is_not_extreme_turns_at_2_rad_per_s_at_most_about_a_support_that_does_not():
+    for kind in KINDS.keys() - {"extreme", "extreme-apart", "deck"}:
+        omega = abs(problems_of(kind, np.random.default_rng(1), COUNT).twist.omega)
+        assert 1.9 < omega.max() <= 2.0
+
+
 def test_wild_numbers_have_both_signs_over_twelve_decades_and_are_zero_in_a_tenth():
     found = Draw(np.random.default_rng(2), 20_000).wild()
     size = np.log10(np.abs(found[found != 0.0]))

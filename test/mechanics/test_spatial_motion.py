@@ -19,6 +19,7 @@ from scipy.spatial.transform import Rotation
 
 from impact_predictor.mechanics.compiled import on_lists
 from impact_predictor.mechanics.motion import Fall, PlanarState, next_touchdown, spatial
+from impact_predictor.mechanics.motion.falling import crossing
 from impact_predictor.mechanics.motion.spatial import (
     Pull,
     SpatialFall,
@@ -255,6 +256,24 @@ def test_of_several_points_on_the_support_the_fastest_strikes() -> None:
     level = SpatialState((0.0, 0.0, 0.5 * EDGE), FLAT, (0.0, 0.0, 0.0), (0.5, 1.0, 0.0))
     found = fall(level, ALIKE, CUBE)
     assert (found.time, CUBE[found.point]) == (0.0, (0.5 * EDGE, -0.5 * EDGE, -0.5 * EDGE))
+
+
+def test_a_body_that_is_thrown_up_from_the_support_comes_down_with_its_speed() -> None:
+    found = fall(SpatialState((0.0, 0.0, 0.5 * EDGE), FLAT, (0.0, 0.0, 1.0), (0.0, 0.0, 0.0)), ALIKE, CUBE)
+    assert found.time == pytest.approx(2.0 / 9.81, abs=TIME)
+    assert found.state.velocity == pytest.approx((0.0, 0.0, -1.0), abs=TWIST)
+
+
+def test_the_first_fall_of_a_gap_that_is_a_cubic_over_a_step_is_found_wherever_it_is() -> None:
+    source, h, falls = np.random.default_rng(8), 0.1, 0
+    for roots in source.uniform(-0.5, 1.5, (300, 3)):
+        gap = np.polynomial.Polynomial.fromroots(roots) * source.choice([-1.0, 1.0])
+        ends = [[gap(s), gap.deriv()(s) / h, gap.deriv(2)(s) / h**2] for s in (0.0, 1.0)]
+        expected = min([s for s in roots if 0.0 < s < 1.0 and gap.deriv()(s) < 0.0], default=2.0)
+        if ends[0][0] > 0.0:
+            assert crossing(*ends, 0, h, 0.0) == pytest.approx(expected, abs=1e-4)
+            falls += expected < 1.0
+    assert falls > 50
 
 
 def test_a_point_below_the_support_that_rises_and_falls_back_comes_to_rest_and_the_body_goes_on() -> None:

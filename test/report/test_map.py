@@ -8,6 +8,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from matplotlib.text import Text
 from numpy.typing import NDArray
 
 from impact_predictor import Flag, Mode, solve_impact, solve_impacts
@@ -228,11 +229,24 @@ PICTURED = {
 
 
 @pytest.mark.parametrize("shown", PICTURED)
-def test_every_map_makes_a_picture_without_a_warning(
-    tmp_path: Path, shown: str, recwarn: pytest.WarningsRecorder
+def test_every_map_makes_a_picture_without_a_warning_and_writes_formulas_along_their_borders(
+    tmp_path: Path, shown: str, recwarn: pytest.WarningsRecorder, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    modes = PICTURED[shown]()
+    modes, turned, turn = PICTURED[shown](), dict[str, tuple[float, float, float]](), Text.set_rotation
+
+    def seen(text: Text, angle: float) -> None:
+        turned[text.get_text().strip()] = (*text.get_position(), angle)
+        turn(text, angle)
+
+    monkeypatch.setattr(Text, "set_rotation", seen)
     write_map(tmp_path / "map.png", modes)
+    for formula, curves in borders_of(modes).items():
+        *place, angle = turned[formula]
+        curve = max(curves, key=len)
+        nearest = np.abs(curve - place).sum(axis=1).argmin()
+        along = np.gradient(curve, axis=0)[nearest]
+        assert abs(np.sin(np.arctan2(along[1], along[0]) - np.radians(angle))) < 0.5
+        assert -90.0 < angle <= 90.0  # never upside down
     assert (tmp_path / "map.png").read_bytes().startswith(b"\x89PNG")
     write_map(tmp_path / "map.svg", modes)
     first = (tmp_path / "map.svg").read_bytes()

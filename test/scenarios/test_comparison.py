@@ -6,7 +6,7 @@ import pytest
 import touchdowns
 
 from impact_predictor.mechanics.types import Mode, Twist
-from impact_predictor.prediction.scene import Scene, Walking
+from impact_predictor.prediction.scene import Scene, Walking, Watching
 from impact_predictor.prediction.types import Foot, Leftover, Prediction, Sample, Status
 from impact_predictor.scenarios.comparison import Comparison, Truth
 from impact_predictor.scenarios.landing import LandingState, TrueLanding
@@ -228,6 +228,17 @@ NO_LANDING = NOTHING._replace(time_error_by_lead_time={"0.02": None, "0.05": Non
 
 Told = dict[int, float]
 """For when a landing is announced, by when: both in ms."""
+
+
+def test_warnings_are_compared_of_bodies_that_are_watched_where_impacts_are_known() -> None:
+    for scene, knows, is_compared in (
+        (SCENE, True, False),
+        (SCENE._replace(watching=Watching()), True, True),
+        (SCENE._replace(watching=Watching()), False, False),
+    ):
+        made = Comparison({"": scene}, knows_impacts=knows)
+        made.add(Prediction(Status.ACCEPTED, sample(0)))
+        assert any(body.warned is not None for body in made.compare().bodies.values()) == is_compared
 
 
 def answer(

@@ -134,6 +134,18 @@ def test_waves_of_one_period_are_forecast_as_they_go_on() -> None:
     assert outlook.turning.mean(axis=0)[:, 0] == pytest.approx(np.array(turning), abs=0.02)  # of 0.16 rad/s^2
 
 
+def test_a_record_is_forecast_alike_wherever_within_a_step_it_begins() -> None:
+    noise, told = np.random.default_rng(0).normal(0.0, 0.05, (2000, 6)), []
+    for begin in (1, 4):
+        forecast = WaveForecast(GRAVITY, is_felt=True)
+        for k in range(begin, 2000):
+            wave = 2.0 * np.pi * 0.05 * k / 7.0
+            seen = noise[k] + (0.0, np.sin(wave), -9.81, 0.2 * np.cos(wave), 0.0, 0.0)
+            forecast.add(state(0.05 * k, tuple(seen[:3]), tuple(seen[3:])))
+        told.append(forecast.outlook(100 * 10**9).gravity.mean(axis=0))
+    assert told[0] == pytest.approx(told[1], abs=1e-9)
+
+
 @pytest.mark.parametrize("is_felt", [False, True])
 def test_roll_and_pitch_are_told_fifteen_seconds_ahead_with_how_unsure_they_are(is_felt: bool) -> None:
     forecast, w = WaveForecast(GRAVITY, is_felt), 2.0 * np.pi / 7.0

@@ -37,6 +37,13 @@ def test_the_filter_follows_a_cubic_exactly() -> None:
     assert velocity[2] == pytest.approx(-0.5, abs=0.01)
 
 
+def test_the_part_of_announced_landings_that_came_begins_at_nine_in_ten_and_becomes_what_was_seen() -> None:
+    prior = LandingPrior()
+    assert prior.came_true == 0.9
+    prior.announced, prior.came = 1000.0, 250.0
+    assert prior.came_true == pytest.approx(0.25, abs=1e-3)
+
+
 def walked(
     speeds: np.ndarray, braking: float = 5.0, uneven: float = 0.1, noise: GapNoise = NOISE
 ) -> list[list[tuple[float, Descent]]]:
