@@ -173,6 +173,6 @@ class Reporter:
         if drawing is None and not self._outlet.listeners() and not (self._deck and self._deck.listeners()):
             return ()
         reports = self._monitor.reports()
-        if reports and drawing is not None:
+        if drawing is not None:
             drawing.take_reports(reports)
         return reports
