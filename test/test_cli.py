@@ -262,7 +262,6 @@ def test_a_bag_that_fails_leaves_no_folder_and_others_keep_theirs(tmp_path: Path
     [
         ("--workers", "x", "'x' is not a valid integer"),
         ("--workers", "0", "0 is not in the range x>=1"),
-        ("--baseline-error", "nan", "are numbers of 0 or more"),
     ],
 )
 def test_an_option_says_which_numbers_it_takes(bag: str, option: str, value: str, said: str) -> None:

@@ -1,4 +1,4 @@
-"""What `impact-predictor replay` makes of bags: words of each and of all, a page, a table, and changes."""
+"""What `impact-predictor replay` makes of bags: words of each and of all, a page, and tables."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import click
 
-from ..errors import InputError, need
+from ..errors import need
 from ..files import named
 from ..report.summary import Tally, without_bag
 from ..wording import counted
@@ -20,10 +20,6 @@ if TYPE_CHECKING:
     from ..bags.replay import Result
     from ..fleet.job import BagOutcome
     from ..report.tables import RowTable
-    from ..report.touchdowns import TouchdownRow
-
-CHANGED: Final = 1
-"""Exit status where something has changed against a baseline."""
 
 FAILED: Final = 2
 DAMAGED: Final = 3
@@ -34,16 +30,13 @@ MANY: Final = 20
 
 
 class Wanted(NamedTuple):
-    """What is asked for of the replays: files, or None; every touchdown in words; JSON; and what counts as a change."""
+    """What is asked for of the replays: files, or None; every touchdown in words; JSON."""
 
     report: str | None
     table: str | None
     series: str | None
     every: bool
     as_json: bool
-    baseline: str | None
-    baseline_time: float
-    baseline_error: float
 
     @property
     def answers(self) -> bool:
@@ -63,7 +56,7 @@ class ReplayReport:
         """Begin, so that what cannot be made is refused before a bag is read; the stack ends the table.
 
         Raises:
-            InputError: something cannot be written, or the earlier run cannot be read.
+            InputError: something cannot be written.
         """
         self.number = 0
         self.replayed = 0
@@ -74,7 +67,6 @@ class ReplayReport:
         self._together = Tally()
         self._answers: list[dict[str, Any]] = []
         self._tables: list[tuple[RowTable, Callable[[BagOutcome], Iterable[dict[str, Any]]]]] = []
-        self._earlier = {} if wanted.baseline is None else earlier_runs(wanted.baseline, bags)
         if wanted.report is not None:
             need("plotly", "jinja2")
             named(wanted.report, "page", (".html",) if Path(wanted.report).suffix else ("",))
@@ -100,8 +92,6 @@ class ReplayReport:
             self.replayed += 1
             if output is not None and self._bags <= MANY:
                 self._say_file("Predictions", output)
-            if self._earlier:
-                answer |= self._judge(result)
         if self._wanted.as_json:
             # A list is printed as it grows, so that thousands of bags need no memory.
             before = ("[" if not self.number else ", ") if self._bags > 1 else ""
@@ -138,7 +128,7 @@ class ReplayReport:
     @property
     def status(self) -> int:
         """The exit status."""
-        return next((one for one in (FAILED, DAMAGED, CHANGED) if one in self._statuses), 0)
+        return next((one for one in (FAILED, DAMAGED) if one in self._statuses), 0)
 
     def _say_file(self, what: str, path: str | Path) -> None:
         """Say where something was written."""
@@ -172,30 +162,6 @@ class ReplayReport:
 
         print_replay(Console(), result, self._wanted.every)
 
-    def _judge(self, result: Result) -> dict[str, Any]:
-        """Print what has changed against the baseline, or give it as JSON.
-
-        A bag that the earlier run does not have is a change: nothing vouches for it.
-        """
-        from ..report.baseline import compare_runs, comparison_as_json, print_changes
-        from ..report.touchdowns import rows_of
-
-        wanted, earlier = self._wanted, self._earlier[result.bag]
-        assert wanted.baseline is not None
-        if isinstance(earlier, InputError):
-            self._statuses.add(CHANGED)
-            click.echo(f"note: {earlier}", err=True)
-            return {"baseline": {"file": wanted.baseline, "error": str(earlier)}} if wanted.as_json else {}
-        compared = compare_runs(earlier, rows_of(result.settled), wanted.baseline_time, wanted.baseline_error)
-        if compared.changes:
-            self._statuses.add(CHANGED)
-        if wanted.as_json:
-            return {"baseline": comparison_as_json(compared, wanted.baseline)}
-        from rich.console import Console
-
-        print_changes(Console(), compared, wanted.baseline, wanted.every)
-        return {}
-
 
 def watched_rows(outcome: BagOutcome) -> Iterator[dict[str, Any]]:
     """The rows of `--series`: what the watch over a deck saw in a bag, if there was one."""
@@ -203,24 +169,3 @@ def watched_rows(outcome: BagOutcome) -> Iterator[dict[str, Any]]:
 
     result = outcome.result
     return iter(()) if result is None or result.watch is None else series_of(result.bag, result.watch)
-
-
-def earlier_runs(path: str, bags: Sequence[str]) -> dict[str, Sequence[TouchdownRow] | InputError]:
-    """An earlier run of some bags, read at once, because the output may take its place; why one is missing in it.
-
-    Raises:
-        InputError: it cannot be read, is the run of one bag where several are given, or lacks the only one.
-    """
-    from ..bags.find import names_of
-    from ..report.baseline import Earlier
-
-    runs: dict[str, Sequence[TouchdownRow] | InputError] = {}
-    earlier = Earlier(path, len(bags))
-    for bag, name in zip(bags, names_of(bags), strict=True):
-        try:
-            runs[bag] = earlier.touchdowns_of(bag, name)
-        except InputError as flaw:  # noqa: PERF203 (each bag is missed by itself)
-            if len(bags) == 1:
-                raise
-            runs[bag] = flaw
-    return runs

@@ -28,7 +28,6 @@ if TYPE_CHECKING:
         "impact-predictor replay voyage.mcap --params config/deck_many.yaml --remap support/odom:=/deck/odom",
         "impact-predictor replay examples/hyq/hyq.bag --params config/walker_hyq.yaml --report gait.html",
         "impact-predictor replay monday.mcap tuesday.mcap --params scene.yaml -o predictions --report errors.html",
-        "impact-predictor replay run.mcap --params scene.yaml --baseline predictions.mcap",
         "impact-predictor replay runs --params scene.yaml --workers 2 --table results.parquet",
     ),
 )
@@ -72,13 +71,6 @@ if TYPE_CHECKING:
     "ADDRESS",
     "Replay the bags on the workers of this Dask scheduler, as in tcp://host:8786; they open the same paths.",
 )
-@text(
-    "--baseline",
-    "RUN",
-    "Tell what has changed against an earlier run: what it wrote with -o, or printed with --json.",
-)
-@number("--baseline-time", "Times that differ by up to so many s have not changed.", 1e-3)
-@number("--baseline-error", "Errors and velocities that differ by up to this part of 1 have not changed.", 0.01)
 def replay(
     bags: tuple[str, ...],
     params: str,
@@ -95,7 +87,7 @@ def replay(
     found by the names of the inputs; for a body without a name the only other topic of the right type is taken too, or
     the only one whose messages have an adapter (docs/adapters.md), and where there are several, --remap says which.
     What is the deck is never guessed, nor a plan or a force of feet. The exit status is 3 where only a part of a bag
-    could be read, and 1 where something has changed against a baseline.
+    could be read.
     """
     from ..bags.find import bags_of
     from ..bags.replay import remapping
@@ -105,8 +97,6 @@ def replay(
     if markers and output is None:
         raise InputError("--markers are written into an output: give its name with -o")
     asked = Wanted(**wanted)
-    if not (asked.baseline_time >= 0.0 and asked.baseline_error >= 0.0):
-        raise InputError("--baseline-time and --baseline-error are numbers of 0 or more")
     bags = tuple(bags_of(bags))
     values = read_values(params)
     form = str(values["messages"])

@@ -18,7 +18,7 @@ from itertools import takewhile
 from math import hypot
 from operator import sub
 from pathlib import Path, PurePath
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 from ..bags.body import NODE
 from ..bags.find import METADATA, name_of
@@ -29,11 +29,13 @@ from ..ros.messages.reading import SCORES, decode_scores
 from ..scenarios.matching import NEAREST
 from ..stamps import NANOSECONDS
 from ..wording import NONE, counted, percent
-from .table import MOST_ROWS, first_stamp, more, say
+from .table import first_stamp
 from .touchdowns import TouchdownRow, row_of_json, row_of_message
 
-if TYPE_CHECKING:
-    from rich.console import Console
+TIME: Final = 1e-3
+"""s by which times differ that have changed."""
+ERROR: Final = 0.01
+"""Part of 1 by which errors and velocities differ that have changed."""
 
 _HINT: Final = "give what `impact-predictor replay` wrote with -o, or printed with --json"
 
@@ -128,7 +130,7 @@ def _read_bag(path: Path) -> list[TouchdownRow]:
 
 
 class ChangeKind(Enum):
-    """What has changed, in words; the JSON has the names in small letters."""
+    """What has changed, in words."""
 
     APPEARED = "appeared"
     VANISHED = "vanished"
@@ -168,13 +170,11 @@ class RunComparison(NamedTuple):
     start: int = 0
 
 
-def compare_runs(
-    was: Sequence[TouchdownRow], now: Sequence[TouchdownRow], time: float = 1e-3, error: float = 0.01
-) -> RunComparison:
-    """What has changed from one run of a bag to another: times by more than `time` s, relative errors by `error`."""
+def compare_runs(was: Sequence[TouchdownRow], now: Sequence[TouchdownRow]) -> RunComparison:
+    """What has changed from one run of a bag to another."""
     was, now = (sorted(rows, key=lambda row: row.stamp) for rows in (was, now))
     pairs = _paired(was, now)
-    found = [[*_changes(was[i], now[k], time, error)] for i, k in pairs.items()]
+    found = [[*_changes(was[i], now[k])] for i, k in pairs.items()]
     changes = [change for one in found for change in one]
     gone, new = {*range(len(was))} - pairs.keys(), {*range(len(now))} - {*pairs.values()}
     changes += [TouchdownChange(was[i], ChangeKind.VANISHED, was=was[i].mode.name) for i in gone]
@@ -206,43 +206,34 @@ def _paired(was: Sequence[TouchdownRow], now: Sequence[TouchdownRow]) -> dict[in
     return pairs
 
 
-def _changes(was: TouchdownRow, now: TouchdownRow, time: float, error: float) -> Iterator[TouchdownChange]:
+def _changes(was: TouchdownRow, now: TouchdownRow) -> Iterator[TouchdownChange]:
     """What has changed of one touchdown."""
     changed = partial(TouchdownChange, now)
     if _points(was) != _points(now):
         yield changed(ChangeKind.CONTACTS, _points(was), _points(now))
     if was.mode != now.mode:
         yield changed(ChangeKind.MODE, was.mode.name, now.mode.name)
-    if abs(now.stamp - was.stamp) > time * NANOSECONDS:
+    if abs(now.stamp - was.stamp) > TIME * NANOSECONDS:
         yield changed(ChangeKind.MOVED, was.stamp, now.stamp)
     if was.scored != now.scored:
         yield changed(ChangeKind.SCORED, *("scored" if one.scored else "not scored" for one in (was, now)))
     # Of a landing the error is that of its time.
     old, new = (one.time_error if one.foot else one.error for one in (was, now))
-    if old is not None and new is not None and abs(abs(new) - abs(old)) > (time if now.foot else error):
+    if old is not None and new is not None and abs(abs(new) - abs(old)) > (TIME if now.foot else ERROR):
         yield changed(ChangeKind.WORSE if abs(new) > abs(old) else ChangeKind.BETTER, old, new)
-    elif was.mode == now.mode and _turned(was, now, error):
+    elif was.mode == now.mode and _turned(was, now):
         yield changed(ChangeKind.VELOCITIES, tuple(was.predicted_twist), tuple(now.predicted_twist))
 
 
-def _turned(was: TouchdownRow, now: TouchdownRow, limit: float) -> bool:
+def _turned(was: TouchdownRow, now: TouchdownRow) -> bool:
     """Whether the velocities after a touchdown differ by more than a part of those before, as relative errors do."""
     arm, before = was.half_distance, was.before_twist
     vx, vy, omega = map(sub, now.predicted_twist, was.predicted_twist)
-    return hypot(vx, vy, omega * arm) > limit * hypot(before.vx, before.vy, before.omega * arm)
+    return hypot(vx, vy, omega * arm) > ERROR * hypot(before.vx, before.vy, before.omega * arm)
 
 
 def _points(one: TouchdownRow) -> str:
     return " then ".join(" ".join(map(str, points)) or "none" for points in (one.old, one.new))
-
-
-def print_changes(
-    console: Console, compared: RunComparison, baseline: str | os.PathLike[str], every: bool = False
-) -> None:
-    """Print what has changed against a baseline (the first changes, or `every` one), or that nothing has."""
-    lines = sentences(compared)
-    listed = lines if every else lines[:MOST_ROWS]
-    say(console, *listed, *more(len(lines) - len(listed), "change"), concluded(compared, baseline))
 
 
 def concluded(compared: RunComparison, baseline: str | os.PathLike[str]) -> str:
@@ -274,18 +265,3 @@ def _text(kind: ChangeKind, row: TouchdownRow, value: Any, start: int) -> str:
     if kind in (ChangeKind.BETTER, ChangeKind.WORSE):
         return f"{value * 1e3:+.1f} ms" if row.foot else f"{percent(value)} %"
     return str(value)
-
-
-def comparison_as_json(compared: RunComparison, baseline: str | os.PathLike[str]) -> dict[str, Any]:
-    """A comparison as JSON, in the units of `TouchdownChange`."""
-    return {
-        "file": os.fspath(baseline),
-        "touchdowns_before": compared.were,
-        "touchdowns": compared.are,
-        "unchanged": compared.alike,
-        "changes": [
-            {"stamp": row.stamp, "body": row.body, "foot": row.foot or None}
-            | {"change": kind.name.lower(), "was": was, "now": now}
-            for row, kind, was, now in compared.changes
-        ],
-    }
