@@ -51,7 +51,7 @@ def main() -> None:
             answers = [source if count == 1 else made(source, number, random) for number in range(count)]
             touchdowns = sum(len(answer["touchdowns"]) for answer in answers)
             file, began = Path(folder) / "replay.html", process_time()
-            write_replay_page(file, answers, values)
+            write_replay_page(file, answers)
             seconds, size = process_time() - began, file.stat().st_size / 1e6
             print(f"{count:,} bags, {touchdowns:,} touchdowns: {size:.2f} MB in {seconds:.1f} s of CPU time")
 

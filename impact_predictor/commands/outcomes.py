@@ -102,8 +102,8 @@ class ReplayReport:
             self._answers.append(answer)
         self.number += 1
 
-    def finish(self, params: str) -> None:
-        """Say what all bags say together, and write the page, with the values of a parameter file."""
+    def finish(self) -> None:
+        """Say what all bags say together, and write the page."""
         for note, count in self._notes.items():
             click.echo(f"note: of {counted(count, 'bag')}: {note}", err=True)
         if self._wanted.as_json:
@@ -113,10 +113,9 @@ class ReplayReport:
             for sentence in self._together.sentences():
                 click.echo(sentence)
         if (page := self._wanted.report) is not None:
-            from ..parameters.file import read_values
             from ..report.page.replay import write_replay_page
 
-            write_replay_page(page, self._answers, read_values(params))
+            write_replay_page(page, self._answers)
             self._say_file("Page", page)
 
     def say_table(self) -> None:

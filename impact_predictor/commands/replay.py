@@ -125,7 +125,7 @@ def replay(
                 say_unfinished(outputs[done:], scheduler)
             if stopped is None:
                 raise
-        report.finish(params)
+        report.finish()
     report.say_table()
     if stopped is not None:
         raise stopped

@@ -12,7 +12,6 @@ from typing import Any
 import pytest
 from replay_answers import TOSSES, TRUE, UNREADABLE, WALK, answer, touchdown
 
-from impact_predictor.parameters.file import read_values
 from impact_predictor.report.accuracy.page import accuracy_page
 from impact_predictor.report.page import script_inside, write_html
 from impact_predictor.report.page.replay import write_replay_page
@@ -64,16 +63,16 @@ def visit(browser: Any, file: Path, width: int = WIDE) -> Iterator[tuple[Any, li
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("pages")
-    answers, values = [TRUE, WALK, TOSSES, UNREADABLE], read_values("config/cube_tosses.yaml")
-    write_replay_page(folder / "replay.html", answers, values)
-    write_replay_page(folder / "week", answers, values)
+    answers = [TRUE, WALK, TOSSES, UNREADABLE]
+    write_replay_page(folder / "replay.html", answers)
+    write_replay_page(folder / "week", answers)
     report = json.loads((Path(__file__).parent / "page_report.json").read_text())
     write_html(folder / "report.html", accuracy_page(report, script_inside()))
     return folder
 
 
 @pytest.mark.parametrize("width", [WIDE, NARROW])
-@pytest.mark.parametrize(("name", "count"), [("replay.html", 9), ("week/index.html", 9), ("report.html", 4)])
+@pytest.mark.parametrize(("name", "count"), [("replay.html", 8), ("week/index.html", 8), ("report.html", 4)])
 def test_the_page_draws_every_chart_inside_the_window_and_asks_no_network(
     browser: Any, folder: Path, name: str, count: int, width: int
 ) -> None:

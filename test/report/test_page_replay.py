@@ -12,7 +12,6 @@ from replay_answers import TOSSES, TRUE, UNREADABLE, WALK, answer, landing, touc
 from replay_answers import ahead as spans
 
 from impact_predictor.errors import InputError
-from impact_predictor.parameters.file import read_values
 from impact_predictor.prediction.types import Leftover
 from impact_predictor.report.page import part_words, time_words
 from impact_predictor.report.page.facts import BagAnswer, ReplayFacts
@@ -24,14 +23,14 @@ ALL = [TRUE, WALK, TOSSES, UNREADABLE]
 WALK_FOUND = WALK | {"truth": {"touchdowns": 2, "missed": 0, "false": 0, "unresolved": 0}}
 
 
-def read(answers: Sequence[BagAnswer], values: dict[str, Any] | None = None) -> PageReader:
+def read(answers: Sequence[BagAnswer]) -> PageReader:
     """The page of some answers, without the script of plotly."""
-    return PageReader(page_of_replay(answers, values))
+    return PageReader(page_of_replay(answers))
 
 
 @pytest.fixture(scope="module")
 def page() -> PageReader:
-    return read(ALL, read_values("config/cube_tosses.yaml"))
+    return read(ALL)
 
 
 def test_a_page_is_one_file_with_the_script_once_and_refers_to_nothing_outside_itself(tmp_path: Path) -> None:
@@ -232,13 +231,6 @@ def test_errors_ahead_and_costs_are_told_in_numbers(page: PageReader) -> None:
     assert traces(page.figures[title])["90 % below"]["y"] == [pytest.approx(30.0, rel=0.024)]
     time = traces(page.figures["Time of the touchdown"])
     assert (time["median"]["x"], time["median"]["y"]) == ([25.0], [pytest.approx(2.0)])
-    one = read([TOSSES])
-    assert (
-        "The median of 5 samples is 20 us, 90 % are below 192 us, 99 % below 289 us, the longest is 300 us." in one.text
-    )
-    (steps,) = one.figures["Time for a sample"]["data"]
-    assert [count for count in steps["y"] if count] == [1, 2, 1, 1]
-    assert steps["hovertext"][1] == "about 11.2 us: 1 sample"
 
 
 def test_what_could_not_be_used_is_told_with_its_reason_and_its_remedy() -> None:
@@ -282,14 +274,6 @@ def test_of_many_bags_all_are_listed_and_the_worst_are_drawn() -> None:
     drawn = [title for title in page.figures if title.endswith(".mcap")]
     assert drawn == [f"{number - 1 - k}.mcap" for k in range(DRAWN)]
     assert page.tables["unused"][-1][2][0] == f"0.mcap and {number - 1} more bags note"
-
-
-def test_what_the_scene_leaves_out_stands_after_what_it_takes_in(page: PageReader) -> None:
-    rows = page.tables["scene"][0][1:]
-    states = [row[0].endswith("left out") for row in rows]
-    assert states == sorted(states)
-    assert {"moving support left out", "friction"} <= {row[0] for row in rows}
-    assert "scene" not in read([TRUE]).tables
 
 
 def test_parts_and_times_are_told_to_what_can_be_told_apart() -> None:

@@ -10,13 +10,12 @@ from typing import Any, Final
 
 from ...files import make_folder
 from ...prediction.checks import REMEDIES
-from ...prediction.scene import features_of
 from ...prediction.types import Status
 from ...stamps import NANOSECONDS
 from ...wording import counted, words
 from ..modes import MODES, PALETTE
 from ..skill import pair_of
-from ..summary import PER_DECADE, WHY, without_bag
+from ..summary import WHY, without_bag
 from . import (
     GREY,
     Cell,
@@ -28,7 +27,6 @@ from . import (
     page,
     part_words,
     script_inside,
-    time_words,
     write_html,
 )
 from .facts import NOTHING, BagAnswer, ReplayFacts
@@ -63,10 +61,6 @@ COMPARED: Final = (
     ("Turning", "rad/s", "w across"),
 )
 """Titles, units and components of the charts."""
-COST: Final = (
-    "The time from a sample to its prediction, as this machine took it: without reading the bag and writing "
-    "messages, which a node does besides. A sample that shows no touchdown ahead takes the least."
-)
 REMARKS: Final = {
     "error": "could not be read",
     "unpredictable": "nothing predicted",
@@ -76,17 +70,13 @@ REMARKS: Final = {
 """What is said of a bag, by its key in the answers; the gravest first."""
 
 
-def write_replay_page(
-    path: str | os.PathLike[str], answers: Sequence[BagAnswer], values: Mapping[str, Any] | None = None
-) -> None:
+def write_replay_page(path: str | os.PathLike[str], answers: Sequence[BagAnswer]) -> None:
     """Write one page that needs no network and no other file, or a folder with a page for each bag, too.
 
     Args:
         path: to write, HTML. Without a suffix it is a folder: index.html about all bags, a page for each, and one file
             of plotly's script that they share.
         answers: of each bag, what `as_json` says of its replay; of one that could not be read its `bag` and `error`.
-        values: all parameters of the scene, as `read_values` gives them; without them the page does not tell what the
-            scene leaves out.
 
     Raises:
         InputError: a file cannot be written.
@@ -95,7 +85,7 @@ def write_replay_page(
 
     path = Path(path)
     if path.suffix:
-        write_html(path, page_of_replay(answers, values, script_inside()))
+        write_html(path, page_of_replay(answers, script_inside()))
         return
     make_folder(path)
     write_html(path / "plotly.min.js", get_plotlyjs())
@@ -103,13 +93,12 @@ def write_replay_page(
     # The name of a bag is no name of a file: it comes from elsewhere.
     links = {place: f"bag-{place + 1}.html" for place, answer in enumerate(answers) if "error" not in answer}
     for place, name in links.items():
-        write_html(path / name, page_of_replay([answers[place]], values, script))
-    write_html(path / "index.html", page_of_replay(answers, values, script, links))
+        write_html(path / name, page_of_replay([answers[place]], script))
+    write_html(path / "index.html", page_of_replay(answers, script, links))
 
 
 def page_of_replay(
     answers: Sequence[BagAnswer],
-    values: Mapping[str, Any] | None = None,
     script: str = "",
     links: Mapping[int, str] | None = None,
 ) -> str:
@@ -133,9 +122,7 @@ def page_of_replay(
         velocities(facts, each),
         modes(facts),
         lead_times(facts),
-        cost(facts),
         unused(facts),
-        scene(values or {}),
     )
     known = told(facts)
     what = facts.names[0] if len(answers) == 1 else f"{len(answers):,} records"
@@ -242,29 +229,6 @@ def lead_times(facts: ReplayFacts) -> Section:
     return Section("ahead", "Error against the time ahead", [said], charts)
 
 
-def cost(facts: ReplayFacts) -> Section:
-    """What the answer to a sample costs."""
-    spread, charts = facts.costs, []
-    # Ten steps for each factor of ten.
-    counts: Counter[int] = Counter()
-    for place, count in spread.bins.items():
-        counts[10 * place // PER_DECADE] += count
-    if counts:
-        points = []
-        for place in range(min(counts) - 1, max(counts) + 2):
-            middle = 10.0 ** (0.1 * (place + 0.5))
-            said = f"about {time_words(1e-6 * middle)}: {counted(counts[place], 'sample')}"
-            points.append((middle, counts[place], said))
-        steps = marks("samples", points, mode="lines", line={"shape": "hvh", "color": PALETTE[0]}, fill="tozeroy")
-        across = {"title": "time for a sample, us", "type": "log", "dtick": 1}
-        layout = {"height": 300, "xaxis": across, "yaxis": {"title": "samples"}}
-        known = (time_words(1e-6 * (one or 0.0)) for one in (spread.p50, spread.p90, spread.p99, spread.most))
-        caption = "The median of {} is {}, 90 % are below {}, 99 % below {}, the longest is {}."
-        caption = caption.format(counted(spread.number, "sample"), *known)
-        charts.append(Chart("Time for a sample", [steps], layout, caption))
-    return Section("cost", "What a sample costs", [COST], charts)
-
-
 def unused(facts: ReplayFacts) -> Section:
     """What could not be used: refused messages, touchdowns that are not compared, damage, failures and notes."""
     inputs: dict[str, Counter[str]] = {}
@@ -299,21 +263,3 @@ def unused(facts: ReplayFacts) -> Section:
     )
     there = [table for table in tables if table.rows]
     return Section("unused", "What could not be used", [] if there else ["Everything could be used."], there)
-
-
-def scene(values: Mapping[str, Any]) -> Section:
-    """What the scene has and leaves out, from all its parameters, none where these are not known."""
-    # The events executor is the node's.
-    features = [feature for feature in features_of(values) if feature.name != "events executor"] if values else []
-    rows: list[list[Cell | str]] = []
-    for one in sorted(features, key=lambda feature: not feature.on):
-        css = "" if one.on else "none"
-        rows.append([Cell(one.name, "" if one.on else "left out", css), Cell(one.why, css=css)])
-    left_out = sum(not feature.on for feature in features)
-    said = (
-        f"The predictor took in {len(features) - left_out} of its parts for this scene and left out {left_out}, in "
-        "grey. What is left out costs nothing; where a body needs it, the parameter that is named switches it on."
-    )
-    return Section(
-        "scene", "What the scene left out", [said], [PageTable(["part", "why"], rows, "", 2)] if rows else []
-    )
