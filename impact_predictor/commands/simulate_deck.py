@@ -23,13 +23,13 @@ EXAMPLES: Final = (
     "impact-predictor simulate deck --params config/deck_many.yaml --hs 1.2 --seed 7 -o cargo.mcap",
     "impact-predictor simulate deck --rate 20 --noise-position 0.005 --noise-rate 0.01 -o noisy.mcap",
     "impact-predictor simulate deck --heading 45 --length 60 --breadth 12 --draught 3 --hs 4 --tp 7 --restand 60",
-    "impact-predictor simulate deck --params config/deck_drum.yaml --spectrum pm --hs 2 --tp 6 --roll-period 5",
+    "impact-predictor simulate deck --params config/deck_drum.yaml --gamma 1 --hs 2 --tp 6 --roll-period 5",
 )
 
 _SEA: Final = (
     ("--hs", 1.2, "Significant wave height, m."),
     ("--tp", 4.0, "Peak period of the waves, s."),
-    ("--gamma", 3.3, "Peak enhancement of JONSWAP, 1 to 10."),
+    ("--gamma", 3.3, "Peak enhancement of JONSWAP, 1 (Pierson and Moskowitz) to 10."),
     ("--heading", 90.0, "Direction of the waves, degrees: 0 from astern, 90 from the side, 180 from ahead."),
     ("--spread", 0.0, "Standard deviation of their directions, degrees."),
     ("--length", 24.0, "Length of the vessel, m."),
@@ -58,19 +58,17 @@ def parameter_of(option: str) -> str:
     return option.removeprefix("--").replace("-", "_")
 
 
-_OF_SEA: Final = ("spectrum", "rao", *[parameter_of(name) for name, *_ in _SEA])
+_OF_SEA: Final = [parameter_of(name) for name, *_ in _SEA]
 
 
 @click.command("deck", short_help="Cargo on the deck of a vessel in a sea.", epilog=examples(*EXAMPLES))
 @text("--params", "FILE", f"Parameter file of the units. [default: {SCENE}]")
 @number("--duration", f"Seconds to simulate. [default: {DURATION:g}, or the recorded deck's]")
 @seed_option("Makes the sea and the noise.", SEED)
-@choice("--spectrum", "Of the waves: JONSWAP or Pierson and Moskowitz.", "jonswap", "pm", default="jonswap")
 @together(*[number(name, says, default) for name, default, says in (*_SEA, *_RATES)])
 @together(
     *[number(name, f"Standard deviation of the {what}. [default: 0]", 0.0, show_default=False) for name, what in _NOISE]
 )
-@text("--rao", "CSV", "Responses of the vessel to such waves, in the place of those of a box.")
 @text("--record", "BAG", "A recorded deck in the place of a sea; with rigid contacts its roll, sway and heave.")
 @text("--record-topic", "TOPIC", "Odometry of the recorded deck, where there are more.", default="")
 @choice(
@@ -153,12 +151,12 @@ def deck_of(record: str | None, contacts: str, seed: int, gravity: float, **sea:
         return recorded.motion if contacts == "compliant" else planar_deck(recorded.plane), recorded.duration
     from ..mechanics.bodies import positive
     from ..scenarios.deck.sea import SeaState, directions, waves_of
-    from ..scenarios.deck.vessel import Vessel, deck_in, read_vessel
+    from ..scenarios.deck.vessel import Vessel, deck_in
 
     box = {name: sea[name] for name in ("length", "breadth", "draught", "roll_period", "roll_damping")}
     positive(**box)
-    vessel = (
-        Vessel(**box, height=sea["deck_height"]) if sea["rao"] is None else read_vessel(sea["rao"], sea["deck_height"])
+    vessel, waves = (
+        Vessel(**box, height=sea["deck_height"]),
+        waves_of(SeaState(sea["hs"], sea["tp"], sea["gamma"]), seed),
     )
-    waves = waves_of(SeaState(sea["hs"], sea["tp"], sea["spectrum"], sea["gamma"]), seed)
     return deck_in(waves, vessel, directions(waves, sea["heading"], sea["spread"], seed), gravity), float("inf")

@@ -16,8 +16,6 @@ from numpy.typing import NDArray
 
 from ...errors import InputError
 
-SPECTRA: Final = ("jonswap", "pm")
-
 RANGE: Final = 0.5, 4.0
 """Least and greatest frequency of the waves over that of the peak: outside lies half a percent of the energy."""
 
@@ -28,14 +26,13 @@ _PARTS: Final = 8
 
 
 class SeaState(NamedTuple):
-    """Significant wave height in m, peak period in s, and the spectrum of an irregular sea.
+    """Significant wave height in m and peak period in s of an irregular sea.
 
     `gamma` is the peak enhancement of JONSWAP: 1 is Pierson and Moskowitz' spectrum, 3.3 the mean of the North Sea.
     """
 
     height: float
     period: float
-    spectrum: str = "jonswap"
     gamma: float = 3.3
 
 
@@ -54,14 +51,12 @@ def density(state: SeaState, frequencies: NDArray[np.float64]) -> NDArray[np.flo
     """Spectral density in m^2 s/rad at frequencies above 0 in rad/s (DNV-RP-C205, 3.5.5.1 and 3.5.5.2).
 
     Raises:
-        InputError: a number of the sea state is out of its range, or the spectrum is unknown.
+        InputError: a number of the sea state is out of its range.
     """
-    height, period, spectrum, gamma = checked(state)
+    height, period, gamma = checked(state)
     peak = 2.0 * pi / period
     ratio = frequencies / peak
     moskowitz: NDArray[np.float64] = 0.3125 * height * height / peak * ratio**-5.0 * np.exp(-1.25 * ratio**-4.0)
-    if spectrum == "pm" or gamma == 1.0:
-        return moskowitz
     width = np.where(ratio <= 1.0, 0.07, 0.09)
     enhanced: NDArray[np.float64] = (
         (1.0 - 0.287 * log(gamma)) * moskowitz * gamma ** np.exp(-0.5 * ((ratio - 1.0) / width) ** 2)
@@ -76,7 +71,7 @@ def waves_of(state: SeaState, seed: int, count: int = WAVES) -> Waves:
     two are multiples of a common one, so the sea does not repeat itself. The same seed makes the same sea.
 
     Raises:
-        InputError: a number of the sea state is out of its range, or the spectrum is unknown.
+        InputError: a number of the sea state is out of its range.
     """
     peak = 2.0 * pi / checked(state).period
     band = (RANGE[1] - RANGE[0]) * peak / count
@@ -108,13 +103,11 @@ def checked(state: SeaState) -> SeaState:
     Raises:
         InputError: one does not.
     """
-    height, period, spectrum, gamma = state
+    height, period, gamma = state
     if not 0.0 < height <= 40.0:
         raise InputError(f"the significant wave height is {height}; give metres above 0, up to 40")
     if not 0.5 <= period <= 60.0:
         raise InputError(f"the peak period is {period}; give seconds from 0.5 to 60")
-    if spectrum not in SPECTRA:
-        raise InputError(f"the spectrum is {spectrum!r}; give one of {', '.join(SPECTRA)}")
     if not 1.0 <= gamma <= 10.0:
         raise InputError(f"the peak enhancement is {gamma}; give a number from 1 to 10")
     return state

@@ -8,11 +8,9 @@ b))) with the wave number k = frequency^2 / g. Motions as in `motion`.
 
 from __future__ import annotations
 
-import csv
 import os
 from collections.abc import Callable
 from math import pi
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -81,25 +79,6 @@ def _slope(x: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.where(safe == x, 3.0 * (np.sin(safe) - safe * np.cos(safe)) / safe**3, 1.0 - 0.1 * x * x)
 
 
-class ResponseTable(NamedTuple):
-    """The responses (n, 6) of a vessel at increasing frequencies (n,) in rad/s, to waves from where they come.
-
-    Between them they are linear in the complex plane; outside they are the first or last ones. The deck lies `height` m
-    above the point of which they are.
-    """
-
-    frequencies: NDArray[np.float64]
-    answers: NDArray[np.complex128]
-    height: float
-
-    def responses(
-        self, frequencies: NDArray[np.float64], heading: NDArray[np.float64], gravity: float
-    ) -> NDArray[np.complex128]:
-        """The responses at other frequencies."""
-        columns = [np.interp(frequencies, self.frequencies, answer) for answer in self.answers.T]
-        return np.stack(columns, axis=1)
-
-
 class RecordedDeck(NamedTuple):
     """A recorded deck; its time counts from the first sample, and it lasts `duration` s.
 
@@ -113,7 +92,7 @@ class RecordedDeck(NamedTuple):
 
 
 def deck_in(
-    waves: Waves, vessel: Vessel | ResponseTable, heading: float | NDArray[np.float64] = 90.0, gravity: float = 9.81
+    waves: Waves, vessel: Vessel, heading: float | NDArray[np.float64] = 90.0, gravity: float = 9.81
 ) -> DeckMotion:
     """The vessel's deck in a sea whose waves travel in a direction (degrees), or each in its own."""
     frequencies = waves.frequencies
@@ -148,35 +127,6 @@ def _harmonics(frequencies: NDArray[np.float64], swings: NDArray[np.complex128])
         return now.reshape(3, count, *now.shape[1:]) if now.ndim > 1 else now.reshape(3, count).tolist()
 
     return values
-
-
-def read_vessel(path: str, height: float) -> ResponseTable:
-    """A vessel of tables in a CSV file: frequency, and of each of the `AXES` that it has two columns, as in roll and
-    roll_phase.
-
-    The first line names the columns; units are rad/s, rad/m, m/m and rad.
-
-    Raises:
-        InputError: the file cannot be read, or its numbers are no tables.
-    """
-    try:
-        with Path(path).open(newline="", encoding="utf-8") as file:
-            rows = list(csv.DictReader(file))
-        names = ["frequency", *(f"{axis}{part}" for axis in AXES for part in ("", "_phase") if axis in rows[0])]
-        columns = {name: np.array([float(row[name]) for row in rows]) for name in names}
-    except OSError as error:
-        raise InputError(f"{path} cannot be read: {error.strerror or error}") from error
-    except (IndexError, KeyError, TypeError, ValueError, csv.Error) as error:
-        wanted = "frequency, and an amplitude and a phase for each motion, as in roll,roll_phase"
-        raise InputError(f"{path} is no table of responses ({error}); give numbers under {wanted}") from error
-    frequencies, answers = columns["frequency"], np.zeros((len(rows), len(AXES)), dtype=complex)
-    for number, axis in enumerate(AXES):
-        if axis in columns:
-            answers[:, number] = columns[axis] * np.exp(1j * columns[f"{axis}_phase"])
-    finite = all(np.isfinite(column).all() for column in columns.values())
-    if len(rows) < 2 or not finite or not frequencies[0] > 0.0 or not (np.diff(frequencies) > 0.0).all():
-        raise InputError(f"{path}: give finite numbers at two or more frequencies above 0, in increasing order")
-    return ResponseTable(frequencies, answers, height)
 
 
 def read_deck(path: str | os.PathLike[str], topic: str = "", gravity: float = 9.81) -> RecordedDeck:

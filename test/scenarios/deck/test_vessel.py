@@ -14,12 +14,11 @@ from impact_predictor.bags.write import BagWriter
 from impact_predictor.errors import InputError
 from impact_predictor.ros.messages import ODOMETRY, encode_odometry
 from impact_predictor.scenarios.deck.sea import SeaState, Waves, waves_of
-from impact_predictor.scenarios.deck.vessel import ResponseTable, Vessel, deck_in, read_deck, read_vessel
+from impact_predictor.scenarios.deck.vessel import Vessel, deck_in, read_deck
 from impact_predictor.scenarios.sensors import rotated, rotations
 
 G = 9.81
 TIMES = np.linspace(0.0, 300.0, 1001)
-COLUMNS = "frequency,roll,roll_phase,heave,heave_phase,sway,sway_phase"
 
 RATE, DURATION = 10.0, 20.0
 FREQUENCY = 0.8
@@ -29,7 +28,7 @@ def one_wave(frequency: float, amplitude: float = 1.0, phase: float = 0.0) -> Wa
     return Waves(np.array([frequency]), np.array([amplitude]), np.array([phase]))
 
 
-def answers(vessel: Vessel | ResponseTable, frequency: float, heading: float) -> Any:
+def answers(vessel: Vessel, frequency: float, heading: float) -> Any:
     return vessel.responses(np.array([frequency]), np.array([heading]), G)[0]
 
 
@@ -77,12 +76,6 @@ def test_waves_from_the_side_or_ahead_move_nothing_the_other_way() -> None:
         assert (deck.plane is None) is (heading == 180.0)
 
 
-def test_a_table_is_met_at_its_frequencies_and_linear_between_them() -> None:
-    table = ResponseTable(np.array([0.5, 1.0]), np.array([[0.2] * 6, [0.4j] * 6]), 1.0)
-    at = table.responses(np.array([0.3, 0.5, 0.75, 1.0, 2.0]), np.zeros(5), G)
-    assert at == pytest.approx(np.outer([0.2, 0.2, 0.1 + 0.2j, 0.4j, 0.4j], np.ones(6)), abs=1e-15)
-
-
 def test_a_deck_in_a_quartering_sea_is_what_its_derivatives_say() -> None:
     deck, step = deck_in(waves_of(SeaState(2.0, 6.0), 4), Vessel(height=3.0), 40.0), 1e-4
     times = np.linspace(0.0, 60.0, 101)
@@ -113,19 +106,6 @@ def test_a_deck_across_waves_is_its_plane() -> None:
     assert felt[2:] == pytest.approx(np.stack([state.poses.angular[:, 0], state.turning[:, 0]]), abs=1e-12)
     # One time as well as an array of them, and what is felt from the polynomials.
     assert deck.plane.felt(7.0) == pytest.approx(deck.plane.felt_exactly(7.0), abs=1e-9)
-
-
-@pytest.mark.parametrize(
-    "numbers", ["1,1,1,1,1,1,1", "1,1,1,1,1,1,1;0.5,1,1,1,1,1,1", "1,1,1,1,1,1,1;2,nan,1,1,1,1,1", "1,x,1,1,1,1,1"]
-)
-def test_what_is_no_table_is_said_in_one_sentence(tmp_path: Path, numbers: str) -> None:
-    file = tmp_path / "rao.csv"
-    with pytest.raises(InputError, match=r"rao\.csv cannot be read"):
-        read_vessel(str(file), 1.0)
-    for text in (f"{COLUMNS}\n" + numbers.replace(";", "\n"), "frequency,roll\n1,2\n"):
-        file.write_text(text)
-        with pytest.raises(InputError, match=r"rao\.csv.*give (finite )?numbers"):
-            read_vessel(str(file), 1.0)
 
 
 def moved(time: Any) -> Any:
