@@ -87,7 +87,7 @@ def files_of(folder: str) -> list[tuple[str, list[str]]]:
 
 EXTRAS = {
     "ros": ["ros-jazzy-common-interfaces", "ros-jazzy-rclpy[fastrtps]"],
-    # Pictures: figures, maps, moving ones.
+    # Pictures: figures and maps.
     "plot": ["contourpy>=1.0", "matplotlib>=3.6"],
     "page": ["jinja2>=3.0", "plotly>=6.0"],
     "calibrate": ["scipy>=1.11"],

@@ -1,8 +1,8 @@
 """What has changed since an earlier run of the same bag: touchdowns that are new, gone, elsewhere, better or worse.
 
-An earlier run is what `replay` wrote into a bag or printed as JSON. Touchdowns of two runs are the same one if body,
-foot and contacts are, and their times are within `NEAREST` of each other; the nearest first. What is left is the same
-with other contacts if body, foot and time agree.
+An earlier run is what `replay` printed as JSON. Touchdowns of two runs are the same one if body, foot and contacts
+are, and their times are within `NEAREST` of each other; the nearest first. What is left is the same with other contacts
+if body, foot and time agree.
 """
 
 from __future__ import annotations
@@ -10,123 +10,68 @@ from __future__ import annotations
 import json
 import os
 from bisect import bisect_left, bisect_right
-from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from enum import Enum
 from functools import partial
-from itertools import takewhile
 from math import hypot
 from operator import sub
-from pathlib import Path, PurePath
+from pathlib import Path
 from typing import Any, Final, NamedTuple
 
-from ..bags.body import NODE
-from ..bags.find import METADATA, name_of
-from ..bags.read import read_messages, topics
+from ..bags.find import name_of, names_of
 from ..errors import InputError
-from ..ros.messages import MalformedMessage
-from ..ros.messages.reading import SCORES, decode_scores
 from ..scenarios.matching import NEAREST
 from ..stamps import NANOSECONDS
 from ..wording import NONE, counted, percent
 from .table import first_stamp
-from .touchdowns import TouchdownRow, row_of_json, row_of_message
+from .touchdowns import TouchdownRow, row_of_json
 
 TIME: Final = 1e-3
 """s by which times differ that have changed."""
 ERROR: Final = 0.01
 """Part of 1 by which errors and velocities differ that have changed."""
 
-_HINT: Final = "give what `impact-predictor replay` wrote with -o, or printed with --json"
-
 
 class Earlier:
-    """An earlier run of one bag or of several.
-
-    That is the bag that it wrote, a recording of the node's topics or its JSON; of several bags the folder of what was
-    written, or the JSON with one object for each.
-    """
+    """An earlier run of one bag or of several, as `replay` printed it with --json."""
 
     def __init__(self, path: str | os.PathLike[str], bags: int = 1) -> None:
-        """Look at it, to compare so many bags with it; JSON is read at once, bags when they are asked for.
+        """Read it, to compare so many bags with it.
 
         Raises:
-            InputError: it does not exist, cannot be read, or is the run of one bag only.
+            InputError: it cannot be read, or is the run of one bag only.
         """
         self.path = Path(path)
-        # By the path of each bag, or by "" that of the only one: its touchdowns, or the file that has them.
-        self._runs: Mapping[str, Path | Sequence[TouchdownRow]] = {"": self.path}
-        if not self.path.exists():
-            raise InputError(f"the baseline {path} does not exist; {_HINT}")
-        if self.path.suffix == ".json":
-            self._runs = _runs_of_json(self.path)
-        elif self.path.is_dir() and not (self.path / METADATA).exists():
-            files = self.path.rglob("*.mcap")
-            self._runs = {os.fspath(file.relative_to(path).with_suffix("")): file for file in files}
+        try:
+            answer = json.loads(self.path.read_bytes())
+            # By the path of each bag, or by "" that of the only one.
+            runs = answer if isinstance(answer, list) else [answer | {"bag": ""}]
+            self._runs = {run["bag"]: [*map(row_of_json, run["touchdowns"])] for run in runs if "error" not in run}
+        except (AttributeError, KeyError, OSError, TypeError, ValueError) as error:
+            raise InputError(
+                f"the baseline {path} cannot be read as the JSON of a replay; give what `impact-predictor replay` "
+                "printed with --json"
+            ) from error
         if bags > 1 and "" in self._runs:
             raise InputError(
-                f"the baseline {self.path} is the run of one bag, but {bags:,} bags are given; give what a run of "
-                "several wrote: its folder (-o), or its --json"
+                f"the baseline {path} is the run of one bag, but {bags:,} bags are given; give what a run of several "
+                "printed with --json"
             )
 
     def touchdowns_of(self, bag: str | os.PathLike[str], name: str | os.PathLike[str] = "") -> Sequence[TouchdownRow]:
-        """The touchdowns of a bag; its `name` (`names_of`) tells it from the others that are replayed with it.
+        """The touchdowns of a bag: of the run of the same path, or of the same `name` (`names_of`) among the runs.
 
         Raises:
-            InputError: it is no run, or none of this bag.
+            InputError: it has none of this bag.
         """
-        chosen = "" if "" in self._runs else chosen_run(bag, name or name_of(bag), self._runs)
-        if chosen is None:
-            raise InputError(f"the baseline {self.path} has no run of {bag}; replay that bag with -o or --json again")
-        run = self._runs[chosen]
-        return _read_bag(run) if isinstance(run, Path) else run
-
-
-def chosen_run(bag: str | os.PathLike[str], name: str | os.PathLike[str], runs: Iterable[str]) -> str | None:
-    """Which of the runs of several bags, by their paths, is that of a bag with a `name` that tells it from others.
-
-    That is the run with the same path; else the one whose path agrees with the bag's farthest from its end on, and at
-    least as far as the name does. None where there is none, or several.
-    """
-    own, name, agreeing = Path(bag).resolve(), PurePath(name), defaultdict[int, list[str]](list)
-    for run in runs:
-        if run == os.fspath(bag):
-            return run
-        path = PurePath(run)
-        backwards = zip((name_of(own), *own.parts[-2::-1]), (name_of(path), *path.parts[-2::-1]), strict=False)
-        agreed = len([*takewhile(lambda parts: parts[0] == parts[1], backwards)])
-        # A name keeps its suffix only where another bag has none but another suffix.
-        if agreed >= len(name.parts) and name.name in (name_of(own), path.name):
-            agreeing[agreed].append(run)
-    best = agreeing[max(agreeing)] if agreeing else []
-    return best[0] if len(best) == 1 else None
-
-
-def _runs_of_json(path: Path) -> dict[str, Sequence[TouchdownRow]]:
-    try:
-        answer = json.loads(path.read_bytes())
-        runs = answer if isinstance(answer, list) else [answer | {"bag": ""}]
-        return {run["bag"]: [*map(row_of_json, run["touchdowns"])] for run in runs if "error" not in run}
-    except (AttributeError, KeyError, OSError, TypeError, ValueError) as error:
-        raise InputError(f"the baseline {path} cannot be read as the JSON of a replay; {_HINT}") from error
-
-
-def _read_bag(path: Path) -> list[TouchdownRow]:
-    recorded = topics(path)
-    predictions = [topic for topic in recorded if f"{NODE}/" in topic and topic.endswith("/prediction")]
-    if not predictions:
-        raise InputError(f"the baseline {path} has no predictions: no topic {NODE}/prediction; {_HINT}")
-    scores = [topic.removesuffix("prediction") + "score" for topic in predictions]
-    wanted = {topic: recorded[topic] for topic in scores if recorded.get(topic) in SCORES}
-    found: list[TouchdownRow] = []
-    # A run without any touchdown has no scores.
-    for topic, _, data in read_messages(path, wanted) if wanted else ():
-        body = topic.rpartition(f"{NODE}/")[2].removesuffix("score").strip("/")
-        try:
-            found += [row_of_message(body or name, values) for name, values in decode_scores(wanted[topic], data)]
-        except (MalformedMessage, KeyError, TypeError, ValueError) as error:
-            raise InputError(f"the baseline {path} has a message on {topic} that is no score; {_HINT}") from error
-    return found
+        if "" in self._runs:
+            return self._runs[""]
+        named = dict(zip(map(str, names_of([*self._runs])), self._runs.values(), strict=True))
+        found = self._runs.get(os.fspath(bag), named.get(os.fspath(name or name_of(bag))))
+        if found is None:
+            raise InputError(f"the baseline {self.path} has no run of {bag}; replay that bag with --json again")
+        return found
 
 
 class ChangeKind(Enum):

@@ -21,7 +21,7 @@ PLACES: Final = {
     "bag": ("BAG", "test a recorded bag, or all that fit a pattern; may be repeated"),
     "remap": ("FROM:=TO", "topic of an input in the bags, as in odom:=/cube/odom; may be repeated"),
     "params": ("FILE", "ROS 2 parameter file of the scene"),
-    "baseline": ("RUN", "what an earlier replay of the bags wrote; a test fails if anything has changed"),
+    "baseline": ("RUN", "JSON of an earlier replay of the bags; a test fails if anything has changed"),
 }
 TOLERANCES: Final = {
     "error": ("0.5", "greatest relative error of a scored touchdown, as a fraction of 1"),

@@ -18,7 +18,7 @@ from impact_predictor.mechanics.types import ContactState, Mode
 from impact_predictor.parameters.validation import validate
 from impact_predictor.prediction.scene import read_scenes, scenes_of
 from impact_predictor.prediction.types import Leftover, Status
-from impact_predictor.report.baseline import Earlier
+from impact_predictor.report.touchdowns import row_of_message
 from impact_predictor.resources import find
 from impact_predictor.ros.messages import Diagnostic, decode_diagnostic_array
 from impact_predictor.ros.messages.reading import decode_scores
@@ -212,8 +212,17 @@ def stamp(header: Any) -> int:
     return int(header.stamp.sec) * 10**9 + int(header.stamp.nanosec)
 
 
-def test_typed_scores_are_a_baseline_as_strings_are(tosses: Both) -> None:
-    strings, typed = (Earlier(path).touchdowns_of("tosses.mcap") for path in tosses.paths)
+def test_typed_scores_tell_what_strings_tell(tosses: Both) -> None:
+    topic = f"{NODE}/score"
+    strings, typed = (
+        [
+            row_of_message(name, values)
+            for _, _, data in read_messages(path, {topic: kind})
+            for name, values in decode_scores(kind, data)
+        ]
+        for path in tosses.paths
+        for kind in [topics(path)[topic]]
+    )
     assert strings == typed
     assert strings
 

@@ -1,4 +1,4 @@
-"""Two runs of one bag: the earlier one is read from its bag and its JSON alike, and only what has changed is told."""
+"""Two runs of one bag: the earlier one is read from its JSON, and only what has changed is told."""
 
 from __future__ import annotations
 
@@ -10,27 +10,21 @@ import pytest
 import touchdowns
 from hypothesis import given
 from hypothesis import strategies as st
-from touchdowns import SAMPLE
 
-from impact_predictor.bags.body import BodyRecord
 from impact_predictor.bags.replay import Result, Settled
-from impact_predictor.bags.write import BagWriter
 from impact_predictor.errors import InputError
 from impact_predictor.mechanics.types import Mode, Twist
-from impact_predictor.prediction.scene import Scene
-from impact_predictor.prediction.types import Prediction, Score, Status
+from impact_predictor.prediction.types import Score
 from impact_predictor.report.answers import as_json
 from impact_predictor.report.baseline import (
     ChangeKind,
     Earlier,
     RunComparison,
-    chosen_run,
     compare_runs,
     concluded,
     sentences,
 )
 from impact_predictor.report.touchdowns import TouchdownRow, row_of
-from impact_predictor.ros.messages import DIAGNOSTIC_ARRAY
 
 MS = 1_000_000
 STOP = row_of("crate", touchdowns.SCORE)._replace(
@@ -179,72 +173,40 @@ def run(body: str, scores: tuple[Score, ...] = SCORES) -> dict[str, Any]:
     return as_json(Result("run.mcap", 4, 0.001, settled, {}, {}, (), "", ""))
 
 
-def write_run(path: Path, body: str = "", scores: tuple[Score, ...] = SCORES, namespace: str = "") -> Path:
-    path.parent.mkdir(exist_ok=True)
-    with BagWriter(path) as writer:
-
-        def write(topic: str, type_name: str, log_time: int, data: bytes) -> None:
-            writer.write(namespace + topic, type_name, log_time, data)
-
-        record = BodyRecord(body, Scene(1.0, ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), 0.5), write)
-        record.answered(Prediction(Status.ACCEPTED, SAMPLE), 1, 0.0)
-        for score in scores:
-            record.answered(Prediction(Status.ACCEPTED, SAMPLE, None, score), 1, 0.0)
-    return path
-
-
 def write_json(path: Path, answer: Any) -> Path:
     path.write_text(json.dumps(answer))
     return path
 
 
-@pytest.mark.parametrize("namespace", ["", "/robot"])
-@pytest.mark.parametrize(("body", "name"), [("", "cube"), ("crate", "crate")])
-def test_bag_and_json_of_a_run_tell_the_same_to_the_last_bit(
-    tmp_path: Path, body: str, name: str, namespace: str
-) -> None:
-    told = list(Earlier(write_json(tmp_path / "run.json", run(name))).touchdowns_of("run.mcap"))
-    recorded = write_run(tmp_path / "run.mcap", body, namespace=namespace)
-    assert told == list(Earlier(recorded).touchdowns_of("run.mcap"))
-    assert told == [row_of(name, score)._replace(time_errors=(), simple_time_error=None) for score in SCORES]
-
-
-def test_a_run_without_a_touchdown_is_a_run(tmp_path: Path) -> None:
-    assert not Earlier(write_run(tmp_path / "none.mcap", scores=())).touchdowns_of("run.mcap")
+def test_the_json_of_a_run_tells_its_touchdowns_to_the_last_bit(tmp_path: Path) -> None:
+    told = list(Earlier(write_json(tmp_path / "run.json", run("cube"))).touchdowns_of("run.mcap"))
+    assert told == [row_of("cube", score)._replace(time_errors=(), simple_time_error=None) for score in SCORES]
+    assert not Earlier(write_json(tmp_path / "none.json", run("cube", ()))).touchdowns_of("run.mcap")
 
 
 @pytest.mark.parametrize(
     ("bag", "name", "runs", "chosen"),
     [
-        ("bags/run.mcap", "run", ["bags/run.mcap", "old/run.mcap"], "bags/run.mcap"),
-        ("/new/run.mcap", "run", ["/old/run.mcap", "/old/other.mcap"], "/old/run.mcap"),
-        ("/new/tuesday/run.mcap", "run", ["monday/run.mcap", "tuesday/run.mcap"], "tuesday/run.mcap"),
-        ("/new/wednesday/run.mcap", "run", ["monday/run.mcap", "tuesday/run.mcap"], None),
+        ("bags/run.mcap", "run", ["bags/run.mcap", "old/run.mcap"], 0),
+        ("/new/run.mcap", "run", ["/old/other.mcap", "/old/run.mcap"], 1),
+        ("/new/tuesday/run.mcap", "tuesday/run", ["monday/run.mcap", "tuesday/run.mcap"], 1),
+        ("/new/wednesday/run.mcap", "wednesday/run", ["monday/run.mcap", "tuesday/run.mcap"], None),
         # Another bag of today is called run as well, and the earlier run may be of that one.
         ("/new/tuesday/run.mcap", "tuesday/run", ["monday/run.mcap"], None),
-        ("/new/monday/run.mcap", "monday/run", ["monday/run", "run"], "monday/run"),
-        ("/new/monday/run.mcap", "monday/run", ["run"], None),
-        ("/new/run.db3", "run.db3", ["/old/run.mcap", "/old/run.db3"], "/old/run.db3"),
-        ("/new/run.db3", "run.db3", ["/old/run.mcap"], None),
-        ("bags/run.bag", "run", ["other", "run"], "run"),
+        ("/new/run.db3", "run.db3", ["/old/run.mcap", "/old/run.db3"], 1),
         ("run.mcap", "run", [], None),
     ],
 )
 def test_of_several_bags_the_run_of_this_one_is_chosen(
-    bag: str, name: str, runs: list[str], chosen: str | None
+    tmp_path: Path, bag: str, name: str, runs: list[str], chosen: int | None
 ) -> None:
-    assert chosen_run(bag, name, runs) == chosen
-
-
-def test_of_several_bags_the_run_of_this_one_is_read(tmp_path: Path) -> None:
-    folder = tmp_path / "runs"
-    write_run(folder / "monday.mcap", scores=(SCORED,))
-    write_run(folder / "tuesday.mcap", scores=(SCORED, UNSCORED))
-    assert len(Earlier(folder).touchdowns_of("bags/tuesday.bag")) == 2
-    runs = [run("cube", SCORES[:k]) | {"bag": f"bags/{name}"} for k, name in ((1, "monday.mcap"), (2, "tuesday.mcap"))]
-    earlier = Earlier(write_json(tmp_path / "runs.json", runs))
-    assert len(earlier.touchdowns_of("bags/tuesday.mcap")) == 2
-    assert len(earlier.touchdowns_of("elsewhere/monday.mcap")) == 1
+    told = [run("cube", SCORES[: k + 1]) | {"bag": path} for k, path in enumerate(runs)]
+    earlier = Earlier(write_json(tmp_path / "runs.json", told), 2)
+    if chosen is None:
+        with pytest.raises(InputError, match=f"has no run of {bag}; replay that bag with --json again"):
+            earlier.touchdowns_of(bag, name)
+    else:
+        assert len(earlier.touchdowns_of(bag, name)) == chosen + 1
 
 
 @pytest.mark.parametrize(
@@ -266,18 +228,8 @@ def test_json_that_is_no_run_of_the_bag_is_refused_in_one_sentence(tmp_path: Pat
     assert "\n" not in str(caught.value)
 
 
-def test_what_is_not_there_or_is_no_run_is_refused(tmp_path: Path) -> None:
-    for name in ("none.json", "none.mcap"):
-        with pytest.raises(InputError, match=name):
-            Earlier(tmp_path / name)
-    with pytest.raises(InputError, match=r"has no run of run\.mcap"):
-        Earlier(tmp_path).touchdowns_of("run.mcap")
-    with BagWriter(tmp_path / "other.mcap") as writer:
-        writer.write("/odom", DIAGNOSTIC_ARRAY, 1, b"")
-    with pytest.raises(InputError, match="has no predictions"):
-        Earlier(tmp_path / "other.mcap").touchdowns_of("run.mcap")
-    with BagWriter(tmp_path / "damaged.mcap") as writer:
-        for name in ("prediction", "score"):
-            writer.write(f"/impact_predictor/{name}", DIAGNOSTIC_ARRAY, 1, bytes(8))
-    with pytest.raises(InputError, match="a message on /impact_predictor/score that is no score"):
-        Earlier(tmp_path / "damaged.mcap").touchdowns_of("run.mcap")
+def test_what_is_not_there_or_of_one_bag_only_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"none\.json cannot be read as the JSON of a replay"):
+        Earlier(tmp_path / "none.json")
+    with pytest.raises(InputError, match="is the run of one bag, but 2 bags are given"):
+        Earlier(write_json(tmp_path / "one.json", run("cube")), 2)

@@ -176,19 +176,21 @@ def test_bags_of_one_name_have_their_own_baselines_and_fail_only_when_something_
     bags = [pytester.mkdir(day) / "run.mcap" for day in ("monday", "tuesday")]
     for bag in bags:
         shutil.copy(pytester.path / "run.mcap", bag)
-    told = ["replay", *map(str, bags), "--params", "scene.yaml", "-o", "old"]
-    assert CliRunner().invoke(main, told).exit_code == 0
+    for name, of in (("old.json", bags), ("monday.json", bags[:1])):
+        told = CliRunner().invoke(main, ["replay", *map(str, of), "--params", "scene.yaml", "--json"])
+        assert told.exit_code == 0
+        (pytester.path / name).write_text(told.stdout)
     options = ("--impact-bag", "*day/run.mcap", "--impact-params", "scene.yaml", "-k", "baseline", "--impact-baseline")
-    run(*options, "old").assert_outcomes(passed=2, deselected=2 * len(TESTS))
+    run(*options, "old.json").assert_outcomes(passed=2, deselected=2 * len(TESTS))
     scene = pytester.path / "scene.yaml"
     scene.write_text(scene.read_text().replace("restitution: 0.1", "restitution: 0.3"))
-    changed = run(*options, "old")
+    changed = run(*options, "old.json")
     changed.assert_outcomes(failed=2, deselected=2 * len(TESTS))
     changed.stdout.fnmatch_lines(
         ["Against *old* 2 of 5 touchdowns are as they were: 2 worse, 1 other*", "0.334 s*worse*"]
     )
-    refused = run(*options, "old/monday/run.mcap")
-    refused.stderr.fnmatch_lines(["ERROR: the baseline *run.mcap is the run of one bag, but 2 bags are given; *"])
+    refused = run(*options, "monday.json")
+    refused.stderr.fnmatch_lines(["ERROR: the baseline *monday.json is the run of one bag, but 2 bags are given; *"])
 
 
 def test_the_help_lists_the_options_with_their_defaults(run: Run) -> None:
