@@ -21,7 +21,7 @@ from ..mechanics.types import Mode, TwoPointBody
 from ..scenarios.rocking import Rocker, rocking_cylinder, rocking_plate, rocking_rod
 from .map import SUBJECTS, ModeMap, ambiguous, axis_label, conditions, given_in, problem_at, shares
 from .modes import EDGE, MODES
-from .plot import Axes, Line2D, Patch, headline, picture
+from .plot import Axes, Line2D, Patch, picture
 
 HATCHES: Final = ("xx", "||", "///")
 SYMBOLS: Final = {"ρ": "ρ² = J/m", "t": "t = tan (γ₁ + γ₂)/2", "k": "k = J/mR²"}
@@ -127,7 +127,8 @@ def write_map(path: Path, modes: ModeMap) -> None:
     """
     with picture(path, 10.0, 6.0) as figure:
         title = SUBJECTS[modes.subject].title
-        headline(figure, f"{title}: what follows when it turns about the old contact A and strikes the new one, B")
+        what = f"{title}: what follows when it turns about the old contact A and strikes the new one, B"
+        figure.suptitle(what, x=0.01, ha="left", fontweight="bold", fontsize=11)
         grid = figure.add_gridspec(2, 2, width_ratios=(1.0, 0.4), height_ratios=(0.36, 1.0))
         axes, sketch, side = (figure.add_subplot(place) for place in (grid[:, 0], grid[0, 1], grid[1, 1]))
         _draw_sketch(sketch, _SKETCHED[modes.subject](1.0, None, None, 0.0))

@@ -50,16 +50,3 @@ def picture(path: str | os.PathLike[str], width: float, height: float) -> Iterat
         metadata = {"Date": None} if path.suffix.lower() == ".svg" else {}
         with whole(path) as partial:
             figure.savefig(partial, format=path.suffix[1:].lower(), dpi=120, metadata=metadata)
-
-
-def headline(figure: Figure, text: str) -> Any:
-    """Write what a figure of several axes says above them; the text."""
-    return figure.suptitle(text, x=0.01, ha="left", fontweight="bold", fontsize=11)
-
-
-def common_legend(figure: Figure, title: str = "") -> None:
-    """Write one legend of all axes of a figure below them; each label stands in it once."""
-    found = [axes.get_legend_handles_labels() for axes in figure.axes]
-    entries = {label: handle for handles, labels in found for handle, label in zip(handles, labels, strict=True)}
-    place: Any = {"loc": "outside lower center", "ncols": 4, "title": title, "title_fontsize": 9}
-    figure.legend(list(entries.values()), list(entries), **place)

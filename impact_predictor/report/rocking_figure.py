@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from math import degrees
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -50,7 +50,11 @@ def write_rocking_figure(path: str | os.PathLike[str], rockings: Sequence[Rockin
         contacts.set_yticks(range(2 * len(rockings)), ["A", "B"] * len(rockings))
         for row, label in enumerate(contacts.get_yticklabels()):
             label.set(color=PALETTE[row // 2 % len(PALETTE)], fontweight="bold")
-        plot.common_legend(figure, "contact A: behind the mass centre, B: ahead of it")
+        # One legend of all axes, in which each label stands once.
+        found = [axes.get_legend_handles_labels() for axes in figure.axes]
+        entries = {label: handle for handles, labels in found for handle, label in zip(handles, labels, strict=True)}
+        says: Any = {"title": "contact A: behind the mass centre, B: ahead of it", "title_fontsize": 9}
+        figure.legend(list(entries.values()), list(entries), loc="outside lower center", ncols=4, **says)
 
 
 def _draw_contacts(axes: plot.Axes, row: int, rocking: Rocking, end: float) -> None:
