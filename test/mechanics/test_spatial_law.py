@@ -5,6 +5,7 @@ Differences are relative to the fastest contact before the impact.
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 from spatial_reference import Mechanism, MovingBody, delassus, on_springs, one_contact, planar_contact, rows
 from test_spatial_reference import BALL, cases, chain
 
@@ -220,6 +221,16 @@ def test_numbers_that_no_body_has_are_flagged(change, law):
     assert outcome.flags == Flag.INVALID_INPUT
     assert finite(outcome)
     assert not outcome.impulses.any()
+
+
+@pytest.mark.parametrize("scale", [1e-9, 1.0, 1e9])
+@pytest.mark.parametrize("moments", [(1.0, 2.0, 3.0), (1.0, 1.0, 1e-9)], ids=["plate", "needle"])
+def test_plates_and_needles_are_bodies_in_all_units(moments, scale):
+    turn = Rotation.from_rotvec([0.3, -0.5, 0.7]).as_matrix()
+    inertia = scale * (turn * moments) @ turn.T
+    _, contacts, twist = GOOD
+    outcome = solve_spatial_impact(Body(scale, 0.5 * (inertia + inertia.T)), contacts, twist)
+    assert not outcome.flags & Flag.INVALID_INPUT
 
 
 @pytest.mark.usefixtures("code")

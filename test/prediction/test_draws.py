@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from statistics import NormalDist
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from scipy.spatial.transform import Rotation
 from impact_predictor.mechanics.impact.spatial import Body, ContactPoints, solve_spatial_impacts
 from impact_predictor.mechanics.motion.spatial import SpatialState
 from impact_predictor.mechanics.types import ContactState, Flag, Mode
+from impact_predictor.prediction.drawn import over
 from impact_predictor.prediction.predictor import Predictor
 from impact_predictor.prediction.scene import Scene
 from impact_predictor.prediction.spatial_impact import SpatialImpactModel
@@ -44,6 +46,11 @@ def announced(placed: Somewhere, start: SpatialState, covariance: Any = (), **ch
 
 def spread_by(deviation: float) -> tuple[float, ...]:
     return tuple((deviation**2 * np.diag([1.0, 1.0, 1.0, 100.0, 100.0, 100.0])).ravel().tolist())
+
+
+def test_what_is_known_with_a_deviation_is_above_zero_with_the_probability_of_the_normal_distribution() -> None:
+    for mean in (-0.3, 0.0, 0.1, 0.4):
+        assert over(mean, 0.2) == pytest.approx(1.0 - NormalDist(mean, 0.2).cdf(0.0), rel=1e-12)
 
 
 @pytest.mark.parametrize("seed", range(8))
