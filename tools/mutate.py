@@ -5,6 +5,8 @@ r"""Change the code at random places, one at a time, and see whether the tests t
         --cov=impact_predictor --cov-context=test --cov-report=
     python tools/mutate.py .coverage tests.xml --count 300 --seed 1
 
+Coverage does not see what numba compiles: for that do all of it in an environment without numba.
+
 A mutant that no test notices is printed as it survives, with its place and what was changed; at the end stand the
 counts of each room. The exit status is 1 where fewer than --killed of those that change what can be seen are noticed;
 tools/mutants.md lists the others, with the reason. Each mutant is tried in a copy of the tree, in a process that is
@@ -248,12 +250,11 @@ def main() -> int:
     arguments = parser.parse_args()
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     import hypothesis
-    import numba
     import numpy as np
     import pytest
     from coverage import CoverageData
 
-    del hypothesis, numba, np, pytest  # loaded once, for all that is forked
+    del hypothesis, np, pytest  # loaded once, for all that is forked
     data, seconds = CoverageData(str(arguments.coverage)), seconds_of(arguments.report)
     data.read()
     accepted = ACCEPTED.read_text() if ACCEPTED.exists() else ""
