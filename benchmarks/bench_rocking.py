@@ -22,7 +22,8 @@ from harmonic_deck import Wave, harmonic_support
 
 from impact_predictor import TwoPointBody, cylinder, plate, rod
 from impact_predictor.mechanics.motion import PlanarState, Trajectory, next_strike, rock, standing
-from impact_predictor.mechanics.motion.support import FrameAcceleration, MovingSupport
+from impact_predictor.mechanics.motion.felt import FrameAcceleration
+from impact_predictor.mechanics.motion.support import MovingSupport
 
 REPEATS = 5
 HORIZON, STRIKES = 0.25, 1000

@@ -21,22 +21,25 @@ PREFIX = "native_"
 
 _COMPILED = {
     "mechanics.impact": "answer contacts path_law rates restitution solve total_law",
-    "mechanics.motion": "engine equations events integrate phases pivot slip",
+    "mechanics.motion": "engine equations events felt integrate phases pivot slip",
     "prediction": "checks cylinder impact motion_recorder planar points predictor recorded scatter spatial vectors",
-    "prediction.deck": "frame motion window",
+    "prediction.deck": "frame motion tracker window",
     "prediction.walking": (
         "announcement braking clock cubic descent doubts feet forces ground impact landings point_filter rest rhythm "
         "schedule stance terrain trajectory"
     ),
+    "prediction.watch": "stance standing",
+    "ros": "cdr",
+    "ros.messages": "fields kinds message",
 }
 MODULES = tuple(f"{PACKAGE}.{folder}.{name}" for folder, names in _COMPILED.items() for name in names.split())
 """What is compiled: the impact laws, and what a sample goes through. What takes arrays, what numba reads and what tests
 stand in for runs as Python (`as_python`)."""
 
-FOLDERS = ("mechanics", "prediction")
+FOLDERS = ("mechanics", "prediction", "ros/messages")
 """Where the sources of MODULES are, with all that they use: types and constants of others are in the machine code."""
 
-FILES = ("errors", "native", "stamps")
+FILES = ("errors", "native", "ros.cdr", "stamps")
 """Modules outside of them on which the library depends: the list of MODULES, too."""
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Callable, Mapping, Sequence
-from functools import lru_cache, wraps
+from functools import lru_cache, partial
 from struct import Struct
 from typing import Final, NamedTuple, TypeVar
 
@@ -136,18 +136,14 @@ def read_doubles(data: bytes, offset: int, order: ByteOrder, each: int = 1) -> t
 
 def decoder(type_name: str) -> Callable[[Callable[[bytes], Decoded]], Callable[[bytes], Decoded]]:
     """Makes what a decoder raises where it reads beyond the bytes a MalformedMessage that names their type."""
+    return partial(partial, _decoded, type_name)
 
-    def named(decode: Callable[[bytes], Decoded]) -> Callable[[bytes], Decoded]:
-        @wraps(decode)
-        def decoded(data: bytes) -> Decoded:
-            try:
-                return decode(data)
-            except (struct.error, UnicodeDecodeError, IndexError) as error:
-                raise MalformedMessage(f"not a {type_name}: {error}") from None
 
-        return decoded
-
-    return named
+def _decoded(type_name: str, decode: Callable[[bytes], Decoded], data: bytes) -> Decoded:
+    try:
+        return decode(data)
+    except (struct.error, UnicodeDecodeError, IndexError) as error:
+        raise MalformedMessage(f"not a {type_name}: {error}") from None
 
 
 def check_end(data: bytes, end: int, sequences: int = 0) -> None:

@@ -13,7 +13,8 @@ from scipy.optimize import brentq
 from impact_predictor import cylinder, plate
 from impact_predictor.mechanics.motion import MotionKind, next_strike, rock, standing
 from impact_predictor.mechanics.motion.accumulation import FollowedImpact, ImpactSequence
-from impact_predictor.mechanics.motion.support import FixedSupport, FrameAcceleration
+from impact_predictor.mechanics.motion.felt import FrameAcceleration
+from impact_predictor.mechanics.motion.support import FixedSupport
 
 G = 9.81
 

@@ -18,7 +18,8 @@ from ...errors import InputError
 from ..bodies import sine_and_cosine
 from ..impact.contacts import PLUS, STICK
 from ..types import Contact, TwoPointBody, Vector
-from .support import FrameAcceleration, PlanarState
+from .felt import FrameAcceleration
+from .support import PlanarState
 
 _UNIT = 1e-9
 """How far contacts may be from what a body that rocks has, relative to its size."""

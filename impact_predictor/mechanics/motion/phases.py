@@ -14,9 +14,10 @@ from ..types import Vector
 from .accumulation import Place
 from .equations import RockingBody, turned
 from .events import Condition, End, Event, dip, fall, falling_root, may_fall, safe_step
+from .felt import FrameAcceleration
 from .integrate import GROWTH, NEAR, Instant, add_dense, middle_of, nudged, step, values_at
 from .pivot import Pivot, roll, turn
-from .support import FeltSupport, FixedSupport, FrameAcceleration, MovingSupport, PlanarState
+from .support import FeltSupport, FixedSupport, MovingSupport, PlanarState
 
 _FIRST_STEP, _STEP_OF_FLIGHT = 0.9, 0.25
 """Length of a first step, and of the longest one in flight, in times that the motion needs to change."""

@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Any
 from ..impact.contacts import MINUS, OPEN, PLUS, STICK
 from .equations import RockingBody
 from .events import End, Event, may_fall
+from .felt import FrameAcceleration
 from .phases import MotionPhase, PhaseEnd
-from .support import FrameAcceleration, MovingSupport
+from .support import MovingSupport
 
 if TYPE_CHECKING:
     import numpy as np

@@ -8,20 +8,17 @@ acceleration of the origin.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from functools import cache
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from ...errors import InputError
 from ..bodies import sine_and_cosine
 from ..types import Vector
+from .felt import FeltPolynomials, FrameAcceleration
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
-
-FrameAcceleration = tuple[float, float, float, float]
-"""Acceleration felt at rest at the origin, along the support's axes (m/s^2); rate (rad/s); angular acceleration."""
 
 _NODES = 10
 """Values that a polynomial of a moving support goes through: with `_PART` they are exact to rounding."""
@@ -29,8 +26,6 @@ _PART = 1.0 / 24.0
 """Length of one polynomial, in shortest periods."""
 _FIT = 1e-12
 """Where the last two terms of a polynomial are above this part of what is felt the motion is evaluated itself."""
-_MAX_PARTS = 4096
-"""Polynomials that are kept."""
 
 
 class PlanarState(NamedTuple):
@@ -95,76 +90,6 @@ class FixedSupport(NamedTuple):
         """Motion of the frame: none, for a time or an array of times."""
         rest = 0.0 * time
         return SupportMotion(self.slope + rest, *[rest] * 8)
-
-
-class FeltPolynomials:
-    """What is felt, from polynomials in time: a motion asks for it a hundred times, and a sum of waves takes long.
-
-    Each has a `length` in s and goes through the values that `exactly` gives at `nodes` Chebyshev nodes of it. Where
-    the last two terms of one are above `fit` of what is felt, `exactly` is asked itself.
-    """
-
-    period = math.inf
-
-    def __init__(
-        self,
-        exactly: Callable[[list[float]], Sequence[Sequence[float]]],
-        length: float,
-        nodes: int,
-        gravity: float = 9.81,
-        fit: float = math.inf,
-    ) -> None:
-        self._exactly, self._length, self._nodes = exactly, length, _nodes(nodes)
-        self.gravity, self._fit = gravity, fit
-        self._parts: dict[int, list[tuple[float, Sequence[float]]]] = {}
-
-    def felt(self, time: float) -> FrameAcceleration:
-        """What a body feels at rest at the support's origin."""
-        place = time / self._length
-        number = math.floor(place)
-        part = self._parts.get(number)
-        if part is None:
-            if len(self._parts) >= _MAX_PARTS:
-                self._parts.clear()
-            part = self._parts[number] = self._polynomials(number)
-        if not part:
-            x, y, w, a = self._exactly([time])[0]
-            return x, y, w, a
-        s = 2.0 * (place - number) - 1.0
-        x = y = w = a = 0.0
-        for node, (cx, cy, cw, ca) in part:
-            s_node = s - node
-            x = x * s_node + cx
-            y = y * s_node + cy
-            w = w * s_node + cw
-            a = a * s_node + ca
-        return x, y, w, a
-
-    def _polynomials(self, number: int) -> list[tuple[float, Sequence[float]]]:
-        """Nodes and divided differences of one part (Newton's form), the highest first; none where they do not fit."""
-        nodes, length = self._nodes, self._length
-        rows = list(self._exactly([(number + 0.5 + 0.5 * node) * length for node in nodes]))
-        x, y, w, a = [max(map(abs, column)) for column in zip(*rows, strict=True)]
-        sizes = max(x, y), max(x, y), w, max(a, w / length)
-        for order in range(1, len(nodes)):
-            for k in range(len(nodes) - 1, order - 1, -1):
-                gap = nodes[k] - nodes[k - order]
-                rows[k] = [(b - a) / gap for a, b in zip(rows[k - 1], rows[k], strict=True)]
-        # As terms of Chebyshev's series: those of the powers are so many times as large.
-        large = self._fit * 2.0 ** (len(nodes) - 3)
-        fits = all(abs(end) <= large * size for row in rows[-2:] for end, size in zip(row, sizes, strict=True))
-        return list(zip(nodes, rows, strict=True))[::-1] if fits else []
-
-
-@cache
-def _nodes(count: int) -> list[float]:
-    """Chebyshev's nodes on -1..1, each as far from those before it as can be: Newton's form keeps its digits then."""
-    left = [math.cos((k + 0.5) * math.pi / count) for k in range(count)]
-    nodes: list[float] = []
-    while left:
-        nodes.append(max(left, key=lambda node: math.prod(abs(node - other) for other in nodes)))
-        left.remove(nodes[-1])
-    return nodes
 
 
 class MovingSupport:

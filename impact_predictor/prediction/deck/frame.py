@@ -22,7 +22,7 @@ from functools import partial
 from math import hypot
 
 from ...mechanics.motion import Fall, PlanarState, next_strike
-from ...mechanics.motion.support import FeltPolynomials, FrameAcceleration
+from ...mechanics.motion.felt import FeltPolynomials, FrameAcceleration
 from ...mechanics.types import Contact, TwoPointBody
 from ..planar import ORIGIN, ImpactPlane, Posture, center_of
 from ..scene import Scene

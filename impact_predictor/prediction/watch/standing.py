@@ -192,7 +192,9 @@ class Standing:
         moves = [add(foot, stood, -1.0) for foot, stood in zip(feet, self._anchor, strict=True)]
         rises = [dot(scene.normal, move) for move in moves]
         along = [add(move, scene.normal, -rise) for move, rise in zip(moves, rises, strict=True)]
-        farthest = max(moves if scene.radius else along, key=lambda move: dot(move, move))
+        ways = moves if scene.radius else along
+        squares = [dot(way, way) for way in ways]
+        farthest = ways[squares.index(max(squares))]
         distance, rise = hypot(*farthest), max(rises, key=abs)
         if scene.radius:
             verb = "spins on its edges"
@@ -216,14 +218,15 @@ class Standing:
         if scene.radius:
             feet = [center]
         rocks, (rocked, drawn) = self.motion is BodyMotion.ROCKS, self._drawn
-        if drawn and rocks is rocked and _within(feet, drawn, self._touch):
+        if drawn and rocks == rocked and _within(feet, drawn, self._touch):
             return False
         self._drawn = rocks, feet
         found = edges_of([self._at_center(edge, pose) for edge in scene.edges] if scene.radius else feet, normal)
         if found and rocks and scene.radius:
             found = [found[gaps.index(min(gaps))]]
         elif found and rocks:
-            found = [min(found, key=lambda pair: dot(normal, pair[0].point) + dot(normal, pair[1]))]
+            heights = [dot(normal, edge.point) + dot(normal, end) for edge, end in found]
+            found = [found[heights.index(min(heights))]]
         self.stance = StandingBody(
             mass=scene.mass,
             friction=scene.friction,

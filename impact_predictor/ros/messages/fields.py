@@ -58,9 +58,9 @@ class Table:
             if found is None:
                 continue
             for key, value in zip(keys, (found,) if told is None else told(found), strict=True):
-                if type(value) is float:
+                if isinstance(value, float):
                     # `add_pair` written out, for most values are numbers: it makes a message a tenth cheaper.
-                    raw = repr(value).encode()
+                    raw = repr(float(value)).encode()
                     size = len(raw)
                     pairs += (key, LENGTHS[size], raw, PADDING[size & 3])
                 elif value is not None:
